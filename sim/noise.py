@@ -1,0 +1,148 @@
+"""Everything random in the simulated rig, from one seed.
+
+A stream of numbers belongs to a key (seed, stream name, and where it is used: specimen, wheel, condition,
+repeat, attempt) and never to the order of drawing. So a run that is resumed, split over processes or has
+one repeat redone draws the same numbers for every other repeat. Keys go through numpy's SeedSequence into
+Philox, whose bits are the same on every platform; names enter by their CRC-32.
+"""
+
+from __future__ import annotations
+
+import math
+import zlib
+
+import numpy as np
+
+from sim.parameters import SimParameters
+
+_SEED_MASK = 0xFFFF_FFFF_FFFF_FFFF
+BLOCKS = (128, 1024)
+"""Numbers drawn at a time, the first time and from then on (multiples of four): the hot path indexes a list."""
+
+
+def _generator(seed: int, stream: str, place: tuple[int, ...]) -> np.random.Generator:
+    """Return the generator of one key; ``place`` holds integers of at least 0."""
+    entropy = [seed & _SEED_MASK, zlib.crc32(stream.encode()), len(place), *place]
+    return np.random.Generator(np.random.Philox(np.random.SeedSequence(entropy)))
+
+
+def normal(seed: int, stream: str, *place: int) -> float:
+    """Return one standard normal number of a key."""
+    return float(_generator(seed, stream, place).standard_normal())
+
+
+def uniforms(count: int, seed: int, stream: str, *place: int) -> list[float]:
+    """Return ``count`` numbers of a key, evenly spread over -1 to 1."""
+    return [float(x) for x in _generator(seed, stream, place).uniform(-1.0, 1.0, count)]
+
+
+class NormalStream:
+    """Standard normal numbers of one key, without end.
+
+    Each block has a key of its own, so the state is a block's number and a position: cheap to copy.
+    """
+
+    __slots__ = ("_at", "_block", "_numbers", "_place", "_seed", "_stream")
+
+    def __init__(self, seed: int, stream: str, *place: int) -> None:
+        """Start at the key's first number; nothing is drawn before the first is asked for."""
+        self._seed = seed
+        self._stream = stream
+        self._place = place
+        self._block = 0
+        self._numbers: list[float] = []
+        self._at = 0
+
+    def next(self) -> float:
+        """Return the next number."""
+        at = self._at
+        if at >= len(self._numbers):
+            self._draw()
+            at = 0
+        self._at = at + 1
+        return self._numbers[at]
+
+    def next4(self) -> list[float]:
+        """Return the next four numbers (of a stream that is only read by fours)."""
+        at = self._at
+        if at >= len(self._numbers):
+            self._draw()
+            at = 0
+        self._at = at + 4
+        return self._numbers[at : at + 4]
+
+    def _draw(self) -> None:
+        """Draw the next block."""
+        generator = _generator(self._seed, self._stream, (*self._place, self._block))
+        self._numbers = generator.standard_normal(BLOCKS[self._block > 0]).tolist()
+        self._block += 1
+
+    def __deepcopy__(self, memo: dict[int, object]) -> NormalStream:
+        """Return an independent stream at the same position; a block is never changed, so it is shared."""
+        twin = NormalStream(self._seed, self._stream, *self._place)
+        twin._block, twin._numbers, twin._at = self._block, self._numbers, self._at
+        return twin
+
+
+class Autoregressive:
+    """First-order autoregressive fluctuation with a standard deviation and a correlation time, exact for any step."""
+
+    __slots__ = ("_keep", "_kick", "_sigma", "_time_s", "value")
+
+    def __init__(self, sigma: float, time_s: float) -> None:
+        """Start at zero with no step set; ``retime`` must come before ``step``."""
+        self._sigma = sigma
+        self._time_s = time_s
+        self._keep = 1.0
+        self._kick = 0.0
+        self.value = 0.0
+
+    def retime(self, dt_s: float) -> None:
+        """Set the length of a step in s."""
+        self._keep = math.exp(-dt_s / self._time_s)
+        self._kick = self._sigma * math.sqrt(1.0 - self._keep * self._keep)
+
+    def restart(self, number: float) -> None:
+        """Start anew from a standard normal number, as stationary as it goes on."""
+        self.value = self._sigma * number
+
+    def step(self, number: float) -> float:
+        """Move on by one step with a standard normal number and return the value."""
+        self.value = value = self._keep * self.value + self._kick * number
+        return value
+
+
+def wheel_factor(parameters: SimParameters, seed: int, specimen: int, wheel: int) -> float:
+    """Return what multiplies the friction of one wheel."""
+    sigma = parameters.scatter * parameters.variability.wheel
+    return 1.0 + sigma * normal(seed, "wheel", specimen, wheel)
+
+
+def condition_factor(parameters: SimParameters, seed: int, compound: str, condition: int) -> float:
+    """Return what multiplies the friction of a compound in one condition: how far the model misses it."""
+    sigma = parameters.scatter * parameters.variability.condition(compound)
+    return 1.0 + sigma * normal(seed, "condition", zlib.crc32(compound.encode()), condition)
+
+
+def run_factor(parameters: SimParameters, seed: int, *place: int) -> float:
+    """Return what multiplies the friction of one repeat (specimen, wheel, condition, repeat, attempt)."""
+    return 1.0 + parameters.scatter * parameters.variability.run * normal(seed, "run", *place)
+
+
+def mean_of_autoregressive(sigma: float, time_s: float, window_s: float) -> float:
+    """Return the standard deviation of the mean of an AR(1) fluctuation over a window of more than 0 s."""
+    share = time_s / window_s
+    return sigma * math.sqrt(2.0 * share * (1.0 - share * -math.expm1(-1.0 / share)))
+
+
+def stated_sigma(parameters: SimParameters, compound: str, repeats: int, window_s: float) -> float:
+    """Return the relative standard deviation by which the mean of a condition's repeats misses the model.
+
+    Wheel and condition scatter in full, repeat-to-repeat scatter and the fluctuation within a window of
+    ``window_s`` (total accepted time of one repeat, s) divided by the root of ``repeats``. Sensor
+    imperfections are not in it. Raises KeyError for a compound without a friction model.
+    """
+    v = parameters.variability
+    within = mean_of_autoregressive(v.within, v.within_time, window_s)
+    variance = v.wheel**2 + v.condition(compound) ** 2 + (v.run**2 + within**2) / repeats
+    return parameters.scatter * math.sqrt(variance)
