@@ -1,0 +1,113 @@
+"""What is configured of an axis, and what its drive says about itself."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Annotated, Literal
+
+from drivers.canopen.dictionary import PRODUCT_CODE, VENDOR_ID
+from drivers.canopen.emcy import register_text
+from drivers.canopen.objects import emergency_text
+
+_I32_MAX = 0x7FFF_FFFF
+
+
+@dataclass(frozen=True, slots=True)
+class AxisConfig:
+    """One axis: its node, its scaling and its limits; raises ValueError where they contradict each other.
+
+    ``unit`` is the axis' engineering unit: a speed for "rad/s", "m/s" and "mm/s" (positions are then rad,
+    m, mm), and "deg" for the yaw axes (speeds deg/s). Increments are counts of 0x60FF, 0x606C, 0x6080,
+    0x6081 and 0x6083-85 per unit of speed or acceleration, and of 0x6064 and 0x607A per unit of position;
+    0 = not used. ``feedback`` names the 32-bit field of TPDO1. Torque: 0x6077 is per mille of
+    ``rated_torque_nm`` (0x6076). ``vendor_id``, ``product_code`` and ``serial_number`` are compared with
+    0x1018 at connect; 0 = not compared. [A] marks an assumption: check it against the drive's manual.
+    """
+
+    name: str
+    node_id: int                                     # 1..126; 127 is the PC
+    mode: Literal["velocity", "position"]
+    unit: Literal["rad/s", "m/s", "mm/s", "deg"]
+    velocity_increments: float                       # counts per unit/s
+    position_increments: float                       # counts per position unit
+    feedback: Literal["velocity", "position"]
+    rated_torque_nm: Annotated[float, "N.m"]
+    max_speed: float                                 # unit (a speed), or deg/s
+    acceleration: float                              # speed unit per s
+    deceleration: float                              # speed unit per s
+    quick_stop_deceleration: float                   # speed unit per s
+    max_torque_per_mille: int = 3000                 # 0x6072, of rated; 3000 is a usual servo's peak [A]
+    software_limits: tuple[float, float] | None = None   # position unit; 0x607D
+    home_offset: float = 0.0                         # position unit; 0x607C
+    homing_method: int = 19                          # 0x6098; 19: home switch, no index pulse [A]
+    homing_speed: float = 0.0                        # 0x6099:01; 0: a fifth of max_speed
+    homing_zero_speed: float = 0.0                   # 0x6099:02; 0: a twentieth of max_speed
+    home_timeout_s: Annotated[float, "s"] = 60.0
+    position_window: float = 0.0                     # position unit; 0x6067; 0: leave the drive's
+    digital_io: bool = False                         # PDO 2 carries 0x60FE:01 and 0x60FD
+    vendor_id: int = VENDOR_ID                       # default: the simulated drive's
+    product_code: int = PRODUCT_CODE
+    serial_number: int = 0
+    heartbeat_s: Annotated[float, "s"] = 0.05        # 0x1017: the drive's own
+    consumer_heartbeat_s: Annotated[float, "s"] = 0.2    # 0x1016: how long the drive waits for ours
+    rpdo_deadline_s: Annotated[float, "s"] = 0.0     # 0x1400:05; 0: off, the heartbeat watches
+
+    def __post_init__(self) -> None:
+        for problem in self._problems():
+            raise ValueError(f"axis {self.name}: {problem}")
+
+    def _problems(self) -> list[str]:
+        problems: list[str] = []
+        if not 1 <= self.node_id <= 126:
+            problems.append(f"node id {self.node_id} is not within 1..126")
+        for name in ("velocity_increments", "rated_torque_nm", "max_speed", "acceleration", "deceleration",
+                     "quick_stop_deceleration"):
+            value: float = getattr(self, name)
+            if not (math.isfinite(value) and value > 0):
+                problems.append(f"{name} is {value}, it must be above 0")
+        if (self.mode == "position" or self.feedback == "position") and not self.position_increments > 0:
+            problems.append("position_increments is needed for a position mode or position feedback")
+        if self.mode == "position" and self.feedback != "position":
+            problems.append("position mode needs position feedback")
+        if self.software_limits is not None and not self.software_limits[0] < self.software_limits[1]:
+            problems.append(f"software_limits {self.software_limits} are not in ascending order")
+        if self.max_speed * self.velocity_increments > _I32_MAX:
+            problems.append("max_speed x velocity_increments does not fit the 32 bits of 0x60FF")
+        for name in ("heartbeat_s", "consumer_heartbeat_s"):
+            value = getattr(self, name)
+            if not 0.001 <= value <= 65.535:
+                problems.append(f"{name} is {value} s, possible are 0.001..65.535 s")
+        return problems
+
+
+@dataclass(frozen=True, slots=True)
+class DeviceIdentity:
+    """Who answered at a node id: 0x1000 and 0x1018."""
+
+    device_type: int
+    vendor_id: int
+    product_code: int
+    revision: int
+    serial_number: int
+
+
+@dataclass(frozen=True, slots=True)
+class Diagnosis:
+    """What a drive says about its fault: 0x603F, 0x1001 and 0x1003 (newest first).
+
+    ``failed`` names the request that was not answered, if any; the rest is then what had been read before.
+    """
+
+    error_code: int
+    register: int
+    history: tuple[int, ...]
+    failed: str | None = None
+
+    @property
+    def text(self) -> str:
+        """One line for the journal."""
+        history = "; ".join(emergency_text(entry & 0xFFFF) for entry in self.history) or "empty"
+        line = (f"error code {emergency_text(self.error_code)}, error register {register_text(self.register)}, "
+                f"history {history}")
+        return f"{line}; {self.failed}" if self.failed else line

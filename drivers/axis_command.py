@@ -1,0 +1,238 @@
+"""What is wanted of a drive, and the RPDO1 that says it: goal, target, halt, fault reset, homing start."""
+
+from __future__ import annotations
+
+import math
+import struct
+
+from drivers import cia402
+from drivers.axis import AxisConfig
+from drivers.cia402 import Goal, State
+
+# All axes share this layout (drivers.canopen.pdo): controlword, target velocity or target position.
+_RPDO1 = struct.Struct("<Hi").pack
+_I32_MAX = 0x7FFF_FFFF
+_IO_MAX = 0xFFFF_FFFF
+
+# Members bound once: a look-up on the enum class costs several times as much in every scan (CPython 3.11).
+_DISABLED, _ENABLED, _QUICK_STOP = Goal.DISABLED, Goal.ENABLED, Goal.QUICK_STOP
+_OPERATING = State.OPERATION_ENABLED
+
+_STOPPED_BY_ITSELF = frozenset(
+    (State.OPERATION_ENABLED, State.QUICK_STOP_ACTIVE, State.FAULT_REACTION, State.FAULT))
+"""A drive that leaves one of these for less, with the goal still ENABLED, is not enabled again by itself."""
+
+
+class AxisCommand:
+    """The command side of a drive: composes RPDO1 from what is wanted and from the last statusword.
+
+    The bytes are composed again only when something they depend on has changed.
+    ``inhibited``: the drive left operation, or a fault, while the goal was ENABLED; another goal must be set
+    before ENABLED counts again, so that nothing restarts by itself.
+    """
+
+    __slots__ = ("_at_rest", "_dirty", "_goal", "_halt", "_high", "_homing", "_homing_start", "_low",
+                 "_new_set_point", "_outputs", "_per_unit", "_position_mode", "_raw", "_resetting", "_rpdo",
+                 "_set_point", "_target", "_target_counts", "config", "connected", "homing_scans", "inhibited",
+                 "lost", "state", "statusword")
+
+    def __init__(self, config: AxisConfig) -> None:
+        self.config = config
+        self._position_mode = config.mode == "position"
+        self._per_unit = config.position_increments if self._position_mode else config.velocity_increments
+        reach = _I32_MAX / self._per_unit
+        limits = config.software_limits if self._position_mode else (-config.max_speed, config.max_speed)
+        self._low, self._high = limits or (-reach, reach)
+        self.clear_commands()
+
+    def clear_commands(self) -> None:
+        """Set every command, and what is known of the device's state, to nothing."""
+        self.state = State.NOT_READY
+        self.statusword: int = 0
+        self.connected = False
+        self.lost = False
+        self.inhibited = False
+        self.homing_scans = 0
+        self._raw: int = 0               # TPDO1's field, counts
+        self._goal = Goal.DISABLED
+        self._halt = False
+        self._outputs = 0
+        self._target = 0.0
+        self._target_counts: int = 0
+        self._at_rest = True             # not following the target
+        self._new_set_point = False      # controlword bit 4 is up
+        self._set_point: int = 0         # position sent last with bit 4, counts
+        self._resetting = False
+        self._homing = False
+        self._homing_start = False
+        self._rpdo: bytes | None = None
+        self._dirty = True
+
+    @property
+    def target(self) -> float:
+        """Speed or position wanted, ``config.unit``; clamped to max_speed or the software limits.
+
+        Sent only while the drive reports OPERATION_ENABLED; before that it is sent 0, in position mode the
+        actual position. Setting NaN or an infinity raises ValueError and changes nothing.
+        """
+        return self._target
+
+    @target.setter
+    def target(self, value: float) -> None:
+        if value == self._target:
+            return
+        if not math.isfinite(value):
+            raise ValueError(f"{self.config.name}: target {value} is not a number")
+        if value < self._low:
+            value = self._low
+        elif value > self._high:
+            value = self._high
+        self._target = value
+        counts = round(self._target * self._per_unit)
+        if counts != self._target_counts:
+            self._target_counts = counts
+            self._dirty = True
+
+    @property
+    def goal(self) -> Goal:
+        """State wanted; a level, reached one transition per scan."""
+        return self._goal
+
+    @goal.setter
+    def goal(self, goal: Goal) -> None:
+        if goal is self._goal and not self.inhibited:
+            return
+        self._goal = goal
+        if goal is not Goal.ENABLED:
+            self.inhibited = False
+        self._dirty = True
+
+    @property
+    def halt(self) -> bool:
+        """Whether an enabled axis is to pause (controlword bit 8, 0x605D): it ramps down and stays enabled."""
+        return self._halt
+
+    @halt.setter
+    def halt(self, halt: bool) -> None:
+        if halt is not self._halt:
+            self._halt = halt
+            self._dirty = True
+
+    @property
+    def outputs(self) -> int:
+        """Digital outputs wanted, bits of 0x60FE:01; sent with the next scan after a change."""
+        return self._outputs
+
+    @outputs.setter
+    def outputs(self, bits: int) -> None:
+        if not 0 <= bits <= _IO_MAX:
+            raise ValueError(f"{self.config.name}: outputs {bits:#x} do not fit 32 bits")
+        self._outputs = bits
+
+    @property
+    def reached(self) -> bool:
+        """Whether the drive reports its target reached (bit 10).
+
+        In position mode only for the present target: an earlier one does not count. A velocity has no
+        handshake: for two scans after a change the bit still speaks of the target before.
+        """
+        current = not self._position_mode or (
+            not self._new_set_point and self._set_point == self._target_counts)
+        return current and not self._at_rest and self.statusword & cia402.TARGET_REACHED != 0
+
+    @property
+    def remote(self) -> bool:
+        """Whether the drive listens to the bus (bit 9); enabling is not tried without."""
+        return self.statusword & cia402.REMOTE != 0
+
+    def emit(self, sync: bool) -> bytes | None:
+        """Return RPDO1 for this scan, None while there is nothing to command; ``sync``: a SYNC follows."""
+        if self._dirty:
+            self._compose()
+        rpdo = self._rpdo
+        if self._resetting and sync:        # a synchronous RPDO acts at the SYNC: the edge has been seen
+            self._resetting = False
+            self._dirty = True
+        return rpdo
+
+    def set_homing(self, active: bool, start: bool = False) -> None:
+        """Tell whether the device is in homing mode, and whether to start (controlword bit 4).
+
+        ``homing_scans`` counts the scans sent with the start bit.
+        """
+        self._homing = active
+        self._homing_start = start
+        self.homing_scans = 0
+        self._dirty = True
+
+    def take_statusword(self, statusword: int) -> None:
+        """Take a statusword that differs from the last one."""
+        state = cia402.decode(statusword)
+        previous = self.state
+        if state is not previous:
+            self.state = state
+            if (self._goal is Goal.ENABLED and previous in _STOPPED_BY_ITSELF
+                    and state is not State.OPERATION_ENABLED):
+                self.inhibited = True
+        self.statusword = statusword
+        self._dirty = True
+
+    def _request_reset(self) -> None:
+        """Raise controlword bit 7 once, up to the next SYNC; the drive then stays disabled."""
+        self.inhibited = True
+        self._resetting = True
+        self._dirty = True
+
+    def _hold_still(self, raw: int) -> None:
+        """Make the present position (counts), or standstill, the target."""
+        self._raw = raw
+        self._target_counts = raw if self._position_mode else 0
+        self._target = raw / self._per_unit if self._position_mode else 0.0
+        self._dirty = True
+
+    def _compose(self) -> None:
+        """Compose RPDO1 from the goal, the target and the last statusword."""
+        self._dirty = False
+        if not self.connected:
+            self._rpdo = None
+            return
+        goal = _QUICK_STOP if self.lost else self._goal
+        if goal is _ENABLED and (self.inhibited or not self.statusword & cia402.REMOTE):
+            goal = _DISABLED
+        word = cia402.controlword(self.state, goal)
+        if self._resetting:
+            if self.state is State.FAULT:
+                word |= cia402.FAULT_RESET
+            else:
+                self._resetting = False      # it has gone without us
+        if goal is _ENABLED and self.state is _OPERATING:
+            self._rpdo = self._compose_motion(word | cia402.HALT if self._halt else word)
+            return
+        self._at_rest = True
+        self._rpdo = _RPDO1(word, self._raw if self._position_mode else 0)
+
+    def _compose_motion(self, word: int) -> bytes:
+        """Return RPDO1 of an axis in operation."""
+        if self._homing:
+            if self._homing_start:
+                word |= cia402.HOMING_START
+                self.homing_scans += 1
+                self._dirty = True           # count every scan
+            return _RPDO1(word, self._raw if self._position_mode else 0)
+        if not self._position_mode:
+            self._at_rest = False
+            return _RPDO1(word, self._target_counts)
+        if self._at_rest:
+            self._at_rest = False
+            self._new_set_point = False
+            self._set_point = self._raw      # begins by holding the axis where it is
+        acknowledged = self.statusword & cia402.SET_POINT_ACKNOWLEDGED != 0
+        if self._new_set_point:
+            self._new_set_point = not acknowledged
+        elif not acknowledged and self._target_counts != self._set_point:
+            self._new_set_point = True
+            self._set_point = self._target_counts
+        word |= cia402.CHANGE_IMMEDIATELY
+        if self._new_set_point:
+            word |= cia402.NEW_SET_POINT
+        return _RPDO1(word, self._set_point)

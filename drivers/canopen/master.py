@@ -1,0 +1,215 @@
+"""The PC's side of one CAN bus: process data of all drives, heartbeats, and conversations with each of them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from drivers.canopen import heartbeat
+from drivers.canopen import objects as o
+from drivers.canopen.conversation import Conversation, Dialogue
+
+if TYPE_CHECKING:
+    from drivers.ports import CanFrame, CanPort
+    from drivers.servo import ServoDrive
+
+EARLY_S = 0.0005
+"""Work due within half a millisecond is done at once: it saves a tick of its own and hides rounding of times."""
+
+_FUNCTION = 0x780
+_NODE = 0x07F
+_MASTER_FUNCTIONS = {
+    o.RPDO1_BASE: "RPDO1", o.RPDO2_BASE: "RPDO2", o.RPDO3_BASE: "RPDO3", o.RPDO4_BASE: "RPDO4",
+    o.SDO_REQUEST_BASE: "SDO request",
+}
+"""What only a master sends: received, it is somebody else's."""
+
+
+class CanMaster:
+    """Commands the drives of one bus; sans-IO: frames and times come in as arguments, frames go out to the port.
+
+    Each tick: ``feed`` what the port received, decide, then ``scan``. Between ticks, when ``deadline`` has
+    come or frames arrived: ``feed`` and ``service``. Heartbeats leave only from these two: no scan, no
+    heartbeat. Calls that send raise BusLost when the wire is gone.
+
+    ``deadline`` (s) is the earliest time it wants service; it may lie in the past ("at once").
+    ``foreign_master`` is set by the first frame that only a master sends, and ``foreign_frame`` describes
+    it; the caller clears them. ``unknown_frames`` counts frames of nobody added here.
+    """
+
+    __slots__ = ("_by_node", "_dialogues", "_drives", "_heartbeat", "_heartbeat_due", "_io_drives", "_tpdo1",
+                 "_withheld", "deadline", "foreign_frame", "foreign_master", "heartbeat_s", "node_id",
+                 "sdo_timeout_s", "sync", "unknown_frames")
+
+    def __init__(self, node_id: int = 127, heartbeat_s: float = 0.05, sdo_timeout_s: float = 0.3) -> None:
+        self.node_id = node_id
+        self.heartbeat_s = heartbeat_s
+        self.sdo_timeout_s = sdo_timeout_s
+        self.sync = True
+        self.deadline = -math.inf
+        self.foreign_master = False
+        self.foreign_frame = ""
+        self.unknown_frames = 0
+        self._heartbeat = (o.HEARTBEAT_BASE + node_id, bytes((o.NmtState.OPERATIONAL,)))
+        self._heartbeat_due = -math.inf
+        self._withheld = False
+        self._drives: list[ServoDrive] = []
+        self._io_drives: list[ServoDrive] = []
+        self._by_node: dict[int, ServoDrive] = {}
+        self._tpdo1: dict[int, ServoDrive] = {}
+        self._dialogues: dict[int, Dialogue] = {}
+
+    @property
+    def drives(self) -> tuple[ServoDrive, ...]:
+        """The drives of the bus in the order added."""
+        return tuple(self._drives)
+
+    @property
+    def withhold_heartbeat(self) -> bool:
+        """Whether our heartbeat is kept back: only to prove that the drives notice (safety.md, principle 4)."""
+        return self._withheld
+
+    @withhold_heartbeat.setter
+    def withhold_heartbeat(self, withhold: bool) -> None:
+        self._withheld = withhold
+        self.deadline = -math.inf
+
+    def add(self, drive: ServoDrive) -> None:
+        """Take a drive onto the bus; raises ValueError where its node id is taken."""
+        node_id = drive.node_id
+        if node_id == self.node_id or node_id in self._by_node:
+            raise ValueError(f"{drive.config.name}: node id {node_id} is taken")
+        self._drives.append(drive)
+        if drive.config.digital_io:
+            self._io_drives.append(drive)
+        self._by_node[node_id] = drive
+        self._tpdo1[o.TPDO1_BASE + node_id] = drive
+
+    def start(self, drive: ServoDrive, conversation: Conversation) -> None:
+        """Begin a conversation with a drive at the next service; raises ValueError while another one runs."""
+        if self.busy(drive):
+            raise ValueError(f"{drive.config.name}: a conversation is still running")
+        self._dialogues[drive.node_id] = Dialogue(drive, conversation, self.sdo_timeout_s)
+        self.deadline = -math.inf
+
+    def busy(self, drive: ServoDrive) -> bool:
+        """Whether a conversation with this drive runs."""
+        return drive.node_id in self._dialogues
+
+    def cancel(self, drive: ServoDrive) -> None:
+        """End this drive's conversation where it stands, if one runs."""
+        dialogue = self._dialogues.pop(drive.node_id, None)
+        if dialogue is not None:
+            dialogue.close()
+
+    def feed(self, frames: list[CanFrame], now: float) -> None:
+        """Take the frames that arrived up to ``now``, oldest first."""
+        tpdo1 = self._tpdo1
+        for t, can_id, data in frames:
+            drive = tpdo1.get(can_id)
+            if drive is None:
+                self._route(t, can_id, data)
+            elif data == drive.tpdo1_data:
+                drive.stamp_s = t
+            else:
+                drive.on_tpdo1(t, data)
+
+    def scan(self, port: CanPort, now: float) -> None:
+        """Send every drive's commands, then SYNC (while ``sync``), then what ``service`` sends."""
+        send = port.send
+        sync = self.sync
+        for drive in self._io_drives:
+            outputs = drive.emit_outputs()
+            if outputs is not None:
+                send(drive.rpdo2_id, outputs, now)
+        for drive in self._drives:
+            data = drive.emit(sync)
+            if data is not None:
+                send(drive.rpdo1_id, data, now)
+        if sync:
+            send(o.SYNC_ID, b"", now)
+        if self._dialogues or now + EARLY_S >= self.deadline:
+            self._serve(port, now)
+
+    def service(self, port: CanPort, now: float) -> None:
+        """Send our heartbeat when due and go on with the conversations; notice drives that fell silent."""
+        if self._dialogues or now + EARLY_S >= self.deadline:
+            self._serve(port, now)
+
+    def _serve(self, port: CanPort, now: float) -> None:
+        if not self._withheld and now + EARLY_S >= self._heartbeat_due:
+            can_id, data = self._heartbeat
+            port.send(can_id, data, now)
+            self._heartbeat_due = now + self.heartbeat_s
+        if self._dialogues:
+            self._converse(port, now)
+        for drive in self._drives:
+            if now >= drive.heartbeat.due:
+                drive.check_heartbeat(now)
+        self._set_deadline()
+
+    def _converse(self, port: CanPort, now: float) -> None:
+        send = _sender(port, now)
+        for node_id, dialogue in list(self._dialogues.items()):
+            dialogue.step(now, send)
+            if dialogue.ended:
+                del self._dialogues[node_id]
+
+    def _set_deadline(self) -> None:
+        deadline = math.inf if self._withheld else self._heartbeat_due
+        for drive in self._drives:
+            if drive.heartbeat.due < deadline:
+                deadline = drive.heartbeat.due
+        for dialogue in self._dialogues.values():
+            if dialogue.due < deadline:
+                deadline = dialogue.due
+        self.deadline = deadline
+
+    def _route(self, t: float, can_id: int, data: bytes) -> None:
+        """Take a frame that is no TPDO1 of a drive of ours, by its function code."""
+        function = can_id & _FUNCTION
+        if can_id in (o.NMT_ID, o.SYNC_ID) or function in _MASTER_FUNCTIONS:
+            self._foreign(can_id, data)
+            return
+        drive = self._by_node.get(can_id & _NODE)
+        if drive is None:
+            if can_id == self._heartbeat[0]:
+                self._foreign(can_id, data)
+            else:
+                self.unknown_frames += 1
+        elif function == o.HEARTBEAT_BASE:
+            self._on_heartbeat(drive, t, data)
+        elif function == o.SDO_REPLY_BASE:
+            dialogue = self._dialogues.get(drive.node_id)
+            if dialogue is not None:
+                dialogue.receive(data)
+                self.deadline = min(self.deadline, t)
+        elif function == o.TPDO2_BASE:
+            drive.on_tpdo2(t, data)
+        elif function == o.EMERGENCY_BASE:
+            drive.on_emergency(t, data)
+        else:
+            self.unknown_frames += 1
+
+    def _on_heartbeat(self, drive: ServoDrive, t: float, data: bytes) -> None:
+        state = heartbeat.state_of(data)
+        if state is None:
+            self.unknown_frames += 1
+            return
+        drive.on_heartbeat(t, state)
+        if drive.node_id in self._dialogues:
+            self.deadline = min(self.deadline, t)
+
+    def _foreign(self, can_id: int, data: bytes) -> None:
+        if not self.foreign_master:
+            name = {o.NMT_ID: "NMT", o.SYNC_ID: "SYNC", self._heartbeat[0]: "heartbeat of our node id"}.get(can_id)
+            name = name or _MASTER_FUNCTIONS[can_id & _FUNCTION]
+            self.foreign_frame = f"{name} {can_id:03X}#{data.hex().upper()}"
+        self.foreign_master = True
+
+
+def _sender(port: CanPort, now: float) -> Callable[[int, bytes], None]:
+    def send(can_id: int, data: bytes) -> None:
+        port.send(can_id, data, now)
+    return send

@@ -1,0 +1,40 @@
+"""What a driver needs of a wire: frames or bytes in and out, with time stamps.
+
+A port never blocks. Real ports live in ``drivers.edges``; simulated ones in ``sim``. Times are seconds on the
+caller's monotonic clock (simulated or real); the caller passes ``now`` and no port reads a clock for it.
+"""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+CanFrame = tuple[float, int, bytes]
+"""(arrival time in s, CAN identifier, data of 0..8 bytes)."""
+
+
+class BusLost(Exception):
+    """The wire below a port is gone (adapter unplugged, bus-off, socket closed, end of file)."""
+
+
+class CanPort(Protocol):
+    """One CAN adapter."""
+
+    def send(self, can_id: int, data: bytes, now: float) -> None:
+        """Queue one data frame for transmission; raises BusLost."""
+        ...
+
+    def receive(self, now: float) -> list[CanFrame]:
+        """Return every frame that arrived up to ``now``, oldest first; raises BusLost."""
+        ...
+
+
+class LinePort(Protocol):
+    """One serial line or TCP connection that carries Modbus."""
+
+    def write(self, data: bytes, now: float) -> None:
+        """Queue bytes for transmission; raises BusLost."""
+        ...
+
+    def read(self, now: float) -> list[tuple[float, bytes]]:
+        """Return (arrival time of the last byte in s, bytes) for every chunk that arrived up to ``now``."""
+        ...

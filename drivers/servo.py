@@ -1,0 +1,255 @@
+"""A CiA 402 servo drive as the rig sees it: engineering units in, CAN bytes out, and back."""
+
+from __future__ import annotations
+
+import math
+import struct
+
+from drivers import cia402, servo_setup
+from drivers.axis import AxisConfig as AxisConfig
+from drivers.axis import DeviceIdentity, Diagnosis
+from drivers.axis_command import AxisCommand
+from drivers.canopen import emcy
+from drivers.canopen import objects as o
+from drivers.canopen.conversation import Condition, Conversation
+from drivers.canopen.emcy import Emergency
+from drivers.canopen.heartbeat import HeartbeatMonitor
+from drivers.cia402 import Goal, State
+
+# All axes share this layout (drivers.canopen.pdo): statusword, velocity or position, torque.
+_TPDO1 = struct.Struct("<Hih").unpack
+_TPDO1_SIZE = 8
+_IO_PACK = struct.Struct("<I").pack
+_IO_UNPACK = struct.Struct("<I").unpack
+_IO_SIZE = 4
+_MAX_EMERGENCIES = 64     # kept for the journal between two calls of take_emergencies
+_HOMING_SCANS = 3         # until the statusword surely answers the start bit: sent, sampled, reported
+_HOMED = cia402.HOMING_ATTAINED | cia402.TARGET_REACHED
+
+
+class ServoDrive(AxisCommand):
+    """One drive: readings as of the last frames, commands for the next scan.
+
+    Units are ``config.unit`` for ``target`` and ``actual`` (of TPDO1's field: a speed, or with position
+    feedback rad, m, mm, deg) and N m. ``stamp_s`` is the arrival of the last TPDO1, -inf before the first;
+    whoever uses a reading decides how old it may be. ``actual`` and ``torque_nm`` are NaN before they were
+    ever read.
+
+    ``online``: configured, OPERATIONAL and its heartbeat present. ``lost``: its heartbeat stopped, or it
+    booted while in use (``rebooted``); stays until the next connect, and until then it is sent a quick stop
+    (nothing, once rebooted). ``refused`` says why connect or home failed. ``emergency`` is the last EMCY that
+    was neither reset by the device nor acknowledged. ``parameters`` holds what was read back of the device,
+    by (index, sub-index).
+
+    The methods ``on_...``, ``emit...``, ``check_heartbeat`` and ``holds`` are the master's.
+    """
+
+    __slots__ = ("_nm_per_mille", "_outputs_sent", "_raw_per_unit", "actual", "booted", "diagnosis",
+                 "emergencies_dropped", "emergency", "emergency_log", "heartbeat", "homed", "identity", "inputs",
+                 "inputs_stamp_s", "malformed", "nmt_state", "node_id", "online", "parameters", "rebooted",
+                 "refused", "rpdo1_id", "rpdo2_id", "stamp_s", "torque_nm", "tpdo1_data")
+
+    def __init__(self, config: AxisConfig) -> None:
+        super().__init__(config)
+        self.node_id = config.node_id
+        self.rpdo1_id = o.RPDO1_BASE + config.node_id
+        self.rpdo2_id = o.RPDO2_BASE + config.node_id
+        by_position = config.feedback == "position"
+        self._raw_per_unit = config.position_increments if by_position else config.velocity_increments
+        self._nm_per_mille = config.rated_torque_nm / 1000.0
+        self.diagnosis: Diagnosis | None = None
+        self.emergency_log: list[Emergency] = []
+        self.emergencies_dropped = 0
+        self.malformed = 0
+        self._forget()
+
+    def _forget(self) -> None:
+        """Set everything to what is known of a drive nobody has spoken to."""
+        self.clear_commands()
+        self.actual = math.nan
+        self.torque_nm = math.nan
+        self.inputs: int = 0
+        self.stamp_s = -math.inf
+        self.inputs_stamp_s = -math.inf
+        self.tpdo1_data = b""
+        self.online = False
+        self.rebooted = False
+        self.homed = False
+        self.booted = False
+        self.nmt_state = -1
+        self.heartbeat = HeartbeatMonitor(self.config.heartbeat_s)
+        self.emergency: Emergency | None = None
+        self.identity: DeviceIdentity | None = None
+        self.refused: str | None = None
+        self.parameters: dict[tuple[int, int], int] = {}
+        self._outputs_sent = 0
+
+    # --- verbs ----------------------------------------------------------------------------------------------
+
+    def connect(self, pc_node_id: int = 127) -> Conversation:
+        """Return the conversation that resets, checks, configures and starts the drive, commands zero."""
+        return servo_setup.connect(self, pc_node_id)
+
+    def home(self) -> Conversation:
+        """Return the conversation that finds the axis' reference; it enables the drive for that."""
+        return servo_setup.home(self)
+
+    def diagnose(self) -> Conversation:
+        """Return the conversation that reads the fault objects into ``diagnosis``; it changes nothing."""
+        return servo_setup.diagnose(self)
+
+    def release(self) -> Conversation:
+        """Return the conversation that leaves the drive disabled, unwatched and PRE-OPERATIONAL."""
+        return servo_setup.release(self)
+
+    def reset_fault(self) -> None:
+        """Acknowledge: forget the last emergency and, in FAULT, raise bit 7 once with the next scan.
+
+        The drive then stops in SWITCH_ON_DISABLED: ENABLED counts only after another goal was set.
+        """
+        self.emergency = None
+        if self.state is State.FAULT:
+            self._request_reset()
+
+    def take_emergencies(self) -> list[Emergency]:
+        """Return the emergencies since the last call, oldest first, and forget them.
+
+        At most 64 are kept in between; ``emergencies_dropped`` counts the rest.
+        """
+        taken = self.emergency_log
+        self.emergency_log = []
+        return taken
+
+    # --- statusword bits ------------------------------------------------------------------------------------
+
+    @property
+    def warning(self) -> bool:
+        """Bit 7."""
+        return self.statusword & cia402.WARNING != 0
+
+    @property
+    def internal_limit(self) -> bool:
+        """Bit 11."""
+        return self.statusword & cia402.INTERNAL_LIMIT != 0
+
+    @property
+    def deviation(self) -> bool:
+        """Bit 13: following error (position) or too much slippage (velocity)."""
+        return self.statusword & cia402.FOLLOWING_ERROR != 0
+
+    @property
+    def homing_succeeded(self) -> bool:
+        """Whether, in homing mode, the reference is found and the axis stands (bits 12 and 10, not 13)."""
+        return self.statusword & (_HOMED | cia402.HOMING_ERROR) == _HOMED
+
+    # --- what the master calls ------------------------------------------------------------------------------
+
+    def on_tpdo1(self, t: float, data: bytes) -> None:
+        """Take a TPDO1 that arrived at ``t``; one of a wrong length is counted and ignored."""
+        if not self.connected:
+            return
+        if len(data) != _TPDO1_SIZE:
+            self.malformed += 1
+            return
+        statusword, raw, torque = _TPDO1(data)
+        if statusword != self.statusword:
+            self.take_statusword(statusword)
+        if self._at_rest and self._position_mode:
+            self._dirty = True
+        self._raw = raw
+        self.actual = raw / self._raw_per_unit
+        self.torque_nm = torque * self._nm_per_mille
+        self.stamp_s = t
+        self.tpdo1_data = data
+
+    def on_tpdo2(self, t: float, data: bytes) -> None:
+        """Take the digital inputs that arrived at ``t``."""
+        if len(data) != _IO_SIZE:
+            self.malformed += 1
+        elif self.connected:
+            (self.inputs,) = _IO_UNPACK(data)
+            self.inputs_stamp_s = t
+
+    def on_heartbeat(self, t: float, nmt_state: int) -> None:
+        """Take a heartbeat or boot-up message that arrived at ``t``."""
+        self.nmt_state = nmt_state
+        if nmt_state == o.NmtState.BOOT_UP:
+            self.booted = True
+            if self.connected:
+                self.rebooted = True
+                self.lost = True
+                self.disconnect()
+        self.heartbeat.heard(t)
+        self.online = self.connected and not self.lost and nmt_state == o.NmtState.OPERATIONAL
+
+    def on_emergency(self, t: float, data: bytes) -> None:
+        """Take an EMCY message that arrived at ``t``."""
+        emergency = emcy.decode(data, t)
+        self.emergency = None if emergency.is_reset else emergency
+        if len(self.emergency_log) < _MAX_EMERGENCIES:
+            self.emergency_log.append(emergency)
+        else:
+            self.emergencies_dropped += 1
+
+    def check_heartbeat(self, now: float) -> None:
+        """Call the drive lost when its heartbeat is overdue."""
+        if self.heartbeat.expired(now):
+            self.lost = True
+            self.online = False
+            self._dirty = True
+
+    def emit_outputs(self) -> bytes | None:
+        """Return RPDO2 when the outputs have changed, else None; a lost drive is sent zeros."""
+        wanted = 0 if self.lost else self._outputs
+        if wanted == self._outputs_sent or not self.connected:
+            return None
+        self._outputs_sent = wanted
+        return _IO_PACK(wanted)
+
+    def holds(self, condition: Condition) -> bool:
+        """Whether a condition a conversation waits for is true."""
+        if condition is Condition.BOOTED:
+            return self.booted
+        if condition is Condition.OPERATIONAL:
+            return self.nmt_state == o.NmtState.OPERATIONAL
+        if condition is Condition.DISABLED:
+            return self.state in (State.SWITCH_ON_DISABLED, State.FAULT)
+        if condition is Condition.ENABLED:
+            return self.state is State.OPERATION_ENABLED
+        if self.state is not State.OPERATION_ENABLED:
+            return True
+        return self.homing_scans >= _HOMING_SCANS and (self.deviation or self.homing_succeeded)
+
+    # --- what the conversations call (drivers.servo_setup) --------------------------------------------------
+
+    def begin_connect(self) -> None:
+        """Forget the device: nothing is commanded until finish_connect."""
+        self._forget()
+
+    def finish_connect(self, statusword: int, raw: int, inputs: int) -> None:
+        """Take over a device that is configured and OPERATIONAL; ``raw`` is TPDO1's field in counts."""
+        self.connected = True
+        self.online = self.nmt_state == o.NmtState.OPERATIONAL
+        self.heartbeat.arm()
+        self.take_statusword(statusword)
+        self.inputs = inputs
+        self._goal = Goal.DISABLED
+        self._outputs = 0
+        self._take_position(raw)
+
+    def disconnect(self) -> None:
+        """Command nothing any more; the readings stay, and age."""
+        self.connected = False
+        self.online = False
+        self.tpdo1_data = b""
+        self.heartbeat.disarm()
+        self._dirty = True
+
+    def finish_homing(self, raw: int) -> None:
+        """Take the position of a homed axis, counts, as reading and as target."""
+        self.homed = True
+        self._take_position(raw)
+
+    def _take_position(self, raw: int) -> None:
+        self._hold_still(raw)
+        self.actual = raw / self._raw_per_unit
