@@ -1,0 +1,102 @@
+"""`tester check`, `tester plan`, `tester schema`: recipes before anything moves."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+import recipes
+from tester.cli.options import json_option, print_json, rig_option, set_option
+
+if TYPE_CHECKING:
+    from tester.source import Problem
+
+EXIT_INVALID = 3
+
+
+def recipe_file(name_or_path: str) -> tuple[Path, str]:
+    """Return a recipe's file and what messages call it; a usage error where there is no such recipe."""
+    try:
+        path = recipes.find(name_or_path)
+    except recipes.UnknownRecipe as error:
+        raise click.UsageError(str(error)) from error
+    packaged = path.parent == recipes.FOLDER and Path(name_or_path) != path
+    return path, f"recipes/{path.name}" if packaged else name_or_path
+
+
+@click.command()
+@click.argument("recipe")
+@rig_option
+@set_option
+@json_option
+def check(recipe: str, rig_name: str, overrides: tuple[str, ...], as_json: bool) -> int:
+    """Validate RECIPE (a file, or the name of a packaged recipe) against the schema and the rig.
+
+    Every problem at once, as file:line:col: message, and exit code 3.
+    """
+    from tester.recipe.check import load_checked
+    from tester.recipe.expand import conditions_of
+    from tester.rig import load_rig
+    from tester.source import InvalidSource
+
+    path, name = recipe_file(recipe)
+    rig = load_rig(rig_name, list(overrides))
+    try:
+        loaded = load_checked(path, rig, name)
+    except InvalidSource as error:
+        if not as_json:
+            raise
+        print_json({"valid": False, "problems": [_fields(problem) for problem in error.problems]})
+        return EXIT_INVALID
+    valid = loaded.recipe
+    count = len(conditions_of(valid)) * len(valid.specimens) * valid.replicates
+    if as_json:
+        print_json({"valid": True, "problems": [], "conditions": count})
+    else:
+        click.echo(f'{name}: valid on rig "{rig.name}", {count} conditions')
+    return 0
+
+
+@click.command()
+@click.argument("recipe")
+@rig_option
+@set_option
+@json_option
+def plan(recipe: str, rig_name: str, overrides: tuple[str, ...], as_json: bool) -> None:
+    """List the steps of RECIPE (a file, or the name of a packaged recipe) with durations and totals."""
+    from tester.recipe.check import load_checked
+    from tester.recipe.describe import json_chunks, lines
+    from tester.recipe.estimate import Estimator, estimate
+    from tester.recipe.expand import expand
+    from tester.rig import load_rig
+
+    path, name = recipe_file(recipe)
+    rig = load_rig(rig_name, list(overrides))
+    loaded = load_checked(path, rig, name)
+    estimator = Estimator(rig)
+    steps = expand(loaded.recipe, rig, estimator)
+    figures = estimate(steps, rig, estimator)
+    if as_json:
+        sys.stdout.writelines(json_chunks(steps, figures))
+    else:
+        sys.stdout.writelines(f"{line}\n" for line in lines(steps, figures))
+
+
+@click.command()
+def schema() -> None:
+    """Print the JSON Schema of recipes, for editors and other programs."""
+    from tester.recipe.schema import schema_text
+
+    click.echo(schema_text(), nl=False)
+
+
+def _fields(problem: Problem) -> dict[str, object]:
+    return {
+        "file": problem.file,
+        "line": problem.line,
+        "column": problem.column,
+        "message": problem.message,
+    }

@@ -1,0 +1,204 @@
+"""A plan in words, and as JSON: what is done, in which order, how long it takes and what it costs."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterator
+
+from tester.recipe.estimate import Estimate, StepEstimate
+from tester.recipe.plan import (
+    ConditionStep,
+    Cool,
+    Heat,
+    Install,
+    Plan,
+    PreGrind,
+    Prompt,
+    Rest,
+    Step,
+    Window,
+)
+
+_WIDTH = 76
+"""Columns of a line before its duration."""
+
+_encode = json.JSONEncoder(ensure_ascii=False, allow_nan=False).encode
+
+
+def duration(seconds: float) -> str:
+    """Return a duration as people say it: 45 s, 12 min, 3 h 05 min."""
+    if seconds < 99.5:
+        return f"{seconds:.0f} s"
+    minutes = round(seconds / 60.0)
+    return f"{minutes} min" if minutes < 100 else f"{minutes // 60} h {minutes % 60:02d} min"
+
+
+def lines(plan: Plan, estimate: Estimate) -> Iterator[str]:
+    """Yield the plan line by line: every step with its duration, then the totals."""
+    yield plan.name
+    replicated = any(one.replicate > 1 for one in plan.wear)
+    for step, one in zip(plan.steps, estimate.steps, strict=True):
+        if isinstance(step, Install):
+            yield ""
+            yield f"wheel {step.wheel}: {_wheel(plan, step, replicated)}"
+        text = f"{_indent(step)}{words(step, one)}"
+        yield f"{text:<{_WIDTH}} {duration(one.seconds):>10}" if one.seconds else text
+    yield ""
+    yield from totals(plan, estimate)
+
+
+def totals(plan: Plan, estimate: Estimate) -> Iterator[str]:
+    """Yield what the plan comes to, one figure a line."""
+    conditions = list(plan.conditions())
+    repeats = sum(step.repeats for step in conditions)
+    yield f"conditions        {len(conditions)}, {repeats} repeats"
+    yield f"rig time          {duration(estimate.rig_seconds)}"
+    yield f"sliding distance  {estimate.sliding_m:.0f} m"
+    wheels = "wheel" if estimate.wheels == 1 else "wheels"
+    yield f"wear              {estimate.loss_mm:.2f} mm of diameter on {estimate.wheels} {wheels}"
+    yield f"                  (a wheel is replaced after {plan.replace_after_mm:g} mm)"
+    if math.isfinite(estimate.peak_c):
+        yield f"peak temperature  {estimate.peak_c:.0f} degC on the rubber"
+    if estimate.not_held:
+        listed = ", ".join(str(number) for number in estimate.not_held[:20])
+        more = f" and {len(estimate.not_held) - 20} more" if len(estimate.not_held) > 20 else ""
+        yield f"not expected to hold their temperature for one revolution: conditions {listed}{more}"
+
+
+def words(step: Step, one: StepEstimate) -> str:
+    """Return one line that says what a step does."""
+    match step:
+        case Install():
+            return f"install wheel {step.wheel}"
+        case PreGrind():
+            speeds = f"{step.wheel_speed_m_s:g} / {step.belt_speed_m_s:g} m/s"
+            return f"pre-grind {duration(step.duration_s)}, {step.load_n:g} N, wheel / belt {speeds}"
+        case Rest():
+            least = f"rest at least {duration(step.at_least_s)}" if step.at_least_s else "rest"
+            return least if step.until_c is None else f"{least}, to {step.until_c:g} degC +- {step.within_k:g} K"
+        case Heat():
+            return f"heat to {step.temperature_c:g} degC"
+        case ConditionStep():
+            return f"{step.condition:>4}  {setpoint_words(step)}  {step.repeats} x {window_words(step.window)}" + (
+                f", {one.bursts} bursts" if one.bursts > 1 else ""
+            )
+        case Cool():
+            return f"cool the hub below {step.hub_below_c:g} degC"
+        case Prompt():
+            return f"ask: {step.text}"
+
+
+def setpoint_words(step: ConditionStep) -> str:
+    """Return what is held, angles only where there are any: 300 mm/s  200 N  25 degC."""
+    sp = step.setpoint
+    text = f"{1000.0 * sp.slip_velocity_m_s:g} mm/s  {sp.load_n:g} N"
+    text += f"  sideslip {sp.sideslip_deg:g} deg" if sp.sideslip_deg else ""
+    text += f"  camber {sp.camber_deg:g} deg" if sp.camber_deg else ""
+    return f"{text}  {sp.temperature_c:g} degC"
+
+
+def window_words(window: Window) -> str:
+    """Return a window as a recipe writes it: 30 rev, or 60 s."""
+    return f"{window.revolutions:g} rev" if window.revolutions is not None else f"{window.seconds or 0.0:g} s"
+
+
+def json_chunks(plan: Plan, estimate: Estimate) -> Iterator[str]:
+    """Yield the plan as JSON text, piece by piece, a step a line: a plan may have hundreds of thousands."""
+    head: dict[str, object] = {
+        "recipe": plan.name,
+        "conditions": sum(1 for _ in plan.conditions()),
+        "rig_seconds": round(estimate.rig_seconds, 1),
+        "sliding_m": round(estimate.sliding_m, 2),
+        "loss_mm": round(estimate.loss_mm, 4),
+        "friction_j": round(estimate.friction_j, 1),
+        "peak_c": round(estimate.peak_c, 2) if math.isfinite(estimate.peak_c) else None,
+        "wheels": estimate.wheels,
+        "replace_after_mm": plan.replace_after_mm,
+        "not_held": list(estimate.not_held),
+        "specimens": [{"index": one.index, "compound": one.compound, "note": one.note} for one in plan.specimens],
+        "metadata": dict(plan.metadata),
+    }
+    yield _encode(head)[:-1] + ', "steps": ['
+    separator = "\n"
+    for step, one in zip(plan.steps, estimate.steps, strict=True):
+        yield separator + _encode(step_fields(step, one))
+        separator = ",\n"
+    yield "\n]}\n"
+
+
+def step_fields(step: Step, one: StepEstimate) -> dict[str, object]:
+    """Return a step with its estimate as plain data; units in the keys."""
+    fields: dict[str, object] = {"kind": step.kind, "index": step.index, "seconds": round(one.seconds, 1)}
+    match step:
+        case ConditionStep():
+            fields.update(_condition_fields(step, one))
+        case Install():
+            fields.update(
+                specimen=step.specimen,
+                replicate=step.replicate,
+                wheel=step.wheel,
+                compound=step.compound,
+                note=step.note,
+            )
+        case PreGrind():
+            fields.update(
+                wheel_speed_m_s=step.wheel_speed_m_s,
+                belt_speed_m_s=step.belt_speed_m_s,
+                load_n=step.load_n,
+                duration_s=step.duration_s,
+                sliding_m=round(one.sliding_m, 3),
+                loss_mm=round(one.loss_mm, 5),
+            )
+        case Rest():
+            fields.update(
+                at_least_s=step.at_least_s, until_c=step.until_c, within_k=step.within_k, at_most_s=step.at_most_s
+            )
+        case Heat():
+            fields.update(temperature_c=step.temperature_c)
+        case Cool():
+            fields.update(hub_below_c=step.hub_below_c)
+        case Prompt():
+            fields.update(text=step.text)
+    return fields
+
+
+def _condition_fields(step: ConditionStep, one: StepEstimate) -> dict[str, object]:
+    sp = step.setpoint
+    return {
+        "condition": step.condition,
+        "row": step.row,
+        "specimen": step.specimen,
+        "replicate": step.replicate,
+        "wheel": step.wheel,
+        "grid": step.grid,
+        "compound": sp.compound,
+        "slip_velocity_m_s": sp.slip_velocity_m_s,
+        "load_n": sp.load_n,
+        "sideslip_deg": sp.sideslip_deg,
+        "camber_deg": sp.camber_deg,
+        "temperature_c": sp.temperature_c,
+        "wheel_speed_m_s": sp.wheel_speed_m_s,
+        "belt_speed_m_s": sp.belt_speed_m_s,
+        "repeats": step.repeats,
+        "min_valid": step.min_valid,
+        "window": window_words(step.window),
+        "temperature_band_k": step.temperature_band_k,
+        "bursts": one.bursts,
+        "held": one.held,
+        "sliding_m": round(one.sliding_m, 3),
+        "loss_mm": round(one.loss_mm, 5),
+    }
+
+
+def _indent(step: Step) -> str:
+    return "    " if isinstance(step, ConditionStep) else "  "
+
+
+def _wheel(plan: Plan, step: Install, replicated: bool) -> str:
+    """Say what is on a wheel: compound, note, replicate, and what it is predicted to lose."""
+    note = f" ({step.note})" if step.note else ""
+    replicate = f", replicate {step.replicate}" if replicated else ""
+    worn = plan.wear[step.wheel - 1]
+    conditions = "1 condition" if worn.conditions == 1 else f"{worn.conditions} conditions"
+    return f"{step.compound}{note}{replicate}, {conditions}, {worn.loss_mm:.2f} mm of diameter"

@@ -1,0 +1,219 @@
+"""What a recipe asks for beyond the rig's limits, with the position of the value and the source of the limit.
+
+The file's tree is checked rather than the validated recipe, value by value: a recipe with a misspelt key still hears
+of its load beyond the limit, so that everything is reported at once. Values that cannot be read are left to the
+schema's own problems.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import product
+from typing import TYPE_CHECKING, NamedTuple
+
+from sim.friction import KNOWN, FrictionModel
+from sim.slip import cornering_factor, slip_velocity
+from tester.source import Location, Problem, Tree, Value
+from tester.units import Quantity, UnitError, show, shown
+
+if TYPE_CHECKING:
+    from tester.rig import RigConfig
+
+DEFAULT_BAND_K = 2.0
+"""Temperature band of a recipe that names none (``tester.recipe.schema.MeasureModel``)."""
+
+
+class Given(NamedTuple):
+    """A quantity of the file: its value in the unit asked for, and where it stands."""
+
+    value: float
+    at: Location
+
+
+class Motion(NamedTuple):
+    """A wheel and a belt speed in m/s at a sideslip angle, with the resultant slip speed."""
+
+    wheel: float
+    belt: float
+    sideslip_deg: float
+    slip: float
+
+
+def limit_problems(tree: Tree, rig: RigConfig) -> list[Problem]:
+    """Return what is beyond the rig's limits, as far as the tree's values can be read."""
+    return sorted(set(_Limits(tree, rig).problems()))
+
+
+class _Limits:
+    """One tree held against one rig."""
+
+    def __init__(self, tree: Tree, rig: RigConfig) -> None:
+        self.tree = tree
+        self.rig = rig
+        said = self._given(("ambient",), "degC")
+        self.ambient_c = said[0].value if said else rig.ambient_c
+        self.ambient_from = "ambient of this recipe" if said else f'ambient of rig "{rig.name}"'
+        names = [self._node(("specimens", index, "compound")) for index in self._indices(("specimens",))]
+        self.compounds = list(dict.fromkeys(name for name in names if isinstance(name, str)))
+        self.models = {name: FrictionModel(name, rig.sim.friction_model) for name in self.compounds if name in KNOWN}
+
+    def problems(self) -> Iterator[Problem]:
+        """Yield every problem, in no order, perhaps twice."""
+        yield from self._specimens()
+        yield from self._pre_grind()
+        yield from self._rest()
+        yield from self._wheel_speeds(("measure",))
+        for index in self._indices(("grids",)):
+            yield from self._grid(("grids", index))
+
+    # -- reading the tree -------------------------------------------------------------------------------------
+
+    def _node(self, at: Location) -> Value:
+        node = self.tree.data
+        for piece in at:
+            if isinstance(node, dict) and isinstance(piece, str):
+                node = node.get(piece)
+            elif isinstance(node, list) and isinstance(piece, int):
+                node = node[piece]
+            else:
+                return None
+        return node
+
+    def _indices(self, at: Location) -> range:
+        node = self._node(at)
+        return range(len(node)) if isinstance(node, list) else range(0)
+
+    def _given(self, at: Location, unit: str) -> list[Given]:
+        """Return the readable quantities of an axis or a single value; an empty list where there is none."""
+        node = self._node(at)
+        places = [(*at, index) for index in range(len(node))] if isinstance(node, list) else [at]
+        found: list[Given] = []
+        for place in places:
+            try:
+                found.append(Given(Quantity(unit).read(self._node(place)), place))
+            except UnitError:
+                continue
+        return found
+
+    def _limit(self, key: str, value: float, unit: str) -> str:
+        return f'(limit {show(value, unit)}: {key} of rig "{self.rig.name}")'
+
+    def _above(self, given: Given, limit: float, unit: str, key: str) -> Iterator[Problem]:
+        """Yield a problem for a value (of either sign) beyond a limit."""
+        if abs(given.value) > limit:
+            name = next(piece for piece in reversed(given.at) if isinstance(piece, str))
+            message = f"{name}: {show(given.value, unit)} is more than the rig allows"
+            yield self.tree.problem(given.at, f"{message} {self._limit(key, limit, unit)}")
+
+    # -- what may be wrong --------------------------------------------------------------------------------------
+
+    def _specimens(self) -> Iterator[Problem]:
+        for index in self._indices(("specimens",)):
+            at = ("specimens", index, "compound")
+            name = self._node(at)
+            if self.rig.simulated and isinstance(name, str) and name not in KNOWN:
+                message = f"compound: the simulated rig has no friction model for {shown(name)}"
+                yield self.tree.problem(at, f"{message} (expected one of {', '.join(KNOWN)})")
+
+    def _wheel_speeds(self, at: Location) -> Iterator[Problem]:
+        for wheel in self._given((*at, "wheel_speed"), "m/s"):
+            yield from self._above(wheel, self.rig.limits.wheel_speed_m_s, "m/s", "limits.wheel_speed")
+
+    def _pre_grind(self) -> Iterator[Problem]:
+        at: Location = ("pre_grind",)
+        limits = self.rig.limits
+        yield from self._wheel_speeds(at)
+        for belt in self._given((*at, "belt_speed"), "m/s"):
+            yield from self._above(belt, limits.belt_speed_m_s, "m/s", "limits.belt_speed")
+            for wheel, load in product(self._given((*at, "wheel_speed"), "m/s"), self._given((*at, "load"), "N")):
+                motion = Motion(wheel.value, belt.value, 0.0, abs(wheel.value - belt.value))
+                yield from self._power(load, [motion], [self.ambient_c])
+        for load in self._given((*at, "load"), "N"):
+            yield from self._above(load, limits.load_n, "N", "limits.load")
+
+    def _rest(self) -> Iterator[Problem]:
+        until = self._given(("rest", "until"), "degC")
+        within = self._given(("rest", "within"), "K")
+        for given in until:
+            highest = given.value + (within[0].value if within else DEFAULT_BAND_K)
+            if highest <= self.ambient_c:
+                message = f"until: a wheel at rest does not cool to {show(highest, 'degC')}"
+                yield self.tree.problem(given.at, f"{message} ({show(self.ambient_c, 'degC')}: {self.ambient_from})")
+
+    def _grid(self, at: Location) -> Iterator[Problem]:
+        limits = self.rig.limits
+        loads = self._given((*at, "load"), "N")
+        for load in loads:
+            yield from self._above(load, limits.load_n, "N", "limits.load")
+        for angle in self._given((*at, "sideslip"), "deg"):
+            yield from self._above(angle, limits.sideslip_deg, "deg", "limits.sideslip")
+        for angle in self._given((*at, "camber"), "deg"):
+            yield from self._above(angle, limits.camber_deg, "deg", "limits.camber")
+        yield from self._wheel_speeds(at)
+        yield from self._temperatures(at)
+        yield from self._slips(at)
+        motions = self._motions(at)
+        temperatures = [one.value for one in self._given((*at, "temperature"), "degC")]
+        for load in loads:
+            yield from self._power(load, motions, temperatures)
+
+    def _temperatures(self, at: Location) -> Iterator[Problem]:
+        surface_c, jacket_c = self.rig.limits.surface_c, self.rig.limits.jacket_c
+        bands = self._given((*at, "temperature_band"), "K") or self._given(("measure", "temperature_band"), "K")
+        band = bands[0].value if bands else DEFAULT_BAND_K
+        for given in self._given((*at, "temperature"), "degC"):
+            reached = f"temperature: {show(given.value, 'degC')} with its band of {show(band, 'K')}"
+            if given.value + band > surface_c:
+                source = self._limit("limits.surface", surface_c, "degC")
+                yield self.tree.problem(given.at, f"{reached} is hotter than the rig allows rubber {source}")
+            if given.value > jacket_c:
+                source = self._limit("limits.jacket", jacket_c, "degC")
+                yield self.tree.problem(given.at, f"{reached} is hotter than the jacket may get {source}")
+            if given.value + band < self.ambient_c:
+                source = f"({show(self.ambient_c, 'degC')}: {self.ambient_from})"
+                yield self.tree.problem(given.at, f"{reached} is below ambient, and the rig cannot cool {source}")
+
+    def _slips(self, at: Location) -> Iterator[Problem]:
+        belt_limit, most = self.rig.limits.belt_speed_m_s, self.rig.interlocks.max_slip_m_s
+        for slip, wheel in product(self._given((*at, "slip_velocity"), "m/s"), self._speeds(at)):
+            belt = round(wheel - slip.value, 9)
+            asked = f"slip_velocity: {show(slip.value, 'm/s')} at a wheel speed of {show(wheel, 'm/s')}"
+            if belt > belt_limit:
+                source = self._limit("limits.belt_speed", belt_limit, "m/s")
+                yield self.tree.problem(slip.at, f"{asked} needs {show(belt, 'm/s')} of the belt {source}")
+            if abs(slip.value) > most:
+                source = self._limit("interlocks.max_slip", most, "m/s")
+                yield self.tree.problem(slip.at, f"{asked} is more than is ever loaded {source}")
+
+    def _speeds(self, at: Location) -> list[float]:
+        own = self._given((*at, "wheel_speed"), "m/s") or self._given(("measure", "wheel_speed"), "m/s")
+        return list(dict.fromkeys(one.value for one in own))
+
+    def _motions(self, at: Location) -> list[Motion]:
+        slips = dict.fromkeys(one.value for one in self._given((*at, "slip_velocity"), "m/s"))
+        angles = dict.fromkeys(one.value for one in self._given((*at, "sideslip"), "deg")) or {0.0: None}
+        motions: list[Motion] = []
+        for wheel, slip, angle in product(self._speeds(at), slips, angles):
+            belt = wheel - slip
+            motions.append(Motion(wheel, belt, angle, slip_velocity(wheel, belt, angle)[2]))
+        return motions
+
+    def _power(self, load: Given, motions: list[Motion], temperatures: list[float]) -> Iterator[Problem]:
+        """Yield a problem if a load makes too much friction heat somewhere, naming the worst place."""
+        if not motions or not temperatures or load.value <= 0.0:
+            return
+        limit = self.rig.limits.slip_power_w
+        worst, words = limit, ""
+        for name, model in self.models.items():
+            # Both friction models are a factor of temperature times one of load and slip: the worst temperature
+            # is the same everywhere.
+            hottest = max(temperatures, key=lambda one: model.mu(one, load.value, motions[0].slip))
+            for motion in motions:
+                mu = model.mu(hottest, load.value, motion.slip) * cornering_factor(name, motion.sideslip_deg)
+                power = mu * load.value * motion.slip
+                if power > worst:
+                    worst = power
+                    words = f"{show(motion.slip, 'm/s')} of slip with {shown(name)} at {show(hottest, 'degC')}"
+        if words:
+            message = f"load: {show(load.value, 'N')} makes {worst:.0f} W of friction heat at {words}"
+            yield self.tree.problem(load.at, f"{message} {self._limit('limits.slip_power', limit, 'W')}")

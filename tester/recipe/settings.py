@@ -1,0 +1,64 @@
+"""How the conditions of a grid are measured: the recipe's ``measure`` with what the grid says otherwise."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from tester.recipe.plan import Soak, WearCheck, Window
+from tester.recipe.schema import Extent, GridModel, MeasureModel, SoakModel
+
+DEFAULT_MIN_VALID = 3
+"""Valid repeats a condition needs for a value (physics.md 6)."""
+
+DEFAULT_EXTENSION = 3.0
+"""A repeat that still drifts goes on to this multiple of its window, unless the recipe says ``extend_to``."""
+
+
+@dataclass(frozen=True, slots=True)
+class Settings:
+    """How every condition of a grid is measured."""
+
+    repeats: int
+    min_valid: int
+    window: Window
+    temperature_band_k: float
+    soak: Soak
+    max_bursts: int
+    wear_check: WearCheck
+
+
+def settings_of(measure: MeasureModel, grid: GridModel) -> Settings:
+    """Return a grid's settings."""
+    return Settings(
+        repeats=grid.repeats or measure.repeats,
+        min_valid=grid.min_valid or measure.min_valid or DEFAULT_MIN_VALID,
+        window=_window(measure, grid),
+        temperature_band_k=grid.temperature_band or measure.temperature_band,
+        soak=_soak(grid.soak or measure.soak),
+        max_bursts=grid.max_bursts or measure.max_bursts,
+        wear_check=grid.wear_check or measure.wear_check,
+    )
+
+
+def wheel_speeds_of(measure: MeasureModel, grid: GridModel) -> tuple[float, ...]:
+    """Return a grid's wheel speeds in m/s: its own axis, or the one speed of ``measure``."""
+    return tuple(grid.wheel_speed or [measure.wheel_speed])
+
+
+def extents_of(measure: MeasureModel, grid: GridModel | None) -> tuple[Extent, Extent | None]:
+    """Return (window, extend_to) of a grid, or of the defaults; a grid with its own window has its own extension."""
+    if grid is None or grid.window is None:
+        return measure.window, (grid.extend_to if grid else None) or measure.extend_to
+    return grid.window, grid.extend_to
+
+
+def _window(measure: MeasureModel, grid: GridModel) -> Window:
+    window, extend_to = extents_of(measure, grid)
+    until = extend_to.value if extend_to else DEFAULT_EXTENSION * window.value
+    if window.unit == "rev":
+        return Window(revolutions=window.value, seconds=None, extend_to=until)
+    return Window(revolutions=None, seconds=window.value, extend_to=until)
+
+
+def _soak(soak: SoakModel) -> Soak:
+    return Soak(within_k=soak.within, for_s=soak.for_, at_most_s=soak.at_most)

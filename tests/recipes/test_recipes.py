@@ -1,0 +1,59 @@
+"""The packaged recipes and how they are found."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+import recipes
+from tester.recipe.loader import load_recipe
+from tester.recipe.schema import schema_text
+
+
+def test_these_recipes_are_packaged() -> None:
+    assert recipes.names() == ["pre-grind", "quickstart", "table2", "table2-load", "table2-sideslip", "table2-slip"]
+
+
+@pytest.mark.parametrize("name", ["quickstart", "quickstart.yaml", "recipes/quickstart.yaml"])
+def test_a_packaged_recipe_is_found_by_name_from_any_folder(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert recipes.find(name) == recipes.FOLDER / "quickstart.yaml"
+
+
+def test_a_file_comes_before_a_packaged_recipe_of_that_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    own = tmp_path / "quickstart.yaml"
+    own.write_text("recipe: mine\n", encoding="utf-8")
+    assert recipes.find("quickstart.yaml").resolve() == own
+
+
+@pytest.mark.parametrize("name", ["nosuch", "elsewhere/quickstart.yaml", "quickstart.txt", "../quickstart", "."])
+def test_what_is_neither_file_nor_name_is_refused_naming_what_there_is(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(recipes.UnknownRecipe, match=r"packaged are pre-grind, quickstart, table2"):
+        recipes.find(name)
+
+
+@pytest.mark.parametrize("name", recipes.names())
+def test_every_packaged_recipe_is_valid(name: str) -> None:
+    assert load_recipe(recipes.find(name)).recipe.specimens
+
+
+def test_the_packaged_schema_is_what_tester_schema_prints() -> None:
+    stored = (recipes.FOLDER / "recipe.schema.json").read_text(encoding="utf-8")
+    assert stored == schema_text(), "write it again: tester schema > recipes/recipe.schema.json"
+
+
+def test_the_schema_knows_every_key_of_a_recipe() -> None:
+    schema = json.loads(schema_text())
+    assert {"recipe", "specimens", "pre_grind", "rest", "measure", "grids", "order", "wheel"} <= set(
+        schema["properties"]
+    )
+    assert schema["additionalProperties"] is False
+    assert "for" in schema["$defs"]["SoakModel"]["properties"]

@@ -1,0 +1,90 @@
+"""`tester check`, `plan` and `schema` as users call them."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from tester.cli.main import invoke
+from tests.tester.recipe.texts import SMALL
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def write(folder: Path, text: str) -> str:
+    (folder / "r.yaml").write_text(text, encoding="utf-8")
+    return "r.yaml"
+
+
+def test_check_says_that_a_packaged_recipe_is_valid(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert invoke(["check", "quickstart"]) == 0
+    out, err = capsys.readouterr()
+    assert out == 'recipes/quickstart.yaml: valid on rig "simulated rubber friction tester", 2 conditions\n'
+    assert err == ""
+
+
+def test_check_reports_every_problem_on_stderr_and_exits_3(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    text = SMALL.replace("200 N]", "500 N, 7]").replace("measure:", "measure:\n  windw: 3 rev")
+    assert invoke(["check", write(folder, text)]) == 3
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert [line.split(": ")[0] for line in err.splitlines()] == ["r.yaml:5:3", "r.yaml:10:19", "r.yaml:10:26"]
+
+
+def test_check_gives_the_problems_as_json(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert invoke(["check", write(folder, SMALL.replace("200 N]", "500 N]")), "--json"]) == 3
+    data = json.loads(capsys.readouterr().out)
+    assert data["valid"] is False
+    (problem,) = data["problems"]
+    assert (problem["file"], problem["line"], problem["column"]) == ("r.yaml", 9, 19)
+
+
+def test_check_holds_the_recipe_against_the_rig_as_it_is_set(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    name = write(folder, SMALL)
+    assert invoke(["check", name]) == 0
+    assert invoke(["check", name, "--set", "limits.load=150"]) == 3
+    assert "limit 150 N: limits.load" in capsys.readouterr().err
+
+
+def test_an_unknown_recipe_is_a_usage_error(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert invoke(["check", "nosuch"]) == 2
+    assert "packaged are pre-grind, quickstart" in capsys.readouterr().err
+
+
+def test_an_invalid_rig_file_exits_3(folder: Path) -> None:
+    assert invoke(["check", "quickstart", "--set", "limits.laod=150"]) == 3
+
+
+@pytest.mark.parametrize("text", ["[" * 60_000, "a: 1\na: 2\n", "", "recipe: \x07\n"])
+def test_plan_refuses_what_check_refuses(folder: Path, text: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert invoke(["plan", write(folder, text)]) == 3
+    assert capsys.readouterr().err.startswith("r.yaml:")
+
+
+def test_plan_lists_the_steps_with_durations(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert invoke(["plan", "table2"]) == 0
+    out = capsys.readouterr().out
+    assert "conditions        165, 825 repeats" in out
+    assert out.count("pre-grind 4 min") == out.count("install wheel")
+
+
+def test_plan_as_json_has_the_contracts_keys(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert invoke(["plan", "table2", "--json"]) == 0
+    data = json.loads(capsys.readouterr().out)
+    conditions = [step for step in data["steps"] if step["kind"] == "condition"]
+    assert data["conditions"] == len(conditions) == 165
+    assert data["rig_seconds"] > 0
+    assert data["wheels"] == sum(step["kind"] == "install" for step in data["steps"])
+    assert {step["repeats"] for step in conditions} == {5}
+
+
+def test_schema_prints_the_packaged_schema(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert invoke(["schema"]) == 0
+    schema = json.loads(capsys.readouterr().out)
+    assert schema["required"] == ["recipe", "specimens"]

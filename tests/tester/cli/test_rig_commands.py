@@ -1,0 +1,55 @@
+"""`tester rig init` and `tester rig show`."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from tester.cli.main import invoke
+from tester.rig import load_rig
+
+
+def test_init_writes_a_file_that_is_a_rig(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "rig.yaml"
+    assert invoke(["rig", "init", str(path)]) == 0
+    assert capsys.readouterr().out == f"{path}\n"
+    assert not load_rig(path).simulated
+
+
+def test_init_does_not_replace_a_file(tmp_path: Path) -> None:
+    path = tmp_path / "rig.yaml"
+    path.write_text("mine", encoding="utf-8")
+    assert invoke(["rig", "init", str(path)]) == 2
+    assert path.read_text(encoding="utf-8") == "mine"
+
+
+def test_init_replaces_a_file_when_told(tmp_path: Path) -> None:
+    path = tmp_path / "rig.yaml"
+    path.write_text("mine", encoding="utf-8")
+    assert invoke(["rig", "init", str(path), "--force"]) == 0
+    assert "limits:" in path.read_text(encoding="utf-8")
+
+
+def test_init_into_a_folder_that_is_not_there_is_a_usage_error(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert invoke(["rig", "init", str(tmp_path / "none" / "rig.yaml")]) == 2
+    assert "cannot be written" in capsys.readouterr().err
+
+
+def test_show_prints_what_reads_back_as_the_same_rig(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert invoke(["rig", "show", "--set", "sim.noise=0.5"]) == 0
+    path = tmp_path / "shown.yaml"
+    path.write_text(capsys.readouterr().out, encoding="utf-8")
+    assert load_rig(path) == load_rig("sim", ["sim.noise=0.5"])
+
+
+def test_show_prints_json(capsys: pytest.CaptureFixture[str]) -> None:
+    assert invoke(["rig", "show", "--json", "--set", "limits.load=400 N"]) == 0
+    assert json.loads(capsys.readouterr().out)["limits"]["load"] == "400 N"
+
+
+def test_show_of_a_file_that_is_not_there_exits_3(tmp_path: Path) -> None:
+    assert invoke(["rig", "show", "--rig", str(tmp_path / "none.yaml")]) == 3

@@ -1,0 +1,252 @@
+"""Recipes against a rig: everything at once, each limit with its source."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import recipes
+from tester.recipe.check import check, load_checked
+from tester.source import InvalidSource
+from tests.tester.recipe.texts import PREPARED, SMALL, real_rig, rig, with_line
+
+FROM_RIG = 'of rig "simulated rubber friction tester")'
+
+
+def problems(text: str, *overrides: str) -> list[str]:
+    return [str(problem) for problem in check(text, rig(*overrides), "r.yaml")]
+
+
+def test_a_recipe_within_the_limits_has_no_problems() -> None:
+    assert problems(PREPARED) == []
+
+
+def test_checking_returns_the_recipe_with_its_text() -> None:
+    loaded = load_checked(PREPARED, rig(), "r.yaml")
+    assert (loaded.recipe.recipe, loaded.tree.text) == ("small", PREPARED)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "problem"),
+    [
+        (
+            "200 N]",
+            "451 N]",
+            f"r.yaml:9:19: load: 451 N is more than the rig allows (limit 450 N: limits.load {FROM_RIG}",
+        ),
+        (
+            "[40 degC, 25 degC]",
+            "[40 degC, 94 degC]",
+            "r.yaml:10:28: temperature: 94 degC with its band of 2 K is hotter than the rig allows rubber"
+            f" (limit 95 degC: limits.surface {FROM_RIG}",
+        ),
+        (
+            "[40 degC, 25 degC]",
+            "[20 degC, 25 degC]",
+            "r.yaml:10:19: temperature: 20 degC with its band of 2 K is below ambient, and the rig cannot cool"
+            ' (23 degC: ambient of rig "simulated rubber friction tester")',
+        ),
+        (
+            "name: load",
+            "name: load\n    sideslip: [0 deg, -31 deg]",
+            f"r.yaml:8:23: sideslip: -31 deg is more than the rig allows (limit 30 deg: limits.sideslip {FROM_RIG}",
+        ),
+        (
+            "name: load",
+            "name: load\n    camber: 11 deg",
+            f"r.yaml:8:13: camber: 11 deg is more than the rig allows (limit 10 deg: limits.camber {FROM_RIG}",
+        ),
+        (
+            "wheel_speed: 0.8 m/s",
+            "wheel_speed: 1.2 m/s",
+            "r.yaml:5:16: wheel_speed: 1.2 m/s is more than the rig allows"
+            f" (limit 1.1 m/s: limits.wheel_speed {FROM_RIG}",
+        ),
+        (
+            "slip_velocity: 300 mm/s",
+            "slip_velocity: [0.3 m/s, -0.55 m/s]",
+            "r.yaml:8:30: slip_velocity: -0.55 m/s at a wheel speed of 0.8 m/s needs 1.35 m/s of the belt"
+            f" (limit 1.3 m/s: limits.belt_speed {FROM_RIG}",
+        ),
+        (
+            "slip_velocity: 300 mm/s",
+            "slip_velocity: 650 mm/s",
+            "r.yaml:8:20: slip_velocity: 0.65 m/s at a wheel speed of 0.8 m/s is more than is ever loaded"
+            f" (limit 0.6 m/s: interlocks.max_slip {FROM_RIG}",
+        ),
+        (
+            'compound: "1#"',
+            'compound: "4#"',
+            'r.yaml:3:15: compound: the simulated rig has no friction model for "4#" (expected one of 1#, 2#, 3#)',
+        ),
+    ],
+)
+def test_what_is_beyond_the_rig_is_reported_at_the_value_with_the_source_of_the_limit(
+    old: str, new: str, problem: str
+) -> None:
+    assert problem in problems(with_line(old, new))
+
+
+def test_friction_heat_beyond_the_limit_names_the_worst_place() -> None:
+    text = SMALL.replace('"1#"', '"3#"').replace("200 N]", "400 N]").replace("300 mm/s", "[100 mm/s, 500 mm/s]")
+    text = text.replace("[40 degC, 25 degC]", "[40 degC, 70 degC]")
+    (problem,) = problems(text)
+    assert problem.startswith("r.yaml:9:19: load: 400 N makes ")
+    assert 'W of friction heat at 0.5 m/s of slip with "3#" at 70 degC (limit 350 W: limits.slip_power' in problem
+
+
+def test_a_compound_without_a_model_has_no_power_to_check_on_a_real_rig() -> None:
+    text = SMALL.replace('"1#"', "EPDM").replace("300 mm/s", "500 mm/s").replace("200 N]", "450 N]")
+    assert check(text, real_rig(), "r.yaml") == []
+
+
+def test_pre_grinding_has_the_same_limits() -> None:
+    text = PREPARED.replace("belt_speed: 0.6 m/s, load: 200 N", "belt_speed: 1.4 m/s, load: 460 N")
+    found = problems(text)
+    assert [line.split(": ")[1] for line in found] == ["belt_speed", "load"]
+    assert all(line.startswith("r.yaml:11:") for line in found)
+
+
+def test_a_rest_that_ambient_never_lets_end_is_reported() -> None:
+    (problem,) = problems(PREPARED, "sim.ambient=27")
+    assert problem.startswith("r.yaml:12:33: until: a wheel at rest does not cool to 27 degC (27 degC: ambient of rig")
+
+
+def test_the_recipes_own_ambient_comes_first() -> None:
+    assert problems(PREPARED + "ambient: 20 degC\n", "sim.ambient=27") == []
+
+
+def test_a_limit_that_was_overridden_is_the_limit() -> None:
+    (problem,) = problems(SMALL, "limits.load=150")
+    assert "200 N is more than the rig allows (limit 150 N" in problem
+
+
+def test_a_grid_of_which_one_condition_wears_a_wheel_out_is_reported() -> None:
+    (problem,) = problems(PREPARED + "wheel: {replace_after: 0.2 mm}\n")
+    assert problem.startswith("r.yaml:7:5: a condition of this grid wears ")
+    assert "more than replace_after, 0.2 mm" in problem
+
+
+def test_more_wear_than_there_is_rubber_is_reported() -> None:
+    (problem,) = problems(PREPARED + "wheel: {replace_after: 17 mm}\n")
+    assert problem.endswith("replace_after: 17 mm is more rubber than there is, 16 mm")
+
+
+MISTAKES = """\
+recipe: five mistakes
+recipe: twice
+specimens:
+  - compound: "1#"
+measure:
+  wheel_speed: 800
+  windw: 30 rev
+  min_valid: 9
+grids:
+  - name: load
+    slip_velocity: 300 mm/s
+    load: [100 N, 500 N]
+    temperature: [25 degC, 99 degC]
+order: {within: random}
+"""
+
+
+def test_mistakes_of_every_kind_are_reported_at_once_with_line_and_column() -> None:
+    assert [line.split(": ")[0] for line in problems(MISTAKES)] == [
+        "r.yaml:2:1",
+        "r.yaml:6:16",
+        "r.yaml:7:3",
+        "r.yaml:12:19",
+        "r.yaml:13:28",
+        "r.yaml:14:17",
+    ]
+
+
+def test_limits_are_found_in_a_grid_whose_other_values_are_wrong() -> None:
+    text = with_line("[100 N, 200 N]", "[100, 600 N, oops]")
+    assert [line.split(": ")[0] for line in problems(text)] == ["r.yaml:9:12", "r.yaml:9:17", "r.yaml:9:24"]
+
+
+def test_every_packaged_recipe_can_be_run_on_the_simulated_rig() -> None:
+    assert {name: check(recipes.find(name), rig()) for name in recipes.names()} == {
+        name: [] for name in recipes.names()
+    }
+
+
+def test_the_hot_rig_is_not_refused_before_it_has_tried() -> None:
+    hot = rig("sim.friction_heat_fraction=0.5", "sim.belt_conductance=0.3")
+    assert check(recipes.find("table2"), hot) == []
+
+
+def test_a_syntax_error_is_the_only_problem() -> None:
+    assert problems("recipe: [x\nspecimens: {")[0].startswith("r.yaml:2:10: not YAML")
+
+
+fragments = st.sampled_from(
+    [
+        "[",
+        "]",
+        "{",
+        "}",
+        ":",
+        "-",
+        "\n",
+        "  ",
+        "#",
+        '"',
+        "degC",
+        "300 mm/s",
+        "null",
+        "1e9 N",
+        "load",
+        "grids:",
+        "*a",
+        "&a",
+        "é",
+    ]
+)
+
+
+@given(st.integers(0, len(PREPARED)), st.integers(0, 12), fragments)
+@settings(max_examples=150, deadline=None)
+def test_any_damage_to_a_recipe_is_harmless_or_reported(place: int, cut: int, fragment: str) -> None:
+    damaged = PREPARED[:place] + fragment + PREPARED[place + cut :]
+    try:
+        load_checked(damaged, rig(), "r.yaml")
+    except InvalidSource as error:
+        assert error.problems
+        assert all(problem.line >= 1 and problem.column >= 1 for problem in error.problems)
+
+
+values = st.recursive(
+    st.none() | st.booleans() | st.integers(-5, 5) | st.sampled_from(["", "x", "100 N", "25 degC", "0.3 m/s", "1#"]),
+    lambda inner: (
+        st.lists(inner, max_size=3)
+        | st.dictionaries(st.sampled_from(["load", "temperature", "name", "compound", "until", "x"]), inner, max_size=3)
+    ),
+    max_leaves=6,
+)
+KEYS = [
+    "recipe",
+    "specimens",
+    "measure",
+    "grids",
+    "pre_grind",
+    "rest",
+    "order",
+    "wheel",
+    "steps",
+    "experiment",
+    "ambient",
+]
+
+
+@given(st.dictionaries(st.sampled_from(KEYS), values, max_size=6))
+@settings(max_examples=200, deadline=None)
+def test_any_tree_is_a_recipe_or_reported(tree: dict[str, object]) -> None:
+    import json
+
+    try:
+        load_checked(json.dumps(tree), rig(), "r.yaml")
+    except InvalidSource as error:
+        assert error.problems
