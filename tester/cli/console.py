@@ -1,0 +1,128 @@
+"""What a run shows on a terminal: a progress line, messages, prompts; or JSON lines for programs."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Callable
+from queue import Empty, SimpleQueue
+from threading import Thread
+from typing import TextIO
+
+from rich.console import Console as RichConsole
+from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn
+from rich.text import Text
+
+from tester.engine.context import Progress as RunProgress
+from tester.engine.prompts import Prompts
+
+
+class Console:
+    """Standard output is data (JSON lines, the run's folder), standard error is for people."""
+
+    def __init__(self, *, as_json: bool, answer_yes: bool) -> None:
+        """``answer_yes``: prompts are answered without asking."""
+        self.as_json = as_json
+        self.answer_yes = answer_yes
+        self._terminal = RichConsole(file=sys.stderr)
+        self._progress: Progress | None = None
+        self._task: TaskID | None = None
+        self._answers: SimpleQueue[str] = SimpleQueue()
+        self._asked = 0
+        self._title = ""
+
+    @property
+    def can_ask(self) -> bool:
+        """A person is there to answer."""
+        return sys.stdin.isatty()
+
+    # -- during the run ---------------------------------------------------------------------------------------
+
+    def begin(self, name: str) -> None:
+        """Show that a run has begun."""
+        self.emit({"event": "begin", "run": name})
+        if self._terminal.is_terminal:
+            self._progress = Progress(
+                TextColumn("{task.description}", markup=False),
+                BarColumn(bar_width=24),
+                TextColumn("{task.fields[detail]}", markup=False),
+                TimeElapsedColumn(),
+                console=self._terminal,
+                transient=True,
+            )
+            self._task = self._progress.add_task(name, total=None, detail="")
+            self._progress.start()
+
+    def show(self, now_s: float, run: RunProgress, share: float) -> None:
+        """Show where the run is: ``share`` of the estimated rig time, 0..1."""
+        if run.title != self._title:
+            self._title = run.title
+            self.emit({"event": "step", "t_s": round(now_s, 3), "step": run.step, "title": run.title})
+            if self._progress is None:
+                self.message(f"{_hours(now_s)}  {run.title}")
+        if self._progress is not None and self._task is not None:
+            detail = f"{100.0 * share:3.0f} %  {_hours(now_s)} of rig time  {run.title}"
+            if run.repeats:
+                detail += f"  repeat {run.repeat}/{run.repeats}"
+            self._progress.update(
+                self._task,
+                total=1.0,
+                completed=min(share, 1.0),
+                description=f"condition {run.condition}/{run.conditions}",
+                detail=detail,
+            )
+
+    def end(self) -> None:
+        """Take the progress line away."""
+        if self._progress is not None:
+            self._progress.stop()
+            self._progress = None
+
+    def message(self, text: str) -> None:
+        """Say something to people; text from outside is shown as it is."""
+        if self._progress is not None:
+            self._progress.console.print(Text(text))
+        else:
+            sys.stderr.write(text + "\n")
+            sys.stderr.flush()
+
+    def emit(self, record: dict[str, object]) -> None:
+        """Write one JSON line, if that was asked for."""
+        if self.as_json:
+            sys.stdout.write(json.dumps(record, ensure_ascii=False) + "\n")
+            sys.stdout.flush()
+
+    def result(self, line: str) -> None:
+        """Write the last line of standard output."""
+        sys.stdout.write(line + "\n")
+        sys.stdout.flush()
+
+    # -- prompts ----------------------------------------------------------------------------------------------
+
+    def attend(self, prompts: Prompts) -> None:
+        """Ask what waits to be asked, and pass answers on; never blocks the scan."""
+        waiting = prompts.waiting
+        if waiting is None:
+            return
+        if waiting.number != self._asked:
+            self._asked = waiting.number
+            self.emit({"event": "prompt", "number": waiting.number, "text": waiting.text})
+            self.message(f"{waiting.text} - done? [Enter] ")
+            Thread(target=_read_line, args=(sys.stdin, self._answers.put), daemon=True).start()
+            return
+        try:
+            answer = self._answers.get_nowait()
+        except Empty:
+            return
+        waiting.answer = answer.strip() or "yes"
+
+
+def _read_line(stream: TextIO, put: Callable[[str], None]) -> None:
+    """Wait for one line and hand it over (a thread of its own: a terminal read cannot be polled portably)."""
+    put(stream.readline())
+
+
+def _hours(seconds: float) -> str:
+    """Return rig time as h:mm:ss."""
+    whole = int(seconds)
+    return f"{whole // 3600}:{whole // 60 % 60:02d}:{whole % 60:02d}"

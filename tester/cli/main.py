@@ -1,0 +1,121 @@
+"""The `tester` command.
+
+The root group knows each command's module, attribute and one line of help as text, and imports the module only when
+that command is called: `tester --help` loads nothing but click (docs/decisions/0009).
+"""
+
+from __future__ import annotations
+
+import io
+import sys
+from importlib import import_module
+from typing import NamedTuple
+
+import click
+
+from tester import __version__
+
+EXIT_DONE = 0
+EXIT_FAILED = 1
+EXIT_USAGE = 2
+EXIT_INVALID = 3
+EXIT_UNREACHABLE = 4
+EXIT_TRIPPED = 5
+EXIT_INCOMPLETE = 6
+EXIT_INTERRUPTED = 130
+
+
+class CommandEntry(NamedTuple):
+    """Where a command lives and what the root help says of it."""
+
+    module: str
+    attribute: str
+    help: str
+
+
+COMMANDS: dict[str, CommandEntry] = {
+    "check": CommandEntry("tester.cli.recipe_commands", "check", "Validate a recipe; every problem at once."),
+    "plan": CommandEntry("tester.cli.recipe_commands", "plan", "List the steps of a recipe, with their durations."),
+    "run": CommandEntry("tester.cli.run_command", "run", "Run a recipe on a rig, simulated unless told."),
+    "runs": CommandEntry("tester.cli.result_commands", "runs", "List the runs that are stored."),
+    "show": CommandEntry("tester.cli.result_commands", "show", "Show what a run holds."),
+    "export": CommandEntry("tester.cli.result_commands", "export", "Write a run's results as a table."),
+    "predict": CommandEntry("tester.cli.predict_command", "predict", "The friction model's value for one condition."),
+    "rig": CommandEntry("tester.cli.rig_commands", "rig", "Write or show a rig file."),
+    "schema": CommandEntry("tester.cli.recipe_commands", "schema", "Print the JSON Schema of recipes."),
+}
+"""The commands in the order of the help page. A test holds every entry against the module it names."""
+
+
+class LazyGroup(click.Group):
+    """A click group whose commands are imported when they are called."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        """Return the command names in the order of the help page."""
+        return list(COMMANDS)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        """Import and return one command, None where there is no such name."""
+        entry = COMMANDS.get(cmd_name)
+        if entry is None:
+            return None
+        command: object = getattr(import_module(entry.module), entry.attribute)
+        if not isinstance(command, click.Command):
+            raise TypeError(f"{entry.module}.{entry.attribute} is not a click command")
+        return command
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write the commands' help lines without importing the commands."""
+        with formatter.section("Commands"):
+            formatter.write_dl([(name, entry.help) for name, entry in COMMANDS.items()])
+
+
+@click.group(
+    cls=LazyGroup,
+    context_settings={"help_option_names": ["-h", "--help"]},
+    epilog="stdout is data, stderr is messages. Exit codes: 0 done, 1 run failed, 2 usage, 3 invalid recipe or rig "
+    "file, 4 rig unreachable, 5 tripped or stopped, 6 incomplete, 130 interrupted.",
+)
+@click.version_option(__version__, message="%(prog)s %(version)s")
+def root() -> None:
+    """Run friction tests of rubber wheels from recipes, on a rig or on its digital twin."""
+
+
+def _invalid_source() -> type[Exception]:
+    """Return the exception of an invalid recipe or rig file.
+
+    An `except` clause evaluates its class only once something was raised, so a run of a command that reads no file
+    never imports the loader.
+    """
+    from tester.source import InvalidSource
+
+    return InvalidSource
+
+
+def _write_utf8(stream: object) -> None:
+    """Let a redirected stream carry every character of a table's header; a console already does."""
+    if isinstance(stream, io.TextIOWrapper) and not stream.isatty():
+        stream.reconfigure(encoding="utf-8")
+
+
+def invoke(arguments: list[str] | None = None) -> int:
+    """Run one command line and return its exit code; a command returns its own code or None for 0."""
+    try:
+        result: object = root.main(args=arguments, prog_name="tester", standalone_mode=False)
+    except click.ClickException as error:
+        error.show()
+        return error.exit_code
+    except click.Abort:
+        click.echo("interrupted", err=True)
+        return EXIT_INTERRUPTED
+    except _invalid_source() as error:
+        click.echo(str(error), err=True)
+        return EXIT_INVALID
+    return result if isinstance(result, int) else EXIT_DONE
+
+
+def main() -> None:
+    """Entry point of the console script."""
+    _write_utf8(sys.stdout)
+    _write_utf8(sys.stderr)
+    sys.exit(invoke())

@@ -1,0 +1,60 @@
+"""Options that several commands share, and the parameter type for quantities."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from typing import Any, TypeVar
+
+import click
+
+from tester.units import UnitError, parse
+
+Decorated = TypeVar("Decorated", bound=Callable[..., Any])
+
+
+class QuantityType(click.ParamType[float]):
+    """A number with a unit, e.g. "300 mm/s"; the command gets the value in ``unit``."""
+
+    def __init__(self, unit: str) -> None:
+        """``unit`` is one of the table in tester.units."""
+        self.name = "quantity"
+        self.unit = unit
+
+    def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> float:
+        """Return the value in the unit; a wrong or missing unit is a usage error that names those accepted."""
+        if isinstance(value, int | float):
+            return float(value)  # a default, already in the unit
+        try:
+            return parse(str(value), self.unit)
+        except UnitError as error:
+            self.fail(str(error), param, ctx)
+
+
+def rig_option(command: Decorated) -> Decorated:
+    """Add --rig: the rig's file, or sim."""
+    return click.option(
+        "--rig", "rig_name", default="sim", show_default=True, metavar="RIG",
+        help="Rig file, or sim for the simulated rig."
+    )(command)
+
+
+def set_option(command: Decorated) -> Decorated:
+    """Add --set KEY=VALUE, any number of times."""
+    return click.option(
+        "--set",
+        "overrides",
+        multiple=True,
+        metavar="KEY=VALUE",
+        help="Replace one key of the rig file, e.g. sim.noise=0. May be given again.",
+    )(command)
+
+
+def json_option(command: Decorated) -> Decorated:
+    """Add --json: data for programs on stdout."""
+    return click.option("--json", "as_json", is_flag=True, help="Print JSON on stdout.")(command)
+
+
+def print_json(data: object) -> None:
+    """Print data as one line of JSON, numbers in full precision; not-a-number is refused (ValueError)."""
+    click.echo(json.dumps(data, ensure_ascii=False, allow_nan=False))

@@ -1,0 +1,46 @@
+"""`tester rig init` and `tester rig show`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from tester.cli.options import json_option, print_json, rig_option, set_option
+
+
+@click.group()
+def rig() -> None:
+    """Write or show a rig file."""
+
+
+@rig.command()
+@click.argument("file", type=click.Path(dir_okay=False, path_type=Path))
+@click.option("--force", is_flag=True, help="Replace the file if there is one.")
+def init(file: Path, force: bool) -> None:
+    """Write a commented rig file for a real machine to FILE, to be completed there."""
+    from tester.rig.template import hardware_text
+
+    try:
+        with file.open("w" if force else "x", encoding="utf-8", newline="\n") as stream:
+            stream.write(hardware_text())
+    except FileExistsError as error:
+        raise click.UsageError(f"{file} exists already; --force replaces it") from error
+    except OSError as error:
+        raise click.UsageError(f"{file} cannot be written: {error.strerror}") from error
+    click.echo(str(file))
+
+
+@rig.command()
+@rig_option
+@set_option
+@json_option
+def show(rig_name: str, overrides: tuple[str, ...], as_json: bool) -> None:
+    """Check a rig file and print it with everything resolved."""
+    from tester.rig import load_rig
+
+    config = load_rig(rig_name, overrides)
+    if as_json:
+        print_json(config.tree)
+    else:
+        click.echo(config.text, nl=False)

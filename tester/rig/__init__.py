@@ -1,0 +1,47 @@
+"""The rig file: a machine's description, read once, frozen (sections: tester.rig.config)."""
+
+from __future__ import annotations
+
+from drivers.axis import AxisConfig
+from tester.rig.config import (
+    AxesConfig,
+    CanConfig,
+    DeviceConfig,
+    DevicesConfig,
+    GatesConfig,
+    GeometryConfig,
+    HeatLoopConfig,
+    InterlocksConfig,
+    IrThermometerConfig,
+    LimitsConfig,
+    LineConfig,
+    LoadLoopConfig,
+    LoopsConfig,
+    ObserverConfig,
+    RigConfig,
+    ScanConfig,
+    WearConfig,
+)
+from tester.rig.load import load_rig
+
+__all__ = [
+    "AxesConfig",
+    "AxisConfig",
+    "CanConfig",
+    "DeviceConfig",
+    "DevicesConfig",
+    "GatesConfig",
+    "GeometryConfig",
+    "HeatLoopConfig",
+    "InterlocksConfig",
+    "IrThermometerConfig",
+    "LimitsConfig",
+    "LineConfig",
+    "LoadLoopConfig",
+    "LoopsConfig",
+    "ObserverConfig",
+    "RigConfig",
+    "ScanConfig",
+    "WearConfig",
+    "load_rig",
+]

@@ -1,0 +1,291 @@
+"""What a rig file says, as frozen dataclasses. Units are in the names; keys in the file have none (config_reader).
+
+Nothing here has a default: a limit or an interlock never comes from the program, always from a file that a person
+can read. The numbers and their sources stand in the packaged file of the simulated rig, ``sim/rig.yaml``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Annotated, Literal
+
+from drivers.axis import AxisConfig
+from sim.parameters import SimParameters, ThermalParameters, WheelParameters
+from tester.config_reader import Range, as_text, as_tree
+
+_POSITIVE = Range(gt=0.0)
+_NOT_NEGATIVE = Range(ge=0.0)
+_SHARE = Range(gt=0.0, le=1.0)
+
+
+@dataclass(frozen=True, slots=True)
+class GeometryConfig:
+    """Sizes of the machine."""
+
+    wheel_diameter_mm: Annotated[float, "mm", _POSITIVE]
+    """Outer diameter of a new wheel."""
+    wheel_width_mm: Annotated[float, "mm", _POSITIVE]
+    belt_roller_diameter_mm: Annotated[float, "mm", _POSITIVE]
+
+
+@dataclass(frozen=True, slots=True)
+class LimitsConfig:
+    """Hard limits: no recipe and no loop gets past them."""
+
+    load_n: Annotated[float, "N", Range(gt=0.0, le=500.0)]
+    """At most 500 N: above it the concept counts harm (rulings on safety figures)."""
+    wheel_speed_m_s: Annotated[float, "m/s", _POSITIVE]
+    belt_speed_m_s: Annotated[float, "m/s", _POSITIVE]
+    slip_power_w: Annotated[float, "W", _POSITIVE]
+    jacket_c: Annotated[float, "degC", Range(gt=0.0, le=155.0)]
+    """At most 155 degC: above it the concept counts harm."""
+    surface_c: Annotated[float, "degC", Range(gt=0.0, le=130.0)]
+    """At most 130 degC: above it the concept counts harm."""
+    sideslip_deg: Annotated[float, "deg", Range(ge=0.0, le=45.0)]
+    camber_deg: Annotated[float, "deg", Range(ge=0.0, le=45.0)]
+
+
+@dataclass(frozen=True, slots=True)
+class ScanConfig:
+    """Scan rates: while sliding or moving, while any drive is enabled, with all drives disabled."""
+
+    sliding_hz: Annotated[float, "Hz", Range(gt=0.0, le=200.0)]
+    enabled_hz: Annotated[float, "Hz", Range(gt=0.0, le=200.0)]
+    idle_hz: Annotated[float, "Hz", Range(gt=0.0, le=200.0)]
+
+
+@dataclass(frozen=True, slots=True)
+class CanConfig:
+    """The drives' bus. ``interface`` is "sim" or a python-can interface; ``node`` is the PC's own."""
+
+    interface: str
+    channel: str
+    bitrate: Literal[125000, 250000, 500000, 800000, 1000000]
+    node: int
+    heartbeat_s: Annotated[float, "s", _POSITIVE]
+    """The PC's heartbeat period."""
+    drive_heartbeat_s: Annotated[float, "s", _POSITIVE]
+    """The drives' heartbeat period (0x1017)."""
+    consumer_heartbeat_s: Annotated[float, "s", _POSITIVE]
+    """How long a drive waits for the PC's heartbeat before it stops (0x1016)."""
+
+
+@dataclass(frozen=True, slots=True)
+class AxesConfig:
+    """The drives; None for an axis that is set by hand (``manual: true`` in the file)."""
+
+    wheel: AxisConfig
+    belt: AxisConfig
+    press: AxisConfig
+    sideslip: AxisConfig | None
+    camber: AxisConfig | None
+
+    def driven(self) -> dict[str, AxisConfig]:
+        """Return the axes that have a drive, by name."""
+        axes = {
+            "wheel": self.wheel,
+            "belt": self.belt,
+            "press": self.press,
+            "sideslip": self.sideslip,
+            "camber": self.camber,
+        }
+        return {name: axis for name, axis in axes.items() if axis is not None}
+
+
+@dataclass(frozen=True, slots=True)
+class LineConfig:
+    """One Modbus line: a serial port, ``host:port`` (framing "socket"), or "sim"."""
+
+    port: str
+    baud: int
+    parity: Literal["N", "E", "O"]
+    framing: Literal["rtu", "socket"]
+
+
+@dataclass(frozen=True, slots=True)
+class DeviceConfig:
+    """One Modbus device: its profile in drivers/profiles, its line and its address there."""
+
+    profile: str
+    line: str
+    unit_id: int
+
+
+@dataclass(frozen=True, slots=True)
+class IrThermometerConfig:
+    """The infrared thermometer on the rubber surface."""
+
+    profile: str
+    line: str
+    unit_id: int
+    emissivity: Annotated[float, "1", Range(ge=0.1, le=1.0)]
+
+
+@dataclass(frozen=True, slots=True)
+class DevicesConfig:
+    """The measuring and heating devices."""
+
+    load_cell: DeviceConfig
+    jacket: DeviceConfig
+    ir_thermometer: IrThermometerConfig
+
+
+@dataclass(frozen=True, slots=True)
+class LoadLoopConfig:
+    """Press control: approach, touch, hold (tester.control.load_loop)."""
+
+    bandwidth_hz: Annotated[float, "Hz", _POSITIVE]
+    rolling_bandwidth_hz: Annotated[float, "Hz", _POSITIVE]
+    """While holding in band: too slow to chase the wheel's runout."""
+    error_filter_s: Annotated[float, "s", _POSITIVE]
+    """The load error is averaged over this time before it decides between the two bandwidths."""
+    stiffness_n_per_mm: Annotated[float, "N/mm", _POSITIVE]
+    """Tangent stiffness of the contact at 200 N."""
+    integral_s: Annotated[float, "s", _POSITIVE]
+    touch_load_n: Annotated[float, "N", _POSITIVE]
+    touch_speed_mm_s: Annotated[float, "mm/s", _POSITIVE]
+    loading_speed_mm_s: Annotated[float, "mm/s", _POSITIVE]
+    lift_speed_mm_s: Annotated[float, "mm/s", _POSITIVE]
+    clearance_mm: Annotated[float, "mm", _POSITIVE]
+    """Lifted means this far off the last contact."""
+
+
+@dataclass(frozen=True, slots=True)
+class HeatLoopConfig:
+    """Outer heat loop: surface error to hub setpoint (tester.control.heat_loop)."""
+
+    outer_gain: Annotated[float, "1", _NOT_NEGATIVE]
+    """Kelvin of hub setpoint per kelvin of surface error."""
+    outer_integral_s: Annotated[float, "s", _POSITIVE]
+    integral_band_k: Annotated[float, "K", _POSITIVE]
+    """The integral moves only inside this error."""
+    integral_limit_k: Annotated[float, "K", _NOT_NEGATIVE]
+    hub_min_c: Annotated[float, "degC"]
+    hub_max_c: Annotated[float, "degC"]
+    period_s: Annotated[float, "s", _POSITIVE]
+    rolling_offset_k: Annotated[float, "K", _NOT_NEGATIVE]
+    """While rolling between slip pulses the target is this much below the setpoint."""
+
+
+@dataclass(frozen=True, slots=True)
+class LoopsConfig:
+    """Gains and times of the loops."""
+
+    load: LoadLoopConfig
+    heat: HeatLoopConfig
+
+
+@dataclass(frozen=True, slots=True)
+class GatesConfig:
+    """When a sample counts (tester.engine.gates)."""
+
+    load_percent: Annotated[float, "%", _POSITIVE]
+    load_filter_s: Annotated[float, "s", _POSITIVE]
+    speed_percent: Annotated[float, "%", _POSITIVE]
+    slip_percent: Annotated[float, "%", _POSITIVE]
+    slip_floor_mm_s: Annotated[float, "mm/s", _NOT_NEGATIVE]
+    slip_filter_s: Annotated[float, "s", _POSITIVE]
+    ir_lag_s: Annotated[float, "s", _NOT_NEGATIVE]
+    contact_transient_s: Annotated[float, "s", _NOT_NEGATIVE]
+
+
+@dataclass(frozen=True, slots=True)
+class InterlocksConfig:
+    """Levels and delays of the interlocks (tester.control.interlocks); a delay is how long a level must stand."""
+
+    stale_cell_s: Annotated[float, "s", _POSITIVE]
+    stale_cell_delay_s: Annotated[float, "s", _NOT_NEGATIVE]
+    stale_can_scans: Annotated[float, "1", Range(ge=1.0)]
+    stale_can_s: Annotated[float, "s", _POSITIVE]
+    stale_ir_s: Annotated[float, "s", _POSITIVE]
+    stale_jacket_s: Annotated[float, "s", _POSITIVE]
+    stale_delay_s: Annotated[float, "s", _NOT_NEGATIVE]
+    overload_factor: Annotated[float, "1", Range(ge=1.0)]
+    overload_margin_n: Annotated[float, "N", _NOT_NEGATIVE]
+    overload_delay_s: Annotated[float, "s", _NOT_NEGATIVE]
+    contact_share: Annotated[float, "1", _SHARE]
+    contact_delay_s: Annotated[float, "s", _NOT_NEGATIVE]
+    max_slip_m_s: Annotated[float, "m/s", _POSITIVE]
+    slip_power_delay_s: Annotated[float, "s", _NOT_NEGATIVE]
+    standing_delay_s: Annotated[float, "s", _NOT_NEGATIVE]
+    overspeed_share: Annotated[float, "1", _NOT_NEGATIVE]
+    overspeed_delay_s: Annotated[float, "s", _NOT_NEGATIVE]
+    surface_delay_s: Annotated[float, "s", _NOT_NEGATIVE]
+    jacket_delay_s: Annotated[float, "s", _NOT_NEGATIVE]
+    runaway_k: Annotated[float, "K", _POSITIVE]
+    runaway_delay_s: Annotated[float, "s", _NOT_NEGATIVE]
+    standstill_heat_delay_s: Annotated[float, "s", _NOT_NEGATIVE]
+    late_scan_s: Annotated[float, "s", _POSITIVE]
+    zero_warn_n: Annotated[float, "N", _POSITIVE]
+    zero_stop_n: Annotated[float, "N", _POSITIVE]
+    cooldown_hub_c: Annotated[float, "degC"]
+    cooldown_speed_m_s: Annotated[float, "m/s", _POSITIVE]
+    cooldown_at_most_s: Annotated[float, "s", _POSITIVE]
+
+
+@dataclass(frozen=True, slots=True)
+class WearConfig:
+    """Wear law V = k F s: what the plan predicts and the current diameter is estimated with."""
+
+    rate_mm3_per_n_m: Annotated[float, "mm3/(N m)", _NOT_NEGATIVE]
+
+
+@dataclass(frozen=True, slots=True)
+class ObserverConfig:
+    """What software believes of the wheel's thermal behaviour: heat loop, estimates and thermal interlocks use it.
+
+    The simulated wheel has parameters of its own (``sim``), so that a wrong belief can be tested.
+    """
+
+    ambient_c: Annotated[float, "degC", Range(ge=-40.0, le=60.0)]
+    """The air around a real rig; a simulated one has its own (``RigConfig.ambient_c``)."""
+    friction_heat_fraction: Annotated[float, "1", Range(ge=0.0, le=1.0)]
+    """The rubber's share of friction heat."""
+    belt_conductance: Annotated[float, "W/K", _NOT_NEGATIVE]
+    """Rubber to belt, in contact."""
+    wheel: WheelParameters
+    thermal: ThermalParameters
+
+
+@dataclass(frozen=True, slots=True)
+class RigConfig:
+    """A rig: everything about the machine that software needs to know, and nothing about a test."""
+
+    rig: str
+    """What the rig is called."""
+    simulated: bool
+    geometry: GeometryConfig
+    limits: LimitsConfig
+    scan: ScanConfig
+    can: CanConfig
+    axes: AxesConfig
+    lines: Mapping[str, LineConfig]
+    devices: DevicesConfig
+    loops: LoopsConfig
+    gates: GatesConfig
+    interlocks: InterlocksConfig
+    wear: WearConfig
+    observer: ObserverConfig
+    sim: SimParameters = field(default_factory=SimParameters)
+    """The simulated rig's physics; without meaning on a real one."""
+
+    @property
+    def name(self) -> str:
+        """What the rig is called."""
+        return self.rig
+
+    @property
+    def ambient_c(self) -> float:
+        """Temperature of the air around the rig, degC: of the simulated rig's air, else as the file states it."""
+        return self.sim.ambient if self.simulated else self.observer.ambient_c
+
+    @property
+    def tree(self) -> dict[str, object]:
+        """The configuration with everything resolved, as it could stand in a file."""
+        return as_tree(self)
+
+    @property
+    def text(self) -> str:
+        """The configuration with everything resolved, as YAML: what a run stores, and what ``load_rig`` reads back."""
+        return as_text(self)

@@ -1,0 +1,161 @@
+"""``tester runs``, ``show`` and ``export``."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner, Result
+
+from tester.cli.result_commands import export, runs, show
+from tests.tester.store.build import CONDITIONS, RUN, SPECIMENS, open_writer, small_run
+
+
+@pytest.fixture
+def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Work in a folder whose runs/ holds one finished run, ``one``."""
+    monkeypatch.chdir(tmp_path)
+    small_run(tmp_path / "runs" / "one")
+    return tmp_path
+
+
+def invoke(command: object, *arguments: str) -> Result:
+    return CliRunner().invoke(command, list(arguments), prog_name="tester")  # type: ignore[arg-type]
+
+
+def test_runs_lists_name_status_and_what_is_committed(home: Path) -> None:
+    result = invoke(runs)
+    assert result.exit_code == 0
+    assert result.stdout == "one  finished  0:45:00  2 conditions, 6 repeats  Small, two loads\n"
+
+
+def test_runs_as_json(home: Path) -> None:
+    (listed,) = json.loads(invoke(runs, "--json").stdout)
+    assert (listed["run"], listed["status"], listed["rig_seconds"]) == ("one", "finished", 2700.5)
+    assert (listed["conditions"], listed["repeats"], listed["seed"]) == (2, 6, 1)
+
+
+def test_runs_of_another_folder(home: Path) -> None:
+    small_run(home / "elsewhere" / "two")
+    assert invoke(runs, "--out", "elsewhere").stdout.startswith("two ")
+
+
+def test_no_runs_are_an_empty_list(home: Path) -> None:
+    assert invoke(runs, "--out", "nowhere").stdout == ""
+    assert json.loads(invoke(runs, "--out", "nowhere", "--json").stdout) == []
+
+
+def test_a_run_that_was_left_open_says_so(home: Path) -> None:
+    (home / "runs" / "two").mkdir()
+    writer = open_writer(home / "runs" / "two")
+    writer.begin_run(RUN, SPECIMENS, CONDITIONS)
+    writer.close()
+    assert "two  open (running, or cut off)" in invoke(runs).stdout
+
+
+def test_a_run_that_cannot_be_read_is_named_on_stderr(home: Path) -> None:
+    (home / "runs" / "bad").mkdir()
+    (home / "runs" / "bad" / "run.db").touch()
+    result = invoke(runs)
+    assert result.exit_code == 0
+    assert result.stderr.startswith("bad: ")
+    assert "bad" not in result.stdout
+
+
+def test_show_tells_status_rig_time_and_values(home: Path) -> None:
+    lines = invoke(show, "one").stdout.splitlines()
+    assert lines[0] == "one: Small, two loads"
+    assert lines[1] == "status   finished"
+    assert lines[2].startswith("rig time 0:45:00")
+    assert lines[3] == "values   2 of 2 conditions"
+    assert lines[4].startswith("  1#, 300 mm/s, 100 N, 0°, 25 °C: 0.900 ± ")
+    assert lines[4].endswith("(n 3 of 3) extended")
+
+
+def test_show_as_json(home: Path) -> None:
+    shown = json.loads(invoke(show, "one", "--json").stdout)
+    assert (shown["rig_seconds"], shown["status"], shown["seed"]) == (2700.5, "finished", 1)
+    assert [condition["mu"] for condition in shown["conditions"]] == pytest.approx([0.9, 0.73])
+    assert len(shown["conditions"][0]["repeats"]) == 3
+    assert shown["missing"] == []
+
+
+def test_show_names_what_has_no_value(home: Path) -> None:
+    small_run(home / "runs" / "two", ([0.9], [0.73, 0.74, 0.72]))
+    shown = invoke(show, "two").stdout
+    assert "values   1 of 2 conditions" in shown
+    assert "  1#, 300 mm/s, 100 N, 0°, 25 °C: insufficient: 1 of 3 valid, 3 needed" in shown
+    assert json.loads(invoke(show, "two", "--json").stdout)["conditions"][0]["s"] is None
+
+
+def test_export_writes_to_stdout_what_the_run_folder_holds(home: Path) -> None:
+    from tester.export import write_all
+
+    write_all(home / "runs" / "one")
+    for kind in ("appendix", "conditions", "repeats"):
+        assert invoke(export, "one", "--format", kind).stdout_bytes == (
+            home / "runs" / "one" / f"{kind}.csv"
+        ).read_bytes()
+
+
+def test_export_takes_a_folder_and_decimals(home: Path) -> None:
+    out = invoke(export, str(home / "runs" / "one"), "--format", "appendix", "--decimals", "3").stdout_bytes
+    assert out.endswith(b"1#,300,200,0,25,0.730\n")
+
+
+def test_export_to_a_file_leaves_stdout_empty(home: Path) -> None:
+    result = invoke(export, "one", "--format", "samples", "--out", "s.csv")
+    assert (result.exit_code, result.stdout) == (0, "")
+    assert len((home / "s.csv").read_text("utf-8").splitlines()) == 31
+
+
+def test_export_names_missing_conditions_on_stderr(home: Path) -> None:
+    small_run(home / "runs" / "two", ([0.9], [0.73, 0.74, 0.72]))
+    result = invoke(export, "two", "--format", "appendix")
+    assert result.exit_code == 0
+    assert result.stderr.startswith("not in the appendix: 1#, 300 mm/s, 100 N, 0°, 25 °C: insufficient")
+    assert len(result.stdout.splitlines()) == 2
+
+
+def test_parquet_needs_a_file(home: Path) -> None:
+    result = invoke(export, "one", "--format", "parquet")
+    assert result.exit_code == 2
+    assert "--out" in result.stderr
+
+
+def test_parquet_goes_to_its_file(home: Path) -> None:
+    assert invoke(export, "one", "--format", "parquet", "--out", "s.parquet").exit_code == 0
+    assert (home / "s.parquet").read_bytes()[:4] == b"PAR1"
+
+
+@pytest.mark.parametrize("command", [[show, "nothing"], [export, "nothing", "--format", "appendix"]])
+def test_a_run_that_is_not_there_is_a_usage_error(home: Path, command: list[object]) -> None:
+    result = invoke(command[0], *[str(argument) for argument in command[1:]])
+    assert result.exit_code == 2
+    assert "no run nothing" in result.stderr
+
+
+@pytest.mark.parametrize("arguments", [["one"], ["one", "--format", "xlsx"], ["one", "--format", "appendix", "--decimals", "-1"]])
+def test_wrong_options_are_usage_errors(home: Path, arguments: list[str]) -> None:
+    assert invoke(export, *arguments).exit_code == 2
+
+
+def test_a_run_that_cannot_be_read_fails(home: Path) -> None:
+    (home / "runs" / "one" / "run.db").write_bytes(b"x" * 4096)
+    assert invoke(show, "one").exit_code == 1
+    assert invoke(export, "one", "--format", "appendix").exit_code == 1
+
+
+def test_a_file_that_cannot_be_written_fails(home: Path) -> None:
+    assert invoke(export, "one", "--format", "appendix", "--out", "missing/a.csv").exit_code == 1
+
+
+def test_text_of_a_recipe_cannot_drive_the_terminal(home: Path) -> None:
+    from dataclasses import replace
+
+    (home / "runs" / "two").mkdir()
+    writer = open_writer(home / "runs" / "two")
+    writer.begin_run(replace(RUN, recipe_name="\x1b[2Jgone"), SPECIMENS, CONDITIONS)
+    writer.close()
+    assert "\x1b" not in invoke(runs).stdout + invoke(show, "two").stdout
