@@ -1,0 +1,188 @@
+"""The interlocks: one table, one row a cause. Every row is a level, evaluated in every scan; unknown is tripped.
+
+A row's condition is a small function of what is known (``View``) that returns True while the rig is *not* shown to
+be well. Conditions are written so that NaN and missing data fall on the tripped side: ``not (x <= limit)``, never
+``x > limit``. No row hides another; a trip latches in ``step``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import isfinite
+
+from tester.control.state import ControlState, Reaction
+from tester.process import Demand, Press, Readings
+from tester.rig import RigConfig
+
+STANDING_M_S = 0.02
+"""Below this a drive counts as standing [A]."""
+UNLOADED_N = 20.0
+"""Below this the contact counts as unloaded (safety concept, "load with a drive stopped")."""
+
+
+@dataclass(slots=True)
+class View:
+    """What a condition may look at."""
+
+    readings: Readings
+    demand: Demand
+    state: ControlState
+    rig: RigConfig
+    scan_s: float
+    """Period of the scan, s."""
+
+
+@dataclass(frozen=True, slots=True)
+class Interlock:
+    """One row: cause, condition, delay, reaction."""
+
+    name: str
+    cause: str
+    condition: Callable[[View], bool]
+    delay_s: Callable[[RigConfig], float]
+    reaction: Reaction
+
+
+def _loaded(view: View) -> bool:
+    """Contact is wanted or cannot be excluded."""
+    return view.demand.press is Press.LOAD or not (view.readings.force_z_n < UNLOADED_N)
+
+
+def _can_stale(view: View) -> bool:
+    r = view.readings
+    limit = min(view.rig.interlocks.stale_can_scans * view.scan_s, view.rig.interlocks.stale_can_s)
+    oldest = min(r.wheel_at_s, r.belt_at_s, r.press_at_s, r.sideslip_at_s, r.camber_at_s)
+    return view.demand.enabled and r.drives_enabled and not (r.now_s - oldest <= limit)
+
+
+def _drive_fault(view: View) -> bool:
+    return bool(view.readings.drive_fault)
+
+
+def _safety_chain(view: View) -> bool:
+    return not view.readings.safety_chain
+
+
+def _guard(view: View) -> bool:
+    return view.demand.enabled and not view.readings.guard_closed
+
+
+def _cell_stale(view: View) -> bool:
+    r = view.readings
+    return _loaded(view) and not (r.cell_valid and r.now_s - r.cell_at_s <= view.rig.interlocks.stale_cell_s)
+
+
+def _surface_stale(view: View) -> bool:
+    r = view.readings
+    wanted = isfinite(view.demand.surface_c) or view.demand.press is Press.LOAD
+    return wanted and not (r.surface_valid and r.now_s - r.surface_at_s <= view.rig.interlocks.stale_ir_s)
+
+
+def _jacket_stale(view: View) -> bool:
+    r = view.readings
+    return not (r.jacket_valid and r.now_s - r.jacket_at_s <= view.rig.interlocks.stale_jacket_s)
+
+
+def _overload(view: View) -> bool:
+    return _loaded(view) and not (view.readings.force_z_n <= view.rig.limits.load_n)
+
+
+def _overshoot(view: View) -> bool:
+    if view.demand.press is not Press.LOAD:
+        return False
+    lim = view.rig.interlocks
+    return not (view.readings.force_z_n <= lim.overload_factor * view.demand.load_n + lim.overload_margin_n)
+
+
+def _contact_lost(view: View) -> bool:
+    target = view.demand.load_n
+    if view.demand.press is not Press.LOAD or target < 50.0 or not view.state.load.loaded:
+        return False
+    return not (view.readings.force_z_n >= view.rig.interlocks.contact_share * target)
+
+
+def _slip_power(view: View) -> bool:
+    r = view.readings
+    if not _loaded(view):
+        return False
+    force = (r.force_x_n * r.force_x_n + r.force_y_n * r.force_y_n) ** 0.5
+    return not (force * r.slip_m_s <= view.rig.limits.slip_power_w)
+
+
+def _standing_under_load(view: View) -> bool:
+    r = view.readings
+    if r.force_z_n < UNLOADED_N:
+        return False
+    wheel, belt = abs(r.wheel_speed_m_s) > STANDING_M_S, abs(r.belt_speed_m_s) > STANDING_M_S
+    return wheel != belt or (view.demand.press is Press.LOAD and not (wheel and belt))
+
+
+def _overspeed(view: View) -> bool:
+    r, limits, margin = view.readings, view.rig.limits, 1.0 + view.rig.interlocks.overspeed_share
+    if not r.drives_enabled:
+        return False
+    return not (abs(r.wheel_speed_m_s) <= limits.wheel_speed_m_s * margin) or not (
+        abs(r.belt_speed_m_s) <= limits.belt_speed_m_s * margin
+    )
+
+
+def _surface_hot(view: View) -> bool:
+    r = view.readings
+    return r.surface_valid and not (r.surface_c <= view.rig.limits.surface_c)
+
+
+def _hub_hot(view: View) -> bool:
+    return view.readings.jacket_valid and not (view.readings.hub_c <= view.rig.limits.jacket_c + 5.0)
+
+
+def _runaway(view: View) -> bool:
+    r, state = view.readings, view.state
+    if not r.jacket_valid or not state.hub_ceiling:
+        return False
+    ceiling = max(state.hub_ceiling[0][1], view.rig.loops.heat.hub_min_c)
+    return r.hub_c > ceiling + view.rig.interlocks.runaway_k and r.heat_percent > 0.0
+
+
+def _heating_at_standstill(view: View) -> bool:
+    r = view.readings
+    return not (r.heat_percent <= 0.0) and not (abs(r.wheel_speed_m_s) > STANDING_M_S)
+
+
+def _late(view: View) -> bool:
+    return view.readings.now_s - view.state.last_s > view.rig.interlocks.late_scan_s + view.scan_s
+
+
+FAST, CONTROLLED = Reaction.FAST, Reaction.CONTROLLED
+
+INTERLOCKS: tuple[Interlock, ...] = (
+    Interlock("safety chain", "safety chain open (drive input)", _safety_chain, lambda _: 0.0, FAST),
+    Interlock("drive fault", "drive fault, loss or emergency", _drive_fault, lambda _: 0.0, FAST),
+    Interlock("drive data stale", "no fresh drive data", _can_stale, lambda _: 0.0, FAST),
+    Interlock("load cell stale", "load unknown while in contact", _cell_stale,
+              lambda c: c.interlocks.stale_cell_delay_s, FAST),
+    Interlock("overload", "normal force above the rig's limit", _overload, lambda _: 0.0, FAST),
+    Interlock("load overshoot", "normal force above target + 10 % + 10 N", _overshoot,
+              lambda c: c.interlocks.overload_delay_s, FAST),
+    Interlock("contact lost", "normal force far below target", _contact_lost,
+              lambda c: c.interlocks.contact_delay_s, FAST),
+    Interlock("slip power", "friction power above the rig's limit", _slip_power,
+              lambda c: c.interlocks.slip_power_delay_s, FAST),
+    Interlock("drive standing under load", "wheel on a stopped belt, or belt under a stopped wheel",
+              _standing_under_load, lambda c: c.interlocks.standing_delay_s, FAST),
+    Interlock("overspeed", "wheel or belt above its limit", _overspeed,
+              lambda c: c.interlocks.overspeed_delay_s, FAST),
+    Interlock("guard open", "guard open with drives on", _guard, lambda _: 0.0, FAST),
+    Interlock("surface hot", "rubber surface above its limit", _surface_hot,
+              lambda c: c.interlocks.surface_delay_s, CONTROLLED),
+    Interlock("jacket hot", "hub above its limit", _hub_hot, lambda c: c.interlocks.jacket_delay_s, CONTROLLED),
+    Interlock("jacket runaway", "hub above every setpoint of the last ten minutes", _runaway,
+              lambda c: c.interlocks.runaway_delay_s, CONTROLLED),
+    Interlock("heating at standstill", "jacket heating with the wheel not turning", _heating_at_standstill,
+              lambda c: c.interlocks.standstill_heat_delay_s, CONTROLLED),
+    Interlock("surface data stale", "no fresh surface temperature", _surface_stale,
+              lambda c: c.interlocks.stale_delay_s, CONTROLLED),
+    Interlock("jacket data stale", "no fresh jacket data", _jacket_stale,
+              lambda c: c.interlocks.stale_delay_s, CONTROLLED),
+    Interlock("scan late", "the controlling process was late", _late, lambda _: 0.0, FAST),
+)  # fmt: skip

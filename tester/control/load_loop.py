@@ -1,0 +1,116 @@
+"""The press: lift to clear, approach the wheel, hold the load.
+
+The press is a velocity-controlled screw, the contact a stiff spring, so velocity to force is an integrator: a
+proportional law with the gain ``2 pi bandwidth / stiffness`` gives first-order settling; the integral part only
+removes the slow drift from wear and thermal growth.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import exp, isfinite, pi, sqrt
+
+from tester.process import Demand, Press, Readings
+from tester.rig import AxisConfig, LoadLoopConfig
+
+STIFFNESS_EXPONENT = 0.23
+"""Tangent stiffness of the line contact grows with load to this power: 125 to 172 N/mm from 100 to 400 N [A]."""
+DECELERATION_SHARE = 0.6
+"""Share of the press's acceleration limit that approach profiles use, so that the drive can follow them."""
+POSITION_GAIN_PER_S = 6.0
+"""Final approach to a press position: mm/s per mm, well below the drive's 30 ms lag [A]."""
+HELD_BAND = 0.03
+"""Inside this relative error the slower holding bandwidth is used: it does not chase the runout."""
+
+
+@dataclass(slots=True)
+class LoadLoop:
+    """State of the press control."""
+
+    contact_mm: float = float("nan")
+    """Press position at the last first touch; NaN until the wheel has been touched since its installation."""
+    in_contact: bool = False
+    loaded: bool = False
+    """Half of the wanted load has been reached since touching: from then on losing it is a fault."""
+    integral_mm_s: float = 0.0
+    error_n: float = 0.0
+    """Load error, filtered over one turn or so; decides between the fast and the holding bandwidth."""
+
+    def forget_contact(self) -> None:
+        """Forget where the wheel was touched: another wheel is installed."""
+        self.contact_mm = float("nan")
+
+    def velocity(self, demand: Demand, readings: Readings, dt: float, loop: LoadLoopConfig, press: AxisConfig) -> float:
+        """Return the press velocity in mm/s (positive = towards the wheel) for this scan.
+
+        Unknown force or position never presses: the result is then a retraction.
+        """
+        force, position = readings.force_z_n, readings.press_mm
+        if demand.press is not Press.LOAD or not isfinite(force) or not isfinite(position):
+            return self._lift(position, loop, press)
+        self._track_contact(force, position, loop)
+        self.loaded = self.in_contact and (self.loaded or force >= 0.5 * demand.load_n)
+        if not self.in_contact:
+            self.integral_mm_s = 0.0
+            self.error_n = demand.load_n
+            return self._approach(demand, position, loop, press)
+        return self._hold(demand, force, dt, loop)
+
+    def lifted_mm(self, loop: LoadLoopConfig) -> float:
+        """Return the press position that counts as lifted, mm: a clearance off the known contact, else fully back."""
+        return max(0.0, self.contact_mm - loop.clearance_mm) if isfinite(self.contact_mm) else 0.0
+
+    def _lift(self, position: float, loop: LoadLoopConfig, press: AxisConfig) -> float:
+        self.in_contact = self.loaded = False
+        self.integral_mm_s = 0.0
+        if not isfinite(position):
+            return -loop.lift_speed_mm_s
+        distance = self.lifted_mm(loop) - position
+        if distance >= 0.0:
+            return min(distance * POSITION_GAIN_PER_S, loop.loading_speed_mm_s) if distance > 0.5 else 0.0
+        return -min(loop.lift_speed_mm_s, _profile(-distance, press), -distance * POSITION_GAIN_PER_S)
+
+    def _track_contact(self, force: float, position: float, loop: LoadLoopConfig) -> None:
+        if not self.in_contact and force > loop.touch_load_n:
+            self.in_contact = True
+            self.contact_mm = position
+        elif self.in_contact and not self.loaded and force < 0.3 * loop.touch_load_n:
+            self.in_contact = False
+
+    def _approach(self, demand: Demand, position: float, loop: LoadLoopConfig, press: AxisConfig) -> float:
+        landing = min(
+            loop.touch_speed_mm_s if demand.quick_touch else loop.loading_speed_mm_s,
+            0.5 * demand.load_n * _gain(loop, loop.bandwidth_hz, 0.0),
+        )
+        if not isfinite(self.contact_mm):
+            return landing
+        distance = self.contact_mm - position
+        if distance <= 0.0:
+            return landing
+        return min(
+            loop.touch_speed_mm_s,
+            sqrt(landing * landing + 2.0 * DECELERATION_SHARE * press.acceleration * distance),
+        )
+
+    def _hold(self, demand: Demand, force: float, dt: float, loop: LoadLoopConfig) -> float:
+        error = demand.load_n - force
+        self.error_n += (error - self.error_n) * (1.0 - exp(-dt / loop.error_filter_s))
+        near = abs(self.error_n) < HELD_BAND * demand.load_n
+        bandwidth = loop.rolling_bandwidth_hz if near else loop.bandwidth_hz
+        gain = _gain(loop, bandwidth, force)
+        limit = loop.touch_speed_mm_s if demand.quick_touch else loop.loading_speed_mm_s
+        if near:
+            self.integral_mm_s += gain * self.error_n * dt / loop.integral_s
+            self.integral_mm_s = min(max(self.integral_mm_s, -0.1 * limit), 0.1 * limit)
+        return min(max(gain * error + self.integral_mm_s, -limit), limit)
+
+
+def _gain(loop: LoadLoopConfig, bandwidth_hz: float, force_n: float) -> float:
+    """Return mm/s per N that closes the loop at ``bandwidth_hz`` at the contact's tangent stiffness."""
+    stiffness = loop.stiffness_n_per_mm * (max(force_n, 20.0) / 200.0) ** STIFFNESS_EXPONENT
+    return 2.0 * pi * bandwidth_hz / stiffness
+
+
+def _profile(distance_mm: float, press: AxisConfig) -> float:
+    """Return the speed in mm/s from which the press can stop within ``distance_mm``."""
+    return sqrt(2.0 * DECELERATION_SHARE * press.acceleration * distance_mm)

@@ -1,0 +1,81 @@
+"""What control remembers between scans: mode, latched trip, timers of the interlocks, states of the loops."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from enum import Enum
+
+from tester.control.heat_loop import HeatLoop
+from tester.control.load_loop import LoadLoop
+from tester.process import Setpoints
+
+
+class Mode(Enum):
+    """Operating mode of the rig (safety concept, "States")."""
+
+    IDLE = "idle"
+    RUN = "run"
+    STOPPING = "stopping"
+    """Controlled stop: heat off, lift, both drives ramp down together."""
+    COOLDOWN = "cooldown"
+    """Unloaded creep, heat off, until the jacket is cool: a hot hub would bake one spot of a standing wheel."""
+    FAST_STOP = "fast stop"
+    """Lift, quick stop of both drives, heat off, contactor off: all in one scan."""
+    LATCHED = "latched"
+    """Nothing moves until the cause is gone, the operator has acknowledged and the rig is armed again."""
+
+
+class Reaction(Enum):
+    """What a trip leads to."""
+
+    CONTROLLED = "controlled stop"
+    FAST = "fast stop"
+
+
+@dataclass(frozen=True, slots=True)
+class Trip:
+    """First cause of a stop ("first-up")."""
+
+    at_s: float
+    name: str
+    text: str
+    reaction: Reaction
+
+
+@dataclass(frozen=True, slots=True)
+class Event:
+    """Something for the journal: a mode change, a trip, an acknowledgement."""
+
+    at_s: float
+    kind: str
+    text: str
+
+
+@dataclass(slots=True)
+class ControlState:
+    """Everything ``step`` carries from one scan to the next; plain data, copyable."""
+
+    setpoints: Setpoints
+    load: LoadLoop
+    heat: HeatLoop
+    mode: Mode = Mode.IDLE
+    mode_since_s: float = 0.0
+    trip: Trip | None = None
+    pending_s: list[float] = field(default_factory=list[float])
+    """Since when each interlock's condition has held (inf = it does not hold), in the table's order."""
+    events: list[Event] = field(default_factory=list[Event])
+    """Raised in this scan, in order; the engine takes them out before the outputs leave."""
+    last_s: float = float("-inf")
+    turning_since_s: float = float("inf")
+    """Since when the wheel has been confirmed turning."""
+    stop_requested: str = ""
+    cooled: bool = False
+    """The cool-down of this run is over, whether the jacket got cool or not."""
+    hub_ceiling: list[tuple[float, float]] = field(default_factory=list[tuple[float, float]])
+    """(time, hub setpoint) of the last ten minutes, falling setpoints only: the first is the highest (runaway limit)."""
+
+    def enter(self, mode: Mode, now_s: float, why: str) -> None:
+        """Change the mode and journal it."""
+        self.events.append(Event(now_s, "mode", f"{self.mode.value} -> {mode.value}: {why}"))
+        self.mode = mode
+        self.mode_since_s = now_s

@@ -1,0 +1,154 @@
+"""The process image: what one scan knows, what the recipe wants, and what is commanded.
+
+One instance of each exists per rig. The scan overwrites the fields in place at fixed places (inputs fill
+``Readings``, the executor writes ``Demand``, control writes ``Setpoints``): like a PLC's image it is
+complete and consistent between two steps of a scan, and costs no allocation.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import IntEnum
+
+SAMPLE_COLUMNS: tuple[str, ...] = (
+    "time_s",
+    "wheel_speed_m_s",
+    "belt_speed_m_s",
+    "slip_m_s",
+    "sideslip_deg",
+    "camber_deg",
+    "load_setpoint_n",
+    "force_x_n",
+    "force_y_n",
+    "force_z_n",
+    "moment_z_nm",
+    "drive_torque_nm",
+    "surface_c",
+    "hub_c",
+    "hub_setpoint_c",
+    "heat_percent",
+    "press_mm",
+    "wheel_angle_rev",
+    "gate",
+    "burst",
+    "repeat_key",
+)
+"""Columns of a recorded sample, in order, all float64, unit in the name. ``gate`` is a mask of GATE_* (0 = accepted),
+``burst`` counts within the repeat (0 = outside a burst), ``repeat_key`` is the repeat's row in the store (0 = none)."""
+
+GATE_LOAD = 1
+GATE_SPEED = 2
+GATE_SLIP = 4
+GATE_TEMPERATURE = 8
+GATE_ALARM = 16
+GATE_SETTLING = 32
+
+NEVER = float("-inf")
+"""Time stamp of a source that has not reported yet: older than anything, hence stale."""
+
+NAN = float("nan")
+"""Value of a source that has not reported yet, or of a demand that is not made."""
+
+
+class Press(IntEnum):
+    """What the press axis is asked to do."""
+
+    LIFT = 0
+    """Clear of the wheel, position-controlled to the lifted position."""
+    LOAD = 1
+    """In contact, force-controlled to ``Demand.load_n``."""
+
+
+@dataclass(slots=True)
+class Readings:
+    """Newest value of every signal, with the time stamp of its source (seconds of the scan's clock).
+
+    Speeds of the wheel are rim speeds with the *current* diameter. Forces are in the wheel frame, tare applied:
+    x along the wheel plane (positive = belt drags the wheel back), y lateral, z normal.
+    """
+
+    now_s: float = 0.0
+
+    wheel_speed_m_s: float = NAN
+    wheel_rad_s: float = NAN
+    drive_torque_nm: float = NAN
+    wheel_at_s: float = NEVER
+    belt_speed_m_s: float = NAN
+    belt_at_s: float = NEVER
+    press_mm: float = NAN
+    press_at_s: float = NEVER
+    sideslip_deg: float = 0.0
+    sideslip_at_s: float = NEVER
+    camber_deg: float = 0.0
+    camber_at_s: float = NEVER
+    slip_m_s: float = NAN
+    """Resultant slip speed from the measured speeds and sideslip angle."""
+
+    drives_enabled: bool = False
+    """Every drive that takes part is in OPERATION_ENABLED."""
+    drives_disabled: bool = True
+    """No drive applies torque."""
+    drive_fault: str = ""
+    """First drive fault, loss or emergency, as text; empty while all are healthy."""
+    yaw_reached: bool = False
+    """Sideslip and camber drives report their targets reached."""
+    safety_chain: bool = False
+    guard_closed: bool = False
+    contactor_closed: bool = False
+
+    force_x_n: float = NAN
+    force_y_n: float = NAN
+    force_z_n: float = NAN
+    moment_z_nm: float = NAN
+    cell_valid: bool = False
+    cell_at_s: float = NEVER
+
+    surface_c: float = NAN
+    surface_valid: bool = False
+    surface_at_s: float = NEVER
+    hub_c: float = NAN
+    heat_percent: float = NAN
+    jacket_valid: bool = False
+    jacket_at_s: float = NEVER
+
+    wheel_angle_rev: float = 0.0
+    """Turns of the wheel since installation, integrated from the measured speed."""
+    diameter_mm: float = NAN
+    """Current wheel diameter: measured at installation, less the estimated wear."""
+
+
+@dataclass(slots=True)
+class Demand:
+    """What the running step wants; control bounds it and may refuse it."""
+
+    enabled: bool = False
+    """Drives powered."""
+    wheel_speed_m_s: float = 0.0
+    belt_speed_m_s: float = 0.0
+    press: Press = Press.LIFT
+    load_n: float = 0.0
+    quick_touch: bool = False
+    """Use the fast approach to a known contact (bursts with sideslip)."""
+    sideslip_deg: float = 0.0
+    camber_deg: float = 0.0
+    surface_c: float = NAN
+    """Surface temperature to hold; NaN = heat off."""
+    freeze_heat: bool = False
+    """Keep the hub setpoint as it is: friction heat of a slip pulse is not the jacket's to correct."""
+
+
+@dataclass(slots=True)
+class Setpoints:
+    """What goes to the devices at the end of a scan, already inside every limit."""
+
+    wheel_rad_s: float = 0.0
+    belt_m_s: float = 0.0
+    press_mm_s: float = 0.0
+    sideslip_deg: float = 0.0
+    camber_deg: float = 0.0
+    enable: bool = False
+    quick_stop: bool = False
+    hub_c: float = 25.0
+    heat: bool = False
+    """Jacket controller in run (True) or standby."""
+    contactor: bool = False
