@@ -1,0 +1,147 @@
+"""The whole simulated rig: wires, nodes and plant, advanced together.
+
+Order within one advance: drives move (and send what falls due), the jacket controller heats, the plant follows, and
+what it answers with (torque, forces, temperatures) is there when the next request arrives on a wire.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import floor
+from typing import Literal
+
+from drivers.axis import AxisConfig
+from drivers.profiles import load_profile
+from sim.can_wire import CanWire
+from sim.modbus_wire import ModbusWire
+from sim.nodes.cell_slave import CellSlave
+from sim.nodes.cia402_slave import Cia402Slave
+from sim.nodes.ir_slave import IrSlave
+from sim.nodes.jacket_slave import JacketSlave
+from sim.nodes.motion import VelocityAxis
+from sim.parameters import SimParameters
+from sim.plant import Plant
+
+PRESS_LAG_S = 0.03
+"""Lag of the press screw behind its velocity command, s [A] (physics, section 5)."""
+PRESS_TRAVEL_MM = 30.0
+"""Travel of the press from fully lifted, mm [A]: beyond a wheel worn to its hub."""
+PRESS_SPRING_MM_S = -20.0
+"""Speed at which the spring retracts an unpowered press, mm/s [A] (rulings, 22)."""
+SHORTEST_STEP_S = 1e-3
+LONGEST_STEP_S = 0.1
+"""The plant is advanced in steps between these."""
+
+
+@dataclass(frozen=True, slots=True)
+class LineSpec:
+    """One Modbus line: what its wire times depend on."""
+
+    baud: int
+    parity: Literal["N", "E", "O"] = "N"
+
+
+@dataclass(frozen=True, slots=True)
+class DeviceSpec:
+    """One Modbus device: profile, line and address."""
+
+    profile: str
+    line: str
+    unit_id: int
+
+
+@dataclass(frozen=True, slots=True)
+class RigSpec:
+    """What is connected to what: the wiring of a rig, without any software's settings."""
+
+    bitrate: int
+    axes: Mapping[str, AxisConfig]
+    lines: Mapping[str, LineSpec]
+    load_cell: DeviceSpec
+    jacket: DeviceSpec
+    ir_thermometer: DeviceSpec
+
+
+class SimRig:
+    """A rubber friction tester on simulated wires.
+
+    ``can`` and ``lines`` are the ports a program opens. ``install`` and ``begin_repeat`` are the hands of the person
+    at the rig.
+    """
+
+    def __init__(self, spec: RigSpec, parameters: SimParameters, seed: int) -> None:
+        """Switch everything on at time 0."""
+        self.plant = Plant(parameters, seed)
+        self.can = CanWire(spec.bitrate)
+        self.axes = {name: self._drive(name, config) for name, config in spec.axes.items()}
+        self.cell = CellSlave(load_profile(spec.load_cell.profile), spec.load_cell.unit_id, self.plant)
+        ir = spec.ir_thermometer
+        self.ir = IrSlave(load_profile(ir.profile), ir.unit_id, self.plant, sensor_c=parameters.ambient)
+        self.jacket = JacketSlave(load_profile(spec.jacket.profile), spec.jacket.unit_id, self.plant)
+        slaves = (
+            (spec.load_cell.line, self.cell),
+            (spec.ir_thermometer.line, self.ir),
+            (spec.jacket.line, self.jacket),
+        )
+        self.lines = {
+            name: ModbusWire(line.baud, line.parity, [slave for where, slave in slaves if where == name])
+            for name, line in spec.lines.items()
+        }
+        self.now_s = 0.0
+        self._wheel, self._belt, self._press = self.axes["wheel"], self.axes["belt"], self.axes["press"]
+        self._sideslip, self._camber = self.axes.get("sideslip"), self.axes.get("camber")
+        self._drives = tuple(self.axes.values())
+
+    def _drive(self, name: str, config: AxisConfig) -> Cia402Slave:
+        if name != "press":
+            return Cia402Slave(config, self.can, serial_number=config.node_id)
+        screw = VelocityAxis(config.acceleration, config.deceleration, lag_s=PRESS_LAG_S, low=0.0, high=PRESS_TRAVEL_MM)
+        return Cia402Slave(config, self.can, screw, serial_number=config.node_id, unpowered_velocity=PRESS_SPRING_MM_S)
+
+    # -- the wires' side ------------------------------------------------------------------------------------------
+
+    @property
+    def urgent_s(self) -> float:
+        """When the next frame arrives that a scan should not wait for, s."""
+        return self.can.urgent_s
+
+    def advance(self, now: float) -> None:
+        """Let everything live until ``now`` (s); a step shorter than a millisecond waits for the next one."""
+        elapsed = now - self.now_s
+        if elapsed < SHORTEST_STEP_S - 1e-9:
+            return
+        steps = 1 if elapsed <= LONGEST_STEP_S else 1 + floor(elapsed / LONGEST_STEP_S)
+        start = self.now_s
+        for i in range(1, steps + 1):
+            self._step(self.now_s, now if i == steps else start + elapsed * i / steps)
+
+    def _step(self, t0: float, t1: float) -> None:
+        self.now_s = t1
+        for drive in self._drives:
+            drive.advance(t0, t1)
+        jacket = self.jacket
+        jacket.advance(t0, t1)
+        plant, press, io = self.plant, self._press.axis, self._press.io
+        heater_w = jacket.heater_w if io is not None and io.contactor_closed else 0.0
+        plant.advance(
+            t1 - t0,
+            self._wheel.axis.value / plant.wheel_speed.factor,
+            self._belt.axis.value / plant.belt_speed.factor,
+            press.position,
+            press.value,
+            self._sideslip.axis.position if self._sideslip is not None else 0.0,
+            self._camber.axis.position if self._camber is not None else 0.0,
+            heater_w,
+        )
+        self._wheel.torque_nm = plant.drive_torque_nm
+
+    # -- the person's side ----------------------------------------------------------------------------------------
+
+    def install(self, specimen: int, wheel: int, compound: str, *, new_specimen: bool) -> None:
+        """Mount a new wheel."""
+        self.plant.install(specimen, wheel, compound, new_specimen)
+
+    def begin_repeat(self, condition: int, repeat: int, attempt: int) -> None:
+        """Begin a repeat: the random streams are keyed by it."""
+        self.plant.begin_repeat(condition, repeat, attempt)

@@ -1,0 +1,127 @@
+"""Put a rig together from its configuration: ports, drivers, control, executor."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import log, pi
+
+from drivers.canopen.master import CanMaster
+from drivers.ir_thermometer import IrThermometer
+from drivers.jacket import HeatingJacket
+from drivers.load_cell import LoadCell
+from drivers.modbus import ModbusLink
+from drivers.ports import CanPort, LinePort
+from drivers.profiles import load_profile
+from drivers.servo import AxisConfig, ServoDrive
+from tester.control.heat_loop import HeatLoop
+from tester.control.load_loop import LoadLoop
+from tester.control.state import ControlState
+from tester.control.step import Control
+from tester.engine.condition import Results
+from tester.engine.connect import Connector
+from tester.engine.context import Attendant, Context, Journal, WheelLife
+from tester.engine.devices import Axes, Devices
+from tester.engine.engine import Engine
+from tester.engine.executor import Executor
+from tester.engine.gates import Gates
+from tester.engine.prompts import Prompts
+from tester.engine.recorder import Recorder, Sink
+from tester.engine.run import Run
+from tester.process import Demand, Readings, Setpoints
+from tester.recipe.plan import Plan
+from tester.rig import LineConfig, RigConfig
+
+
+@dataclass(frozen=True, slots=True)
+class Ports:
+    """The wires to a rig: one CAN bus, and the Modbus lines by their names in the rig file."""
+
+    can: CanPort
+    lines: dict[str, LinePort]
+
+
+def build_devices(rig: RigConfig, ports: Ports) -> Devices:
+    """Return drivers for every device of the rig file, on the given wires."""
+    master = CanMaster(rig.can.node, rig.can.heartbeat_s)
+
+    def drive(config: AxisConfig | None) -> ServoDrive | None:
+        if config is None:
+            return None
+        made = ServoDrive(config)
+        master.add(made)
+        return made
+
+    axes = rig.axes
+    wheel, belt, press = (ServoDrive(config) for config in (axes.wheel, axes.belt, axes.press))
+    for made in (wheel, belt, press):
+        master.add(made)
+    links = {name: _link(config) for name, config in rig.lines.items()}
+    cell, jacket, thermometer = rig.devices.load_cell, rig.devices.jacket, rig.devices.ir_thermometer
+    return Devices(
+        can=ports.can,
+        master=master,
+        axes=Axes(wheel, belt, press, drive(axes.sideslip), drive(axes.camber)),
+        lines=[(ports.lines[name], link) for name, link in links.items()],
+        cell=LoadCell(load_profile(cell.profile), cell.unit_id, links[cell.line]),
+        thermometer=IrThermometer(
+            load_profile(thermometer.profile), thermometer.unit_id, links[thermometer.line],
+            emissivity=thermometer.emissivity,
+        ),
+        jacket=HeatingJacket(load_profile(jacket.profile), jacket.unit_id, links[jacket.line]),
+    )  # fmt: skip
+
+
+def _link(config: LineConfig) -> ModbusLink:
+    return ModbusLink(config.framing, config.baud, config.parity)
+
+
+def loss_ratios(rig: RigConfig) -> tuple[float, float]:
+    """Return the steady hub-surface difference per kelvin of surface above ambient: lifted, and in rolling contact.
+
+    Resistance of hub joint and rubber times the loss conductance of the surface, from the observer's parameters
+    (physics, section 4). The rubber's side faces lose about half of their heat through the surface cells.
+    """
+    observer, thermal = rig.observer, rig.observer.thermal
+    outer, width = 0.5e-3 * rig.geometry.wheel_diameter_mm, 1e-3 * rig.geometry.wheel_width_mm
+    inner = outer - 1e-3 * observer.wheel.rubber_layer
+    resistance = log(outer / inner) / (2.0 * pi * thermal.conductivity * width) + 1.0 / thermal.hub_to_rubber
+    tread = thermal.film_rotating * 2.0 * pi * outer * width
+    sides = thermal.film_sides * pi * (outer * outer - inner * inner)
+    lifted = tread + sides
+    return resistance * lifted, resistance * (lifted + observer.belt_conductance)
+
+
+@dataclass(frozen=True, slots=True)
+class Recording:
+    """Where a run's data go."""
+
+    journal: Journal
+    sink: Sink
+    results: Results
+
+
+def build_run(
+    rig: RigConfig, plan: Plan, ports: Ports, attendant: Attendant, recording: Recording, prompts: Prompts
+) -> Run:
+    """Return a run that is ready to be ticked."""
+    devices = build_devices(rig, ports)
+    load = LoadLoop()
+    state = ControlState(Setpoints(), load, HeatLoop(rig.loops.heat.hub_min_c))
+    control = Control(rig, state, loss_ratios(rig))
+    geometry = rig.geometry
+    ctx = Context(
+        rig=rig,
+        readings=Readings(diameter_mm=geometry.wheel_diameter_mm),
+        demand=Demand(),
+        gates=Gates(rig.gates),
+        prompts=prompts,
+        journal=recording.journal,
+        attendant=attendant,
+        cell=devices.cell,
+        wheel=WheelLife(installed_mm=geometry.wheel_diameter_mm, width_mm=geometry.wheel_width_mm),
+        contact=load,
+        ambient_c=rig.ambient_c,
+    )
+    executor = Executor(plan, recording.results, hardware=not rig.simulated)
+    engine = Engine(devices, control, executor, ctx, Recorder(recording.sink))
+    return Run(Connector(devices), engine)

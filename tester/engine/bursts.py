@@ -1,0 +1,352 @@
+"""One repeat: whole revolutions inside the gates, collected in as many bursts as it needs.
+
+Straight running: the wheel stays in rolling contact and the belt brings the slip in and takes it out again (a slip
+pulse). With sideslip there is no matched speed, so every burst lifts, yaws, touches, counts and lifts again
+(rulings, 8). Without slip there is nothing to pulse: one window of rolling.
+
+A burst begins with the surface below the setpoint and ends as far above it, so that its samples centre on the
+setpoint; how far below is learned, because some conditions heat up before the first sample counts.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+from math import isfinite
+
+from sim.slip import slip_velocity
+from tester.analysis.blocks import RevolutionCounter
+from tester.analysis.stability import assess
+from tester.engine.context import Context
+from tester.engine.moves import Lift, Load, Power, Sequence, TakeTare, Turn, Yaw
+from tester.engine.thermal_steps import roll
+from tester.recipe.plan import ConditionStep
+
+TARE_S = 1.0
+"""Averaging time of the zero before each repeat, s [A]: about three turns."""
+TARE_WAIT_S = 0.4
+"""The cell settles this long after lifting, s [A]."""
+OFFSET_STEP_K = 0.5
+"""How much lower the next burst starts after one that warmed through the band too quickly, K [A]."""
+OFFSET_BEYOND_BAND_K = 1.5
+"""How far below the band a burst may start: what warms up before the first sample counts, K [A]."""
+FEW_REVOLUTIONS = 3
+"""A burst with fewer whole turns than this starts the next one lower."""
+SLOW_COOLING_S = 45.0
+SLOW_COOLING_K = 0.15
+"""Cooling by less than this in that time is not worth waiting for, as long as the surface is below the setpoint [A]."""
+CENTRED_K = 0.2
+"""A start this far below the setpoint still lets samples centre on it [A]."""
+MEAN_LIMIT_K = 0.45
+"""A burst ends before the mean surface temperature of the repeat's samples is more than this off the setpoint [A]
+(acceptance: within 0.7 K, rulings 29)."""
+SPLIT_RISE_K = 0.5
+"""A burst that has warmed by this much ends at half the window: a second rise tells temperature from time [A]."""
+BLIND_S = 20.0
+"""A burst in which nothing has counted for this long is given up, s [A]."""
+LIFT_TO_COOL_S = 180.0
+"""Rolling that has not brought the temperature back by then is tried lifted, s [A]."""
+WARM_SHARE = 1.2
+"""Revolutions a condition must hold, with the ramp, to be called possible: used for the band that would do."""
+
+
+class Phase(Enum):
+    """Where a repeat is."""
+
+    TARE = "tare"
+    ROLL = "roll"
+    READY = "wait for temperature"
+    COOL = "cool lifted"
+    MOVE_IN = "bring slip in"
+    COUNT = "measure"
+    MOVE_OUT = "take slip out"
+    LIFT = "lift"
+
+
+class Ending(Enum):
+    """How a repeat ended."""
+
+    COMPLETE = "complete"
+    INCOMPLETE = "incomplete"
+    """Fewer revolutions than the window asks for, after all bursts."""
+    CANNOT_HOLD = "temperature cannot be held"
+    NOT_REACHED = "not reached"
+    ZERO_DRIFT = "load cell zero drifted"
+
+
+@dataclass(slots=True)
+class BurstNotes:
+    """What is known of the burst in progress."""
+
+    began_s: float = 0.0
+    began_c: float = float("nan")
+    blocks_before: int = 0
+    counted_s: float = float("-inf")
+    peak_rate_k_s: float = 0.0
+    samples: int = 0
+
+
+class MeasureRepeat:
+    """State object of one repeat."""
+
+    def __init__(self, step: ConditionStep, reference_tare: list[float], offset_k: float) -> None:
+        """``offset_k``: how far below the setpoint its bursts start, from the repeat before."""
+        self.condition = step
+        self.setpoint = step.setpoint
+        self.offset_k = offset_k
+        self.reference = reference_tare
+        self.phase = Phase.TARE
+        self.moves = Sequence()
+        self.tare: TakeTare | None = None
+        self.counter = RevolutionCounter()
+        self.burst = BurstNotes()
+        self.bursts = 0
+        self.ending: Ending | None = None
+        self.detail = ""
+        self.ready_since_s = float("nan")
+        self.mark_s = 0.0
+        self.mark_c = float("inf")
+        self.lifted_to_cool = False
+        self.surface_sum_k = 0.0
+        self.surface_count = 0
+        sp = self.setpoint
+        self.slip_m_s = slip_velocity(sp.wheel_speed_m_s, sp.belt_speed_m_s, sp.sideslip_deg)[2]
+        self.yawed = sp.sideslip_deg != 0.0 or sp.camber_deg != 0.0
+        self.rolling_only = not self.yawed and abs(sp.slip_velocity_m_s) < 1e-9
+
+    # -- what the step needs ----------------------------------------------------------------------------------
+
+    @property
+    def revolutions(self) -> int:
+        """Whole revolutions that count so far."""
+        return len(self.counter.blocks)
+
+    def step(self, ctx: Context) -> bool:
+        """Advance by one scan; done when lifted with ``ending`` set."""
+        self._show(ctx)
+        if self.phase is Phase.TARE:
+            self._tare(ctx)
+        elif self.phase is Phase.ROLL:
+            self._demand_heat(ctx)
+            if self.moves.step(ctx):
+                self._to_ready(ctx)
+        elif self.phase is Phase.READY:
+            self._ready(ctx)
+        elif self.phase is Phase.COOL:
+            self._cool(ctx)
+        elif self.phase is Phase.MOVE_IN:
+            ctx.demand.freeze_heat = True
+            if self.moves.step(ctx):
+                self._begin_burst(ctx)
+        elif self.phase is Phase.COUNT:
+            self._count(ctx)
+        elif self.phase is Phase.MOVE_OUT:
+            if self.moves.step(ctx):
+                self._to_ready(ctx)
+        elif self.moves.step(ctx):
+            return True
+        return False
+
+    # -- phases -----------------------------------------------------------------------------------------------
+
+    def _tare(self, ctx: Context) -> None:
+        if self.tare is None:
+            limits = ctx.rig.interlocks
+            self.tare = TakeTare(TARE_S, self.reference, limits.zero_warn_n, limits.zero_stop_n)
+            wheel = self.setpoint.wheel_speed_m_s
+            self.moves = Sequence(Power(True), Lift(), Turn(wheel, wheel), Settle(TARE_WAIT_S), self.tare)
+        self._demand_heat(ctx)
+        if not self.moves.step(ctx):
+            return
+        if self.tare.failed:
+            self._end(Ending.ZERO_DRIFT, self.tare.failed)
+            return
+        self._roll()
+
+    def _roll(self) -> None:
+        self.phase = Phase.ROLL
+        self.moves = roll(self.setpoint.wheel_speed_m_s, self.setpoint.load_n)
+
+    def _to_ready(self, ctx: Context) -> None:
+        self.phase = Phase.READY
+        self.ready_since_s = ctx.now
+        self.mark_s, self.mark_c = ctx.now, float("inf")
+        self.lifted_to_cool = False
+
+    def _ready(self, ctx: Context) -> None:
+        self._demand_heat(ctx)
+        surface, target = ctx.gates.surface_now_c(), self.setpoint.temperature_c
+        waited = ctx.now - self.ready_since_s
+        if waited > self.condition.soak.at_most_s:
+            self._end(Ending.NOT_REACHED, f"surface at {surface:.1f} degC after {waited / 60:.0f} min")
+        elif self._start_now(ctx, surface, target):
+            self._slip_in()
+        elif surface > target and waited > LIFT_TO_COOL_S and not self.lifted_to_cool:
+            self.phase = Phase.COOL
+            self.lifted_to_cool = True
+            self.moves = Sequence(Lift())
+
+    def _start_now(self, ctx: Context, surface: float, target: float) -> bool:
+        if self.rolling_only:
+            return abs(surface - target) <= min(1.0, self.condition.temperature_band_k)
+        if surface < target - max(self.condition.temperature_band_k, self.offset_k + 0.5):
+            return False
+        if surface <= target - self.offset_k + 0.1:
+            return True
+        if ctx.now - self.mark_s >= SLOW_COOLING_S:
+            slow = self.mark_c - surface < SLOW_COOLING_K
+            self.mark_s, self.mark_c = ctx.now, surface
+            return slow and surface <= target - CENTRED_K
+        return False
+
+    def _cool(self, ctx: Context) -> None:
+        """Turn lifted until the surface is back, then touch again; the waiting time goes on."""
+        self._demand_heat(ctx)
+        self.moves.step(ctx)
+        surface, target = ctx.gates.surface_now_c(), self.setpoint.temperature_c
+        if surface <= target - self.offset_k or ctx.now - self.ready_since_s > 3.0 * LIFT_TO_COOL_S:
+            began = self.ready_since_s
+            self._roll()
+            self.ready_since_s = began
+
+    def _slip_in(self) -> None:
+        sp = self.setpoint
+        self.phase = Phase.MOVE_IN
+        if self.yawed:
+            self.moves = Sequence(
+                Lift(),
+                Yaw(sp.sideslip_deg, sp.camber_deg),
+                Turn(sp.wheel_speed_m_s, sp.belt_speed_m_s),
+                Load(sp.load_n, percent=5.0, for_s=0.0, quick=True),
+            )
+        else:
+            # The belt's ramp is part of the burst: the gates say when samples count.
+            self.moves = Sequence()
+
+    def _begin_burst(self, ctx: Context) -> None:
+        self.phase = Phase.COUNT
+        self.bursts += 1
+        self.burst = BurstNotes(ctx.now, float("nan"), self.revolutions, ctx.now)
+        ctx.burst = self.bursts
+        self._count(ctx)
+
+    def _count(self, ctx: Context) -> None:
+        sp, r, burst = self.setpoint, ctx.readings, self.burst
+        ctx.moving = not self.rolling_only
+        ctx.demand.freeze_heat = not self.rolling_only
+        ctx.demand.belt_speed_m_s = sp.belt_speed_m_s
+        self._aim(ctx)
+        done = self.counter.add(ctx.sample) is not None
+        surface, rate = ctx.gates.surface_now_c(), ctx.gates.surface.rate_k_s
+        burst.peak_rate_k_s = max(burst.peak_rate_k_s, rate)
+        if ctx.gate == 0:
+            if not isfinite(burst.began_c):
+                burst.began_c = surface
+            burst.counted_s = ctx.now
+            self.surface_sum_k += r.surface_c - sp.temperature_c
+            self.surface_count += 1
+        if done and self._complete(ctx):
+            self._end(Ending.COMPLETE, "")
+        elif self._burst_over(ctx, surface, rate):
+            self._end_burst(ctx)
+
+    def _complete(self, ctx: Context) -> bool:
+        """Tell whether the window is full and its drift shown to be small, or as full as it may get."""
+        window = self.condition.window
+        blocks = self.counter.blocks
+        have = float(len(blocks)) if window.revolutions is not None else self.counter.seconds
+        wanted = window.revolutions if window.revolutions is not None else window.seconds or 0.0
+        if have < wanted:
+            return False
+        return have >= window.extend_to or assess(blocks, window.revolutions, window.seconds).stabilised
+
+    def _burst_over(self, ctx: Context, surface: float, rate: float) -> bool:
+        if self.rolling_only:
+            return ctx.now - self.burst.counted_s > BLIND_S
+        target, band = self.setpoint.temperature_c, self.condition.temperature_band_k
+        start = self.burst.began_c
+        below = target - start if isfinite(start) else self.offset_k
+        limit = target + min(band, max(below, CENTRED_K) + 0.2)
+        if surface >= limit:
+            return True
+        mean = self.surface_sum_k / self.surface_count if self.surface_count else 0.0
+        if mean > MEAN_LIMIT_K and surface > target + MEAN_LIMIT_K:
+            return True
+        window = self.condition.window.revolutions
+        if window is not None and isfinite(start) and surface - start > SPLIT_RISE_K:
+            return self.revolutions - self.burst.blocks_before >= 0.5 * window
+        return ctx.now - self.burst.counted_s > BLIND_S
+
+    def _end_burst(self, ctx: Context) -> None:
+        gained = self.revolutions - self.burst.blocks_before
+        ctx.burst = 0
+        furthest = self.condition.temperature_band_k + OFFSET_BEYOND_BAND_K
+        if gained == 0 and self.offset_k >= furthest and self.bursts > 3:
+            self._end(Ending.CANNOT_HOLD, self._band_needed(ctx))
+            return
+        if gained < FEW_REVOLUTIONS:
+            self.offset_k = min(self.offset_k + OFFSET_STEP_K, furthest)
+        if self.bursts >= self.condition.max_bursts:
+            enough = self.revolutions >= (self.condition.window.revolutions or 0.0) and self.revolutions > 0
+            self._end(
+                Ending.COMPLETE if enough else Ending.CANNOT_HOLD if gained == 0 else Ending.INCOMPLETE,
+                f"{self.revolutions} revolutions in {self.bursts} bursts; {self._band_needed(ctx)}",
+            )
+            return
+        self.phase = Phase.MOVE_OUT
+        wheel = self.setpoint.wheel_speed_m_s
+        if self.yawed:
+            self.moves = Sequence(Lift(), Yaw(0.0, 0.0), Turn(wheel, wheel), Load(self.setpoint.load_n))
+        else:
+            self.moves = Sequence(Turn(wheel, wheel))
+
+    def _band_needed(self, ctx: Context) -> str:
+        """Say how fast the surface warms and which band would hold one whole revolution."""
+        turn_s = 3.14159265 * ctx.readings.diameter_mm * 1e-3 / self.setpoint.wheel_speed_m_s
+        rate = self.burst.peak_rate_k_s
+        return f"surface warms by {rate:.2f} K/s; a band of {0.5 * rate * WARM_SHARE * turn_s + 0.5:.1f} K would do"
+
+    def _end(self, ending: Ending, detail: str) -> None:
+        self.ending = ending
+        self.detail = detail
+        self.phase = Phase.LIFT
+        wheel = self.setpoint.wheel_speed_m_s
+        first = () if self.yawed else (Turn(wheel, wheel),)
+        self.moves = Sequence(*first, Lift(), Turn(wheel, wheel))
+
+    # -- shared -----------------------------------------------------------------------------------------------
+
+    def _demand_heat(self, ctx: Context) -> None:
+        ctx.demand.surface_c = self.setpoint.temperature_c - (0.0 if self.rolling_only else self.offset_k)
+        ctx.demand.freeze_heat = False
+
+    def _aim(self, ctx: Context) -> None:
+        """Point the gates at this condition."""
+        target, sp = ctx.gates.target, self.setpoint
+        target.load_n = sp.load_n
+        target.wheel_speed_m_s = sp.wheel_speed_m_s
+        target.belt_speed_m_s = sp.belt_speed_m_s
+        target.slip_m_s = self.slip_m_s
+        target.temperature_c = sp.temperature_c
+        target.band_k = self.condition.temperature_band_k
+
+    def _show(self, ctx: Context) -> None:
+        progress = ctx.progress
+        progress.phase = self.phase.value
+        progress.burst = self.bursts
+        progress.revolutions = float(self.revolutions)
+
+
+class Settle:
+    """Wait at the fast scan rate for ``seconds``."""
+
+    def __init__(self, seconds: float) -> None:
+        """How long, s."""
+        self.seconds = seconds
+        self.left_s = seconds
+
+    def step(self, ctx: Context) -> bool:
+        """Done when the time is over."""
+        ctx.moving = True
+        self.left_s -= ctx.dt
+        return self.left_s <= 0.0

@@ -1,0 +1,204 @@
+"""One condition: soak in rolling contact, then its repeats, each committed before the next begins."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import isfinite
+from typing import Protocol
+
+from tester.analysis.results import RepeatStatus
+from tester.engine.bursts import Ending, MeasureRepeat
+from tester.engine.context import Context
+from tester.engine.moves import Activity, Ask, Load, Sequence
+from tester.engine.thermal_steps import SoakTo, roll, soak_within_k
+from tester.recipe.plan import ConditionStep
+from tester.rig import RigConfig
+
+ROLL_CHECK_N = 50.0
+"""Load of the automatic diameter check, N [A]: little penetration, and above the press's friction."""
+ROLL_CHECK_TURNS = 3.0
+"""Whole turns averaged by the check: runout drops out."""
+
+
+class Ticket(Protocol):
+    """A commit under way."""
+
+    @property
+    def done(self) -> bool:
+        """COMMIT has returned."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class RepeatOutcome:
+    """What became of a repeat, and its commit."""
+
+    status: RepeatStatus
+    text: str
+    ticket: Ticket
+
+
+class Results(Protocol):
+    """Where repeats and conditions go: reduction and store behind one door."""
+
+    def begin_repeat(self, ctx: Context, step: ConditionStep, repeat: int, attempt: int) -> int:
+        """Open a repeat; return the key that its samples carry."""
+        ...
+
+    def finish_repeat(
+        self, ctx: Context, step: ConditionStep, key: int, repeat: int, measured: MeasureRepeat
+    ) -> RepeatOutcome:
+        """Reduce and commit a repeat."""
+        ...
+
+    def finish_condition(self, ctx: Context, step: ConditionStep, ending: Ending | None, detail: str) -> str:
+        """Sum a condition up from its repeats and commit it; return a line for people."""
+        ...
+
+    def predicted_loss_mm(self, step: ConditionStep, rig: RigConfig) -> float:
+        """Return the loss of diameter that a condition is expected to cost, mm."""
+        ...
+
+
+class MeasureCondition:
+    """State object of one condition."""
+
+    def __init__(self, step: ConditionStep, results: Results, reference_tare: list[float]) -> None:
+        """``reference_tare``: the wheel's first zero."""
+        self.condition = step
+        self.results = results
+        self.reference_tare = reference_tare
+        self.before: Sequence | None = None
+        self.soak: SoakTo | None = None
+        self.soaked = False
+        self.repeat = 0
+        self.key = 0
+        self.measuring: MeasureRepeat | None = None
+        self.outcome: RepeatOutcome | None = None
+        self.offset_k = float("nan")
+        self.failed = ""
+
+    def step(self, ctx: Context) -> bool:
+        """Advance by one scan; done when the condition is committed."""
+        progress = ctx.progress
+        progress.condition, progress.repeat = self.condition.condition, self.repeat
+        progress.repeats = self.condition.repeats
+        if not self.soaked:
+            return self._soak(ctx)
+        if self.outcome is not None:
+            return self._committed(ctx)
+        if self.measuring is None:
+            self._begin(ctx)
+        assert self.measuring is not None
+        if self.measuring.step(ctx):
+            self._finish(ctx, self.measuring)
+        return False
+
+    # -- soak -----------------------------------------------------------------------------------------------
+
+    def _soak(self, ctx: Context) -> bool:
+        step, sp = self.condition, self.condition.setpoint
+        if self.before is None or self.soak is None:
+            pulsed = abs(sp.slip_velocity_m_s) > 1e-9 or sp.sideslip_deg != 0.0 or sp.camber_deg != 0.0
+            self.offset_k = ctx.rig.loops.heat.rolling_offset_k
+            target = sp.temperature_c - (self.offset_k if pulsed else 0.0)
+            within = soak_within_k(step.soak, sp.temperature_c, ctx.ambient_c, step.temperature_band_k)
+            self.soak = SoakTo(target, within, step.soak.for_s, step.soak.at_most_s)
+            self.before = Sequence(*wear_check(step, sp.wheel_speed_m_s), roll(sp.wheel_speed_m_s, sp.load_n))
+        ctx.demand.surface_c = self.soak.target_c
+        ctx.demand.freeze_heat = False
+        if self.before.parts:
+            self.before.step(ctx)
+            return False
+        if not self.soak.step(ctx):
+            return False
+        self.soaked = True
+        if self.soak.reached:
+            return False
+        text = f"surface at {ctx.gates.surface.slow_c:.1f} degC after {step.soak.at_most_s / 60:g} min of soak"
+        return self._close(ctx, Ending.NOT_REACHED, text)
+
+    # -- repeats --------------------------------------------------------------------------------------------
+
+    def _begin(self, ctx: Context) -> None:
+        self.repeat += 1
+        ctx.attendant.begin_repeat(self.condition.row, self.repeat, 1)
+        self.key = self.results.begin_repeat(ctx, self.condition, self.repeat, 1)
+        ctx.repeat_key = self.key
+        self.measuring = MeasureRepeat(self.condition, self.reference_tare, self.offset_k)
+        ctx.progress.revolutions_wanted = self.condition.window.revolutions or 0.0
+
+    def _finish(self, ctx: Context, measured: MeasureRepeat) -> None:
+        self.offset_k = measured.offset_k
+        self.outcome = self.results.finish_repeat(ctx, self.condition, self.key, self.repeat, measured)
+        ctx.repeat_key = 0
+        ctx.burst = 0
+        ctx.journal.event(ctx.now, "repeat", f"repeat {self.repeat}: {self.outcome.text}")
+
+    def _committed(self, ctx: Context) -> bool:
+        """Wait, lifted, until the repeat is on disk; then go on to the next one or close the condition."""
+        assert self.outcome is not None and self.measuring is not None
+        if not self.outcome.ticket.done:
+            return False
+        measured, self.measuring, self.outcome = self.measuring, None, None
+        if measured.ending is Ending.ZERO_DRIFT:
+            self.failed = measured.detail
+            return self._close(ctx, measured.ending, measured.detail)
+        if measured.ending in (Ending.CANNOT_HOLD, Ending.NOT_REACHED):
+            return self._close(ctx, measured.ending, measured.detail)
+        if self.repeat < self.condition.repeats:
+            return False
+        return self._close(ctx, None, "")
+
+    def _close(self, ctx: Context, ending: Ending | None, detail: str) -> bool:
+        text = self.results.finish_condition(ctx, self.condition, ending, detail)
+        ctx.journal.event(ctx.now, "condition", text)
+        return True
+
+
+def wear_check(step: ConditionStep, wheel_speed_m_s: float) -> tuple[Activity, ...]:
+    """Return what checks the wheel's diameter before a condition, as the recipe asks."""
+    if step.wear_check == "prompt":
+        return (Ask("check the wheel's diameter and wear"),)
+    if step.wear_check == "each_condition":
+        return (Sequence(roll(wheel_speed_m_s, ROLL_CHECK_N), RollCheck()),)
+    return ()
+
+
+class RollCheck:
+    """Measure the loss of diameter by rolling: at equal load the press stands deeper by the lost radius.
+
+    The wheel's first check is its reference. Heat makes the rubber grow, so the figure is a check of the wear
+    estimate, at the temperature of its moment, not a gauge reading.
+    """
+
+    def __init__(self) -> None:
+        """Nothing is averaged yet."""
+        self.hold = Load(ROLL_CHECK_N, for_s=1.0)
+        self.held = False
+        self.angle_rev = float("nan")
+        self.sum_mm = 0.0
+        self.count = 0
+
+    def step(self, ctx: Context) -> bool:
+        """Done after whole turns; corrects the wheel's estimated loss and journals both."""
+        if not self.held:
+            self.held = self.hold.step(ctx)
+            return False
+        r = ctx.readings
+        ctx.moving = True
+        if not isfinite(self.angle_rev):
+            self.angle_rev = r.wheel_angle_rev
+        self.sum_mm += r.press_mm
+        self.count += 1
+        if r.wheel_angle_rev - self.angle_rev < ROLL_CHECK_TURNS:
+            return False
+        press_mm, wheel = self.sum_mm / self.count, ctx.wheel
+        if not isfinite(wheel.check_press_mm):
+            wheel.check_press_mm, wheel.check_loss_mm = press_mm, wheel.loss_mm
+        measured = wheel.check_loss_mm + 2.0 * (press_mm - wheel.check_press_mm)
+        ctx.journal.event(
+            ctx.now, "wear", f"loss of diameter {measured:.3f} mm by roll check, {wheel.loss_mm:.3f} mm estimated"
+        )
+        wheel.loss_mm = max(measured, 0.0)
+        return True

@@ -1,0 +1,136 @@
+"""What a step of the plan may see and do: the context every activity is handed in every scan."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from math import pi
+from typing import Protocol
+
+from tester.control.load_loop import LoadLoop
+from tester.engine.gates import Gates
+from tester.engine.prompts import Prompts
+from tester.process import Demand, Readings
+from tester.rig import RigConfig
+
+
+class Attendant(Protocol):
+    """The hands at the rig: what a person does there. A simulated rig is told; at a real one nothing happens."""
+
+    def install(self, specimen: int, wheel: int, compound: str, *, new_specimen: bool) -> None:
+        """Mount a new wheel of ``compound``."""
+        ...
+
+    def begin_repeat(self, condition: int, repeat: int, attempt: int) -> None:
+        """Mark the start of a repeat (keys of the simulator's random streams)."""
+        ...
+
+
+class Nobody:
+    """The attendant of a real rig: people answer prompts, software does nothing."""
+
+    def install(self, specimen: int, wheel: int, compound: str, *, new_specimen: bool) -> None:
+        """Do nothing: the prompt has been answered."""
+
+    def begin_repeat(self, condition: int, repeat: int, attempt: int) -> None:
+        """Do nothing."""
+
+
+class Tare(Protocol):
+    """The load cell's zero."""
+
+    @property
+    def tare(self) -> tuple[float, float, float, float]:
+        """Offsets in use: Fx, Fy, Fz in N, Mz in N m."""
+        ...
+
+    def set_tare(self, values: tuple[float, float, float, float]) -> None:
+        """Use these offsets from now on."""
+        ...
+
+
+class Journal(Protocol):
+    """Where events go; queued in order before the scan's outputs leave."""
+
+    def event(self, t_s: float, kind: str, text: str, severity: str = "info") -> None:
+        """Record one event."""
+        ...
+
+
+@dataclass(slots=True)
+class WheelLife:
+    """The wheel on the rig: which one, and what it has lost.
+
+    The loss between measurements is estimated by the wear law dR = k F v dt / (2 pi R w) with the rig file's k
+    (physics: load, wear, transients).
+    """
+
+    specimen: int = 0
+    replicate: int = 0
+    wheel: int = 0
+    compound: str = ""
+    installed_mm: float = float("nan")
+    width_mm: float = 30.0
+    loss_mm: float = 0.0
+    """Estimated loss of diameter since installation, mm."""
+    sliding_m: float = 0.0
+    check_press_mm: float = float("nan")
+    """Press position of the wheel's first roll check, mm; NaN before it."""
+    check_loss_mm: float = 0.0
+    """Estimated loss at that check, mm."""
+
+    @property
+    def diameter_mm(self) -> float:
+        """Current diameter in mm."""
+        return self.installed_mm - self.loss_mm
+
+    def slide(self, force_n: float, slip_m_s: float, dt: float, rate_mm3_per_n_m: float) -> None:
+        """Account for ``dt`` seconds of sliding at a normal force in N and a slip speed in m/s."""
+        distance = slip_m_s * dt
+        self.sliding_m += distance
+        self.loss_mm += 2.0 * rate_mm3_per_n_m * force_n * distance / (pi * self.diameter_mm * self.width_mm)
+
+
+@dataclass(slots=True)
+class Progress:
+    """Where the run is, for people: plain values, overwritten as it goes."""
+
+    step: int = 0
+    steps: int = 0
+    title: str = "connecting"
+    phase: str = ""
+    condition: int = 0
+    conditions: int = 0
+    repeat: int = 0
+    repeats: int = 0
+    revolutions: float = 0.0
+    revolutions_wanted: float = 0.0
+    burst: int = 0
+
+
+@dataclass(slots=True)
+class Context:
+    """One per run; activities read and write it, nothing else."""
+
+    rig: RigConfig
+    readings: Readings
+    demand: Demand
+    gates: Gates
+    prompts: Prompts
+    journal: Journal
+    attendant: Attendant
+    cell: Tare
+    wheel: WheelLife
+    contact: LoadLoop
+    """The press loop: whether it is in contact, and where the wheel was touched."""
+    ambient_c: float
+    """Air temperature at the rig, degC."""
+    now: float = 0.0
+    dt: float = 0.0
+    moving: bool = False
+    """Set by an activity while slip, load or yaw is on its way: the next scans come at the sliding rate."""
+    sample: tuple[float, ...] = ()
+    """The row recorded in the scan before (columns of SAMPLE_COLUMNS)."""
+    repeat_key: int = 0
+    burst: int = 0
+    gate: int = 0
+    progress: Progress = field(default_factory=Progress)

@@ -1,0 +1,210 @@
+"""The rig's devices as one object: five servo drives on CAN, three Modbus devices on two lines.
+
+Inputs fill the process image from the drivers, outputs hand setpoints to them. Nothing here decides.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from math import cos, inf, pi, sin
+
+from drivers.canopen.master import CanMaster
+from drivers.cia402 import Goal, State
+from drivers.ir_thermometer import IrThermometer
+from drivers.jacket import HeatingJacket
+from drivers.load_cell import LoadCell
+from drivers.modbus import ModbusLink
+from drivers.ports import CanPort, LinePort
+from drivers.servo import ServoDrive
+from tester.process import NEVER, Readings, Setpoints
+
+INPUT_SAFETY_CHAIN = 1 << 16
+INPUT_GUARD = 1 << 17
+INPUT_CONTACTOR = 1 << 18
+OUTPUT_CONTACTOR = 1 << 16
+"""Bits of the press drive's digital inputs 0x60FD and outputs 0x60FE (rulings, 20)."""
+
+
+@dataclass(slots=True)
+class Axes:
+    """The five drives. A manual axis is None: a person sets it."""
+
+    wheel: ServoDrive
+    belt: ServoDrive
+    press: ServoDrive
+    sideslip: ServoDrive | None
+    camber: ServoDrive | None
+
+    def present(self) -> tuple[ServoDrive, ...]:
+        """Return the drives that exist, in node order."""
+        axes = (self.wheel, self.belt, self.press, self.sideslip, self.camber)
+        return tuple(axis for axis in axes if axis is not None)
+
+
+@dataclass(slots=True)
+class Devices:
+    """Drivers and the ports they speak through."""
+
+    can: CanPort
+    master: CanMaster
+    axes: Axes
+    lines: list[tuple[LinePort, ModbusLink]]
+    cell: LoadCell
+    thermometer: IrThermometer
+    jacket: HeatingJacket
+    drives: tuple[ServoDrive, ...] = field(init=False)
+    manual_sideslip_deg: float = 0.0
+    manual_camber_deg: float = 0.0
+    _last_angle_s: float = NEVER
+    _contactor: bool = False
+
+    def __post_init__(self) -> None:
+        """Fix the drives' order."""
+        self.drives = self.axes.present()
+
+    def receive(self, now: float) -> None:
+        """Take in everything that arrived."""
+        frames = self.can.receive(now)
+        if frames:
+            self.master.feed(frames, now)
+        for port, link in self.lines:
+            chunks = port.read(now)
+            if chunks:
+                link.feed(chunks, now)
+
+    def transmit(self, now: float, *, scan: bool) -> float:
+        """Send what is due and return the next time a driver wants to be served."""
+        if scan:
+            self.master.scan(self.can, now)
+        else:
+            self.master.service(self.can, now)
+        deadline = self.master.deadline
+        for port, link in self.lines:
+            link.service(port, now, scan=scan)
+        # Only the load cell's line may ask for a tick of its own (its retry has to fit into a scan); the slow
+        # line's next request can wait for the next scan.
+        return min(deadline, self.cell.link.deadline)
+
+    def fill(self, r: Readings, now: float, diameter_mm: float) -> None:
+        """Bring the process image up to date."""
+        axes = self.axes
+        r.now_s = now
+        self._fill_motion(r, axes, diameter_mm)
+        self._fill_status(r, axes)
+        cell = self.cell
+        r.force_x_n, r.force_y_n, r.force_z_n, r.moment_z_nm = cell.fx_n, cell.fy_n, cell.fz_n, cell.mz_nm
+        r.cell_valid, r.cell_at_s = cell.valid, cell.stamp_s
+        thermometer = self.thermometer
+        r.surface_c, r.surface_valid, r.surface_at_s = thermometer.surface_c, thermometer.valid, thermometer.stamp_s
+        jacket = self.jacket
+        r.hub_c, r.heat_percent = jacket.hub_c, jacket.output_percent
+        r.jacket_valid, r.jacket_at_s = jacket.valid, jacket.stamp_s
+
+    def _fill_motion(self, r: Readings, axes: Axes, diameter_mm: float) -> None:
+        wheel, belt, press = axes.wheel, axes.belt, axes.press
+        r.diameter_mm = diameter_mm
+        r.wheel_rad_s = wheel.actual
+        r.wheel_speed_m_s = wheel.actual * diameter_mm * 0.5e-3
+        r.drive_torque_nm = wheel.torque_nm
+        if wheel.stamp_s > self._last_angle_s:
+            if self._last_angle_s != NEVER:
+                r.wheel_angle_rev += r.wheel_rad_s * (wheel.stamp_s - self._last_angle_s) / (2.0 * pi)
+            self._last_angle_s = wheel.stamp_s
+        r.wheel_at_s, r.belt_at_s, r.press_at_s = wheel.stamp_s, belt.stamp_s, press.stamp_s
+        r.belt_speed_m_s, r.press_mm = belt.actual, press.actual
+        sideslip, camber = axes.sideslip, axes.camber
+        reached = True
+        if sideslip is not None:
+            r.sideslip_deg, r.sideslip_at_s = sideslip.actual, sideslip.stamp_s
+            reached = sideslip.reached
+        else:
+            r.sideslip_deg, r.sideslip_at_s = self.manual_sideslip_deg, r.now_s
+        if camber is not None:
+            r.camber_deg, r.camber_at_s = camber.actual, camber.stamp_s
+            reached = reached and camber.reached
+        else:
+            r.camber_deg, r.camber_at_s = self.manual_camber_deg, r.now_s
+        r.yaw_reached = reached
+        angle = r.sideslip_deg * (pi / 180.0)
+        along = r.wheel_speed_m_s - r.belt_speed_m_s * cos(angle)
+        across = r.belt_speed_m_s * sin(angle)
+        r.slip_m_s = (along * along + across * across) ** 0.5
+
+    def _fill_status(self, r: Readings, axes: Axes) -> None:
+        enabled = disabled = True
+        fault = ""
+        for drive in self.drives:
+            state = drive.state
+            if state is not State.OPERATION_ENABLED:
+                enabled = False
+            else:
+                disabled = False
+            if state is State.FAULT or state is State.FAULT_REACTION or drive.lost or drive.rebooted:
+                fault = fault or _fault_text(drive)
+        r.drives_enabled, r.drives_disabled, r.drive_fault = enabled, disabled, fault
+        inputs = axes.press.inputs
+        r.safety_chain = bool(inputs & INPUT_SAFETY_CHAIN)
+        r.guard_closed = bool(inputs & INPUT_GUARD)
+        r.contactor_closed = bool(inputs & INPUT_CONTACTOR)
+
+    def apply(self, out: Setpoints) -> None:
+        """Hand the setpoints to the drivers; the frames leave with ``transmit``."""
+        axes = self.axes
+        goal = Goal.QUICK_STOP if out.quick_stop else Goal.ENABLED if out.enable else Goal.DISABLED
+        for drive in self.drives:
+            # A quick-stopped press would stay in contact: it keeps its own retraction.
+            drive.goal = goal if drive is not axes.press or not out.quick_stop else Goal.ENABLED
+        axes.wheel.target = out.wheel_rad_s
+        axes.belt.target = out.belt_m_s
+        axes.press.target = out.press_mm_s
+        if axes.sideslip is not None:
+            axes.sideslip.target = out.sideslip_deg
+        if axes.camber is not None:
+            axes.camber.target = out.camber_deg
+        axes.press.outputs = OUTPUT_CONTACTOR if out.contactor else 0
+        jacket = self.jacket
+        jacket.enable(out.heat)
+        jacket.set_setpoint(out.hub_c)
+
+    def poll_cell_every(self, seconds: float) -> None:
+        """Poll the load cell at this period, s; 0 = with every scan."""
+        if self.cell.period_s != seconds:
+            self.cell.period_s = seconds
+
+    def refused(self) -> str:
+        """Return why a device cannot be used, or ""."""
+        for drive in self.drives:
+            if drive.refused:
+                return f"{drive.config.name} drive (node {drive.config.node_id}): {drive.refused}"
+        for name, device in (("load cell", self.cell), ("thermometer", self.thermometer), ("jacket", self.jacket)):
+            if device.refused:
+                return f"{name}: {device.refused}"
+        return ""
+
+    def alarm(self) -> bool:
+        """Tell whether a drive has something to report that the next regular scan should not wait for."""
+        for drive in self.drives:
+            if drive.state >= State.FAULT_REACTION or drive.lost or drive.rebooted or drive.emergency is not None:
+                return True
+        return False
+
+    def all_off(self) -> bool:
+        """Tell whether no drive's power stage is on."""
+        return all(drive.state <= State.READY_TO_SWITCH_ON or drive.lost for drive in self.drives)
+
+    def answering(self) -> bool:
+        """Tell whether every Modbus device has reported a valid value."""
+        devices = (self.cell, self.thermometer, self.jacket)
+        return all(device.stamp_s > -inf and device.valid for device in devices)
+
+
+def _fault_text(drive: ServoDrive) -> str:
+    """Describe what is wrong with a drive."""
+    name = f"{drive.config.name} drive"
+    if drive.lost:
+        return f"{name}: heartbeat lost"
+    if drive.rebooted:
+        return f"{name}: rebooted"
+    if drive.emergency is not None:
+        return f"{name}: {drive.emergency.text} (0x{drive.emergency.code:04X})"
+    return f"{name}: fault"

@@ -1,0 +1,99 @@
+"""One synchronous scan: take in, decide, send out, record. No awaits, no threads, no clock inside."""
+
+from __future__ import annotations
+
+from math import isfinite
+
+from tester.control.state import Mode
+from tester.control.step import Control
+from tester.engine.context import Context
+from tester.engine.devices import Devices
+from tester.engine.executor import Executor
+from tester.engine.recorder import Recorder
+
+CONTACT_N = 5.0
+"""Above this force the wheel counts as in contact, for recording."""
+
+
+class Engine:
+    """The scan of one rig and one run."""
+
+    def __init__(
+        self, devices: Devices, control: Control, executor: Executor, ctx: Context, recorder: Recorder
+    ) -> None:
+        """Take the parts; nothing is sent before the first ``tick``."""
+        self.devices = devices
+        self.control = control
+        self.executor = executor
+        self.ctx = ctx
+        self.recorder = recorder
+        scan = ctx.rig.scan
+        self.sliding_s = 1.0 / scan.sliding_hz
+        self.enabled_s = 1.0 / scan.enabled_hz
+        self.idle_s = 1.0 / scan.idle_hz
+        self.period_s = self.enabled_s
+        self.next_scan_s = 0.0
+        self.last_scan_s = float("-inf")
+        self.scans = 0
+        self.finished = False
+
+    def tick(self, now: float) -> float:
+        """Do what is due at ``now`` (s) and return when the next tick is due at the latest."""
+        self.devices.receive(now)
+        scan = now >= self.next_scan_s - 1e-7 or self._urgent()
+        if scan:
+            self._scan(now)
+        deadline = self.devices.transmit(now, scan=scan)
+        return min(self.next_scan_s, max(deadline, now + 5e-4))
+
+    def _urgent(self) -> bool:
+        """Tell whether a drive reported a fault or an emergency that the next regular scan should not wait for."""
+        return not self.ctx.readings.drive_fault and self.devices.alarm()
+
+    def _scan(self, now: float) -> None:
+        ctx, control, devices = self.ctx, self.control, self.devices
+        ctx.dt = min(now - self.last_scan_s, 1.0) if isfinite(self.last_scan_s) else 0.0
+        self.last_scan_s = now
+        ctx.now = now
+        self.scans += 1
+        devices.fill(ctx.readings, now, ctx.wheel.diameter_mm)
+        self._wear()
+        ctx.moving = False
+        was_in_contact = ctx.contact.in_contact
+        if control.state.mode is Mode.RUN:
+            ctx.gate = ctx.gates.update(ctx.readings, ctx.dt)
+            self.executor.step(ctx)
+        setpoints = control.step(ctx.demand, ctx.readings, self.period_s)
+        if ctx.contact.in_contact != was_in_contact:
+            ctx.gates.touched_s = now if ctx.contact.in_contact else float("inf")
+        self._journal()
+        devices.apply(setpoints)
+        self._choose_rate(now)
+        self.recorder.record(ctx, setpoints)
+
+    def _wear(self) -> None:
+        r = self.ctx.readings
+        if r.force_z_n > CONTACT_N and r.slip_m_s > 0.002:
+            self.ctx.wheel.slide(r.force_z_n, r.slip_m_s, self.ctx.dt, self.ctx.rig.wear.rate_mm3_per_n_m)
+
+    def _journal(self) -> None:
+        events = self.control.state.events
+        if events:
+            for event in events:
+                severity = "alarm" if event.kind == "trip" else "info"
+                self.ctx.journal.event(event.at_s, event.kind, event.text, severity)
+            events.clear()
+
+    def _choose_rate(self, now: float) -> None:
+        """Set the period of the next scan: it follows the state (rulings, 10)."""
+        mode, r = self.control.state.mode, self.ctx.readings
+        stopping = mode is Mode.STOPPING or mode is Mode.FAST_STOP
+        if self.ctx.moving or stopping:
+            self.period_s = self.sliding_s
+        elif self.ctx.demand.enabled or not r.drives_disabled:
+            self.period_s = self.enabled_s
+        else:
+            self.period_s = self.idle_s
+        # Absolute deadlines: a late scan does not delay the ones after it; an early (urgent) one starts anew.
+        late = now - self.next_scan_s
+        self.next_scan_s = (self.next_scan_s if 0.0 <= late < self.period_s else now) + self.period_s

@@ -1,0 +1,137 @@
+"""Walk the plan: one activity after the other, each a small state object stepped once a scan."""
+
+from __future__ import annotations
+
+from collections import deque
+
+from tester.engine.condition import MeasureCondition, Results
+from tester.engine.context import Context
+from tester.engine.moves import Activity, Ask
+from tester.engine.thermal_steps import CoolDown, HeatUp, RestStep
+from tester.engine.wheel_steps import InstallWheel, PreGrindStep
+from tester.recipe.plan import (
+    ConditionStep,
+    Cool,
+    Heat,
+    Install,
+    Plan,
+    PreGrind,
+    Prompt,
+    Rest,
+    Step,
+)
+from tester.recipe.wheel_change import wheel_change
+
+DEFAULT_SPEED_M_S = 0.8
+"""Wheel speed for heating when no condition follows (the paper's)."""
+DEFAULT_LOAD_N = 200.0
+
+
+class Executor:
+    """The steps still to do, the one in progress, and what is finished."""
+
+    def __init__(self, plan: Plan, results: Results, *, hardware: bool) -> None:
+        """``hardware``: people are asked where a simulated rig just goes on."""
+        self.plan = plan
+        self.results = results
+        self.hardware = hardware
+        self.steps: deque[Step] = deque(plan.steps)
+        self.activity: Activity | None = None
+        self.finished = False
+        self.failed = ""
+        self.reference_tare: list[float] = []
+        self.conditions = sum(1 for _ in plan.conditions())
+        self.wheels = 0
+
+    def step(self, ctx: Context) -> None:
+        """Advance the run by one scan."""
+        while not self.finished:
+            if self.activity is None:
+                if not self.steps:
+                    self.finished = True
+                    return
+                self.activity = self._begin(self.steps.popleft(), ctx)
+            if not self.activity.step(ctx):
+                return
+            self._end(self.activity)
+            self.activity = None
+            if self.failed:
+                self.finished = True
+
+    def _begin(self, step: Step, ctx: Context) -> Activity:
+        if isinstance(step, ConditionStep) and self._wheel_too_worn(step, ctx):
+            self.steps.appendleft(step)
+            self.steps.extendleft(reversed(self._change_steps(step)))
+            step = self.steps.popleft()
+        ctx.progress.step += 1
+        ctx.progress.steps = ctx.progress.step + len(self.steps)
+        ctx.progress.conditions = self.conditions
+        ctx.progress.repeat = ctx.progress.repeats = 0
+        ctx.progress.title = title(step)
+        ctx.journal.event(ctx.now, "step", ctx.progress.title)
+        return self._activity(step, ctx)
+
+    def _activity(self, step: Step, ctx: Context) -> Activity:
+        match step:
+            case Install():
+                self.wheels = max(self.wheels, step.wheel)
+                return InstallWheel(step, self.reference_tare)
+            case PreGrind():
+                return PreGrindStep(step)
+            case Rest():
+                return RestStep(step, ask_when_late=self.hardware)
+            case Heat():
+                return self._heat(step, ctx)
+            case ConditionStep():
+                return MeasureCondition(step, self.results, self.reference_tare)
+            case Cool():
+                return CoolDown(step, ctx.rig.interlocks.cooldown_speed_m_s)
+            case Prompt():
+                return Ask(step.text)
+
+    def _heat(self, step: Heat, ctx: Context) -> HeatUp:
+        """Heat under the load and at the speed of the condition that follows: it soaks there next."""
+        loop = ctx.rig.loops.heat
+        for follower in self.steps:
+            if isinstance(follower, ConditionStep):
+                sp = follower.setpoint
+                return HeatUp(step, sp.wheel_speed_m_s, sp.load_n, follower.soak.within_k, loop.rolling_offset_k)
+        return HeatUp(step, DEFAULT_SPEED_M_S, DEFAULT_LOAD_N, 1.0, loop.rolling_offset_k)
+
+    def _end(self, activity: Activity) -> None:
+        if isinstance(activity, MeasureCondition) and activity.failed:
+            self.failed = activity.failed
+
+    # -- wheel changes that the plan did not foresee --------------------------------------------------------
+
+    def _wheel_too_worn(self, step: ConditionStep, ctx: Context) -> bool:
+        """Tell whether what is left of the wheel does not cover this condition's predicted wear."""
+        left_mm = self.plan.replace_after_mm - ctx.wheel.loss_mm
+        return ctx.wheel.sliding_m > 0.0 and self.results.predicted_loss_mm(step, ctx.rig) > left_mm
+
+    def _change_steps(self, step: ConditionStep) -> list[Step]:
+        self.wheels += 1
+        specimen = self.plan.specimen(step.specimen)
+        return list(wheel_change(self.plan, step, specimen, self.wheels))
+
+
+def title(step: Step) -> str:
+    """Return a line that says what a step does."""
+    match step:
+        case Install():
+            return f"install wheel {step.wheel} ({step.compound})"
+        case PreGrind():
+            return f"pre-grind {step.duration_s / 60:g} min at {step.load_n:g} N"
+        case Rest():
+            return f"rest {step.at_least_s / 60:g} min"
+        case Heat():
+            return f"heat to {step.temperature_c:g} degC"
+        case ConditionStep():
+            sp = step.setpoint
+            text = f"{sp.compound}: {sp.slip_velocity_m_s * 1000:g} mm/s, {sp.load_n:g} N, {sp.temperature_c:g} degC"
+            text += f", sideslip {sp.sideslip_deg:g} deg" if sp.sideslip_deg else ""
+            return text + (f", camber {sp.camber_deg:g} deg" if sp.camber_deg else "")
+        case Cool():
+            return f"cool the hub to {step.hub_below_c:g} degC"
+        case Prompt():
+            return step.text

@@ -1,0 +1,214 @@
+"""The moves every step is made of: lift, turn, load, yaw, wait. Small state objects, stepped once a scan.
+
+An activity's ``step`` writes the demand it needs and returns True in the scan in which it is done. It keeps its
+state in plain attributes: a running activity can be copied.
+"""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+from tester.engine.context import Context
+from tester.process import Press
+
+SPEED_SHARE = 0.01
+SPEED_FLOOR_M_S = 0.003
+"""A speed counts as reached within 1 % or 3 mm/s, whichever is more [A]."""
+LIFTED_N = 5.0
+"""Below this force the wheel counts as lifted (safety concept: "F < 5 N")."""
+
+
+class Activity(Protocol):
+    """Something that takes scans."""
+
+    def step(self, ctx: Context) -> bool:
+        """Advance by one scan; return True when done."""
+        ...
+
+
+class Sequence:
+    """Activities one after the other."""
+
+    def __init__(self, *parts: Activity) -> None:
+        """Take the parts in order."""
+        self.parts = list(parts)
+
+    def step(self, ctx: Context) -> bool:
+        """Step the current part."""
+        if self.parts and self.parts[0].step(ctx):
+            self.parts.pop(0)
+        return not self.parts
+
+
+class Power:
+    """Enable or disable the drives, and wait until they say so."""
+
+    def __init__(self, on: bool) -> None:
+        """``on``: what is wanted."""
+        self.on = on
+
+    def step(self, ctx: Context) -> bool:
+        """Wait for every drive."""
+        ctx.demand.enabled = self.on
+        ctx.moving = True
+        return ctx.readings.drives_enabled if self.on else ctx.readings.drives_disabled
+
+
+class Lift:
+    """Take the wheel off the belt."""
+
+    def step(self, ctx: Context) -> bool:
+        """Done when the force is gone."""
+        ctx.demand.press = Press.LIFT
+        ctx.demand.load_n = 0.0
+        ctx.moving = True
+        return ctx.readings.force_z_n < LIFTED_N and not ctx.contact.in_contact
+
+
+class Turn:
+    """Bring wheel and belt to their speeds (m/s)."""
+
+    def __init__(self, wheel_m_s: float, belt_m_s: float) -> None:
+        """Both line speeds."""
+        self.wheel_m_s = wheel_m_s
+        self.belt_m_s = belt_m_s
+
+    def step(self, ctx: Context) -> bool:
+        """Done when both are reached."""
+        ctx.demand.wheel_speed_m_s = self.wheel_m_s
+        ctx.demand.belt_speed_m_s = self.belt_m_s
+        ctx.moving = True
+        return speeds_reached(ctx)
+
+
+def speeds_reached(ctx: Context) -> bool:
+    """Tell whether both measured speeds are at their demands."""
+    r, d = ctx.readings, ctx.demand
+    return abs(r.wheel_speed_m_s - d.wheel_speed_m_s) <= max(
+        SPEED_SHARE * abs(d.wheel_speed_m_s), SPEED_FLOOR_M_S
+    ) and abs(r.belt_speed_m_s - d.belt_speed_m_s) <= max(SPEED_SHARE * abs(d.belt_speed_m_s), SPEED_FLOOR_M_S)
+
+
+class Load:
+    """Press to a load (N) and wait until it stands within ``percent`` for ``for_s`` seconds."""
+
+    def __init__(self, load_n: float, *, percent: float = 2.0, for_s: float = 1.0, quick: bool = False) -> None:
+        """``quick``: the fast approach to a known contact."""
+        self.load_n = load_n
+        self.percent = percent
+        self.for_s = for_s
+        self.quick = quick
+        self.since_s = float("inf")
+
+    def step(self, ctx: Context) -> bool:
+        """Done when the averaged load has been in band long enough."""
+        ctx.demand.press = Press.LOAD
+        ctx.demand.load_n = self.load_n
+        ctx.demand.quick_touch = self.quick
+        ctx.gates.target.load_n = self.load_n
+        ctx.moving = True
+        inside = abs(ctx.gates.load.value - self.load_n) <= 0.01 * self.percent * self.load_n
+        self.since_s = min(self.since_s, ctx.now) if inside else float("inf")
+        return ctx.now - self.since_s >= self.for_s
+
+
+class Yaw:
+    """Turn to a sideslip and a camber angle (degrees); only ever unloaded."""
+
+    def __init__(self, sideslip_deg: float, camber_deg: float) -> None:
+        """Both angles."""
+        self.sideslip_deg = sideslip_deg
+        self.camber_deg = camber_deg
+        self.began_s = float("nan")
+
+    def step(self, ctx: Context) -> bool:
+        """Done when both axes report their targets reached at the wanted angles."""
+        ctx.demand.sideslip_deg = self.sideslip_deg
+        ctx.demand.camber_deg = self.camber_deg
+        ctx.moving = True
+        r = ctx.readings
+        near = abs(r.sideslip_deg - self.sideslip_deg) < 0.05 and abs(r.camber_deg - self.camber_deg) < 0.05
+        return near and r.yaw_reached
+
+
+class Wait:
+    """Let time pass (s)."""
+
+    def __init__(self, seconds: float) -> None:
+        """How long."""
+        self.seconds = seconds
+        self.began_s = float("nan")
+
+    def step(self, ctx: Context) -> bool:
+        """Done when the time is over."""
+        if self.began_s != self.began_s:
+            self.began_s = ctx.now
+        return ctx.now - self.began_s >= self.seconds - 1e-9
+
+
+class Ask:
+    """Put a question and wait for its answer."""
+
+    def __init__(self, text: str) -> None:
+        """The question as a person reads it."""
+        self.text = text
+        self.number = 0
+
+    def step(self, ctx: Context) -> bool:
+        """Done when it is answered; question and answer are journalled."""
+        if not self.number:
+            self.number = ctx.prompts.ask(ctx.now, self.text).number
+            ctx.journal.event(ctx.now, "prompt", self.text)
+        prompt = ctx.prompts.asked[self.number - 1]
+        if prompt.answer is None:
+            return False
+        ctx.journal.event(ctx.now, "answer", f"{self.text}: {prompt.answer}")
+        return True
+
+
+class TakeTare:
+    """Average the unloaded load cell over whole turns and make that its zero.
+
+    The reference zero (the first of this wheel) is kept: a zero that has wandered off it by more than ``stop_n``
+    is a damaged or touching cell (safety concept: 5 N warn, 20 N stop).
+    """
+
+    def __init__(self, seconds: float, reference: list[float], warn_n: float, stop_n: float) -> None:
+        """``reference``: shared list, empty until the first tare fills it."""
+        self.seconds = seconds
+        self.reference = reference
+        self.warn_n = warn_n
+        self.stop_n = stop_n
+        self.began_s = float("nan")
+        self.stamp_s = float("-inf")
+        self.sums = [0.0, 0.0, 0.0, 0.0]
+        self.count = 0
+        self.failed = ""
+
+    def step(self, ctx: Context) -> bool:
+        """Done when the average is taken; ``failed`` says why the zero is not to be trusted."""
+        r = ctx.readings
+        ctx.moving = True
+        if self.began_s != self.began_s:
+            self.began_s = ctx.now
+        if r.cell_valid and r.cell_at_s > self.stamp_s and r.cell_at_s > self.began_s:
+            self.stamp_s = r.cell_at_s
+            for i, value in enumerate((r.force_x_n, r.force_y_n, r.force_z_n, r.moment_z_nm)):
+                self.sums[i] += value
+            self.count += 1
+        if ctx.now - self.began_s < self.seconds or self.count < 10:
+            return False
+        old = ctx.cell.tare
+        new = tuple(o + s / self.count for o, s in zip(old, self.sums, strict=True))
+        ctx.cell.set_tare((new[0], new[1], new[2], new[3]))
+        self._compare(ctx, new)
+        return True
+
+    def _compare(self, ctx: Context, new: tuple[float, ...]) -> None:
+        if not self.reference:
+            self.reference.extend(new)
+        drift = max(abs(n - r) for n, r in zip(new[:3], self.reference[:3], strict=True))
+        text = "tare " + ", ".join(f"{v:.2f}" for v in new) + f" (drift {drift:.2f} N)"
+        if drift > self.stop_n:
+            self.failed = f"load cell zero drifted by {drift:.1f} N since the reference tare"
+        ctx.journal.event(ctx.now, "tare", text, "warning" if drift > self.warn_n else "info")

@@ -1,0 +1,37 @@
+"""Questions for a person. A prompt waits, drives standing or rolling as its step left them, until it is answered."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+
+@dataclass(slots=True)
+class Prompt:
+    """One question; ``answer`` is None while it waits."""
+
+    number: int
+    at_s: float
+    text: str
+    answer: str | None = None
+
+
+@dataclass(slots=True)
+class Prompts:
+    """The prompts of a run, oldest first. ``automatic``: answer "yes" at once (``--yes``)."""
+
+    automatic: bool = False
+    asked: list[Prompt] = field(default_factory=list[Prompt])
+
+    def ask(self, now: float, text: str) -> Prompt:
+        """Put a question and return it; it may already be answered."""
+        prompt = Prompt(len(self.asked) + 1, now, text, "yes (automatic)" if self.automatic else None)
+        self.asked.append(prompt)
+        return prompt
+
+    @property
+    def waiting(self) -> Prompt | None:
+        """The oldest unanswered prompt."""
+        for prompt in self.asked:
+            if prompt.answer is None:
+                return prompt
+        return None

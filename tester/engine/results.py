@@ -1,0 +1,127 @@
+"""From a measured repeat to a committed result: reduction and store behind the executor's one door."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from tester.analysis.reduce import bursts_of, reduce_repeat, without_value
+from tester.analysis.repeats import combine_repeats
+from tester.analysis.results import ConditionStatus, RepeatResult, RepeatStatus
+from tester.engine.bursts import Ending, MeasureRepeat
+from tester.engine.condition import RepeatOutcome
+from tester.engine.context import Context
+from tester.recipe.estimate import predicted_loss_mm
+from tester.recipe.plan import ConditionStep, Plan
+from tester.rig import RigConfig
+from tester.store.recorder import Recorder
+from tester.store.records import ConditionInfo
+
+REPEAT_STATUS: dict[Ending, RepeatStatus] = {
+    Ending.CANNOT_HOLD: RepeatStatus.CANNOT_HOLD,
+    Ending.NOT_REACHED: RepeatStatus.NOT_REACHED,
+    Ending.ZERO_DRIFT: RepeatStatus.VOID,
+}
+"""Endings that leave no value, whatever was collected; the others are for the reduction to judge."""
+
+CONDITION_STATUS: dict[Ending, ConditionStatus] = {
+    Ending.CANNOT_HOLD: ConditionStatus.CANNOT_HOLD,
+    Ending.NOT_REACHED: ConditionStatus.NOT_REACHED,
+    Ending.ZERO_DRIFT: ConditionStatus.SKIPPED,
+}
+
+
+class StoredResults:
+    """Reduces repeats from the blocks counted live (the stored samples give the same ones) and commits them."""
+
+    def __init__(self, recorder: Recorder) -> None:
+        """``recorder``: the run's store."""
+        self.recorder = recorder
+        self.repeats: list[RepeatResult] = []
+        self.missing: list[str] = []
+        """Conditions that ended without a value, one line each, for the person who reads the table."""
+        self.measured = 0
+
+    def begin_repeat(self, ctx: Context, step: ConditionStep, repeat: int, attempt: int) -> int:
+        """Open a repeat; return the key that its samples carry."""
+        if repeat == 1:
+            self.repeats = []
+            self.recorder.begin_condition(step.condition, ctx.now)
+        return self.recorder.begin_repeat(step.condition, repeat, attempt, ctx.now, ctx.wheel.wheel)
+
+    def finish_repeat(
+        self, ctx: Context, step: ConditionStep, key: int, repeat: int, measured: MeasureRepeat
+    ) -> RepeatOutcome:
+        """Reduce and commit a repeat."""
+        assert measured.ending is not None
+        blocks = measured.counter.blocks
+        status = REPEAT_STATUS.get(measured.ending)
+        if status is not None:
+            result = without_value(status, measured.detail, ended_s=ctx.now)
+        else:
+            window = step.window
+            result = reduce_repeat(blocks, window.revolutions, window.seconds, rolling=measured.rolling_only)
+        self.repeats.append(result)
+        wheel = ctx.wheel
+        self.recorder.wheel_state(wheel.wheel, wheel.diameter_mm, wheel.sliding_m, ctx.now)
+        ticket = self.recorder.commit_repeat(key, result, bursts_of(blocks))
+        return RepeatOutcome(result.status, _line(result), ticket)
+
+    def finish_condition(self, ctx: Context, step: ConditionStep, ending: Ending | None, detail: str) -> str:
+        """Sum a condition up from its repeats and commit it; return a line for people."""
+        status = CONDITION_STATUS.get(ending) if ending is not None else None
+        if ending is not None and not self.repeats:
+            self.recorder.begin_condition(step.condition, ctx.now)
+        found = combine_repeats(self.repeats, step.repeats, step.min_valid, status, detail)
+        if status is None and found.status is ConditionStatus.PENDING:
+            status = ConditionStatus.INSUFFICIENT
+        self.recorder.end_condition(step.condition, status or found.status, detail or found.reason, ctx.now)
+        self.repeats = []
+        name = f"condition {step.condition} ({_setpoint(step)})"
+        if found.ok:
+            self.measured += 1
+            return f"{name}: mu {found.mu_resultant:.4f}, s {found.s:.4f}, {found.n_valid} of {found.n}"
+        text = f"{name}: {(status or found.status).value}: {detail or found.reason}"
+        self.missing.append(text)
+        return text
+
+    def predicted_loss_mm(self, step: ConditionStep, rig: RigConfig) -> float:
+        """Return the loss of diameter that a condition is expected to cost, mm."""
+        return predicted_loss_mm(step, rig)
+
+
+def condition_records(plan: Plan) -> Iterator[ConditionInfo]:
+    """Yield a plan's conditions as the store keeps them."""
+    for step in plan.conditions():
+        sp = step.setpoint
+        yield ConditionInfo(
+            condition=step.condition,
+            row=step.row,
+            specimen=step.specimen,
+            replicate=step.replicate,
+            grid=step.grid,
+            compound=sp.compound,
+            note=plan.specimen(step.specimen).note,
+            slip_velocity_m_s=sp.slip_velocity_m_s,
+            load_n=sp.load_n,
+            sideslip_deg=sp.sideslip_deg,
+            camber_deg=sp.camber_deg,
+            temperature_c=sp.temperature_c,
+            wheel_speed_m_s=sp.wheel_speed_m_s,
+            temperature_band_k=step.temperature_band_k,
+            repeats=step.repeats,
+            min_valid=step.min_valid,
+            window_revolutions=step.window.revolutions,
+            window_s=step.window.seconds,
+        )
+
+
+def _line(result: RepeatResult) -> str:
+    if result.status is RepeatStatus.VALID:
+        return f"mu {result.mu_resultant:.4f}, {result.revolutions} revolutions, {result.bursts} bursts"
+    return f"{result.status.value}: {result.reason}"
+
+
+def _setpoint(step: ConditionStep) -> str:
+    sp = step.setpoint
+    text = f"{sp.compound}, {sp.slip_velocity_m_s * 1000:g} mm/s, {sp.load_n:g} N, {sp.temperature_c:g} degC"
+    return text + (f", sideslip {sp.sideslip_deg:g} deg" if sp.sideslip_deg else "")

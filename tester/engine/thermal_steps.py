@@ -1,0 +1,155 @@
+"""Steps that wait for a temperature: soak, heat, rest, cool."""
+
+from __future__ import annotations
+
+from math import isfinite
+
+from tester.engine.context import Context
+from tester.engine.moves import Activity, Ask, Lift, Load, Power, Sequence, Turn, Yaw
+from tester.recipe.plan import Cool, Heat, Rest, Soak
+
+NEAR_AMBIENT_K = 3.0
+"""A setpoint this near to ambient can be neither heated nor cooled to quickly: it soaks to the band (rulings, 2)."""
+HEAT_LOAD_N = 200.0
+"""Highest load for heating up in rolling contact [A]: the paper's reference load."""
+HEAT_AT_MOST_S = 5400.0
+"""Longest heating up to one temperature [A]."""
+COOL_AT_MOST_S = 3 * 3600.0
+"""Longest cooling of a hub before a person may touch it; then a prompt says how warm it is [A]."""
+
+
+def roll(wheel_speed_m_s: float, load_n: float) -> Sequence:
+    """Return the moves into rolling contact: drives on, straight, matched speeds, load. No slip, hardly any heat."""
+    return Sequence(Power(True), Straighten(), Turn(wheel_speed_m_s, wheel_speed_m_s), Load(load_n))
+
+
+class Straighten:
+    """Bring sideslip and camber to zero, lifting first if they are not there."""
+
+    def __init__(self) -> None:
+        """Nothing is known before the first scan."""
+        self.moves: Sequence | None = None
+
+    def step(self, ctx: Context) -> bool:
+        """Done when both angles are zero."""
+        if self.moves is None:
+            r = ctx.readings
+            straight = abs(r.sideslip_deg) < 0.05 and abs(r.camber_deg) < 0.05
+            self.moves = Sequence(Yaw(0.0, 0.0)) if straight else Sequence(Lift(), Yaw(0.0, 0.0))
+        return self.moves.step(ctx)
+
+
+def soak_within_k(soak: Soak, setpoint_c: float, ambient_c: float, band_k: float) -> float:
+    """Return how near the surface must come, in K: the recipe's value, or the band near ambient."""
+    return band_k if abs(setpoint_c - ambient_c) <= NEAR_AMBIENT_K else soak.within_k
+
+
+class SoakTo:
+    """Hold until the surface has stayed within ``within_k`` of ``target_c`` for ``for_s``, or ``at_most_s`` are over."""
+
+    def __init__(self, target_c: float, within_k: float, for_s: float, at_most_s: float) -> None:
+        """Temperatures in degC and K, times in s."""
+        self.target_c = target_c
+        self.within_k = within_k
+        self.for_s = for_s
+        self.at_most_s = at_most_s
+        self.began_s = float("nan")
+        self.since_s = float("inf")
+        self.reached = False
+
+    def step(self, ctx: Context) -> bool:
+        """Done when soaked or given up; ``reached`` tells which."""
+        if not isfinite(self.began_s):
+            self.began_s = ctx.now
+        ctx.demand.surface_c = self.target_c
+        ctx.demand.freeze_heat = False
+        surface = ctx.gates.surface.slow_c
+        ctx.progress.phase = f"soak {surface:.1f} of {self.target_c:.1f} degC"
+        inside = abs(surface - self.target_c) <= self.within_k
+        self.since_s = min(self.since_s, ctx.now) if inside else float("inf")
+        self.reached = ctx.now - self.since_s >= self.for_s
+        return self.reached or ctx.now - self.began_s > self.at_most_s
+
+
+class HeatUp:
+    """Bring the surface near a temperature in rolling contact, so that the conditions there only have to soak."""
+
+    def __init__(self, step: Heat, wheel_speed_m_s: float, load_n: float, within_k: float, offset_k: float) -> None:
+        """``offset_k``: how far below the setpoint rolling is held (slip pulses then rise through the setpoint)."""
+        self.target_c = step.temperature_c
+        self.soak = SoakTo(step.temperature_c - offset_k, within_k, 0.0, HEAT_AT_MOST_S)
+        self.moves = roll(wheel_speed_m_s, min(load_n, HEAT_LOAD_N))
+        self.rolling = False
+
+    def step(self, ctx: Context) -> bool:
+        """Done when near enough, or out of time."""
+        ctx.demand.surface_c = self.soak.target_c
+        ctx.demand.freeze_heat = False
+        if not self.rolling:
+            self.rolling = self.moves.step(ctx)
+            return False
+        if not self.soak.step(ctx):
+            return False
+        if not self.soak.reached:
+            ctx.journal.event(ctx.now, "heat", f"{self.target_c:g} degC not reached in time", "warning")
+        return True
+
+
+class RestStep:
+    """Stand lifted, heat and drives off, for a time and until the surface is cool."""
+
+    def __init__(self, step: Rest, *, ask_when_late: bool) -> None:
+        """``ask_when_late``: a real rig asks a person once the longest time is over."""
+        self.rest = step
+        self.moves = Sequence(Lift(), Turn(0.0, 0.0), Power(False))
+        self.standing = False
+        self.began_s = float("nan")
+        self.late: Activity | None = None
+        self.ask_when_late = ask_when_late
+
+    def step(self, ctx: Context) -> bool:
+        """Done when rested."""
+        ctx.demand.surface_c = float("nan")
+        if not self.standing:
+            self.standing = self.moves.step(ctx)
+            return False
+        if not isfinite(self.began_s):
+            self.began_s = ctx.now
+        waited = ctx.now - self.began_s
+        surface, until = ctx.readings.surface_c, self.rest.until_c
+        ctx.progress.phase = (
+            f"rest {waited / 60:.0f} of {self.rest.at_least_s / 60:.0f} min, surface {surface:.1f} degC"
+        )
+        # Resting only cools: a laboratory colder than `until` is not a reason to wait.
+        cool = until is None or surface <= until + self.rest.within_k
+        if waited >= self.rest.at_least_s and cool:
+            return True
+        if waited < self.rest.at_most_s:
+            return False
+        if self.late is None:
+            text = f"after {waited / 60:.0f} min of rest the surface is at {surface:.1f} degC, not at {until} degC"
+            ctx.journal.event(ctx.now, "rest", f"not reached: {text}", "warning")
+            self.late = Ask(f"{text}: go on?") if self.ask_when_late else Sequence()
+        return self.late.step(ctx)
+
+
+class CoolDown:
+    """Turn unloaded, heat off, until the hub is cool enough to touch."""
+
+    def __init__(self, step: Cool, creep_m_s: float) -> None:
+        """``creep_m_s``: line speed while cooling."""
+        self.below_c = step.hub_below_c
+        self.moves = Sequence(Power(True), Lift(), Turn(creep_m_s, creep_m_s))
+        self.turning = False
+        self.began_s = float("nan")
+
+    def step(self, ctx: Context) -> bool:
+        """Done when cool, or out of time (the prompt to install follows and tells the temperature)."""
+        ctx.demand.surface_c = float("nan")
+        if not self.turning:
+            self.turning = self.moves.step(ctx)
+            return False
+        if not isfinite(self.began_s):
+            self.began_s = ctx.now
+        ctx.progress.phase = f"cool to {self.below_c:.0f} degC, hub {ctx.readings.hub_c:.1f} degC"
+        return ctx.readings.hub_c < self.below_c or ctx.now - self.began_s > COOL_AT_MOST_S

@@ -1,0 +1,135 @@
+"""Who calls the tick, and when. Two tickers, one tick: simulated time and real time."""
+
+from __future__ import annotations
+
+import gc
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import ceil
+from typing import Protocol
+
+from tester import clock
+
+
+class Ticked(Protocol):
+    """What a ticker drives."""
+
+    @property
+    def finished(self) -> bool:
+        """Nothing is left to do."""
+        ...
+
+    @property
+    def waiting(self) -> bool:
+        """A person is asked: simulated time stands still until the answer is there."""
+        ...
+
+    def tick(self, now: float) -> float:
+        """Do what is due at ``now``; return when to be called again at the latest (s)."""
+        ...
+
+
+class World(Protocol):
+    """A simulated rig: it must be brought up to date before each tick."""
+
+    def advance(self, now: float) -> None:
+        """Let the rig live until ``now`` (s)."""
+        ...
+
+    @property
+    def urgent_s(self) -> float:
+        """When something arrives that the scan should not wait for (inf = nothing on its way)."""
+        ...
+
+
+@dataclass(slots=True)
+class TickStatistics:
+    """How punctual the ticks were (real time only), s."""
+
+    ticks: int = 0
+    late_max_s: float = 0.0
+    overruns: int = 0
+    """Ticks that came later than their successor was due."""
+
+
+def next_tick(now: float, wanted: float, urgent: float) -> float:
+    """Return the next tick's time: the earlier of both, on a grid of microseconds, and always after ``now``.
+
+    Simulated time is counted, not measured: on a grid, equal runs have equal times to the last bit.
+    """
+    due = min(wanted, urgent)
+    return max(ceil(due * 1e6 - 1e-3), round(now * 1e6) + 1) / 1e6
+
+
+def run_simulated(engine: Ticked, world: World, *, lapse: float | None, poll: Callable[[float], None]) -> float:
+    """Run to the end in simulated time; return the rig seconds.
+
+    ``lapse``: rig seconds per second of wall time, or None for as fast as it goes. ``poll`` is called about ten times
+    a second of wall time (display, keys); it must not block for long.
+    """
+    now = 0.0
+    origin = clock.monotonic()
+    poll_due = origin
+    with collector_at_rest():
+        while not engine.finished:
+            world.advance(now)
+            wanted = engine.tick(now)
+            later = next_tick(now, wanted, world.urgent_s)
+            if lapse is not None:
+                clock.sleep_until(origin + later / lapse)
+            wall = clock.monotonic()
+            if wall >= poll_due:
+                poll(now)
+                poll_due = wall + 0.1
+            while engine.waiting:
+                poll(now)
+                clock.sleep_until(clock.monotonic() + 0.02)
+            now = later
+    return now
+
+
+def run_real_time(
+    engine: Ticked, world: World | None, *, poll: Callable[[float], None], statistics: TickStatistics
+) -> float:
+    """Run to the end in real time on absolute deadlines; return the seconds it took.
+
+    ``world``: a simulated rig in the same process, or None when hardware is on the wire.
+    """
+    origin = clock.monotonic()
+    due = 0.0
+    poll_due = 0.0
+    with collector_at_rest():
+        while not engine.finished:
+            clock.sleep_until(origin + due)
+            now = clock.monotonic() - origin
+            statistics.ticks += 1
+            statistics.late_max_s = max(statistics.late_max_s, now - due)
+            if world is not None:
+                world.advance(now)
+            due = engine.tick(now)
+            if world is not None:
+                due = min(due, world.urgent_s)
+            if due < clock.monotonic() - origin:
+                statistics.overruns += 1
+            if now >= poll_due:
+                poll(now)
+                poll_due = now + 0.1
+    return clock.monotonic() - origin
+
+
+class collector_at_rest:  # noqa: N801 - reads as a statement
+    """Keep the cyclic garbage collector away from the scan: what exists is frozen, automatic runs are off.
+
+    Reference counting still frees nearly everything; the young generations are collected by hand when the block ends.
+    """
+
+    def __enter__(self) -> None:
+        """Freeze what exists and stop automatic collection."""
+        gc.collect()
+        gc.freeze()
+        gc.disable()
+
+    def __exit__(self, *_: object) -> None:
+        """Restore."""
+        gc.enable()
+        gc.unfreeze()

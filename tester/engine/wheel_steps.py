@@ -1,0 +1,105 @@
+"""Steps around a wheel: install it, grind it in."""
+
+from __future__ import annotations
+
+from tester.engine.context import Context, WheelLife
+from tester.engine.moves import Ask, Lift, Load, Power, Sequence, TakeTare, Turn, speeds_reached
+from tester.engine.thermal_steps import Straighten
+from tester.recipe.plan import Install, PreGrind
+
+REFERENCE_TARE_S = 2.0
+"""Averaging time of a wheel's first tare, s [A]."""
+
+
+class InstallWheel:
+    """Stand still, ask a person to mount the wheel, then take its reference tare with the drives on."""
+
+    def __init__(self, step: Install, reference_tare: list[float]) -> None:
+        """``reference_tare``: filled with the new wheel's zero."""
+        self.install = step
+        self.reference = reference_tare
+        self.before = Sequence(Lift(), Turn(0.0, 0.0), Power(False))
+        note = f" ({step.note})" if step.note else ""
+        self.ask = Ask(f"install wheel {step.wheel}: {step.compound}{note}")
+        self.standing = False
+        self.mounted = False
+        self.after: Sequence | None = None
+
+    def step(self, ctx: Context) -> bool:
+        """Done when mounted and tared."""
+        ctx.demand.surface_c = float("nan")
+        if not self.standing:
+            self.standing = self.before.step(ctx)
+            return False
+        if not self.mounted:
+            self.mounted = self.ask.step(ctx)
+            return False
+        if self.after is None:
+            self._mount(ctx)
+            self.reference.clear()
+            tare = TakeTare(
+                REFERENCE_TARE_S, self.reference, ctx.rig.interlocks.zero_warn_n, ctx.rig.interlocks.zero_stop_n
+            )
+            self.after = Sequence(Power(True), Straighten(), tare)
+        return self.after.step(ctx)
+
+    def _mount(self, ctx: Context) -> None:
+        step, old = self.install, ctx.wheel
+        new_specimen = (old.specimen, old.replicate) != (step.specimen, step.replicate)
+        ctx.attendant.install(step.specimen, step.wheel, step.compound, new_specimen=new_specimen)
+        geometry = ctx.rig.geometry
+        ctx.wheel = WheelLife(
+            specimen=step.specimen,
+            replicate=step.replicate,
+            wheel=step.wheel,
+            compound=step.compound,
+            installed_mm=geometry.wheel_diameter_mm,
+            width_mm=geometry.wheel_width_mm,
+        )
+        ctx.contact.forget_contact()
+        ctx.readings.wheel_angle_rev = 0.0
+        ctx.journal.event(ctx.now, "wheel", f"wheel {step.wheel}: {step.compound}, {geometry.wheel_diameter_mm:.2f} mm")
+
+
+class Grind:
+    """Count the seconds in which the load is in band and both speeds are reached, up to ``seconds``."""
+
+    def __init__(self, load_n: float, seconds: float) -> None:
+        """Load in N."""
+        self.load_n = load_n
+        self.seconds = seconds
+        self.done_s = 0.0
+        self.counting = False
+
+    def step(self, ctx: Context) -> bool:
+        """Done when the whole time has been ground."""
+        ctx.moving = True
+        ready = speeds_reached(ctx) and abs(ctx.gates.load.value - self.load_n) <= 0.02 * self.load_n
+        if ready and self.counting:
+            self.done_s += ctx.dt
+        self.counting = ready
+        ctx.progress.phase = f"grind {self.done_s:.0f} of {self.seconds:.0f} s"
+        return self.done_s >= self.seconds - 0.5 * ctx.dt
+
+
+class PreGrindStep:
+    """Run a new wheel in: 4 min at 0.8 / 0.6 m/s and 200 N in the paper (its section 2.2.2)."""
+
+    def __init__(self, step: PreGrind) -> None:
+        """The step of the plan."""
+        wheel, belt = step.wheel_speed_m_s, step.belt_speed_m_s
+        self.moves = Sequence(
+            Power(True),
+            Straighten(),
+            Turn(wheel, wheel),
+            Load(step.load_n, for_s=2.0),
+            Turn(wheel, belt),
+            Grind(step.load_n, step.duration_s),
+            Turn(wheel, wheel),
+            Lift(),
+        )
+
+    def step(self, ctx: Context) -> bool:
+        """Done when ground and lifted."""
+        ctx.demand.surface_c = float("nan")
+        return self.moves.step(ctx)
