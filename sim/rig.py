@@ -135,6 +135,10 @@ class SimRig:
             heater_w,
         )
         self._wheel.torque_nm = plant.drive_torque_nm
+        # Encoders are noisy while they turn.
+        turning = self._wheel.axis.value != 0.0
+        self._wheel.encoder_error = plant.wheel_speed.error() * 2000.0 / plant.diameter_mm if turning else 0.0
+        self._belt.encoder_error = plant.belt_speed.error() if self._belt.axis.value != 0.0 else 0.0
 
     # -- the person's side ----------------------------------------------------------------------------------------
 

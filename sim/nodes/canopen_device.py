@@ -1,0 +1,298 @@
+"""The communication half of a simulated CANopen device (CiA 301): boot-up, NMT, heartbeats, SDO, emergencies.
+
+What the device is for (the drive) is a subclass: it is told of resets, lost connections and received process data.
+"""
+
+from __future__ import annotations
+
+from math import inf
+
+from drivers.canopen import objects as o
+from drivers.canopen.objects import NmtCommand, NmtState
+from sim.can_wire import CanWire
+from sim.nodes import communication_objects
+from sim.nodes.emergencies import Emergencies
+from sim.nodes.object_store import ObjectStore
+from sim.nodes.pdo_channels import ReceivePdo, TransmitPdo
+from sim.nodes.pdo_exchange import RPDO_TIMED_OUT, PdoExchange
+from sim.nodes.sdo_server import SdoServer
+
+HEARTBEAT_LOST = 0x8130
+COMMUNICATION_BOOT_S = 0.02
+"""From a communication reset to the boot-up message, s [A]."""
+
+# NMT states as plain integers for the hot path.
+BOOTING = int(NmtState.BOOT_UP)
+STOPPED = int(NmtState.STOPPED)
+OPERATIONAL = int(NmtState.OPERATIONAL)
+PRE_OPERATIONAL = int(NmtState.PRE_OPERATIONAL)
+
+
+class CanopenDevice:
+    """A node on a simulated wire.
+
+    ``due_s`` is the time of its next timer; ``now_s`` the time it was advanced to. Frames reach it through the
+    wire's listeners, SYNC and RPDOs only while OPERATIONAL.
+    """
+
+    __slots__ = (
+        "_boot_at",
+        "_boot_s",
+        "_consumer_at",
+        "_consumer_heard_s",
+        "_consumer_id",
+        "_consumer_timeout_s",
+        "_heartbeat",
+        "_heartbeat_at",
+        "_heartbeat_id",
+        "_heartbeat_s",
+        "_other_at",
+        "_sdo",
+        "_turnaround_s",
+        "due_s",
+        "emergencies",
+        "nmt",
+        "node_id",
+        "now_s",
+        "pdos",
+        "powered",
+        "store",
+        "wire",
+    )
+
+    def __init__(self, wire: CanWire, store: ObjectStore, boot_s: float, turnaround_s: float, now: float) -> None:
+        """Put a device on the wire, unpowered; ``boot_s`` and ``turnaround_s`` (of SDO answers) in s."""
+        self.wire = wire
+        self.store = store
+        self.node_id = store.node_id
+        self.now_s = now
+        self.due_s = inf
+        self.powered = False
+        self.nmt = BOOTING
+        self._boot_s = boot_s
+        self._turnaround_s = turnaround_s
+        self._heartbeat_id = o.HEARTBEAT_BASE + self.node_id
+        self._consumer_id = 0
+        self._consumer_timeout_s = 0.0
+        self._consumer_heard_s = -inf
+        self._boot_at = self._heartbeat_at = self._consumer_at = self._other_at = inf
+        self._heartbeat = b"\0"
+        self._heartbeat_s = 0.0
+        self._sdo = SdoServer(store)
+        self.emergencies = Emergencies(wire, store)
+        self.pdos = PdoExchange(self, wire, store)
+        communication_objects.install(store)
+        store.hooks[o.CONSUMER_HEARTBEAT] = self._on_consumer_written
+        store.hooks[o.PRODUCER_HEARTBEAT] = self._on_producer_written
+        wire.attach(self)
+        wire.listen(o.NMT_ID, self._on_nmt)
+        wire.listen(o.SDO_REQUEST_BASE + self.node_id, self._on_sdo)
+
+    # what a subclass does ------------------------------------------------------------------------------------
+
+    def process(self, t: float) -> None:
+        """Act on received process data, now in the object store."""
+
+    def prepare_source(self, pdo: TransmitPdo) -> None:
+        """Put a quicker source into a TPDO, where there is one."""
+
+    def prepare_sink(self, pdo: ReceivePdo) -> None:
+        """Put a quicker sink into an RPDO, where there is one."""
+
+    def _application_reset(self) -> None:
+        """Set the application back to power-on (power cycle and NMT reset node)."""
+
+    def _application_ready(self, t: float) -> None:
+        """Take note that the device has booted."""
+
+    def _application_due(self) -> float:
+        """Return the next timer of the application, s."""
+        return inf
+
+    def _application_fire(self, t: float) -> None:
+        """Do what has fallen due in the application by ``t`` s."""
+
+    def _connection_lost(self, t: float) -> None:
+        """React to a lost connection as object 0x6007 says."""
+
+    def _left_operational(self, t: float) -> None:
+        """Take note that process data have ended."""
+
+    # power, boot, NMT ----------------------------------------------------------------------------------------
+
+    def power(self, on: bool) -> None:
+        """Switch the control supply at the time last advanced to: off is silent at once, on boots."""
+        if on == self.powered:
+            return
+        self.powered = on
+        if on:
+            self._restart(self.now_s, self._boot_s, communication_only=False)
+        else:
+            self._silence(communication_only=False)
+            self._application_reset()
+            self.reschedule()
+
+    def _restart(self, t: float, boot_s: float, communication_only: bool) -> None:
+        self._silence(communication_only)
+        self.store.reset(communication_only)
+        if not communication_only:
+            self._application_reset()
+        self._boot_at = t + boot_s
+        self.reschedule()
+
+    def _silence(self, communication_only: bool) -> None:
+        """End all communication."""
+        self._enter(BOOTING, self.now_s)
+        self.emergencies.reset(communication_only)
+        self._sdo.reset()
+        self._forget_consumer()
+        self._boot_at = self._heartbeat_at = inf
+
+    def _boot(self, t: float) -> None:
+        self._boot_at = inf
+        self.now_s = max(self.now_s, t)
+        self.emergencies.refresh()
+        self._on_consumer_written(1, self.store.values[(o.CONSUMER_HEARTBEAT, 1)])
+        self._on_producer_written(0, self.store.values[(o.PRODUCER_HEARTBEAT, 0)])
+        self.wire.transmit(self._heartbeat_id, b"\0", t, True)
+        self._enter(PRE_OPERATIONAL, t)
+        self._application_ready(t)
+
+    def _on_nmt(self, data: bytes, t: float) -> None:
+        if len(data) != 2 or data[1] not in (0, self.node_id) or self.nmt == BOOTING:
+            return
+        command = data[0]
+        if command == NmtCommand.START:
+            self._enter(OPERATIONAL, t)
+        elif command == NmtCommand.PRE_OPERATIONAL:
+            self._enter(PRE_OPERATIONAL, t)
+        elif command == NmtCommand.STOP:
+            self._enter(STOPPED, t)
+            self._connection_lost(t)
+        elif command == NmtCommand.RESET_NODE:
+            self._restart(t, self._boot_s, communication_only=False)
+        elif command == NmtCommand.RESET_COMMUNICATION:
+            self._connection_lost(t)
+            self._restart(t, COMMUNICATION_BOOT_S, communication_only=True)
+
+    def _enter(self, nmt: int, t: float) -> None:
+        """Change the NMT state: process data flow in OPERATIONAL only, emergencies there and in PRE-OPERATIONAL."""
+        if nmt == self.nmt:
+            return
+        was_operational = self.nmt == OPERATIONAL
+        self.nmt = nmt
+        self._heartbeat = bytes((nmt,))
+        self.emergencies.allowed = nmt in (PRE_OPERATIONAL, OPERATIONAL)
+        if nmt == OPERATIONAL:
+            self.pdos.start(t)
+        elif was_operational:
+            self.pdos.stop()
+            self._left_operational(t)
+
+    # timers --------------------------------------------------------------------------------------------------
+
+    def advance(self, t0: float, t1: float) -> None:
+        """Move from ``t0`` to ``t1`` s; every timer fires at its own time."""
+        while self.due_s <= t1:
+            if self.due_s < self._other_at:
+                self._beat()
+            else:
+                self.fire(max(t0, self.due_s))
+        self.now_s = t1
+
+    def reschedule(self) -> None:
+        """Find the next timer."""
+        other = min(self._boot_at, self._consumer_at, self.pdos.due_s, self._application_due())
+        self._other_at = other
+        self.due_s = min(self._heartbeat_at, other)
+
+    def fire(self, t: float) -> None:
+        """Do what has fallen due by ``t`` s."""
+        if self._heartbeat_at <= t:
+            self._beat()
+        if self._boot_at <= t:
+            self._boot(t)
+        if self._consumer_at <= t:
+            self._check_consumer(t)
+        if self.pdos.due_s <= t:
+            self.pdos.fire(t)
+        self._application_fire(t)
+        self.reschedule()
+
+    def _beat(self) -> None:
+        """Send the heartbeat that is due, stamped with its own time."""
+        due = self._heartbeat_at
+        self.wire.transmit(self._heartbeat_id, self._heartbeat, due)
+        self._heartbeat_at = due = due + self._heartbeat_s
+        self.due_s = due if due < self._other_at else self._other_at
+
+    # heartbeats ----------------------------------------------------------------------------------------------
+
+    def _on_producer_written(self, sub: int, value: int) -> None:
+        self._heartbeat_s = value * 1e-3
+        self._heartbeat_at = self.now_s + self._heartbeat_s if value else inf
+        self.reschedule()
+
+    def _on_consumer_written(self, sub: int, value: int) -> None:
+        """Watch the node that 0x1016 names; the watch begins with its first heartbeat (CiA 301, 7.2.8.2.2.3)."""
+        self._forget_consumer()
+        node, milliseconds = value >> 16, value & 0xFFFF
+        if node and milliseconds:
+            self._consumer_id = o.HEARTBEAT_BASE + node
+            self._consumer_timeout_s = milliseconds * 1e-3
+            self.wire.listen(self._consumer_id, self._on_heartbeat)
+        self.reschedule()
+
+    def _forget_consumer(self) -> None:
+        if self._consumer_id:
+            self.wire.forget(self._consumer_id, self._on_heartbeat)
+        self._consumer_id = 0
+        self._consumer_at = inf
+
+    def _on_heartbeat(self, data: bytes, t: float) -> None:
+        self._consumer_heard_s = t
+        if self._consumer_at == inf:
+            self._consumer_at = t + self._consumer_timeout_s
+            self.reschedule()
+            self.recovered(HEARTBEAT_LOST, t)
+
+    def _check_consumer(self, t: float) -> None:
+        deadline = self._consumer_heard_s + self._consumer_timeout_s
+        if deadline > t:
+            self._consumer_at = deadline
+            return
+        self._consumer_at = inf
+        self.error(HEARTBEAT_LOST, t)
+        self._connection_lost(t)
+        behaviour = self.store.values[(o.ERROR_BEHAVIOUR, 1)]
+        if behaviour == 0 and self.nmt == OPERATIONAL:
+            self._enter(PRE_OPERATIONAL, t)
+        elif behaviour == 2:
+            self._enter(STOPPED, t)
+
+    # errors --------------------------------------------------------------------------------------------------
+
+    def error(self, code: int, t: float) -> None:
+        """Report an error by EMCY, register and history."""
+        self.emergencies.add(code, t)
+
+    def recovered(self, code: int, t: float) -> None:
+        """Report that an error has gone."""
+        self.emergencies.remove(code, t)
+
+    def deadline_missed(self, t: float) -> None:
+        """Report an RPDO that did not come in time, and react as to a lost connection."""
+        self.error(RPDO_TIMED_OUT, t)
+        self._connection_lost(t)
+
+    # SDO -----------------------------------------------------------------------------------------------------
+
+    def _on_sdo(self, data: bytes, t: float) -> None:
+        if self.nmt in (BOOTING, STOPPED):
+            return
+        self.now_s = max(self.now_s, t)
+        reply = self._sdo.request(data)
+        # A value written by SDO must not outlive the next, equal RPDO.
+        self.pdos.refresh()
+        if reply is not None:
+            self.wire.transmit(o.SDO_REPLY_BASE + self.node_id, reply, t + self._turnaround_s)

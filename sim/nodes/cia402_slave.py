@@ -1,0 +1,320 @@
+"""A simulated CiA 402 servo drive: answers on the wire as a real one and moves a simulated axis.
+
+Built in layers: ``canopen_device`` (CiA 301), ``drive_power`` (power state machine), ``drive_modes`` (velocity,
+position, homing), ``drive_objects`` (what the objects of the profile show, accept and set off).
+"""
+
+from __future__ import annotations
+
+import struct
+from math import inf
+
+from drivers import cia402
+from drivers.axis import AxisConfig
+from drivers.canopen import objects as o
+from drivers.canopen.objects import Mode
+from drivers.canopen.pdo import RPDO1_VELOCITY, TPDO1_POSITION, TPDO1_VELOCITY
+from drivers.cia402 import State
+from sim.can_wire import CanWire
+from sim.nodes import drive_objects
+from sim.nodes.drive_modes import ProfileVelocity
+from sim.nodes.drive_objects import clamped_i16, wrapped_i32
+from sim.nodes.drive_positioning import Homing, ProfilePosition
+from sim.nodes.drive_power import Axis, DrivePower
+from sim.nodes.drive_state import FAULTY, STATUS_BITS
+from sim.nodes.motion import PositionAxis
+from sim.nodes.object_store import ObjectStore
+from sim.nodes.pdo_channels import ReceivePdo, TransmitPdo
+from sim.nodes.safety_io import SafetyIo
+
+_CONTROLWORD = (o.CONTROLWORD, 0)
+_MODE = (o.MODE, 0)
+_OUTPUTS = (o.DIGITAL_OUTPUTS, 1)
+_OUTPUT_MASK = (o.DIGITAL_OUTPUTS, 2)
+
+_TARGET_VELOCITY = (o.TARGET_VELOCITY, 0)
+
+_RPDO1 = struct.Struct("<Hi").unpack
+_TPDO1 = struct.Struct("<Hih").pack
+
+_URGENT_BITS = 0x006F | cia402.VOLTAGE | cia402.REMOTE | cia402.FOLLOWING_ERROR
+"""Statusword bits whose change asks for an early tick: the state, voltage, remote, deviation."""
+_URGENT_IN_POSITION_MODES = _URGENT_BITS | cia402.TARGET_REACHED | cia402.SET_POINT_ACKNOWLEDGED
+"""... and where a move is waited for, its acknowledgement and its end."""
+
+
+class Cia402Slave(DrivePower):
+    """One servo drive with its axis.
+
+    For the plant: ``axis.value`` (velocity) and ``axis.position`` in units of the axis; ``torque_nm`` is the load
+    torque to be reported in 0x6077, set from outside, and ``encoder_error`` what TPDO1's reading is off by; ``io`` the safety inputs and the contactor of a drive with
+    digital I/O. ``unpowered_velocity`` (unit/s) is what the axis is driven to while the power stage is off (a spring;
+    0: it coasts to rest) with ``coast_deceleration`` (unit/s2; by default the configured deceleration [A]).
+    """
+
+    __slots__ = (
+        "_by_position",
+        "_increments",
+        "_mode_bits",
+        "_offset",
+        "_per_mille",
+        "_sent_data",
+        "_sent_status",
+        "_sent_torque",
+        "_sent_value",
+        "_velocity",
+        "config",
+        "encoder_error",
+        "homed",
+        "homing",
+        "origin",
+        "statusword",
+        "torque_nm",
+    )
+
+    def __init__(
+        self,
+        config: AxisConfig,
+        wire: CanWire,
+        axis: Axis | None = None,
+        *,
+        serial_number: int = 0,
+        unpowered_velocity: float = 0.0,
+        coast_deceleration: float | None = None,
+        home_position: float = 0.0,
+        lag_s: float = 0.004,
+        boot_s: float = 0.2,
+        turnaround_s: float = 0.0005,
+        powered: bool = True,
+        now: float = 0.0,
+    ) -> None:
+        """Build a drive for ``config`` on ``wire``; it boots ``boot_s`` after ``now`` unless not ``powered``.
+
+        ``axis``: by default one at rest at 0 with the ramps of ``config`` and, under velocity control, the closed
+        loop's ``lag_s`` (s) [A]. ``home_position``: where the home switch of a positioning axis is (axis unit).
+        ``turnaround_s`` (s): from an SDO request to its answer [A].
+        """
+        store = ObjectStore(config.node_id, drive_objects.overrides(config, serial_number))
+        axis = drive_objects.default_axis(config, lag_s) if axis is None else axis
+        io = SafetyIo() if config.digital_io else None
+        super().__init__(wire, store, axis, io, boot_s, turnaround_s, now)
+        self.config = config
+        self.unpowered_velocity = unpowered_velocity
+        self.coast_deceleration = config.deceleration if coast_deceleration is None else coast_deceleration
+        self.torque_nm = 0.0
+        self.encoder_error = 0.0
+        self.origin = 0.0
+        self.homed = False
+        self.statusword = 0
+        self.homing: Homing | None = None
+        self._velocity: ProfileVelocity | None = None
+        if isinstance(axis, PositionAxis):
+            self.homing = Homing(self, axis, home_position)
+            self.modes = {Mode.PROFILE_POSITION: ProfilePosition(self, axis), Mode.HOMING: self.homing}
+        else:
+            self._velocity = ProfileVelocity(self, axis)
+            self.modes = {Mode.PROFILE_VELOCITY: self._velocity}
+        self._mode_bits = 0
+        self._by_position = config.feedback == "position"
+        self._increments = config.position_increments if self._by_position else config.velocity_increments
+        self._per_mille = 1000.0 / config.rated_torque_nm
+        drive_objects.install(self)
+        self._application_reset()
+        self.power(powered)
+
+    # time ----------------------------------------------------------------------------------------------------
+
+    def advance(self, t0: float, t1: float) -> None:
+        """Move axis and timers from ``t0`` to ``t1`` s; what falls due in between is done and stamped at its time."""
+        while self.due_s <= t1:
+            t = self.due_s
+            if t < self._other_at:
+                self._beat()
+                continue
+            if t > t0:
+                self._move(t0, t)
+                t0 = t
+            self.fire(t0)
+        if self._watching:
+            self._move(t0, t1)
+        elif not self.axis.still:
+            self.axis.step(t1 - t0)
+        self.now_s = t1
+
+    def _move(self, t0: float, t1: float) -> None:
+        """Step the axis and see what its motion means for the drive's state."""
+        axis = self.axis
+        if not axis.still:
+            axis.step(t1 - t0)
+        self.now_s = t1
+        if self._leaving is not None and self._at_rest():
+            self._arrived_at_rest()
+            self.update(t1)
+        mode = self.mode
+        if mode is None:
+            self._watching = self._leaving is not None
+            return
+        leaving = self._leaving is not None
+        self._watching = mode.watch(t1, self.state is State.OPERATION_ENABLED and not leaving) or leaving
+        if mode.bits != self._mode_bits:
+            self.update(t1)
+
+    def _application_due(self) -> float:
+        return inf if self.io is None else self.io.due_s
+
+    def _application_fire(self, t: float) -> None:
+        if self.io is not None and self.io.fire(t):
+            self.pdos.send_events(t)
+
+    # the world around the drive ------------------------------------------------------------------------------
+
+    def set_safety_chain(self, healthy: bool) -> None:
+        """Set input bit 16; an open chain lets the contactor drop out."""
+        if self.io is not None:
+            self.io.set_chain(healthy, self.now_s)
+            self.pdos.send_events(self.now_s)
+
+    def set_guard(self, closed: bool) -> None:
+        """Set input bit 17."""
+        if self.io is not None:
+            self.io.set_guard(closed)
+            self.pdos.send_events(self.now_s)
+
+    def block(self, blocked: bool) -> None:
+        """Hold the shaft by force, or free it."""
+        self.axis.block(blocked)
+        self._watching = True
+
+    # commands ------------------------------------------------------------------------------------------------
+
+    def process(self, t: float) -> None:
+        """Act on controlword, mode, targets and outputs as they stand in the object store."""
+        values = self.store.values
+        controlword = values[_CONTROLWORD]
+        if self.io is not None:
+            self._switch_outputs(values[_OUTPUTS] & values[_OUTPUT_MASK], t)
+        if self.local:
+            return
+        self.select_mode(values[_MODE])
+        self._command(controlword, t)
+        mode = self.mode
+        if mode is not None:
+            self._steady = self.state is State.OPERATION_ENABLED and self._leaving is None
+            if self._steady:
+                mode.follow(controlword, t)
+            else:
+                mode.note(controlword)
+        self._watching = True
+        self.update(t)
+
+    def _take_velocity(self, data: bytes, t: float) -> None:
+        """Take controlword and target velocity; in steady operation only the latter can be new."""
+        controlword, target = _RPDO1(data)
+        values = self.store.values
+        values[_TARGET_VELOCITY] = target
+        if self._steady and controlword == self._controlword and self._velocity is not None:
+            self._velocity.retarget(target)
+            self._watching = True
+        else:
+            values[_CONTROLWORD] = controlword
+            self.process(t)
+
+    def _application_reset(self) -> None:
+        """Stand as after power-on: no torque, no mode, position counted from here unless the encoder is absolute."""
+        self.mode = None
+        self.reload_ramps()
+        self._controlword = 0
+        self._power_stage_off(State.NOT_READY)
+        if self.config.mode == "position":
+            self.homed = False
+            self.origin = self.axis.position
+        self._forget_sample()
+        self._drop_outputs(self.now_s)
+        self.update(self.now_s)
+
+    def _application_ready(self, t: float) -> None:
+        if self.state is State.NOT_READY:
+            self.state = State.SWITCH_ON_DISABLED
+        self.update(t)
+        for code in self._causes:
+            self.fault(code)
+
+    # what it shows -------------------------------------------------------------------------------------------
+
+    def reload_ramps(self) -> None:
+        """Take over ramp and window objects; a move under way goes on with them."""
+        self.ramps.load(self.store, self.config.velocity_increments, self.config.position_increments)
+        if isinstance(self.mode, ProfileVelocity):
+            self.mode.start()
+
+    def set_home(self) -> None:
+        """Make the present position the home position: the zero position lies 0x607C beyond it (CiA 402-2, 8.3)."""
+        offset = self.store.values[(o.HOME_OFFSET, 0)]
+        self.origin = self.axis.position + offset / self.config.position_increments
+        self.homed = True
+        self._forget_sample()
+
+    def counts_to_position(self, counts: int) -> float:
+        """Return the machine position (axis unit) of a position in counts."""
+        return counts / self.config.position_increments + self.origin
+
+    def update(self, t: float) -> None:
+        """Compose the statusword; a change goes into the TPDOs, one of state asks for an early tick."""
+        state = self.state
+        word = STATUS_BITS[state]
+        urgent = _URGENT_BITS
+        mode = self.mode
+        self._mode_bits = 0
+        if mode is not None:
+            self._mode_bits = mode.bits
+            word |= mode.bits
+            if not isinstance(mode, ProfileVelocity):
+                urgent = _URGENT_IN_POSITION_MODES
+        if state is State.QUICK_STOP_ACTIVE and self._leaving is None:
+            word |= cia402.TARGET_REACHED
+        if not self.torque_off:
+            word |= cia402.VOLTAGE
+        if not self.local:
+            word |= cia402.REMOTE
+        if self.emergencies.present and state not in FAULTY:
+            word |= cia402.WARNING
+        if word != self.statusword:
+            if (word ^ self.statusword) & urgent:
+                self.pdos.urgent = True
+            self.statusword = word
+            self.pdos.status_changed(t)
+
+    def prepare_source(self, pdo: TransmitPdo) -> None:
+        """Give the usual TPDO1 its own packing."""
+        usual = TPDO1_POSITION if self._by_position else TPDO1_VELOCITY
+        if pdo.fields == usual.fields:
+            pdo.source = self._sample
+
+    def prepare_sink(self, pdo: ReceivePdo) -> None:
+        """Give the usual RPDO1 of a velocity drive a short cut to its target."""
+        if pdo.fields == RPDO1_VELOCITY.fields:
+            pdo.sink = self._take_velocity
+
+    def _forget_sample(self) -> None:
+        self._offset = self.origin if self._by_position else 0.0
+        self._sent_status = -1
+        self._sent_value = 0.0
+        self._sent_torque = 0.0
+        self._sent_data = b""
+
+    def _sample(self) -> bytes:
+        """Return statusword, actual value and torque packed; the same bytes while none of them changed."""
+        axis = self.axis
+        value = (axis.position if self._by_position else axis.value) + self.encoder_error
+        torque = self.torque_nm
+        if value != self._sent_value or torque != self._sent_torque or self.statusword != self._sent_status:
+            self._sent_value = value
+            self._sent_torque = torque
+            self._sent_status = self.statusword
+            counts = round((value - self._offset) * self._increments)
+            per_mille = round(torque * self._per_mille)
+            try:
+                self._sent_data = _TPDO1(self.statusword, counts, per_mille)
+            except struct.error:
+                self._sent_data = _TPDO1(self.statusword, wrapped_i32(counts), clamped_i16(per_mille))
+        return self._sent_data

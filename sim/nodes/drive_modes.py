@@ -1,0 +1,197 @@
+"""The modes of operation of the simulated drive (CiA 402-2): what they share, and profile velocity.
+
+A mode turns targets and controlword bits into motion of the axis, and the axis' motion into the statusword bits 10,
+12 and 13, whose meaning is the mode's own. ``follow`` is called with every new controlword or target while operation
+is enabled, ``watch`` after every step of an axis that moves or whose bits wait for a time window.
+"""
+
+from __future__ import annotations
+
+from math import inf
+from typing import Protocol
+
+from drivers import cia402
+from drivers.canopen import objects as o
+from sim.nodes.motion import VelocityAxis
+from sim.nodes.object_store import ObjectStore
+
+_UNLIMITED = 0xFFFF_FFFF
+ROUNDING_S = 1e-9
+_TARGET_VELOCITY = (o.TARGET_VELOCITY, 0)
+
+
+class Ramps:
+    """What the drive's ramp and window objects mean in engineering units; taken over by ``load``."""
+
+    __slots__ = (
+        "acceleration",
+        "deceleration",
+        "following_error",
+        "following_error_s",
+        "halt",
+        "limit",
+        "max_slippage",
+        "position_window",
+        "position_window_s",
+        "quick_stop",
+        "velocity_increments",
+        "velocity_threshold",
+        "velocity_threshold_s",
+        "velocity_window",
+        "velocity_window_s",
+    )
+
+    def load(self, store: ObjectStore, velocity_increments: float, position_increments: float) -> None:
+        """Take over the objects; increments are counts per unit/s and per unit (0: positions are not used)."""
+        values = store.values
+        per = self.velocity_increments = velocity_increments
+        per_position = position_increments or inf
+        self.acceleration = values[(o.PROFILE_ACCELERATION, 0)] / per
+        self.deceleration = values[(o.PROFILE_DECELERATION, 0)] / per
+        self.quick_stop = values[(o.QUICK_STOP_DECELERATION, 0)] / per
+        self.halt = self.quick_stop if values[(o.HALT_OPTION, 0)] == 2 else self.deceleration
+        self.limit = min(values[(o.MAX_MOTOR_SPEED, 0)], values[(o.MAX_PROFILE_VELOCITY, 0)]) / per
+        self.max_slippage = values[(o.MAX_SLIPPAGE, 0)] / per
+        self.velocity_window = values[(o.VELOCITY_WINDOW, 0)] / per
+        self.velocity_window_s = values[(o.VELOCITY_WINDOW_TIME, 0)] * 1e-3
+        self.velocity_threshold = values[(o.VELOCITY_THRESHOLD, 0)] / per
+        self.velocity_threshold_s = values[(o.VELOCITY_THRESHOLD_TIME, 0)] * 1e-3
+        self.position_window = values[(o.POSITION_WINDOW, 0)] / per_position
+        self.position_window_s = values[(o.POSITION_WINDOW_TIME, 0)] * 1e-3
+        window = values[(o.FOLLOWING_ERROR_WINDOW, 0)]
+        self.following_error = inf if window == _UNLIMITED else window / per_position
+        self.following_error_s = values[(o.FOLLOWING_ERROR_TIME, 0)] * 1e-3
+
+
+class Held:
+    """A condition that counts once it has held for some time."""
+
+    __slots__ = ("since_s", "true")
+
+    def __init__(self) -> None:
+        self.since_s = inf
+        self.true = False
+
+    def check(self, condition: bool, hold_s: float, t: float) -> bool:
+        """Take the condition at ``t`` s; return whether it has yet to be looked at again."""
+        if not condition:
+            self.since_s = inf
+            self.true = False
+            return False
+        if self.since_s == inf:
+            self.since_s = t
+        self.true = t >= self.since_s + hold_s - ROUNDING_S
+        return not self.true
+
+    def clear(self) -> None:
+        """Start again."""
+        self.since_s = inf
+        self.true = False
+
+
+class ModeOwner(Protocol):
+    """The drive a mode belongs to."""
+
+    store: ObjectStore
+    ramps: Ramps
+    homed: bool
+
+    def counts_to_position(self, counts: int) -> float:
+        """Return the machine position (unit) of a position in counts."""
+        ...
+
+    def set_home(self) -> None:
+        """Make the present position the machine home position."""
+        ...
+
+    def fault(self, code: int) -> None:
+        """Enter the fault reaction."""
+        ...
+
+
+class ProfileVelocity:
+    """Mode 3: ramp to 0x60FF. Bit 10 target reached, 12 speed zero, 13 slippage error."""
+
+    __slots__ = ("_axis", "_drive", "_halt", "_reached_at", "_target", "_zero_at", "bits", "limited")
+
+    def __init__(self, drive: ModeOwner, axis: VelocityAxis) -> None:
+        self._drive = drive
+        self._axis = axis
+        self._target: int | None = None
+        self._halt = 0
+        self._reached_at = inf
+        self._zero_at = inf
+        self.bits = 0
+        self.limited = False
+
+    def start(self) -> None:
+        """Operation was enabled, or ramps have changed: the next target counts as new."""
+        self._target = None
+
+    def note(self, controlword: int) -> None:
+        """Nothing in this mode depends on edges."""
+
+    def follow(self, controlword: int, t: float) -> None:
+        """Aim at the target velocity, or at standstill while halted."""
+        target = self._drive.store.values[_TARGET_VELOCITY]
+        halt = controlword & cia402.HALT
+        if target == self._target and halt == self._halt:
+            return
+        self._halt = halt
+        ramps = self._drive.ramps
+        self._target = None
+        if halt:
+            self._axis.aim(0.0, deceleration=ramps.halt)
+            self.limited = False
+        else:
+            self._axis.aim(self._axis.target, ramps.acceleration, ramps.deceleration)
+            self.retarget(target)
+
+    def retarget(self, target: int) -> None:
+        """Aim at a target velocity in counts, on the ramps in force."""
+        if target == self._target or self._halt:
+            return
+        self._target = target
+        ramps = self._drive.ramps
+        speed = target / ramps.velocity_increments
+        limit = ramps.limit
+        if -limit <= speed <= limit:
+            self.limited = False
+        else:
+            self.limited = True
+            speed = limit if speed > 0.0 else -limit
+        self._axis.aim(speed)
+
+    def watch(self, t: float, enabled: bool) -> bool:
+        """Update the status bits; return whether they may still change without a new target."""
+        axis, ramps = self._axis, self._drive.ramps
+        value = axis.value
+        bits = 0
+        waiting = not axis.settled
+        window = ramps.velocity_window
+        if enabled and -window <= value - axis.target <= window:
+            if self._reached_at == inf:
+                self._reached_at = t + ramps.velocity_window_s
+            if t >= self._reached_at - ROUNDING_S:
+                bits = cia402.TARGET_REACHED
+            else:
+                waiting = True
+        else:
+            self._reached_at = inf
+        threshold = ramps.velocity_threshold
+        if -threshold <= value <= threshold:
+            if self._zero_at == inf:
+                self._zero_at = t + ramps.velocity_threshold_s
+            if t >= self._zero_at - ROUNDING_S:
+                bits |= cia402.SPEED_ZERO
+            else:
+                waiting = True
+        else:
+            self._zero_at = inf
+        slippage = axis.demand - value
+        if enabled and not -ramps.max_slippage <= slippage <= ramps.max_slippage:
+            bits |= cia402.MAX_SLIPPAGE
+        if enabled and self.limited:
+            bits |= cia402.INTERNAL_LIMIT
+        self.bits = bits
+        return waiting

@@ -1,0 +1,205 @@
+"""What the objects of the drive profile (0x6000-0x6FFF) of the simulated drive show, accept and set off."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from drivers.axis import AxisConfig
+from drivers.canopen import objects as o
+from drivers.canopen.objects import Mode
+from drivers.cia402 import State
+from sim.nodes import sdo_server as sdo
+from sim.nodes.motion import PositionAxis, VelocityAxis
+from sim.nodes.object_store import Key
+from sim.nodes.sdo_server import SdoAbortError
+
+if TYPE_CHECKING:
+    from sim.nodes.cia402_slave import Cia402Slave
+
+_OPTIONS: dict[int, tuple[int, ...]] = {
+    o.ABORT_CONNECTION_OPTION: (0, 1, 2, 3),
+    o.QUICK_STOP_OPTION: (0, 1, 2, 5, 6),
+    o.SHUTDOWN_OPTION: (0, 1),
+    o.DISABLE_OPERATION_OPTION: (0, 1),
+    o.HALT_OPTION: (1, 2),
+    o.FAULT_REACTION_OPTION: (0, 1, 2),
+    o.HOMING_METHOD: (0, 1, 2, *range(17, 31), 33, 34, 35, 37),
+}
+"""Values accepted; drives support subsets of the standard's (fieldbus notes 5.1)."""
+
+_MODES: dict[str, tuple[Mode, ...]] = {
+    "velocity": (Mode.PROFILE_VELOCITY,),
+    "position": (Mode.PROFILE_POSITION, Mode.HOMING),
+}
+"""Modes a drive offers, by what its axis is configured for."""
+
+_RATES = (
+    o.PROFILE_ACCELERATION,
+    o.PROFILE_DECELERATION,
+    o.QUICK_STOP_DECELERATION,
+    o.HOMING_ACCELERATION,
+)
+_RAMP_OBJECTS = (
+    *_RATES,
+    o.HALT_OPTION,
+    o.MAX_MOTOR_SPEED,
+    o.MAX_PROFILE_VELOCITY,
+    o.MAX_SLIPPAGE,
+    o.VELOCITY_WINDOW,
+    o.VELOCITY_WINDOW_TIME,
+    o.VELOCITY_THRESHOLD,
+    o.VELOCITY_THRESHOLD_TIME,
+    o.POSITION_WINDOW,
+    o.POSITION_WINDOW_TIME,
+    o.FOLLOWING_ERROR_WINDOW,
+    o.FOLLOWING_ERROR_TIME,
+)
+_COMMANDS = (o.CONTROLWORD, o.MODE, o.TARGET_VELOCITY, o.TARGET_POSITION, o.DIGITAL_OUTPUTS)
+
+
+def overrides(config: AxisConfig, serial_number: int) -> dict[Key, int | str]:
+    """Return the values that make the dictionary this axis' drive: identity, ratings, modes."""
+    modes = 0
+    for mode in _MODES[config.mode]:
+        modes |= 1 << (mode - 1)
+    return {
+        (o.IDENTITY, 1): config.vendor_id,
+        (o.IDENTITY, 2): config.product_code,
+        (o.IDENTITY, 4): serial_number or config.serial_number or config.node_id,
+        (o.RATED_TORQUE, 0): round(config.rated_torque_nm * 1000.0),
+        (o.SUPPORTED_MODES, 0): modes,
+    }
+
+
+def default_axis(config: AxisConfig, lag_s: float) -> VelocityAxis | PositionAxis:
+    """Return an axis at rest at 0 that moves as configured; ``lag_s`` (s) of its velocity loop."""
+    if config.mode == "position":
+        return PositionAxis(config.max_speed, config.acceleration, config.deceleration)
+    return VelocityAxis(config.acceleration, config.deceleration, lag_s)
+
+
+def install(drive: Cia402Slave) -> None:
+    """Connect the drive's objects with what they show and do."""
+    _Objects(drive)
+
+
+class _Objects:
+    """Readers, guards and hooks of one drive's objects."""
+
+    __slots__ = ("_drive",)
+
+    def __init__(self, drive: Cia402Slave) -> None:
+        self._drive = drive
+        store = drive.store
+        store.readers.update(
+            {
+                (o.STATUSWORD, 0): self._statusword,
+                (o.MODE_DISPLAY, 0): self._mode_display,
+                (o.POSITION_ACTUAL, 0): self._position,
+                (o.FOLLOWING_ERROR, 0): self._following_error,
+                (o.VELOCITY_DEMAND, 0): self._demand,
+                (o.VELOCITY_ACTUAL, 0): self._velocity,
+                (o.TORQUE_ACTUAL, 0): self._torque,
+                (o.CURRENT_ACTUAL, 0): self._torque,
+                (o.DIGITAL_INPUTS, 0): self._inputs,
+            }
+        )
+        for index, values in _OPTIONS.items():
+            store.guards[index] = _Choice(values).check
+        for index in _RATES:
+            store.guards[index] = self._guard_rate
+        store.guards[o.MODE] = self._guard_mode
+        store.guards[o.CONTROLWORD] = self._guard_control
+        for index in _RAMP_OBJECTS:
+            store.hooks[index] = self._on_ramp
+        for index in _COMMANDS:
+            store.hooks[index] = self._on_command
+
+    # shown ---------------------------------------------------------------------------------------------------
+
+    def _statusword(self) -> int:
+        return self._drive.statusword
+
+    def _mode_display(self) -> int:
+        return self._drive.mode_display
+
+    def _position(self) -> int:
+        drive = self._drive
+        return wrapped_i32((drive.axis.position - drive.origin) * drive.config.position_increments)
+
+    def _following_error(self) -> int:
+        drive = self._drive
+        if isinstance(drive.axis, VelocityAxis):
+            return 0
+        return wrapped_i32((drive.axis.demand - drive.axis.position) * drive.config.position_increments)
+
+    def _demand(self) -> int:
+        drive = self._drive
+        demand = drive.axis.demand if isinstance(drive.axis, VelocityAxis) else drive.axis.value
+        return wrapped_i32(demand * drive.config.velocity_increments)
+
+    def _velocity(self) -> int:
+        drive = self._drive
+        return wrapped_i32(drive.axis.value * drive.config.velocity_increments)
+
+    def _torque(self) -> int:
+        drive = self._drive
+        return clamped_i16(drive.torque_nm * 1000.0 / drive.config.rated_torque_nm)
+
+    def _inputs(self) -> int:
+        io = self._drive.io
+        return 0 if io is None else io.inputs
+
+    # accepted ------------------------------------------------------------------------------------------------
+
+    def _guard_rate(self, sub: int, value: int) -> None:
+        if value == 0:
+            raise SdoAbortError(sdo.VALUE_TOO_LOW)
+
+    def _guard_mode(self, sub: int, value: int) -> None:
+        drive = self._drive
+        if value and value not in drive.modes:
+            raise SdoAbortError(sdo.VALUE_RANGE)
+        if value != drive.mode_display and not drive.axis.still:
+            raise SdoAbortError(sdo.DEVICE_STATE)
+
+    def _guard_control(self, sub: int, value: int) -> None:
+        if self._drive.local:
+            raise SdoAbortError(sdo.LOCAL_CONTROL)
+        if self._drive.state is State.NOT_READY:
+            raise SdoAbortError(sdo.DEVICE_STATE)
+
+    # set off -------------------------------------------------------------------------------------------------
+
+    def _on_ramp(self, sub: int, value: int) -> None:
+        self._drive.reload_ramps()
+        self._drive.process(self._drive.now_s)
+
+    def _on_command(self, sub: int, value: int) -> None:
+        self._drive.process(self._drive.now_s)
+
+
+class _Choice:
+    """A guard for an object with a few accepted values."""
+
+    __slots__ = ("_values",)
+
+    def __init__(self, values: tuple[int, ...]) -> None:
+        self._values = values
+
+    def check(self, sub: int, value: int) -> None:
+        """Refuse every other value."""
+        if value not in self._values:
+            raise SdoAbortError(sdo.VALUE_RANGE)
+
+
+def wrapped_i32(counts: float) -> int:
+    """Return counts rounded, as an I32: a position counter wraps around."""
+    return (round(counts) + 0x8000_0000) % 0x1_0000_0000 - 0x8000_0000
+
+
+
+
+def clamped_i16(value: float) -> int:
+    """Return a value rounded and limited to the range of an I16."""
+    return max(-0x7FFF, min(0x7FFF, round(value)))

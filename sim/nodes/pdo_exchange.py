@@ -1,0 +1,236 @@
+"""The process data traffic of a simulated device: RPDOs in, SYNC, TPDOs out, deadlines and event timers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import inf
+from typing import Protocol
+
+from drivers.canopen import objects as o
+from sim.can_wire import CanWire, Listener
+from sim.nodes.object_store import ObjectStore
+from sim.nodes.pdo_channels import ReceivePdo, TransmitPdo
+
+PDO_TOO_SHORT = 0x8210
+PDO_TOO_LONG = 0x8220
+RPDO_TIMED_OUT = 0x8250
+_STATUSWORD = (o.STATUSWORD, 0)
+
+
+def _nothing() -> bytes:
+    return b""
+
+
+class PdoOwner(Protocol):
+    """The device behind the process data."""
+
+    def process(self, t: float) -> None:
+        """Act on received process data, now in the object store."""
+        ...
+
+    def error(self, code: int, t: float) -> None:
+        """Report a process data error."""
+        ...
+
+    def recovered(self, code: int, t: float) -> None:
+        """Note that a process data error has gone."""
+        ...
+
+    def deadline_missed(self, t: float) -> None:
+        """React to an RPDO that did not come in time."""
+        ...
+
+    def prepare_source(self, pdo: TransmitPdo) -> None:
+        """Put a quicker source into a TPDO, where there is one."""
+        ...
+
+    def prepare_sink(self, pdo: ReceivePdo) -> None:
+        """Put a quicker sink into an RPDO, where there is one."""
+        ...
+
+    def reschedule(self) -> None:
+        """Take note of a new ``PdoExchange.due_s``."""
+        ...
+
+
+class PdoExchange:
+    """All PDOs of one device; running while the device is OPERATIONAL.
+
+    ``due_s`` is the next deadline or event timer; ``urgent`` marks the next synchronous TPDO as urgent for the wire.
+    """
+
+    __slots__ = (
+        "_counted_tpdos",
+        "_each_sync",
+        "_event_tpdos",
+        "_routes",
+        "_running",
+        "_single_id",
+        "_single_source",
+        "_status_on_event",
+        "_store",
+        "_wire",
+        "due_s",
+        "fresh",
+        "owner",
+        "rpdos",
+        "tpdos",
+        "urgent",
+    )
+
+    def __init__(self, owner: PdoOwner, wire: CanWire, store: ObjectStore) -> None:
+        """Create the two receive and two transmit PDOs of a device, not running."""
+        self.owner = owner
+        self._wire = wire
+        self._store = store
+        self._running = False
+        self._routes: list[tuple[int, Listener]] = []
+        self.fresh: list[ReceivePdo] = []
+        changed: Callable[[], None] = self.reload
+        self.rpdos = [ReceivePdo(self, store, number, changed) for number in (1, 2)]
+        self.tpdos = [TransmitPdo(store, number, changed) for number in (1, 2)]
+        self._each_sync: tuple[tuple[int, Callable[[], bytes]], ...] = ()
+        self._counted_tpdos: tuple[TransmitPdo, ...] = ()
+        self._event_tpdos: tuple[TransmitPdo, ...] = ()
+        self._status_on_event = False
+        self._single_id = 0
+        self._single_source = _nothing
+        self.urgent = False
+        self.due_s = inf
+
+    def start(self, t: float) -> None:
+        """Begin at ``t`` s (NMT OPERATIONAL); event-driven TPDOs are sent once."""
+        self._running = True
+        self.reload()
+        self.send_events(t)
+
+    def stop(self) -> None:
+        """End the traffic."""
+        self._running = False
+        self.reload()
+
+    def reload(self) -> None:
+        """Take over the PDO parameters and listen accordingly."""
+        for can_id, listener in self._routes:
+            self._wire.forget(can_id, listener)
+        self._routes.clear()
+        self.fresh.clear()
+        for pdo in (*self.rpdos, *self.tpdos):
+            pdo.load()
+        sending = [pdo for pdo in self.tpdos if pdo.cob_id is not None] if self._running else []
+        for pdo in sending:
+            self.owner.prepare_source(pdo)
+        self._each_sync = tuple((pdo.cob_id or 0, pdo.source) for pdo in sending if pdo.kind == 1)
+        self._counted_tpdos = tuple(pdo for pdo in sending if pdo.synchronous and pdo.kind != 1)
+        self._event_tpdos = tuple(pdo for pdo in sending if not pdo.synchronous)
+        self._status_on_event = any(pdo.kind != 1 and _STATUSWORD in pdo.keys for pdo in sending)
+        if self._running:
+            for pdo in self.rpdos:
+                if pdo.cob_id is not None:
+                    self.owner.prepare_sink(pdo)
+                    self._listen(pdo.cob_id, pdo.on_frame)
+            single = len(self._each_sync) == 1 and not self._counted_tpdos
+            if single:
+                self._single_id, self._single_source = self._each_sync[0]
+            self._listen(o.SYNC_ID, self._on_sync_single if single else self._on_sync)
+        self._find_due()
+
+    def _listen(self, can_id: int, listener: Listener) -> None:
+        self._routes.append((can_id, listener))
+        self._wire.listen(can_id, listener, self._store.node_id)
+
+    # in ------------------------------------------------------------------------------------------------------
+
+    def examine(self, pdo: ReceivePdo, data: bytes, t: float) -> None:
+        """Take an RPDO with a deadline, an event-driven one, or one of the wrong length."""
+        pdo.data = data
+        size = len(data)
+        if pdo.faulty:
+            self.owner.recovered(pdo.faulty, t)
+            pdo.faulty = 0
+        if size != pdo.size:
+            pdo.faulty = PDO_TOO_SHORT if size < pdo.size else PDO_TOO_LONG
+            self.owner.error(pdo.faulty, t)
+            if size < pdo.size:
+                return
+        pdo.held = data = data[: pdo.size]
+        if pdo.deadline_s > 0.0 and pdo.deadline_at == inf:
+            pdo.deadline_at = t + pdo.deadline_s
+            self.owner.recovered(RPDO_TIMED_OUT, t)
+            self._find_due()
+        if pdo.synchronous:
+            self.fresh.append(pdo)
+        else:
+            pdo.sink(data, t)
+
+    def refresh(self) -> None:
+        """Let the next frame of every RPDO count as new, even with the bytes of the last one."""
+        for pdo in self.rpdos:
+            pdo.data = None
+
+    # out -----------------------------------------------------------------------------------------------------
+
+    def _on_sync_single(self, data: bytes, t: float) -> None:
+        """Do what ``_on_sync`` does, where one TPDO goes with each SYNC and nothing else."""
+        if self.fresh:
+            self._drain(t)
+        self._wire.transmit(self._single_id, self._single_source(), t, self.urgent)
+        self.urgent = False
+
+    def _on_sync(self, data: bytes, t: float) -> None:
+        """Apply what came for this SYNC and send the TPDOs that go with it."""
+        self._drain(t)
+        for cob_id, source in self._each_sync:
+            self._wire.transmit(cob_id, source(), t, self.urgent)
+        for pdo in self._counted_tpdos:
+            if pdo.cob_id is not None and pdo.sync_due():
+                self._wire.transmit(pdo.cob_id, pdo.source(), t, self.urgent)
+        self.urgent = False
+
+    def _drain(self, t: float) -> None:
+        for pdo in self.fresh:
+            pdo.sink(pdo.held, t)
+        self.fresh.clear()
+
+    def take(self, pdo: ReceivePdo, data: bytes, t: float) -> None:
+        """Write what an RPDO maps into the object store and have the device act on it."""
+        self._store.values.update(zip(pdo.keys, pdo.unpack(data), strict=True))
+        self.owner.process(t)
+
+    def send_events(self, t: float) -> None:
+        """Send the event-driven TPDOs whose content has changed or whose event timer is due."""
+        for pdo in self.tpdos:
+            pdo.changed = True
+        for pdo in self._event_tpdos:
+            data = pdo.source()
+            if pdo.cob_id is not None and pdo.event_due(data, t):
+                self._wire.transmit(pdo.cob_id, data, t, True)
+                pdo.note_sent(data, t)
+        self._find_due()
+
+    def status_changed(self, t: float) -> None:
+        """Take note of a new statusword: a PDO sent on events may carry it."""
+        if self._status_on_event:
+            self.send_events(t)
+
+    # timers --------------------------------------------------------------------------------------------------
+
+    def fire(self, t: float) -> None:
+        """Do what has fallen due by ``t`` s."""
+        for pdo in self.rpdos:
+            if pdo.deadline_at <= t:
+                pdo.deadline_at = pdo.stamp_s + pdo.deadline_s
+                if pdo.deadline_at <= t:
+                    pdo.deadline_at = inf
+                    pdo.data = None
+                    self.owner.deadline_missed(t)
+        self.send_events(t)
+
+    def _find_due(self) -> None:
+        due = inf
+        for awaited in self.rpdos:
+            due = min(due, awaited.deadline_at)
+        for sent in self._event_tpdos:
+            due = min(due, sent.due_s)
+        self.due_s = due
+        self.owner.reschedule()

@@ -1,0 +1,74 @@
+"""The digital inputs and outputs at a drive: safety chain, guard, and the contactor it switches (rulings.md, 20)."""
+
+from __future__ import annotations
+
+from math import inf
+
+SAFETY_CHAIN = 1 << 16
+"""0x60FD bit 16: the safety chain (emergency stop circuit) is healthy."""
+GUARD_CLOSED = 1 << 17
+"""0x60FD bit 17: the guard is closed."""
+CONTACTOR = 1 << 18
+"""0x60FD bit 18: the contactor has pulled in (feedback contact)."""
+CONTACTOR_REQUEST = 1 << 16
+"""0x60FE:01 bit 16: pull the contactor in."""
+
+PULL_IN_S = 0.03
+"""From the request to the feedback of a small power contactor, s [A]."""
+DROP_OUT_S = 0.02
+"""From the end of the request or of the safety chain to the feedback, s [A]."""
+
+
+class SafetyIo:
+    """Inputs as levels, and a contactor that needs both the request and a healthy safety chain.
+
+    ``contactor_closed`` is the state of its power contacts; ``due_s`` is when it moves next.
+    """
+
+    __slots__ = ("_chain", "_guard", "_requested", "contactor_closed", "due_s")
+
+    def __init__(self) -> None:
+        """Start with a healthy chain, a closed guard and the contactor open."""
+        self._chain = True
+        self._guard = True
+        self._requested = False
+        self.contactor_closed = False
+        self.due_s = inf
+
+    @property
+    def inputs(self) -> int:
+        """The word of 0x60FD."""
+        return self._chain * SAFETY_CHAIN | self._guard * GUARD_CLOSED | self.contactor_closed * CONTACTOR
+
+    def set_chain(self, healthy: bool, t: float) -> None:
+        """Open or close the safety chain at ``t`` s."""
+        self._chain = healthy
+        self._aim(t)
+
+    def set_guard(self, closed: bool) -> None:
+        """Open or close the guard."""
+        self._guard = closed
+
+    def set_outputs(self, word: int, t: float) -> bool:
+        """Take the word of 0x60FE:01, masked by :02, at ``t`` s; return whether the request changed."""
+        requested = bool(word & CONTACTOR_REQUEST)
+        if requested == self._requested:
+            return False
+        self._requested = requested
+        self._aim(t)
+        return True
+
+    def fire(self, t: float) -> bool:
+        """Move the contactor when it is due by ``t`` s; return whether it moved."""
+        if self.due_s > t:
+            return False
+        self.due_s = inf
+        self.contactor_closed = not self.contactor_closed
+        return True
+
+    def _aim(self, t: float) -> None:
+        wanted = self._requested and self._chain
+        if wanted == self.contactor_closed:
+            self.due_s = inf
+        elif self.due_s == inf:
+            self.due_s = t + (PULL_IN_S if wanted else DROP_OUT_S)
