@@ -94,9 +94,9 @@ def test_export_writes_to_stdout_what_the_run_folder_holds(home: Path) -> None:
 
     write_all(home / "runs" / "one")
     for kind in ("appendix", "conditions", "repeats"):
-        assert invoke(export, "one", "--format", kind).stdout_bytes == (
-            home / "runs" / "one" / f"{kind}.csv"
-        ).read_bytes()
+        assert (
+            invoke(export, "one", "--format", kind).stdout_bytes == (home / "runs" / "one" / f"{kind}.csv").read_bytes()
+        )
 
 
 def test_export_takes_a_folder_and_decimals(home: Path) -> None:
@@ -136,7 +136,9 @@ def test_a_run_that_is_not_there_is_a_usage_error(home: Path, command: list[obje
     assert "no run nothing" in result.stderr
 
 
-@pytest.mark.parametrize("arguments", [["one"], ["one", "--format", "xlsx"], ["one", "--format", "appendix", "--decimals", "-1"]])
+@pytest.mark.parametrize(
+    "arguments", [["one"], ["one", "--format", "xlsx"], ["one", "--format", "appendix", "--decimals", "-1"]]
+)
 def test_wrong_options_are_usage_errors(home: Path, arguments: list[str]) -> None:
     assert invoke(export, *arguments).exit_code == 2
 

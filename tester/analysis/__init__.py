@@ -1,0 +1,1 @@
+"""From samples to coefficients: blocks, stability, repeats, conditions, uncertainty. Plain values throughout."""

@@ -1,0 +1,251 @@
+"""From repeats to a condition's coefficient, and from replicates on several wheels to one.
+
+A repeat is left out only on objective grounds: a gate or the drift test made it not valid, or it fluctuates
+in excess, by Cochran's C (1 %) and by a variation within its window of more than three times its siblings'
+median. A value far from the others is flagged and stays: leaving out what does not agree makes any machine
+look precise (the closest two of three show a third of the true scatter). Both means are given.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from math import isfinite, sqrt
+from statistics import median
+
+from tester.analysis.blocks import AVERAGED
+from tester.analysis.quantiles import f_quantile, t_quantile
+from tester.analysis.reduce import standard_deviation
+from tester.analysis.results import NAN, ConditionStatus, RepeatResult, RepeatStatus
+from tester.analysis.uncertainty import CONFIDENCE, INSTRUMENTS, Contribution, Instruments, friction_budget
+
+COCHRAN_ALPHA = 0.01
+"""Level at which ISO 5725-2 calls a variance an outlier."""
+
+EXCESS_FACTOR = 3.0
+"""A repeat that varies by more than this times its siblings' median (physics.md 6)."""
+
+OUTLIER_SIGMAS = 3.5
+REPEATABILITY = 0.02
+"""Historic standard deviation between repeats as a share of the coefficient (physics.md 5) [A]."""
+
+
+@dataclass(frozen=True, slots=True)
+class Exclusion:
+    """One repeat that does not enter the mean: its position in the sequence given, from 0, and why."""
+
+    position: int
+    reason: str
+
+
+@dataclass(frozen=True, slots=True)
+class ConditionResult:
+    """A condition's coefficient. ``s``: standard deviation between its ``n_valid`` values of ``n``.
+
+    ``interval`` is half the 95 % t interval of the mean, ``type_a`` s / sqrt(n); ``standard`` and
+    ``expanded`` (``coverage`` times it, 95 %) are those of the budget. ``measured`` holds the means over
+    the valid repeats of what a block averages (names and units of AVERAGED). ``mu_without_flagged`` leaves
+    out flagged outliers.
+    """
+
+    status: ConditionStatus
+    reason: str = ""
+    flags: str = ""
+    mu_resultant: float = NAN
+    mu_longitudinal: float = NAN
+    mu_lateral: float = NAN
+    mu_without_flagged: float = NAN
+    s: float = NAN
+    n_valid: int = 0
+    n: int = 0
+    interval: float = NAN
+    type_a: float = NAN
+    standard: float = NAN
+    expanded: float = NAN
+    coverage: float = NAN
+    measured: dict[str, float] = field(default_factory=dict[str, float])
+    excluded: tuple[Exclusion, ...] = ()
+    flagged: tuple[int, ...] = ()
+
+    @property
+    def ok(self) -> bool:
+        """Return whether the coefficient can be trusted."""
+        return self.status is ConditionStatus.OK
+
+
+def cochran_critical(groups: int, df: float, alpha: float = COCHRAN_ALPHA) -> float:
+    """Return the critical value of Cochran's C for ``groups`` (>= 2) variances of ``df`` degrees of freedom."""
+    f = f_quantile(1.0 - alpha / groups, df, (groups - 1) * df)
+    return f / (f + groups - 1.0)
+
+
+def excess_fluctuation(results: Sequence[RepeatResult]) -> int | None:
+    """Return the position of the repeat that fluctuates in excess of its siblings, None if there is none.
+
+    Needs three repeats: of two nobody can say which one is odd.
+    """
+    spreads = [result.fluctuation_percent * result.mu_resultant for result in results]
+    df = min((result.batches for result in results), default=0) - 1
+    if len(results) < 3 or df < 1 or not all(map(isfinite, spreads)):
+        return None
+    worst = max(range(len(spreads)), key=spreads.__getitem__)
+    total = sum(spread * spread for spread in spreads)
+    if total <= 0.0 or spreads[worst] ** 2 / total <= cochran_critical(len(spreads), df):
+        return None
+    siblings = [result.fluctuation_percent for i, result in enumerate(results) if i != worst]
+    return worst if results[worst].fluctuation_percent > EXCESS_FACTOR * median(siblings) else None
+
+
+def _exclusions(results: Sequence[RepeatResult]) -> list[Exclusion]:
+    excluded = [
+        Exclusion(i, f"{result.status.value}{': ' + result.reason if result.reason else ''}")
+        for i, result in enumerate(results)
+        if not result.valid
+    ]
+    kept = [i for i, result in enumerate(results) if result.valid]
+    while True:
+        worst = excess_fluctuation([results[i] for i in kept])
+        if worst is None:
+            return sorted(excluded, key=lambda exclusion: exclusion.position)
+        position = kept.pop(worst)
+        percent = results[position].fluctuation_percent
+        excluded.append(Exclusion(position, f"fluctuates by {percent:.1f} %, in excess of the other repeats"))
+
+
+def outliers(values: Sequence[float], repeatability: float = REPEATABILITY) -> list[int]:
+    """Return the positions of values more than 3.5 historic standard deviations from the median."""
+    if len(values) < 3:
+        return []
+    middle = median(values)
+    limit = OUTLIER_SIGMAS * repeatability * abs(middle)
+    return [i for i, value in enumerate(values) if abs(value - middle) > limit]
+
+
+def combine_repeats(
+    results: Sequence[RepeatResult],
+    planned: int,
+    min_valid: int = 3,
+    ended: ConditionStatus | None = None,
+    reason: str = "",
+    *,
+    repeatability: float = REPEATABILITY,
+    instruments: Instruments = INSTRUMENTS,
+) -> ConditionResult:
+    """Return a condition's result from its repeats (one result per repeat: its last attempt; none void).
+
+    ``planned`` repeats were asked for and ``min_valid`` valid ones make a value. ``ended`` and ``reason``
+    are what the run said when it left the condition (None: it has not). ``repeatability`` is the historic
+    standard deviation between repeats as a share of mu.
+    """
+    excluded = _exclusions(results)
+    left_out = {exclusion.position for exclusion in excluded}
+    kept = [i for i in range(len(results)) if i not in left_out]
+    status, why = _condition_status(results, excluded, planned, min_valid, ended, reason)
+    if not kept:
+        return ConditionResult(status, why, n=planned, excluded=tuple(excluded))
+    values = [results[i].mu_resultant for i in kept]
+    flagged = outliers(values, repeatability)
+    flags = {flag for i in kept for flag in results[i].flags.split()}
+    shell = ConditionResult(
+        status=status,
+        reason=why,
+        flags=" ".join(sorted(flags | ({"outlier"} if flagged else set()))),
+        mu_longitudinal=_mean([results[i].mu_longitudinal for i in kept]),
+        mu_lateral=_mean([results[i].mu_lateral for i in kept]),
+        n=planned,
+        measured={name: _mean([getattr(results[i], name) for i in kept]) for name in AVERAGED},
+        excluded=tuple(excluded),
+        flagged=tuple(kept[i] for i in flagged),
+    )
+    return _with_statistics(shell, values, flagged, instruments)
+
+
+def combine_replicates(
+    results: Sequence[ConditionResult], *, instruments: Instruments = INSTRUMENTS
+) -> ConditionResult:
+    """Return one result for a condition measured on several wheels, from the results of the wheels.
+
+    The wheels' means count alike; ``s`` is the deviation between wheels. OK needs two wheels that are.
+    """
+    kept = [result for result in results if result.ok]
+    missing = [f"replicate {i}: {result.status.value}" for i, result in enumerate(results, 1) if not result.ok]
+    reason = "; ".join(missing)
+    if len(kept) >= 2:
+        status = ConditionStatus.OK
+    elif any(result.status is ConditionStatus.PENDING for result in results):
+        status = ConditionStatus.PENDING
+    else:
+        status = ConditionStatus.INSUFFICIENT
+    if not kept:
+        return ConditionResult(status, reason, n=len(results))
+    shell = ConditionResult(
+        status=status,
+        reason=reason,
+        flags=" ".join(sorted({flag for result in kept for flag in result.flags.split()})),
+        mu_longitudinal=_mean([result.mu_longitudinal for result in kept]),
+        mu_lateral=_mean([result.mu_lateral for result in kept]),
+        n=len(results),
+        measured={name: _mean([result.measured[name] for result in kept]) for name in AVERAGED},
+    )
+    return _with_statistics(shell, [result.mu_resultant for result in kept], [], instruments)
+
+
+def _mean(values: Sequence[float]) -> float:
+    return sum(values) / len(values)
+
+
+def _with_statistics(
+    shell: ConditionResult, values: Sequence[float], flagged: Sequence[int], instruments: Instruments
+) -> ConditionResult:
+    """Return ``shell`` with mean, scatter and uncertainty of ``values``; a single value shows no scatter."""
+    n = len(values)
+    mu, s = _mean(values), standard_deviation(values)
+    type_a = s / sqrt(n)
+    others = [value for i, value in enumerate(values) if i not in flagged]
+    df = float(max(n - 1, 1))
+    total = friction_budget(
+        mu,
+        shell.measured["force_z_n"],
+        shell.measured["slip_m_s"],
+        Contribution("type A", type_a, df),
+        instruments,
+    )
+    return replace(
+        shell,
+        mu_resultant=mu,
+        mu_without_flagged=_mean(others) if others else NAN,
+        s=s,
+        n_valid=n,
+        interval=t_quantile(0.5 + 0.5 * CONFIDENCE, df) * type_a,
+        type_a=type_a,
+        standard=total.standard,
+        expanded=total.expanded,
+        coverage=total.coverage,
+    )
+
+
+def _condition_status(
+    results: Sequence[RepeatResult],
+    excluded: Sequence[Exclusion],
+    planned: int,
+    min_valid: int,
+    ended: ConditionStatus | None,
+    reason: str,
+) -> tuple[ConditionStatus, str]:
+    n_valid = len(results) - len(excluded)
+    if ended is None and len(results) < planned:
+        return ConditionStatus.PENDING, f"{len(results)} of {planned} repeats committed"
+    if n_valid >= min_valid:
+        return ConditionStatus.OK, reason
+    if ended not in (None, ConditionStatus.OK, ConditionStatus.PENDING, ConditionStatus.INSUFFICIENT):
+        return ended, reason
+    for repeat_status, status in (
+        (RepeatStatus.CANNOT_HOLD, ConditionStatus.CANNOT_HOLD),
+        (RepeatStatus.NOT_REACHED, ConditionStatus.NOT_REACHED),
+    ):
+        found = [result.reason for result in results if result.status is repeat_status]
+        if found and len(found) == len(results):
+            return status, reason or found[0]
+    causes = "; ".join(f"repeat {e.position + 1} {e.reason}" for e in excluded)
+    counted = f"{n_valid} of {planned} valid, {min_valid} needed"
+    return ConditionStatus.INSUFFICIENT, f"{counted}: {causes}" if causes else counted

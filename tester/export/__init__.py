@@ -1,0 +1,90 @@
+"""What leaves a run: the paper's table, conditions, repeats, samples, and the manifest of its folder."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from pathlib import Path
+
+from tester.export.cells import encode
+from tester.export.manifest import MANIFEST, manifest_text
+from tester.export.results import RunResults, TableRow, results_of
+from tester.export.tables import appendix_rows, condition_rows, repeat_rows, sample_rows
+from tester.store.reader import RunReader
+
+__all__ = [
+    "RunResults",
+    "TableRow",
+    "appendix",
+    "conditions",
+    "repeats",
+    "results_of",
+    "samples",
+    "write_all",
+    "write_file",
+    "write_parquet_file",
+]
+
+
+def appendix(results: RunResults, decimals: int = 2) -> Iterator[bytes]:
+    """Yield appendix.csv: the paper's table, UTF-8 with BOM."""
+    return encode(appendix_rows(results, decimals), bom=True)
+
+
+def conditions(results: RunResults) -> Iterator[bytes]:
+    """Yield conditions.csv."""
+    return encode(condition_rows(results))
+
+
+def repeats(results: RunResults) -> Iterator[bytes]:
+    """Yield repeats.csv."""
+    return encode(repeat_rows(results))
+
+
+def samples(reader: RunReader) -> Iterator[bytes]:
+    """Yield samples.csv in bounded memory."""
+    return encode(sample_rows(reader))
+
+
+def _write(path: Path, fill: Callable[[Path], None]) -> None:
+    """Let ``fill`` write a file beside ``path``, then put it in its place: no half file under the final name."""
+    part = path.with_name(f"{path.name}.part")
+    try:
+        fill(part)
+        part.replace(path)
+    finally:
+        part.unlink(missing_ok=True)
+
+
+def write_file(path: Path, chunks: Iterable[bytes]) -> None:
+    """Write ``chunks`` to ``path``, whole or not at all; raises OSError."""
+
+    def fill(part: Path) -> None:
+        with part.open("wb") as file:
+            file.writelines(chunks)
+
+    _write(path, fill)
+
+
+def write_parquet_file(path: Path, reader: RunReader) -> None:
+    """Write the samples as a Parquet file, whole or not at all; raises OSError, StoreError."""
+    from tester.export.parquet import write_parquet
+
+    def fill(part: Path) -> None:
+        write_parquet(reader, part)
+
+    _write(path, fill)
+
+
+def write_all(run_dir: Path) -> list[TableRow]:
+    """Write appendix.csv, conditions.csv, repeats.csv and manifest.json into a run's folder.
+
+    The run's writer has to be closed. Returns the rows that are not in the appendix because they have no
+    value to be trusted (``describe`` says why). Raises StoreError, OSError.
+    """
+    with RunReader(run_dir) as reader:
+        results = results_of(reader)
+    write_file(run_dir / "appendix.csv", appendix(results))
+    write_file(run_dir / "conditions.csv", conditions(results))
+    write_file(run_dir / "repeats.csv", repeats(results))
+    write_file(run_dir / MANIFEST, [manifest_text(run_dir).encode()])
+    return results.missing()

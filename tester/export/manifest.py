@@ -1,0 +1,37 @@
+"""``manifest.json``: size and SHA-256 of every file in a run's folder, so that a change shows."""
+
+from __future__ import annotations
+
+import json
+from hashlib import file_digest
+from pathlib import Path
+
+MANIFEST = "manifest.json"
+
+_LEFT_OUT = (".part", "-wal", "-shm", "-journal")
+"""Ends of the names of files that do not last."""
+
+
+def manifest_of(folder: Path) -> dict[str, dict[str, str | int]]:
+    """Return size in bytes and SHA-256 (hexadecimal) of the folder's files by their path in it, sorted."""
+    found: dict[str, dict[str, str | int]] = {}
+    for path in sorted(folder.rglob("*")):
+        name = path.relative_to(folder).as_posix()
+        if path.is_file() and name != MANIFEST and not name.endswith(_LEFT_OUT):
+            with path.open("rb") as file:
+                found[name] = {"bytes": path.stat().st_size, "sha256": file_digest(file, "sha256").hexdigest()}
+    return found
+
+
+def manifest_text(folder: Path) -> str:
+    """Return the manifest of a folder as JSON."""
+    return json.dumps({"version": 1, "files": manifest_of(folder)}, indent=1, ensure_ascii=False) + "\n"
+
+
+def manifest_problems(folder: Path) -> list[str]:
+    """Return what differs from the folder's manifest, a line each; raises OSError, ValueError if it has none."""
+    recorded: dict[str, dict[str, str | int]] = json.loads((folder / MANIFEST).read_text("utf-8"))["files"]
+    present = manifest_of(folder)
+    missing = [f"{name}: missing" for name in recorded if name not in present]
+    changed = [f"{name}: changed" for name in recorded if name in present and present[name] != recorded[name]]
+    return missing + changed + [f"{name}: not in the manifest" for name in present if name not in recorded]

@@ -1,0 +1,79 @@
+"""Samples as a Parquet file, written block by block; pyarrow is loaded only here."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from importlib import import_module
+from itertools import islice
+from math import isfinite
+from pathlib import Path
+from typing import Protocol, cast
+
+from tester.export.tables import SAMPLE_HEADER, WHOLE_COLUMNS
+from tester.process import SAMPLE_COLUMNS
+from tester.store.reader import RunReader, SampleBlock
+from tester.store.records import StoredRepeat
+
+_BLOCKS_PER_GROUP = 128
+"""Row groups of up to 65,536 samples: 13 MB in memory."""
+
+
+_REAL_COLUMNS = frozenset(SAMPLE_COLUMNS) - WHOLE_COLUMNS
+
+_Columns = dict[str, list[float | None]]
+
+
+class _Arrow(Protocol):
+    """What is used of pyarrow, which has no type information."""
+
+    def schema(self, fields: list[tuple[str, object]]) -> object: ...
+    def table(self, data: _Columns, schema: object) -> object: ...
+    def int64(self) -> object: ...
+    def float64(self) -> object: ...
+
+
+class _ParquetWriter(Protocol):
+    def __enter__(self) -> _ParquetWriter: ...
+    def __exit__(self, *error: object) -> None: ...
+    def write_table(self, table: object) -> None: ...
+
+
+class _Parquet(Protocol):
+    def ParquetWriter(self, where: Path, schema: object) -> _ParquetWriter: ...  # noqa: N802
+
+
+def write_parquet(reader: RunReader, path: Path) -> None:
+    """Write every recorded sample to ``path``: float64 columns named as in samples.csv, ids as int64.
+
+    Condition, repeat and attempt are null for samples of no repeat. Raises StoreError, OSError.
+    """
+    pa = cast(_Arrow, import_module("pyarrow"))
+    pq = cast(_Parquet, import_module("pyarrow.parquet"))
+    owners = {repeat.key: repeat for repeat in reader.repeats(attempts=True)}
+    whole, real = pa.int64(), pa.float64()
+    schema = pa.schema([(name, real if name in _REAL_COLUMNS else whole) for name in SAMPLE_HEADER])
+    with pq.ParquetWriter(path, schema) as writer:
+        for group in _groups(reader.sample_blocks()):
+            writer.write_table(pa.table(_columns(group, owners), schema=schema))
+
+
+def _groups(blocks: Iterator[SampleBlock]) -> Iterator[list[SampleBlock]]:
+    while group := list(islice(blocks, _BLOCKS_PER_GROUP)):
+        yield group
+
+
+def _columns(group: list[SampleBlock], owners: dict[int, StoredRepeat]) -> _Columns:
+    columns: _Columns = {name: [] for name in SAMPLE_HEADER}
+    for block in group:
+        for name in SAMPLE_COLUMNS:
+            values = block.columns[name]
+            columns[name].extend(values if name in _REAL_COLUMNS else map(_whole, values))
+        owner = owners.get(block.repeat_key)
+        for name in SAMPLE_HEADER[len(SAMPLE_COLUMNS) :]:
+            value = None if owner is None else getattr(owner, name)
+            columns[name].extend([value] * block.rows)
+    return columns
+
+
+def _whole(value: float) -> int | None:
+    return int(value) if isfinite(value) else None

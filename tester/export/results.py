@@ -1,0 +1,112 @@
+"""A run's results as the tables show them: every condition reduced from its committed repeats, in recipe order."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import groupby
+from math import isfinite
+
+from tester.analysis.repeats import ConditionResult, combine_repeats, combine_replicates
+from tester.analysis.uncertainty import Instruments, instruments_of
+from tester.export.cells import nominal
+from tester.store.reader import RunReader
+from tester.store.records import ConditionInfo, StoredCondition, StoredRepeat, StoredRun
+from tester.store.schema import StoreError
+
+
+@dataclass(frozen=True, slots=True)
+class Measured:
+    """One condition of the plan with its repeats and what they give."""
+
+    condition: StoredCondition
+    repeats: tuple[StoredRepeat, ...]
+    result: ConditionResult
+
+    @property
+    def info(self) -> ConditionInfo:
+        """Return the condition's setpoints."""
+        return self.condition.info
+
+    def exclusion(self, repeat: StoredRepeat) -> str:
+        """Return why a repeat is not in the mean, an empty text if it is."""
+        position = self.repeats.index(repeat)
+        return next((e.reason for e in self.result.excluded if e.position == position), "")
+
+
+@dataclass(frozen=True, slots=True)
+class TableRow:
+    """A row of the recipe's table: its replicates, and the value that stands for them."""
+
+    replicates: tuple[Measured, ...]
+    result: ConditionResult
+
+    @property
+    def info(self) -> ConditionInfo:
+        """Return the setpoints, those of the first replicate."""
+        return self.replicates[0].info
+
+    def describe(self) -> str:
+        """Return the row's setpoints and why it has no value, in a line for people."""
+        i = self.info
+        setpoints = (
+            f"{i.compound}, {nominal(1e3 * i.slip_velocity_m_s)} mm/s, {nominal(i.load_n)} N, "
+            f"{nominal(i.sideslip_deg)}°, {nominal(i.temperature_c)} °C"
+        )
+        parts = [self.result.status.value, self.result.reason]
+        for measured in self.replicates:
+            c = measured.condition
+            if not measured.result.ok and isfinite(c.warming_k_s) and not c.reason:
+                parts.append(f"warming {c.warming_k_s:.2g} K/s; {c.holdable_band_k:.2g} K of band would do")
+        return ": ".join([setpoints, *[part for part in parts if part]])
+
+
+@dataclass(frozen=True, slots=True)
+class RunResults:
+    """All results of a run."""
+
+    run: StoredRun
+    rows: tuple[TableRow, ...]
+
+    def conditions(self) -> Iterator[Measured]:
+        """Yield the conditions, in recipe order, replicates one after the other."""
+        for row in self.rows:
+            yield from row.replicates
+
+    def missing(self) -> list[TableRow]:
+        """Return the rows without a value that can be trusted."""
+        return [row for row in self.rows if not row.result.ok]
+
+
+def results_of(reader: RunReader) -> RunResults:
+    """Reduce a run's committed repeats; raises StoreError where the record cannot be read."""
+    run = reader.run()
+    try:
+        instruments = instruments_of(run.info.metadata)
+    except ValueError as error:
+        raise StoreError(f"{reader.path}: {error}") from error
+    repeats: dict[int, list[StoredRepeat]] = {}
+    for repeat in reader.repeats():
+        repeats.setdefault(repeat.condition, []).append(repeat)
+    rows: list[TableRow] = []
+    for _, group in groupby(reader.conditions(), key=lambda stored: stored.info.row):
+        replicates = tuple(_measured(stored, repeats.get(stored.info.condition, []), instruments) for stored in group)
+        if len(replicates) == 1:
+            rows.append(TableRow(replicates, replicates[0].result))
+        else:
+            combined = combine_replicates([m.result for m in replicates], instruments=instruments)
+            rows.append(TableRow(replicates, combined))
+    return RunResults(run, tuple(rows))
+
+
+def _measured(stored: StoredCondition, repeats: list[StoredRepeat], instruments: Instruments) -> Measured:
+    info = stored.info
+    result = combine_repeats(
+        [repeat.result for repeat in repeats],
+        planned=info.repeats,
+        min_valid=info.min_valid,
+        ended=stored.status,
+        reason=stored.reason,
+        instruments=instruments,
+    )
+    return Measured(stored, tuple(repeats), result)

@@ -1,0 +1,228 @@
+"""The tables of a run: the paper's appendix, conditions, repeats, samples, as rows of cells (interface.md 4).
+
+Appendix, conditions and repeats hold no wall-clock time, path, host or version: the same data gives the
+same bytes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import isnan
+
+from tester.analysis.blocks import AVERAGED
+from tester.analysis.repeats import ConditionResult
+from tester.export.cells import Cell, Number, exact, nominal
+from tester.export.results import Measured, RunResults
+from tester.process import SAMPLE_COLUMNS
+from tester.store.reader import RunReader
+from tester.store.records import ConditionInfo, StoredRepeat
+
+APPENDIX_HEADER: tuple[Cell, ...] = (
+    "Formula",
+    "Slip Velocity /mm·s⁻¹",
+    "Load /N",
+    "Sideslip Angle /°",
+    "Temperature /°C",
+    "Friction Coefficient",
+)
+
+_SETPOINTS = (
+    "specimen",
+    "replicate",
+    "grid",
+    "compound",
+    "note",
+    "slip_velocity_mm_s",
+    "load_n",
+    "sideslip_deg",
+    "camber_deg",
+    "temperature_c",
+    "wheel_speed_m_s",
+)
+
+_CONDITION = (
+    "status",
+    "reason",
+    "flags",
+    "mu_resultant",
+    "mu_longitudinal",
+    "mu_lateral",
+    "mu_without_flagged",
+    "s",
+    "n_valid",
+    "n",
+    "interval_95",
+    "u_type_a",
+    "u_standard",
+    "u_expanded",
+    "coverage_factor",
+)
+
+_REPEAT = (
+    "status",
+    "reason",
+    "flags",
+    "in_mean",
+    "exclusion",
+    "mu_resultant",
+    "mu_longitudinal",
+    "mu_lateral",
+    "u_window",
+    "fluctuation_percent",
+    "drift_percent",
+    "drift_bound_percent",
+    "revolutions",
+    "truncated_revolutions",
+    "window_s",
+    "bursts",
+    "started_s",
+    "ended_s",
+)
+
+_MEASURED = tuple("measured_slip_mm_s" if name == "slip_m_s" else f"measured_{name}" for name in AVERAGED)
+
+WHOLE_COLUMNS = frozenset({"gate", "burst", "repeat_key"})
+"""Columns of a sample whose values are whole numbers."""
+
+SAMPLE_HEADER: tuple[str, ...] = (*SAMPLE_COLUMNS, "condition", "repeat", "attempt")
+
+
+def appendix_rows(results: RunResults, decimals: int = 2) -> Iterator[tuple[Cell, ...]]:
+    """Yield the paper's table: nominal setpoints, one row for each condition that has a value to be trusted."""
+    yield APPENDIX_HEADER
+    for row in results.rows:
+        if row.result.ok:
+            i = row.info
+            yield (
+                i.compound,
+                nominal(1e3 * i.slip_velocity_m_s),
+                nominal(i.load_n),
+                nominal(i.sideslip_deg),
+                nominal(i.temperature_c),
+                Number(f"{row.result.mu_resultant:.{decimals}f}"),
+            )
+
+
+def condition_rows(results: RunResults) -> Iterator[tuple[Cell, ...]]:
+    """Yield one row for each condition, and for one measured on several wheels a row that combines them.
+
+    ``level`` is ``condition`` or ``combined``; what the recipe says of the test comes last, a column each.
+    """
+    metadata = dict(sorted(results.run.info.metadata.items()))
+    own = ("level", "condition", *_SETPOINTS, *_CONDITION, "warming_k_s", "holdable_band_k", *_MEASURED)
+    yield (*own, *(key if key not in own else f"recipe_{key}" for key in metadata))
+    for row in results.rows:
+        for measured in row.replicates:
+            rate = (measured.condition.warming_k_s, measured.condition.holdable_band_k)
+            setpoints = _setpoints(measured.info, measured.info.replicate)
+            result = _condition(measured.result)
+            yield ("condition", measured.info.condition, *setpoints, *result[0], *rate, *result[1], *metadata.values())
+        if len(row.replicates) > 1:
+            result = _condition(row.result)
+            setpoints = _setpoints(row.info, None)
+            yield ("combined", None, *setpoints, *result[0], None, None, *result[1], *metadata.values())
+
+
+def repeat_rows(results: RunResults) -> Iterator[tuple[Cell, ...]]:
+    """Yield one row for each committed repeat: its last attempt."""
+    yield ("condition", "repeat", "attempt", "wheel", *_SETPOINTS, *_REPEAT, *_MEASURED)
+    for measured in results.conditions():
+        for repeat in measured.repeats:
+            yield (
+                repeat.condition,
+                repeat.repeat,
+                repeat.attempt,
+                repeat.wheel,
+                *_setpoints(measured.info, measured.info.replicate),
+                *_repeat(measured, repeat),
+            )
+
+
+def sample_rows(reader: RunReader) -> Iterator[tuple[Cell, ...]]:
+    """Yield every recorded sample with the condition, repeat and attempt it belongs to (empty: none)."""
+    yield SAMPLE_HEADER
+    owners = {repeat.key: repeat for repeat in reader.repeats(attempts=True)}
+    for block in reader.sample_blocks():
+        owner = owners.get(block.repeat_key)
+        ids = (owner.condition, owner.repeat, owner.attempt) if owner is not None else (None, None, None)
+        columns = [
+            [_whole(value) for value in block.columns[name]]
+            if name in WHOLE_COLUMNS
+            else [exact(value) for value in block.columns[name]]
+            for name in SAMPLE_COLUMNS
+        ]
+        for cells in zip(*columns, strict=True):
+            yield (*cells, *ids)
+
+
+def _whole(value: float) -> Number:
+    return Number("") if isnan(value) else Number(int(value))
+
+
+def _setpoints(i: ConditionInfo, replicate: int | None) -> tuple[Cell, ...]:
+    return (
+        i.specimen,
+        replicate,
+        i.grid,
+        i.compound,
+        i.note,
+        nominal(1e3 * i.slip_velocity_m_s),
+        nominal(i.load_n),
+        nominal(i.sideslip_deg),
+        nominal(i.camber_deg),
+        nominal(i.temperature_c),
+        nominal(i.wheel_speed_m_s),
+    )
+
+
+def _condition(r: ConditionResult) -> tuple[tuple[Cell, ...], tuple[Cell, ...]]:
+    """Return the cells of _CONDITION and of _MEASURED."""
+    found = (
+        r.status.value,
+        r.reason,
+        r.flags,
+        r.mu_resultant,
+        r.mu_longitudinal,
+        r.mu_lateral,
+        r.mu_without_flagged,
+        r.s,
+        r.n_valid,
+        r.n,
+        r.interval,
+        r.type_a,
+        r.standard,
+        r.expanded,
+        r.coverage,
+    )
+    return found, tuple(_scaled(name, r.measured.get(name)) for name in AVERAGED)
+
+
+def _repeat(measured: Measured, repeat: StoredRepeat) -> tuple[Cell, ...]:
+    """Return the cells of _REPEAT and of _MEASURED."""
+    r = repeat.result
+    exclusion = measured.exclusion(repeat)
+    return (
+        r.status.value,
+        r.reason,
+        r.flags,
+        int(not exclusion),
+        exclusion,
+        r.mu_resultant,
+        r.mu_longitudinal,
+        r.mu_lateral,
+        r.uncertainty,
+        r.fluctuation_percent,
+        r.drift_percent,
+        r.bound_percent,
+        r.revolutions,
+        r.truncated,
+        r.window_s,
+        r.bursts,
+        r.started_s,
+        r.ended_s,
+        *(_scaled(name, getattr(r, name)) for name in AVERAGED),
+    )
+
+
+def _scaled(name: str, value: float | None) -> float | None:
+    return 1e3 * value if name == "slip_m_s" and value is not None else value

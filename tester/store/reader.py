@@ -1,0 +1,249 @@
+"""Reads a run's database: the run, its conditions and repeats, samples, events. Never writes.
+
+A run that is still being written, or was cut off, reads as far as it is committed.
+"""
+
+from __future__ import annotations
+
+import sqlite3
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, fields
+from pathlib import Path
+from types import TracebackType
+from typing import TYPE_CHECKING, TypeVar
+
+from tester.analysis.results import Burst, ConditionStatus, RepeatResult, RepeatStatus
+from tester.store.records import (
+    NAN,
+    ConditionInfo,
+    Event,
+    RunInfo,
+    SpecimenInfo,
+    StoredCondition,
+    StoredRepeat,
+    StoredRun,
+    WheelInfo,
+)
+from tester.store.sample_blocks import unpack, unpack_array
+from tester.store.schema import VERSION, StoreError, version_of
+
+if TYPE_CHECKING:
+    from array import array
+
+    import numpy as np
+    from _typeshed import DataclassInstance
+    from numpy.typing import NDArray
+
+DATABASE = "run.db"
+
+T = TypeVar("T", bound="DataclassInstance")
+
+Cell = str | int | float | bytes | None
+Row = Mapping[str, Cell]
+
+
+@dataclass(frozen=True, slots=True)
+class SampleBlock:
+    """A series of samples of one repeat (key 0: of none): columns by name, in order of time."""
+
+    repeat_key: int
+    rows: int
+    columns: dict[str, array[float]]
+
+
+def _text(row: Row, name: str) -> str:
+    value = row[name]
+    return "" if value is None else str(value)
+
+
+def _number(row: Row, name: str) -> float:
+    value = row[name]
+    return float(value) if isinstance(value, int | float) else NAN
+
+
+def _whole(row: Row, name: str) -> int:
+    value = row[name]
+    return int(value) if isinstance(value, int | float) else 0
+
+
+def _optional(row: Row, name: str) -> float | None:
+    value = row[name]
+    return float(value) if isinstance(value, int | float) else None
+
+
+_READERS = {"str": _text, "float": _number, "int": _whole, "float | None": _optional}
+
+
+def _record(record: type[T], row: Row, **given: object) -> T:
+    """Return a record whose fields are the row's columns of the same names, except those given."""
+    values = {
+        field.name: _READERS[str(field.type)](row, field.name) for field in fields(record) if field.name not in given
+    }
+    build: Callable[..., T] = record
+    return build(**values, **given)
+
+
+class RunReader:
+    """A run's record, from its folder or its ``run.db``; use in a ``with`` block or close it.
+
+    Raises StoreError where there is no database, or none that this version reads.
+    """
+
+    def __init__(self, path: Path) -> None:
+        """Open the record for reading."""
+        self.path = path / DATABASE if path.is_dir() else path
+        if not self.path.is_file():
+            raise StoreError(f"no run in {path}")
+        try:
+            self._connection = sqlite3.connect(f"{self.path.absolute().as_uri()}?mode=ro", uri=True)
+            self._connection.row_factory = sqlite3.Row
+            version = version_of(self._connection)
+        except sqlite3.Error as error:
+            raise StoreError(f"{self.path} cannot be read: {error}") from error
+        except StoreError as error:
+            self._connection.close()
+            raise StoreError(f"{self.path}: {error}") from error
+        if version != VERSION:
+            self._connection.close()
+            raise StoreError(f"{self.path} has schema {version}, this version reads {VERSION}")
+
+    def __enter__(self) -> RunReader:
+        """Return the reader."""
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, value: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Close the file."""
+        self.close()
+
+    def close(self) -> None:
+        """Let go of the file."""
+        self._connection.close()
+
+    def _rows(self, sql: str, values: tuple[Cell, ...] = ()) -> Iterator[Row]:
+        try:
+            for row in self._connection.execute(sql, values):
+                yield dict(row)
+        except sqlite3.Error as error:
+            raise StoreError(f"{self.path} cannot be read: {error}") from error
+
+    def run(self) -> StoredRun:
+        """Return the run; raises StoreError if nothing was recorded of it."""
+        for row in self._rows("SELECT * FROM run"):
+            seed = row["seed"]
+            info = _record(
+                RunInfo,
+                row,
+                simulated=bool(row["simulated"]),
+                seed=seed if isinstance(seed, int) else None,
+                metadata=self._texts("metadata", "key", "value"),
+                versions=self._texts("version", "component", "version"),
+            )
+            return _record(StoredRun, row, info=info, rig_seconds=self._rig_seconds(row))
+        raise StoreError(f"{self.path}: the run was not begun")
+
+    def _rig_seconds(self, run: Row) -> float:
+        if run["rig_seconds"] is not None:
+            return _number(run, "rig_seconds")
+        last = "SELECT max(t) AS t FROM (SELECT max(last_s) t FROM sample_block UNION SELECT max(t_s) FROM event)"
+        return next((_number(row, "t") for row in self._rows(last) if row["t"] is not None), 0.0)
+
+    def _texts(self, table: str, key: str, value: str) -> dict[str, str]:
+        return {_text(row, key): _text(row, value) for row in self._rows(f"SELECT * FROM {table} ORDER BY rowid")}
+
+    def specimens(self) -> list[SpecimenInfo]:
+        """Return the recipe's specimens."""
+        return [_record(SpecimenInfo, row) for row in self._rows("SELECT * FROM specimen ORDER BY specimen")]
+
+    def wheels(self) -> list[WheelInfo]:
+        """Return the wheels that were installed, with their last known wear."""
+        return [_record(WheelInfo, row) for row in self._rows("SELECT * FROM wheel ORDER BY wheel")]
+
+    def conditions(self) -> list[StoredCondition]:
+        """Return the plan's conditions in the recipe's order, replicates one after the other."""
+        found: list[StoredCondition] = []
+        for row in self._rows("SELECT * FROM condition ORDER BY row, replicate, condition"):
+            status = ConditionStatus(_text(row, "status"))
+            left = status if row["ended_s"] is not None or status is not ConditionStatus.PENDING else None
+            found.append(_record(StoredCondition, row, info=_record(ConditionInfo, row), status=left))
+        return found
+
+    def repeats(self, condition: int | None = None, *, attempts: bool = False) -> list[StoredRepeat]:
+        """Return the committed repeats, in order of condition and repeat: the last attempt of each.
+
+        ``attempts``: every attempt instead, also void ones and the one under way.
+        """
+        where, values = ("WHERE condition = ?", (condition,)) if condition is not None else ("", ())
+        found: dict[tuple[int, ...], StoredRepeat] = {}
+        for row in self._rows(f"SELECT * FROM repeat {where} ORDER BY condition, repeat, attempt, id", values):
+            status = RepeatStatus(_text(row, "status"))
+            if not attempts and status in (RepeatStatus.OPEN, RepeatStatus.VOID):
+                continue
+            result = _record(RepeatResult, row, status=status)
+            stored = _record(StoredRepeat, row, key=_whole(row, "id"), result=result)
+            key = (stored.condition, stored.repeat, stored.attempt if attempts else 0)
+            found[key] = stored
+        return list(found.values())
+
+    def bursts(self, repeat_key: int) -> list[Burst]:
+        """Return the bursts of a committed repeat."""
+        sql = "SELECT * FROM burst WHERE repeat_id = ? ORDER BY number"
+        return [_record(Burst, row) for row in self._rows(sql, (repeat_key,))]
+
+    def events(self) -> Iterator[Event]:
+        """Yield the journal in order."""
+        for row in self._rows("SELECT * FROM event ORDER BY sequence"):
+            yield _record(Event, row)
+
+    def sample_columns(self) -> tuple[str, ...]:
+        """Return the names of the samples' columns."""
+        return tuple(_text(row, "name") for row in self._rows("SELECT * FROM sample_column ORDER BY position"))
+
+    def sample_blocks(self) -> Iterator[SampleBlock]:
+        """Yield all samples in order of time, block by block, in bounded memory; raises StoreError."""
+        names = self.sample_columns()
+        for row in self._rows("SELECT * FROM sample_block ORDER BY id"):
+            count = _whole(row, "rows")
+            try:
+                columns = unpack(_blob(row), count, len(names))
+            except ValueError as error:
+                raise StoreError(f"{self.path}, block {row['id']}: {error}") from error
+            yield SampleBlock(_whole(row, "repeat_id"), count, dict(zip(names, columns, strict=True)))
+
+    def samples(
+        self, condition: int | None = None, repeat: int | None = None, attempt: int | None = None
+    ) -> dict[str, NDArray[np.float64]]:
+        """Return samples as NumPy arrays by column name, in order of time.
+
+        Those of a condition, of one repeat of it, of one attempt (default: the last) at it; without a
+        condition all there are. Raises StoreError.
+        """
+        import numpy as np
+
+        names = self.sample_columns()
+        blocks: list[NDArray[np.float64]] = [np.empty((len(names), 0))]
+        for row in self._sample_rows(condition, repeat, attempt):
+            try:
+                blocks.append(unpack_array(_blob(row), _whole(row, "rows"), len(names)))
+            except ValueError as error:
+                raise StoreError(f"{self.path}, block {row['id']}: {error}") from error
+        table = np.concatenate(blocks, axis=1)
+        return {name: table[i] for i, name in enumerate(names)}
+
+    def _sample_rows(self, condition: int | None, repeat: int | None, attempt: int | None) -> Iterator[Row]:
+        if condition is None:
+            yield from self._rows("SELECT * FROM sample_block ORDER BY id")
+            return
+        stored = self.repeats(condition, attempts=True)
+        if repeat is not None:
+            stored = [s for s in stored if s.repeat == repeat]
+            wanted = attempt if attempt is not None else max((s.attempt for s in stored), default=0)
+            stored = [s for s in stored if s.attempt == wanted]
+        for key in sorted(s.key for s in stored):
+            yield from self._rows("SELECT * FROM sample_block WHERE repeat_id = ? ORDER BY id", (key,))
+
+
+def _blob(row: Row) -> bytes:
+    data = row["data"]
+    return data if isinstance(data, bytes) else b""

@@ -1,0 +1,293 @@
+"""What a run tells its record: one verb for each thing that happens. Two recorders: the writer, and none.
+
+A verb makes rows and queues them; it touches no file. Statements of one verb are committed together. Verbs
+are for one thread, the scan's.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, fields
+from hashlib import sha256
+
+from tester.analysis.results import Burst, ConditionStatus, RepeatResult, RepeatStatus
+from tester.store.records import NAN, ConditionInfo, RunInfo, SpecimenInfo, WheelInfo
+
+Value = str | int | float | None
+Statement = tuple[str, tuple[Value, ...]]
+
+URGENT_SEVERITIES = frozenset({"alarm", "trip"})
+"""Events of these severities are committed at once."""
+
+_RESULT_FIELDS = tuple(field.name for field in fields(RepeatResult))
+_BURST_FIELDS = tuple(field.name for field in fields(Burst))
+_CONDITION_FIELDS = tuple(field.name for field in fields(ConditionInfo))
+_WHEEL_FIELDS = tuple(field.name for field in fields(WheelInfo))
+
+
+class Ticket:
+    """A promise that something will be on disk: ``done`` once COMMIT has returned, ``error`` if it failed."""
+
+    __slots__ = ("done", "error")
+
+    def __init__(self, *, done: bool = False) -> None:
+        """Start open, or done where there is nothing to wait for."""
+        self.done = done
+        self.error: str | None = None
+
+
+@dataclass(slots=True)
+class Batch:
+    """Statements that belong together. An urgent batch is committed without waiting for the second to end."""
+
+    statements: Sequence[Statement]
+    ticket: Ticket
+    urgent: bool = False
+
+
+def no_utc() -> str:
+    """Return the wall-clock text of a recorder that was given no clock."""
+    return ""
+
+
+def insert(table: str, values: Mapping[str, Value], verb: str = "INSERT") -> Statement:
+    """Return an INSERT of ``values`` (by column name)."""
+    marks = ", ".join("?" * len(values))
+    return f"{verb} INTO {table} ({', '.join(values)}) VALUES ({marks})", tuple(values.values())
+
+
+def _columns(record: object, names: Iterable[str]) -> dict[str, Value]:
+    return {name: getattr(record, name) for name in names}
+
+
+class Recorder:
+    """The verbs of a record. What becomes of the rows is for the subclasses."""
+
+    def __init__(self, utc: Callable[[], str] = no_utc) -> None:
+        """Count repeats, events, prompts and trips from 1; ``utc`` gives the wall clock as ISO 8601 text."""
+        self._utc = utc
+        self._repeats = 0
+        self._events = 0
+        self._prompts = 0
+        self._trips = 0
+
+    failed: str | None = None
+    """Why nothing more can be written; the run is to end in a controlled stop."""
+    overruns: int = 0
+    """Samples that were dropped because the queue was full."""
+
+    def sample(self, row: tuple[float, ...]) -> None:
+        """Record one sample: a value for each of SAMPLE_COLUMNS, as an exact tuple. For every scan: < 1 us."""
+        raise TypeError("a recorder has to say what becomes of samples")
+
+    def _put(self, batch: Batch) -> None:
+        raise TypeError("a recorder has to say what becomes of statements")
+
+    def _write(self, *statements: Statement, urgent: bool = False) -> Ticket:
+        ticket = Ticket()
+        self._put(Batch(statements, ticket, urgent))
+        return ticket
+
+    # The run
+
+    def begin_run(
+        self, info: RunInfo, specimens: Iterable[SpecimenInfo], conditions: Iterable[ConditionInfo]
+    ) -> Ticket:
+        """Record what is going to be done: the run, its specimens and every condition of the plan."""
+        run: dict[str, Value] = {
+            "id": 1,
+            "name": info.name,
+            "recipe_name": info.recipe_name,
+            "recipe_text": info.recipe_text,
+            "recipe_sha256": sha256(info.recipe_text.encode()).hexdigest(),
+            "rig_text": info.rig_text,
+            "rig_sha256": sha256(info.rig_text.encode()).hexdigest(),
+            "simulated": int(info.simulated),
+            "seed": info.seed,
+            "operator": info.operator,
+            "software_version": info.software_version,
+            "git_revision": info.git_revision,
+            "started_utc": info.started_utc,
+            "status": "running",
+        }
+        statements = [insert("run", run)]
+        statements += [insert("metadata", {"key": k, "value": v}) for k, v in info.metadata.items()]
+        statements += [insert("version", {"component": k, "version": v}) for k, v in info.versions.items()]
+        for specimen in specimens:
+            columns = _columns(specimen, ("specimen", "compound", "note"))
+            statements.append(insert("specimen", columns))
+        for condition in conditions:
+            columns = _columns(condition, _CONDITION_FIELDS) | {"status": ConditionStatus.PENDING.value}
+            statements.append(insert("condition", columns))
+        return self._write(*statements, urgent=True)
+
+    def resume_run(self) -> Ticket:
+        """Record that an interrupted run goes on: attempts that were cut off become void."""
+        cut_off = (RepeatStatus.VOID.value, "cut off", RepeatStatus.OPEN.value)
+        return self._write(
+            ("UPDATE repeat SET status = ?, reason = ? WHERE status = ?", cut_off),
+            ("UPDATE run SET status = 'running', reason = '', ended_utc = NULL, rig_seconds = NULL", ()),
+            urgent=True,
+        )
+
+    def finish(self, status: str, reason: str = "", rig_seconds: float = NAN, ended_utc: str = "") -> Ticket:
+        """Record the end: ``status`` such as finished, incomplete, tripped, stopped, failed; rig time in s."""
+        sql = "UPDATE run SET status = ?, reason = ?, rig_seconds = ?, ended_utc = ?"
+        return self._write((sql, (status, reason, rig_seconds, ended_utc or self._utc())), urgent=True)
+
+    def device_parameter(self, t_s: float, device: str, parameter: str, value: str, name: str = "") -> None:
+        """Record what was read back from a device, e.g. wheel, 0x6083:00, '2000', profile acceleration."""
+        columns: dict[str, Value] = {"t_s": t_s, "device": device, "parameter": parameter}
+        self._write(insert("device_parameter", columns | {"value": value, "name": name}))
+
+    def bus_statistic(self, t_s: float, bus: str, device: str, counter: str, value: float) -> None:
+        """Record a counter of a bus, or of one device on it (else an empty text)."""
+        columns: dict[str, Value] = {"t_s": t_s, "bus": bus, "device": device}
+        self._write(insert("bus_statistic", columns | {"counter": counter, "value": value}))
+
+    # Wheels
+
+    def wheel_installed(self, wheel: WheelInfo) -> None:
+        """Record that a wheel was mounted."""
+        self._write(insert("wheel", _columns(wheel, _WHEEL_FIELDS), "INSERT OR REPLACE"), urgent=True)
+
+    def wheel_state(self, wheel: int, diameter_mm: float, sliding_m: float, t_s: float) -> None:
+        """Record a wheel's present diameter and the distance it has slid since it was new, for a resumed run."""
+        sql = "UPDATE wheel SET diameter_mm = ?, sliding_m = ?, updated_s = ? WHERE wheel = ?"
+        self._write((sql, (diameter_mm, sliding_m, t_s, wheel)))
+
+    # Conditions and repeats
+
+    def begin_condition(self, condition: int, t_s: float) -> None:
+        """Record the start of a condition (its number in the plan)."""
+        sql = "UPDATE condition SET started_s = ? WHERE condition = ? AND started_s IS NULL"
+        self._write((sql, (t_s, condition)))
+
+    def end_condition(
+        self,
+        condition: int,
+        status: ConditionStatus,
+        reason: str = "",
+        t_s: float = NAN,
+        *,
+        warming_k_s: float = NAN,
+        holdable_band_k: float = NAN,
+    ) -> None:
+        """Record how a condition was left. For CANNOT_HOLD also the rate in K/s and the band in K that would do."""
+        sql = (
+            "UPDATE condition SET status = ?, reason = ?, ended_s = ?, warming_k_s = ?, holdable_band_k = ?"
+            " WHERE condition = ?"
+        )
+        self._write((sql, (status.value, reason, t_s, warming_k_s, holdable_band_k, condition)), urgent=True)
+
+    def begin_repeat(self, condition: int, repeat: int, attempt: int, t_s: float = NAN, wheel: int = 0) -> int:
+        """Record the start of an attempt at a repeat and return its key, the ``repeat_key`` of its samples."""
+        self._repeats += 1
+        columns: dict[str, Value] = {
+            "id": self._repeats,
+            "condition": condition,
+            "repeat": repeat,
+            "attempt": attempt,
+            "wheel": wheel,
+            "begun_s": t_s,
+            "status": RepeatStatus.OPEN.value,
+        }
+        self._write(insert("repeat", columns))
+        return self._repeats
+
+    def commit_repeat(self, key: int, result: RepeatResult, bursts: Iterable[Burst] = ()) -> Ticket:
+        """Commit a repeat whole: its result, its bursts and every sample recorded so far.
+
+        The repeat counts only once the ticket is done.
+        """
+        columns = _columns(result, _RESULT_FIELDS) | {"status": result.status.value}
+        assignments = ", ".join(f"{name} = ?" for name in columns)
+        statements: list[Statement] = [(f"UPDATE repeat SET {assignments} WHERE id = ?", (*columns.values(), key))]
+        for burst in bursts:
+            statements.append(insert("burst", {"repeat_id": key} | _columns(burst, _BURST_FIELDS)))
+        return self._write(*statements, urgent=True)
+
+    def void_repeat(self, key: int, reason: str, t_s: float = NAN) -> Ticket:
+        """Record that an attempt was interrupted; a further attempt is to follow."""
+        result = RepeatResult(RepeatStatus.VOID, reason, ended_s=t_s)
+        return self.commit_repeat(key, result)
+
+    # The journal
+
+    def event(self, t_s: float, kind: str, text: str, severity: str = "info", data: str = "") -> None:
+        """Record an event, in order. Severities: debug, info, warning, alarm, trip; the last two at once."""
+        self._events += 1
+        columns: dict[str, Value] = {
+            "sequence": self._events,
+            "t_s": t_s,
+            "utc": self._utc(),
+            "kind": kind,
+            "severity": severity,
+            "text": text,
+            "data": data,
+        }
+        self._write(insert("event", columns), urgent=severity in URGENT_SEVERITIES)
+
+    def prompt(self, t_s: float, text: str) -> int:
+        """Record a prompt and return its number."""
+        self._prompts += 1
+        columns: dict[str, Value] = {"id": self._prompts, "asked_s": t_s, "asked_utc": self._utc()}
+        self._write(insert("prompt", columns | {"text": text}))
+        return self._prompts
+
+    def prompt_answered(self, prompt: int, t_s: float, answer: str, by: str = "") -> None:
+        """Record the answer to a prompt and who gave it."""
+        sql = "UPDATE prompt SET answered_s = ?, answered_utc = ?, answer = ?, answered_by = ? WHERE id = ?"
+        self._write((sql, (t_s, self._utc(), answer, by, prompt)))
+
+    def tare(self, t_s: float, kind: str, values: tuple[float, float, float, float], repeat_key: int = 0) -> None:
+        """Record a tare (Fx, Fy, Fz in N, Mz in N m); kind: reference, repeat or check."""
+        columns: dict[str, Value] = {"t_s": t_s, "kind": kind, "repeat_id": repeat_key}
+        names = ("force_x_n", "force_y_n", "force_z_n", "moment_z_nm")
+        self._write(insert("tare", columns | dict(zip(names, values, strict=True))))
+
+    def trip(self, t_s: float, interlock: str, text: str, value: float = NAN, limit: float = NAN) -> int:
+        """Record a trip with the value that caused it and its limit; return its number."""
+        self._trips += 1
+        columns: dict[str, Value] = {
+            "id": self._trips,
+            "t_s": t_s,
+            "utc": self._utc(),
+            "interlock": interlock,
+            "text": text,
+            "value": value,
+            "limit_value": limit,
+        }
+        self._write(insert("trip", columns), urgent=True)
+        return self._trips
+
+    def trip_acknowledged(self, trip: int, t_s: float, by: str = "") -> None:
+        """Record that a trip was acknowledged, and by whom."""
+        sql = "UPDATE trip SET acknowledged_s = ?, acknowledged_by = ? WHERE id = ?"
+        self._write((sql, (t_s, by, trip)), urgent=True)
+
+    # The file
+
+    def flush(self) -> Ticket:
+        """Commit what was recorded so far without waiting for the second to end."""
+        return self._write(urgent=True)
+
+    def close(self) -> None:
+        """Commit what is left and let go of the file."""
+
+
+class NullRecorder(Recorder):
+    """Records nothing. Copies with the engine that holds it, which a writer cannot."""
+
+    def continue_from(self, other: Recorder) -> None:
+        """Count on from another recorder's numbers."""
+        self._repeats = other._repeats
+        self._events = other._events
+        self._prompts = other._prompts
+        self._trips = other._trips
+
+    def sample(self, row: tuple[float, ...]) -> None:
+        """Forget the sample."""
+
+    def _put(self, batch: Batch) -> None:
+        batch.ticket.done = True

@@ -1,0 +1,69 @@
+"""Layout of a sample block: rows of samples as one compressed blob.
+
+    blob = zlib( column 0 | column 1 | ... )        column = rows * float64, little endian
+
+Columns in the order of the table ``sample_column``; the number of rows is beside the blob. Values are kept
+bit by bit, NaN included. Measured on rows of 21 columns with quantised noise: 38 bytes a row in blocks of
+512, 48 in blocks of 100. (Shuffling bytes before compressing, as HDF5 does, needs half as much again:
+readings repeat as whole 8-byte values. Level 6 saves a tenth and takes twice the time.)
+"""
+
+from __future__ import annotations
+
+import sys
+import zlib
+from array import array
+from collections.abc import Sequence
+from itertools import chain
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+BLOCK_ROWS = 512
+"""Most rows in a block: about 5 s in slip."""
+
+_LEVEL = 1
+
+
+def pack(rows: Sequence[Sequence[float]], columns: int) -> bytes:
+    """Return the blob of rows that have ``columns`` values each; raises ValueError where one has not."""
+    flat = array("d", chain.from_iterable(rows))
+    if len(flat) != len(rows) * columns:
+        raise ValueError(f"a sample does not have {columns} values")
+    if sys.byteorder == "big":
+        flat.byteswap()
+    return zlib.compress(b"".join([flat[i::columns].tobytes() for i in range(columns)]), _LEVEL)
+
+
+def unpack(data: bytes, rows: int, columns: int) -> list[array[float]]:
+    """Return the columns of a blob; raises ValueError where it does not hold rows * columns values."""
+    raw = _inflated(data, rows, columns)
+    size = 8 * rows
+    found: list[array[float]] = []
+    for i in range(columns):
+        column = array("d")
+        column.frombytes(raw[i * size : (i + 1) * size])
+        if sys.byteorder == "big":
+            column.byteswap()
+        found.append(column)
+    return found
+
+
+def unpack_array(data: bytes, rows: int, columns: int) -> NDArray[np.float64]:
+    """Return a blob as an array of shape (columns, rows); raises ValueError as ``unpack`` does."""
+    import numpy as np
+
+    raw = _inflated(data, rows, columns)
+    return np.frombuffer(raw, dtype="<f8").astype(np.float64, copy=False).reshape(columns, rows)
+
+
+def _inflated(data: bytes, rows: int, columns: int) -> bytes:
+    try:
+        raw = zlib.decompress(data)
+    except zlib.error as error:
+        raise ValueError(f"sample block cannot be read: {error}") from error
+    if len(raw) != 8 * rows * columns:
+        raise ValueError(f"sample block holds {len(raw)} bytes, not {rows} rows of {columns} values")
+    return raw

@@ -1,0 +1,232 @@
+"""The database of a run: its tables, its version, its migrations.
+
+One file ``run.db``, WAL while it is written. The schema reads like the domain: a run has specimens and
+wheels, its conditions have repeats, a repeat has bursts, samples lie in compressed blocks. Units are in the
+column names; rig time (``..._s``) is the run's own clock, ``..._utc`` is ISO 8601 text of the wall clock. A
+value that does not exist is NULL (SQLite stores NaN as such, hence no NOT NULL on what is measured). Text
+holds what a person wrote, unescaped.
+
+The schema's number is SQLite's ``user_version``; migration n (from 0) leads from version n to n + 1 and is
+never edited once released. Kept to what SQLite 3.34 knows: no STRICT tables, no RETURNING.
+"""
+
+from __future__ import annotations
+
+import sqlite3
+
+APPLICATION_ID = 0x46525431
+"""``FRT1``: SQLite's application_id of a run's database, so that ``file`` and we know it from others."""
+
+_VERSION_1 = """
+CREATE TABLE run (
+    id INTEGER PRIMARY KEY CHECK (id = 1),
+    name TEXT NOT NULL,
+    recipe_name TEXT NOT NULL,
+    recipe_text TEXT NOT NULL,
+    recipe_sha256 TEXT NOT NULL,
+    rig_text TEXT NOT NULL,
+    rig_sha256 TEXT NOT NULL,
+    simulated INTEGER NOT NULL,
+    seed INTEGER,
+    operator TEXT NOT NULL,
+    software_version TEXT NOT NULL,
+    git_revision TEXT NOT NULL,
+    started_utc TEXT NOT NULL,
+    ended_utc TEXT,
+    status TEXT NOT NULL,
+    reason TEXT NOT NULL DEFAULT '',
+    rig_seconds REAL,
+    overruns INTEGER NOT NULL DEFAULT 0
+);
+CREATE TABLE metadata (key TEXT PRIMARY KEY, value TEXT NOT NULL);
+CREATE TABLE version (component TEXT PRIMARY KEY, version TEXT NOT NULL);
+CREATE TABLE specimen (
+    specimen INTEGER PRIMARY KEY,
+    compound TEXT NOT NULL,
+    note TEXT NOT NULL
+);
+CREATE TABLE wheel (
+    wheel INTEGER PRIMARY KEY,
+    specimen INTEGER NOT NULL,
+    replicate INTEGER NOT NULL,
+    compound TEXT NOT NULL,
+    installed_s REAL,
+    installed_diameter_mm REAL,
+    diameter_mm REAL,
+    sliding_m REAL,
+    updated_s REAL
+);
+CREATE TABLE condition (
+    condition INTEGER PRIMARY KEY,
+    row INTEGER NOT NULL,
+    specimen INTEGER NOT NULL,
+    replicate INTEGER NOT NULL,
+    grid TEXT NOT NULL,
+    compound TEXT NOT NULL,
+    note TEXT NOT NULL,
+    slip_velocity_m_s REAL NOT NULL,
+    load_n REAL NOT NULL,
+    sideslip_deg REAL NOT NULL,
+    camber_deg REAL NOT NULL,
+    temperature_c REAL NOT NULL,
+    wheel_speed_m_s REAL NOT NULL,
+    temperature_band_k REAL NOT NULL,
+    repeats INTEGER NOT NULL,
+    min_valid INTEGER NOT NULL,
+    window_revolutions REAL,
+    window_s REAL,
+    started_s REAL,
+    ended_s REAL,
+    status TEXT NOT NULL,
+    reason TEXT NOT NULL DEFAULT '',
+    warming_k_s REAL,
+    holdable_band_k REAL
+);
+CREATE TABLE repeat (
+    id INTEGER PRIMARY KEY,
+    condition INTEGER NOT NULL REFERENCES condition (condition),
+    repeat INTEGER NOT NULL,
+    attempt INTEGER NOT NULL,
+    wheel INTEGER NOT NULL,
+    begun_s REAL,
+    status TEXT NOT NULL,
+    reason TEXT NOT NULL DEFAULT '',
+    flags TEXT NOT NULL DEFAULT '',
+    mu_resultant REAL,
+    mu_longitudinal REAL,
+    mu_lateral REAL,
+    uncertainty REAL,
+    fluctuation_percent REAL,
+    batches INTEGER,
+    drift_percent REAL,
+    bound_percent REAL,
+    revolutions INTEGER,
+    truncated INTEGER,
+    window_s REAL,
+    bursts INTEGER,
+    force_x_n REAL,
+    force_y_n REAL,
+    force_z_n REAL,
+    moment_z_nm REAL,
+    drive_torque_nm REAL,
+    wheel_speed_m_s REAL,
+    belt_speed_m_s REAL,
+    slip_m_s REAL,
+    sideslip_deg REAL,
+    camber_deg REAL,
+    surface_c REAL,
+    hub_c REAL,
+    started_s REAL,
+    ended_s REAL,
+    UNIQUE (condition, repeat, attempt)
+);
+CREATE TABLE burst (
+    repeat_id INTEGER NOT NULL REFERENCES repeat (id),
+    number INTEGER NOT NULL,
+    revolutions INTEGER NOT NULL,
+    started_s REAL,
+    ended_s REAL,
+    surface_first_c REAL,
+    surface_last_c REAL,
+    PRIMARY KEY (repeat_id, number)
+);
+CREATE TABLE sample_column (position INTEGER PRIMARY KEY, name TEXT NOT NULL UNIQUE);
+CREATE TABLE sample_block (
+    id INTEGER PRIMARY KEY,
+    repeat_id INTEGER NOT NULL,
+    rows INTEGER NOT NULL,
+    first_s REAL,
+    last_s REAL,
+    data BLOB NOT NULL
+);
+CREATE INDEX sample_block_repeat ON sample_block (repeat_id);
+CREATE TABLE event (
+    sequence INTEGER PRIMARY KEY,
+    t_s REAL,
+    utc TEXT NOT NULL,
+    kind TEXT NOT NULL,
+    severity TEXT NOT NULL,
+    text TEXT NOT NULL,
+    data TEXT NOT NULL
+);
+CREATE TABLE prompt (
+    id INTEGER PRIMARY KEY,
+    asked_s REAL,
+    asked_utc TEXT NOT NULL,
+    text TEXT NOT NULL,
+    answered_s REAL,
+    answered_utc TEXT,
+    answer TEXT,
+    answered_by TEXT
+);
+CREATE TABLE tare (
+    id INTEGER PRIMARY KEY,
+    t_s REAL,
+    kind TEXT NOT NULL,
+    repeat_id INTEGER NOT NULL,
+    force_x_n REAL,
+    force_y_n REAL,
+    force_z_n REAL,
+    moment_z_nm REAL
+);
+CREATE TABLE trip (
+    id INTEGER PRIMARY KEY,
+    t_s REAL,
+    utc TEXT NOT NULL,
+    interlock TEXT NOT NULL,
+    text TEXT NOT NULL,
+    value REAL,
+    limit_value REAL,
+    acknowledged_s REAL,
+    acknowledged_by TEXT
+);
+CREATE TABLE bus_statistic (
+    id INTEGER PRIMARY KEY,
+    t_s REAL,
+    bus TEXT NOT NULL,
+    device TEXT NOT NULL,
+    counter TEXT NOT NULL,
+    value REAL
+);
+CREATE TABLE device_parameter (
+    id INTEGER PRIMARY KEY,
+    t_s REAL,
+    device TEXT NOT NULL,
+    parameter TEXT NOT NULL,
+    name TEXT NOT NULL,
+    value TEXT NOT NULL
+);
+"""
+
+MIGRATIONS: tuple[str, ...] = (_VERSION_1,)
+"""Migration n leads from schema n to n + 1."""
+
+VERSION = len(MIGRATIONS)
+
+
+class StoreError(Exception):
+    """A run's database cannot be used; the message says why, for people."""
+
+
+def version_of(connection: sqlite3.Connection) -> int:
+    """Return the schema's number, 0 of an empty database; raises StoreError if it is somebody else's."""
+    version: int = connection.execute("PRAGMA user_version").fetchone()[0]
+    application: int = connection.execute("PRAGMA application_id").fetchone()[0]
+    if application != APPLICATION_ID and not (application == 0 and version == 0 and _empty(connection)):
+        raise StoreError("this database was not made by friction-tester")
+    if version > VERSION:
+        raise StoreError(f"made by a newer version (schema {version}; this one reads up to {VERSION})")
+    return version
+
+
+def _empty(connection: sqlite3.Connection) -> bool:
+    return connection.execute("SELECT count(*) FROM sqlite_master").fetchone()[0] == 0
+
+
+def migrate(connection: sqlite3.Connection) -> None:
+    """Bring a database to the present schema, each step in a transaction of its own; raises StoreError."""
+    for version in range(version_of(connection), VERSION):
+        connection.executescript(
+            f"BEGIN;{MIGRATIONS[version]}PRAGMA application_id = {APPLICATION_ID};"
+            f"PRAGMA user_version = {version + 1};COMMIT;"
+        )

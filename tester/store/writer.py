@@ -1,0 +1,262 @@
+"""Writes a run's database from a thread of its own, fed through a bounded queue.
+
+The scan's thread only appends: to one deque that carries samples (tuples) and batches of statements in the
+order in which they came. Appending to and popping from a deque is atomic, so no lock is held in a scan. The
+logger's thread takes what has come and commits it in one transaction: every second of wall time, and at
+once for an urgent batch (a repeat, an alarm). What is taken stays in memory until COMMIT has returned;
+after an error nothing more is written, ``failed`` says why, and ``close`` tries once more.
+
+A full queue drops the sample and counts it, for a real rig waits for nobody. ``lossless`` (simulated time)
+waits instead, and waits for the COMMIT of a repeat, so that results do not depend on the disk's speed.
+"""
+
+from __future__ import annotations
+
+import sqlite3
+from collections import deque
+from collections.abc import Callable, Iterable
+from contextlib import suppress
+from pathlib import Path
+from threading import Event as Signal
+from threading import Thread
+
+from tester.analysis.results import Burst, RepeatResult
+from tester.process import SAMPLE_COLUMNS
+from tester.store.recorder import Batch, NullRecorder, Recorder, Ticket, no_utc
+from tester.store.sample_blocks import BLOCK_ROWS, pack
+from tester.store.schema import StoreError, migrate, version_of
+
+COMMIT_EVERY_S = 1.0
+"""Longest time, of the wall clock, for which a sample waits for its commit."""
+
+QUEUE_LIMIT = 65536
+"""Items the queue holds before samples are dropped: ten minutes at 100 Hz, a minute at 1 kHz."""
+
+LOSSLESS_LIMIT = 8192
+"""Items the queue holds before the simulation waits; also the most samples in one transaction."""
+
+_COLUMNS = len(SAMPLE_COLUMNS)
+_KEY = SAMPLE_COLUMNS.index("repeat_key") - _COLUMNS
+_TIME = SAMPLE_COLUMNS.index("time_s")
+_WRITE_ERRORS = (sqlite3.Error, OSError, ValueError, OverflowError, TypeError, IndexError)
+"""What a disk (first two) or a value that no column takes (the others) can raise."""
+
+
+def _open(path: Path) -> sqlite3.Connection:
+    connection = sqlite3.connect(path, isolation_level=None, check_same_thread=False)
+    try:
+        version_of(connection)  # before anything is changed in a file that may be somebody else's
+        connection.execute("PRAGMA journal_mode = WAL")
+        connection.execute("PRAGMA synchronous = FULL")
+        migrate(connection)
+        connection.executemany(
+            "INSERT OR IGNORE INTO sample_column (position, name) VALUES (?, ?)", enumerate(SAMPLE_COLUMNS)
+        )
+        columns = connection.execute("SELECT name FROM sample_column ORDER BY position").fetchall()
+        if tuple(name for (name,) in columns) != SAMPLE_COLUMNS:
+            raise StoreError(f"{path.name} was recorded with other sample columns and cannot be continued")
+    except (sqlite3.Error, StoreError):
+        connection.close()
+        raise
+    return connection
+
+
+class RunWriter(Recorder):
+    """The record of one run in ``path`` (run.db): a new file, or the file of a run that goes on.
+
+    ``clock`` gives seconds of a monotonic wall clock, ``utc`` the time of day as text. ``synchronous`` works
+    without a thread: for tests, and for simulations in which a thread only costs.
+    Raises StoreError for a database that is not ours or newer, sqlite3.Error if the file cannot be opened.
+    """
+
+    def __init__(
+        self,
+        path: Path,
+        *,
+        clock: Callable[[], float],
+        utc: Callable[[], str] = no_utc,
+        lossless: bool = False,
+        synchronous: bool = False,
+        limit: int | None = None,
+        commit_every_s: float = COMMIT_EVERY_S,
+    ) -> None:
+        """Open the file and start the logger."""
+        super().__init__(utc)
+        self._clock = clock
+        self._lossless = lossless
+        self._synchronous = synchronous
+        usual = BLOCK_ROWS if synchronous else LOSSLESS_LIMIT if lossless else QUEUE_LIMIT
+        self._limit = usual if limit is None else limit
+        self._poll_s = 0.1 * commit_every_s
+        self._commit_after_s = commit_every_s - self._poll_s
+        self._queue: deque[tuple[float, ...] | Batch] = deque()
+        self._rows: list[tuple[float, ...]] = []
+        self._batches: list[Batch] = []
+        self._urgent = False
+        self._stored_overruns = 0
+        self._stopping = False
+        self._wake, self._room, self._committed = Signal(), Signal(), Signal()
+        self._connection = _open(path)
+        self._continue_counting()
+        self._committed_at = clock()
+        self._thread = None if synchronous else Thread(target=self._run, name="recorder", daemon=True)
+        if self._thread is not None:
+            self._thread.start()
+
+    def __deepcopy__(self, memo: dict[int, object]) -> NullRecorder:
+        """Return a recorder that records nothing and counts on: a copied engine does not write the file."""
+        copied = NullRecorder(self._utc)
+        copied.continue_from(self)
+        return copied
+
+    def _continue_counting(self) -> None:
+        def last(column: str, table: str) -> int:
+            return self._connection.execute(f"SELECT coalesce(max({column}), 0) FROM {table}").fetchone()[0]
+
+        self._repeats = last("id", "repeat")
+        self._events = last("sequence", "event")
+        self._prompts = last("id", "prompt")
+        self._trips = last("id", "trip")
+
+    # The scan's side
+
+    def sample(self, row: tuple[float, ...]) -> None:
+        """Record one sample: a value for each of SAMPLE_COLUMNS, as an exact tuple."""
+        if len(self._queue) < self._limit:
+            self._queue.append(row)
+        else:
+            self._full(row)
+
+    def _full(self, row: tuple[float, ...]) -> None:
+        if self._synchronous and self.failed is None:
+            self._service()
+        elif self._lossless:
+            while len(self._queue) >= self._limit and self.failed is None:
+                self._room.clear()
+                self._wake.set()
+                self._room.wait(self._poll_s)
+        if len(self._queue) < self._limit:
+            self._queue.append(row)
+        else:
+            self.overruns += 1
+
+    def _put(self, batch: Batch) -> None:
+        self._queue.append(batch)
+        if self._synchronous:
+            if self.failed is None:
+                self._service()
+        elif batch.urgent:
+            self._wake.set()
+
+    def commit_repeat(self, key: int, result: RepeatResult, bursts: Iterable[Burst] = ()) -> Ticket:
+        """Commit a repeat whole; when lossless, return only after the COMMIT."""
+        ticket = super().commit_repeat(key, result, bursts)
+        if self._lossless:
+            self._wait_for(ticket)
+        return ticket
+
+    def _wait_for(self, ticket: Ticket) -> None:
+        while not ticket.done and self.failed is None:
+            self._committed.wait(self._poll_s)
+            self._committed.clear()
+
+    def close(self) -> None:
+        """Commit what is left, fold the log into the database and let go of the file."""
+        if self._stopping:
+            return
+        self._stopping = True
+        if self._thread is not None:
+            self._wake.set()
+            self._thread.join()
+        self._drain()
+        self._commit()
+        if self.failed is None:
+            # Not WAL any more: a finished run is one file that reading does not touch. Somebody who reads it just now
+            # prevents that; then the log is folded in when the last of them leaves, and the file stays WAL.
+            self._connection.execute("PRAGMA busy_timeout = 0")
+            with suppress(sqlite3.OperationalError):
+                self._connection.execute("PRAGMA journal_mode = DELETE")
+        self._connection.close()
+
+    # The logger's side
+
+    def _run(self) -> None:
+        try:
+            while not self._stopping and self.failed is None:
+                self._wake.wait(self._poll_s)
+                self._wake.clear()
+                self._service()
+        finally:
+            # Whoever waits for this thread must not wait for ever, whatever ended it.
+            if not self._stopping and self.failed is None:
+                self.failed = "the recorder has ended unexpectedly"
+
+    def _service(self) -> None:
+        self._drain()
+        waited = self._clock() - self._committed_at
+        if self._urgent or waited >= self._commit_after_s or len(self._rows) >= LOSSLESS_LIMIT:
+            self._commit()
+
+    def _drain(self) -> None:
+        queue = self._queue
+        for _ in range(len(queue)):
+            item = queue.popleft()
+            if isinstance(item, Batch):
+                self._batches.append(item)
+                self._urgent |= item.urgent
+            else:
+                self._rows.append(item)
+        self._room.set()
+
+    def _commit(self) -> None:
+        if self._rows or self._batches or self.overruns != self._stored_overruns:
+            try:
+                self._write_transaction()
+            except _WRITE_ERRORS as error:
+                self._fail(error)
+                return
+            self._rows.clear()
+            for batch in self._batches:
+                batch.ticket.done = True
+            self._batches.clear()
+        self._urgent = False
+        self._committed_at = self._clock()
+        self._committed.set()
+
+    def _write_transaction(self) -> None:
+        connection = self._connection
+        connection.execute("BEGIN IMMEDIATE")
+        try:
+            self._write_rows()
+            for batch in self._batches:
+                for sql, values in batch.statements:
+                    connection.execute(sql, values)
+            overruns = self.overruns
+            if overruns != self._stored_overruns:
+                connection.execute("UPDATE run SET overruns = overruns + ?", (overruns - self._stored_overruns,))
+            connection.execute("COMMIT")
+        finally:
+            if connection.in_transaction:
+                connection.execute("ROLLBACK")
+        self._stored_overruns = overruns
+
+    def _write_rows(self) -> None:
+        rows = self._rows
+        first = 0
+        for end in range(1, len(rows) + 1):
+            if end == len(rows) or end - first == BLOCK_ROWS or rows[end][_KEY] != rows[first][_KEY]:
+                block = rows[first:end]
+                data = pack(block, _COLUMNS)
+                self._connection.execute(
+                    "INSERT INTO sample_block (repeat_id, rows, first_s, last_s, data) VALUES (?, ?, ?, ?, ?)",
+                    (int(block[0][_KEY]), len(block), block[0][_TIME], block[-1][_TIME], data),
+                )
+                first = end
+
+    def _fail(self, error: Exception) -> None:
+        self.failed = f"{type(error).__name__}: {error}"
+        for batch in self._batches:
+            batch.ticket.error = self.failed
+        self._urgent = False
+        self._committed.set()
+        self._room.set()

@@ -1,0 +1,182 @@
+"""From repeats to a condition, and from wheels to one value."""
+
+from __future__ import annotations
+
+from math import isnan, sqrt
+
+import pytest
+
+from tester.analysis.repeats import (
+    ConditionResult,
+    cochran_critical,
+    combine_repeats,
+    combine_replicates,
+    excess_fluctuation,
+    outliers,
+)
+from tester.analysis.results import ConditionStatus, RepeatResult, RepeatStatus
+
+
+def repeat(
+    mu: float = 0.7,
+    fluctuation: float = 1.0,
+    status: RepeatStatus = RepeatStatus.VALID,
+    reason: str = "",
+    flags: str = "",
+) -> RepeatResult:
+    return RepeatResult(
+        status=status,
+        reason=reason,
+        flags=flags,
+        mu_resultant=mu,
+        mu_longitudinal=mu,
+        mu_lateral=0.01,
+        fluctuation_percent=fluctuation,
+        batches=10,
+        force_z_n=200.0,
+        slip_m_s=0.3,
+        surface_c=25.0,
+    )
+
+
+def combine(
+    *results: RepeatResult, planned: int = 5, ended: ConditionStatus | None = None, reason: str = ""
+) -> ConditionResult:
+    return combine_repeats(results, planned, ended=ended, reason=reason)
+
+
+FIVE = [repeat(mu) for mu in (0.70, 0.71, 0.69, 0.72, 0.70)]
+
+
+def test_mean_scatter_and_interval_of_valid_repeats() -> None:
+    result = combine(*FIVE)
+    assert result.ok
+    assert (result.n_valid, result.n) == (5, 5)
+    assert result.mu_resultant == pytest.approx(0.704)
+    assert result.s == pytest.approx(0.0114018, rel=1e-5)
+    assert result.type_a == pytest.approx(result.s / sqrt(5))
+    assert result.interval == pytest.approx(2.776445 * result.type_a, rel=1e-6)
+    assert result.measured["surface_c"] == pytest.approx(25.0)
+
+
+def test_expanded_uncertainty_is_more_than_scatter_alone() -> None:
+    result = combine(*FIVE)
+    assert result.expanded == pytest.approx(result.coverage * result.standard)
+    assert result.standard > result.type_a
+    assert 1.9 < result.coverage < 2.8
+
+
+def test_a_repeat_that_is_not_valid_is_left_out_with_its_reason() -> None:
+    result = combine(*FIVE[:4], repeat(0.9, status=RepeatStatus.NOT_STABILISED, reason="drift +4 %"))
+    assert result.ok
+    assert result.n_valid == 4
+    assert result.mu_resultant == pytest.approx(0.705)
+    (excluded,) = result.excluded
+    assert (excluded.position, excluded.reason) == (4, "not stabilised: drift +4 %")
+
+
+def test_fewer_valid_than_needed_is_insufficient_and_names_each() -> None:
+    poor = repeat(status=RepeatStatus.TOO_FEW, reason="3 of 30 revolutions")
+    result = combine(FIVE[0], FIVE[1], poor, poor, poor)
+    assert result.status is ConditionStatus.INSUFFICIENT
+    assert result.reason.startswith("2 of 5 valid, 3 needed: repeat 3 too few revolutions: 3 of 30")
+
+
+def test_an_insufficient_condition_still_shows_its_mean() -> None:
+    result = combine(FIVE[0], *[repeat(status=RepeatStatus.TOO_FEW)] * 4)
+    assert result.mu_resultant == pytest.approx(0.70)
+    assert isnan(result.s)
+    assert isnan(result.expanded)
+
+
+def test_a_condition_left_early_keeps_what_the_run_said() -> None:
+    result = combine(FIVE[0], ended=ConditionStatus.CANNOT_HOLD, reason="warming 3 K/s")
+    assert (result.status, result.reason) == (ConditionStatus.CANNOT_HOLD, "warming 3 K/s")
+
+
+def test_a_condition_left_early_with_enough_valid_repeats_has_a_value() -> None:
+    assert combine(*FIVE[:3], ended=ConditionStatus.CANNOT_HOLD, reason="warming 3 K/s").ok
+
+
+def test_a_condition_that_is_under_way_is_not_measured_yet() -> None:
+    result = combine(*FIVE[:4])
+    assert (result.status, result.reason) == (ConditionStatus.PENDING, "4 of 5 repeats committed")
+    assert not combine().ok
+
+
+def test_repeats_that_all_could_not_hold_the_temperature_say_so_together() -> None:
+    failed = repeat(status=RepeatStatus.CANNOT_HOLD, reason="warming 3 K/s")
+    result = combine(failed, failed, planned=2)
+    assert (result.status, result.reason) == (ConditionStatus.CANNOT_HOLD, "warming 3 K/s")
+
+
+def test_a_restless_repeat_is_excluded() -> None:
+    result = combine(*FIVE[:4], repeat(0.7, fluctuation=6.0))
+    assert result.n_valid == 4
+    assert "fluctuates by 6.0 %" in result.excluded[0].reason
+
+
+def test_two_restless_repeats_are_excluded_one_after_the_other() -> None:
+    results = [repeat() for _ in range(6)] + [repeat(fluctuation=6.0), repeat(fluctuation=30.0)]
+    assert combine(*results, planned=8).n_valid == 6
+
+
+def test_a_repeat_three_times_as_restless_as_its_siblings_needs_cochran_too() -> None:
+    # C of 2.9 : 1 : 1 : 1 : 1 is beyond the critical value, the ratio is not beyond 3.
+    assert excess_fluctuation([*FIVE[:4], repeat(fluctuation=2.9)]) is None
+
+
+def test_of_two_repeats_none_is_restless() -> None:
+    assert excess_fluctuation([repeat(), repeat(fluctuation=50.0)]) is None
+
+
+def test_repeats_without_any_noise_are_not_restless() -> None:
+    assert excess_fluctuation([repeat(fluctuation=0.0)] * 4) is None
+
+
+@pytest.mark.parametrize(("groups", "df", "printed"), [(3, 1, 0.993), (5, 2, 0.788), (5, 5, 0.588), (10, 1, 0.718)])
+def test_cochran_critical_values_are_those_of_iso_5725(groups: int, df: int, printed: float) -> None:
+    assert cochran_critical(groups, df) == pytest.approx(printed, abs=6e-4)
+
+
+def test_a_value_far_from_the_others_is_flagged_and_stays() -> None:
+    result = combine(*FIVE[:4], repeat(0.80))
+    assert result.ok
+    assert result.n_valid == 5
+    assert result.flagged == (4,)
+    assert "outlier" in result.flags.split()
+    assert result.mu_resultant == pytest.approx(0.724)
+    assert result.mu_without_flagged == pytest.approx(0.705)
+
+
+def test_positions_of_flagged_repeats_count_those_left_out() -> None:
+    result = combine(repeat(status=RepeatStatus.TOO_FEW), *FIVE[:3], repeat(0.90))
+    assert result.flagged == (4,)
+
+
+def test_of_two_values_none_is_far() -> None:
+    assert outliers([0.1, 0.9]) == []
+
+
+def test_flags_of_repeats_are_those_of_the_condition() -> None:
+    assert combine(*[repeat(flags="rolling"), repeat(flags="rolling extended"), *FIVE[:3]]).flags == "extended rolling"
+
+
+def test_replicates_combine_as_means_of_wheels() -> None:
+    wheels = [combine(*[repeat(mu)] * 5) for mu in (0.70, 0.72, 0.76)]
+    result = combine_replicates(wheels)
+    assert result.ok
+    assert (result.n_valid, result.n) == (3, 3)
+    assert result.mu_resultant == pytest.approx(0.72667, rel=1e-4)
+    assert result.s == pytest.approx(0.030551, rel=1e-4)
+
+
+def test_a_single_wheel_with_a_value_is_not_enough_for_replicates() -> None:
+    result = combine_replicates([combine(*FIVE), combine(*FIVE[:1], ended=ConditionStatus.NOT_REACHED)])
+    assert result.status is ConditionStatus.INSUFFICIENT
+    assert result.reason == "replicate 2: not reached"
+
+
+def test_replicates_under_way_are_not_measured_yet() -> None:
+    assert combine_replicates([combine(*FIVE), combine()]).status is ConditionStatus.PENDING
+    assert combine_replicates([combine(), combine()]).status is ConditionStatus.PENDING

@@ -1,0 +1,78 @@
+"""A run's results: reduced from what is committed, in recipe order."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from tester.analysis.results import ConditionStatus, RepeatStatus
+from tester.export.results import RunResults, results_of
+from tester.store.reader import RunReader
+from tester.store.schema import StoreError
+from tests.tester.store.build import CONDITION, RUN, SPECIMENS, open_writer, record, result, small_run
+
+
+def results(folder: Path) -> RunResults:
+    with RunReader(folder) as reader:
+        return results_of(reader)
+
+
+def test_every_condition_has_a_row_with_its_mean(tmp_path: Path) -> None:
+    found = results(small_run(tmp_path))
+    assert [row.result.mu_resultant for row in found.rows] == pytest.approx([0.90, 0.73])
+    assert found.missing() == []
+
+
+def test_a_condition_without_enough_repeats_is_missing_and_says_why(tmp_path: Path) -> None:
+    (row,) = results(small_run(tmp_path, ([0.9, 0.91], [0.73, 0.74, 0.72]))).missing()
+    assert row.describe() == "1#, 300 mm/s, 100 N, 0°, 25 °C: insufficient: 2 of 3 valid, 3 needed"
+
+
+def test_a_temperature_that_cannot_be_held_is_named_with_rate_and_band(tmp_path: Path) -> None:
+    writer = open_writer(tmp_path)
+    writer.begin_run(RUN, SPECIMENS, [CONDITION])
+    writer.end_condition(1, ConditionStatus.CANNOT_HOLD, "", 9.0, warming_k_s=3.14, holdable_band_k=5.5)
+    writer.close()
+    (row,) = results(tmp_path).missing()
+    assert row.describe().endswith("temperature cannot be held: warming 3.1 K/s; 5.5 K of band would do")
+
+
+def test_a_condition_that_was_not_reached_is_not_measured(tmp_path: Path) -> None:
+    writer = open_writer(tmp_path)
+    writer.begin_run(RUN, SPECIMENS, [CONDITION])
+    writer.close()
+    (row,) = results(tmp_path).missing()
+    assert row.result.status is ConditionStatus.PENDING
+
+
+def test_replicates_make_one_row_with_a_combined_value(tmp_path: Path) -> None:
+    writer = open_writer(tmp_path)
+    conditions = [replace(CONDITION, condition=i, replicate=i) for i in (1, 2, 3)]
+    writer.begin_run(RUN, SPECIMENS, conditions)
+    for condition, mu in zip(conditions, (0.70, 0.72, 0.74), strict=True):
+        record(writer, condition.condition, [mu] * 3)
+    writer.close()
+    found = results(tmp_path)
+    (row,) = found.rows
+    assert row.result.mu_resultant == pytest.approx(0.72)
+    assert (row.result.n_valid, len(row.replicates), len(list(found.conditions()))) == (3, 3, 3)
+
+
+def test_a_repeat_that_is_left_out_says_why(tmp_path: Path) -> None:
+    writer = open_writer(tmp_path)
+    writer.begin_run(RUN, SPECIMENS, [replace(CONDITION, repeats=4)])
+    record(writer, 1, [0.70, 0.71, 0.72])
+    writer.commit_repeat(writer.begin_repeat(1, 4, 1), result(0.9, RepeatStatus.NOT_STABILISED, "drift +4 %"))
+    writer.close()
+    (measured,) = results(tmp_path).conditions()
+    assert [measured.exclusion(repeat) for repeat in measured.repeats] == ["", "", "", "not stabilised: drift +4 %"]
+
+
+def test_a_setting_of_the_budget_that_is_no_number_is_refused(tmp_path: Path) -> None:
+    writer = open_writer(tmp_path)
+    writer.begin_run(replace(RUN, metadata={"uncertainty.misalignment_deg": "much"}), SPECIMENS, [CONDITION])
+    writer.close()
+    with pytest.raises(StoreError, match=r"run\.db"):
+        results(tmp_path)
