@@ -12,7 +12,7 @@ CanFrame = tuple[float, int, bytes]
 """(arrival time in s, CAN identifier, data of 0..8 bytes)."""
 
 
-class BusLost(Exception):
+class BusLost(Exception):  # noqa: N818 - it names what happened
     """The wire below a port is gone (adapter unplugged, bus-off, socket closed, end of file)."""
 
 

@@ -13,11 +13,11 @@ from typing import Protocol
 from recipes import find
 from tester import clock
 from tester.bus_log import BusLog
-from tester.engine.build import Ports, Recording, build_run
+from tester.engine.build import Ports, build_run
 from tester.engine.context import Attendant, Nobody
 from tester.engine.context import Progress as RunProgress
 from tester.engine.prompts import Prompts
-from tester.engine.results import StoredResults, condition_records
+from tester.engine.results import condition_records
 from tester.engine.run import Outcome, Run
 from tester.engine.tickers import TickStatistics, World, run_real_time, run_simulated
 from tester.export import write_all
@@ -138,22 +138,18 @@ class Session:
                 [SpecimenInfo(s.index, s.compound, s.note) for s in plan.specimens],
                 condition_records(plan),
             )
-            results = StoredResults(writer)
-            outcome, reason, seconds = self._execute(rig, plan, writer, results)
-            status = "incomplete" if outcome is Outcome.DONE and results.missing else outcome.value
-            writer.finish(status, reason, seconds)
+            outcome, reason, seconds = self._execute(rig, plan, writer)
+            writer.finish(outcome.value, reason, seconds)
         finally:
             writer.close()
-        return self._report(folder, outcome, reason, results, writer)
+        return self._report(folder, outcome, reason, writer.failed)
 
-    def _execute(
-        self, rig: RigConfig, plan: Plan, writer: RunWriter, results: StoredResults
-    ) -> tuple[Outcome, str, float]:
+    def _execute(self, rig: RigConfig, plan: Plan, writer: RunWriter) -> tuple[Outcome, str, float]:
         log = BusLog(self.options.bus_log, rig) if self.options.bus_log is not None else None
         try:
             ports, world, attendant = connect_ports(rig, self.options.seed, log)
             prompts = Prompts(automatic=self.screen.answer_yes)
-            run = build_run(rig, plan, ports, attendant, Recording(writer, writer, results), prompts)
+            run = build_run(rig, plan, ports, attendant, writer, prompts)
             self.run_ = run
             seconds = self._tick(run, world, plan, rig, prompts)
             record_parameters(run, writer, seconds)
@@ -190,24 +186,22 @@ class Session:
         else:
             self.run_.request_stop("terminated")
 
-    def _report(self, folder: Path, outcome: Outcome, reason: str, results: StoredResults, writer: RunWriter) -> int:
-        write_all(folder)
-        for line in results.missing:
+    def _report(self, folder: Path, outcome: Outcome, reason: str, failed: str | None) -> int:
+        """Write the tables, name what is missing in them, and return the exit code."""
+        missing = [row.describe() for row in write_all(folder)]
+        for line in missing:
             self.screen.message(line)
         if reason:
             self.screen.message(f"{outcome.value}: {reason}")
         code = EXIT_CODES[outcome]
         if outcome is Outcome.STOPPED and self.interrupts == 1:
             code = EXIT_INTERRUPTED
-        elif writer.failed:
-            self.screen.message(f"not everything could be recorded: {writer.failed}")
-            code = 1
-        elif outcome is Outcome.DONE and results.missing:
+        elif failed:
+            self.screen.message(f"not everything could be recorded: {failed}")
+            code = EXIT_CODES[Outcome.FAILED]
+        elif outcome is Outcome.DONE and missing:
             code = EXIT_INCOMPLETE
-        self.screen.emit(
-            {"event": "end", "outcome": outcome.value, "exit": code, "measured": results.measured,
-             "missing": results.missing}
-        )  # fmt: skip
+        self.screen.emit({"event": "end", "outcome": outcome.value, "exit": code, "missing": missing})
         self.screen.result(str(folder))
         return code
 

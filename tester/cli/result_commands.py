@@ -209,9 +209,7 @@ def _row(row: TableRow) -> str:
 @click.command()
 @click.argument("run")
 @click.option("--format", "kind", type=click.Choice(FORMATS), required=True, help="Which table.")
-@click.option(
-    "--out", type=click.Path(dir_okay=False, path_type=Path), default=None, help="File to write (stdout)."
-)
+@click.option("--out", type=click.Path(dir_okay=False, path_type=Path), default=None, help="File to write (stdout).")
 @click.option(
     "--decimals", type=click.IntRange(0, 10), default=2, show_default=True, help="Of the appendix's coefficient."
 )

@@ -72,7 +72,7 @@ class ControlState:
     cooled: bool = False
     """The cool-down of this run is over, whether the jacket got cool or not."""
     hub_ceiling: list[tuple[float, float]] = field(default_factory=list[tuple[float, float]])
-    """(time, hub setpoint) of the last ten minutes, falling setpoints only: the first is the highest (runaway limit)."""
+    """(time, hub setpoint) of the last ten minutes, falling ones only: the first is the highest (runaway limit)."""
 
     def enter(self, mode: Mode, now_s: float, why: str) -> None:
         """Change the mode and journal it."""

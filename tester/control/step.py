@@ -236,6 +236,7 @@ def _detail(readings: Readings) -> str:
     """Name the values a reader of the journal wants first."""
     text = (
         f" (Fz {readings.force_z_n:.1f} N, wheel {readings.wheel_speed_m_s:.3f} m/s,"
-        f" belt {readings.belt_speed_m_s:.3f} m/s, surface {readings.surface_c:.1f} degC, hub {readings.hub_c:.1f} degC)"
+        f" belt {readings.belt_speed_m_s:.3f} m/s,"
+        f" surface {readings.surface_c:.1f} degC, hub {readings.hub_c:.1f} degC)"
     )
     return f" [{readings.drive_fault}]{text}" if readings.drive_fault else text

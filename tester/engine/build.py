@@ -17,19 +17,20 @@ from tester.control.heat_loop import HeatLoop
 from tester.control.load_loop import LoadLoop
 from tester.control.state import ControlState
 from tester.control.step import Control
-from tester.engine.condition import Results
 from tester.engine.connect import Connector
-from tester.engine.context import Attendant, Context, Journal, WheelLife
+from tester.engine.context import Attendant, Context, WheelLife
 from tester.engine.devices import Axes, Devices
 from tester.engine.engine import Engine
 from tester.engine.executor import Executor
 from tester.engine.gates import Gates
 from tester.engine.prompts import Prompts
-from tester.engine.recorder import Recorder, Sink
+from tester.engine.results import StoredResults
 from tester.engine.run import Run
+from tester.engine.sampler import Sampler
 from tester.process import Demand, Readings, Setpoints
 from tester.recipe.plan import Plan
 from tester.rig import LineConfig, RigConfig
+from tester.store.recorder import Recorder
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,17 +92,8 @@ def loss_ratios(rig: RigConfig) -> tuple[float, float]:
     return resistance * lifted, resistance * (lifted + observer.belt_conductance)
 
 
-@dataclass(frozen=True, slots=True)
-class Recording:
-    """Where a run's data go."""
-
-    journal: Journal
-    sink: Sink
-    results: Results
-
-
 def build_run(
-    rig: RigConfig, plan: Plan, ports: Ports, attendant: Attendant, recording: Recording, prompts: Prompts
+    rig: RigConfig, plan: Plan, ports: Ports, attendant: Attendant, recorder: Recorder, prompts: Prompts
 ) -> Run:
     """Return a run that is ready to be ticked."""
     devices = build_devices(rig, ports)
@@ -115,13 +107,13 @@ def build_run(
         demand=Demand(),
         gates=Gates(rig.gates),
         prompts=prompts,
-        journal=recording.journal,
+        journal=recorder,
         attendant=attendant,
         cell=devices.cell,
         wheel=WheelLife(installed_mm=geometry.wheel_diameter_mm, width_mm=geometry.wheel_width_mm),
         contact=load,
         ambient_c=rig.ambient_c,
     )
-    executor = Executor(plan, recording.results, hardware=not rig.simulated)
-    engine = Engine(devices, control, executor, ctx, Recorder(recording.sink))
+    executor = Executor(plan, StoredResults(recorder), hardware=not rig.simulated)
+    engine = Engine(devices, control, executor, ctx, Sampler(recorder))
     return Run(Connector(devices), engine)

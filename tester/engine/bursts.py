@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
-from math import isfinite
+from math import isfinite, pi
 
 from sim.slip import slip_velocity
 from tester.analysis.blocks import RevolutionCounter
@@ -40,8 +40,14 @@ CENTRED_K = 0.2
 MEAN_LIMIT_K = 0.45
 """A burst ends before the mean surface temperature of the repeat's samples is more than this off the setpoint [A]
 (acceptance: within 0.7 K, rulings 29)."""
-SPLIT_RISE_K = 0.5
-"""A burst that has warmed by this much ends at half the window: a second rise tells temperature from time [A]."""
+ROLLING_START_K = 0.4
+"""Without slip nothing moves the surface during the window: it starts this near to the setpoint, K [A]."""
+BELOW_K = 0.3
+"""A burst whose samples lie further below the setpoint than this, in the mean, starts the next one higher, K [A]."""
+OFFSET_LEAST_K = 0.2
+SPLIT_RISE_K = 0.25
+"""A burst that has warmed by this much ends at half the window, any other at a whole one: a second rise tells
+temperature from time [A]."""
 BLIND_S = 20.0
 """A burst in which nothing has counted for this long is given up, s [A]."""
 LIFT_TO_COOL_S = 180.0
@@ -83,7 +89,8 @@ class BurstNotes:
     blocks_before: int = 0
     counted_s: float = float("-inf")
     peak_rate_k_s: float = 0.0
-    samples: int = 0
+    sum_before_k: float = 0.0
+    count_before: int = 0
 
 
 class MeasureRepeat:
@@ -103,6 +110,9 @@ class MeasureRepeat:
         self.bursts = 0
         self.ending: Ending | None = None
         self.detail = ""
+        self.warming_k_s = float("nan")
+        self.holdable_band_k = float("nan")
+        """Where the temperature could not be held: the rate seen, and the band that would hold one turn."""
         self.ready_since_s = float("nan")
         self.mark_s = 0.0
         self.mark_c = float("inf")
@@ -188,7 +198,7 @@ class MeasureRepeat:
 
     def _start_now(self, ctx: Context, surface: float, target: float) -> bool:
         if self.rolling_only:
-            return abs(surface - target) <= min(1.0, self.condition.temperature_band_k)
+            return abs(surface - target) <= min(ROLLING_START_K, self.condition.temperature_band_k)
         if surface < target - max(self.condition.temperature_band_k, self.offset_k + 0.5):
             return False
         if surface <= target - self.offset_k + 0.1:
@@ -226,7 +236,13 @@ class MeasureRepeat:
     def _begin_burst(self, ctx: Context) -> None:
         self.phase = Phase.COUNT
         self.bursts += 1
-        self.burst = BurstNotes(ctx.now, float("nan"), self.revolutions, ctx.now)
+        self.burst = BurstNotes(
+            ctx.now,
+            blocks_before=self.revolutions,
+            counted_s=ctx.now,
+            sum_before_k=self.surface_sum_k,
+            count_before=self.surface_count,
+        )
         ctx.burst = self.bursts
         self._count(ctx)
 
@@ -246,6 +262,7 @@ class MeasureRepeat:
             self.surface_sum_k += r.surface_c - sp.temperature_c
             self.surface_count += 1
         if done and self._complete(ctx):
+            self._learn_offset(FEW_REVOLUTIONS, self.offset_k)
             self._end(Ending.COMPLETE, "")
         elif self._burst_over(ctx, surface, rate):
             self._end_burst(ctx)
@@ -273,8 +290,10 @@ class MeasureRepeat:
         if mean > MEAN_LIMIT_K and surface > target + MEAN_LIMIT_K:
             return True
         window = self.condition.window.revolutions
-        if window is not None and isfinite(start) and surface - start > SPLIT_RISE_K:
-            return self.revolutions - self.burst.blocks_before >= 0.5 * window
+        if window is not None and isfinite(start):
+            share = 0.5 if surface - start > SPLIT_RISE_K else 1.0
+            if self.revolutions - self.burst.blocks_before >= share * window:
+                return True
         return ctx.now - self.burst.counted_s > BLIND_S
 
     def _end_burst(self, ctx: Context) -> None:
@@ -284,8 +303,7 @@ class MeasureRepeat:
         if gained == 0 and self.offset_k >= furthest and self.bursts > 3:
             self._end(Ending.CANNOT_HOLD, self._band_needed(ctx))
             return
-        if gained < FEW_REVOLUTIONS:
-            self.offset_k = min(self.offset_k + OFFSET_STEP_K, furthest)
+        self._learn_offset(gained, furthest)
         if self.bursts >= self.condition.max_bursts:
             enough = self.revolutions >= (self.condition.window.revolutions or 0.0) and self.revolutions > 0
             self._end(
@@ -300,11 +318,21 @@ class MeasureRepeat:
         else:
             self.moves = Sequence(Turn(wheel, wheel))
 
+    def _learn_offset(self, gained: int, furthest_k: float) -> None:
+        """Start lower after a burst that warmed up too quickly, higher after one that stayed below the setpoint."""
+        count = self.surface_count - self.burst.count_before
+        mean_k = (self.surface_sum_k - self.burst.sum_before_k) / count if count else 0.0
+        if gained < FEW_REVOLUTIONS:
+            self.offset_k = min(self.offset_k + OFFSET_STEP_K, furthest_k)
+        elif mean_k < -BELOW_K:
+            self.offset_k = max(self.offset_k + 0.7 * mean_k, OFFSET_LEAST_K)
+
     def _band_needed(self, ctx: Context) -> str:
-        """Say how fast the surface warms and which band would hold one whole revolution."""
-        turn_s = 3.14159265 * ctx.readings.diameter_mm * 1e-3 / self.setpoint.wheel_speed_m_s
-        rate = self.burst.peak_rate_k_s
-        return f"surface warms by {rate:.2f} K/s; a band of {0.5 * rate * WARM_SHARE * turn_s + 0.5:.1f} K would do"
+        """Work out how fast the surface warms and which band would hold one whole revolution; return it as text."""
+        turn_s = pi * ctx.readings.diameter_mm * 1e-3 / self.setpoint.wheel_speed_m_s
+        self.warming_k_s = self.burst.peak_rate_k_s
+        self.holdable_band_k = 0.5 * self.warming_k_s * (WARM_SHARE * turn_s + ctx.rig.gates.ir_lag_s)
+        return f"surface warms by {self.warming_k_s:.2f} K/s; a band of {self.holdable_band_k:.1f} K would do"
 
     def _end(self, ending: Ending, detail: str) -> None:
         self.ending = ending

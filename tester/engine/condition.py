@@ -38,6 +38,16 @@ class RepeatOutcome:
     ticket: Ticket
 
 
+@dataclass(frozen=True, slots=True)
+class ConditionEnd:
+    """How a condition was left: None = all repeats were made."""
+
+    ending: Ending | None = None
+    detail: str = ""
+    warming_k_s: float = float("nan")
+    holdable_band_k: float = float("nan")
+
+
 class Results(Protocol):
     """Where repeats and conditions go: reduction and store behind one door."""
 
@@ -51,7 +61,7 @@ class Results(Protocol):
         """Reduce and commit a repeat."""
         ...
 
-    def finish_condition(self, ctx: Context, step: ConditionStep, ending: Ending | None, detail: str) -> str:
+    def finish_condition(self, ctx: Context, step: ConditionStep, end: ConditionEnd) -> str:
         """Sum a condition up from its repeats and commit it; return a line for people."""
         ...
 
@@ -116,7 +126,7 @@ class MeasureCondition:
         if self.soak.reached:
             return False
         text = f"surface at {ctx.gates.surface.slow_c:.1f} degC after {step.soak.at_most_s / 60:g} min of soak"
-        return self._close(ctx, Ending.NOT_REACHED, text)
+        return self._close(ctx, ConditionEnd(Ending.NOT_REACHED, text))
 
     # -- repeats --------------------------------------------------------------------------------------------
 
@@ -143,15 +153,15 @@ class MeasureCondition:
         measured, self.measuring, self.outcome = self.measuring, None, None
         if measured.ending is Ending.ZERO_DRIFT:
             self.failed = measured.detail
-            return self._close(ctx, measured.ending, measured.detail)
-        if measured.ending in (Ending.CANNOT_HOLD, Ending.NOT_REACHED):
-            return self._close(ctx, measured.ending, measured.detail)
+        if measured.ending in (Ending.ZERO_DRIFT, Ending.CANNOT_HOLD, Ending.NOT_REACHED):
+            end = ConditionEnd(measured.ending, measured.detail, measured.warming_k_s, measured.holdable_band_k)
+            return self._close(ctx, end)
         if self.repeat < self.condition.repeats:
             return False
-        return self._close(ctx, None, "")
+        return self._close(ctx, ConditionEnd())
 
-    def _close(self, ctx: Context, ending: Ending | None, detail: str) -> bool:
-        text = self.results.finish_condition(ctx, self.condition, ending, detail)
+    def _close(self, ctx: Context, end: ConditionEnd) -> bool:
+        text = self.results.finish_condition(ctx, self.condition, end)
         ctx.journal.event(ctx.now, "condition", text)
         return True
 

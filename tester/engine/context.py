@@ -11,6 +11,7 @@ from tester.engine.gates import Gates
 from tester.engine.prompts import Prompts
 from tester.process import Demand, Readings
 from tester.rig import RigConfig
+from tester.store.recorder import Recorder
 
 
 class Attendant(Protocol):
@@ -45,14 +46,6 @@ class Tare(Protocol):
 
     def set_tare(self, values: tuple[float, float, float, float]) -> None:
         """Use these offsets from now on."""
-        ...
-
-
-class Journal(Protocol):
-    """Where events go; queued in order before the scan's outputs leave."""
-
-    def event(self, t_s: float, kind: str, text: str, severity: str = "info") -> None:
-        """Record one event."""
         ...
 
 
@@ -116,7 +109,8 @@ class Context:
     demand: Demand
     gates: Gates
     prompts: Prompts
-    journal: Journal
+    journal: Recorder
+    """The run's record: events, prompts, tares and trips are queued in order before the scan's outputs leave."""
     attendant: Attendant
     cell: Tare
     wheel: WheelLife

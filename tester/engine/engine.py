@@ -9,7 +9,7 @@ from tester.control.step import Control
 from tester.engine.context import Context
 from tester.engine.devices import Devices
 from tester.engine.executor import Executor
-from tester.engine.recorder import Recorder
+from tester.engine.sampler import Sampler
 
 CONTACT_N = 5.0
 """Above this force the wheel counts as in contact, for recording."""
@@ -18,15 +18,13 @@ CONTACT_N = 5.0
 class Engine:
     """The scan of one rig and one run."""
 
-    def __init__(
-        self, devices: Devices, control: Control, executor: Executor, ctx: Context, recorder: Recorder
-    ) -> None:
+    def __init__(self, devices: Devices, control: Control, executor: Executor, ctx: Context, sampler: Sampler) -> None:
         """Take the parts; nothing is sent before the first ``tick``."""
         self.devices = devices
         self.control = control
         self.executor = executor
         self.ctx = ctx
-        self.recorder = recorder
+        self.sampler = sampler
         scan = ctx.rig.scan
         self.sliding_s = 1.0 / scan.sliding_hz
         self.enabled_s = 1.0 / scan.enabled_hz
@@ -69,7 +67,7 @@ class Engine:
         self._journal()
         devices.apply(setpoints)
         self._choose_rate(now)
-        self.recorder.record(ctx, setpoints)
+        self.sampler.record(ctx, setpoints)
 
     def _wear(self) -> None:
         r = self.ctx.readings
@@ -79,10 +77,17 @@ class Engine:
     def _journal(self) -> None:
         events = self.control.state.events
         if events:
+            journal, trip = self.ctx.journal, self.control.state.trip
             for event in events:
-                severity = "alarm" if event.kind == "trip" else "info"
-                self.ctx.journal.event(event.at_s, event.kind, event.text, severity)
+                if event.kind == "trip" and trip is not None:
+                    journal.trip(event.at_s, trip.name, event.text)
+                journal.event(event.at_s, event.kind, event.text, "trip" if event.kind == "trip" else "info")
             events.clear()
+        for drive in self.devices.drives:
+            if drive.emergency_log:
+                for emergency in drive.take_emergencies():
+                    text = f"{drive.config.name} drive: {emergency.text} (0x{emergency.code:04X})"
+                    self.ctx.journal.event(emergency.t, "emergency", text, "alarm")
 
     def _choose_rate(self, now: float) -> None:
         """Set the period of the next scan: it follows the state (rulings, 10)."""

@@ -69,6 +69,7 @@ class Executor:
         ctx.progress.repeat = ctx.progress.repeats = 0
         ctx.progress.title = title(step)
         ctx.journal.event(ctx.now, "step", ctx.progress.title)
+        ctx.journal.flush()
         return self._activity(step, ctx)
 
     def _activity(self, step: Step, ctx: Context) -> Activity:

@@ -14,6 +14,9 @@ from tester.process import Press
 SPEED_SHARE = 0.01
 SPEED_FLOOR_M_S = 0.003
 """A speed counts as reached within 1 % or 3 mm/s, whichever is more [A]."""
+Zero = tuple[float, float, float, float]
+"""Offsets of the load cell: Fx, Fy, Fz in N, Mz in N m."""
+
 LIFTED_N = 5.0
 """Below this force the wheel counts as lifted (safety concept: "F < 5 N")."""
 
@@ -153,16 +156,17 @@ class Ask:
         """The question as a person reads it."""
         self.text = text
         self.number = 0
+        self.record = 0
 
     def step(self, ctx: Context) -> bool:
         """Done when it is answered; question and answer are journalled."""
         if not self.number:
             self.number = ctx.prompts.ask(ctx.now, self.text).number
-            ctx.journal.event(ctx.now, "prompt", self.text)
+            self.record = ctx.journal.prompt(ctx.now, self.text)
         prompt = ctx.prompts.asked[self.number - 1]
         if prompt.answer is None:
             return False
-        ctx.journal.event(ctx.now, "answer", f"{self.text}: {prompt.answer}")
+        ctx.journal.prompt_answered(self.record, ctx.now, prompt.answer)
         return True
 
 
@@ -198,17 +202,21 @@ class TakeTare:
             self.count += 1
         if ctx.now - self.began_s < self.seconds or self.count < 10:
             return False
-        old = ctx.cell.tare
-        new = tuple(o + s / self.count for o, s in zip(old, self.sums, strict=True))
-        ctx.cell.set_tare((new[0], new[1], new[2], new[3]))
+        ox, oy, oz, om = ctx.cell.tare
+        sx, sy, sz, sm = self.sums
+        new = (ox + sx / self.count, oy + sy / self.count, oz + sz / self.count, om + sm / self.count)
+        ctx.cell.set_tare(new)
         self._compare(ctx, new)
         return True
 
-    def _compare(self, ctx: Context, new: tuple[float, ...]) -> None:
-        if not self.reference:
+    def _compare(self, ctx: Context, new: Zero) -> None:
+        first = not self.reference
+        if first:
             self.reference.extend(new)
+        ctx.journal.tare(ctx.now, "reference" if first else "repeat", new, ctx.repeat_key)
         drift = max(abs(n - r) for n, r in zip(new[:3], self.reference[:3], strict=True))
-        text = "tare " + ", ".join(f"{v:.2f}" for v in new) + f" (drift {drift:.2f} N)"
+        text = f"load cell zero drifted by {drift:.1f} N since the wheel's reference tare"
         if drift > self.stop_n:
-            self.failed = f"load cell zero drifted by {drift:.1f} N since the reference tare"
-        ctx.journal.event(ctx.now, "tare", text, "warning" if drift > self.warn_n else "info")
+            self.failed = text
+        if drift > self.warn_n:
+            ctx.journal.event(ctx.now, "tare", text, "warning")

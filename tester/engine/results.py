@@ -8,7 +8,7 @@ from tester.analysis.reduce import bursts_of, reduce_repeat, without_value
 from tester.analysis.repeats import combine_repeats
 from tester.analysis.results import ConditionStatus, RepeatResult, RepeatStatus
 from tester.engine.bursts import Ending, MeasureRepeat
-from tester.engine.condition import RepeatOutcome
+from tester.engine.condition import ConditionEnd, RepeatOutcome
 from tester.engine.context import Context
 from tester.recipe.estimate import predicted_loss_mm
 from tester.recipe.plan import ConditionStep, Plan
@@ -37,9 +37,6 @@ class StoredResults:
         """``recorder``: the run's store."""
         self.recorder = recorder
         self.repeats: list[RepeatResult] = []
-        self.missing: list[str] = []
-        """Conditions that ended without a value, one line each, for the person who reads the table."""
-        self.measured = 0
 
     def begin_repeat(self, ctx: Context, step: ConditionStep, repeat: int, attempt: int) -> int:
         """Open a repeat; return the key that its samples carry."""
@@ -66,23 +63,24 @@ class StoredResults:
         ticket = self.recorder.commit_repeat(key, result, bursts_of(blocks))
         return RepeatOutcome(result.status, _line(result), ticket)
 
-    def finish_condition(self, ctx: Context, step: ConditionStep, ending: Ending | None, detail: str) -> str:
+    def finish_condition(self, ctx: Context, step: ConditionStep, end: ConditionEnd) -> str:
         """Sum a condition up from its repeats and commit it; return a line for people."""
-        status = CONDITION_STATUS.get(ending) if ending is not None else None
-        if ending is not None and not self.repeats:
+        status = CONDITION_STATUS.get(end.ending) if end.ending is not None else None
+        if not self.repeats:
             self.recorder.begin_condition(step.condition, ctx.now)
-        found = combine_repeats(self.repeats, step.repeats, step.min_valid, status, detail)
-        if status is None and found.status is ConditionStatus.PENDING:
-            status = ConditionStatus.INSUFFICIENT
-        self.recorder.end_condition(step.condition, status or found.status, detail or found.reason, ctx.now)
+        found = combine_repeats(self.repeats, step.repeats, step.min_valid, status, end.detail)
         self.repeats = []
+        left = status or found.status
+        if left is ConditionStatus.PENDING:
+            left = ConditionStatus.INSUFFICIENT
+        reason = end.detail or found.reason
+        self.recorder.end_condition(
+            step.condition, left, reason, ctx.now, warming_k_s=end.warming_k_s, holdable_band_k=end.holdable_band_k
+        )
         name = f"condition {step.condition} ({_setpoint(step)})"
-        if found.ok:
-            self.measured += 1
+        if left is ConditionStatus.OK:
             return f"{name}: mu {found.mu_resultant:.4f}, s {found.s:.4f}, {found.n_valid} of {found.n}"
-        text = f"{name}: {(status or found.status).value}: {detail or found.reason}"
-        self.missing.append(text)
-        return text
+        return f"{name}: {left.value}: {reason}"
 
     def predicted_loss_mm(self, step: ConditionStep, rig: RigConfig) -> float:
         """Return the loss of diameter that a condition is expected to cost, mm."""

@@ -45,7 +45,7 @@ def soak_within_k(soak: Soak, setpoint_c: float, ambient_c: float, band_k: float
 
 
 class SoakTo:
-    """Hold until the surface has stayed within ``within_k`` of ``target_c`` for ``for_s``, or ``at_most_s`` are over."""
+    """Hold until the surface has stayed within ``within_k`` of ``target_c`` for ``for_s``, or until time is up."""
 
     def __init__(self, target_c: float, within_k: float, for_s: float, at_most_s: float) -> None:
         """Temperatures in degC and K, times in s."""

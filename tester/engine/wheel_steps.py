@@ -6,6 +6,7 @@ from tester.engine.context import Context, WheelLife
 from tester.engine.moves import Ask, Lift, Load, Power, Sequence, TakeTare, Turn, speeds_reached
 from tester.engine.thermal_steps import Straighten
 from tester.recipe.plan import Install, PreGrind
+from tester.store.records import WheelInfo
 
 REFERENCE_TARE_S = 2.0
 """Averaging time of a wheel's first tare, s [A]."""
@@ -58,7 +59,18 @@ class InstallWheel:
         )
         ctx.contact.forget_contact()
         ctx.readings.wheel_angle_rev = 0.0
-        ctx.journal.event(ctx.now, "wheel", f"wheel {step.wheel}: {step.compound}, {geometry.wheel_diameter_mm:.2f} mm")
+        wheel = ctx.wheel
+        record = WheelInfo(
+            wheel.wheel,
+            wheel.specimen,
+            wheel.replicate,
+            wheel.compound,
+            ctx.now,
+            wheel.installed_mm,
+            wheel.diameter_mm,
+            updated_s=ctx.now,
+        )
+        ctx.journal.wheel_installed(record)
 
 
 class Grind:

@@ -21,15 +21,13 @@ class Sink(Protocol):
         ...
 
 
-class Recorder:
-    """Picks scans, makes rows of them, keeps those of the repeat in progress."""
+class Sampler:
+    """Picks scans and makes rows of them."""
 
     def __init__(self, sink: Sink) -> None:
         """``sink``: the run's store."""
         self.sink = sink
         self.due_s = float("-inf")
-        self.repeat_rows: list[tuple[float, ...]] = []
-        self.repeat_key = 0
 
     def record(self, ctx: Context, out: Setpoints) -> None:
         """Record this scan if it is due."""
@@ -63,9 +61,3 @@ class Recorder:
         )
         self.sink.sample(row)
         ctx.sample = row
-        if ctx.repeat_key:
-            if ctx.repeat_key != self.repeat_key:
-                self.repeat_key = ctx.repeat_key
-                self.repeat_rows = []
-            if ctx.burst:
-                self.repeat_rows.append(row)
