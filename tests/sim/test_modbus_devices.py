@@ -206,6 +206,17 @@ def test_a_long_time_at_full_power_does_not_wind_the_integral_up() -> None:
     assert oven.slave.heater_w == 0.0
 
 
+@pytest.mark.parametrize("rise_k_s", [0.1, 0.3])
+def test_a_setpoint_that_rises_and_then_stops_is_overshot_by_less_than_2_k(rise_k_s: float) -> None:
+    oven = Oven()
+    oven.start(23.0)
+    while oven.setpoint < 100.0:
+        oven.setpoint += rise_k_s
+        oven.run(1.0)
+    oven.run(200.0)
+    assert oven.hottest < oven.setpoint + 2.0
+
+
 def test_a_setpoint_that_rises_slowly_is_followed() -> None:
     oven = Oven()
     oven.start(40.0)

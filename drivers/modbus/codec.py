@@ -1,0 +1,164 @@
+"""Frames of Modbus requests and replies. The only module that knows pymodbus.
+
+pymodbus's framers and PDU classes are used without its clients: they neither keep time nor own a connection here.
+Minor releases change these classes, so the version is pinned and everything used of them is tested.
+"""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Sequence
+from enum import Enum
+from typing import Literal
+
+from pymodbus.framer import FramerRTU, FramerSocket
+from pymodbus.pdu import DecodePDU, ExceptionResponse, ModbusPDU
+from pymodbus.pdu.register_message import (
+    ReadHoldingRegistersRequest,
+    ReadHoldingRegistersResponse,
+    ReadInputRegistersRequest,
+    ReadInputRegistersResponse,
+    WriteMultipleRegistersRequest,
+    WriteMultipleRegistersResponse,
+    WriteSingleRegisterRequest,
+    WriteSingleRegisterResponse,
+)
+
+from drivers.crc16 import with_crc
+
+Framing = Literal["rtu", "socket"]
+"""Modbus RTU (serial line) or Modbus TCP."""
+
+READ_HOLDING = 3
+READ_INPUT = 4
+WRITE_ONE = 6
+WRITE_MANY = 16
+"""The function codes in use (Modbus application protocol V1.1b3)."""
+
+MOST_WRITTEN = 123
+"""Registers in one write (6.12)."""
+
+EXCEPTION_TEXTS = {
+    1: "illegal function",
+    2: "illegal data address",
+    3: "illegal data value",
+    4: "device failure",
+    5: "acknowledge",
+    6: "device busy",
+    7: "negative acknowledge",
+    8: "memory parity error",
+    10: "gateway path unavailable",
+    11: "gateway target failed to respond",
+}
+"""Exception codes (Modbus application protocol V1.1b3, 7)."""
+
+# Without a handler of its own the library's remarks on bad frames would go to stderr; the link counts them instead.
+logging.getLogger("pymodbus").addHandler(logging.NullHandler())
+
+
+class _Replies(DecodePDU):
+    """Only the replies we can get: garbage is then seldom taken for the head of a frame."""
+
+    pdu_table = {  # noqa: RUF012 - the library's own class attribute, narrowed
+        READ_HOLDING: (ReadHoldingRegistersRequest, ReadHoldingRegistersResponse),
+        READ_INPUT: (ReadInputRegistersRequest, ReadInputRegistersResponse),
+        WRITE_ONE: (WriteSingleRegisterRequest, WriteSingleRegisterResponse),
+        WRITE_MANY: (WriteMultipleRegistersRequest, WriteMultipleRegistersResponse),
+    }
+
+
+_FRAMERS: dict[str, FramerRTU | FramerSocket] = {
+    "rtu": FramerRTU(_Replies(False)),
+    "socket": FramerSocket(_Replies(False)),
+}
+
+
+class Answer(Enum):
+    """What a well-formed frame is to the request that waits for it."""
+
+    GOOD = 1
+    EXCEPTION = 2
+    OTHER = 3
+    """An answer, but not to this request."""
+
+
+def read_request(framing: Framing, unit_id: int, function: int, address: int, count: int) -> bytes:
+    """Return the request to read ``count`` registers from ``address``; transaction number 0 on TCP.
+
+    Raises ValueError for a function that does not read, a count outside 1..125 or an address outside 16 bits.
+    """
+    if function == READ_HOLDING:
+        return _build(framing, ReadHoldingRegistersRequest(dev_id=unit_id, address=address, count=count))
+    if function == READ_INPUT:
+        return _build(framing, ReadInputRegistersRequest(dev_id=unit_id, address=address, count=count))
+    raise ValueError(f"function {function} does not read registers (expected 3 or 4)")
+
+
+def write_request(framing: Framing, unit_id: int, function: int, address: int, values: Sequence[int]) -> bytes:
+    """Return the request to write ``values`` (0..65535 each) from ``address``; transaction number 0 on TCP.
+
+    Raises ValueError for a function that does not write, for no or too many values, and for values out of range.
+    """
+    if any(not 0 <= value <= 0xFFFF for value in values):
+        raise ValueError(f"a register holds 0..65535, not {list(values)}")
+    if function == WRITE_ONE and len(values) == 1:
+        return _build(framing, WriteSingleRegisterRequest(dev_id=unit_id, address=address, registers=values))
+    if function == WRITE_MANY and 1 <= len(values) <= MOST_WRITTEN:
+        return _build(framing, WriteMultipleRegistersRequest(dev_id=unit_id, address=address, registers=values))
+    expected = f"expected 6 for one, 16 for up to {MOST_WRITTEN}"
+    raise ValueError(f"function {function} does not write {len(values)} registers ({expected})")
+
+
+def _build(framing: Framing, message: ModbusPDU) -> bytes:
+    return _FRAMERS[framing].buildFrame(message)
+
+
+def write_reply(request: bytes) -> bytes:
+    """Return the good reply over RTU to a write request: function 6 echoes it, function 16 its address and count."""
+    return request if request[1] == WRITE_ONE else with_crc(request[:6])
+
+
+def reply_length(framing: Framing, function: int, count: int) -> int:
+    """Return the bytes of a good reply to a request of ``count`` registers."""
+    data = 1 + 2 * count if function in (READ_HOLDING, READ_INPUT) else 4
+    return data + (4 if framing == "rtu" else 8)
+
+
+def next_frame(framing: Framing, buffer: bytes) -> tuple[int, int, int, bytes]:
+    """Return (bytes used up, unit id, transaction number, PDU) of the first frame in ``buffer``.
+
+    0 bytes used: no frame yet. No PDU but bytes used: a frame that fails its CRC.
+    """
+    used, unit_id, transaction, pdu = _FRAMERS[framing].decode(buffer)
+    if pdu and framing == "rtu":
+        # The library drops what follows the frame; it may be the answer we wait for.
+        used = buffer.index(pdu) + len(pdu) + 2
+    return used, unit_id, transaction, pdu
+
+
+def classify(pdu: bytes, function: int, address: int, values: Sequence[int], count: int) -> Answer:
+    """Tell what ``pdu`` is to a request of ``function`` from ``address``: to read ``count``, or to write ``values``."""
+    if pdu[0] == function | 0x80 and len(pdu) == 2:
+        return Answer.EXCEPTION
+    if pdu[0] != function:
+        return Answer.OTHER
+    good = False
+    if function in (READ_HOLDING, READ_INPUT):
+        good = len(pdu) == 2 + 2 * count and pdu[1] == 2 * count
+    elif len(pdu) == 5:
+        if function == WRITE_ONE:
+            one = WriteSingleRegisterResponse()
+            one.decode(pdu[1:])
+            good = one.address == address and list(one.registers) == list(values)
+        else:
+            many = WriteMultipleRegistersResponse()
+            many.decode(pdu[1:])
+            good = many.address == address and many.count == count
+    return Answer.GOOD if good else Answer.OTHER
+
+
+def exception_code(pdu: bytes) -> int:
+    """Return the code of an exception PDU (two bytes)."""
+    message = ExceptionResponse(pdu[0] & 0x7F)
+    message.decode(pdu[1:])
+    return message.exception_code

@@ -1,0 +1,120 @@
+"""What every Modbus device has in common: it is identified and set up, then read again and again."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+
+from drivers.modbus.codec import READ_HOLDING
+from drivers.modbus.link import ModbusLink
+from drivers.modbus.request import Request
+from drivers.modbus.schedule import PROBE_S
+from drivers.profiles.model import DeviceProfile
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """One exchange of the set-up."""
+
+    what: str
+    request: Request
+    expected: int | None = None
+    """What the register read must hold; None = any answer will do."""
+
+
+class Device(ABC):
+    """A slave with a profile. It is set up when it first answers, and again whenever it was lost in between.
+
+    ``ready``: set up, being read. ``refused``: why it cannot be used, None if it can.
+    """
+
+    def __init__(self, profile: DeviceProfile, unit_id: int, link: ModbusLink) -> None:
+        """Put the device on ``link``; subclasses add their requests and then call ``begin``."""
+        self.profile = profile
+        self.link = link
+        self.station = link.station(unit_id, profile.timing, self)
+        self.ready = False
+        self._polls = [
+            link.read(self.station, block.function, block.address, block.count, block.period_s)
+            for block in profile.blocks
+        ]
+        self._steps: list[Step] = []
+        self._step = 0
+
+    @property
+    def refused(self) -> str | None:
+        """Why the device cannot be used as configured (identity, exception, read-back), or None."""
+        return self.station.refused
+
+    @property
+    def is_lost(self) -> bool:
+        """Tell whether it stopped answering."""
+        return self.station.is_lost
+
+    def begin(self) -> None:
+        """Start: identity first, then the steps the subclass added; without any, the first read stands for them."""
+        identity = self.profile.identity
+        if identity is not None:
+            request = self.link.read(self.station, identity.function, identity.address, 1)
+            self._steps.insert(0, Step("device type", request, identity.value))
+        if not self._steps:
+            self._steps.append(Step("first reading", self._polls[0]))
+        self.link.enable(self._steps[0].request)
+
+    def add_write(self, what: str, address: int, words: tuple[int, ...], read_back: bool) -> None:
+        """Add a write to the set-up, and a comparison of what the first register then holds."""
+        function = self.profile.write_function
+        self._steps.append(Step(what, self.link.write(self.station, function, address, words)))
+        if read_back:
+            self._steps.append(Step(what, self.link.read(self.station, READ_HOLDING, address, 1), words[0]))
+
+    def received(self, request: Request, data: bytes, t: float) -> None:
+        """Take a good reply that arrived at ``t`` s: go on with the set-up, or update the readings."""
+        if not self.ready and request is self._steps[self._step].request:
+            self._proceed(self._steps[self._step], data)
+        if request in self._polls:
+            self.take(self._polls.index(request), data, t)
+
+    def lost(self, t: float) -> None:
+        """Stop reading and wait for the device to answer the first step of the set-up again."""
+        if not self.ready:
+            self.link.disable(self._steps[self._step].request)
+        self.ready = False
+        for poll in self._polls:
+            self.link.disable(poll)
+        self._step = 0
+        self.suspend()
+        if self.refused is None:
+            self.link.enable(self._steps[0].request, t + PROBE_S)
+
+    def _proceed(self, step: Step, data: bytes) -> None:
+        """End a step of the set-up and begin the next one."""
+        if step.expected is not None:
+            found = int.from_bytes(data[:2], "big")
+            if found != step.expected:
+                self.station.refused = f"{step.what}: register holds {found}, expected {step.expected}"
+                return
+        self._step += 1
+        if step.request is not self._polls[0]:
+            self.link.disable(step.request)
+        if self._step < len(self._steps):
+            self.link.enable(self._steps[self._step].request)
+            return
+        self.ready = True
+        for poll in self._polls:
+            self.link.enable(poll)
+        self.resume()
+
+    # what a device adds ----------------------------------------------------------------------------------------
+
+    @abstractmethod
+    def take(self, block: int, data: bytes, t: float) -> None:
+        """Update the readings from the registers of a block of the profile, which arrived at ``t`` s."""
+
+    @abstractmethod
+    def suspend(self) -> None:
+        """Act on the loss of the device: its readings are not valid any more."""
+
+    @abstractmethod
+    def resume(self) -> None:
+        """Act on the end of the set-up; the reads are enabled already."""

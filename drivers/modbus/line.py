@@ -1,0 +1,77 @@
+"""What a Modbus line is: its framing and speed, and from these the bytes and times of every request."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import inf
+from typing import Literal
+
+from drivers.modbus import codec
+from drivers.modbus.request import Request, Station
+from drivers.modbus.schedule import SLACK_S
+
+Parity = Literal["N", "E", "O"]
+
+RTU_MARGIN_S = 0.003
+"""Added to an RTU time-out for adapters and operating systems that deliver late [A]."""
+SOCKET_MARGIN_S = 0.05
+"""Added to a TCP time-out for the network [A]."""
+
+
+class LineType:
+    """Makes requests. ``gap_s`` is the silence in s that ends a frame, 0 on TCP."""
+
+    __slots__ = ("_character_s", "framing", "gap_s", "socket")
+
+    def __init__(self, framing: codec.Framing, baud: int, parity: Parity) -> None:
+        """Take the framing; ``baud`` in bit/s and ``parity`` matter on RTU only."""
+        self.framing: codec.Framing = framing
+        self.socket = framing == "socket"
+        bits = 10 if parity == "N" else 11
+        self._character_s = 0.0 if self.socket else bits / baud
+        self.gap_s = 0.0 if self.socket else silent_gap_s(bits, baud)
+
+    def read(
+        self, station: Station, function: int, address: int, count: int, period_s: float, priority_s: float
+    ) -> Request:
+        """Return a read of ``count`` registers from ``address``; ``period_s``: 0 = every scan, infinity = once."""
+        slack_s = 0.0 if period_s == inf else SLACK_S if period_s > 0.0 else inf
+        request = Request(station, function, address, count, period_s, priority_s, slack_s)
+        request.frame = codec.read_request(self.framing, station.unit_id, function, address, count)
+        if not self.socket:
+            request.head = bytes((station.unit_id, function, 2 * count))
+        return self._timed(request)
+
+    def write(
+        self, station: Station, function: int, address: int, values: Sequence[int], renew_s: float
+    ) -> Request:
+        """Return a write of ``values`` from ``address``, repeated every ``renew_s``."""
+        slack_s = 0.0 if renew_s == inf else SLACK_S
+        request = Request(station, function, address, len(values), renew_s, 0.0, slack_s)
+        self.load(request, tuple(values))
+        return self._timed(request)
+
+    def load(self, request: Request, values: tuple[int, ...]) -> None:
+        """Let a write carry ``values``."""
+        unit_id = request.station.unit_id
+        request.frame = codec.write_request(self.framing, unit_id, request.function, request.address, values)
+        request.values = values
+
+    def _timed(self, request: Request) -> Request:
+        """Work out the times of a request."""
+        timing = request.station.timing
+        request.reply_length = codec.reply_length(self.framing, request.function, request.count)
+        request.reply_wire_s = request.reply_length * self._character_s
+        wire_s = len(request.frame) * self._character_s + self.gap_s + request.reply_wire_s
+        margin_s = SOCKET_MARGIN_S if self.socket else RTU_MARGIN_S
+        request.expected_s = wire_s + timing.turnaround_s
+        request.timeout_s = wire_s + timing.reply_max_s + margin_s
+        return request
+
+
+def silent_gap_s(character_bits: int, baud: int) -> float:
+    """Return the silence in s that ends an RTU frame.
+
+    3.5 characters up to 19200 bit/s, 1.75 ms above (Modbus over serial line V1.02, 2.5.1.1).
+    """
+    return 3.5 * character_bits / baud if baud <= 19200 else 0.00175

@@ -1,0 +1,319 @@
+"""The Modbus link: one line, one transaction at a time, all time handed in by the caller.
+
+Give it what arrived (``feed``), then let it send what is due (``service``): in this order in every tick, so that a
+reply that came in time is never taken for a time-out because the tick was late.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import inf
+
+from drivers.crc16 import crc16
+from drivers.modbus import codec
+from drivers.modbus.line import LineType, Parity
+from drivers.modbus.request import Owner, Request, Station
+from drivers.modbus.schedule import Schedule
+from drivers.ports import LinePort
+from drivers.profiles.model import Timing
+
+MISSES_TO_LOSE = 3
+"""Failed attempts in a row after which a station counts as lost (safety page: 3 misses)."""
+BUSY_S = 0.02
+"""Pause before a request is repeated that a device was too busy or failed to answer (exceptions 04 to 08)."""
+POLL_S = 0.002
+"""While others wait and a reply is overdue, how often the link asks to be served."""
+
+_TINY_S = 1e-9
+_CONFIGURATION = frozenset({1, 2, 3})
+_DEVICE_GONE = frozenset({10, 11})
+
+
+class ModbusLink:
+    """Master of one Modbus line. ``deadline`` (s) is when it wants ``service`` at the latest."""
+
+    __slots__ = (
+        "_active",
+        "_backlog_s",
+        "_buffer",
+        "_expected_s",
+        "_gap_s",
+        "_give_up_s",
+        "_quiet_s",
+        "_schedule",
+        "_socket",
+        "_suspect",
+        "_transaction",
+        "_type",
+        "deadline",
+        "garbage",
+        "stations",
+    )
+
+    def __init__(self, framing: codec.Framing = "rtu", baud: int = 115200, parity: Parity = "N") -> None:
+        """Create an idle master; ``baud`` in bit/s and ``parity`` matter on RTU only."""
+        self._type = LineType(framing, baud, parity)
+        self._gap_s = self._type.gap_s
+        self._socket = self._type.socket
+        self._schedule = Schedule()
+        self.stations: list[Station] = []
+        self._active: Request | None = None
+        self._buffer = b""
+        self._transaction = 0
+        self._expected_s = 0.0
+        self._give_up_s = inf
+        self._backlog_s = inf
+        self._quiet_s = -inf
+        self._suspect: Station | None = None
+        self.deadline = -inf
+        self.garbage = 0
+        """Pieces that arrived although no station had been asked."""
+
+    # what the drivers ask for ----------------------------------------------------------------------------------
+
+    def station(self, unit_id: int, timing: Timing, owner: Owner) -> Station:
+        """Add a slave. Raises ValueError for an address outside 1..247 or one already taken."""
+        if not 1 <= unit_id <= 247:
+            raise ValueError(f"a Modbus address is 1..247, not {unit_id}")
+        if any(other.unit_id == unit_id for other in self.stations):
+            raise ValueError(f"two devices have Modbus address {unit_id} on one line")
+        station = Station(unit_id, timing, owner)
+        self.stations.append(station)
+        return station
+
+    def read(
+        self,
+        station: Station,
+        function: int,
+        address: int,
+        count: int,
+        period_s: float = inf,
+        priority_s: float = 0.0,
+    ) -> Request:
+        """Add a read; it is not sent before ``enable``. ``period_s``: 0 = every scan, infinity = once."""
+        return self._type.read(station, function, address, count, period_s, priority_s)
+
+    def write(
+        self, station: Station, function: int, address: int, values: Sequence[int], renew_s: float = inf
+    ) -> Request:
+        """Add a write of ``values``, repeated every ``renew_s``; it is not sent before ``enable``."""
+        return self._type.write(station, function, address, values, renew_s)
+
+    def enable(self, request: Request, due_s: float = -inf) -> None:
+        """Send a request at ``due_s`` (s; at once by default), then in its period."""
+        self._schedule.enable(request, due_s)
+        self._backlog_s = -inf
+
+    def disable(self, request: Request) -> None:
+        """Send a request no more."""
+        self._schedule.disable(request)
+
+    def rewrite(self, request: Request, values: tuple[int, ...], urgent: bool = False) -> None:
+        """Let a write carry ``values`` from now on: the newest wins, what was waiting is dropped.
+
+        If enabled it goes out as soon as its turn comes, if ``urgent`` before everything else. The same values
+        again change nothing.
+        """
+        if values == request.values:
+            return
+        self._type.load(request, values)
+        self._schedule.renew(request, urgent)
+        self._backlog_s = -inf
+
+    def retime(self, request: Request, period_s: float) -> None:
+        """Change the period (s) of a read; 0 = with every scan."""
+        self._schedule.retime(request, period_s)
+        self._backlog_s = -inf
+
+    # what the tick does ----------------------------------------------------------------------------------------
+
+    def feed(self, chunks: list[tuple[float, bytes]], now: float) -> None:
+        """Take in what arrived up to ``now``: (arrival of the last byte in s, bytes), oldest first."""
+        for t, chunk in chunks:
+            request = self._active
+            if request is None:
+                self._unasked(t)
+                continue
+            data = self._buffer + chunk if self._buffer else chunk
+            # The usual cases by themselves, several times faster than the library, which takes everything else.
+            if len(data) == request.reply_length and data[:3] == request.head and crc16(data) == 0:
+                self._succeed(request, data[3:-2], t)
+            elif request.echo and data == request.echo:
+                self._succeed(request, b"", t)
+            else:
+                self._examine(request, data, t)
+
+    def service(self, port: LinePort, now: float, *, scan: bool = True) -> None:
+        """Send what is due at ``now``, judge time-outs and set ``deadline``; raises BusLost.
+
+        ``scan``: this is a regular scan; reads of period 0 go out with those only.
+        """
+        active = self._active
+        if active is not None:
+            if now < self._give_up_s - _TINY_S:
+                self._wait(now)
+                return
+            self._time_out(active, now)
+        schedule = self._schedule
+        if schedule.nothing_due(now, scan):
+            return
+        if now < self._quiet_s - _TINY_S:
+            self.deadline = max(self._quiet_s, schedule.latest())
+            return
+        request = schedule.choose(now, scan)
+        if request is None:
+            self.deadline = schedule.latest()
+        else:
+            self._send(port, request, now)
+
+    def reset(self) -> None:
+        """Forget the transaction under way: the port was opened anew."""
+        self._active = None
+        self._buffer = b""
+        self._quiet_s = -inf
+        self._schedule.look_again()
+
+    def _send(self, port: LinePort, request: Request, now: float) -> None:
+        frame = request.frame
+        if self._socket:
+            self._transaction = self._transaction % 0xFFFF + 1
+            frame = self._transaction.to_bytes(2, "big") + frame[2:]
+        port.write(frame, now)
+        request.sent_s = now
+        request.fresh = False
+        request.sent_values = request.values
+        if request.writes:
+            request.due_s = inf  # until its reply, or newer values
+            if not self._socket:
+                request.echo = codec.write_reply(frame)
+        request.station.counters.requests += 1
+        self._active = request
+        self._expected_s = now + request.expected_s
+        self._give_up_s = now + request.timeout_s
+        self._backlog_s = self._schedule.latest(request)
+        self._wait(now)
+
+    def _wait(self, now: float) -> None:
+        """Set the deadline while a reply is awaited: others waiting, it is fetched when it should be there."""
+        deadline = self._give_up_s
+        if self._backlog_s < deadline:
+            expected = self._expected_s if now < self._expected_s else now + POLL_S
+            deadline = min(deadline, max(self._backlog_s, expected))
+        self.deadline = deadline
+
+    # what becomes of a transaction -----------------------------------------------------------------------------
+
+    def _end(self, quiet_s: float) -> None:
+        """End the transaction; nothing is sent before ``quiet_s``."""
+        self._active = None
+        self._buffer = b""
+        if quiet_s > self._quiet_s:
+            self._quiet_s = quiet_s
+
+    def _succeed(self, request: Request, data: bytes, t: float) -> None:
+        self._end(t + self._gap_s)
+        self._suspect = None
+        station = request.station
+        station.counters.replies += 1
+        station.misses = 0
+        station.is_lost = False
+        self._schedule.succeeded(request, t)
+        # A tick that came late cannot make a reading look newer than the time-out allows.
+        station.owner.received(request, data, t if t < self._give_up_s else self._give_up_s)
+
+    def _time_out(self, request: Request, now: float) -> None:
+        """Give a request up, and keep the line silent: its reply may still come.
+
+        It would be taken for the reply to the next request of the same shape (pymodbus-dev/pymodbus#2636). A slave
+        slower than the longest time its profile states can still do that: nothing in an RTU frame tells. On TCP the
+        transaction number does.
+        """
+        station = request.station
+        station.counters.timeouts += 1
+        if self._buffer:
+            station.counters.garbage += 1
+        self._suspect = station
+        self._fail(request, now, now + (0.0 if self._socket else station.timing.reply_max_s))
+
+    def _fail(self, request: Request, t: float, quiet_s: float) -> None:
+        """End an attempt without a good reply."""
+        self._end(quiet_s)
+        station = request.station
+        station.misses += 1
+        self._schedule.failed(request, t)
+        if station.misses >= MISSES_TO_LOSE and not station.is_lost:
+            self._lose(station, t)
+
+    def _lose(self, station: Station, t: float) -> None:
+        station.is_lost = True
+        self._schedule.lost(station, t)
+        station.owner.lost(t)
+
+    def _examine(self, request: Request, data: bytes, t: float) -> None:
+        """Find the reply in what arrived, and count what else is there."""
+        counters = request.station.counters
+        at = data.find(request.head) if request.head else -1
+        whole = data[at : at + request.reply_length] if at > 0 else b""
+        if len(whole) == request.reply_length and crc16(whole) == 0:
+            counters.garbage += 1  # noise before it, as when a driver of the line is switched on
+            self._succeed(request, whole[3:-2], t)
+            return
+        while data:
+            used, unit_id, transaction, pdu = codec.next_frame(self._type.framing, data)
+            if not used:
+                break
+            if not pdu:
+                counters.crc_errors += 1
+                self._fail(request, t, t + self._gap_s + request.reply_wire_s)
+                return
+            data = data[used:]
+            answer = codec.classify(
+                pdu, request.function, request.address, request.sent_values, request.count
+            )
+            if self._socket and transaction != self._transaction:
+                counters.late += 1
+            elif unit_id != request.station.unit_id:
+                counters.garbage += 1
+            elif answer is codec.Answer.OTHER:
+                counters.late += 1
+            else:
+                if data:
+                    counters.garbage += 1
+                if answer is codec.Answer.EXCEPTION:
+                    self._except(request, codec.exception_code(pdu), t)
+                else:
+                    self._succeed(request, b"" if request.writes else pdu[2:], t)
+                return
+        self._buffer = data
+
+    def _except(self, request: Request, code: int, t: float) -> None:
+        """Act on an exception: a wrong configuration latches, a busy device is asked again, a gone one is lost."""
+        station = request.station
+        exceptions = station.counters.exceptions
+        exceptions[code] = exceptions.get(code, 0) + 1
+        if code in _CONFIGURATION:
+            self._end(t + self._gap_s)
+            self._schedule.disable(request)
+            self._schedule.look_again()
+            if station.refused is None:
+                text = codec.EXCEPTION_TEXTS[code]
+                station.refused = f"exception {code} ({text}) on {request.describe()}"
+        elif code in _DEVICE_GONE:
+            self._end(t + self._gap_s)
+            station.misses = MISSES_TO_LOSE
+            self._schedule.failed(request, t)
+            if not station.is_lost:
+                self._lose(station, t)
+        else:
+            self._fail(request, t + BUSY_S, t + self._gap_s)
+
+    def _unasked(self, t: float) -> None:
+        """Count bytes nobody waits for; after a time-out they are the late reply, and the silence starts anew."""
+        station = self._suspect
+        if station is None:
+            self.garbage += 1
+        else:
+            station.counters.late += 1
+        if not self._socket:
+            quiet_s = t + (self._gap_s if station is None else station.timing.reply_max_s)
+            self._quiet_s = max(self._quiet_s, quiet_s)

@@ -1,0 +1,101 @@
+"""What travels on a Modbus line: stations (slaves as seen from here) and the requests to them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from math import inf
+from typing import Protocol
+
+from drivers.profiles.model import Timing
+
+
+class Owner(Protocol):
+    """The driver behind a station; it hears what becomes of its requests."""
+
+    def received(self, request: Request, data: bytes, t: float) -> None:
+        """Take the registers of a good reply (empty for a write) that arrived at ``t`` s."""
+        ...
+
+    def lost(self, t: float) -> None:
+        """Learn that the station does not answer any more."""
+        ...
+
+
+@dataclass(slots=True)
+class Counters:
+    """What happened on the line with one slave since the start."""
+
+    requests: int = 0
+    replies: int = 0
+    timeouts: int = 0
+    crc_errors: int = 0
+    garbage: int = 0
+    """Pieces that were no reply: wrong address, broken off, noise."""
+    late: int = 0
+    """Replies to a request that had been given up, or to another than the last."""
+    exceptions: dict[int, int] = field(default_factory=dict[int, int])
+    """How often each exception code came."""
+
+
+@dataclass(slots=True, eq=False)
+class Station:
+    """One slave: its address, its timing and how it has been doing."""
+
+    unit_id: int
+    timing: Timing
+    owner: Owner
+    counters: Counters = field(default_factory=Counters)
+    misses: int = 0
+    """Attempts that failed in a row."""
+    is_lost: bool = False
+    """Three attempts in a row failed, or a gateway reported the device as gone; a good reply ends it."""
+    refused: str | None = None
+    """Why the device cannot be used as configured; stays until the program is started again."""
+
+
+@dataclass(slots=True, eq=False)
+class Request:
+    """A read or a write that the link sends when it is due, again and again."""
+
+    station: Station
+    function: int
+    address: int
+    count: int
+    period_s: float
+    """Time between two; 0 = with every scan, infinity = once each time it is asked for."""
+    priority_s: float
+    """Among those due it counts as waiting longer by this."""
+    slack_s: float
+    """How long it may wait for a regular scan before the link asks to be served."""
+    frame: bytes = b""
+    head: bytes = b""
+    """First three bytes of a good reply to a read over RTU (address, function, byte count)."""
+    echo: bytes = b""
+    """Good reply over RTU to the write that was sent last."""
+    reply_length: int = 0
+    expected_s: float = 0.0
+    """Usual time from sending to the complete reply."""
+    timeout_s: float = 0.0
+    """Time from sending after which it is given up."""
+    reply_wire_s: float = 0.0
+    """Time a reply occupies the wire."""
+    values: tuple[int, ...] = ()
+    """What is written, one number a register."""
+    sent_values: tuple[int, ...] = ()
+    """What was written last: new values may come while its reply is under way."""
+    due_s: float = inf
+    sent_s: float = -inf
+    attempts: int = 0
+    enabled: bool = False
+    fresh: bool = False
+    """New values came after the last was sent."""
+
+    @property
+    def writes(self) -> bool:
+        """Tell a write from a read."""
+        return bool(self.values)
+
+    def describe(self) -> str:
+        """Say what it does, for messages to people."""
+        what = "writing" if self.writes else "reading"
+        return f"{what} {self.count} register{'s' if self.count > 1 else ''} from address {self.address}"

@@ -1,0 +1,282 @@
+"""Device profiles: one TOML file for each type of Modbus device, and their strict reader.
+
+``load_profile("calex_pyrominibus")`` reads a file of this folder, ``load_profile("devices/my_cell.toml")`` one of your
+own. A new device is a new file, not a new class.
+"""
+
+from __future__ import annotations
+
+import tomllib
+from pathlib import Path
+from typing import Any, Literal, cast, get_args
+
+from drivers.profiles.model import (
+    SIZES,
+    Block,
+    DeviceProfile,
+    Identity,
+    Kind,
+    LineData,
+    Number,
+    ProfileError,
+    SetupWrite,
+    Signal,
+    Switch,
+    Timing,
+    WordOrder,
+)
+
+__all__ = ["Block", "DeviceProfile", "ProfileError", "Signal", "Timing", "load_profile", "profile_names"]
+
+_FOLDER = Path(__file__).parent
+_MOST_REGISTERS = 125
+"""Registers in one read (Modbus application protocol V1.1b3, 6.3)."""
+UNKNOWN = "unknown"
+"""Stands in a profile where we do not know the manufacturer's value; such a profile cannot be used as it is."""
+
+
+def profile_names() -> list[str]:
+    """Return the names of the profiles that come with the program."""
+    return sorted(path.stem for path in _FOLDER.glob("*.toml"))
+
+
+def load_profile(name: str) -> DeviceProfile:
+    """Return the profile of this name, or from this path when it ends in ``.toml``.
+
+    Raises ProfileError, which names the file and the key, for a profile that does not exist, has an unknown, missing
+    or wrong key, or leaves a register unknown.
+    """
+    path = Path(name) if name.endswith(".toml") else _FOLDER / f"{name}.toml"
+    try:
+        text = path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        known = ", ".join(profile_names())
+        raise ProfileError(f"no device profile {name!r} (there are {known})") from error
+    try:
+        data = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise ProfileError(f"{path.name}: {error}") from error
+    return _profile(path.stem, _Table(path.name, data))
+
+
+class _Table:
+    """A table of the file: every key is taken once, with its type, and none may be left."""
+
+    def __init__(self, where: str, data: dict[str, Any]) -> None:
+        self.where = where
+        self._data = dict(data)
+
+    def __contains__(self, key: str) -> bool:
+        return key in self._data
+
+    def error(self, key: str, text: str) -> ProfileError:
+        """Return an error that names the place."""
+        return ProfileError(f"{self.where}: {key}: {text}")
+
+    def _take(self, key: str, default: object) -> object:
+        value = self._data.pop(key, default)
+        if value is None:
+            raise self.error(key, "is missing")
+        if value == UNKNOWN:
+            raise self.error(key, "is not known to us: take it from the manual, in a profile of your own")
+        return value
+
+    def text(self, key: str, default: str | None = None) -> str:
+        """Take a string."""
+        value = self._take(key, default)
+        if not isinstance(value, str):
+            raise self.error(key, f"must be a text, not {value!r}")
+        return value
+
+    def choice(self, key: str, allowed: tuple[str, ...], default: str | None = None) -> str:
+        """Take one of a few words."""
+        value = self.text(key, default)
+        if value not in allowed:
+            raise self.error(key, f"must be one of {', '.join(allowed)}, not {value!r}")
+        return value
+
+    def integer(self, key: str, least: int, greatest: int, default: int | None = None) -> int:
+        """Take a whole number within bounds."""
+        value = self._take(key, default)
+        if isinstance(value, bool) or not isinstance(value, int) or not least <= value <= greatest:
+            raise self.error(key, f"must be a whole number {least}..{greatest}, not {value!r}")
+        return value
+
+    def number(self, key: str, default: float | None = None) -> float:
+        """Take a number."""
+        value = self._take(key, default)
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            raise self.error(key, f"must be a number, not {value!r}")
+        return float(value)
+
+    def flag(self, key: str, default: bool) -> bool:
+        """Take true or false."""
+        value = self._take(key, default)
+        if not isinstance(value, bool):
+            raise self.error(key, f"must be true or false, not {value!r}")
+        return value
+
+    def items(self, key: str) -> list[object]:
+        """Take a list, empty when absent."""
+        value = self._take(key, [])
+        if not isinstance(value, list):
+            raise self.error(key, f"must be a list, not {value!r}")
+        return cast(list[object], value)
+
+    def table(self, key: str, required: bool = False) -> _Table:
+        """Take a table, empty when absent."""
+        value = self._take(key, None if required else {})
+        if not isinstance(value, dict):
+            raise self.error(key, f"must be a table, not {value!r}")
+        return _Table(f"{self.where}: {key}", cast(dict[str, Any], value))
+
+    def tables(self, key: str) -> list[_Table]:
+        """Take a list of tables, empty when absent."""
+        found: list[_Table] = []
+        for place, item in enumerate(self.items(key), 1):
+            if not isinstance(item, dict):
+                raise self.error(key, f"must hold tables, not {item!r}")
+            found.append(_Table(f"{self.where}: {key} {place}", cast(dict[str, Any], item)))
+        return found
+
+    def keys(self) -> list[str]:
+        """Return what has not been taken."""
+        return list(self._data)
+
+    def end(self) -> None:
+        """Refuse what nobody took."""
+        for key in self._data:
+            raise self.error(key, "is not a key of a device profile")
+
+
+def _profile(name: str, top: _Table) -> DeviceProfile:
+    kind = cast(Kind, top.choice("kind", get_args(Kind)))
+    title = top.text("title")
+    functions = frozenset(
+        _whole(top, "functions", item, 127) for item in top.items("functions")
+    )
+    order = cast(WordOrder, top.choice("word_order", get_args(WordOrder), "high_first"))
+    signals = _signals(top.table("signals", required=True))
+    blocks = tuple(_block(read, signals, order) for read in top.tables("reads"))
+    if not blocks:
+        raise top.error("reads", "is missing")
+    status = top.table("status")
+    status_bits = {key: status.integer(key, 0, 31) for key in status.keys() if key != "invalid"}  # noqa: SIM118
+    invalid = sum(1 << _whole(status, "invalid", item, 31) for item in status.items("invalid"))
+    status.end()
+    profile = DeviceProfile(
+        name=name,
+        kind=kind,
+        title=title,
+        functions=functions,
+        write_function=top.integer("write_function", 6, 16, 6),
+        word_order=order,
+        line=_line(top.table("line", required=True)),
+        timing=_timing(top.table("timing", required=True)),
+        blocks=blocks,
+        invalid_bits=invalid,
+        status_bits=status_bits,
+        identity=_identity(top.table("identity")) if "identity" in top else None,
+        setup=tuple(_setup(write) for write in top.tables("setup")),
+        writes=_signals(top.table("writes")),
+        switches=_switches(top.table("switches")),
+    )
+    top.end()
+    return profile
+
+
+def _whole(table: _Table, key: str, item: object, greatest: int) -> int:
+    if isinstance(item, bool) or not isinstance(item, int) or not 0 <= item <= greatest:
+        raise table.error(key, f"must hold whole numbers 0..{greatest}, not {item!r}")
+    return item
+
+
+def _signals(table: _Table) -> dict[str, Signal]:
+    found: dict[str, Signal] = {}
+    for key in table.keys():  # noqa: SIM118 - not a dictionary
+        row = table.table(key)
+        scale = row.number("scale", 1.0)
+        if scale <= 0.0:
+            raise row.error("scale", f"must be above 0, not {scale}")
+        found[key] = Signal(
+            name=key,
+            address=row.integer("address", 0, 0xFFFF),
+            type=cast(Number, row.choice("type", get_args(Number))),
+            scale=scale,
+            unit=row.text("unit", ""),
+            least=row.number("least", float("-inf")),
+            greatest=row.number("greatest", float("inf")),
+            sign_bit=row.integer("sign_bit", 0, 31) if "sign_bit" in row else None,
+        )
+        row.end()
+    return found
+
+
+def _block(table: _Table, signals: dict[str, Signal], order: WordOrder) -> Block:
+    chosen: list[Signal] = []
+    for item in table.items("signals"):
+        if not isinstance(item, str) or item not in signals:
+            raise table.error("signals", f"{item!r} is not among {', '.join(signals)}")
+        chosen.append(signals[item])
+    if not chosen:
+        raise table.error("signals", "is missing")
+    chosen.sort(key=lambda signal: signal.address)
+    end = 0
+    for signal in chosen:
+        if signal.address < end:
+            raise table.error("signals", f"{signal.name} overlaps the one before it")
+        end = signal.address + SIZES[signal.type]
+    address = chosen[0].address
+    if end - address > _MOST_REGISTERS:
+        raise table.error("signals", f"span {end - address} registers, more than {_MOST_REGISTERS}")
+    function = table.integer("function", 3, 4, 3)
+    period_s = 1e-3 * table.integer("period_ms", 0, 10_000)
+    table.end()
+    return Block(function, address, end - address, period_s, tuple(chosen), order)
+
+
+def _line(table: _Table) -> LineData:
+    baud = table.integer("baud", 300, 10_000_000)
+    parity = cast(Literal["N", "E", "O"], table.choice("parity", ("N", "E", "O")))
+    table.end()
+    return LineData(baud, parity)
+
+
+def _timing(table: _Table) -> Timing:
+    timing = Timing(
+        turnaround_s=1e-3 * table.number("turnaround_ms"),
+        reply_max_s=1e-3 * table.number("reply_max_ms"),
+        retries=table.integer("retries", 0, 5),
+    )
+    if not 0.0 <= timing.turnaround_s <= timing.reply_max_s:
+        raise table.error("reply_max_ms", "must be at least turnaround_ms, and both at least 0")
+    table.end()
+    return timing
+
+
+def _identity(table: _Table) -> Identity:
+    address = table.integer("address", 0, 0xFFFF)
+    identity = Identity(address, table.integer("function", 3, 4, 3), table.integer("value", 0, 0xFFFF))
+    table.end()
+    return identity
+
+
+def _setup(table: _Table) -> SetupWrite:
+    write = SetupWrite(
+        name=table.text("name"),
+        address=table.integer("address", 0, 0xFFFF),
+        value=table.integer("value", 0, 0xFFFF),
+        read_back=table.flag("read_back", True),
+    )
+    table.end()
+    return write
+
+
+def _switches(table: _Table) -> dict[str, Switch]:
+    found: dict[str, Switch] = {}
+    for key in table.keys():  # noqa: SIM118 - not a dictionary
+        row = table.table(key)
+        address = row.integer("address", 0, 0xFFFF)
+        found[key] = Switch(address, row.integer("on", 0, 0xFFFF), row.integer("off", 0, 0xFFFF))
+        row.end()
+    return found

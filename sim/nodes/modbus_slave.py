@@ -1,0 +1,187 @@
+"""A Modbus RTU slave: a register file with the answers, exceptions and silences of a device.
+
+Independent of the library under the drivers: frames are taken apart and put together here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from struct import Struct
+
+from drivers.crc16 import crc16, with_crc
+
+READ_HOLDING = 3
+READ_INPUT = 4
+WRITE_ONE = 6
+WRITE_MANY = 16
+
+ILLEGAL_FUNCTION = 1
+ILLEGAL_ADDRESS = 2
+ILLEGAL_VALUE = 3
+BROADCAST = 0
+
+_MOST_READ = 125
+_MOST_WRITTEN = 123
+"""Registers in one request (Modbus application protocol V1.1b3, 6.3 and 6.12)."""
+_REMEMBERED = 64
+"""Read requests kept taken apart."""
+
+_WORD = Struct(">H")
+_REQUEST = Struct(">BBHH")
+
+
+class Window:
+    """Registers without a gap. ``data`` holds them as they go over the wire."""
+
+    __slots__ = ("count", "data", "start")
+
+    def __init__(self, start: int, count: int) -> None:
+        """Take ``count`` registers from ``start``, all zero."""
+        self.start = start
+        self.count = count
+        self.data = bytearray(2 * count)
+
+
+class _Read:
+    """A read request taken apart, with its last reply."""
+
+    __slots__ = ("head", "last", "payload", "reply", "start", "window")
+
+    def __init__(self, window: Window, address: int, count: int, head: bytes) -> None:
+        self.window = window
+        self.start = 2 * (address - window.start)
+        self.last = self.start + 2 * count
+        self.head = head
+        self.payload = bytearray()
+        self.reply = b""
+
+
+class ModbusSlave:
+    """A device on a line. ``turnaround_s`` is the time from the end of a request to the start of its reply."""
+
+    def __init__(
+        self, unit_id: int, turnaround_s: float, registers: Iterable[tuple[int, int]], functions: frozenset[int]
+    ) -> None:
+        """Give the device address ``unit_id`` and registers at (address, count), which may touch or overlap."""
+        self.unit_id = unit_id
+        self.turnaround_s = turnaround_s
+        self.functions = functions
+        self.powered = True
+        self.windows = _windows(registers)
+        self._reads: dict[bytes, _Read] = {}
+
+    # what a device adds ----------------------------------------------------------------------------------------
+
+    def refresh(self, t: float) -> None:
+        """Bring the registers up to date: they are read at ``t`` s."""
+
+    def written(self, address: int, value: int, t: float) -> int:
+        """Take a write at ``t`` s; return 0, or the code of the exception to answer with."""
+        return 0
+
+    # registers -------------------------------------------------------------------------------------------------
+
+    def window(self, address: int, count: int = 1) -> Window | None:
+        """Return the window that holds all of these registers, or None."""
+        for window in self.windows:
+            if window.start <= address and address + count <= window.start + window.count:
+                return window
+        return None
+
+    def get(self, address: int) -> int:
+        """Return a register. Raises KeyError where there is none."""
+        window = self.window(address)
+        if window is None:
+            raise KeyError(address)
+        return int(_WORD.unpack_from(window.data, 2 * (address - window.start))[0])
+
+    def put(self, address: int, data: bytes) -> None:
+        """Set the registers from ``address`` to bytes as on the wire. Raises KeyError where there are none."""
+        window = self.window(address, len(data) // 2)
+        if window is None:
+            raise KeyError(address)
+        at = 2 * (address - window.start)
+        window.data[at : at + len(data)] = data
+
+    # the wire --------------------------------------------------------------------------------------------------
+
+    def answer(self, frame: bytes, t: float) -> bytes | None:
+        """Return the reply to a frame that was complete at ``t`` s.
+
+        None, silence: another device's, a broadcast (which is executed), a bad CRC or a broken frame, power off.
+        """
+        if not self.powered:
+            return None
+        known = self._reads.get(frame)
+        if known is not None:
+            return self._read(known, t)
+        if len(frame) < 4 or frame[0] not in (self.unit_id, BROADCAST) or crc16(frame) != 0:
+            return None
+        reply = self._execute(frame[:-2], frame, t)
+        return None if frame[0] == BROADCAST else reply
+
+    def exception(self, function: int, code: int) -> bytes:
+        """Return the reply that refuses ``function``."""
+        return with_crc(bytes((self.unit_id, function | 0x80, code)))
+
+    def _execute(self, request: bytes, frame: bytes, t: float) -> bytes | None:
+        function = request[1]
+        if function not in self.functions:
+            return self.exception(function, ILLEGAL_FUNCTION)
+        if len(request) < 6:
+            return None
+        _, _, address, count = _REQUEST.unpack_from(request)
+        if function == WRITE_ONE:
+            return self._write(request[:6], address, (count,), t) if len(request) == 6 else None
+        if function == WRITE_MANY:
+            if len(request) < 7 or len(request) != 7 + request[6]:
+                return None
+            values = tuple(_WORD.unpack_from(request, at)[0] for at in range(7, len(request) - 1, 2))
+            if not 1 <= count <= _MOST_WRITTEN or request[6] != 2 * count:
+                return self.exception(function, ILLEGAL_VALUE)
+            return self._write(request[:6], address, values, t)
+        if len(request) != 6:
+            return None
+        return self._new_read(frame, function, address, count, t)
+
+    def _new_read(self, frame: bytes, function: int, address: int, count: int, t: float) -> bytes:
+        if not 1 <= count <= _MOST_READ:
+            return self.exception(function, ILLEGAL_VALUE)
+        window = self.window(address, count)
+        if window is None:
+            return self.exception(function, ILLEGAL_ADDRESS)
+        read = _Read(window, address, count, bytes((self.unit_id, function, 2 * count)))
+        if frame[0] == self.unit_id and len(self._reads) < _REMEMBERED:
+            self._reads[frame] = read
+        return self._read(read, t)
+
+    def _read(self, read: _Read, t: float) -> bytes:
+        self.refresh(t)
+        payload = read.window.data[read.start : read.last]
+        if payload != read.payload:
+            read.payload = payload
+            read.reply = with_crc(read.head + payload)
+        return read.reply
+
+    def _write(self, echo: bytes, address: int, values: tuple[int, ...], t: float) -> bytes:
+        function = echo[1]
+        if self.window(address, len(values)) is None:
+            return self.exception(function, ILLEGAL_ADDRESS)
+        for place, value in enumerate(values, address):
+            code = self.written(place, value, t)
+            if code:
+                return self.exception(function, code)
+            self.put(place, _WORD.pack(value))
+        return with_crc(echo)
+
+
+def _windows(registers: Iterable[tuple[int, int]]) -> list[Window]:
+    """Return windows over registers given as (address, count), joined where they touch."""
+    joined: list[tuple[int, int]] = []
+    for address, count in sorted(registers):
+        if joined and address <= joined[-1][0] + joined[-1][1]:
+            start, length = joined[-1]
+            joined[-1] = (start, max(length, address + count - start))
+        else:
+            joined.append((address, count))
+    return [Window(start, count) for start, count in joined]

@@ -1,0 +1,266 @@
+"""The Modbus link when something goes wrong: time-outs, late replies, bad frames, exceptions, lost devices."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from drivers.crc16 import with_crc
+from drivers.modbus import Request
+from drivers.profiles import Timing
+from tests.drivers.modbus_bench import Bench, refusal, reply
+
+NINE = tuple(range(9))
+GOOD = reply(*NINE)
+
+
+def polling(period_s: float = 0.0) -> tuple[Bench, Request]:
+    """Return a bench whose first request was sent at 0."""
+    bench = Bench()
+    request = bench.link.read(bench.station(), 3, 0, 9, period_s)
+    bench.link.enable(request)
+    bench.serve(0.0)
+    return bench, request
+
+
+def test_silence_until_the_time_out_is_counted_and_asked_again_after_the_quarantine() -> None:
+    bench, request = polling()
+    bench.serve(request.timeout_s)
+    assert request.station.counters.timeouts == 1
+    assert bench.link.deadline == pytest.approx(request.timeout_s + 0.008)
+    bench.serve(bench.link.deadline, scan=False)
+    assert bench.times == [0.0, pytest.approx(request.timeout_s + 0.008, abs=1e-6)]
+
+
+def test_nothing_is_sent_during_the_quarantine() -> None:
+    bench, request = polling()
+    for now in (request.timeout_s, request.timeout_s + 0.004, request.timeout_s + 0.0079):
+        bench.serve(now)
+    assert bench.times == [0.0]
+
+
+def test_a_late_reply_is_counted_not_used_and_starts_the_silence_anew() -> None:
+    bench, request = polling()
+    bench.serve(request.timeout_s)
+    late = request.timeout_s + 0.005
+    bench.serve(late + 0.001, (late, GOOD))
+    assert bench.notes.replies == []
+    assert request.station.counters.late == 1
+    assert bench.link.deadline == pytest.approx(late + 0.008)
+
+
+def test_a_late_reply_of_another_shape_is_not_taken_for_the_answer() -> None:
+    bench, request = polling()
+    bench.serve(0.01, (0.005, reply(1, 2)), (0.006, GOOD))
+    assert request.station.counters.late == 1
+    assert len(bench.notes.replies) == 1
+
+
+def test_a_late_tcp_reply_is_known_by_its_number() -> None:
+    bench = Bench("socket")
+    request = bench.link.read(bench.station(), 3, 0, 1, 0.0)
+    bench.link.enable(request)
+    bench.serve(0.0)
+    bench.serve(request.timeout_s)
+    bench.serve(0.1, (0.09, bytes.fromhex("0001000000050103020001")), (0.095, bytes.fromhex("0002000000050103020002")))
+    assert bench.notes.replies == [(0.095, b"\x00\x02")]
+    assert request.station.counters.late == 1
+
+
+def test_a_bad_crc_is_counted_and_asked_again_when_the_line_is_quiet() -> None:
+    bench, request = polling()
+    bench.serve(0.01, (0.0055, GOOD[:-1] + bytes((GOOD[-1] ^ 1,))))
+    assert request.station.counters.crc_errors == 1
+    assert bench.times == [0.0, 0.01]
+    assert bench.notes.replies == []
+
+
+@given(st.integers(min_value=0, max_value=8 * len(GOOD) - 1))
+def test_no_single_wrong_bit_gets_through(bit: int) -> None:
+    bench, _ = polling()
+    data = bytearray(GOOD)
+    data[bit // 8] ^= 1 << bit % 8
+    bench.serve(0.01, (0.0055, bytes(data)))
+    assert bench.notes.replies == []
+
+
+@given(st.binary(max_size=300))
+def test_any_garbage_leaves_the_link_able_to_go_on(garbage: bytes) -> None:
+    bench, _ = polling()
+    bench.link.feed([(0.002, garbage)], 0.01)
+    now = 0.01
+    for _ in range(20):
+        now = max(now + 0.001, min(bench.link.deadline, now + 0.05))
+        if bench.times[-1] > 0.0:
+            break
+        bench.serve(now)
+    bench.serve(now + 0.01, (now + 0.0055, GOOD))
+    assert bench.notes.replies[-1][1] == GOOD[3:-2]
+
+
+def test_a_broken_off_reply_is_a_time_out_and_garbage() -> None:
+    bench, request = polling()
+    bench.serve(0.01, (0.0055, GOOD[:11]))
+    bench.serve(request.timeout_s)
+    assert (request.station.counters.timeouts, request.station.counters.garbage) == (1, 1)
+    bench.serve(bench.link.deadline)
+    bench.serve(0.04, (0.03, GOOD))
+    assert len(bench.notes.replies) == 1
+
+
+def test_noise_before_a_reply_does_not_harm_it() -> None:
+    bench, _ = polling()
+    bench.serve(0.01, (0.0055, b"\x00\xff\xfe" + GOOD))
+    assert bench.notes.replies == [(0.0055, GOOD[3:-2])]
+
+
+def test_a_reply_with_another_address_is_garbage_and_the_right_one_behind_it_counts() -> None:
+    bench, request = polling()
+    bench.serve(0.01, (0.0055, reply(*NINE, unit_id=7) + GOOD))
+    assert request.station.counters.garbage == 1
+    assert len(bench.notes.replies) == 1
+
+
+def test_nothing_at_all_is_not_a_reply() -> None:
+    bench, _ = polling()
+    bench.serve(0.01, (0.0055, b""))
+    assert bench.notes.replies == []
+
+
+def test_bytes_that_nobody_asked_for_are_counted() -> None:
+    bench = Bench()
+    bench.link.enable(bench.link.read(bench.station(), 3, 0, 9, 0.0))
+    bench.serve(0.0, (-0.1, b"\x55"))
+    assert bench.link.garbage == 1
+    assert bench.notes.replies == []
+
+
+def test_one_failed_attempt_is_followed_by_another_at_once() -> None:
+    bench, _ = polling(period_s=1.0)
+    bench.serve(0.01, (0.0055, GOOD[:-1] + b"\x00"))
+    bench.serve(0.02, (0.0155, GOOD))
+    assert bench.times == [0.0, 0.01]
+    assert len(bench.notes.replies) == 1
+
+
+def test_without_retries_the_next_attempt_waits_for_its_period() -> None:
+    bench = Bench()
+    request = bench.link.read(bench.station(timing=Timing(0.001, 0.008, retries=0)), 3, 0, 9, 1.0)
+    bench.link.enable(request)
+    bench.serve(0.0)
+    bench.serve(0.02)
+    bench.serve(0.5)
+    assert bench.times == [0.0]
+    bench.serve(1.02)
+    assert bench.times == [0.0, 1.02]
+
+
+def starve(bench: Bench, until: float) -> None:
+    """Serve the link at its own deadlines, and answer nothing."""
+    now = 0.0
+    while now < until:
+        now = min(max(bench.link.deadline, now + 0.0005), now + 0.01)
+        bench.serve(now)
+
+
+def test_three_misses_in_a_row_make_a_station_lost() -> None:
+    bench, request = polling()
+    starve(bench, 0.045)
+    assert not request.station.is_lost
+    starve(bench, 0.075)
+    assert request.station.is_lost
+    assert len(bench.notes.losses) == 1
+
+
+def test_a_lost_station_is_asked_once_a_second_without_further_attempts() -> None:
+    bench, request = polling()
+    starve(bench, 0.075)
+    sent = len(bench.frames)
+    starve(bench, 5.0)
+    assert 4 <= len(bench.frames) - sent <= 6
+    assert len(bench.notes.losses) == 1
+    assert request.station.is_lost
+
+
+def test_a_good_reply_ends_the_loss() -> None:
+    bench, request = polling()
+    starve(bench, 0.075)
+    sent = len(bench.frames)
+    now = 0.075
+    while len(bench.frames) == sent:
+        now += 0.01
+        bench.serve(now)
+    bench.serve(now + 0.01, (now + 0.006, GOOD))
+    assert not request.station.is_lost
+    assert request.station.misses == 0
+
+
+def test_a_silent_station_leaves_the_line_to_the_others() -> None:
+    bench = Bench()
+    dead = bench.link.read(bench.station(1), 3, 0, 9, 0.1)
+    alive = bench.link.read(bench.station(2), 3, 0, 9, 0.1)
+    bench.link.enable(dead)
+    bench.link.enable(alive)
+    for number in range(500):
+        now = 0.01 * number
+        fresh = bench.line.sent and bench.line.sent[-1] == (pytest.approx(now - 0.01), alive.frame)
+        bench.serve(now, *(((now - 0.004, reply(*NINE, unit_id=2)),) if fresh else ()))
+    assert bench.frames.count(alive.frame) > 45
+
+
+@pytest.mark.parametrize(
+    ("code", "text"), [(1, "illegal function"), (2, "illegal data address"), (3, "illegal data value")]
+)
+def test_exceptions_1_to_3_are_a_wrong_configuration_and_latch(code: int, text: str) -> None:
+    bench, request = polling()
+    bench.serve(0.01, (0.0055, refusal(code)))
+    bench.serve(5.0)
+    assert request.station.refused == f"exception {code} ({text}) on reading 9 registers from address 0"
+    assert request.station.counters.exceptions == {code: 1}
+    assert len(bench.frames) == 1
+
+
+@pytest.mark.parametrize("code", [4, 6])
+def test_exceptions_4_and_6_are_asked_again_after_a_pause(code: int) -> None:
+    bench, request = polling()
+    bench.serve(0.01, (0.0055, refusal(code)))
+    assert bench.times == [0.0]
+    bench.serve(0.03)
+    bench.serve(0.04, (0.036, GOOD))
+    assert bench.times[:2] == [0.0, 0.03]
+    assert request.station.refused is None
+    assert len(bench.notes.replies) == 1
+
+
+def test_a_device_that_stays_busy_is_lost() -> None:
+    bench, request = polling()
+    for number in range(1, 10):
+        now = 0.03 * number
+        bench.serve(now, (now - 0.01, refusal(6)))
+    assert request.station.is_lost
+
+
+@pytest.mark.parametrize("code", [10, 11])
+def test_exceptions_of_a_gateway_mean_that_the_device_is_lost(code: int) -> None:
+    bench, request = polling()
+    bench.serve(0.01, (0.0055, refusal(code)))
+    assert request.station.is_lost
+    assert bench.notes.losses == [0.0055]
+
+
+def test_the_exception_to_another_function_is_not_ours() -> None:
+    bench, request = polling()
+    bench.serve(0.01, (0.0055, refusal(2, function=6)))
+    assert request.station.refused is None
+    assert request.station.counters.late == 1
+
+
+def test_an_echo_of_another_value_does_not_confirm_a_write() -> None:
+    bench = Bench()
+    write = bench.link.write(bench.station(), 6, 26, (500,))
+    bench.link.enable(write)
+    bench.serve(0.0)
+    bench.serve(0.005, (0.004, with_crc(bytes.fromhex("0106001A01F5"))))
+    assert bench.notes.replies == []
+    assert write.station.counters.late == 1

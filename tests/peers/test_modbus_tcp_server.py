@@ -1,0 +1,98 @@
+"""Our Modbus drivers with a server that nobody here wrote: pyModbusTCP, through the TCP edge."""
+
+from __future__ import annotations
+
+import socket
+from collections.abc import Callable, Iterator
+from select import select
+
+import pytest
+from pyModbusTCP.server import ModbusServer
+
+from drivers.edges.tcp_line import TcpLine, open_tcp_line
+from drivers.ir_thermometer import IrThermometer
+from drivers.jacket import HeatingJacket
+from drivers.load_cell import LoadCell
+from drivers.modbus import ModbusLink
+from drivers.profiles import load_profile
+
+PATIENCE_S = 10.0
+"""Bound of every wait for the server's threads."""
+
+
+class Exchange:
+    """Our link on a connection. Its time is counted: a millisecond for each answer, whatever the server takes."""
+
+    def __init__(self, line: TcpLine) -> None:
+        self.line = line
+        self.link = ModbusLink("socket")
+        self.now = 0.0
+
+    def until(self, done: Callable[[], bool], transactions: int = 50) -> None:
+        """Serve the link until ``done``; fails after so many transactions or when the server stays silent."""
+        for _ in range(transactions):
+            self.link.service(self.line, self.now)
+            if done():
+                return
+            assert select([self.line], [], [], PATIENCE_S)[0], "the server is silent"
+            self.now += 0.001
+            self.link.feed(self.line.read(self.now), self.now)
+            self.now = max(self.now, min(self.link.deadline, self.now + 0.2))
+        pytest.fail(f"not reached within {transactions} transactions")
+
+
+@pytest.fixture(scope="module")
+def server() -> Iterator[ModbusServer]:
+    """Run a server on a port of the kernel's choice."""
+    with socket.create_server(("127.0.0.1", 0)) as free:
+        port = free.getsockname()[1]
+    made = ModbusServer("127.0.0.1", port, no_block=True)
+    made.start()
+    yield made
+    made.stop()
+
+
+@pytest.fixture
+def exchange(server: ModbusServer) -> Iterator[Exchange]:
+    """Connect our link."""
+    line = open_tcp_line("127.0.0.1", server.port, PATIENCE_S)
+    yield Exchange(line)
+    line.close()
+
+
+def test_the_load_cell_reads_its_block(server: ModbusServer, exchange: Exchange) -> None:
+    server.data_bank.set_holding_registers(100, [0x4658])
+    server.data_bank.set_holding_registers(0, [0, 2000, 0xFFFF, 0xFE70, 0, 4000, 0, 500, 0])
+    cell = LoadCell(load_profile("four_axis_transmitter"), 1, exchange.link)
+    exchange.until(lambda: cell.valid)
+    assert cell.raw == pytest.approx((100.0, -20.0, 200.0, 0.5))
+
+
+def test_the_thermometer_sets_its_emissivity_and_reads(server: ModbusServer, exchange: Exchange) -> None:
+    server.data_bank.set_holding_registers(0, [17])
+    server.data_bank.set_holding_registers(0x0E, [412, 411, 250, 0])
+    thermometer = IrThermometer(load_profile("calex_pyrominibus"), 1, exchange.link, emissivity=0.93)
+    exchange.until(lambda: thermometer.valid)
+    assert thermometer.surface_c == pytest.approx(41.2)
+    assert server.data_bank.get_holding_registers(0x17) == [9300]
+
+
+def test_the_jacket_is_set_up_commanded_and_read(server: ModbusServer, exchange: Exchange) -> None:
+    server.data_bank.set_holding_registers(1, [853, 0, 0, 425, 900])
+    jacket = HeatingJacket(load_profile("eurotherm_3200"), 1, exchange.link)
+    jacket.enable(True)
+    jacket.set_setpoint(90.0)
+    exchange.until(lambda: jacket.valid and server.data_bank.get_holding_registers(199) == [0])
+    assert (jacket.hub_c, jacket.output_percent) == pytest.approx((85.3, 42.5))
+    assert server.data_bank.get_holding_registers(26) == [900]
+    assert server.data_bank.get_holding_registers(276) == [1]
+    assert server.data_bank.get_holding_registers(5000) == [20]
+
+
+def test_the_servers_exception_latches_as_a_wrong_configuration(server: ModbusServer, exchange: Exchange) -> None:
+    server.data_bank.set_holding_registers(100, [0x4658])
+    cell = LoadCell(load_profile("four_axis_transmitter"), 1, exchange.link)
+    request = exchange.link.read(cell.station, 3, 0xFFFF, 2)
+    exchange.link.enable(request)
+    exchange.until(lambda: cell.refused is not None)
+    assert cell.station.counters.exceptions == {2: 1}
