@@ -10,6 +10,7 @@ from pathlib import Path
 from types import FrameType
 from typing import Protocol
 
+from drivers.ports import BusLost
 from recipes import find
 from tester import clock
 from tester.bus_log import BusLog
@@ -92,7 +93,6 @@ class SessionOptions:
     out: Path = Path("runs")
     seed: int = 0
     lapse: float | None = None
-    as_fast_as_possible: bool = True
     bus_log: Path | None = None
     operator: str = ""
 
@@ -151,24 +151,28 @@ class Session:
             prompts = Prompts(automatic=self.screen.answer_yes)
             run = build_run(rig, plan, ports, attendant, writer, prompts)
             self.run_ = run
-            seconds = self._tick(run, world, plan, rig, prompts)
+            expected_s = max(estimate(plan, rig).rig_seconds, 1.0)
+            self.screen.begin(plan.name)
+            seconds = self._tick(run, world, expected_s, prompts, writer)
             record_parameters(run, writer, seconds)
             return run.outcome, run.reason, seconds
+        except BusLost as lost:
+            return Outcome.UNREACHABLE, str(lost), 0.0
         finally:
             if log is not None:
                 log.close()
 
-    def _tick(self, run: Run, world: World | None, plan: Plan, rig: RigConfig, prompts: Prompts) -> float:
-        expected_s = max(estimate(plan, rig).rig_seconds, 1.0)
-        self.screen.begin(plan.name)
-
+    def _tick(self, run: Run, world: World | None, expected_s: float, prompts: Prompts, recorder: RunWriter) -> float:
         def poll(now_s: float) -> None:
             self.screen.show(now_s, run.engine.ctx.progress, now_s / expected_s)
             self.screen.attend(prompts)
+            if recorder.failed:
+                run.request_stop(f"the run can no longer be recorded: {recorder.failed}")
 
         previous = {s: signal.signal(s, self._on_signal) for s in (signal.SIGINT, signal.SIGTERM)}
         try:
-            if world is not None and (self.options.as_fast_as_possible or self.options.lapse != 1.0):
+            if world is not None:
+                # Also at --speed 1: counted ticks, not measured ones, so that no speed changes a result.
                 return run_simulated(run, world, lapse=self.options.lapse, poll=poll)
             return run_real_time(run, world, poll=poll, statistics=TickStatistics())
         finally:

@@ -10,7 +10,7 @@ from threading import Thread
 from typing import TextIO
 
 from rich.console import Console as RichConsole
-from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn
+from rich.progress import BarColumn, Progress, TaskID, TextColumn
 from rich.text import Text
 
 from tester.engine.context import Progress as RunProgress
@@ -43,14 +43,13 @@ class Console:
         self.emit({"event": "begin", "run": name})
         if self._terminal.is_terminal:
             self._progress = Progress(
+                BarColumn(bar_width=12),
+                TextColumn("{task.percentage:3.0f} %"),
                 TextColumn("{task.description}", markup=False),
-                BarColumn(bar_width=24),
-                TextColumn("{task.fields[detail]}", markup=False),
-                TimeElapsedColumn(),
                 console=self._terminal,
                 transient=True,
             )
-            self._task = self._progress.add_task(name, total=None, detail="")
+            self._task = self._progress.add_task(name, total=1.0)
             self._progress.start()
 
     def show(self, now_s: float, run: RunProgress, share: float) -> None:
@@ -61,16 +60,10 @@ class Console:
             if self._progress is None:
                 self.message(f"{_hours(now_s)}  {run.title}")
         if self._progress is not None and self._task is not None:
-            detail = f"{100.0 * share:3.0f} %  {_hours(now_s)} of rig time  {run.title}"
+            text = f"{_hours(now_s)}  "
             if run.repeats:
-                detail += f"  repeat {run.repeat}/{run.repeats}"
-            self._progress.update(
-                self._task,
-                total=1.0,
-                completed=min(share, 1.0),
-                description=f"condition {run.condition}/{run.conditions}",
-                detail=detail,
-            )
+                text += f"{run.condition}/{run.conditions} repeat {run.repeat}/{run.repeats}  "
+            self._progress.update(self._task, completed=min(share, 1.0), description=text + run.title)
 
     def end(self) -> None:
         """Take the progress line away."""

@@ -56,7 +56,6 @@ def run(
         out=Path(out),
         seed=seed,
         lapse=lapse,
-        as_fast_as_possible=speed in (None, "max"),
         bus_log=Path(bus_log) if bus_log else None,
         operator=operator,
     )

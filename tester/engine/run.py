@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from enum import Enum
 
+from drivers.ports import BusLost
 from tester.control.state import Mode
 from tester.engine.connect import Connector, Stage
 from tester.engine.engine import Engine
@@ -54,10 +55,14 @@ class Run:
 
     def tick(self, now: float) -> float:
         """Do what is due at ``now``; return when to be called again at the latest (s)."""
-        if not self._started:
-            return self._connect(now)
-        due = self.engine.tick(now)
-        self._supervise(now)
+        try:
+            if not self._started:
+                return self._connect(now)
+            due = self.engine.tick(now)
+            self._supervise(now)
+        except BusLost as lost:
+            self._lose(now, lost)
+            return now
         return due
 
     def _connect(self, now: float) -> float:
@@ -71,6 +76,14 @@ class Run:
             self.reason = engine.control.start(now)
             self._started = True
         return due
+
+    def _lose(self, now: float, lost: BusLost) -> None:
+        """End: without a wire nothing can be commanded, and the drives stop by their own watchdogs."""
+        self.outcome = Outcome.TRIPPED if self._started else Outcome.UNREACHABLE
+        self.reason = f"bus lost: {lost}"
+        self.finished = True
+        if self._started:
+            self.engine.ctx.journal.trip(now, "bus lost", str(lost))
 
     def _supervise(self, now: float) -> None:
         engine = self.engine
