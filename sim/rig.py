@@ -147,5 +147,6 @@ class SimRig:
         self.plant.install(specimen, wheel, compound, new_specimen)
 
     def begin_repeat(self, condition: int, repeat: int, attempt: int) -> None:
-        """Begin a repeat: the random streams are keyed by it."""
+        """Begin a repeat: the random streams, and the sensors' dither, start anew with it."""
         self.plant.begin_repeat(condition, repeat, attempt)
+        self.cell.dither = self.ir.dither = 0

@@ -92,11 +92,12 @@ def _overshoot(view: View) -> bool:
     if view.demand.press is not Press.LOAD:
         return False
     lim = view.rig.interlocks
-    return not (view.readings.force_z_n <= lim.overload_factor * view.demand.load_n + lim.overload_margin_n)
+    wanted = max(view.demand.load_n, view.state.load.highest_n)
+    return not (view.readings.force_z_n <= lim.overload_factor * wanted + lim.overload_margin_n)
 
 
 def _contact_lost(view: View) -> bool:
-    target = view.demand.load_n
+    target = min(view.demand.load_n, view.state.load.lowest_n)
     if view.demand.press is not Press.LOAD or target < 50.0 or not view.state.load.loaded:
         return False
     return not (view.readings.force_z_n >= view.rig.interlocks.contact_share * target)

@@ -19,6 +19,8 @@ DECELERATION_SHARE = 0.6
 """Share of the press's acceleration limit that approach profiles use, so that the drive can follow them."""
 POSITION_GAIN_PER_S = 6.0
 """Final approach to a press position: mm/s per mm, well below the drive's 30 ms lag [A]."""
+LOAD_RATE_N_S = 100.0
+"""A change of load is expected to be followed at this rate at least [A]: 2 mm/s make it at about 290 N/s."""
 HELD_BAND = 0.03
 """Inside this relative error the slower holding bandwidth is used: it does not chase the runout."""
 
@@ -32,6 +34,10 @@ class LoadLoop:
     in_contact: bool = False
     loaded: bool = False
     """Half of the wanted load has been reached since touching: from then on losing it is a fault."""
+    highest_n: float = 0.0
+    lowest_n: float = 0.0
+    """The wanted load, followed slowly downwards (highest) and upwards (lowest): what the load is watched against
+    while the press brings it to another value."""
     integral_mm_s: float = 0.0
     error_n: float = 0.0
     """Load error, filtered over one turn or so; decides between the fast and the holding bandwidth."""
@@ -48,6 +54,8 @@ class LoadLoop:
         force, position = readings.force_z_n, readings.press_mm
         if demand.press is not Press.LOAD or not isfinite(force) or not isfinite(position):
             return self._lift(position, loop, press)
+        self.highest_n = max(demand.load_n, self.highest_n - LOAD_RATE_N_S * dt)
+        self.lowest_n = min(demand.load_n, self.lowest_n + LOAD_RATE_N_S * dt)
         self._track_contact(force, position, loop)
         self.loaded = self.in_contact and (self.loaded or force >= 0.5 * demand.load_n)
         if not self.in_contact:
@@ -62,6 +70,7 @@ class LoadLoop:
 
     def _lift(self, position: float, loop: LoadLoopConfig, press: AxisConfig) -> float:
         self.in_contact = self.loaded = False
+        self.highest_n = self.lowest_n = 0.0
         self.integral_mm_s = 0.0
         if not isfinite(position):
             return -loop.lift_speed_mm_s

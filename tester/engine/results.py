@@ -122,4 +122,5 @@ def _line(result: RepeatResult) -> str:
 def _setpoint(step: ConditionStep) -> str:
     sp = step.setpoint
     text = f"{sp.compound}, {sp.slip_velocity_m_s * 1000:g} mm/s, {sp.load_n:g} N, {sp.temperature_c:g} degC"
-    return text + (f", sideslip {sp.sideslip_deg:g} deg" if sp.sideslip_deg else "")
+    text += f", sideslip {sp.sideslip_deg:g} deg" if sp.sideslip_deg else ""
+    return text + (f", camber {sp.camber_deg:g} deg" if sp.camber_deg else "")

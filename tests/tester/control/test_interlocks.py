@@ -140,3 +140,23 @@ def test_two_causes_in_one_scan_are_both_evaluated(bench: Bench) -> None:
     bench.scan()
     holding = [row.name for row, since in zip(INTERLOCKS, bench.state.pending_s, strict=True) if math.isfinite(since)]
     assert {"guard open", "safety chain"} <= set(holding)
+
+
+def test_a_lower_load_is_not_an_overshoot_while_the_press_follows(bench: Bench) -> None:
+    bench.demand.load_n = 50.0
+    for i in range(100):
+        bench.readings.force_z_n = max(50.0, 200.0 - 2.0 * i)
+        bench.scan()
+    assert bench.state.trip is None
+
+
+def test_a_higher_load_is_not_a_lost_contact_while_the_press_follows(bench: Bench) -> None:
+    bench.demand.load_n = 50.0
+    for _ in range(700):
+        bench.readings.force_z_n = max(50.0, bench.readings.force_z_n - 2.0)
+        bench.scan()
+    bench.demand.load_n = 400.0
+    for _ in range(300):
+        bench.readings.force_z_n = min(400.0, bench.readings.force_z_n + 2.0)
+        bench.scan()
+    assert bench.state.trip is None
