@@ -35,17 +35,17 @@ class EstimateConstants:
     """Rolling between pulses: what a pulse brought in must leave, slowly near ambient; after this it is lifted."""
     cooling_floor_k: float = 0.7
     """Surface above ambient that drives the cooling, at least: the jacket cools with the hub below the surface."""
-    few_turns: float = 3.0
+    few_turns: float = 4.0
     below_band_k: float = 1.5
     """A pulse with fewer turns than this starts lower, at most this far below the band."""
     bursts_tried: int = 8
     """Pulses after which a temperature that cannot be held is given up; the condition ends with it."""
-    heat_lag_s: float = 120.0
-    """From hub to surface: heat takes minutes to pass 8 mm of rubber."""
-    heat_per_k_s: float = 6.5
+    heat_lag_s: float = 500.0
+    """From hub to surface, heat takes minutes to pass 8 mm of rubber; then equilibrium in contact, minutes again."""
+    heat_per_k_s: float = 5.7
     """Per kelvin of surface, with the hub's lead and the approach to the band."""
-    equilibrium_s: float = 900.0
-    """Overshoot and settling in contact at a new temperature, until the soak holds."""
+    rolling_settle_s: float = 190.0
+    """Without slip: rolling until what the condition before left in the rubber has gone."""
     next_condition_s: float = 5.0
     """Rolling into the soak of the next condition at a temperature that already stands."""
     unknown_mu: float = 1.0

@@ -51,7 +51,10 @@ class StepEstimate(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Estimate:
-    """What a plan takes; ``steps`` run parallel to the plan's. Units as in ``StepEstimate``."""
+    """What a plan takes; ``steps`` run parallel to the plan's. Units as in ``StepEstimate``.
+
+    ``rig_seconds`` includes the way from the last step to standstill.
+    """
 
     steps: tuple[StepEstimate, ...]
     rig_seconds: float
@@ -67,7 +70,8 @@ class Estimate:
 
 def estimate(plan: Plan, rig: RigConfig, estimator: Estimator | None = None) -> Estimate:
     """Return what a plan takes on a rig; ``estimator``: the one that expanded it, or one with other constants."""
-    steps = (estimator or Estimator(rig)).walk(plan)
+    estimator = estimator or Estimator(rig)
+    steps = estimator.walk(plan)
     not_held = [
         step.condition
         for step, one in zip(plan.steps, steps, strict=True)
@@ -75,7 +79,7 @@ def estimate(plan: Plan, rig: RigConfig, estimator: Estimator | None = None) -> 
     ]
     return Estimate(
         steps=tuple(steps),
-        rig_seconds=math.fsum(one.seconds for one in steps),
+        rig_seconds=math.fsum(one.seconds for one in steps) + estimator.shut_down_s(plan),
         sliding_m=math.fsum(one.sliding_m for one in steps),
         loss_mm=math.fsum(one.loss_mm for one in steps),
         friction_j=math.fsum(one.friction_j for one in steps),
@@ -124,6 +128,7 @@ class Estimator:
 
     def __init__(self, rig: RigConfig, constants: EstimateConstants = CONSTANTS) -> None:
         """Work out what depends on the rig alone."""
+        self.cool_c, self.cool_at_most_s = rig.interlocks.cooldown_hub_c, rig.interlocks.cooldown_at_most_s
         believed = rig.observer
         thermal = believed.thermal
         diameter_m = 1e-3 * rig.geometry.wheel_diameter_mm
@@ -151,17 +156,29 @@ class Estimator:
         """Return an estimate for every step; the wheel's temperature is carried from one to the next."""
         compound = ""
         body_c = self.ambient_c
+        cold_rubber = False
         result: list[StepEstimate] = []
         for step in plan.steps:
             if isinstance(step, ConditionStep):
                 one = self.condition(step)
                 body_c = self.body.steady_c(step.setpoint.temperature_c)
+            elif cold_rubber and isinstance(step, Rest):
+                one = StepEstimate(step.at_least_s)  # new rubber is at ambient, whatever the hub below it
             else:
                 if isinstance(step, Install):
                     compound = step.compound
+                cold_rubber = isinstance(step, Install) or (cold_rubber and isinstance(step, Prompt))
                 one, body_c = self._preparation(step, compound, body_c)
             result.append(one)
         return result
+
+    def shut_down_s(self, plan: Plan) -> float:
+        """Return the seconds from the last step to standstill: a hot jacket is cooled turning."""
+        last = next((step for step in reversed(plan.steps) if isinstance(step, ConditionStep)), None)
+        if last is None:
+            return 0.0
+        body_c = self.body.steady_c(last.setpoint.temperature_c)
+        return min(self.body.cooling_s(body_c, self.cool_c, turning=True), self.cool_at_most_s)
 
     def mu(self, compound: str, temperature_c: float, load_n: float, slip_m_s: float, sideslip_deg: float) -> float:
         """Return the friction coefficient expected; a round figure for a compound without a model."""
@@ -219,8 +236,7 @@ class Estimator:
                 return StepEstimate(wait), self.body.after_c(body_c, wait)
             case Heat():
                 rise = step.temperature_c - self.offset_k - self.body.surface_c(body_c)
-                lag_s = c.heat_lag_s + c.equilibrium_s
-                seconds = lag_s + c.heat_per_k_s * rise if rise > NEAR_K else 0.0
+                seconds = c.heat_lag_s + c.heat_per_k_s * rise if rise > NEAR_K else 0.0
                 return StepEstimate(seconds, peak_c=step.temperature_c), self.body.steady_c(step.temperature_c)
             case Cool():
                 seconds = self.body.cooling_s(body_c, step.hub_below_c, turning=True)
@@ -238,7 +254,7 @@ class Estimator:
         window_s = c.extension * step.window.duration_s(1.0 / turn_s)
         soak_s = step.soak.for_s + c.next_condition_s
         if slip < 1e-9:
-            seconds = soak_s + step.repeats * (c.repeat_moves_s + window_s)
+            seconds = soak_s + c.rolling_settle_s + step.repeats * (c.repeat_moves_s + window_s)
             return StepEstimate(seconds, peak_c=sp.temperature_c, bursts=1)
         power = self.mu(sp.compound, sp.temperature_c, sp.load_n, slip, sp.sideslip_deg) * sp.load_n * slip
         edge_s = c.yawed_slide_s if yawed else c.burst_edge_s
