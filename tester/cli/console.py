@@ -107,7 +107,13 @@ class Console:
             answer = self._answers.get_nowait()
         except Empty:
             return
-        waiting.answer = answer.strip() or "yes"
+        if not answer:
+            # End of input (a closed terminal, Ctrl+D) is nobody's consent.
+            self.message("no answer can be read here any more: Ctrl+C stops the run")
+        elif answer.strip().lower() in ("n", "no"):
+            self._asked = 0
+        else:
+            waiting.answer = answer.strip() or "yes"
 
 
 def _read_line(stream: TextIO, put: Callable[[str], None]) -> None:

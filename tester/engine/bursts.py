@@ -52,6 +52,10 @@ BLIND_S = 20.0
 """A burst in which nothing has counted for this long is given up, s [A]."""
 LIFT_TO_COOL_S = 180.0
 """Rolling that has not brought the temperature back by then is tried lifted, s [A]."""
+COOL_AT_MOST_S = 360.0
+"""Longest cooling lifted before rolling is tried again, s [A]."""
+EMPTY_BURSTS = 3
+"""That many bursts in a row without a whole turn, begun as low as it goes: the condition cannot be held [A]."""
 WARM_SHARE = 1.2
 """Revolutions a condition must hold, with the ramp, to be called possible: used for the band that would do."""
 
@@ -88,6 +92,9 @@ class BurstNotes:
     began_c: float = float("nan")
     blocks_before: int = 0
     counted_s: float = float("-inf")
+    slid_s: float = float("nan")
+    slid_c: float = float("nan")
+    """When half of the slip was there, and the reading of the surface then."""
     peak_rate_k_s: float = 0.0
     sum_before_k: float = 0.0
     count_before: int = 0
@@ -113,10 +120,14 @@ class MeasureRepeat:
         self.warming_k_s = float("nan")
         self.holdable_band_k = float("nan")
         """Where the temperature could not be held: the rate seen, and the band that would hold one turn."""
+        self.empty = 0
+        """Bursts without a whole turn since the last one with any."""
         self.ready_since_s = float("nan")
+        """Since when the next burst has been waited for; NaN while none is."""
+        self.rolling_since_s = float("nan")
+        self.cooling_since_s = float("nan")
         self.mark_s = 0.0
         self.mark_c = float("inf")
-        self.lifted_to_cool = False
         self.surface_sum_k = 0.0
         self.surface_count = 0
         sp = self.setpoint
@@ -169,7 +180,7 @@ class MeasureRepeat:
         if not self.moves.step(ctx):
             return
         if self.tare.failed:
-            self._end(Ending.ZERO_DRIFT, self.tare.failed)
+            self._end(ctx, Ending.ZERO_DRIFT, self.tare.failed)
             return
         self._roll()
 
@@ -179,21 +190,22 @@ class MeasureRepeat:
 
     def _to_ready(self, ctx: Context) -> None:
         self.phase = Phase.READY
-        self.ready_since_s = ctx.now
+        if not isfinite(self.ready_since_s):
+            self.ready_since_s = ctx.now
+        self.rolling_since_s = ctx.now
         self.mark_s, self.mark_c = ctx.now, float("inf")
-        self.lifted_to_cool = False
 
     def _ready(self, ctx: Context) -> None:
         self._demand_heat(ctx)
         surface, target = ctx.gates.surface_now_c(), self.setpoint.temperature_c
         waited = ctx.now - self.ready_since_s
         if waited > self.condition.soak.at_most_s:
-            self._end(Ending.NOT_REACHED, f"surface at {surface:.1f} degC after {waited / 60:.0f} min")
+            self._end(ctx, Ending.NOT_REACHED, f"surface at {surface:.1f} degC after {waited / 60:.0f} min")
         elif self._start_now(ctx, surface, target):
             self._slip_in()
-        elif surface > target and waited > LIFT_TO_COOL_S and not self.lifted_to_cool:
+        elif surface > target and ctx.now - self.rolling_since_s > LIFT_TO_COOL_S:
             self.phase = Phase.COOL
-            self.lifted_to_cool = True
+            self.cooling_since_s = ctx.now
             self.moves = Sequence(Lift())
 
     def _start_now(self, ctx: Context, surface: float, target: float) -> bool:
@@ -214,14 +226,13 @@ class MeasureRepeat:
         self._demand_heat(ctx)
         self.moves.step(ctx)
         surface, target = ctx.gates.surface_now_c(), self.setpoint.temperature_c
-        if surface <= target - self.offset_k or ctx.now - self.ready_since_s > 3.0 * LIFT_TO_COOL_S:
-            began = self.ready_since_s
+        if surface <= target - self.offset_k or ctx.now - self.cooling_since_s > COOL_AT_MOST_S:
             self._roll()
-            self.ready_since_s = began
 
     def _slip_in(self) -> None:
         sp = self.setpoint
         self.phase = Phase.MOVE_IN
+        self.ready_since_s = float("nan")
         if self.yawed:
             self.moves = Sequence(
                 Lift(),
@@ -255,6 +266,8 @@ class MeasureRepeat:
         done = self.counter.add(ctx.sample) is not None
         surface, rate = ctx.gates.surface_now_c(), ctx.gates.surface.rate_k_s
         burst.peak_rate_k_s = max(burst.peak_rate_k_s, rate)
+        if not isfinite(burst.slid_s) and r.slip_m_s >= 0.5 * self.slip_m_s:
+            burst.slid_s, burst.slid_c = ctx.now, r.surface_c
         if ctx.gate == 0:
             if not isfinite(burst.began_c):
                 burst.began_c = surface
@@ -263,7 +276,7 @@ class MeasureRepeat:
             self.surface_count += 1
         if done and self._complete(ctx):
             self._learn_offset(FEW_REVOLUTIONS, self.offset_k)
-            self._end(Ending.COMPLETE, "")
+            self._end(ctx, Ending.COMPLETE, "")
         elif self._burst_over(ctx, surface, rate):
             self._end_burst(ctx)
 
@@ -299,14 +312,16 @@ class MeasureRepeat:
     def _end_burst(self, ctx: Context) -> None:
         gained = self.revolutions - self.burst.blocks_before
         ctx.burst = 0
+        self.empty = 0 if gained else self.empty + 1
         furthest = self.condition.temperature_band_k + OFFSET_BEYOND_BAND_K
-        if gained == 0 and self.offset_k >= furthest and self.bursts > 3:
-            self._end(Ending.CANNOT_HOLD, self._band_needed(ctx))
+        if self.empty >= EMPTY_BURSTS and self.offset_k >= furthest:
+            self._end(ctx, Ending.CANNOT_HOLD, self._band_needed(ctx))
             return
         self._learn_offset(gained, furthest)
         if self.bursts >= self.condition.max_bursts:
             enough = self.revolutions >= (self.condition.window.revolutions or 0.0) and self.revolutions > 0
             self._end(
+                ctx,
                 Ending.COMPLETE if enough else Ending.CANNOT_HOLD if gained == 0 else Ending.INCOMPLETE,
                 f"{self.revolutions} revolutions in {self.bursts} bursts; {self._band_needed(ctx)}",
             )
@@ -328,13 +343,24 @@ class MeasureRepeat:
             self.offset_k = max(self.offset_k + 0.7 * mean_k, OFFSET_LEAST_K)
 
     def _band_needed(self, ctx: Context) -> str:
-        """Work out how fast the surface warms and which band would hold one whole revolution; return it as text."""
-        turn_s = pi * ctx.readings.diameter_mm * 1e-3 / self.setpoint.wheel_speed_m_s
-        self.warming_k_s = self.burst.peak_rate_k_s
-        self.holdable_band_k = 0.5 * self.warming_k_s * (WARM_SHARE * turn_s + ctx.rig.gates.ir_lag_s)
+        """Work out how fast the surface warms and which band would hold one whole revolution; return it as text.
+
+        The trend's filter needs seconds to follow: of a short burst the rise from reading to reading says more.
+        A band in which nothing could be counted is never said to do.
+        """
+        r, burst = ctx.readings, self.burst
+        turn_s = pi * r.diameter_mm * 1e-3 / self.setpoint.wheel_speed_m_s
+        lag_s = ctx.rig.gates.ir_lag_s
+        elapsed = r.surface_at_s - burst.slid_s
+        rise = (r.surface_c - burst.slid_c) / elapsed if elapsed >= lag_s else 0.0
+        self.warming_k_s = max(burst.peak_rate_k_s, rise)
+        self.holdable_band_k = 0.5 * self.warming_k_s * (WARM_SHARE * turn_s + lag_s)
+        if self.empty:
+            self.holdable_band_k = max(self.holdable_band_k, WARM_SHARE * self.condition.temperature_band_k)
         return f"surface warms by {self.warming_k_s:.2f} K/s; a band of {self.holdable_band_k:.1f} K would do"
 
-    def _end(self, ending: Ending, detail: str) -> None:
+    def _end(self, ctx: Context, ending: Ending, detail: str) -> None:
+        ctx.burst = 0
         self.ending = ending
         self.detail = detail
         self.phase = Phase.LIFT

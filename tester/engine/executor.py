@@ -41,7 +41,10 @@ class Executor:
         self.failed = ""
         self.reference_tare: list[float] = []
         self.conditions = sum(1 for _ in plan.conditions())
-        self.wheels = 0
+        self.wheels = max((step.wheel for step in plan.steps if isinstance(step, Install)), default=0)
+        """Highest wheel number in use: one that the plan did not foresee gets the next."""
+        self.measured_wheel = 0
+        """The wheel of the last condition. A new one measures at least one condition, else changing never ends."""
 
     def step(self, ctx: Context) -> None:
         """Advance the run by one scan."""
@@ -75,7 +78,6 @@ class Executor:
     def _activity(self, step: Step, ctx: Context) -> Activity:
         match step:
             case Install():
-                self.wheels = max(self.wheels, step.wheel)
                 return InstallWheel(step, self.reference_tare)
             case PreGrind():
                 return PreGrindStep(step)
@@ -84,6 +86,7 @@ class Executor:
             case Heat():
                 return self._heat(step, ctx)
             case ConditionStep():
+                self.measured_wheel = ctx.wheel.wheel
                 return MeasureCondition(step, self.results, self.reference_tare)
             case Cool():
                 return CoolDown(step, ctx.rig.interlocks.cooldown_speed_m_s)
@@ -100,7 +103,7 @@ class Executor:
         return HeatUp(step, DEFAULT_SPEED_M_S, DEFAULT_LOAD_N, 1.0, loop.rolling_offset_k)
 
     def _end(self, activity: Activity) -> None:
-        if isinstance(activity, MeasureCondition) and activity.failed:
+        if isinstance(activity, MeasureCondition | InstallWheel):
             self.failed = activity.failed
 
     # -- wheel changes that the plan did not foresee --------------------------------------------------------
@@ -108,7 +111,7 @@ class Executor:
     def _wheel_too_worn(self, step: ConditionStep, ctx: Context) -> bool:
         """Tell whether what is left of the wheel does not cover this condition's predicted wear."""
         left_mm = self.plan.replace_after_mm - ctx.wheel.loss_mm
-        return ctx.wheel.sliding_m > 0.0 and self.results.predicted_loss_mm(step, ctx.rig) > left_mm
+        return ctx.wheel.wheel == self.measured_wheel and self.results.predicted_loss_mm(step, ctx.rig) > left_mm
 
     def _change_steps(self, step: ConditionStep) -> list[Step]:
         self.wheels += 1

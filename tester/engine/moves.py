@@ -6,6 +6,7 @@ state in plain attributes: a running activity can be copied.
 
 from __future__ import annotations
 
+from math import isfinite
 from typing import Protocol
 
 from tester.engine.context import Context
@@ -19,6 +20,12 @@ Zero = tuple[float, float, float, float]
 
 LIFTED_N = 5.0
 """Below this force the wheel counts as lifted (safety concept: "F < 5 N")."""
+LIFTED_MM = 0.3
+"""... or this near to the lifted position: the zero of the cell may have drifted by more than that force [A]."""
+TARE_LEAST = 10
+"""Readings that a tare averages at least."""
+CELL_SILENT_S = 5.0
+"""A tare that has not got its readings this long after its time is given up, s [A]."""
 
 
 class Activity(Protocol):
@@ -61,11 +68,14 @@ class Lift:
     """Take the wheel off the belt."""
 
     def step(self, ctx: Context) -> bool:
-        """Done when the force is gone."""
+        """Done when the force is gone, or the press is back and what the cell still shows is its zero."""
         ctx.demand.press = Press.LIFT
         ctx.demand.load_n = 0.0
         ctx.moving = True
-        return ctx.readings.force_z_n < LIFTED_N and not ctx.contact.in_contact
+        if ctx.contact.in_contact:
+            return False
+        force, lifted_mm = ctx.readings.force_z_n, ctx.contact.lifted_mm(ctx.rig.loops.load)
+        return force < LIFTED_N or (isfinite(force) and ctx.readings.press_mm <= lifted_mm + LIFTED_MM)
 
 
 class Turn:
@@ -200,8 +210,11 @@ class TakeTare:
             for i, value in enumerate((r.force_x_n, r.force_y_n, r.force_z_n, r.moment_z_nm)):
                 self.sums[i] += value
             self.count += 1
-        if ctx.now - self.began_s < self.seconds or self.count < 10:
-            return False
+        late_s = ctx.now - self.began_s - self.seconds
+        if late_s < 0.0 or self.count < TARE_LEAST:
+            if late_s > CELL_SILENT_S:
+                self.failed = f"the load cell gave {self.count} valid readings in {ctx.now - self.began_s:.0f} s"
+            return bool(self.failed)
         ox, oy, oz, om = ctx.cell.tare
         sx, sy, sz, sm = self.sums
         new = (ox + sx / self.count, oy + sy / self.count, oz + sz / self.count, om + sm / self.count)

@@ -70,10 +70,8 @@ class StoredResults:
             self.recorder.begin_condition(step.condition, ctx.now)
         found = combine_repeats(self.repeats, step.repeats, step.min_valid, status, end.detail)
         self.repeats = []
-        left = status or found.status
-        if left is ConditionStatus.PENDING:
-            left = ConditionStatus.INSUFFICIENT
-        reason = end.detail or found.reason
+        # A condition that was left early still has its value where enough repeats were valid.
+        left, reason = found.status, found.reason
         self.recorder.end_condition(
             step.condition, left, reason, ctx.now, warming_k_s=end.warming_k_s, holdable_band_k=end.holdable_band_k
         )

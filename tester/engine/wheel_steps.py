@@ -24,7 +24,8 @@ class InstallWheel:
         self.ask = Ask(f"install wheel {step.wheel}: {step.compound}{note}")
         self.standing = False
         self.mounted = False
-        self.after: Sequence | None = None
+        self.tare: TakeTare | None = None
+        self.after = Sequence()
 
     def step(self, ctx: Context) -> bool:
         """Done when mounted and tared."""
@@ -35,14 +36,18 @@ class InstallWheel:
         if not self.mounted:
             self.mounted = self.ask.step(ctx)
             return False
-        if self.after is None:
+        if self.tare is None:
             self._mount(ctx)
             self.reference.clear()
-            tare = TakeTare(
-                REFERENCE_TARE_S, self.reference, ctx.rig.interlocks.zero_warn_n, ctx.rig.interlocks.zero_stop_n
-            )
-            self.after = Sequence(Power(True), Straighten(), tare)
+            limits = ctx.rig.interlocks
+            self.tare = TakeTare(REFERENCE_TARE_S, self.reference, limits.zero_warn_n, limits.zero_stop_n)
+            self.after = Sequence(Power(True), Straighten(), self.tare)
         return self.after.step(ctx)
+
+    @property
+    def failed(self) -> str:
+        """Why the run cannot go on with this wheel, or ""."""
+        return self.tare.failed if self.tare is not None else ""
 
     def _mount(self, ctx: Context) -> None:
         step, old = self.install, ctx.wheel

@@ -1,0 +1,147 @@
+"""From a measured repeat to rows of the store: status, flags, bursts, and the line for people."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from tester.analysis.blocks import AVERAGED, Block
+from tester.analysis.results import ConditionStatus, RepeatStatus
+from tester.engine.bursts import Ending, MeasureRepeat
+from tester.engine.condition import ConditionEnd
+from tester.engine.results import StoredResults, condition_records
+from tests.tester.engine.bench import SHORT, Bench, condition_of, make_bench, plan_of
+
+STEP = replace(condition_of(), repeats=3, min_valid=2)
+
+
+class Door:
+    """Results on a bench, and what they wrote."""
+
+    def __init__(self) -> None:
+        self.bench: Bench = make_bench()
+        self.results = StoredResults(self.bench.notes)
+
+    def repeat(
+        self, number: int, ending: Ending, *, mu: float = 0.7, blocks: int = 16, detail: str = ""
+    ) -> RepeatStatus:
+        """Go through one repeat with so many turns of one coefficient."""
+        ctx = self.bench.ctx
+        key = self.results.begin_repeat(ctx, STEP, number, 1)
+        measured = MeasureRepeat(STEP, [], 1.0)
+        measured.ending, measured.detail = ending, detail
+        measured.counter.blocks.extend(block(i, mu) for i in range(blocks))
+        outcome = self.results.finish_repeat(ctx, STEP, key, number, measured)
+        assert outcome.ticket.done
+        return outcome.status
+
+    def end(self, end: ConditionEnd | None = None) -> tuple[str, tuple[object, ...]]:
+        """Close the condition; return the line and what was written."""
+        line = self.results.finish_condition(self.bench.ctx, STEP, end or ConditionEnd())
+        written = self.bench.notes.written("UPDATE condition SET status")
+        return line, written[-1]
+
+
+def block(i: int, mu: float) -> Block:
+    """Return a turn of a steady repeat, with a little noise that is the same every time."""
+    noisy = mu * (1.0 + 0.001 * ((i * 7) % 5 - 2))
+    means = dict.fromkeys(AVERAGED, 0.0) | {"force_x_n": 200.0 * noisy, "force_z_n": 200.0, "slip_m_s": 0.3}
+    return Block(1, 35, 0.353 * i, 0.353 * (i + 1), float(i), noisy, **means)
+
+
+@pytest.fixture
+def door() -> Door:
+    return Door()
+
+
+def test_a_complete_repeat_is_reduced_and_committed(door: Door) -> None:
+    assert door.repeat(1, Ending.COMPLETE) is RepeatStatus.VALID
+    (values,) = door.bench.notes.written("UPDATE repeat SET")
+    assert values[0] == "valid" and values[3] == pytest.approx(0.7, rel=1e-3)
+
+
+def test_the_bursts_of_a_repeat_are_stored_with_it(door: Door) -> None:
+    door.repeat(1, Ending.COMPLETE)
+    assert len(door.bench.notes.written("INSERT INTO burst")) == 1
+
+
+@pytest.mark.parametrize(
+    "ending, status",
+    [
+        (Ending.CANNOT_HOLD, RepeatStatus.CANNOT_HOLD),
+        (Ending.NOT_REACHED, RepeatStatus.NOT_REACHED),
+        (Ending.ZERO_DRIFT, RepeatStatus.VOID),
+    ],
+)
+def test_an_ending_without_a_value_leaves_none_whatever_was_collected(
+    door: Door, ending: Ending, status: RepeatStatus
+) -> None:
+    assert door.repeat(1, ending, detail="why") is status
+    (values,) = door.bench.notes.written("UPDATE repeat SET")
+    assert values[1] == "why" and values[3] != values[3]
+
+
+def test_an_incomplete_repeat_is_for_the_reduction_to_judge(door: Door) -> None:
+    assert door.repeat(1, Ending.INCOMPLETE, blocks=7) is RepeatStatus.TOO_FEW
+
+
+def test_a_repeat_without_a_whole_turn_has_no_value(door: Door) -> None:
+    assert door.repeat(1, Ending.INCOMPLETE, blocks=0) is RepeatStatus.TOO_FEW
+
+
+def test_the_wheel_s_state_is_stored_with_every_repeat(door: Door) -> None:
+    door.bench.ctx.wheel.loss_mm = 0.25
+    door.repeat(1, Ending.COMPLETE)
+    (values,) = door.bench.notes.written("UPDATE wheel")
+    assert values[0] == pytest.approx(89.75)
+
+
+def test_enough_valid_repeats_make_a_value(door: Door) -> None:
+    for number in (1, 2, 3):
+        door.repeat(number, Ending.COMPLETE)
+    line, written = door.end()
+    assert written[0] == ConditionStatus.OK.value
+    assert line.startswith("condition 1 (1#, 300 mm/s, 200 N, 25 degC): mu 0.6999") and line.endswith("3 of 3")
+
+
+def test_too_few_valid_repeats_make_none(door: Door) -> None:
+    for number in (1, 2, 3):
+        door.repeat(number, Ending.COMPLETE if number == 1 else Ending.INCOMPLETE, blocks=16 if number == 1 else 7)
+    line, written = door.end()
+    assert written[0] == ConditionStatus.INSUFFICIENT.value
+    assert "insufficient: 1 of 3 valid, 2 needed" in line
+
+
+def test_a_condition_that_cannot_be_held_says_so_with_rate_and_band(door: Door) -> None:
+    door.repeat(1, Ending.CANNOT_HOLD, detail="surface warms by 9 K/s")
+    line, written = door.end(ConditionEnd(Ending.CANNOT_HOLD, "surface warms by 9 K/s", 9.0, 3.3))
+    assert written[0] == ConditionStatus.CANNOT_HOLD.value
+    assert (written[3], written[4]) == (9.0, 3.3)
+    assert line.endswith("temperature cannot be held: surface warms by 9 K/s")
+
+
+def test_a_condition_that_was_left_before_its_first_repeat_is_stored(door: Door) -> None:
+    _, written = door.end(ConditionEnd(Ending.NOT_REACHED, "surface at 31 degC"))
+    assert written[:2] == (ConditionStatus.NOT_REACHED.value, "surface at 31 degC")
+
+
+def test_enough_valid_repeats_outlive_one_that_was_not_reached(door: Door) -> None:
+    for number in (1, 2):
+        door.repeat(number, Ending.COMPLETE)
+    door.repeat(3, Ending.NOT_REACHED, detail="surface at 43 degC")
+    line, written = door.end(ConditionEnd(Ending.NOT_REACHED, "surface at 43 degC"))
+    assert written[0] == ConditionStatus.OK.value and "2 of 3" in line
+
+
+def test_a_condition_does_not_inherit_the_repeats_of_the_one_before(door: Door) -> None:
+    door.repeat(1, Ending.COMPLETE)
+    door.end(ConditionEnd(Ending.NOT_REACHED, "x"))
+    _, written = door.end(ConditionEnd(Ending.NOT_REACHED, "y"))
+    assert written[0] == ConditionStatus.NOT_REACHED.value
+
+
+def test_a_plan_s_conditions_are_stored_as_the_recipe_says() -> None:
+    records = list(condition_records(plan_of(SHORT.replace("load: 200 N", "load: [100 N, 200 N]"))))
+    assert [(r.condition, r.row, r.load_n, r.compound) for r in records] == [(1, 1, 100.0, "1#"), (2, 2, 200.0, "1#")]
+    assert records[0].window_revolutions == 14.0 and records[0].min_valid == 1

@@ -1,0 +1,269 @@
+"""A session: what a run leaves in its folder, and its exit codes."""
+
+from __future__ import annotations
+
+import re
+import signal
+import sqlite3
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from tester import session as module
+from tester.bus_log import BusLog
+from tester.engine.build import Ports
+from tester.engine.context import Attendant, Progress
+from tester.engine.prompts import Prompts
+from tester.engine.tickers import World
+from tester.rig import RigConfig
+from tester.session import Session, SessionOptions, make_folder
+from tester.simulated import simulated_ports
+from tester.source import InvalidSource
+from tester.store.reader import RunReader
+from tester.store.writer import RunWriter
+from tests.tester.engine.bench import QUIET, SHORT
+
+TABLES = ("appendix.csv", "conditions.csv", "repeats.csv")
+
+
+class Screen:
+    """Keeps what it is told."""
+
+    def __init__(self, *, answer_yes: bool = True) -> None:
+        self.answer_yes = answer_yes
+        self.messages: list[str] = []
+        self.records: list[dict[str, object]] = []
+        self.results: list[str] = []
+
+    can_ask = False
+
+    def begin(self, name: str) -> None:
+        self.messages.append(f"begin {name}")
+
+    def show(self, now_s: float, run: Progress, share: float) -> None:
+        pass
+
+    def attend(self, prompts: Prompts) -> None:
+        pass
+
+    def end(self) -> None:
+        pass
+
+    def message(self, text: str) -> None:
+        self.messages.append(text)
+
+    def emit(self, record: dict[str, object]) -> None:
+        self.records.append(record)
+
+    def result(self, line: str) -> None:
+        self.results.append(line)
+
+
+class Ended:
+    """What a session left."""
+
+    def __init__(self, code: int, screen: Screen, out: Path) -> None:
+        self.code, self.screen, self.out = code, screen, out
+
+    @property
+    def folder(self) -> Path:
+        return Path(self.screen.results[0])
+
+    def status(self) -> str:
+        with RunReader(self.folder / "run.db") as reader:
+            return reader.run().status
+
+
+def run(home: Path, *overrides: str, seed: int = 0, text: str = SHORT, screen: Screen | None = None) -> Ended:
+    """Run a recipe in ``home`` to its end."""
+    home.mkdir(parents=True, exist_ok=True)
+    recipe = home / "short.yaml"
+    recipe.write_text(text, encoding="utf-8")
+    screen = screen or Screen()
+    options = SessionOptions(recipe=str(recipe), out=home / "runs", overrides=overrides, seed=seed)
+    return Ended(Session(options, screen).run(), screen, home / "runs")
+
+
+@pytest.fixture(scope="module")
+def done(tmp_path_factory: pytest.TempPathFactory) -> Ended:
+    """A run that is complete."""
+    return run(tmp_path_factory.mktemp("done"), *QUIET)
+
+
+@pytest.fixture(scope="module")
+def incomplete(tmp_path_factory: pytest.TempPathFactory) -> Ended:
+    """A run on the default rig, whose window is too short to show that the coefficient stands still."""
+    return run(tmp_path_factory.mktemp("incomplete"), seed=1)
+
+
+Prepare = Callable[[World, Attendant], Attendant]
+
+
+@pytest.fixture
+def at_the_rig(monkeypatch: pytest.MonkeyPatch) -> Callable[[Prepare], None]:
+    """Have something done at the simulated rig before the run begins; it returns whose hands the rig gets."""
+
+    def arrange(prepare: Prepare) -> None:
+        def connect(rig: RigConfig, seed: int, log: BusLog | None) -> tuple[Ports, World, Attendant]:
+            ports, world, attendant = simulated_ports(rig, seed, log)
+            return ports, world, prepare(world, attendant)
+
+        monkeypatch.setattr(module, "connect_ports", connect)
+
+    return arrange
+
+
+class Interrupting:
+    """Hands at the rig that send signals to this process when a repeat begins."""
+
+    def __init__(self, hands: Attendant, *signals: int) -> None:
+        self.hands, self.signals = hands, signals
+
+    def install(self, specimen: int, wheel: int, compound: str, *, new_specimen: bool) -> None:
+        self.hands.install(specimen, wheel, compound, new_specimen=new_specimen)
+
+    def begin_repeat(self, condition: int, repeat: int, attempt: int) -> None:
+        self.hands.begin_repeat(condition, repeat, attempt)
+        for number in self.signals:
+            signal.raise_signal(number)
+
+
+# -- the folder ---------------------------------------------------------------------------------------------------
+
+
+def test_a_complete_run_exits_0(done: Ended) -> None:
+    assert done.code == 0 and done.status() == "done"
+
+
+def test_the_folder_is_named_by_date_and_recipe(done: Ended) -> None:
+    assert re.fullmatch(r"\d{4}-\d\d-\d\dT\d\d-?\d\d-?\d\d-short", done.folder.name)
+    assert done.folder.parent == done.out
+
+
+def test_the_folder_holds_what_was_run_and_what_came_out(done: Ended) -> None:
+    names = {path.name for path in done.folder.iterdir()}
+    assert names >= {"run.db", "recipe.yaml", "rig.yaml", "manifest.json", *TABLES}
+    assert (done.folder / "recipe.yaml").read_text(encoding="utf-8") == SHORT
+
+
+def test_the_folder_is_given_as_the_result(done: Ended) -> None:
+    assert done.screen.results == [str(done.folder)] and done.screen.records[-1]["exit"] == 0
+
+
+def test_the_table_holds_the_condition(done: Ended) -> None:
+    lines = (done.folder / "appendix.csv").read_text(encoding="utf-8-sig").splitlines()
+    assert len(lines) == 2 and lines[1] == "1#,300,200,0,25,0.73"
+
+
+def test_the_store_knows_seed_recipe_and_drive_parameters(done: Ended) -> None:
+    with sqlite3.connect(done.folder / "run.db") as database:
+        (count,) = database.execute("SELECT count(*) FROM device_parameter WHERE device = 'wheel'").fetchone()
+        seed, text = database.execute("SELECT seed, recipe_text FROM run").fetchone()
+    assert count > 5 and seed == 0 and text == SHORT
+
+
+@pytest.mark.parametrize(
+    "name, slug",
+    [("Table 2, compound 1#", "table-2-compound-1"), ("../../etc", "etc"), ("°°", "run"), ("a" * 100, "a" * 40)],
+)
+def test_no_recipe_name_leads_out_of_the_folder(tmp_path: Path, name: str, slug: str) -> None:
+    folder = make_folder(tmp_path / "runs", name)
+    assert folder.parent == tmp_path / "runs" and folder.name.endswith(f"-{slug}")
+
+
+def test_two_runs_of_one_second_have_two_folders(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(module.clock, "local_stamp", lambda: "2024-02-21T14-05-09")
+    assert [make_folder(tmp_path, "x").name for _ in range(3)] == [
+        "2024-02-21T14-05-09-x",
+        "2024-02-21T14-05-09-x-2",
+        "2024-02-21T14-05-09-x-3",
+    ]
+
+
+# -- exit codes ---------------------------------------------------------------------------------------------------
+
+
+def test_missing_conditions_exit_6_and_are_named(incomplete: Ended) -> None:
+    assert incomplete.code == 6
+    assert any("200 N" in text and "not stabilised" in text for text in incomplete.screen.messages)
+    assert len((incomplete.folder / "appendix.csv").read_text(encoding="utf-8-sig").splitlines()) == 1
+
+
+def test_nobody_to_ask_is_a_usage_error_without_a_trace(tmp_path: Path) -> None:
+    ended = run(tmp_path, screen=Screen(answer_yes=False))
+    assert ended.code == 2 and not ended.out.exists()
+    assert ended.screen.messages == ["the recipe asks a person, and nobody is at this terminal: use --yes"]
+
+
+def test_an_invalid_recipe_is_refused_without_a_trace(tmp_path: Path) -> None:
+    with pytest.raises(InvalidSource):
+        run(tmp_path, text=SHORT.replace("200 N", "200 kg"))
+    assert not (tmp_path / "runs").exists()
+
+
+def test_a_rig_that_does_not_answer_exits_4(tmp_path: Path, at_the_rig: Callable[[Prepare], None]) -> None:
+    def dark(world: World, hands: Attendant) -> Attendant:
+        world.axes["belt"].power(False)  # type: ignore[attr-defined]
+        return hands
+
+    at_the_rig(dark)
+    ended = run(tmp_path)
+    assert ended.code == 4 and ended.status() == "rig unreachable"
+    assert any("belt drive (node 2)" in text for text in ended.screen.messages)
+
+
+def test_a_trip_exits_5_with_its_cause(tmp_path: Path, at_the_rig: Callable[[Prepare], None]) -> None:
+    def open_guard(world: World, hands: Attendant) -> Attendant:
+        world.axes["press"].set_guard(False)  # type: ignore[attr-defined]
+        return hands
+
+    at_the_rig(open_guard)
+    ended = run(tmp_path)
+    assert ended.code == 5 and ended.status() == "tripped"
+    assert any(text.startswith("tripped: guard open") for text in ended.screen.messages)
+
+
+@pytest.mark.parametrize(
+    "signals, code",
+    [((signal.SIGINT,), 130), ((signal.SIGINT, signal.SIGINT), 5), ((signal.SIGTERM,), 5)],
+)
+def test_signals_stop_a_run(
+    tmp_path: Path, at_the_rig: Callable[[Prepare], None], signals: tuple[int, ...], code: int
+) -> None:
+    at_the_rig(lambda _, hands: Interrupting(hands, *signals))
+    ended = run(tmp_path)
+    assert ended.code == code and ended.status() == "stopped"
+
+
+def test_the_handlers_of_before_are_back_after_a_run(done: Ended) -> None:
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+
+
+def test_a_store_that_cannot_be_written_fails_the_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    write = RunWriter._write_transaction  # pyright: ignore[reportPrivateUsage]
+
+    def full(writer: RunWriter) -> None:
+        if any("INSERT INTO repeat" in sql for batch in writer._batches for sql, _ in batch.statements):  # pyright: ignore[reportPrivateUsage]
+            raise sqlite3.OperationalError("database or disk is full")
+        write(writer)
+
+    monkeypatch.setattr(RunWriter, "_write_transaction", full)
+    ended = run(tmp_path)
+    assert ended.code == 1
+    assert any("not everything could be recorded" in text for text in ended.screen.messages)
+
+
+# -- determinism --------------------------------------------------------------------------------------------------
+
+
+def tables(ended: Ended) -> dict[str, bytes]:
+    return {name: (ended.folder / name).read_bytes() for name in TABLES}
+
+
+def test_the_same_seed_gives_the_same_tables_byte_for_byte(tmp_path: Path, incomplete: Ended) -> None:
+    assert tables(run(tmp_path, seed=1)) == tables(incomplete)
+
+
+def test_another_seed_gives_other_repeats(tmp_path: Path, incomplete: Ended) -> None:
+    assert tables(run(tmp_path, seed=2))["repeats.csv"] != tables(incomplete)["repeats.csv"]
