@@ -48,8 +48,9 @@ class Cia402Slave(DrivePower):
 
     For the plant: ``axis.value`` (velocity) and ``axis.position`` in units of the axis; ``torque_nm`` is the load
     torque to be reported in 0x6077, set from outside, and ``encoder_error`` what TPDO1's reading is off by; ``io``
-    the safety inputs and the contactor of a drive with digital I/O. ``unpowered_velocity`` (unit/s) is what the axis is driven to while the power stage is off (a spring;
-    0: it coasts to rest) with ``coast_deceleration`` (unit/s2; by default the configured deceleration [A]).
+    the safety inputs and the contactor of a drive with digital I/O. ``unpowered_velocity`` (unit/s) is what the axis
+    is driven to while the power stage is off (a spring; 0: it coasts to rest) with ``coast_deceleration`` (unit/s2;
+    by default the configured deceleration [A]).
     """
 
     __slots__ = (
