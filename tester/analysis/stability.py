@@ -157,6 +157,8 @@ def _correlation(residuals: list[float], bursts: list[int], parameters: int) -> 
     pairs = n - len(bursts)
     if pairs < 3:
         return 0.0
+    if n <= 2 * parameters:
+        return _MAX_CORRELATION  # too few to tell: the correlation that allows least
     products = _dot(residuals[:-1], residuals[1:])
     at = 0
     for m in bursts[:-1]:

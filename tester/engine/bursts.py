@@ -26,6 +26,8 @@ TARE_S = 1.0
 """Averaging time of the zero before each repeat, s [A]: about three turns."""
 TARE_WAIT_S = 0.4
 """The cell settles this long after lifting, s [A]."""
+COLDER_K = 0.3
+"""A burst does not start further than this below where it is meant to: its samples would lie too cold, K [A]."""
 OFFSET_STEP_K = 0.5
 """How much lower the next burst starts after one that warmed through the band too quickly, K [A]."""
 OFFSET_BEYOND_BAND_K = 1.5
@@ -211,7 +213,7 @@ class MeasureRepeat:
     def _start_now(self, ctx: Context, surface: float, target: float) -> bool:
         if self.rolling_only:
             return abs(surface - target) <= min(ROLLING_START_K, self.condition.temperature_band_k)
-        if surface < target - max(self.condition.temperature_band_k, self.offset_k + 0.5):
+        if surface < target - max(self.offset_k, ctx.rig.loops.heat.rolling_offset_k) - COLDER_K:
             return False
         if surface <= target - self.offset_k + 0.1:
             return True

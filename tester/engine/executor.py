@@ -6,7 +6,7 @@ from collections import deque
 
 from tester.engine.condition import MeasureCondition, Results
 from tester.engine.context import Context
-from tester.engine.moves import Activity, Ask
+from tester.engine.moves import Activity, Ask, MoveFailedError
 from tester.engine.thermal_steps import CoolDown, HeatUp, RestStep
 from tester.engine.wheel_steps import InstallWheel, PreGrindStep
 from tester.recipe.plan import (
@@ -54,7 +54,12 @@ class Executor:
                     self.finished = True
                     return
                 self.activity = self._begin(self.steps.popleft(), ctx)
-            if not self.activity.step(ctx):
+            try:
+                if not self.activity.step(ctx):
+                    return
+            except MoveFailedError as failed:
+                self.failed = f"{ctx.progress.title}: {failed}"
+                self.finished = True
                 return
             self._end(self.activity)
             self.activity = None

@@ -6,7 +6,7 @@ state in plain attributes: a running activity can be copied.
 
 from __future__ import annotations
 
-from math import isfinite
+from math import inf, isfinite
 from typing import Protocol
 
 from tester.engine.context import Context
@@ -36,22 +36,46 @@ class Activity(Protocol):
         ...
 
 
+class MoveFailedError(Exception):
+    """A move has not ended in its time: the run stops in a controlled way, with this as its reason."""
+
+
+class Move:
+    """An activity that has to end in a time of its own."""
+
+    limit_s: float = inf
+    """Longest time the move may take, s."""
+    name: str = "move"
+
+
 class Sequence:
-    """Activities one after the other."""
+    """Activities one after the other; a move among them that overruns its time raises MoveFailedError."""
 
     def __init__(self, *parts: Activity) -> None:
         """Take the parts in order."""
         self.parts = list(parts)
+        self.since_s = float("nan")
 
     def step(self, ctx: Context) -> bool:
         """Step the current part."""
-        if self.parts and self.parts[0].step(ctx):
+        if not self.parts:
+            return True
+        part = self.parts[0]
+        if not isfinite(self.since_s):
+            self.since_s = ctx.now
+        if part.step(ctx):
             self.parts.pop(0)
+            self.since_s = float("nan")
+        elif isinstance(part, Move) and ctx.now - self.since_s > part.limit_s:
+            raise MoveFailedError(f"{part.name} not done after {part.limit_s:g} s")
         return not self.parts
 
 
-class Power:
+class Power(Move):
     """Enable or disable the drives, and wait until they say so."""
+
+    limit_s = 20.0  # [A]; a drive needs well under a second
+    name = "switching the drives"
 
     def __init__(self, on: bool) -> None:
         """``on``: what is wanted."""
@@ -64,8 +88,11 @@ class Power:
         return ctx.readings.drives_enabled if self.on else ctx.readings.drives_disabled
 
 
-class Lift:
+class Lift(Move):
     """Take the wheel off the belt."""
+
+    limit_s = 30.0  # [A]; the whole travel takes 3 s
+    name = "lifting"
 
     def step(self, ctx: Context) -> bool:
         """Done when the force is gone, or the press is back and what the cell still shows is its zero."""
@@ -78,8 +105,11 @@ class Lift:
         return force < LIFTED_N or (isfinite(force) and ctx.readings.press_mm <= lifted_mm + LIFTED_MM)
 
 
-class Turn:
+class Turn(Move):
     """Bring wheel and belt to their speeds (m/s)."""
+
+    limit_s = 30.0  # [A]; the ramps take under a second
+    name = "reaching the speeds"
 
     def __init__(self, wheel_m_s: float, belt_m_s: float) -> None:
         """Both line speeds."""
@@ -102,8 +132,11 @@ def speeds_reached(ctx: Context) -> bool:
     ) and abs(r.belt_speed_m_s - d.belt_speed_m_s) <= max(SPEED_SHARE * abs(d.belt_speed_m_s), SPEED_FLOOR_M_S)
 
 
-class Load:
+class Load(Move):
     """Press to a load (N) and wait until it stands within ``percent`` for ``for_s`` seconds."""
+
+    limit_s = 180.0  # [A]; a first touch takes 15 s
+    name = "loading"
 
     def __init__(self, load_n: float, *, percent: float = 2.0, for_s: float = 1.0, quick: bool = False) -> None:
         """``quick``: the fast approach to a known contact."""
@@ -125,8 +158,11 @@ class Load:
         return ctx.now - self.since_s >= self.for_s
 
 
-class Yaw:
+class Yaw(Move):
     """Turn to a sideslip and a camber angle (degrees); only ever unloaded."""
+
+    limit_s = 60.0  # [A]; 30 degrees take 2 s
+    name = "reaching the angles"
 
     def __init__(self, sideslip_deg: float, camber_deg: float) -> None:
         """Both angles."""

@@ -105,6 +105,12 @@ class _Limits:
             message = f"{name}: {show(given.value, unit)} is more than the rig allows"
             yield self.tree.problem(given.at, f"{message} {self._limit(key, limit, unit)}")
 
+    def _by_hand(self, given: Given, axis: str, *, driven: bool) -> Iterator[Problem]:
+        """Yield a problem for an angle on an axis that a person sets: every burst turns it in and out."""
+        if given.value != 0.0 and not driven:
+            message = f"{axis}: {show(given.value, 'deg')} needs a driven axis; this rig's is set by hand"
+            yield self.tree.problem(given.at, f"{message} (axes.{axis} of rig \"{self.rig.name}\")")
+
     # -- what may be wrong --------------------------------------------------------------------------------------
 
     def _specimens(self) -> Iterator[Problem]:
@@ -147,8 +153,10 @@ class _Limits:
             yield from self._above(load, limits.load_n, "N", "limits.load")
         for angle in self._given((*at, "sideslip"), "deg"):
             yield from self._above(angle, limits.sideslip_deg, "deg", "limits.sideslip")
+            yield from self._by_hand(angle, "sideslip", driven=self.rig.axes.sideslip is not None)
         for angle in self._given((*at, "camber"), "deg"):
             yield from self._above(angle, limits.camber_deg, "deg", "limits.camber")
+            yield from self._by_hand(angle, "camber", driven=self.rig.axes.camber is not None)
         yield from self._wheel_speeds(at)
         yield from self._temperatures(at)
         yield from self._slips(at)

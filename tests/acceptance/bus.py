@@ -83,7 +83,7 @@ def _start_up(record: CanRecord) -> Iterator[Figure]:
     early = first_beat < min(t for t, _ in armed)
     limit = f"before it is armed at {armed[0][0]:.3f} s"
     yield holds("heartbeat of the PC begins", early, f"at {first_beat:.3f} s", limit)
-    after = all(t < start for (t, _), start in zip(armed, starts, strict=True))
+    after = all(t < start < float("inf") for (t, _), start in zip(armed, starts, strict=True))
     times = " ".join(f"{t:.3f}" for t in starts)
     yield holds("NMT start of each node by itself, operational after it", after, f"at {times} s", "after arming")
     late = min(t for axis in axes for t, words in _timed(record, axis) if words == "enabled")

@@ -191,3 +191,8 @@ def test_the_bound_covers_the_true_drift() -> None:
 
     found = [assess(blocks(noisy(seed, 60, 0.01, 60))) for seed in range(100)]
     assert 84 <= sum(covers(f) for f in found if f.truncated == 0) / sum(f.truncated == 0 for f in found) * 100 <= 99
+
+
+def test_six_revolutions_over_several_bursts_are_too_few_to_judge_but_do_no_harm() -> None:
+    few = blocks([0.70, 0.71, 0.70, 0.70, 0.71, 0.70], per_burst=2, surface=[24.5, 25.0, 25.4])
+    assert not assess(few).stabilised

@@ -7,7 +7,7 @@ from math import nan
 import pytest
 
 from tester.engine.context import Context
-from tester.engine.moves import Ask, Lift, Load, Power, Sequence, TakeTare, Turn, Wait, Yaw
+from tester.engine.moves import Ask, Lift, Load, MoveFailedError, Power, Sequence, TakeTare, Turn, Wait, Yaw
 from tester.process import Press
 from tests.tester.engine.bench import Bench, make_bench
 
@@ -42,6 +42,17 @@ def test_a_sequence_steps_its_parts_one_after_the_other(bench: Bench) -> None:
     bench.run(Sequence(first, second))
     assert len(first.stepped) == 3 and len(second.stepped) == 2
     assert first.stepped[-1] < second.stepped[0]
+
+
+def test_a_move_that_overruns_its_time_fails_and_says_which(bench: Bench) -> None:
+    bench.follow = False
+    with pytest.raises(MoveFailedError, match="switching the drives not done after 20 s"):
+        bench.hold(Sequence(Power(True)), 21.0)
+
+
+def test_the_time_of_a_move_begins_with_it(bench: Bench) -> None:
+    bench.hold(Sequence(Wait(25.0), Power(True)), 24.0)
+    assert not bench.ctx.demand.enabled
 
 
 def test_an_empty_sequence_is_done_at_once(bench: Bench) -> None:

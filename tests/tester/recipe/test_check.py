@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -94,6 +96,14 @@ def test_friction_heat_beyond_the_limit_names_the_worst_place() -> None:
     (problem,) = problems(text)
     assert problem.startswith("r.yaml:9:19: load: 400 N makes ")
     assert 'W of friction heat at 0.5 m/s of slip with "3#" at 70 degC (limit 350 W: limits.slip_power' in problem
+
+
+def test_an_angle_on_an_axis_that_is_set_by_hand_is_refused() -> None:
+    by_hand = rig()
+    by_hand = replace(by_hand, axes=replace(by_hand.axes, sideslip=None))
+    text = SMALL.replace("name: load", "name: load\n    sideslip: [0 deg, 10 deg]")
+    (problem,) = [str(one) for one in check(text, by_hand, "r.yaml")]
+    assert problem.startswith("r.yaml:8:23: sideslip: 10 deg needs a driven axis; this rig's is set by hand")
 
 
 def test_a_compound_without_a_model_has_no_power_to_check_on_a_real_rig() -> None:
