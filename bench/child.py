@@ -1,0 +1,54 @@
+"""Fresh interpreters: what they use of CPU and memory."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from bench.effort import TopicFailedError
+
+ROOT = Path(__file__).resolve().parent.parent
+"""Where ``tester``, ``sim`` and ``bench`` are imported from."""
+
+
+def run(arguments: Sequence[str], expected: int = 0) -> str:
+    """Run the interpreter with arguments and return its output; raises TopicFailedError for another exit code."""
+    done = subprocess.run([sys.executable, *arguments], capture_output=True, text=True, check=False, cwd=ROOT)
+    if done.returncode != expected:
+        raise TopicFailedError(f"python {' '.join(arguments)[:60]}: exit code {done.returncode}: {done.stderr[-300:]}")
+    return done.stdout
+
+
+def cpu_accounting() -> bool:
+    """Tell whether this system accounts for the CPU time of children."""
+    return sys.platform != "win32"
+
+
+def cpu_seconds_of_child(arguments: Sequence[str]) -> float:
+    """Return the CPU seconds of a fresh interpreter, its start and its end included (POSIX)."""
+    before = _children_s()
+    run(arguments)
+    return _children_s() - before
+
+
+def peak_memory_mb() -> float | None:
+    """Return the greatest memory this process ever occupied, MB (10^6 bytes); None where the system does not say."""
+    status = Path("/proc/self/status")
+    if status.exists():
+        for line in status.read_text(encoding="ascii").splitlines():
+            if line.startswith("VmHWM"):
+                return int(line.split()[1]) * 1.024e-3
+    if sys.platform == "darwin":
+        import resource
+
+        return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1e-6
+    return None
+
+
+def _children_s() -> float:
+    import resource
+
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime

@@ -1,0 +1,63 @@
+"""The command line of ``python -m bench``."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Callable, Sequence
+
+from bench.effort import Effort, TopicFailedError
+from bench.figures import Figure
+from bench.machine import machine
+from bench.registry import TOPICS, chosen
+from bench.report import as_json, missed, table
+
+EXIT_MISSED = 1
+EXIT_USAGE = 2
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Measure, print, and return 1 where a figure misses what is asked, 2 for a wrong call, else 0."""
+    parser = _parser()
+    given = parser.parse_args(arguments)
+    try:
+        names = chosen(tuple(given.names))
+    except KeyError as error:
+        parser.print_usage(sys.stderr)
+        print(f"bench: no topic {error.args[0]!r}; there are: {', '.join(TOPICS)}", file=sys.stderr)
+        return EXIT_USAGE
+    if given.runs < 1:
+        print("bench: --runs must be at least 1", file=sys.stderr)
+        return EXIT_USAGE
+    effort = Effort(given.runs, given.quick)
+    results = measure_all(names, effort, lambda name: print(f"measuring: {name}", file=sys.stderr, flush=True))
+    print(as_json(results, machine()) if given.json else table(results, machine()))
+    return EXIT_MISSED if missed(results) else 0
+
+
+def measure_all(names: Sequence[str], effort: Effort, tell: Callable[[str], object]) -> dict[str, list[Figure]]:
+    """Return the figures of the topics; one that fails leaves a line that says why, and the others go on."""
+    results: dict[str, list[Figure]] = {}
+    for name in names:
+        tell(name)
+        try:
+            results[name] = TOPICS[name].load()(effort)
+        except TopicFailedError as error:
+            results[name] = [Figure(TOPICS[name].help, "", (), note=str(error), failed=True)]
+    return results
+
+
+def _parser() -> argparse.ArgumentParser:
+    width = max(map(len, TOPICS))
+    topics = "\n".join(f"  {name.ljust(width)}  {topic.help}" for name, topic in TOPICS.items())
+    parser = argparse.ArgumentParser(
+        prog="python -m bench",
+        description="Measure what the software costs on this machine. Exit code 1 when a figure misses its limit.",
+        epilog=f"topics:\n{topics}",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("names", nargs="*", metavar="NAME", help="topics to measure (default: all)")
+    parser.add_argument("--json", action="store_true", help="one JSON object instead of the table")
+    parser.add_argument("--quick", action="store_true", help="short measurements, for a look")
+    parser.add_argument("--runs", type=int, default=3, metavar="N", help="runs of every figure (default 3)")
+    return parser

@@ -1,0 +1,220 @@
+"""Real time: how late ticks are beside a bare absolute-deadline loop, with and without a busy core beside them.
+
+The rig slides (the rate of that state is 100 Hz). "1 kHz" is the tick with SYNC and polls every 10th (rulings): wires
+and drivers are served every millisecond, a scan follows every 10 ms.
+"""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Generator, Sequence
+from contextlib import ExitStack, closing, contextmanager, nullcontext
+from dataclasses import dataclass, field
+from math import ceil
+
+from bench.effort import Effort, TopicFailedError
+from bench.figures import Figure, at_most, ratio
+from bench.live import SLIDING_RECIPE, LiveRun, live_run
+from bench.stopwatch import cpu_ns
+from tester import clock
+from tester.engine.tickers import TickStatistics, collector_at_rest, run_real_time
+
+RATES: tuple[tuple[str, float, float], ...] = (("100 Hz", 0.01, 3.0), ("1 kHz", 0.001, 15.0))
+"""Name, period in s, and the CPU share of a core in % that is asked at most."""
+LATENESS_LIMIT = 2.0
+"""Asked of the 99th percentile beside the bare loop's."""
+
+SPIN = "while True: pass"
+
+
+@dataclass(slots=True)
+class Punctuality:
+    """What one stretch of real time gave."""
+
+    late_s: list[float] = field(default_factory=list[float])
+    missed: int = 0
+    cpu_share: float = 0.0
+    seconds: float = 0.0
+    tripped: str = ""
+    """Why the rig stopped before the end: late scans make data stale."""
+
+    @property
+    def p99_us(self) -> float:
+        """Lateness that 99 of 100 ticks keep, in us."""
+        return percentile(self.late_s, 0.99) * 1e6
+
+
+@dataclass(slots=True)
+class Columns:
+    """The runs of one rate beside one neighbour."""
+
+    bare: list[Punctuality] = field(default_factory=list[Punctuality])
+    rig: list[Punctuality] = field(default_factory=list[Punctuality])
+
+
+class RealTimeRig:
+    """A live run as the real-time ticker drives it: shifted to begin at 0, ending after a while, every tick noted.
+
+    Stands for both sides of ``run_real_time``: what is ticked and the simulated rig. ``period_s``: the longest time
+    between two ticks.
+    """
+
+    def __init__(self, live: LiveRun, seconds: float, period_s: float) -> None:
+        """Begin at the live run's present time."""
+        self.live = live
+        self.seconds = seconds
+        self.period_s = period_s
+        self.found = Punctuality()
+        self.finished = False
+        self._origin = live.now
+        self._due = self._grid = 0.0
+        self._used = 0
+
+    waiting = False
+
+    @property
+    def urgent_s(self) -> float:
+        """When something arrives that the scan should not wait for."""
+        return self.live.world.urgent_s - self._origin
+
+    def advance(self, now: float) -> None:
+        """Let the simulated rig live until ``now``."""
+        self.live.world.advance(now + self._origin)
+
+    def tick(self, now: float) -> float:
+        """Tick, note how late that was, and return when the next is due."""
+        live, origin, found = self.live, self._origin, self.found
+        if not found.late_s:
+            self._used = cpu_ns()
+        due, self._due = self._due, 0.0
+        late = now - due
+        found.late_s.append(late)
+        found.missed += late >= self.period_s
+        wanted = live.run.tick(now + origin) - origin
+        live.now = now + origin
+        while self._grid <= now:
+            self._grid += self.period_s
+        if now >= self.seconds or live.engine.control.state.trip is not None:
+            self._end(now)
+        following = min(wanted, self._grid)
+        self._due = min(following, self.urgent_s)
+        return following
+
+    def _end(self, now: float) -> None:
+        self.finished = True
+        self.found.seconds = now
+        self.found.cpu_share = (cpu_ns() - self._used) * 1e-9 / now
+        trip = self.live.engine.control.state.trip
+        if trip is not None:
+            self.found.tripped = trip.name
+
+
+class Rigs:
+    """A sliding rig whenever one is asked for; one that tripped is replaced."""
+
+    def __init__(self) -> None:
+        """Build none yet."""
+        self._stack = ExitStack()
+        self._live: LiveRun | None = None
+
+    def sliding(self, seconds: float) -> LiveRun:
+        """Return a rig whose wheel slides for ``seconds`` more."""
+        live = self._live
+        if live is None or live.engine.control.state.trip is not None:
+            self.close()
+            live = self._live = self._stack.enter_context(live_run(SLIDING_RECIPE))
+        live.slide(seconds)
+        return live
+
+    def close(self) -> None:
+        """Let go of the rig."""
+        self._stack.close()
+
+
+def measure(effort: Effort) -> list[Figure]:
+    """Return lateness, ratio, CPU share and missed ticks for both rates, alone and beside a busy core."""
+    seconds = effort.pick(20.0, 3.0)
+    figures: list[Figure] = []
+    with closing(Rigs()) as rigs:
+        for neighbour in ("idle", "one busy core"):
+            with busy_core() if neighbour != "idle" else nullcontext():
+                for name, period_s, share in RATES:
+                    columns = Columns()
+                    for _ in range(effort.runs):
+                        columns.bare.append(bare_loop(seconds, period_s))
+                        columns.rig.append(rig_loop(rigs.sliding(seconds + 5.0), seconds, period_s))
+                    figures += _figures(f"{name}, {neighbour}", columns, share)
+    return figures
+
+
+def bare_loop(seconds: float, period_s: float) -> Punctuality:
+    """Wait for absolute deadlines and do nothing else."""
+    found = Punctuality()
+    with collector_at_rest():
+        used = cpu_ns()
+        origin = clock.monotonic()
+        for number in range(round(seconds / period_s)):
+            due = number * period_s
+            clock.sleep_until(origin + due)
+            late = clock.monotonic() - origin - due
+            found.late_s.append(late)
+            found.missed += late >= period_s
+        found.cpu_share = (cpu_ns() - used) * 1e-9 / (clock.monotonic() - origin)
+    return found
+
+
+def rig_loop(live: LiveRun, seconds: float, period_s: float) -> Punctuality:
+    """Let the real-time ticker drive a sliding rig."""
+    rig = RealTimeRig(live, seconds, period_s)
+    with collector_at_rest():  # already here: the ticker's own collection would make the first tick late
+        run_real_time(rig, rig, poll=_no_poll, statistics=TickStatistics())
+    if live.run.finished or not (live.sliding or rig.found.tripped):
+        raise TopicFailedError(f"not sliding throughout: {live.run.outcome.value} {live.run.reason}")
+    return rig.found
+
+
+@contextmanager
+def busy_core() -> Generator[None, None, None]:
+    """Keep one core busy with a process of its own."""
+    process = subprocess.Popen([sys.executable, "-c", SPIN])
+    try:
+        yield
+    finally:
+        process.kill()
+        process.wait()
+
+
+def percentile(values: Sequence[float], share: float) -> float:
+    """Return the smallest value that ``share`` of all do not exceed."""
+    ordered = sorted(values)
+    return ordered[max(0, ceil(share * len(ordered)) - 1)]
+
+
+def _figures(name: str, columns: Columns, share_percent: float) -> list[Figure]:
+    bare, rig = columns.bare, columns.rig
+    p99_bare, p99_rig = [one.p99_us for one in bare], [one.p99_us for one in rig]
+    latest_bare, latest_rig = [max(one.late_s) * 1e6 for one in bare], [max(one.late_s) * 1e6 for one in rig]
+    shares = tuple(100.0 * one.cpu_share for one in rig)
+    missed = float(sum(one.missed for one in rig))
+    trips = [one.tripped for one in rig if one.tripped]
+    return [
+        Figure(f"{name}: bare loop, p99 late", "us", tuple(p99_bare)),
+        Figure(f"{name}: rig, p99 late", "us", tuple(p99_rig)),
+        ratio(f"{name}: rig / bare loop, p99 late", p99_rig, p99_bare, at_most(LATENESS_LIMIT)),
+        Figure(f"{name}: bare loop, latest", "us", tuple(latest_bare)),
+        Figure(f"{name}: rig, latest", "us", tuple(latest_rig)),
+        Figure(f"{name}: CPU share", "% of a core", shares, at_most(share_percent)),
+        Figure(
+            f"{name}: missed ticks",
+            f"in {sum(one.seconds for one in rig):.0f} s",
+            (missed,),
+            at_most(0.0, worst=True),
+            f"the bare loop missed {sum(one.missed for one in bare)}",
+        ),
+        Figure(f"{name}: trips", "", (float(len(trips)),), at_most(0.0, worst=True), ", ".join(trips)),
+    ]
+
+
+def _no_poll(_: float) -> None:
+    """Show nothing."""

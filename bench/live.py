@@ -1,0 +1,138 @@
+"""A run on the simulated rig with everything on, which a measurement ticks itself: to a phase, then through it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Generator
+from contextlib import contextmanager
+from math import inf
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from bench.effort import TopicFailedError
+from tester import clock
+from tester.engine.build import build_run
+from tester.engine.prompts import Prompts
+from tester.engine.results import condition_records
+from tester.engine.tickers import next_tick
+from tester.recipe.check import load_checked
+from tester.recipe.expand import expand
+from tester.rig import load_rig
+from tester.session import SessionOptions, run_info
+from tester.simulated import simulated_ports
+from tester.store.records import SpecimenInfo
+from tester.store.writer import RunWriter
+
+SLIDING_RECIPE = """\
+recipe: sliding
+specimens:
+  - compound: "1#"
+measure:
+  wheel_speed: 0.8 m/s
+  repeats: 50
+  min_valid: 1
+  window: 2000 rev
+  temperature_band: 20 K
+  soak: {within: 2 degC, for: 2 s}
+  max_bursts: 1000
+grids:
+  - name: sliding
+    slip_velocity: 100 mm/s
+    load: 100 N
+    temperature: 30 degC
+wheel: {replace_after: 15 mm}
+"""
+"""Slip pulses of minutes: little friction heat, a wide temperature band, a long window."""
+
+_POLL_S = 0.1
+_CONTACT_N = 20.0
+_SLIDING_M_S = 0.02
+_PATIENCE_S = 7200.0
+_PULSE_S = 300.0
+"""A slip pulse of the recipe lasts a little longer, 1000 turns."""
+
+
+class LiveRun:
+    """Rig, drivers, control, executor and store as ``tester run`` builds them; ``now`` is its time in s."""
+
+    def __init__(self, text: str, folder: Path, seed: int = 1) -> None:
+        """Build everything; nothing is ticked yet."""
+        rig = load_rig("sim")
+        loaded = load_checked(text, rig, "bench.yaml")
+        plan = expand(loaded.recipe, rig)
+        self.writer = RunWriter(folder / "run.db", clock=clock.monotonic, utc=clock.utc_now, lossless=True)
+        self.writer.begin_run(
+            run_info(folder.name, plan, loaded, rig, SessionOptions(recipe=plan.name, seed=seed)),
+            [SpecimenInfo(one.index, one.compound, one.note) for one in plan.specimens],
+            condition_records(plan),
+        )
+        ports, self.world, attendant = simulated_ports(rig, seed, None)
+        self.run = build_run(rig, plan, ports, attendant, self.writer, Prompts(automatic=True))
+        self.engine = self.run.engine
+        self.now = 0.0
+        self.ticks = 0
+        self._poll_due = -inf
+        self._pulse = (0, 0)
+        self._pulse_ends = 0.0
+
+    @property
+    def sliding(self) -> bool:
+        """The wheel slides under load, at the rate of that state."""
+        ctx = self.engine.ctx
+        readings = ctx.readings
+        return ctx.moving and readings.force_z_n > _CONTACT_N and readings.slip_m_s > _SLIDING_M_S
+
+    def tick(self) -> None:
+        """Do what the simulated ticker does in one turn (``tester.engine.tickers.run_simulated``)."""
+        now = self.now
+        self.ticks += 1
+        self.world.advance(now)
+        later = next_tick(now, self.run.tick(now), self.world.urgent_s)
+        wall = clock.monotonic()
+        if wall >= self._poll_due:
+            self._poll_due = wall + _POLL_S
+        self.now = later
+
+    def until(self, reached: Callable[[], bool]) -> None:
+        """Tick until something is so; raises TopicFailedError where the run ends before."""
+        give_up = self.now + _PATIENCE_S
+        while not reached():
+            if self.run.finished or self.now > give_up:
+                raise TopicFailedError(f"the run did not get there: {self.run.outcome.value} {self.run.reason}")
+            self.tick()
+
+    def slide(self, seconds: float) -> None:
+        """Tick to a slip pulse that goes on for ``seconds`` (at most 300) more."""
+        self.until(lambda: self.sliding)
+        ctx = self.engine.ctx
+        pulse = (ctx.repeat_key, ctx.burst)
+        if pulse == self._pulse and self.now + seconds > self._pulse_ends:
+            self.until(lambda: not self.sliding)
+            self.until(lambda: self.sliding)
+            pulse = (ctx.repeat_key, ctx.burst)
+        if pulse != self._pulse:
+            self._pulse, self._pulse_ends = pulse, self.now + _PULSE_S
+
+    def advance(self, seconds: float) -> None:
+        """Tick through ``seconds`` of rig time."""
+        end = self.now + seconds
+        tick = self.tick
+        run = self.run
+        while self.now < end:
+            tick()
+        if run.finished:
+            raise TopicFailedError(f"the run ended while it was measured: {run.outcome.value} {run.reason}")
+
+    def close(self) -> None:
+        """Let go of the store."""
+        self.writer.close()
+
+
+@contextmanager
+def live_run(text: str, seed: int = 1) -> Generator[LiveRun, None, None]:
+    """Give a run in a folder that is removed at the end."""
+    with TemporaryDirectory(prefix="bench-", ignore_cleanup_errors=True) as folder:
+        live = LiveRun(text, Path(folder), seed)
+        try:
+            yield live
+        finally:
+            live.close()

@@ -1,0 +1,48 @@
+"""What the figures were measured on."""
+
+from __future__ import annotations
+
+import os
+import platform
+import sys
+import sysconfig
+from pathlib import Path
+
+
+def built_with_pgo() -> str:
+    """Return "yes" or "no": was the interpreter's build guided by a profile; "unknown" where it does not say."""
+    arguments: object = sysconfig.get_config_var("CONFIG_ARGS")
+    flags: object = sysconfig.get_config_var("PY_CORE_CFLAGS") or ""
+    if not isinstance(arguments, str):
+        return "unknown"
+    guided = "--enable-optimizations" in arguments or "-fprofile-use" in str(flags)
+    return "yes" if guided else "no"
+
+
+def usable_cpus() -> int:
+    """Return how many CPUs this process may use."""
+    if sys.platform == "linux":
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+def machine() -> dict[str, str | int]:
+    """Return interpreter, build, CPUs and system, as the report shows them."""
+    return {
+        "interpreter": f"{platform.python_implementation()} {platform.python_version()}",
+        "pgo": built_with_pgo(),
+        "compiler": platform.python_compiler(),
+        "cpus": usable_cpus(),
+        "processor": _processor(),
+        "system": f"{platform.system()} {platform.machine()}",
+    }
+
+
+def _processor() -> str:
+    """Return the processor's name; Linux keeps it in a file."""
+    listing = Path("/proc/cpuinfo")
+    if listing.exists():
+        for line in listing.read_text(encoding="utf-8").splitlines():
+            if line.startswith("model name"):
+                return line.partition(":")[2].strip()
+    return platform.processor() or "unknown"

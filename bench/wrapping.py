@@ -1,0 +1,84 @@
+"""The entry points of the parts of a scan, wrapped for as long as a measurement lasts."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Generator
+from contextlib import contextmanager
+from importlib import import_module
+from typing import Any
+
+from bench.ledger import Ledger
+
+ENTRY_POINTS: tuple[tuple[str, str, str, tuple[str, ...]], ...] = (
+    ("twin", "sim.rig", "SimRig", ("advance",)),
+    ("plant", "sim.plant", "Plant", ("advance", "forces_measured", "surface_measured_c", "hub_measured_c")),
+    ("nodes: drives", "sim.nodes.cia402_slave", "Cia402Slave", ("advance",)),
+    ("nodes: Modbus slaves", "sim.nodes.jacket_slave", "JacketSlave", ("advance",)),
+    ("nodes: Modbus slaves", "sim.nodes.modbus_slave", "ModbusSlave", ("answer",)),
+    ("bus: CAN", "sim.can_wire", "CanWire", ("send", "receive", "transmit")),
+    ("bus: Modbus", "sim.modbus_wire", "ModbusWire", ("write", "read")),
+    ("drivers: receive", "tester.engine.devices", "Devices", ("receive",)),
+    ("drivers: image", "tester.engine.devices", "Devices", ("fill",)),
+    ("drivers: apply", "tester.engine.devices", "Devices", ("apply",)),
+    ("drivers: transmit", "tester.engine.devices", "Devices", ("transmit",)),
+    ("control", "tester.control.step", "Control", ("step",)),
+    ("executor", "tester.engine.executor", "Executor", ("step",)),
+    ("executor", "tester.engine.gates", "Gates", ("update",)),
+    ("recorder", "tester.engine.sampler", "Sampler", ("record",)),
+    ("engine", "tester.engine.run", "Run", ("tick",)),
+)
+"""Part, module, class, methods. Nodes that listen on CAN are wrapped where they subscribe."""
+
+
+@contextmanager
+def wrapped(ledger: Ledger) -> Generator[list[str], None, None]:
+    """Wrap all entry points; give those that no longer exist. A rig has to be built inside the block."""
+    undo: list[tuple[type, str, object]] = []
+    missing: list[str] = []
+
+    def replace(owner: type, name: str, made: Callable[[Any], object]) -> None:
+        bare = owner.__dict__.get(name)
+        if bare is None:
+            missing.append(f"{owner.__name__}.{name}")
+            return
+        undo.append((owner, name, bare))
+        setattr(owner, name, made(bare))
+
+    try:
+        for part, module, class_name, methods in ENTRY_POINTS:
+            owner = getattr(import_module(module), class_name, None)
+            if owner is None:
+                missing.append(f"{module}.{class_name}")
+                continue
+            for method in methods:
+                replace(owner, method, lambda bare, part=part: ledger.wrap(part, bare))
+        wire: type = import_module("sim.can_wire").CanWire
+        known: dict[object, Callable[..., Any]] = {}
+        replace(wire, "listen", lambda bare: _subscribing(ledger, bare, known))
+        replace(wire, "forget", lambda bare: _leaving(bare, known))
+        yield missing
+    finally:
+        for owner, name, bare in reversed(undo):
+            setattr(owner, name, bare)
+
+
+def _subscribing(
+    ledger: Ledger, listen: Callable[..., Any], known: dict[object, Callable[..., Any]]
+) -> Callable[..., None]:
+    """Return a ``CanWire.listen`` that subscribes the measured listener in place of the bare one."""
+
+    def subscribe(wire: object, can_id: int, listener: Callable[..., Any], rank: int = 0) -> None:
+        if listener not in known:
+            known[listener] = ledger.wrap("nodes: drives, on a frame", listener)
+        listen(wire, can_id, known[listener], rank)
+
+    return subscribe
+
+
+def _leaving(forget: Callable[..., Any], known: dict[object, Callable[..., Any]]) -> Callable[..., None]:
+    """Return a ``CanWire.forget`` that knows which measured listener stands for a bare one."""
+
+    def leave(wire: object, can_id: int, listener: Callable[..., Any]) -> None:
+        forget(wire, can_id, known.get(listener, listener))
+
+    return leave
