@@ -49,6 +49,7 @@ class HeatingJacket(Device):
         self._wanted: int | None = None
         self._asked = False
         self._run_wanted = False
+        self._unconfirmed = False
         switch = self._switch = profile.switches["run"]
         self.has_lease = "lease" in profile.writes
         self.counts = 0
@@ -91,6 +92,7 @@ class HeatingJacket(Device):
         """Let the controller run (True) or stand by; standby goes before everything else on the line."""
         if on != self._run_wanted:
             self._run_wanted = on
+            self._unconfirmed = True
             self.link.rewrite(self._run_write, (self._switch.on if on else self._switch.off,), urgent=not on)
 
     def received(self, request: Request, data: bytes, t: float) -> None:
@@ -101,6 +103,10 @@ class HeatingJacket(Device):
             self._asked = False
         elif request is not self._run_write:
             super().received(request, data, t)
+        elif self._unconfirmed and not request.fresh:
+            # The output is read at once: a wheel that stops must not be taken for one that is still heated.
+            self._unconfirmed = False
+            self.link.enable(self._polls[0])
 
     def take(self, block: int, data: bytes, t: float) -> None:
         """Update the readings."""

@@ -6,7 +6,7 @@ caller's monotonic clock (simulated or real); the caller passes ``now`` and no p
 
 from __future__ import annotations
 
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 CanFrame = tuple[float, int, bytes]
 """(arrival time in s, CAN identifier, data of 0..8 bytes)."""
@@ -37,4 +37,14 @@ class LinePort(Protocol):
 
     def read(self, now: float) -> list[tuple[float, bytes]]:
         """Return (arrival time of the last byte in s, bytes) for every chunk that arrived up to ``now``."""
+        ...
+
+
+@runtime_checkable
+class ForeseeingPort(LinePort, Protocol):
+    """A simulated line, which knows what a real one cannot: when bytes that are on their way will be there."""
+
+    @property
+    def arrives_s(self) -> float:
+        """Arrival of the next bytes not read yet, s; infinity when none are on their way."""
         ...

@@ -47,7 +47,7 @@ class ServoDrive(AxisCommand):
     __slots__ = ("_nm_per_mille", "_outputs_sent", "_raw_per_unit", "actual", "booted", "diagnosis",
                  "emergencies_dropped", "emergency", "emergency_log", "heartbeat", "homed", "identity", "inputs",
                  "inputs_stamp_s", "malformed", "nmt_state", "node_id", "online", "parameters", "rebooted",
-                 "refused", "rpdo1_id", "rpdo2_id", "stamp_s", "torque_nm", "tpdo1_data")
+                 "refused", "rpdo1_id", "rpdo2_id", "stamp_s", "torque_nm", "tpdo1_data", "usual_heartbeat")
 
     def __init__(self, config: AxisConfig) -> None:
         super().__init__(config)
@@ -78,6 +78,7 @@ class ServoDrive(AxisCommand):
         self.booted = False
         self.nmt_state = -1
         self.heartbeat = HeartbeatMonitor(self.config.heartbeat_s)
+        self.usual_heartbeat = b""
         self.emergency: Emergency | None = None
         self.identity: DeviceIdentity | None = None
         self.refused: str | None = None

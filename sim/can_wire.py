@@ -227,7 +227,8 @@ class CanWire:
         pending = self._pending
         while pending and pending[0][0] <= now:
             t, can_id, _, data, urgent = pending.pop(0)
-            self._busy_s = max(self._busy_s, t)
+            if t > self._busy_s:
+                self._busy_s = t
             self.transmit(can_id, data, t, urgent)
         if self.urgent_s < inf:
             self._find_urgent(now)

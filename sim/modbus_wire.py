@@ -156,6 +156,11 @@ class ModbusWire:
         self._next_s = min((chunk[0] for chunk in self._inbox), default=inf)
         return sorted(arrived)
 
+    @property
+    def arrives_s(self) -> float:
+        """Arrival of the next bytes not read yet, s; infinity when none are on their way."""
+        return self._next_s
+
     def disconnect(self) -> None:
         """Unplug the computer's adapter: what is under way is lost, and every call raises BusLost."""
         self.connected = False

@@ -42,6 +42,7 @@ class Plant:
         "_noise",
         "_place",
         "_rotating_above",
+        "_running_in",
         "_scatter",
         "_seed",
         "_sideslip_deg",
@@ -51,6 +52,7 @@ class Plant:
         "_thermal_s",
         "_touch_mm",
         "_touch_s",
+        "_wear_rate",
         "_within",
         "belt_force_n",
         "belt_speed",
@@ -86,6 +88,8 @@ class Plant:
         self._swing_mm = 0.5 * p.contact.runout
         self._thermal = ThermalModel(p.wheel, p.thermal, p.friction_heat_fraction, p.belt_conductance)
         self._rotating_above = p.thermal.rotating_above
+        self._running_in = p.running_in * p.abrasion.running_in_excess
+        self._wear_rate = p.wear * p.abrasion.wear_rate
         self._within = Autoregressive(p.scatter * p.variability.within, p.variability.within_time)
         self._dt, self._deficit_keep = 0.0, 1.0
         self._sideslip_deg, self._cos, self._sin, self._cornering = 0.0, 1.0, 0.0, 1.0
@@ -229,13 +233,14 @@ class Plant:
         elif self.force_z_n > 0.0:
             self._release()
 
+        thermal = self._thermal
         self._heater_j += heater_w * dt
-        self._thermal_s += dt
+        self._thermal_s = thermal_s = self._thermal_s + dt
         rotating = abs(wheel_m_s) > self._rotating_above
-        if self._thermal_s >= self._thermal.step_s - _SAME_STEP_S:
+        if thermal_s >= thermal.step_s - _SAME_STEP_S:
             self._conduct(rotating)
         touching = 1.0 if self.force_z_n > 0.0 else 0.0
-        self.surface_c = surface_c = self._thermal.surface_temperature(
+        self.surface_c = surface_c = thermal.surface_temperature(
             self.heat, power_w, self.parameters.ambient, touching, rotating
         )
         self.ir.follow(surface_c)
@@ -259,9 +264,9 @@ class Plant:
         p = self.parameters
         f, a = p.friction, p.abrasion
         slip_m_s = self.slip_m_s
-        mu = self._friction.mu(self.surface_c, max(load_n, f.load_floor), slip_m_s)
+        mu = self._friction.mu(self.surface_c, load_n if load_n > f.load_floor else f.load_floor, slip_m_s)
         mu *= self._cornering * self._scatter * (1.0 + self._within.step(self._noise.next()))
-        mu *= running_in_factor(p.running_in * a.running_in_excess, a.running_in_distance, self.sliding_m)
+        mu *= running_in_factor(self._running_in, a.running_in_distance, self.sliding_m)
         mu *= 1.0 - self._deficit
         self._deficit *= self._deficit_keep
 
@@ -276,7 +281,7 @@ class Plant:
 
         sliding_m = slip_m_s * dt
         self.sliding_m += sliding_m
-        worn_mm = radius_loss_mm(p.wear * a.wear_rate, load_n, sliding_m, self.diameter_mm, p.wheel.width)
+        worn_mm = radius_loss_mm(self._wear_rate, load_n, sliding_m, self.diameter_mm, p.wheel.width)
         self.diameter_mm -= 2.0 * worn_mm
         self._touch_mm += worn_mm
         power_w = friction_n * slip_m_s

@@ -167,7 +167,7 @@ class ThermalModel:
         of the time, 0 to 1, that tread and belt touch, ``rotating`` whether the wheel turns. What goes in
         equals what is stored plus lost, to rounding.
         """
-        steps = max(1, math.ceil(dt_s / self.step_s - 1e-6))
+        steps = 1 if dt_s <= self.step_s else math.ceil(dt_s / self.step_s - 1e-6)
         dt = dt_s / steps
         if dt != self._weights_dt_s:
             self._weigh(dt)
@@ -183,12 +183,11 @@ class ThermalModel:
 
     def _conduct(self, cells_c: list[float], hub_c: float, surface_c: float, ambient_c: float) -> None:
         """Move the rubber's cells on by the prepared step, in place."""
-        inside, here = hub_c, cells_c[0]
-        cells_c.append(surface_c)
-        i = 1
-        for own, inner, outer, air in self._weights:
-            outside = cells_c[i]
-            cells_c[i - 1] = own * here + inner * inside + outer * outside + air * ambient_c
-            inside, here = here, outside
-            i += 1
-        cells_c.pop()
+        inner_c = [hub_c, *cells_c[:-1]]
+        outer_c = [*cells_c[1:], surface_c]
+        cells_c[:] = [
+            own * here_c + inside * in_c + outside * out_c + air * ambient_c
+            for (own, inside, outside, air), here_c, in_c, out_c in zip(
+                self._weights, cells_c, inner_c, outer_c, strict=True
+            )
+        ]

@@ -38,8 +38,8 @@ class CanMaster:
     it; the caller clears them. ``unknown_frames`` counts frames of nobody added here.
     """
 
-    __slots__ = ("_by_node", "_dialogues", "_drives", "_heartbeat", "_heartbeat_due", "_io_drives", "_tpdo1",
-                 "_withheld", "deadline", "foreign_frame", "foreign_master", "heartbeat_s", "node_id",
+    __slots__ = ("_by_node", "_dialogues", "_drives", "_heartbeat", "_heartbeat_due", "_heartbeats", "_io_drives",
+                 "_tpdo1", "_withheld", "deadline", "foreign_frame", "foreign_master", "heartbeat_s", "node_id",
                  "sdo_timeout_s", "sync", "unknown_frames")
 
     def __init__(self, node_id: int = 127, heartbeat_s: float = 0.05, sdo_timeout_s: float = 0.3) -> None:
@@ -58,6 +58,7 @@ class CanMaster:
         self._io_drives: list[ServoDrive] = []
         self._by_node: dict[int, ServoDrive] = {}
         self._tpdo1: dict[int, ServoDrive] = {}
+        self._heartbeats: dict[int, ServoDrive] = {}
         self._dialogues: dict[int, Dialogue] = {}
 
     @property
@@ -85,6 +86,7 @@ class CanMaster:
             self._io_drives.append(drive)
         self._by_node[node_id] = drive
         self._tpdo1[o.TPDO1_BASE + node_id] = drive
+        self._heartbeats[o.HEARTBEAT_BASE + node_id] = drive
 
     def start(self, drive: ServoDrive, conversation: Conversation) -> None:
         """Begin a conversation with a drive at the next service; raises ValueError while another one runs."""
@@ -105,18 +107,25 @@ class CanMaster:
 
     def feed(self, frames: list[CanFrame], now: float) -> None:
         """Take the frames that arrived up to ``now``, oldest first."""
-        tpdo1 = self._tpdo1
+        tpdo1, heartbeats = self._tpdo1, self._heartbeats
         for t, can_id, data in frames:
-            drive = tpdo1.get(can_id)
-            if drive is None:
-                self._route(t, can_id, data)
-            elif data == drive.tpdo1_data:
-                drive.stamp_s = t
+            if can_id in tpdo1:
+                drive = tpdo1[can_id]
+                if data == drive.tpdo1_data:
+                    drive.stamp_s = t
+                else:
+                    drive.on_tpdo1(t, data)
+            elif can_id in heartbeats and data == heartbeats[can_id].usual_heartbeat and not self._dialogues:
+                heartbeats[can_id].heartbeat.heard(t)
             else:
-                drive.on_tpdo1(t, data)
+                self._route(t, can_id, data)
 
-    def scan(self, port: CanPort, now: float) -> None:
-        """Send every drive's commands, then SYNC (while ``sync``), then what ``service`` sends."""
+    def scan(self, port: CanPort, now: float, until: float = -math.inf) -> None:
+        """Send every drive's commands, then SYNC (while ``sync``), then what ``service`` sends.
+
+        A heartbeat that would fall due before ``until`` (s), the next scan, leaves with this one: it keeps its
+        period at most, and needs no tick of its own.
+        """
         send = port.send
         sync = self.sync
         for drive in self._io_drives:
@@ -129,6 +138,8 @@ class CanMaster:
                 send(drive.rpdo1_id, data, now)
         if sync:
             send(o.SYNC_ID, b"", now)
+        if self._heartbeat_due < until - EARLY_S:
+            self._heartbeat_due = self.deadline = now
         if self._dialogues or now + EARLY_S >= self.deadline:
             self._serve(port, now)
 
@@ -198,6 +209,8 @@ class CanMaster:
             self.unknown_frames += 1
             return
         drive.on_heartbeat(t, state)
+        # While it is online, the same byte again says only that it is still there.
+        drive.usual_heartbeat = data if drive.online else b""
         if drive.node_id in self._dialogues:
             self.deadline = min(self.deadline, t)
 

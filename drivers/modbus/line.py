@@ -56,6 +56,7 @@ class LineType:
         unit_id = request.station.unit_id
         request.frame = codec.write_request(self.framing, unit_id, request.function, request.address, values)
         request.values = values
+        request.writes = True
 
     def _timed(self, request: Request) -> Request:
         """Work out the times of a request."""

@@ -166,6 +166,11 @@ class ModbusLink:
         else:
             self._send(port, request, now)
 
+    @property
+    def only_watches(self) -> bool:
+        """Tell that ``deadline`` is for a missing reply alone: nothing else waits for the line."""
+        return self._active is not None and self.deadline == self._give_up_s
+
     def reset(self) -> None:
         """Forget the transaction under way: the port was opened anew."""
         self._active = None
@@ -191,7 +196,9 @@ class ModbusLink:
         self._expected_s = now + request.expected_s
         self._give_up_s = now + request.timeout_s
         self._backlog_s = self._schedule.latest(request)
-        self._wait(now)
+        self.deadline = self._give_up_s
+        if self._backlog_s < self._give_up_s:
+            self._wait(now)
 
     def _wait(self, now: float) -> None:
         """Set the deadline while a reply is awaited: others waiting, it is fetched when it should be there."""

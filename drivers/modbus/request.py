@@ -89,11 +89,8 @@ class Request:
     enabled: bool = False
     fresh: bool = False
     """New values came after the last was sent."""
-
-    @property
-    def writes(self) -> bool:
-        """Tell a write from a read."""
-        return bool(self.values)
+    writes: bool = False
+    """A write, not a read."""
 
     def describe(self) -> str:
         """Say what it does, for messages to people."""

@@ -174,8 +174,11 @@ class PdoExchange:
         """Do what ``_on_sync`` does, where one TPDO goes with each SYNC and nothing else."""
         if self.fresh:
             self._drain(t)
-        self._wire.transmit(self._single_id, self._single_source(), t, self.urgent)
-        self.urgent = False
+        if self.urgent:
+            self._wire.transmit(self._single_id, self._single_source(), t, True)
+            self.urgent = False
+        else:
+            self._wire.transmit(self._single_id, self._single_source(), t)
 
     def _on_sync(self, data: bytes, t: float) -> None:
         """Apply what came for this SYNC and send the TPDOs that go with it."""

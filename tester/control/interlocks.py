@@ -8,29 +8,51 @@ be well. Conditions are written so that NaN and missing data fall on the tripped
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import isfinite
 
 from tester.control.state import ControlState, Reaction
 from tester.process import Demand, Press, Readings
-from tester.rig import RigConfig
+from tester.rig import InterlocksConfig, LimitsConfig, RigConfig
 
 STANDING_M_S = 0.02
 """Below this a drive counts as standing [A]."""
 UNLOADED_N = 20.0
 """Below this the contact counts as unloaded (safety concept, "load with a drive stopped")."""
 
+# Bound once: a look-up on the enum class costs several times as much in every scan (CPython 3.11).
+_LOAD = Press.LOAD
+
 
 @dataclass(slots=True)
 class View:
-    """What a condition may look at."""
+    """What a condition may look at. One object serves every scan: ``look`` brings it up to date."""
 
-    readings: Readings
-    demand: Demand
     state: ControlState
     rig: RigConfig
-    scan_s: float
+    limits: LimitsConfig = field(init=False)
+    bounds: InterlocksConfig = field(init=False)
+    readings: Readings = field(init=False)
+    demand: Demand = field(init=False)
+    scan_s: float = 0.0
     """Period of the scan, s."""
+    pressing: bool = False
+    """Contact is wanted."""
+    loaded: bool = True
+    """Contact is wanted or cannot be excluded."""
+
+    def __post_init__(self) -> None:
+        """Keep the parts of the rig file that conditions compare with."""
+        self.limits = self.rig.limits
+        self.bounds = self.rig.interlocks
+
+    def look(self, demand: Demand, readings: Readings, scan_s: float) -> None:
+        """Take this scan's demand and readings, and work out what several rows ask for."""
+        self.readings = readings
+        self.demand = demand
+        self.scan_s = scan_s
+        self.pressing = pressing = demand.press is _LOAD
+        self.loaded = pressing or not (readings.force_z_n < UNLOADED_N)
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,16 +66,13 @@ class Interlock:
     reaction: Reaction
 
 
-def _loaded(view: View) -> bool:
-    """Contact is wanted or cannot be excluded."""
-    return view.demand.press is Press.LOAD or not (view.readings.force_z_n < UNLOADED_N)
-
-
 def _can_stale(view: View) -> bool:
     r = view.readings
-    limit = min(view.rig.interlocks.stale_can_scans * view.scan_s, view.rig.interlocks.stale_can_s)
+    if not (view.demand.enabled and r.drives_enabled):
+        return False
+    limit = min(view.bounds.stale_can_scans * view.scan_s, view.bounds.stale_can_s)
     oldest = min(r.wheel_at_s, r.belt_at_s, r.press_at_s, r.sideslip_at_s, r.camber_at_s)
-    return view.demand.enabled and r.drives_enabled and not (r.now_s - oldest <= limit)
+    return not (r.now_s - oldest <= limit)
 
 
 def _drive_fault(view: View) -> bool:
@@ -70,45 +89,45 @@ def _guard(view: View) -> bool:
 
 def _cell_stale(view: View) -> bool:
     r = view.readings
-    return _loaded(view) and not (r.cell_valid and r.now_s - r.cell_at_s <= view.rig.interlocks.stale_cell_s)
+    return view.loaded and not (r.cell_valid and r.now_s - r.cell_at_s <= view.bounds.stale_cell_s)
 
 
 def _surface_stale(view: View) -> bool:
     r = view.readings
-    wanted = isfinite(view.demand.surface_c) or view.demand.press is Press.LOAD
-    return wanted and not (r.surface_valid and r.now_s - r.surface_at_s <= view.rig.interlocks.stale_ir_s)
+    wanted = view.pressing or isfinite(view.demand.surface_c)
+    return wanted and not (r.surface_valid and r.now_s - r.surface_at_s <= view.bounds.stale_ir_s)
 
 
 def _jacket_stale(view: View) -> bool:
     r = view.readings
-    return not (r.jacket_valid and r.now_s - r.jacket_at_s <= view.rig.interlocks.stale_jacket_s)
+    return not (r.jacket_valid and r.now_s - r.jacket_at_s <= view.bounds.stale_jacket_s)
 
 
 def _overload(view: View) -> bool:
-    return _loaded(view) and not (view.readings.force_z_n <= view.rig.limits.load_n)
+    return view.loaded and not (view.readings.force_z_n <= view.limits.load_n)
 
 
 def _overshoot(view: View) -> bool:
-    if view.demand.press is not Press.LOAD:
+    if not view.pressing:
         return False
-    lim = view.rig.interlocks
+    lim = view.bounds
     wanted = max(view.demand.load_n, view.state.load.highest_n)
     return not (view.readings.force_z_n <= lim.overload_factor * wanted + lim.overload_margin_n)
 
 
 def _contact_lost(view: View) -> bool:
     target = min(view.demand.load_n, view.state.load.lowest_n)
-    if view.demand.press is not Press.LOAD or target < 50.0 or not view.state.load.loaded:
+    if not view.pressing or target < 50.0 or not view.state.load.loaded:
         return False
-    return not (view.readings.force_z_n >= view.rig.interlocks.contact_share * target)
+    return not (view.readings.force_z_n >= view.bounds.contact_share * target)
 
 
 def _slip_power(view: View) -> bool:
     r = view.readings
-    if not _loaded(view):
+    if not view.loaded:
         return False
     force = (r.force_x_n * r.force_x_n + r.force_y_n * r.force_y_n) ** 0.5
-    return not (force * r.slip_m_s <= view.rig.limits.slip_power_w)
+    return not (force * r.slip_m_s <= view.limits.slip_power_w)
 
 
 def _standing_under_load(view: View) -> bool:
@@ -116,11 +135,11 @@ def _standing_under_load(view: View) -> bool:
     if r.force_z_n < UNLOADED_N:
         return False
     wheel, belt = abs(r.wheel_speed_m_s) > STANDING_M_S, abs(r.belt_speed_m_s) > STANDING_M_S
-    return wheel != belt or (view.demand.press is Press.LOAD and not (wheel and belt))
+    return wheel != belt or (view.pressing and not (wheel and belt))
 
 
 def _overspeed(view: View) -> bool:
-    r, limits, margin = view.readings, view.rig.limits, 1.0 + view.rig.interlocks.overspeed_share
+    r, limits, margin = view.readings, view.limits, 1.0 + view.bounds.overspeed_share
     if not r.drives_enabled:
         return False
     return not (abs(r.wheel_speed_m_s) <= limits.wheel_speed_m_s * margin) or not (
@@ -130,11 +149,11 @@ def _overspeed(view: View) -> bool:
 
 def _surface_hot(view: View) -> bool:
     r = view.readings
-    return r.surface_valid and not (r.surface_c <= view.rig.limits.surface_c)
+    return r.surface_valid and not (r.surface_c <= view.limits.surface_c)
 
 
 def _hub_hot(view: View) -> bool:
-    return view.readings.jacket_valid and not (view.readings.hub_c <= view.rig.limits.jacket_c + 5.0)
+    return view.readings.jacket_valid and not (view.readings.hub_c <= view.limits.jacket_c + 5.0)
 
 
 def _runaway(view: View) -> bool:
@@ -142,7 +161,7 @@ def _runaway(view: View) -> bool:
     if not r.jacket_valid or not state.hub_ceiling:
         return False
     ceiling = max(state.hub_ceiling[0][1], view.rig.loops.heat.hub_min_c)
-    return r.hub_c > ceiling + view.rig.interlocks.runaway_k and r.heat_percent > 0.0
+    return r.hub_c > ceiling + view.bounds.runaway_k and r.heat_percent > 0.0
 
 
 def _heating_at_standstill(view: View) -> bool:
@@ -151,7 +170,7 @@ def _heating_at_standstill(view: View) -> bool:
 
 
 def _late(view: View) -> bool:
-    return view.readings.now_s - view.state.last_s > view.rig.interlocks.late_scan_s + view.scan_s
+    return view.readings.now_s - view.state.last_s > view.bounds.late_scan_s + view.scan_s
 
 
 FAST, CONTROLLED = Reaction.FAST, Reaction.CONTROLLED

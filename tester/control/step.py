@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import cos, isfinite, radians
+from math import copysign, cos, inf, isfinite, radians
 
 from tester.control.interlocks import INTERLOCKS, STANDING_M_S, UNLOADED_N, View
 from tester.control.safe_outputs import safe_outputs
@@ -16,6 +16,12 @@ CEILING_WINDOW_S = 600.0
 """The runaway limit looks back this long (rulings, interlocks)."""
 STOP_TIMEOUT_S = 10.0
 """A stop that has not reached standstill by then escalates [A]."""
+
+# Bound once: a look-up on the enum class costs several times as much in every scan (CPython 3.11).
+_IDLE, _RUN, _STOPPING, _COOLDOWN, _FAST_STOP, _LATCHED = (
+    Mode.IDLE, Mode.RUN, Mode.STOPPING, Mode.COOLDOWN, Mode.FAST_STOP, Mode.LATCHED
+)  # fmt: skip
+_LOAD = Press.LOAD
 
 
 class Control:
@@ -31,24 +37,28 @@ class Control:
         self.loss_ratios = loss_ratios
         self._withdrawn = Demand()
         """What is wanted in every mode but RUN: nothing. A stop is not watched against the load it takes off."""
+        self._conditions = tuple(row.condition for row in INTERLOCKS)
         self._delays = tuple(row.delay_s(rig) for row in INTERLOCKS)
-        state.pending_s = [float("inf")] * len(INTERLOCKS)
+        self._view = View(state, rig)
+        state.pending_s = [inf] * len(INTERLOCKS)
 
     def step(self, demand: Demand, readings: Readings, scan_s: float) -> Setpoints:
         """Return the setpoints for this scan; ``state.events`` holds what must be journalled before they leave."""
         state, now = self.state, readings.now_s
-        if state.mode is not Mode.RUN:
+        mode = state.mode
+        if mode is not _RUN:
             demand = self._withdrawn
             demand.enabled = state.setpoints.enable
         dt = min(max(now - state.last_s, 0.0), 0.2)
-        if state.mode is not Mode.IDLE and state.mode is not Mode.LATCHED:
+        if mode is not _IDLE and mode is not _LATCHED:
             self._watch(demand, readings, scan_s)
+            mode = state.mode
         state.last_s = now
-        if state.mode is Mode.RUN:
+        if mode is _RUN:
             self._run(demand, readings, dt)
-        elif state.mode is Mode.STOPPING or state.mode is Mode.FAST_STOP:
+        elif mode is _STOPPING or mode is _FAST_STOP:
             self._stop(readings, now)
-        elif state.mode is Mode.COOLDOWN:
+        elif mode is _COOLDOWN:
             self._cool_down(readings, now)
         else:
             self._rest_commands()
@@ -88,17 +98,23 @@ class Control:
     # -- interlocks -----------------------------------------------------------------------------------------
 
     def _watch(self, demand: Demand, readings: Readings, scan_s: float) -> None:
-        state, now = self.state, readings.now_s
-        view = View(readings, demand, state, self.rig, scan_s)
-        pending = state.pending_s
-        for i, row in enumerate(INTERLOCKS):
-            if not row.condition(view):
-                pending[i] = float("inf")
-                continue
-            if pending[i] > now:
-                pending[i] = now
-            if now - pending[i] >= self._delays[i] - 1e-9:
-                self._trip(Trip(now, row.name, row.cause + _detail(readings), row.reaction))
+        """Evaluate every row of the table: a level that has held for its delay trips."""
+        view, pending = self._view, self.state.pending_s
+        view.look(demand, readings, scan_s)
+        for i, condition in enumerate(self._conditions):
+            if condition(view):
+                self._hold(i, readings)
+            else:
+                pending[i] = inf
+
+    def _hold(self, i: int, readings: Readings) -> None:
+        """Note that the condition of row ``i`` holds, and trip when it has for its delay."""
+        pending, now = self.state.pending_s, readings.now_s
+        if pending[i] > now:
+            pending[i] = now
+        if now - pending[i] >= self._delays[i] - 1e-9:
+            row = INTERLOCKS[i]
+            self._trip(Trip(now, row.name, row.cause + _detail(readings), row.reaction))
 
     def _trip(self, trip: Trip) -> None:
         state = self.state
@@ -122,7 +138,7 @@ class Control:
         out.belt_m_s = _bounded(demand.belt_speed_m_s, limits.belt_speed_m_s)
         out.wheel_rad_s = wheel / (readings.diameter_mm * 0.5e-3) if readings.diameter_mm > 1.0 else 0.0
         load = self.rig.loops.load
-        if demand.press is Press.LOAD and not self._may_load(demand, readings):
+        if demand.press is _LOAD and not self._may_load(demand, readings):
             out.press_mm_s = -load.lift_speed_mm_s if readings.force_z_n > UNLOADED_N else 0.0
         else:
             out.press_mm_s = state.load.velocity(demand, readings, dt, load, self.rig.axes.press)
@@ -154,10 +170,10 @@ class Control:
 
     def _heat(self, demand: Demand, readings: Readings) -> None:
         out, state, loop, now = self.state.setpoints, self.state, self.rig.loops.heat, readings.now_s
-        if readings.wheel_speed_m_s > 2.0 * STANDING_M_S:
-            state.turning_since_s = min(state.turning_since_s, now)
-        else:
-            state.turning_since_s = float("inf")
+        if not readings.wheel_speed_m_s > 2.0 * STANDING_M_S:
+            state.turning_since_s = inf
+        elif state.turning_since_s > now:
+            state.turning_since_s = now
         wanted = isfinite(demand.surface_c)
         allowed = (
             now - state.turning_since_s >= TURNING_CONFIRMED_S and readings.jacket_valid and readings.surface_valid
@@ -228,8 +244,10 @@ class Control:
 
 
 def _bounded(value: float, limit: float) -> float:
-    """Clamp to +-limit; not a number becomes 0."""
-    return min(max(value, -limit), limit) if isfinite(value) else 0.0
+    """Clamp to +-limit; what is not a finite number becomes 0."""
+    if -limit <= value <= limit:
+        return value
+    return copysign(limit, value) if isfinite(value) else 0.0
 
 
 def _detail(readings: Readings) -> str:

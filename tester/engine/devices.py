@@ -14,7 +14,7 @@ from drivers.ir_thermometer import IrThermometer
 from drivers.jacket import HeatingJacket
 from drivers.load_cell import LoadCell
 from drivers.modbus import ModbusLink
-from drivers.ports import CanPort, LinePort
+from drivers.ports import CanPort, ForeseeingPort, LinePort
 from drivers.servo import ServoDrive
 from tester.process import NEVER, Readings, Setpoints
 
@@ -23,6 +23,12 @@ INPUT_GUARD = 1 << 17
 INPUT_CONTACTOR = 1 << 18
 OUTPUT_CONTACTOR = 1 << 16
 """Bits of the press drive's digital inputs 0x60FD and outputs 0x60FE (rulings, 20)."""
+
+# Bound once: a look-up on the enum class costs several times as much in every scan (CPython 3.11).
+_OPERATING, _FAULT_REACTION, _FAULT = State.OPERATION_ENABLED, State.FAULT_REACTION, State.FAULT
+_ENABLED, _DISABLED, _QUICK_STOP = Goal.ENABLED, Goal.DISABLED, Goal.QUICK_STOP
+_RADIANS_PER_DEGREE = pi / 180.0
+_TURN = 2.0 * pi
 
 
 @dataclass(slots=True)
@@ -56,11 +62,15 @@ class Devices:
     manual_sideslip_deg: float = 0.0
     manual_camber_deg: float = 0.0
     _last_angle_s: float = NEVER
-    _contactor: bool = False
+    _foreseeing: ForeseeingPort | None = field(init=False)
 
     def __post_init__(self) -> None:
-        """Fix the drives' order."""
+        """Fix the drives' order, and see whether the load cell's line is a simulated one."""
         self.drives = self.axes.present()
+        self._foreseeing = None
+        for port, link in self.lines:
+            if link is self.cell.link and isinstance(port, ForeseeingPort):
+                self._foreseeing = port
 
     def receive(self, now: float) -> None:
         """Take in everything that arrived."""
@@ -72,25 +82,28 @@ class Devices:
             if chunks:
                 link.feed(chunks, now)
 
-    def transmit(self, now: float, *, scan: bool) -> float:
-        """Send what is due and return the next time a driver wants to be served."""
+    def transmit(self, now: float, *, scan: bool, next_scan_s: float = NEVER) -> float:
+        """Send what is due and return the next time a driver wants to be served; ``next_scan_s`` if it is known."""
         if scan:
-            self.master.scan(self.can, now)
+            self.master.scan(self.can, now, next_scan_s)
         else:
             self.master.service(self.can, now)
         deadline = self.master.deadline
         for port, link in self.lines:
             link.service(port, now, scan=scan)
         # Only the load cell's line may ask for a tick of its own (its retry has to fit into a scan); the slow
-        # line's next request can wait for the next scan.
-        return min(deadline, self.cell.link.deadline)
+        # line's next request can wait for the next scan. A simulated line knows that the reply will be in time.
+        watch = self.cell.link
+        wire = self._foreseeing
+        if wire is not None and watch.only_watches and wire.arrives_s <= watch.deadline:
+            return deadline
+        return min(deadline, watch.deadline)
 
     def fill(self, r: Readings, now: float, diameter_mm: float) -> None:
         """Bring the process image up to date."""
-        axes = self.axes
         r.now_s = now
-        self._fill_motion(r, axes, diameter_mm)
-        self._fill_status(r, axes)
+        self._fill_motion(r, self.axes, diameter_mm)
+        self._fill_status(r)
         cell = self.cell
         r.force_x_n, r.force_y_n, r.force_z_n, r.moment_z_nm = cell.fx_n, cell.fy_n, cell.fz_n, cell.mz_nm
         r.cell_valid, r.cell_at_s = cell.valid, cell.stamp_s
@@ -103,15 +116,17 @@ class Devices:
     def _fill_motion(self, r: Readings, axes: Axes, diameter_mm: float) -> None:
         wheel, belt, press = axes.wheel, axes.belt, axes.press
         r.diameter_mm = diameter_mm
-        r.wheel_rad_s = wheel.actual
-        r.wheel_speed_m_s = wheel.actual * diameter_mm * 0.5e-3
+        r.wheel_rad_s = wheel_rad_s = wheel.actual
+        r.wheel_speed_m_s = wheel_m_s = wheel_rad_s * diameter_mm * 0.5e-3
         r.drive_torque_nm = wheel.torque_nm
-        if wheel.stamp_s > self._last_angle_s:
+        r.wheel_at_s = stamp_s = wheel.stamp_s
+        if stamp_s > self._last_angle_s:
             if self._last_angle_s != NEVER:
-                r.wheel_angle_rev += r.wheel_rad_s * (wheel.stamp_s - self._last_angle_s) / (2.0 * pi)
-            self._last_angle_s = wheel.stamp_s
-        r.wheel_at_s, r.belt_at_s, r.press_at_s = wheel.stamp_s, belt.stamp_s, press.stamp_s
-        r.belt_speed_m_s, r.press_mm = belt.actual, press.actual
+                r.wheel_angle_rev += wheel_rad_s * (stamp_s - self._last_angle_s) / _TURN
+            self._last_angle_s = stamp_s
+        r.belt_speed_m_s = belt_m_s = belt.actual
+        r.belt_at_s = belt.stamp_s
+        r.press_mm, r.press_at_s = press.actual, press.stamp_s
         sideslip, camber = axes.sideslip, axes.camber
         reached = True
         if sideslip is not None:
@@ -125,35 +140,37 @@ class Devices:
         else:
             r.camber_deg, r.camber_at_s = self.manual_camber_deg, r.now_s
         r.yaw_reached = reached
-        angle = r.sideslip_deg * (pi / 180.0)
-        along = r.wheel_speed_m_s - r.belt_speed_m_s * cos(angle)
-        across = r.belt_speed_m_s * sin(angle)
+        angle = r.sideslip_deg * _RADIANS_PER_DEGREE
+        along = wheel_m_s - belt_m_s * cos(angle)
+        across = belt_m_s * sin(angle)
         r.slip_m_s = (along * along + across * across) ** 0.5
 
-    def _fill_status(self, r: Readings, axes: Axes) -> None:
+    def _fill_status(self, r: Readings) -> None:
         enabled = disabled = True
         fault = ""
         for drive in self.drives:
             state = drive.state
-            if state is not State.OPERATION_ENABLED:
-                enabled = False
-            else:
+            if state is _OPERATING:
                 disabled = False
-            if state is State.FAULT or state is State.FAULT_REACTION or drive.lost or drive.rebooted:
-                fault = fault or _fault_text(drive)
+            else:
+                enabled = False
+                if not fault and (state is _FAULT or state is _FAULT_REACTION):
+                    fault = _fault_text(drive)
+            if not fault and (drive.lost or drive.rebooted):
+                fault = _fault_text(drive)
         r.drives_enabled, r.drives_disabled, r.drive_fault = enabled, disabled, fault
-        inputs = axes.press.inputs
-        r.safety_chain = bool(inputs & INPUT_SAFETY_CHAIN)
-        r.guard_closed = bool(inputs & INPUT_GUARD)
-        r.contactor_closed = bool(inputs & INPUT_CONTACTOR)
+        inputs = self.axes.press.inputs
+        r.safety_chain = inputs & INPUT_SAFETY_CHAIN != 0
+        r.guard_closed = inputs & INPUT_GUARD != 0
+        r.contactor_closed = inputs & INPUT_CONTACTOR != 0
 
     def apply(self, out: Setpoints) -> None:
         """Hand the setpoints to the drivers; the frames leave with ``transmit``."""
         axes = self.axes
-        goal = Goal.QUICK_STOP if out.quick_stop else Goal.ENABLED if out.enable else Goal.DISABLED
+        goal = _QUICK_STOP if out.quick_stop else _ENABLED if out.enable else _DISABLED
         for drive in self.drives:
             # A quick-stopped press would stay in contact: it keeps its own retraction.
-            drive.goal = goal if drive is not axes.press or not out.quick_stop else Goal.ENABLED
+            drive.goal = _ENABLED if goal is _QUICK_STOP and drive is axes.press else goal
         axes.wheel.target = out.wheel_rad_s
         axes.belt.target = out.belt_m_s
         axes.press.target = out.press_mm_s

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import isfinite
+from math import inf
 
 from tester.control.state import Mode
 from tester.control.step import Control
@@ -10,9 +10,15 @@ from tester.engine.context import Context
 from tester.engine.devices import Devices
 from tester.engine.executor import Executor
 from tester.engine.sampler import Sampler
+from tester.process import Readings
 
 CONTACT_N = 5.0
 """Above this force the wheel counts as in contact, for recording."""
+SOONEST_S = 5e-4
+"""No tick is asked for sooner after another."""
+
+# Bound once: a look-up on the enum class costs several times as much in every scan (CPython 3.11).
+_RUN, _STOPPING, _FAST_STOP = Mode.RUN, Mode.STOPPING, Mode.FAST_STOP
 
 
 class Engine:
@@ -31,7 +37,7 @@ class Engine:
         self.idle_s = 1.0 / scan.idle_hz
         self.period_s = self.enabled_s
         self.next_scan_s = 0.0
-        self.last_scan_s = float("-inf")
+        self.last_scan_s = -inf
         self.scans = 0
         self.finished = False
 
@@ -41,8 +47,10 @@ class Engine:
         scan = now >= self.next_scan_s - 1e-7 or self._urgent()
         if scan:
             self._scan(now)
-        deadline = self.devices.transmit(now, scan=scan)
-        return min(self.next_scan_s, max(deadline, now + 5e-4))
+        deadline = self.devices.transmit(now, scan=scan, next_scan_s=self.next_scan_s)
+        if deadline >= self.next_scan_s:
+            return self.next_scan_s
+        return min(self.next_scan_s, max(deadline, now + SOONEST_S))
 
     def _urgent(self) -> bool:
         """Tell whether a drive reported a fault or an emergency that the next regular scan should not wait for."""
@@ -50,29 +58,30 @@ class Engine:
 
     def _scan(self, now: float) -> None:
         ctx, control, devices = self.ctx, self.control, self.devices
-        ctx.dt = min(now - self.last_scan_s, 1.0) if isfinite(self.last_scan_s) else 0.0
+        readings, contact = ctx.readings, ctx.contact
+        ctx.dt = min(now - self.last_scan_s, 1.0) if self.scans else 0.0
         self.last_scan_s = now
         ctx.now = now
         self.scans += 1
-        devices.fill(ctx.readings, now, ctx.wheel.diameter_mm)
-        self._wear()
+        devices.fill(readings, now, ctx.wheel.diameter_mm)
+        if readings.force_z_n > CONTACT_N and readings.slip_m_s > 0.002:
+            self._wear(readings)
         ctx.moving = False
-        was_in_contact = ctx.contact.in_contact
-        if control.state.mode is Mode.RUN:
-            ctx.gate = ctx.gates.update(ctx.readings, ctx.dt)
+        was_in_contact = contact.in_contact
+        if control.state.mode is _RUN:
+            ctx.gate = ctx.gates.update(readings, ctx.dt)
             self.executor.step(ctx)
-        setpoints = control.step(ctx.demand, ctx.readings, self.period_s)
-        if ctx.contact.in_contact != was_in_contact:
-            ctx.gates.touched_s = now if ctx.contact.in_contact else float("inf")
+        setpoints = control.step(ctx.demand, readings, self.period_s)
+        if contact.in_contact != was_in_contact:
+            ctx.gates.touched_s = now if contact.in_contact else inf
         self._journal()
         devices.apply(setpoints)
         self._choose_rate(now)
         self.sampler.record(ctx, setpoints)
 
-    def _wear(self) -> None:
-        r = self.ctx.readings
-        if r.force_z_n > CONTACT_N and r.slip_m_s > 0.002:
-            self.ctx.wheel.slide(r.force_z_n, r.slip_m_s, self.ctx.dt, self.ctx.rig.wear.rate_mm3_per_n_m)
+    def _wear(self, r: Readings) -> None:
+        """Account for what this scan's sliding takes off the wheel."""
+        self.ctx.wheel.slide(r.force_z_n, r.slip_m_s, self.ctx.dt, self.ctx.rig.wear.rate_mm3_per_n_m)
 
     def _journal(self) -> None:
         events = self.control.state.events
@@ -91,11 +100,10 @@ class Engine:
 
     def _choose_rate(self, now: float) -> None:
         """Set the period of the next scan: it follows the state (rulings, 10)."""
-        mode, r = self.control.state.mode, self.ctx.readings
-        stopping = mode is Mode.STOPPING or mode is Mode.FAST_STOP
-        if self.ctx.moving or stopping:
+        ctx, mode = self.ctx, self.control.state.mode
+        if ctx.moving or mode is _STOPPING or mode is _FAST_STOP:
             self.period_s = self.sliding_s
-        elif self.ctx.demand.enabled or not r.drives_disabled:
+        elif ctx.demand.enabled or not ctx.readings.drives_disabled:
             self.period_s = self.enabled_s
         else:
             self.period_s = self.idle_s

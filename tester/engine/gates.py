@@ -40,14 +40,16 @@ class Average:
 
     def update(self, x: float, target: float, dt: float) -> float:
         """Take in one value that stood for ``dt`` s; return the average."""
-        if not isfinite(self.value) or abs(x - target) > max(RESTART_SHARE * abs(target), self.floor):
+        value = self.value
+        off, jump = abs(x - target), RESTART_SHARE * abs(target)
+        if (off > self.floor and off > jump) or not isfinite(value):
             self.value = x
             self.age_s = 0.0
             return x
-        self.age_s += dt
-        share = dt / min(self.age_s, self.window_s) if self.age_s > 0.0 else 1.0
-        self.value += (x - self.value) * min(share, 1.0)
-        return self.value
+        self.age_s = age_s = self.age_s + dt
+        span_s = age_s if age_s < self.window_s else self.window_s
+        self.value = value = value + (x - value) * (dt / span_s if dt < span_s else 1.0)
+        return value
 
 
 @dataclass(slots=True)
@@ -97,6 +99,10 @@ class Gates:
         self.load = Average(config.load_filter_s, 10.0)
         self.slip = Average(config.slip_filter_s, 0.02)
         self.surface = SurfaceTrend()
+        self._load_share = config.load_percent * 0.01
+        self._speed_share = config.speed_percent * 0.01
+        self._slip_share = config.slip_percent * 0.01
+        self._slip_floor_m_s = config.slip_floor_mm_s * 1e-3
         self.touched_s = float("inf")
         """When the wheel last touched; samples settle for a second after it (contact transient)."""
 
@@ -106,22 +112,22 @@ class Gates:
 
     def update(self, r: Readings, dt: float) -> int:
         """Return the mask of closed gates for this scan (0 = the sample counts)."""
-        t, c = self.target, self.config
+        t = self.target
         mask = 0
         load = self.load.update(r.force_z_n, t.load_n, dt)
-        if not abs(load - t.load_n) <= c.load_percent * 0.01 * t.load_n:
+        if not abs(load - t.load_n) <= self._load_share * t.load_n:
             mask |= GATE_LOAD
-        share = c.speed_percent * 0.01
+        share = self._speed_share
         if not abs(r.wheel_speed_m_s - t.wheel_speed_m_s) <= share * t.wheel_speed_m_s or not (
             abs(r.belt_speed_m_s - t.belt_speed_m_s) <= share * t.belt_speed_m_s
         ):
             mask |= GATE_SPEED
         slip = self.slip.update(r.slip_m_s, t.slip_m_s, dt)
-        if not abs(slip - t.slip_m_s) <= max(c.slip_percent * 0.01 * t.slip_m_s, c.slip_floor_mm_s * 1e-3):
+        if not abs(slip - t.slip_m_s) <= max(self._slip_share * t.slip_m_s, self._slip_floor_m_s):
             mask |= GATE_SLIP
         self.surface.update(r.surface_c, r.surface_at_s)
         if not abs(self.surface_now_c() - t.temperature_c) <= t.band_k:
             mask |= GATE_TEMPERATURE
-        if not r.now_s - self.touched_s >= c.contact_transient_s:
+        if not r.now_s - self.touched_s >= self.config.contact_transient_s:
             mask |= GATE_SETTLING
         return mask

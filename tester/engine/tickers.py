@@ -57,8 +57,9 @@ def next_tick(now: float, wanted: float, urgent: float) -> float:
 
     Simulated time is counted, not measured: on a grid, equal runs have equal times to the last bit.
     """
-    due = min(wanted, urgent)
-    return max(ceil(due * 1e6 - 1e-3), round(now * 1e6) + 1) / 1e6
+    due = ceil((wanted if wanted < urgent else urgent) * 1e6 - 1e-3)
+    soonest = round(now * 1e6) + 1
+    return (due if due > soonest else soonest) / 1e6
 
 
 def run_simulated(engine: Ticked, world: World, *, lapse: float | None, poll: Callable[[float], None]) -> float:
