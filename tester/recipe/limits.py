@@ -109,7 +109,7 @@ class _Limits:
         """Yield a problem for an angle on an axis that a person sets: every burst turns it in and out."""
         if given.value != 0.0 and not driven:
             message = f"{axis}: {show(given.value, 'deg')} needs a driven axis; this rig's is set by hand"
-            yield self.tree.problem(given.at, f"{message} (axes.{axis} of rig \"{self.rig.name}\")")
+            yield self.tree.problem(given.at, f'{message} (axes.{axis} of rig "{self.rig.name}")')
 
     # -- what may be wrong --------------------------------------------------------------------------------------
 
