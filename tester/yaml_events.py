@@ -77,6 +77,10 @@ class Events(Reader, Scanner, Parser):
         self.pointer = end
         self.index += length
 
+    def get_mark(self) -> Mark:
+        """Return the place reached."""
+        return Mark(_NAME, self.index, self.line, self.column, self.buffer, self.pointer)
+
     # -- scanner ----------------------------------------------------------------------------------------------
 
     def need_more_tokens(self) -> bool:
@@ -113,18 +117,18 @@ class Events(Reader, Scanner, Parser):
             if item is None:
                 return count > 0
             self.forward(item.start(1) - self.pointer)
-            begin = self._mark()
+            begin = self.get_mark()
             self.forward(item.end(1) - self.pointer)
-            comma = self._mark()
+            comma = self.get_mark()
             self.forward()
-            self.tokens += [ScalarToken(item[1], True, begin, comma), FlowEntryToken(comma, self._mark())]
+            self.tokens += [ScalarToken(item[1], True, begin, comma), FlowEntryToken(comma, self.get_mark())]
             self.allow_simple_key = True
         return True
 
     def fetch_flow_collection_start(self, TokenClass: type) -> None:
         """Refuse open brackets before the scanner looks ahead over thousands of them."""
         if self.flow_level >= self.max_depth:
-            raise ScannerError(None, None, f"nested deeper than {self.max_depth} levels", self._mark())
+            raise ScannerError(None, None, f"nested deeper than {self.max_depth} levels", self.get_mark())
         super().fetch_flow_collection_start(TokenClass)  # pyright: ignore[reportUnknownMemberType]
 
     def scan_plain(self) -> ScalarToken:
@@ -133,13 +137,10 @@ class Events(Reader, Scanner, Parser):
         if plain is None:
             token: ScalarToken = super().scan_plain()  # pyright: ignore[reportUnknownMemberType]
             return token
-        begin = self._mark()
+        begin = self.get_mark()
         self.forward(plain.end() - self.pointer)
         self.allow_simple_key = False
-        return ScalarToken(plain[0], True, begin, self._mark())
-
-    def _mark(self) -> Mark:
-        return Mark(_NAME, self.index, self.line, self.column, self.buffer, self.pointer)
+        return ScalarToken(plain[0], True, begin, self.get_mark())
 
     # -- parser -----------------------------------------------------------------------------------------------
 
