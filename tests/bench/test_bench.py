@@ -14,7 +14,7 @@ from bench.figures import Figure, Limit, Verdict, at_least, at_most, number, rat
 from bench.ledger import PARTS, Ledger
 from bench.live import SLIDING_RECIPE
 from bench.machine import machine
-from bench.report import as_json, missed, table
+from bench.report import as_json, as_markdown, missed, table
 from bench.speed import one_compound
 from bench.wrapping import ENTRY_POINTS, wrapped
 from sim.plant import Plant
@@ -103,6 +103,21 @@ def test_what_a_machine_cannot_measure_is_a_line_of_its_own() -> None:
     assert line.endswith("not available here: this system has no pseudo-terminals")
 
 
+def test_the_table_in_markdown_has_the_same_cells() -> None:
+    lines = as_markdown({"scan": [FAST, SLOW]}, MACHINE).splitlines()
+    assert lines[0] == "interpreter: CPython 3.11, pgo: no, cpus: 2"
+    assert lines[2:4] == [
+        "| topic | figure | median | min | max | unit | limit |  |",
+        "|---|---|---:|---:|---:|---|---|---|",
+    ]
+    assert lines[4] == "| scan | drivers | 10 | 9 | 11 | us | <= 12 | ok |"
+    assert lines[-2:] == ["missed, 1 of 2:", "- scan: control"]
+
+
+def test_a_bar_in_a_note_does_not_end_its_cell() -> None:
+    assert as_markdown({"a": [Figure("b", "us", (1.0,), note="c | d")]}, MACHINE).splitlines()[4].endswith("c \\| d |")
+
+
 def test_json_holds_the_machine_every_run_and_what_was_missed() -> None:
     record = json.loads(as_json({"scan": [SLOW, ABSENT]}, MACHINE))
     assert record["machine"] == MACHINE
@@ -161,6 +176,14 @@ def test_exit_code_is_1_where_a_figure_misses_and_the_figures_are_printed(
     stand_in(monkeypatch, FAST, SLOW)
     assert cli.main(["model", "--json"]) == cli.EXIT_MISSED
     assert [one["name"] for one in json.loads(capsys.readouterr().out)["figures"]] == ["drivers", "control"]
+
+
+def test_figures_come_in_markdown_where_that_is_asked(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    stand_in(monkeypatch, FAST)
+    assert cli.main(["model", "--markdown"]) == 0
+    assert "| model | drivers | 10 | 9 | 11 | us | <= 12 | ok |" in capsys.readouterr().out
 
 
 def test_a_topic_that_fails_leaves_a_line_and_the_others_go_on(monkeypatch: pytest.MonkeyPatch) -> None:
