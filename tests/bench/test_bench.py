@@ -12,7 +12,7 @@ from bench.big_recipe import long_list_text, recipe_text, work
 from bench.effort import Effort, TopicFailedError
 from bench.figures import Figure, Limit, Verdict, at_least, at_most, number, ratio, unavailable
 from bench.ledger import PARTS, Ledger
-from bench.live import SLIDING_RECIPE
+from bench.live import SLIDING_RECIPE, live_run
 from bench.machine import machine
 from bench.report import as_json, as_markdown, missed, table
 from bench.speed import one_compound
@@ -228,6 +228,14 @@ def test_every_entry_point_is_found_wrapped_and_given_back() -> None:
         assert Plant.advance is not bare
     assert Plant.advance is bare
     assert {part for part, *_ in ENTRY_POINTS} | {"nodes: drives, on a frame"} == set(PARTS)
+
+
+def test_a_run_connects_its_devices_with_every_entry_point_wrapped() -> None:
+    ledger = Ledger()
+    with wrapped(ledger), live_run(SLIDING_RECIPE) as live:
+        live.until(lambda: live.engine.scans > 3)
+        charged = dict(zip(PARTS, ledger.take(), strict=True))
+    assert all(us > 0.0 for part, us in charged.items() if part != "recorder")  # it has nothing to record yet
 
 
 def test_the_ledger_charges_each_call_to_its_own_part() -> None:
