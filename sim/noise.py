@@ -87,22 +87,25 @@ class NormalStream:
 
 
 class Autoregressive:
-    """First-order autoregressive fluctuation with a standard deviation and a correlation time, exact for any step."""
+    """First-order autoregressive fluctuation with a standard deviation and a correlation time, exact for any step.
 
-    __slots__ = ("_keep", "_kick", "_sigma", "_time_s", "value")
+    A step makes of ``value``: ``keep`` times itself and ``kick`` times a standard normal number.
+    """
+
+    __slots__ = ("_sigma", "_time_s", "keep", "kick", "value")
 
     def __init__(self, sigma: float, time_s: float) -> None:
         """Start at zero with no step set; ``retime`` must come before ``step``."""
         self._sigma = sigma
         self._time_s = time_s
-        self._keep = 1.0
-        self._kick = 0.0
+        self.keep = 1.0
+        self.kick = 0.0
         self.value = 0.0
 
     def retime(self, dt_s: float) -> None:
         """Set the length of a step in s."""
-        self._keep = math.exp(-dt_s / self._time_s)
-        self._kick = self._sigma * math.sqrt(1.0 - self._keep * self._keep)
+        self.keep = math.exp(-dt_s / self._time_s)
+        self.kick = self._sigma * math.sqrt(1.0 - self.keep * self.keep)
 
     def restart(self, number: float) -> None:
         """Start anew from a standard normal number, as stationary as it goes on."""
@@ -110,7 +113,7 @@ class Autoregressive:
 
     def step(self, number: float) -> float:
         """Move on by one step with a standard normal number and return the value."""
-        self.value = value = self._keep * self.value + self._kick * number
+        self.value = value = self.keep * self.value + self.kick * number
         return value
 
 
