@@ -67,10 +67,10 @@ def _subscribing(
 ) -> Callable[..., None]:
     """Return a ``CanWire.listen`` that subscribes the measured listener in place of the bare one."""
 
-    def subscribe(wire: object, can_id: int, listener: Callable[..., Any], rank: int = 0) -> None:
+    def subscribe(wire: object, can_id: int, listener: Callable[..., Any], rank: int = 0, **options: bool) -> None:
         if listener not in known:
             known[listener] = ledger.wrap("nodes: drives, on a frame", listener)
-        listen(wire, can_id, known[listener], rank)
+        listen(wire, can_id, known[listener], rank, **options)
 
     return subscribe
 

@@ -41,10 +41,12 @@ def uniforms(count: int, seed: int, stream: str, *place: int) -> list[float]:
 class NormalStream:
     """Standard normal numbers of one key, without end.
 
-    Each block has a key of its own, so the state is a block's number and a position: cheap to copy.
+    Each block has a key of its own, so the state is a block's number and a position: cheap to copy. ``numbers`` and
+    ``fours`` are what is left of the present block: one step of a loop over them is the shortest way to the next, and
+    when they are at their end ``next`` or ``next4`` gives it.
     """
 
-    __slots__ = ("_block", "_fours", "_numbers", "_place", "_seed", "_stream")
+    __slots__ = ("_block", "_place", "_seed", "_stream", "fours", "numbers")
 
     def __init__(self, seed: int, stream: str, *place: int) -> None:
         """Start at the key's first number; nothing is drawn before the first is asked for."""
@@ -56,21 +58,21 @@ class NormalStream:
 
     def next(self) -> float:
         """Return the next number."""
-        for number in self._numbers:  # one step of the iterator: the shortest way to one number
+        for number in self.numbers:
             return number
         self._draw()
-        return next(self._numbers)
+        return next(self.numbers)
 
     def next4(self) -> tuple[float, float, float, float]:
         """Return the next four numbers (of a stream that is only read by fours)."""
-        for four in self._fours:
+        for four in self.fours:
             return four
         self._draw()
-        return next(self._fours)
+        return next(self.fours)
 
     def _hold(self, numbers: Iterator[float]) -> None:
-        self._numbers = numbers
-        self._fours = zip(numbers, numbers, numbers, numbers, strict=False)
+        self.numbers = numbers
+        self.fours = zip(numbers, numbers, numbers, numbers, strict=False)
 
     def _draw(self) -> None:
         """Draw the next block."""
@@ -82,7 +84,7 @@ class NormalStream:
         """Return an independent stream at the same position; a block is never changed, so it is shared."""
         twin = NormalStream(self._seed, self._stream, *self._place)
         twin._block = self._block
-        twin._hold(copy(self._numbers))
+        twin._hold(copy(self.numbers))
         return twin
 
 

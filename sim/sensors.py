@@ -139,7 +139,12 @@ class SpeedSensor:
 
     def error(self) -> float:
         """Return a number of white noise in m/s."""
-        return self._rms_m_s * self.noise.next() if self._rms_m_s > 0.0 else 0.0
+        rms_m_s = self._rms_m_s
+        if rms_m_s > 0.0:
+            for number in self.noise.numbers:
+                return rms_m_s * number
+            return rms_m_s * self.noise.next()
+        return 0.0
 
     def measure(self, true_m_s: float) -> float:
         """Return a reading in m/s."""
