@@ -26,7 +26,7 @@ R = TypeVar("R")
 
 
 class Pool:
-    """Up to ``jobs`` processes; use in a ``with`` block, whose end waits for what runs."""
+    """Up to ``jobs`` processes; use in a ``with`` block, whose end stops what runs."""
 
     def __init__(self, jobs: int) -> None:
         """Start nothing yet: a process starts with the first call that needs it."""
@@ -42,9 +42,8 @@ class Pool:
     def __exit__(
         self, kind: type[BaseException] | None, value: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """Drop what waits and wait for what runs; after an exception that is told to stop."""
-        if kind is not None:
-            self.stop(Stop.FAST)
+        """Drop what waits; what still runs is told to stop, and waited for."""
+        self.stop(Stop.FAST)
         self._executor.shutdown(cancel_futures=True)
 
     @property
