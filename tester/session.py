@@ -37,6 +37,7 @@ from tester.recipe.expand import expand
 from tester.recipe.plan import Plan
 from tester.resume import prepare
 from tester.rig import RigConfig, load_rig
+from tester.store.files import write_text
 from tester.store.reader import RunReader
 from tester.store.records import SpecimenInfo
 from tester.store.resume import FINISHED, ResumePoint
@@ -161,8 +162,8 @@ class Session:
             hold_rig(use, rig, plan.name)
             folder = make_folder(options.out, plan.name)
             hold_run(use, folder)
-            (folder / "recipe.yaml").write_text(recipe.tree.text, encoding="utf-8", newline="\n")
-            (folder / "rig.yaml").write_text(rig.text, encoding="utf-8", newline="\n")
+            write_text(folder / "recipe.yaml", recipe.tree.text)
+            write_text(folder / "rig.yaml", rig.text)
             info = run_info(
                 folder.name,
                 plan,

@@ -40,6 +40,8 @@ COMMANDS: dict[str, CommandEntry] = {
     "resume": CommandEntry("tester.cli.resume_command", "resume", "Go on with an interrupted run."),
     "runs": CommandEntry("tester.cli.result_commands", "runs", "List the runs that are stored."),
     "show": CommandEntry("tester.cli.result_commands", "show", "Show what a run holds."),
+    "compare": CommandEntry("tester.cli.compare_command", "compare", "Hold two runs' conditions against each other."),
+    "verify": CommandEntry("tester.cli.verify_command", "verify", "Check that a run is as it was left."),
     "export": CommandEntry("tester.cli.result_commands", "export", "Write a run's results as a table."),
     "predict": CommandEntry("tester.cli.predict_command", "predict", "The friction model's value for one condition."),
     "rig": CommandEntry("tester.cli.rig_commands", "rig", "Write or show a rig file."),
