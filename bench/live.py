@@ -10,7 +10,7 @@ from tempfile import TemporaryDirectory
 
 from bench.effort import TopicFailedError
 from tester import clock
-from tester.campaign.folder import Job, begin_record, prepare
+from tester.campaign.folder import Job, beginning_of, work_of
 from tester.engine.build import build_run
 from tester.engine.prompts import Prompts
 from tester.engine.tickers import next_tick
@@ -55,10 +55,10 @@ class LiveRun:
         """Build everything; nothing is ticked yet."""
         rig = load_rig("sim")
         loaded = load_checked(text, rig, "bench.yaml")
-        work = prepare(loaded, rig)
+        work = work_of(loaded.recipe, rig)
         plan = work.plan
         self.writer = RunWriter(folder / "run.db", clock=clock.monotonic, utc=clock.utc_now, lossless=True)
-        begin_record(self.writer, work, plan, Job(folder, seed), folder.name)
+        beginning_of(work.parts[0], Job(folder, seed), work)(self.writer)
         ports, self.world, attendant = simulated_ports(rig, seed, None)
         self.run = build_run(rig, plan, ports, attendant, self.writer, Prompts(automatic=True))
         self.engine = self.run.engine

@@ -12,18 +12,28 @@ from types import FrameType
 from typing import Protocol
 
 from recipes import find
+from tester.campaign.claims import enough_room, hold_rig, hold_run
 from tester.campaign.crew import Sight, side_by_side
-from tester.campaign.endings import EXIT_USAGE, Ending, PartEnd, Stop, ending_of
-from tester.campaign.folder import Job, Work, make_folder, prepare, write_sources
+from tester.campaign.endings import EXIT_REFUSED, EXIT_USAGE, CannotStartError, Ending, PartEnd, Stop, ending_of
+from tester.campaign.folder import Begin, Job, Work, beginning_of, make_folder, specimens_of, work_of, write_sources
 from tester.campaign.part_run import run_part
 from tester.campaign.pool import Pool
-from tester.campaign.together import put_together
+from tester.campaign.split import Part
+from tester.campaign.together import put_together, recover
 from tester.engine.context import Progress as RunProgress
 from tester.engine.prompts import Prompts
+from tester.engine.results import condition_records
 from tester.engine.run import Outcome, Run
 from tester.export import write_all
+from tester.lock import ExclusiveUse
+from tester.provenance import recipe_source, rig_source, run_info, session_info
 from tester.recipe.check import load_checked
-from tester.rig import load_rig
+from tester.recipe.loader import LoadedRecipe
+from tester.resume import prepare
+from tester.rig import RigConfig, load_rig
+from tester.store.reader import RunReader
+from tester.store.resume import FINISHED
+from tester.store.writer import RunWriter
 
 
 class Screen(Protocol):
@@ -69,7 +79,7 @@ class Screen(Protocol):
 class SessionOptions:
     """What the command line said."""
 
-    recipe: str
+    recipe: str = ""
     rig: str = "sim"
     overrides: tuple[str, ...] = ()
     out: Path = Path("runs")
@@ -101,19 +111,53 @@ class Session:
         self._pool: Pool | None = None
 
     def run(self) -> int:
-        """Run to the end; return the exit code. Raises InvalidSource for an invalid recipe or
-        rig file, FileNotFoundError where there is no such recipe."""
+        """Run to the end; return the exit code. Raises InvalidSource for an invalid recipe or rig file,
+        FileNotFoundError where there is no such recipe, CannotStartError."""
         options = self.options
         rig = load_rig(options.rig, options.overrides)
-        work = prepare(load_checked(find(options.recipe), rig), rig)
-        refusal = self._refusal(work)
+        path = find(options.recipe)
+        recipe = load_checked(path, rig)
+        work = work_of(recipe.recipe, rig)
+        refusal = self._refusal(work.rig)
         if refusal:
             self.screen.message(refusal)
             return EXIT_USAGE
-        folder = self.folder = make_folder(options.out, work.plan.name)
-        write_sources(work, folder)
-        self.ending = self._carry_out(self._job(folder), work)
-        return self._report(folder, self.ending)
+        options.out.mkdir(parents=True, exist_ok=True)
+        enough_room(options.out, work.plan, rig)
+        with ExclusiveUse() as use:
+            hold_rig(use, rig, work.plan.name)
+            folder = make_folder(options.out, work.plan.name)
+            hold_run(use, folder)
+            write_sources(folder, recipe.tree.text, rig)
+            return self._record(self._job(folder, options.seed), work, self._beginning(folder, path, recipe, work))
+
+    def resume(self, folder: Path, reason: str = "") -> int:
+        """Go on with an interrupted run; return the exit code. ``reason``: why it may although something changed.
+
+        Raises CannotStartError, StoreError, InvalidSource.
+        """
+        with RunReader(folder) as reader:
+            finished = reader.run().status == FINISHED
+        if finished:
+            self.screen.message(f"{folder.name} is complete: nothing is left to do")
+            self.screen.result(str(folder))
+            return 0
+        with ExclusiveUse() as use:
+            hold_run(use, folder)
+            recover(folder)
+            resumed = prepare(folder, reason, self.options.operator)
+            if isinstance(resumed, str):
+                raise CannotStartError(resumed, EXIT_REFUSED)
+            refusal = self._refusal(resumed.rig)
+            if refusal:
+                self.screen.message(refusal)
+                return EXIT_USAGE
+            enough_room(folder, resumed.plan, resumed.rig)
+            hold_rig(use, resumed.rig, folder.name)
+            self.screen.message(resumed.summary)
+            # What is left goes on in the run's own record, one specimen after the other.
+            work = Work(resumed.rig, resumed.plan, (Part(1, resumed.plan, last_wheel=0),), resumed.point)
+            return self._record(self._job(folder, resumed.seed), work, resumed.begin)
 
     def stop(self, level: Stop) -> None:
         """Stop the run, from a signal handler or another thread too: what is begun ends, and nothing more is begun."""
@@ -139,32 +183,57 @@ class Session:
 
     # -- parts ------------------------------------------------------------------------------------------------
 
-    def _refusal(self, work: Work) -> str:
+    def _refusal(self, rig: RigConfig) -> str:
         """Return why the options do not go with the rig or the recipe, "" where they do."""
-        several = self.options.jobs > 1
-        if several and not work.rig.simulated:
-            return f"--jobs {self.options.jobs}: only a simulated rig can be there several times, and this one is real"
+        jobs = self.options.jobs
+        if jobs > 1 and not rig.simulated:
+            return f"--jobs {jobs}: only a simulated rig can be there several times, and this one is real"
         if self.screen.answer_yes:
             return ""
-        if several:
-            return f"--jobs {self.options.jobs}: nobody can answer the prompts of several parts; use --yes, or one job"
+        if jobs > 1:
+            return f"--jobs {jobs}: nobody can answer the prompts of several parts; use --yes, or one job"
         if not self.screen.can_ask:
             return "the recipe asks a person, and nobody is at this terminal: use --yes"
         return ""
 
-    def _job(self, folder: Path) -> Job:
-        o = self.options
-        return Job(folder, o.seed, o.lapse, o.bus_log, o.operator, o.samples)
+    def _job(self, folder: Path, seed: int) -> Job:
+        return Job(folder, seed, self.options.lapse, self.options.bus_log, self.options.samples)
 
-    def _carry_out(self, job: Job, work: Work) -> Ending:
+    def _beginning(self, folder: Path, path: Path, recipe: LoadedRecipe, work: Work) -> Begin:
+        """Return what begins the run's record: the whole plan, and where everything comes from."""
+        o = self.options
+        info = run_info(
+            folder.name,
+            work.plan,
+            recipe,
+            work.rig,
+            seed=o.seed,
+            operator=o.operator,
+            recipe_source=recipe_source(path),
+            rig_source=rig_source(o.rig, o.overrides),
+        )
+
+        def begin(writer: RunWriter) -> None:
+            writer.begin_run(info, specimens_of(work.plan), condition_records(work.plan))
+            writer.begin_session(session_info(1, 0.0, o.operator))
+
+        return begin
+
+    def _record(self, job: Job, work: Work, begin: Begin) -> int:
+        """Carry out the work into the folder; write the tables and return the exit code."""
+        self.folder = job.folder
         self.screen.begin(work.plan.name)
         try:
             with self._signals():
                 if len(work.parts) == 1:
-                    return ending_of([run_part(job, work, work.parts[0], self, self.prompts)], 1)
-                return put_together(job, work, self._ends(job, work), lambda: self._level, self._tell)
+                    end = run_part(job, work, work.parts[0], begin, self, self.prompts)
+                    self.ending = ending_of([end], 1)
+                else:
+                    ends = self._ends(job, work)
+                    self.ending = put_together(job, work, begin, ends, lambda: self._level, self._tell)
         finally:
             self.screen.end()
+        return self._report(job.folder, self.ending)
 
     def _ends(self, job: Job, work: Work) -> Generator[PartEnd]:
         """Yield how the parts ended: one after the other in this process, or side by side in others."""
@@ -172,7 +241,7 @@ class Session:
             yield from side_by_side(job, work, self.options.jobs, self._show, self._take)
             return
         for part in work.parts:
-            end = run_part(job, work, part, self, self.prompts)
+            end = run_part(job, work, part, beginning_of(part, job, work), self, self.prompts)
             yield end
             if end.outcome is not Outcome.DONE:
                 return

@@ -9,7 +9,7 @@ from functools import lru_cache
 from typing import NamedTuple
 
 from tester.campaign.endings import PartEnd, Stop
-from tester.campaign.folder import Job, Work, read_work
+from tester.campaign.folder import Job, Work, beginning_of, read_work
 from tester.campaign.part_run import run_part
 from tester.campaign.pool import Pool, say, stop_level
 from tester.engine.context import Progress
@@ -65,7 +65,8 @@ def run_in_worker(job: Job, number: int) -> PartEnd | None:
     if stop_level() is not Stop.NONE:
         return None
     work = _work_of(job)
-    return run_part(job, work, work.parts[number - 1], _Reporting(), Prompts(automatic=True))
+    part = work.parts[number - 1]
+    return run_part(job, work, part, beginning_of(part, job, work), _Reporting(), Prompts(automatic=True))
 
 
 @lru_cache(maxsize=1)

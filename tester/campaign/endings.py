@@ -16,10 +16,21 @@ EXIT_CODES: dict[Outcome, int] = {
     Outcome.STOPPED: 5,
 }
 EXIT_USAGE = 2
+EXIT_REFUSED = 3
+"""Recipe, rig or calibration are not those of the run that is to go on."""
 EXIT_INCOMPLETE = 6
 EXIT_INTERRUPTED = 130
 
 _BY_SEVERITY = (Outcome.DONE, Outcome.STOPPED, Outcome.UNREACHABLE, Outcome.FAILED, Outcome.TRIPPED)
+
+
+class CannotStartError(Exception):
+    """The run cannot begin; the message says why, ``code`` is the exit code."""
+
+    def __init__(self, message: str, code: int = 1) -> None:
+        """``code``: 1 unless told."""
+        super().__init__(message)
+        self.code = code
 
 
 class Stop(IntEnum):

@@ -1,32 +1,31 @@
-"""A run's folder: what lies where in it, and what the store is told at the beginning."""
+"""A run's folder: what lies where in it, and what of it a process needs that carries out a part."""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from dataclasses import dataclass
-from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 from tester import clock
+from tester.campaign.endings import CannotStartError
 from tester.campaign.split import Part, split
 from tester.engine.results import condition_records
 from tester.recipe.check import load_checked
 from tester.recipe.expand import expand
-from tester.recipe.loader import LoadedRecipe
 from tester.recipe.plan import Plan
+from tester.recipe.schema import Recipe
 from tester.rig import RigConfig, load_rig
-from tester.store.recorder import Recorder
+from tester.store.files import write_text
 from tester.store.records import RunInfo, SpecimenInfo
+from tester.store.resume import ResumePoint
+from tester.store.writer import RunWriter
 
 PARTS = "parts"
-"""Folder of the parts' records, each a run folder by its number; gone once merged, with nothing left to do."""
+"""Folder of the parts' records, each a run folder by its number, until they are merged."""
 
-SHOWN_VERSIONS = ("friction-tester", "numpy", "pymodbus", "python-can", "pydantic")
-"""Distributions whose versions are stored with a run."""
-
-
-class CannotStartError(Exception):
-    """The run cannot begin; the message says why."""
+Begin = Callable[[RunWriter], None]
+"""Tells a record what is going to be done."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,41 +37,40 @@ class Job:
     lapse: float | None = None
     """Rig seconds per second of wall time; None: as fast as it goes."""
     bus_log: Path | None = None
-    operator: str = ""
     samples: bool = True
     """Whether samples are kept."""
 
 
 @dataclass(frozen=True, slots=True)
 class Work:
-    """What is to be done: rig, recipe, plan, and the plan's parts."""
+    """What is to be done: rig, plan, and the plan's parts; ``point`` is where an interrupted run goes on."""
 
     rig: RigConfig
-    recipe: LoadedRecipe
     plan: Plan
     parts: tuple[Part, ...]
+    point: ResumePoint | None = None
 
     def folder_of(self, part: Part, folder: Path) -> Path:
         """Return where a part's record lies: the run's own folder where it is the only one."""
         return folder if len(self.parts) == 1 else folder / PARTS / str(part.number)
 
 
-def prepare(recipe: LoadedRecipe, rig: RigConfig) -> Work:
+def work_of(recipe: Recipe, rig: RigConfig) -> Work:
     """Return the work that a recipe is on a rig."""
-    plan = expand(recipe.recipe, rig)
-    return Work(rig, recipe, plan, split(plan, simulated=rig.simulated))
+    plan = expand(recipe, rig)
+    return Work(rig, plan, split(plan, simulated=rig.simulated))
 
 
-def write_sources(work: Work, folder: Path) -> None:
+def write_sources(folder: Path, recipe_text: str, rig: RigConfig) -> None:
     """Write recipe and rig file, as they are used, into the run's folder."""
-    (folder / "recipe.yaml").write_text(work.recipe.tree.text, encoding="utf-8", newline="\n")
-    (folder / "rig.yaml").write_text(work.rig.text, encoding="utf-8", newline="\n")
+    write_text(folder / "recipe.yaml", recipe_text)
+    write_text(folder / "rig.yaml", rig.text)
 
 
 def read_work(folder: Path) -> Work:
     """Return the work of a run's folder; raises InvalidSource where its files are not as they were written."""
     rig = load_rig(folder / "rig.yaml")
-    return prepare(load_checked(folder / "recipe.yaml", rig), rig)
+    return work_of(load_checked(folder / "recipe.yaml", rig).recipe, rig)
 
 
 def make_folder(out: Path, name: str) -> Path:
@@ -90,36 +88,24 @@ def make_folder(out: Path, name: str) -> Path:
     raise CannotStartError(f"{out} holds a thousand runs of this second")
 
 
-def begin_record(recorder: Recorder, work: Work, plan: Plan, job: Job, name: str) -> None:
-    """Tell a record what is going to be done: ``plan`` is the whole one or a part's."""
-    used = {step.specimen for step in plan.conditions()}
-    specimens = [one for one in plan.specimens if one.index in used or plan is work.plan]
-    recorder.begin_run(
-        run_info(name, work, seed=job.seed, operator=job.operator),
-        [SpecimenInfo(one.index, one.compound, one.note) for one in specimens],
-        condition_records(plan),
-    )
+def specimens_of(plan: Plan) -> list[SpecimenInfo]:
+    """Return a plan's specimens as the store keeps them."""
+    return [SpecimenInfo(one.index, one.compound, one.note) for one in plan.specimens]
 
 
-def run_info(name: str, work: Work, *, seed: int, operator: str = "") -> RunInfo:
-    """Return what the store keeps of a run's beginning."""
-    return RunInfo(
-        name=name,
-        recipe_name=work.plan.name,
-        recipe_text=work.recipe.tree.text,
-        rig_text=work.rig.text,
-        started_utc=clock.utc_now(),
-        simulated=work.rig.simulated,
-        seed=seed if work.rig.simulated else None,
-        software_version=_version("friction-tester"),
-        operator=operator,
-        metadata=dict(work.plan.metadata),
-        versions={package: _version(package) for package in SHOWN_VERSIONS},
-    )
+def beginning_of(part: Part, job: Job, work: Work) -> Begin:
+    """Return what begins a part's own record. Texts and provenance are in the run's, into which it is merged."""
 
+    def begin(writer: RunWriter) -> None:
+        info = RunInfo(
+            name=f"{job.folder.name}, part {part.number}",
+            recipe_name=work.plan.name,
+            recipe_text="",
+            rig_text="",
+            started_utc=clock.utc_now(),
+            simulated=work.rig.simulated,
+            seed=job.seed,
+        )
+        writer.begin_run(info, specimens_of(part.plan), condition_records(part.plan))
 
-def _version(package: str) -> str:
-    try:
-        return version(package)
-    except PackageNotFoundError:
-        return "unknown"
+    return begin

@@ -9,17 +9,21 @@ from drivers.ports import BusLost
 from tester import clock
 from tester.bus_log import BusLog
 from tester.campaign.endings import PartEnd
-from tester.campaign.folder import Job, Work, begin_record
+from tester.campaign.folder import Begin, Job, Work
 from tester.campaign.split import Part
 from tester.engine.build import Ports, build_run
 from tester.engine.context import Attendant, Nobody
 from tester.engine.prompts import Prompts
 from tester.engine.run import Outcome, Run
 from tester.engine.tickers import TickStatistics, World, run_real_time, run_simulated
+from tester.provenance import record_parameters, record_statistics
 from tester.recipe.estimate import estimate
 from tester.rig import RigConfig
 from tester.store.reader import DATABASE
 from tester.store.writer import RunWriter
+
+WHEEL_EVERY_S = 1.0
+"""The wheel's wear is stored this often of wall time: what an interruption loses of it."""
 
 
 class Watch(Protocol):
@@ -41,16 +45,38 @@ class Unsampled(RunWriter):
         """Forget the sample."""
 
 
-def run_part(job: Job, work: Work, part: Part, watch: Watch, prompts: Prompts) -> PartEnd:
+class RunNotes:
+    """What is stored beside the scan, a few times a second: parameters once they were read back, the wheel's wear."""
+
+    def __init__(self, run: Run, recorder: RunWriter) -> None:
+        """Nothing is stored before the rig is connected."""
+        self.run = run
+        self.recorder = recorder
+        self.connected = False
+        self.wheel_due_s = 0.0
+
+    def poll(self, now_s: float) -> None:
+        """Store what is due; ``now_s`` is rig time."""
+        if not self.run.connected:
+            return
+        if not self.connected:
+            self.connected = True
+            record_parameters(self.run.engine.devices, self.recorder, now_s)
+        wall_s, wheel = clock.monotonic(), self.run.engine.ctx.wheel
+        if wheel.wheel and wall_s >= self.wheel_due_s:
+            self.wheel_due_s = wall_s + WHEEL_EVERY_S
+            self.recorder.wheel_state(wheel.wheel, wheel.diameter_mm, wheel.sliding_m, now_s)
+
+
+def run_part(job: Job, work: Work, part: Part, begin: Begin, watch: Watch, prompts: Prompts) -> PartEnd:
     """Carry out a part; its record is closed when this returns. Raises OSError, sqlite3.Error, StoreError."""
     folder = work.folder_of(part, job.folder)
     folder.mkdir(parents=True, exist_ok=True)
-    name = job.folder.name if len(work.parts) == 1 else f"{job.folder.name}, part {part.number}"
     open_record = RunWriter if job.samples else Unsampled
     lossless = work.rig.can.interface == "sim"
     writer = open_record(folder / DATABASE, clock=clock.monotonic, utc=clock.utc_now, lossless=lossless)
     try:
-        begin_record(writer, work, part.plan, job, name)
+        begin(writer)
         outcome, reason, seconds = _execute(job, work, part, writer, watch, prompts)
         writer.finish(outcome.value, reason, seconds)
     finally:
@@ -65,12 +91,12 @@ def _execute(
     log = BusLog(_log_folder(job.bus_log, work, part), rig) if job.bus_log is not None else None
     try:
         ports, world, attendant = connect_ports(rig, job.seed, log)
-        run = build_run(rig, part.plan, ports, attendant, writer, prompts)
+        run = build_run(rig, part.plan, ports, attendant, writer, prompts, work.point)
         _place(run, work, part)
         watch.begun(run)
         expected_s = max(estimate(part.plan, rig).rig_seconds, 1.0)
         seconds = _tick(run, world, job.lapse, expected_s, writer, watch)
-        record_parameters(run, writer, seconds)
+        record_statistics(run.engine.devices, writer, seconds)
         return run.outcome, run.reason, seconds
     except BusLost as lost:
         return Outcome.UNREACHABLE, str(lost), 0.0
@@ -86,7 +112,7 @@ def _log_folder(folder: Path, work: Work, part: Part) -> Path:
 def _place(run: Run, work: Work, part: Part) -> None:
     """Tell a run which part of the whole it is: numbers of unforeseen wheels, what people are shown."""
     executor, progress = run.engine.executor, run.engine.ctx.progress
-    executor.wheels = part.last_wheel
+    executor.wheels = max(executor.wheels, part.last_wheel)
     executor.conditions = sum(1 for _ in work.plan.conditions())
     progress.part, progress.parts = part.number, len(work.parts)
 
@@ -94,7 +120,10 @@ def _place(run: Run, work: Work, part: Part) -> None:
 def _tick(
     run: Run, world: World | None, lapse: float | None, expected_s: float, recorder: RunWriter, watch: Watch
 ) -> float:
+    notes = RunNotes(run, recorder)
+
     def poll(now_s: float) -> None:
+        notes.poll(now_s)
         watch.poll(now_s, run, now_s / expected_s)
         if recorder.failed:
             run.request_stop(f"the run can no longer be recorded: {recorder.failed}")
@@ -114,10 +143,3 @@ def connect_ports(rig: RigConfig, seed: int, log: BusLog | None) -> tuple[Ports,
     from tester.hardware import hardware_ports
 
     return hardware_ports(rig, log), None, Nobody()
-
-
-def record_parameters(run: Run, writer: RunWriter, now_s: float) -> None:
-    """Store every parameter read back from the drives."""
-    for drive in run.engine.devices.drives:
-        for (index, sub), value in drive.parameters.items():
-            writer.device_parameter(now_s, drive.config.name, f"0x{index:04X}:{sub:02X}", str(value))

@@ -37,7 +37,7 @@ class Merged:
 
 
 TABLES: dict[str, Merged] = {
-    "wheel": Merged(times=("installed_s", "updated_s")),
+    "wheel": Merged(times=("installed_s", "updated_s", "ground_s")),
     "repeat": Merged(times=("begun_s", "started_s", "ended_s"), key="id"),
     "burst": Merged(times=("started_s", "ended_s"), repeat="repeat_id"),
     "sample_block": Merged(times=("first_s", "last_s"), key="id", repeat="repeat_id"),
@@ -50,8 +50,10 @@ TABLES: dict[str, Merged] = {
 }
 """Tables that are filled while a run goes on, in the order in which they refer to each other."""
 
-HEADER = frozenset({"run", "metadata", "version", "specimen", "condition", "sample_column"})
-"""Tables that are written when a run begins: the whole run's, not the parts'. ``condition`` is brought up to date."""
+HEADER = frozenset(
+    {"run", "metadata", "version", "specimen", "condition", "sample_column", "session", "change", "calibration"}
+)
+"""Tables of the whole run, which parts do not fill. ``condition`` is brought up to date."""
 
 LEFT = ("status", "reason", "warming_k_s", "holdable_band_k")
 """How a condition was left; ``started_s`` and ``ended_s`` are times."""
@@ -77,6 +79,8 @@ class Merge:
         self.rig_seconds = 0.0
         self._connection = sqlite3.connect(folder / DATABASE, isolation_level=None)
         try:
+            # The deletion of a rollback journal is synced, too: one that came back would take the merge back.
+            self._connection.execute("PRAGMA synchronous = EXTRA")
             with self._transaction():
                 for table in reversed(TABLES):
                     self._connection.execute(f"DELETE FROM {table}")
