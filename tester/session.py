@@ -37,6 +37,7 @@ from tester.recipe.expand import expand
 from tester.recipe.plan import Plan
 from tester.resume import prepare
 from tester.rig import RigConfig, load_rig
+from tester.store.catalogue import cut_off
 from tester.store.files import write_text
 from tester.store.reader import RunReader
 from tester.store.records import SpecimenInfo
@@ -157,6 +158,8 @@ class Session:
         if self._nobody_to_ask():
             return 2
         options.out.mkdir(parents=True, exist_ok=True)
+        for folder in cut_off(options.out):
+            self.screen.message(f"{folder.name} was cut off: tester resume {folder} goes on with it")
         enough_room(options.out, plan, rig)
         with ExclusiveUse() as use:
             hold_rig(use, rig, plan.name)

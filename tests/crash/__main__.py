@@ -1,4 +1,4 @@
-"""`python -m tests.crash [--kills N] [--powercuts N] [--sample] [--seed N]`: kills and power cuts, with their figures."""
+"""`python -m tests.crash [--kills N] [--powercuts N] [--sample] [--seed N]`: kills and power cuts with figures."""
 
 from __future__ import annotations
 
