@@ -39,7 +39,7 @@ COMMANDS: dict[str, CommandEntry] = {
     "run": CommandEntry("tester.cli.run_command", "run", "Run a recipe on a rig, simulated unless told."),
     "sweep": CommandEntry("tester.cli.sweep_command", "sweep", "Run a recipe for many seeds and rig parameters."),
     "resume": CommandEntry("tester.cli.resume_command", "resume", "Go on with an interrupted run."),
-    "runs": CommandEntry("tester.cli.result_commands", "runs", "List the runs that are stored."),
+    "runs": CommandEntry("tester.cli.runs_command", "runs", "List the runs that are stored."),
     "show": CommandEntry("tester.cli.result_commands", "show", "Show what a run holds."),
     "compare": CommandEntry("tester.cli.compare_command", "compare", "Hold two runs' conditions against each other."),
     "verify": CommandEntry("tester.cli.verify_command", "verify", "Check that a run is as it was left."),
