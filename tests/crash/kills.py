@@ -100,7 +100,7 @@ class TellingWriter(RunWriter):
 
 def work(pipe: Connection, recipe: str, out: str, folder: str) -> None:
     """Run the campaign, or resume it, in this process; the exit code is the session's."""
-    import tester.session as module
+    import tester.campaign.part_run as module
 
     os.setpgid(0, 0)
     sys.stdout = sys.stderr = StringIO()
