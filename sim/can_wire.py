@@ -213,6 +213,15 @@ class CanWire:
     # measures ------------------------------------------------------------------------------------------------
 
     @property
+    def arrives_s(self) -> float:
+        """Arrival of the next frame not received yet, s: the earliest it can have; infinity when none is under way."""
+        arrival = self._inbox[0][0] if self._inbox else inf
+        if self._pending:
+            t, _, _, data, _ = self._pending[0]
+            arrival = min(arrival, t + self._frame_s[len(data)])
+        return arrival
+
+    @property
     def load(self) -> float:
         """Share of the last second the wire was occupied, 0..1 (worst-case stuffing), as of the last receive."""
         if len(self._marks) < 2:
