@@ -22,6 +22,7 @@ from tester.engine.results import condition_records
 from tester.engine.run import Outcome, Run
 from tester.engine.tickers import TickStatistics, World, run_real_time, run_simulated
 from tester.export import write_all
+from tester.pace import Pace
 from tester.recipe.check import load_checked
 from tester.recipe.estimate import estimate
 from tester.recipe.expand import expand
@@ -146,6 +147,7 @@ class Session:
 
     def _execute(self, rig: RigConfig, plan: Plan, writer: RunWriter) -> tuple[Outcome, str, float]:
         log = BusLog(self.options.bus_log, rig) if self.options.bus_log is not None else None
+        ports: Ports | None = None
         try:
             ports, world, attendant = connect_ports(rig, self.options.seed, log)
             prompts = Prompts(automatic=self.screen.answer_yes)
@@ -153,16 +155,26 @@ class Session:
             self.run_ = run
             expected_s = max(estimate(plan, rig).rig_seconds, 1.0)
             self.screen.begin(plan.name)
-            seconds = self._tick(run, world, expected_s, prompts, writer)
+            seconds = self._tick(run, world, ports.pace, expected_s, prompts, writer)
             record_parameters(run, writer, seconds)
             return run.outcome, run.reason, seconds
         except BusLost as lost:
             return Outcome.UNREACHABLE, str(lost), 0.0
         finally:
+            if ports is not None:
+                ports.close()
             if log is not None:
                 log.close()
 
-    def _tick(self, run: Run, world: World | None, expected_s: float, prompts: Prompts, recorder: RunWriter) -> float:
+    def _tick(
+        self,
+        run: Run,
+        world: World | None,
+        pace: Pace | None,
+        expected_s: float,
+        prompts: Prompts,
+        recorder: RunWriter,
+    ) -> float:
         def poll(now_s: float) -> None:
             self.screen.show(now_s, run.engine.ctx.progress, now_s / expected_s)
             self.screen.attend(prompts)
@@ -174,7 +186,7 @@ class Session:
             if world is not None:
                 # Also at --speed 1: counted ticks, not measured ones, so that no speed changes a result.
                 return run_simulated(run, world, lapse=self.options.lapse, poll=poll)
-            return run_real_time(run, world, poll=poll, statistics=TickStatistics())
+            return run_real_time(run, world, poll=poll, statistics=TickStatistics(), pace=pace)
         finally:
             for number, handler in previous.items():
                 signal.signal(number, handler)
