@@ -14,6 +14,7 @@ from sim.doors.server import RigServer
 from sim.rig import SimRig
 from tester import clock
 from tester.bus_log import BusLog
+from tester.engine.tickers import collector_at_rest
 from tester.rig import load_rig
 from tester.rig.reach import BUS, reached_over_tcp
 from tester.simulated import simulated_ports
@@ -95,7 +96,8 @@ def run_sim(options: SimOptions, ready: Callable[[str], None]) -> float:
             write_atomically(options.write_rig, reached.text)
             places.append(f"rig file {options.write_rig}")
         ready("ready: " + ", ".join(places))
-        server.serve(lambda: clock.monotonic() - origin, asked)
+        with collector_at_rest():
+            server.serve(lambda: clock.monotonic() - origin, asked)
         return server.latest_s
 
 

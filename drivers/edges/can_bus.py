@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from drivers.canopen import objects as o
 from drivers.edges import socketcand
-from drivers.ports import BusLost, CanFrame
+from drivers.ports import BusLost, CanFrame, FrameByFrame
 
 if TYPE_CHECKING:
     import can
@@ -29,15 +29,17 @@ _BUS_OFF = 0x40
 _FUNCTION = 0x780
 _EVENTS = (o.EMERGENCY_BASE, o.TPDO2_BASE)
 _BOOT_UP = bytes((o.NmtState.BOOT_UP,))
+_STATE_LOW, _STATE_HIGH = 0x7F, 0x22
+"""Statusword bits of a drive's state, voltage, remote control and deviation, by bytes (CiA 402-2)."""
 
 
-class PythonCanPort:
+class PythonCanPort(FrameByFrame):
     """A CanPort over an open python-can bus.
 
     ``clock`` gives the arrival times, in seconds of the caller's clock; it is called in the receive thread.
     Without one a frame's arrival is the ``now`` of the ``receive`` that returns it. ``on_urgent`` is called in
-    that thread, too, when something arrived that a scan should not wait for: an emergency, a boot-up, or process
-    data whose first word, a drive's statusword, is another than before. ``ignored`` counts frames that are none
+    that thread, too, when something arrived that a scan should not wait for: an emergency, a boot-up, changed
+    inputs (TPDO2), or a TPDO1 whose first word, the statusword, shows another state than before. ``ignored`` counts frames that are none
     of ours: remote, error, 29-bit and FD frames.
     """
 
@@ -52,7 +54,7 @@ class PythonCanPort:
         self._bus = bus
         self._clock = clock
         self._on_urgent = on_urgent
-        self._statuswords: dict[int, bytes] = {}
+        self._states: dict[int, tuple[int, int]] = {}
         self._message = can.Message
         self._errors = (can.CanError, OSError, ValueError)
         self._frames: deque[CanFrame] = deque()
@@ -137,10 +139,10 @@ class PythonCanPort:
 
     def _is_urgent(self, can_id: int, data: bytes) -> bool:
         function = can_id & _FUNCTION
-        if function == o.TPDO1_BASE:
-            statusword = data[:2]
-            changed = self._statuswords.get(can_id) != statusword
-            self._statuswords[can_id] = statusword
+        if function == o.TPDO1_BASE and len(data) >= 2:
+            state = (data[0] & _STATE_LOW, data[1] & _STATE_HIGH)
+            changed = self._states.get(can_id) != state
+            self._states[can_id] = state
             return changed
         if function == o.HEARTBEAT_BASE:
             return data == _BOOT_UP
