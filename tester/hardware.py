@@ -11,6 +11,7 @@ from drivers.ports import CanPort, LinePort
 from tester.bus_log import BusLog, TappedCan, TappedLine
 from tester.engine.build import Ports
 from tester.pace import Pace
+from tester.priority import RealTimePriority
 from tester.rig import LineConfig, RigConfig
 
 CATCH_UP_S = 0.002
@@ -32,6 +33,7 @@ def hardware_ports(rig: RigConfig, log: BusLog | None) -> Ports:
         if log is not None:
             can = TappedCan(can, log.can)
             lines = {name: TappedLine(line, log.lines[name]) for name, line in lines.items()}
+        opened.callback(RealTimePriority().close)
         return Ports(can, lines, pace, opened.pop_all())
 
 

@@ -15,6 +15,7 @@ from sim.rig import SimRig
 from tester import clock
 from tester.bus_log import BusLog
 from tester.engine.tickers import collector_at_rest
+from tester.priority import RealTimePriority
 from tester.rig import load_rig
 from tester.rig.reach import BUS, reached_over_tcp
 from tester.simulated import simulated_ports
@@ -96,6 +97,7 @@ def run_sim(options: SimOptions, ready: Callable[[str], None]) -> float:
             write_atomically(options.write_rig, reached.text)
             places.append(f"rig file {options.write_rig}")
         ready("ready: " + ", ".join(places))
+        stack.callback(RealTimePriority().close)
         with collector_at_rest():
             server.serve(lambda: clock.monotonic() - origin, asked)
         return server.latest_s

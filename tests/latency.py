@@ -73,6 +73,7 @@ class Counting:
 def observe(folder: Path, seconds: float, *, idle: bool) -> tuple[Latencies, str]:
     """Let a run slide for a while; return its latencies and why it ended too early, "" if it did not."""
     with sliding(folder, bus_log=True) as (sim, run), nullcontext() if idle else load(folder):
+        print(f"priority: tester sim {policy_of(sim.process.pid)}, tester run {policy_of(run.process.pid)}", flush=True)
         began_s = sim.state.rows[-1].time_s
         give_up = clock.monotonic() + seconds
         while clock.monotonic() < give_up and run.process.poll() is None:
@@ -83,6 +84,13 @@ def observe(folder: Path, seconds: float, *, idle: bool) -> tuple[Latencies, str
         sim.stop()  # completes its logs
         print(sim.errors.read_text(encoding="utf-8").strip().replace("ended", "tester sim"), flush=True)
     return latencies(sim.bus_log, Counting(rows, began_s, rows[-1].time_s)), ended
+
+
+def policy_of(pid: int) -> str:
+    """Say whether a process has real-time priority: without it the load beside it decides the figures."""
+    if sys.platform != "linux":
+        return "ordinary"
+    return "real-time" if os.sched_getscheduler(pid) & ~os.SCHED_RESET_ON_FORK == os.SCHED_RR else "ordinary"
 
 
 def figures_of(found: Latencies, ended: str, seconds: float) -> list[Figure]:

@@ -149,7 +149,7 @@ class LineDoor:
 class RigServer:
     """A simulated rig in real time behind sockets.
 
-    ``can_address`` and ``line_addresses`` are where it listens; ``latest_s`` is how late the loop has come to a step
+    ``can_address`` and ``line_addresses`` are where it listens; ``latest_s`` is how late the loop has come to something
     at most, s: more than some milliseconds means that this machine cannot keep the rig's time.
     """
 
@@ -182,6 +182,7 @@ class RigServer:
 
     def serve(self, now: Callable[[], float], stopped: Callable[[], bool]) -> None:
         """Let the rig live by the clock ``now`` (s, from 0) until ``stopped``, which is asked every step."""
+        self._step_due_s = now()
         while not stopped():
             self.turn(now)
 

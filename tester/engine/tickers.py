@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import gc
-from collections.abc import Callable
+import sys
+from collections.abc import Callable, Generator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from math import ceil
 from typing import Protocol
@@ -112,7 +114,7 @@ def run_real_time(
     pace = pace or Pace()
     now = pace.now()
     due = poll_due = now
-    with collector_at_rest():
+    with collector_at_rest(), scan_first():
         while not engine.finished:
             pace.wait_until(due)
             now = pace.now()
@@ -128,6 +130,21 @@ def run_real_time(
                 poll(now)
                 poll_due = now + 0.1
     return pace.now()
+
+
+SWITCH_S = 0.0005
+"""How long another thread (recorder, reception) may hold the interpreter while a scan is due, s; Python's own is 5 ms."""
+
+
+@contextmanager
+def scan_first() -> Generator[None, None, None]:
+    """Let the scan have the interpreter soon after it asks for it."""
+    before = sys.getswitchinterval()
+    sys.setswitchinterval(SWITCH_S)
+    try:
+        yield
+    finally:
+        sys.setswitchinterval(before)
 
 
 class collector_at_rest:  # noqa: N801 - reads as a statement
