@@ -6,7 +6,6 @@ from threading import Event
 
 from tester import clock
 
-
 LATE_S = 0.005
 """A wait that ends this late has seen the whole process stand still, s: its other threads are as late [A]."""
 

@@ -39,8 +39,8 @@ class PythonCanPort(FrameByFrame):
     ``clock`` gives the arrival times, in seconds of the caller's clock; it is called in the receive thread.
     Without one a frame's arrival is the ``now`` of the ``receive`` that returns it. ``on_urgent`` is called in
     that thread, too, when something arrived that a scan should not wait for: an emergency, a boot-up, changed
-    inputs (TPDO2), or a TPDO1 whose first word, the statusword, shows another state than before. ``ignored`` counts frames that are none
-    of ours: remote, error, 29-bit and FD frames.
+    inputs (TPDO2), or a TPDO1 whose first word, the statusword, shows another state than before. ``ignored``
+    counts frames that are none of ours: remote, error, 29-bit and FD frames.
     """
 
     def __init__(

@@ -133,7 +133,7 @@ def run_real_time(
 
 
 SWITCH_S = 0.0005
-"""How long another thread (recorder, reception) may hold the interpreter while a scan is due, s; Python's own is 5 ms."""
+"""How long another thread (recorder, reception) may keep the interpreter from a scan that is due, s (Python: 5 ms)."""
 
 
 @contextmanager

@@ -12,6 +12,7 @@ import re
 from bisect import bisect_left
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from itertools import pairwise
 from pathlib import Path
 
 GUARD_S = 0.002
@@ -86,7 +87,7 @@ def latencies(bus_log: Path, counts: Callable[[float], bool]) -> Latencies:
     scans = scans_of(bus_log / "can.log")
     starts = [scan.first_s for scan in scans]
     found = Latencies()
-    for scan, following in zip(scans, scans[1:], strict=False):
+    for scan, following in pairwise(scans):
         if not counts(scan.sync_s):
             continue
         found.sync_periods_s.append(following.sync_s - scan.sync_s)

@@ -106,12 +106,12 @@ def start(arguments: Sequence[str], stderr: IO[str]) -> subprocess.Popen[str]:
 
 
 @contextmanager
-def sliding(folder: Path, *, bus_log: bool = False, recipe: str = SLIDING_RECIPE) -> Iterator[tuple[SimProcess, RunProcess]]:
+def sliding(folder: Path, *, bus_log: bool = False) -> Iterator[tuple[SimProcess, RunProcess]]:
     """Give a rig and the run on it, sliding under load with the heat on; both are gone afterwards."""
     folder.mkdir(parents=True, exist_ok=True)
     sim = SimProcess(folder, bus_log=bus_log)
     try:
-        run = RunProcess(folder, sim.rig_file, recipe)
+        run = RunProcess(folder, sim.rig_file)
         try:
             sim.until(slides, 180.0, "sliding under load with the heat on", run)
             yield sim, run
