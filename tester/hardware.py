@@ -10,7 +10,7 @@ from drivers.edges.tcp_line import TcpLine, open_tcp_line
 from drivers.ports import CanPort, LinePort
 from tester.bus_log import BusLog, TappedCan, TappedLine
 from tester.engine.build import Ports
-from tester.pace import Pace
+from tester.pace import UrgentPace
 from tester.priority import RealTimePriority
 from tester.rig import LineConfig, RigConfig
 
@@ -20,7 +20,7 @@ CATCH_UP_S = 0.002
 
 def hardware_ports(rig: RigConfig, log: BusLog | None) -> Ports:
     """Open every wire of a rig file; raises BusLost for the first that cannot be opened, with none left open."""
-    pace = Pace(CATCH_UP_S)
+    pace = UrgentPace(CATCH_UP_S)
     with ExitStack() as opened:
         bus = open_can(rig.can.interface, rig.can.channel, rig.can.bitrate, pace.now, pace.hurry)
         opened.callback(bus.close)

@@ -1,4 +1,4 @@
-"""The pace of a run in real time: seconds since it began, and waiting that something urgent cuts short."""
+"""The pace of a run in real time: seconds since it began, and waiting for absolute deadlines."""
 
 from __future__ import annotations
 
@@ -11,17 +11,29 @@ LATE_S = 0.005
 
 
 class Pace:
-    """A clock that starts now; edges stamp what arrives with it, and the ticker waits by it."""
+    """A clock that starts now, and waits by it."""
 
-    def __init__(self, catch_up_s: float = 0.0) -> None:
-        """Start at 0. ``catch_up_s``: what threads that receive need to fetch what came while the process stood."""
+    def __init__(self) -> None:
+        """Start at 0."""
         self._origin_s = clock.monotonic()
-        self._urgent = Event()
-        self._catch_up_s = catch_up_s
 
     def now(self) -> float:
         """Return the seconds since the start."""
         return clock.monotonic() - self._origin_s
+
+    def wait_until(self, due_s: float) -> None:
+        """Return at ``due_s`` (s)."""
+        clock.sleep_until(self._origin_s + due_s)
+
+
+class UrgentPace(Pace):
+    """The pace of a run on a machine: edges stamp what arrives by its clock, and something urgent ends a wait."""
+
+    def __init__(self, catch_up_s: float = 0.0) -> None:
+        """Start at 0. ``catch_up_s``: what threads that receive need to fetch what came while the process stood."""
+        super().__init__()
+        self._urgent = Event()
+        self._catch_up_s = catch_up_s
 
     def wait_until(self, due_s: float) -> None:
         """Return at ``due_s`` (s), or as soon as something urgent has arrived since the last wait began.

@@ -70,7 +70,7 @@ def _can_stale(view: View) -> bool:
     r = view.readings
     if not (view.demand.enabled and r.drives_enabled):
         return False
-    # Drives answer the SYNC of a scan: after a late one their data is as old as that scan was long ("scan late" judges).
+    # Drives answer a scan's SYNC: after a late one their data is as old as that scan was long ("scan late" judges).
     period_s = max(view.scan_s, r.now_s - view.state.last_s)
     limit = min(view.bounds.stale_can_scans * period_s, view.bounds.stale_can_s)
     oldest = min(r.wheel_at_s, r.belt_at_s, r.press_at_s, r.sideslip_at_s, r.camber_at_s)
