@@ -65,25 +65,27 @@ class Devices:
     """A drive's state, an input or an emergency is new in this scan."""
     _goal: Goal = Goal.DISABLED
     _last_angle_s: float = NEVER
+    _lines: tuple[tuple[LinePort, ModbusLink, ForeseeingPort | None], ...] = field(init=False)
     _foreseeing: ForeseeingPort | None = field(init=False)
 
     def __post_init__(self) -> None:
-        """Fix the drives' order, and see whether the load cell's line is a simulated one."""
+        """Fix the drives' order, and see which lines are simulated ones."""
         self.drives = self.axes.present()
-        self._foreseeing = None
-        for port, link in self.lines:
-            if link is self.cell.link and isinstance(port, ForeseeingPort):
-                self._foreseeing = port
+        self._lines = tuple(
+            (port, link, port if isinstance(port, ForeseeingPort) else None) for port, link in self.lines
+        )
+        self._foreseeing = next((port for _, link, port in self._lines if link is self.cell.link), None)
 
     def receive(self, now: float) -> None:
         """Take in everything that arrived."""
         frames = self.can.receive(now)
         if frames:
             self.master.feed(frames, now)
-        for port, link in self.lines:
-            chunks = port.read(now)
-            if chunks:
-                link.feed(chunks, now)
+        for port, link, foreseen in self._lines:
+            if foreseen is None or foreseen.arrives_s <= now:
+                chunks = port.read(now)
+                if chunks:
+                    link.feed(chunks, now)
 
     def transmit(self, now: float, *, scan: bool, next_scan_s: float = NEVER) -> float:
         """Send what is due and return the next time a driver wants to be served; ``next_scan_s`` if it is known."""
@@ -92,15 +94,17 @@ class Devices:
         else:
             self.master.service(self.can, now)
         deadline = self.master.deadline
-        for port, link in self.lines:
-            link.service(port, now, scan=scan)
+        for port, link, _ in self._lines:
+            if now >= link.wants_s:
+                link.service(port, now, scan=scan)
         # Only the load cell's line may ask for a tick of its own (its retry has to fit into a scan); the slow
         # line's next request can wait for the next scan. A simulated line knows that the reply will be in time.
         watch = self.cell.link
-        wire = self._foreseeing
-        if wire is not None and watch.only_watches and wire.arrives_s <= watch.deadline:
+        wish = watch.deadline
+        if wish >= deadline or wish >= next_scan_s > now:
             return deadline
-        return min(deadline, watch.deadline)
+        wire = self._foreseeing
+        return deadline if wire is not None and watch.only_watches and wire.arrives_s <= wish else wish
 
     def fill(self, r: Readings, now: float, diameter_mm: float) -> None:
         """Bring the process image up to date."""
