@@ -112,4 +112,4 @@ def test_a_cold_hub_and_a_thermometer_that_disagrees_do_not_arm() -> None:
     bias = simulation.world.plant.surface_measured_c(0.0) - 23.0
     assert abs(bias) > 6.0, "the seed is meant to draw a large bias"
     simulation.to_the_end(100.0)
-    assert simulation.run.outcome is Outcome.UNREACHABLE and "hub cold at 23" in simulation.run.reason
+    assert simulation.run.outcome is Outcome.UNREACHABLE and "hub cold at" in simulation.run.reason
