@@ -62,23 +62,28 @@ class Devices:
     drives: tuple[ServoDrive, ...] = field(init=False)
     manual_sideslip_deg: float = 0.0
     manual_camber_deg: float = 0.0
-    _last_angle_s: float = NEVER
-    _foreseeing: ForeseeingPort | None = field(init=False)
+    news: bool = True
+    """A drive's state, an input or an emergency is new in this scan."""
     lost: str = ""
     """Why a wire is gone. It is never used again: what waits in its queues must not be sent later."""
     _can_alive: bool = True
     _cell_counts: tuple[int, int, int, int] = (0, 0, 0, 0)
     _surface_counts: int = 0
     _inspector: Inspector = field(init=False)
+    _goal: Goal = Goal.DISABLED
+    _press_goal: Goal = Goal.DISABLED
+    _last_angle_s: float = NEVER
+    _lines: tuple[tuple[LinePort, ModbusLink, ForeseeingPort | None], ...] = field(init=False)
+    _foreseeing: ForeseeingPort | None = field(init=False)
 
     def __post_init__(self) -> None:
-        """Fix the drives' order, and see whether the load cell's line is a simulated one."""
+        """Fix the drives' order, and see which lines are simulated ones."""
         self.drives = self.axes.present()
         self._inspector = Inspector(self.cell, self.thermometer, self.jacket)
-        self._foreseeing = None
-        for port, link in self.lines:
-            if link is self.cell.link and isinstance(port, ForeseeingPort):
-                self._foreseeing = port
+        self._lines = tuple(
+            (port, link, port if isinstance(port, ForeseeingPort) else None) for port, link in self.lines
+        )
+        self._foreseeing = next((port for _, link, port in self._lines if link is self.cell.link), None)
 
     def receive(self, now: float) -> None:
         """Take in everything that arrived; a wire that is lost is left alone from then on (``lost`` says why)."""
@@ -90,14 +95,15 @@ class Devices:
             # What comes over a wire that was lost and came back is taken off it, and not believed.
             if frames and self._can_alive:
                 self.master.feed(frames, now)
-        for port, link in self.lines:
-            try:
-                chunks = port.read(now)
-            except BusLost as error:
-                self._lose_line(link, error, now)
-                break
-            if chunks:
-                link.feed(chunks, now)
+        for port, link, foreseen in self._lines:
+            if foreseen is None or foreseen.arrives_s <= now:
+                try:
+                    chunks = port.read(now)
+                except BusLost as error:
+                    self._lose_line(link, error, now)
+                    continue
+                if chunks:
+                    link.feed(chunks, now)
 
     def _lose_can(self, error: BusLost) -> None:
         self.lost = self.lost or f"bus lost: {error}"
@@ -106,7 +112,7 @@ class Devices:
     def _lose_line(self, link: ModbusLink, error: BusLost, now: float) -> None:
         """Go on without a line: what it carried is not valid any more."""
         self.lost = self.lost or f"line lost: {error}"
-        self.lines = [entry for entry in self.lines if entry[1] is not link]
+        self._lines = tuple(entry for entry in self._lines if entry[1] is not link)
         for station in link.stations:
             station.owner.lost(now)
         if link is self.cell.link:
@@ -129,25 +135,36 @@ class Devices:
         # Only the load cell's line may ask for a tick of its own (its retry has to fit into a scan); the slow
         # line's next request can wait for the next scan. A simulated line knows that the reply will be in time.
         watch = self.cell.link
-        wire = self._foreseeing
-        if wire is not None and watch.only_watches and wire.arrives_s <= watch.deadline:
+        wish = watch.deadline
+        if wish >= deadline or wish >= next_scan_s > now:
             return deadline
-        return min(deadline, watch.deadline)
+        wire = self._foreseeing
+        return deadline if wire is not None and watch.only_watches and wire.arrives_s <= wish else wish
 
     def transmit_lines(self, now: float, *, scan: bool = True) -> None:
         """Send what is due on the Modbus lines alone."""
-        for port, link in self.lines:
-            try:
-                link.service(port, now, scan=scan)
-            except BusLost as error:
-                self._lose_line(link, error, now)
-                break
+        for port, link, _ in self._lines:
+            if now >= link.wants_s:
+                try:
+                    link.service(port, now, scan=scan)
+                except BusLost as error:
+                    self._lose_line(link, error, now)
 
     def fill(self, r: Readings, now: float, diameter_mm: float) -> None:
         """Bring the process image up to date."""
         r.now_s = now
         self._fill_motion(r, self.axes, diameter_mm)
-        self._fill_status(r)
+        self.news = False
+        for drive in self.drives:
+            if drive.news:
+                drive.news = False
+                self.news = True
+        if self.news:
+            self._fill_status(r)
+        if self.lost:
+            r.bus_fault = self.lost
+        if self.master.foreign_master:
+            r.foreign_master = self.master.foreign_frame
         cell = self.cell
         r.force_x_n, r.force_y_n, r.force_z_n, r.moment_z_nm = cell.fx_n, cell.fy_n, cell.fz_n, cell.mz_nm
         r.cell_valid, r.cell_at_s = cell.valid, cell.stamp_s
@@ -211,9 +228,6 @@ class Devices:
             if not fault and (drive.lost or drive.rebooted or drive.emergency is not None):
                 fault = _fault_text(drive)
         r.drives_enabled, r.drives_disabled, r.drive_fault = enabled, disabled, fault
-        r.bus_fault = self.lost
-        if self.master.foreign_master:
-            r.foreign_master = self.master.foreign_frame
         inputs = self.axes.press.inputs
         r.safety_chain = inputs & INPUT_SAFETY_CHAIN != 0
         r.guard_closed = inputs & INPUT_GUARD != 0
@@ -224,17 +238,24 @@ class Devices:
         axes = self.axes
         wanted = _ENABLED if out.enable else _DISABLED
         goal = _FREE if out.power_off else _QUICK_STOP if out.quick_stop else wanted
-        for drive in self.drives:
-            # A quick-stopped press would stay in contact: it keeps its own retraction.
-            drive.goal = wanted if goal is _QUICK_STOP and drive is axes.press else goal
-        axes.wheel.target = out.wheel_rad_s
-        axes.belt.target = out.belt_m_s
-        axes.press.target = out.press_mm_s
-        if axes.sideslip is not None:
-            axes.sideslip.target = out.sideslip_deg
-        if axes.camber is not None:
-            axes.camber.target = out.camber_deg
-        axes.press.outputs = OUTPUT_CONTACTOR if out.contactor else 0
+        # A quick-stopped press would stay in contact: it keeps its own retraction, as long as it is to have power.
+        press_goal = wanted if goal is _QUICK_STOP else goal
+        wheel, belt, press, sideslip, camber = axes.wheel, axes.belt, axes.press, axes.sideslip, axes.camber
+        if goal is not self._goal or press_goal is not self._press_goal or self.news:
+            self._goal, self._press_goal = goal, press_goal
+            for drive in self.drives:
+                drive.goal = press_goal if drive is press else goal
+        if out.wheel_rad_s != wheel.aimed:
+            wheel.aim(out.wheel_rad_s)
+        if out.belt_m_s != belt.aimed:
+            belt.aim(out.belt_m_s)
+        if out.press_mm_s != press.aimed:
+            press.aim(out.press_mm_s)
+        if sideslip is not None and out.sideslip_deg != sideslip.aimed:
+            sideslip.aim(out.sideslip_deg)
+        if camber is not None and out.camber_deg != camber.aimed:
+            camber.aim(out.camber_deg)
+        press.outputs = OUTPUT_CONTACTOR if out.contactor else 0
         jacket = self.jacket
         jacket.enable(out.heat)
         if not out.jacket_silent:

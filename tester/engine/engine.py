@@ -76,7 +76,8 @@ class Engine:
         events = control.state.events
         if events:
             self._journal()  # commands given since the last scan: before what the executor says in this one
-        self._journal_emergencies()
+        if devices.news:
+            self._journal_emergencies()
         if control.state.mode is _RUN:
             ctx.gate = ctx.gates.update(readings, ctx.dt)
             self.executor.step(ctx)
