@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from types import FrameType
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 from drivers.ports import BusLost
 from recipes import find
@@ -80,6 +80,15 @@ class Screen(Protocol):
 
     def result(self, line: str) -> None:
         """Write the run's folder."""
+        ...
+
+
+@runtime_checkable
+class Commanding(Protocol):
+    """A screen at which a person can give commands to the run."""
+
+    def commands(self) -> list[str]:
+        """Return the commands given since the last call: hold, release, abort or stop."""
         ...
 
 
@@ -166,6 +175,9 @@ class Session:
         def poll(now_s: float) -> None:
             self.screen.show(now_s, run.engine.ctx.progress, now_s / expected_s)
             self.screen.attend(prompts)
+            if isinstance(self.screen, Commanding):
+                for command in self.screen.commands():
+                    self._command(run, command)
             if recorder.failed:
                 run.request_stop(f"the run can no longer be recorded: {recorder.failed}")
 
@@ -188,7 +200,21 @@ class Session:
             self.interrupts += 1
             self.run_.request_stop("interrupted by the operator", fast=self.interrupts > 1)
         else:
-            self.run_.request_stop("terminated")
+            # Whoever sends TERM waits for the end: it comes at standstill, without the cool-down.
+            self.run_.request_stop("terminated", cool=False)
+
+    def _command(self, run: Run, command: str) -> None:
+        """Carry out what was asked for at the screen; what has no effect is said."""
+        refused = ""
+        if command == "hold":
+            refused = run.request_hold()
+        elif command == "release":
+            refused = run.request_release()
+        elif command == "abort":
+            run.request_abort()
+        elif command == "stop":
+            run.request_stop("stopped by the operator", fast=True)
+        self.screen.message(refused or command)
 
     def _report(self, folder: Path, outcome: Outcome, reason: str, failed: str | None) -> int:
         """Write the tables, name what is missing in them, and return the exit code."""
