@@ -133,8 +133,8 @@ class ModbusSlave:
             return self._write(frame[:6], *write, t)
         if len(frame) < 4 or frame[0] not in (self.unit_id, BROADCAST) or crc16(frame) != 0:
             return None
-        reply = self._execute(frame[:-2], frame, t)
-        return None if frame[0] == BROADCAST else reply
+        executed = self._execute(frame[:-2], frame, t)
+        return None if frame[0] == BROADCAST else executed
 
     def exception(self, function: int, code: int) -> bytes:
         """Return the reply that refuses ``function``."""
