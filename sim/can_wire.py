@@ -53,8 +53,9 @@ class SyncFollower(Protocol):
     sample: bytes
     sample_id: int
 
-    def take_sample(self) -> bytes:
-        """Return what the TPDO shows now."""
+    @property
+    def take_sample(self) -> Callable[[], bytes]:
+        """What returns what the TPDO shows now."""
         ...
 
     def on_sync(self, t: float) -> None:

@@ -91,7 +91,7 @@ def plan(recipe: str, rig_name: str, overrides: tuple[str, ...], as_json: bool) 
 
 
 @contextmanager
-def _nothing_collected() -> Generator[None]:
+def _nothing_collected() -> Generator[None, None, None]:
     """Keep the garbage collector from looking through a plan, all of which lives on: a third of the time."""
     enabled = gc.isenabled()
     gc.disable()
