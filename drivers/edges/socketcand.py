@@ -3,8 +3,8 @@
 Measured with python-can 4.6.1: where nobody listens it tries for ten seconds without a pause, and where nobody greets
 it waits for ever; its small frames wait for each other (Nagle's algorithm) unless ``tcp_tune`` is set, which Windows
 does not have; and where the server closed the connection, ``recv`` returns None for ever, without waiting. The latter
-two are set right at the client's socket, which it does not give out: a client that keeps it elsewhere one day is used as
-it is, and what ends such a connection is then the loss of the drives' heartbeats.
+two are set right at the client's socket, which it does not give out: a client that keeps it elsewhere one day is used
+as it is, and what ends such a connection is then the loss of the drives' heartbeats.
 """
 
 from __future__ import annotations
