@@ -24,8 +24,10 @@ from tester.engine.devices import Axes, Devices
 from tester.engine.engine import Engine
 from tester.engine.executor import Executor
 from tester.engine.gates import Gates
+from tester.engine.plan_bounds import plan_bounds
 from tester.engine.prompts import Prompts
 from tester.engine.results import StoredResults
+from tester.engine.resume import take_up
 from tester.engine.run import Run
 from tester.engine.sampler import Sampler
 from tester.pace import Pace
@@ -33,6 +35,7 @@ from tester.process import Demand, Readings, Setpoints
 from tester.recipe.plan import Plan
 from tester.rig import LineConfig, RigConfig
 from tester.store.recorder import Recorder
+from tester.store.resume import ResumePoint
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,13 +108,19 @@ def loss_ratios(rig: RigConfig) -> tuple[float, float]:
 
 
 def build_run(
-    rig: RigConfig, plan: Plan, ports: Ports, attendant: Attendant, recorder: Recorder, prompts: Prompts
+    rig: RigConfig,
+    plan: Plan,
+    ports: Ports,
+    attendant: Attendant,
+    recorder: Recorder,
+    prompts: Prompts,
+    point: ResumePoint | None = None,
 ) -> Run:
-    """Return a run that is ready to be ticked."""
+    """Return a run that is ready to be ticked; ``point``: where it goes on, with the remaining plan."""
     devices = build_devices(rig, ports)
     load = LoadLoop()
     state = ControlState(Setpoints(), load, HeatLoop(rig.loops.heat.hub_min_c))
-    control = Control(rig, state, loss_ratios(rig))
+    control = Control(rig, state, loss_ratios(rig), plan_bounds(plan, rig))
     geometry = rig.geometry
     ctx = Context(
         rig=rig,
@@ -125,7 +134,11 @@ def build_run(
         wheel=WheelLife(installed_mm=geometry.wheel_diameter_mm, width_mm=geometry.wheel_width_mm),
         contact=load,
         ambient_c=rig.ambient_c,
+        wheel_changed=control.view.wheel_changed,
     )
-    executor = Executor(plan, StoredResults(recorder), hardware=not rig.simulated)
+    results = StoredResults(recorder)
+    executor = Executor(plan, results, hardware=not rig.simulated)
+    if point is not None:
+        take_up(executor, results, point)
     engine = Engine(devices, control, executor, ctx, Sampler(recorder))
-    return Run(Connector(devices), engine)
+    return Run(Connector(devices, rig), engine)

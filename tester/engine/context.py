@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from math import pi
 from typing import Protocol
@@ -21,6 +22,10 @@ class Attendant(Protocol):
         """Mount a new wheel of ``compound``."""
         ...
 
+    def remount(self, specimen: int, wheel: int, compound: str, diameter_mm: float, sliding_m: float) -> None:
+        """Put the wheel of an interrupted run back, as worn as it was (mm, m)."""
+        ...
+
     def begin_repeat(self, condition: int, repeat: int, attempt: int) -> None:
         """Mark the start of a repeat (keys of the simulator's random streams)."""
         ...
@@ -31,6 +36,9 @@ class Nobody:
 
     def install(self, specimen: int, wheel: int, compound: str, *, new_specimen: bool) -> None:
         """Do nothing: the prompt has been answered."""
+
+    def remount(self, specimen: int, wheel: int, compound: str, diameter_mm: float, sliding_m: float) -> None:
+        """Do nothing: the wheel is still on."""
 
     def begin_repeat(self, condition: int, repeat: int, attempt: int) -> None:
         """Do nothing."""
@@ -98,6 +106,13 @@ class Progress:
     revolutions: float = 0.0
     revolutions_wanted: float = 0.0
     burst: int = 0
+    part: int = 1
+    """Which of the run's parts this is, and how many there are (tester.campaign)."""
+    parts: int = 1
+
+
+def nothing_to_tell(now: float) -> None:
+    """Take note of nothing: a bench without control."""
 
 
 @dataclass(slots=True)
@@ -118,6 +133,8 @@ class Context:
     """The press loop: whether it is in contact, and where the wheel was touched."""
     ambient_c: float
     """Air temperature at the rig, degC."""
+    wheel_changed: Callable[[float], None] = nothing_to_tell
+    """Tells control that another wheel is on the rig, at ambient temperature (s)."""
     now: float = 0.0
     dt: float = 0.0
     moving: bool = False

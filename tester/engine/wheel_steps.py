@@ -5,7 +5,7 @@ from __future__ import annotations
 from tester.engine.context import Context, WheelLife
 from tester.engine.moves import Ask, Lift, Load, Power, Sequence, TakeTare, Turn, speeds_reached
 from tester.engine.thermal_steps import Straighten
-from tester.recipe.plan import Install, PreGrind
+from tester.recipe.plan import Install, PreGrind, WornState
 from tester.store.records import WheelInfo
 
 REFERENCE_TARE_S = 2.0
@@ -21,11 +21,20 @@ class InstallWheel:
         self.reference = reference_tare
         self.before = Sequence(Lift(), Turn(0.0, 0.0), Power(False))
         note = f" ({step.note})" if step.note else ""
-        self.ask = Ask(f"install wheel {step.wheel}: {step.compound}{note}")
+        text = f"install wheel {step.wheel}: {step.compound}{note}"
+        if step.worn is not None:
+            text = f"the run goes on with wheel {step.wheel}: {step.compound}{note}, mounted as it was"
+        self.ask = Ask(text)
         self.standing = False
         self.mounted = False
         self.tare: TakeTare | None = None
         self.after = Sequence()
+
+    def resume(self, ctx: Context) -> None:
+        """Take the tare anew, where it had begun."""
+        self.before.resume(ctx)
+        if self.tare is not None:
+            self._begin_tare(ctx)
 
     def step(self, ctx: Context) -> bool:
         """Done when mounted and tared."""
@@ -38,11 +47,15 @@ class InstallWheel:
             return False
         if self.tare is None:
             self._mount(ctx)
-            self.reference.clear()
-            limits = ctx.rig.interlocks
-            self.tare = TakeTare(REFERENCE_TARE_S, self.reference, limits.zero_warn_n, limits.zero_stop_n)
-            self.after = Sequence(Power(True), Straighten(), self.tare)
+            self._begin_tare(ctx)
         return self.after.step(ctx)
+
+    def _begin_tare(self, ctx: Context) -> None:
+        if self.install.worn is None:
+            self.reference.clear()
+        limits = ctx.rig.interlocks
+        self.tare = TakeTare(REFERENCE_TARE_S, self.reference, limits.zero_warn_n, limits.zero_stop_n)
+        self.after = Sequence(Power(True), Straighten(), self.tare)
 
     @property
     def failed(self) -> str:
@@ -51,6 +64,9 @@ class InstallWheel:
 
     def _mount(self, ctx: Context) -> None:
         step, old = self.install, ctx.wheel
+        if step.worn is not None:
+            self._remount(ctx, step.worn)
+            return
         new_specimen = (old.specimen, old.replicate) != (step.specimen, step.replicate)
         ctx.attendant.install(step.specimen, step.wheel, step.compound, new_specimen=new_specimen)
         geometry = ctx.rig.geometry
@@ -63,6 +79,7 @@ class InstallWheel:
             width_mm=geometry.wheel_width_mm,
         )
         ctx.contact.forget_contact()
+        ctx.wheel_changed(ctx.now)
         ctx.readings.wheel_angle_rev = 0.0
         wheel = ctx.wheel
         record = WheelInfo(
@@ -76,6 +93,23 @@ class InstallWheel:
             updated_s=ctx.now,
         )
         ctx.journal.wheel_installed(record)
+
+    def _remount(self, ctx: Context, worn: WornState) -> None:
+        """Go on with a wheel as the store knows it: its record, its first tare and its number stay."""
+        step, geometry = self.install, ctx.rig.geometry
+        ctx.attendant.remount(step.specimen, step.wheel, step.compound, worn.diameter_mm, worn.sliding_m)
+        ctx.wheel = WheelLife(
+            specimen=step.specimen,
+            replicate=step.replicate,
+            wheel=step.wheel,
+            compound=step.compound,
+            installed_mm=geometry.wheel_diameter_mm,
+            width_mm=geometry.wheel_width_mm,
+            loss_mm=geometry.wheel_diameter_mm - worn.diameter_mm,
+            sliding_m=worn.sliding_m,
+        )
+        ctx.contact.forget_contact()
+        ctx.readings.wheel_angle_rev = 0.0
 
 
 class Grind:
@@ -104,19 +138,34 @@ class PreGrindStep:
 
     def __init__(self, step: PreGrind) -> None:
         """The step of the plan."""
+        self.pre_grind = step
+        self.grind = Grind(step.load_n, step.duration_s)
+        self.moves = self._moves()
+
+    def _moves(self) -> Sequence:
+        step = self.pre_grind
         wheel, belt = step.wheel_speed_m_s, step.belt_speed_m_s
-        self.moves = Sequence(
+        return Sequence(
             Power(True),
             Straighten(),
             Turn(wheel, wheel),
             Load(step.load_n, for_s=2.0),
             Turn(wheel, belt),
-            Grind(step.load_n, step.duration_s),
+            self.grind,
             Turn(wheel, wheel),
             Lift(),
         )
 
+    def resume(self, ctx: Context) -> None:
+        """Touch again and grind for what is left of the time."""
+        self.grind.counting = False
+        self.moves = self._moves()
+
     def step(self, ctx: Context) -> bool:
         """Done when ground and lifted."""
         ctx.demand.surface_c = float("nan")
-        return self.moves.step(ctx)
+        if not self.moves.step(ctx):
+            return False
+        wheel = ctx.wheel
+        ctx.journal.wheel_ground(wheel.wheel, wheel.diameter_mm, wheel.sliding_m, ctx.now)
+        return True
