@@ -286,6 +286,15 @@ def test_a_clock_that_goes_back_trips(bench: Bench) -> None:
 # -- what must not trip -------------------------------------------------------------------------------------------
 
 
+def test_drive_data_as_old_as_a_late_scan_was_long_does_not_trip(bench: Bench) -> None:
+    r = bench.readings
+    r.now_s += 0.045
+    r.wheel_at_s = r.belt_at_s = r.press_at_s = r.sideslip_at_s = r.camber_at_s = r.now_s - 0.044
+    r.cell_at_s = r.now_s - 0.044
+    bench.control.step(bench.demand, r, 0.01)
+    assert bench.state.trip is None
+
+
 def test_a_stale_load_cell_does_not_matter_while_lifted(bench: Bench) -> None:
     bench.demand.press = Press.LIFT
     bench.readings.force_z_n = bench.readings.slip_m_s = 0.0
