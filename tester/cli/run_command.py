@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import click
 
 from tester.cli.options import json_option, rig_option, set_option
@@ -46,35 +48,45 @@ def run(
     from tester.cli.console import Console
     from tester.session import Session, SessionOptions
 
-    lapse, refused = _lapse(speed)
-    if refused:
-        raise click.UsageError(refused)
     options = SessionOptions(
         recipe=recipe,
         rig=rig_name,
         overrides=overrides,
         out=Path(out),
         seed=seed,
-        lapse=lapse,
+        lapse=time_lapse(speed),
         bus_log=Path(bus_log) if bus_log else None,
         operator=operator,
     )
-    console = Console(as_json=as_json, answer_yes=yes)
+    session = Session(options, Console(as_json=as_json, answer_yes=yes))
+    return carried_out(session.run)
+
+
+def carried_out(work: Callable[[], int]) -> int:
+    """Do the work and return its exit code; what keeps it from beginning goes to stderr."""
+    from tester.session import CannotStartError
+    from tester.store.schema import StoreError
+
     try:
-        return Session(options, console).run()
+        return work()
+    except CannotStartError as error:
+        click.echo(str(error), err=True)
+        return error.code
     except FileNotFoundError as error:
         raise click.UsageError(str(error)) from error
+    except (StoreError, OSError) as error:
+        raise click.ClickException(str(error)) from error
 
 
-def _lapse(speed: str | None) -> tuple[float | None, str]:
-    """Return the time lapse (None = as fast as it goes) and why a text is none."""
+def time_lapse(speed: str | None) -> float | None:
+    """Return the time lapse, None = as fast as it goes; a text that is none is a usage error."""
     if speed in (None, "max"):
-        return None, ""
+        return None
     assert speed is not None
     try:
         lapse = float(speed)
     except ValueError:
         lapse = float("nan")
     if not 0.0 < lapse < 1e6:
-        return None, f"--speed: expected max or a number above 0, not {speed!r}"
-    return lapse, ""
+        raise click.UsageError(f"--speed: expected max or a number above 0, not {speed!r}")
+    return lapse

@@ -25,12 +25,14 @@ from tester.engine.executor import Executor
 from tester.engine.gates import Gates
 from tester.engine.prompts import Prompts
 from tester.engine.results import StoredResults
+from tester.engine.resume import take_up
 from tester.engine.run import Run
 from tester.engine.sampler import Sampler
 from tester.process import Demand, Readings, Setpoints
 from tester.recipe.plan import Plan
 from tester.rig import LineConfig, RigConfig
 from tester.store.recorder import Recorder
+from tester.store.resume import ResumePoint
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,9 +95,15 @@ def loss_ratios(rig: RigConfig) -> tuple[float, float]:
 
 
 def build_run(
-    rig: RigConfig, plan: Plan, ports: Ports, attendant: Attendant, recorder: Recorder, prompts: Prompts
+    rig: RigConfig,
+    plan: Plan,
+    ports: Ports,
+    attendant: Attendant,
+    recorder: Recorder,
+    prompts: Prompts,
+    point: ResumePoint | None = None,
 ) -> Run:
-    """Return a run that is ready to be ticked."""
+    """Return a run that is ready to be ticked; ``point``: where it goes on, with the remaining plan."""
     devices = build_devices(rig, ports)
     load = LoadLoop()
     state = ControlState(Setpoints(), load, HeatLoop(rig.loops.heat.hub_min_c))
@@ -114,6 +122,9 @@ def build_run(
         contact=load,
         ambient_c=rig.ambient_c,
     )
-    executor = Executor(plan, StoredResults(recorder), hardware=not rig.simulated)
+    results = StoredResults(recorder)
+    executor = Executor(plan, results, hardware=not rig.simulated)
+    if point is not None:
+        take_up(executor, results, point)
     engine = Engine(devices, control, executor, ctx, Sampler(recorder))
     return Run(Connector(devices), engine)

@@ -51,6 +51,18 @@ class ConditionEnd:
 class Results(Protocol):
     """Where repeats and conditions go: reduction and store behind one door."""
 
+    def committed(self, step: ConditionStep) -> int:
+        """Return how many repeats of a condition an earlier stretch of the run committed."""
+        ...
+
+    def over(self, step: ConditionStep) -> ConditionEnd | None:
+        """Return how the last of these ended the condition; None where it goes on."""
+        ...
+
+    def attempt(self, step: ConditionStep, repeat: int) -> int:
+        """Return the number of the next attempt at a repeat, from 1."""
+        ...
+
     def begin_repeat(self, ctx: Context, step: ConditionStep, repeat: int, attempt: int) -> int:
         """Open a repeat; return the key that its samples carry."""
         ...
@@ -81,7 +93,7 @@ class MeasureCondition:
         self.before: Sequence | None = None
         self.soak: SoakTo | None = None
         self.soaked = False
-        self.repeat = 0
+        self.repeat = results.committed(step)
         self.key = 0
         self.measuring: MeasureRepeat | None = None
         self.outcome: RepeatOutcome | None = None
@@ -109,6 +121,9 @@ class MeasureCondition:
     def _soak(self, ctx: Context) -> bool:
         step, sp = self.condition, self.condition.setpoint
         if self.before is None or self.soak is None:
+            over = self.results.over(step)
+            if over is not None:
+                return self._close(ctx, over)
             pulsed = abs(sp.slip_velocity_m_s) > 1e-9 or sp.sideslip_deg != 0.0 or sp.camber_deg != 0.0
             self.offset_k = ctx.rig.loops.heat.rolling_offset_k
             target = sp.temperature_c - (self.offset_k if pulsed else 0.0)
@@ -132,8 +147,9 @@ class MeasureCondition:
 
     def _begin(self, ctx: Context) -> None:
         self.repeat += 1
-        ctx.attendant.begin_repeat(self.condition.row, self.repeat, 1)
-        self.key = self.results.begin_repeat(ctx, self.condition, self.repeat, 1)
+        attempt = self.results.attempt(self.condition, self.repeat)
+        ctx.attendant.begin_repeat(self.condition.row, self.repeat, attempt)
+        self.key = self.results.begin_repeat(ctx, self.condition, self.repeat, attempt)
         ctx.repeat_key = self.key
         self.measuring = MeasureRepeat(self.condition, self.reference_tare, self.offset_k)
         ctx.progress.revolutions_wanted = self.condition.window.revolutions or 0.0

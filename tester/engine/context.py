@@ -21,6 +21,10 @@ class Attendant(Protocol):
         """Mount a new wheel of ``compound``."""
         ...
 
+    def remount(self, specimen: int, wheel: int, compound: str, diameter_mm: float, sliding_m: float) -> None:
+        """Put the wheel of an interrupted run back, as worn as it was (mm, m)."""
+        ...
+
     def begin_repeat(self, condition: int, repeat: int, attempt: int) -> None:
         """Mark the start of a repeat (keys of the simulator's random streams)."""
         ...
@@ -31,6 +35,9 @@ class Nobody:
 
     def install(self, specimen: int, wheel: int, compound: str, *, new_specimen: bool) -> None:
         """Do nothing: the prompt has been answered."""
+
+    def remount(self, specimen: int, wheel: int, compound: str, diameter_mm: float, sliding_m: float) -> None:
+        """Do nothing: the wheel is still on."""
 
     def begin_repeat(self, condition: int, repeat: int, attempt: int) -> None:
         """Do nothing."""

@@ -10,18 +10,26 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, fields
 from pathlib import Path
 from types import TracebackType
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Literal, TypeVar
 
 from tester.analysis.results import Burst, ConditionStatus, RepeatResult, RepeatStatus
 from tester.store.records import (
     NAN,
+    BusStatistic,
+    Calibration,
+    Change,
     ConditionInfo,
     Event,
+    Parameter,
     RunInfo,
+    SessionInfo,
     SpecimenInfo,
     StoredCondition,
+    StoredPrompt,
     StoredRepeat,
     StoredRun,
+    StoredTare,
+    StoredTrip,
     WheelInfo,
 )
 from tester.store.sample_blocks import unpack, unpack_array
@@ -137,6 +145,7 @@ class RunReader:
                 row,
                 simulated=bool(row["simulated"]),
                 seed=seed if isinstance(seed, int) else None,
+                calibration=tuple(self.calibration()),
                 metadata=self._texts("metadata", "key", "value"),
                 versions=self._texts("version", "component", "version"),
             )
@@ -195,6 +204,55 @@ class RunReader:
         """Yield the journal in order."""
         for row in self._rows("SELECT * FROM event ORDER BY sequence"):
             yield _record(Event, row)
+
+    def sessions(self) -> list[SessionInfo]:
+        """Return the stretches in which the run was worked on, a process each."""
+        return [_record(SessionInfo, row) for row in self._rows("SELECT * FROM session ORDER BY session")]
+
+    def changes(self) -> list[Change]:
+        """Return what was changed between the stretches, and why."""
+        return [_record(Change, row) for row in self._rows("SELECT * FROM change ORDER BY id")]
+
+    def calibration(self, session: int | None = None) -> list[Calibration]:
+        """Return the calibration in use at the end, or from a stretch on in which it was changed."""
+        which = "(SELECT max(session) FROM calibration)" if session is None else "?"
+        values = () if session is None else (session,)
+        rows = self._rows(f"SELECT * FROM calibration WHERE session = {which} ORDER BY id", values)
+        return [_record(Calibration, row) for row in rows]
+
+    def tares(self) -> Iterator[StoredTare]:
+        """Yield the zeros of the load cell in order."""
+        for row in self._rows("SELECT * FROM tare ORDER BY id"):
+            yield _record(StoredTare, row)
+
+    def prompts(self) -> Iterator[StoredPrompt]:
+        """Yield the questions to people with their answers, in order."""
+        for row in self._rows("SELECT * FROM prompt ORDER BY id"):
+            yield _record(StoredPrompt, row)
+
+    def trips(self) -> Iterator[StoredTrip]:
+        """Yield the trips in order."""
+        for row in self._rows("SELECT * FROM trip ORDER BY id"):
+            yield _record(StoredTrip, row)
+
+    def parameters(self) -> Iterator[Parameter]:
+        """Yield what was read back from the devices, in order."""
+        for row in self._rows("SELECT * FROM device_parameter ORDER BY id"):
+            yield _record(Parameter, row)
+
+    def bus_statistics(self) -> Iterator[BusStatistic]:
+        """Yield the counters of the buses in order."""
+        for row in self._rows("SELECT * FROM bus_statistic ORDER BY id"):
+            yield _record(BusStatistic, row)
+
+    def integrity_problems(self) -> list[str]:
+        """Return what SQLite's own check finds wrong in the file; none in a sound one."""
+        found = [_text(row, "integrity_check") for row in self._rows("PRAGMA integrity_check")]
+        return [] if found == ["ok"] else found
+
+    def count(self, table: Literal["repeat", "condition", "sample_block", "event"], where: str = "1") -> int:
+        """Return how many rows a table has."""
+        return next(_whole(row, "n") for row in self._rows(f"SELECT count(*) AS n FROM {table} WHERE {where}"))
 
     def sample_columns(self) -> tuple[str, ...]:
         """Return the names of the samples' columns."""

@@ -204,6 +204,8 @@ class RunWriter(Recorder):
             if isinstance(item, Batch):
                 self._batches.append(item)
                 self._urgent |= item.urgent
+            elif origin := self.origin_s:
+                self._rows.append((item[0] + origin, *item[1:]))
             else:
                 self._rows.append(item)
         self._room.set()
