@@ -144,6 +144,8 @@ class Session:
         self.screen = screen
         self.interrupts = 0
         self.run_: Run | None = None
+        self.folder: Path | None = None
+        self.statistics = TickStatistics()
 
     def run(self) -> int:
         """Run to the end; return the exit code. Raises InvalidSource for an invalid recipe or
@@ -215,6 +217,7 @@ class Session:
     # -- parts ------------------------------------------------------------------------------------------------
 
     def _record(self, work: Work) -> int:
+        self.folder = work.folder
         writer = RunWriter(
             work.folder / "run.db", clock=clock.monotonic, utc=clock.utc_now, lossless=work.rig.can.interface == "sim"
         )
@@ -260,7 +263,7 @@ class Session:
             if world is not None:
                 # Also at --speed 1: counted ticks, not measured ones, so that no speed changes a result.
                 return run_simulated(run, world, lapse=self.options.lapse, poll=poll)
-            return run_real_time(run, world, poll=poll, statistics=TickStatistics())
+            return run_real_time(run, world, poll=poll, statistics=self.statistics)
         finally:
             for number, handler in previous.items():
                 signal.signal(number, handler)

@@ -11,6 +11,12 @@ from typing import Protocol
 from tester import clock
 
 
+POLL_S = 0.02
+"""Period of ``poll``, s of wall time: a STOP from a screen is heard within it."""
+LEAVE_S = 0.002
+"""No poll begins this shortly before a tick is due, s."""
+
+
 class Ticked(Protocol):
     """What a ticker drives."""
 
@@ -65,8 +71,8 @@ def next_tick(now: float, wanted: float, urgent: float) -> float:
 def run_simulated(engine: Ticked, world: World, *, lapse: float | None, poll: Callable[[float], None]) -> float:
     """Run to the end in simulated time; return the rig seconds.
 
-    ``lapse``: rig seconds per second of wall time, or None for as fast as it goes. ``poll`` is called about ten times
-    a second of wall time (display, keys); it must not block for long.
+    ``lapse``: rig seconds per second of wall time, or None for as fast as it goes. ``poll`` is called about every
+    ``POLL_S`` of wall time (display, commands), between two ticks as well; it must not block for long.
     """
     now = 0.0
     origin = clock.monotonic()
@@ -77,14 +83,17 @@ def run_simulated(engine: Ticked, world: World, *, lapse: float | None, poll: Ca
             wanted = engine.tick(now)
             later = next_tick(now, wanted, world.urgent_s)
             if lapse is not None:
-                clock.sleep_until(origin + later / lapse)
+                poll_due = _wait(origin + later / lapse, now, poll, poll_due)
             wall = clock.monotonic()
             if wall >= poll_due:
                 poll(now)
-                poll_due = wall + 0.1
-            while engine.waiting:
-                poll(now)
-                clock.sleep_until(clock.monotonic() + 0.02)
+                poll_due = wall + POLL_S
+            if engine.waiting:
+                asked = clock.monotonic()
+                while engine.waiting:
+                    poll(now)
+                    clock.sleep_until(clock.monotonic() + POLL_S)
+                origin += clock.monotonic() - asked  # a person's time is not made up for
             now = later
     return now
 
@@ -97,11 +106,11 @@ def run_real_time(
     ``world``: a simulated rig in the same process, or None when hardware is on the wire.
     """
     origin = clock.monotonic()
-    due = 0.0
-    poll_due = 0.0
+    now = due = 0.0
+    poll_due = origin
     with collector_at_rest():
         while not engine.finished:
-            clock.sleep_until(origin + due)
+            poll_due = _wait(origin + due, now, poll, poll_due)
             now = clock.monotonic() - origin
             statistics.ticks += 1
             statistics.late_max_s = max(statistics.late_max_s, now - due)
@@ -112,10 +121,24 @@ def run_real_time(
                 due = min(due, world.urgent_s)
             if due < clock.monotonic() - origin:
                 statistics.overruns += 1
-            if now >= poll_due:
+            wall = clock.monotonic()
+            if wall >= poll_due:
                 poll(now)
-                poll_due = now + 0.1
+                poll_due = wall + POLL_S
     return clock.monotonic() - origin
+
+
+def _wait(deadline: float, now: float, poll: Callable[[float], None], poll_due: float) -> float:
+    """Wait until a deadline of the wall clock, polling meanwhile; return when the next poll is due."""
+    while True:
+        wall = clock.monotonic()
+        if wall >= poll_due and deadline - wall > LEAVE_S:
+            poll(now)
+            poll_due = wall + POLL_S
+        if max(poll_due, wall) + LEAVE_S >= deadline:
+            clock.sleep_until(deadline)
+            return poll_due
+        clock.sleep_until(poll_due)
 
 
 class collector_at_rest:  # noqa: N801 - reads as a statement

@@ -45,11 +45,7 @@ class AlarmList:
 
     def listed(self) -> tuple[Alarm, ...]:
         """Return the list: what nobody has acknowledged first, then by priority, then the oldest."""
-        return tuple(
-            sorted(
-                self._alarms.values(), key=lambda a: (a.state == "acknowledged", a.priority, not a.first_up, a.number)
-            )
-        )
+        return tuple(sorted(self._alarms.values(), key=_urgency))
 
     def raise_(self, cause: Cause, t_s: float) -> None:
         """Raise an alarm; one that stands already takes the new words and figures, silently."""
@@ -97,3 +93,7 @@ class AlarmList:
             else:
                 self._alarms[name] = replace(alarm, state="acknowledged")
         return count
+
+
+def _urgency(alarm: Alarm) -> tuple[bool, int, bool, int]:
+    return alarm.state == "acknowledged", alarm.priority, not alarm.first_up, alarm.number

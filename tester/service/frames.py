@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import deque
 from typing import Protocol, runtime_checkable
 
-from drivers.ports import CanFrame, CanPort, LinePort
+from drivers.ports import CanFrame, CanPort, FrameByFrame, LinePort
 from tester.engine.devices import Devices
 from tester.service.protocol import Frame, Frames
 
@@ -52,7 +52,7 @@ class TapableLine(LinePort, Protocol):
     tap: LineFrames | None
 
 
-class WatchedCan:
+class WatchedCan(FrameByFrame):
     """A real CAN port whose frames are seen on their way."""
 
     def __init__(self, port: CanPort, log: FrameLog) -> None:

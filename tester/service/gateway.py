@@ -29,6 +29,7 @@ from tester.service.commands import (
     Stop,
     WatchFrames,
 )
+from tester.service.hook import Hook
 from tester.service.link import FROM_GATEWAY, Order, Presence
 from tester.service.outbox import Outbox
 from tester.service.protocol import (
@@ -70,12 +71,15 @@ class Guest:
 class Gateway:
     """What all connections share."""
 
-    def __init__(self, tell: Callable[[bytes], None], service: str, software: str, queries: Queries) -> None:
+    def __init__(
+        self, tell: Callable[[bytes], None], service: str, software: str, queries: Queries, hook: Hook
+    ) -> None:
         """``tell`` takes a line for the owner; ``service`` identifies this life of the service."""
         self.tell = tell
         self.service = service
         self.software = software
         self.queries = queries
+        self.hook = hook
         self.guests: dict[int, Guest] = {}
         self.controller = 0
         self._next = 1
@@ -112,6 +116,10 @@ class Gateway:
             number, _, reply = rest.partition(b" ")
             if (asker := self.guests.get(int(number))) is not None:
                 asker.outbox.reply(reply)
+        elif kind == b"t":
+            self._rows.append(rest)
+        elif kind == b"n":
+            self.queries.start(self.hook.notify(rest))
         elif kind == b"f":
             for guest in self.guests.values():
                 if guest.frames:
@@ -121,6 +129,11 @@ class Gateway:
         """Tell everybody that the service ends."""
         for guest in self.guests.values():
             guest.outbox.reply(encode(Goodbye(reason)))
+
+    async def all_told(self) -> None:
+        """Wait until every client has been sent what is due to it."""
+        while any(len(guest.outbox) for guest in self.guests.values()):
+            await asyncio.sleep(0.01)
 
     # -- a connection -----------------------------------------------------------------------------------------
 

@@ -7,6 +7,8 @@ The owner's side never waits. What it says: a letter, then JSON; the gateway pas
     e SEQ EVENT       an event message
     a CLIENT REPLY    the answer to a client's command
     f FRAMES          a frames message
+    t ROW             a row of the trend alone: the past, told to a gateway that was started anew
+    n NOTE            something for the notify hook
 
 What the gateway says: one JSON object a line, an ``Order`` or a ``Presence``.
 """
@@ -134,6 +136,14 @@ class OwnerEnd:
         if b"\n" in data:
             *lines, self._heard = self._heard.split(b"\n")
             self._lines.extend(lines)
+
+    def drain(self, seconds: float) -> None:
+        """Send what waits, at the end; give up after a time (s)."""
+        self.socket.settimeout(seconds)
+        try:
+            self.flush()
+        except (LinkLost, TimeoutError):
+            return
 
     def close(self) -> None:
         """Let go of the socket."""

@@ -15,6 +15,7 @@ Quality = Literal["good", "stale", "bad", "none"]
 
 MODES = (
     "OFFLINE",
+    "INTERRUPTED",
     "CONNECTING",
     "IDLE",
     "RUN",
@@ -26,7 +27,8 @@ MODES = (
     "E-STOP",
     "MANUAL",
 )
-"""Values of ``StateView.mode``; a client shows one it does not know as it is."""
+"""Values of ``StateView.mode``; a client shows one it does not know as it is. OFFLINE: no rig is connected, a run
+connects it. INTERRUPTED: the same, and the store holds a run that was cut off; shown until somebody acknowledges it."""
 
 TREND_COLUMNS = (
     "wall_s",

@@ -48,10 +48,11 @@ class Spec:
         quality: Quality = "none",
     ) -> Value:
         """Return this value as it is; ``band``: half the width of the gate around the setpoint."""
-        around = setpoint is not None and band is not None
+        band_low = band_high = None
+        if setpoint is not None and band is not None:
+            band_low, band_high = known(setpoint - band), known(setpoint + band)
         return Value(
-            self.key, self.label, self.unit, known(now), known(setpoint), self.low, self.high,
-            setpoint - band if around else None, setpoint + band if around else None,
+            self.key, self.label, self.unit, known(now), known(setpoint), self.low, self.high, band_low, band_high,
             self.scale_low, self.scale_high, self.decimals, age_s, quality,
         )  # fmt: skip
 

@@ -19,6 +19,7 @@ from pydantic_core import to_json
 
 from tester.service.address import Address, UnixAddress
 from tester.service.gateway import Gateway
+from tester.service.hook import Hook
 from tester.service.link import FROM_GATEWAY, Order, Presence
 from tester.service.listening import listening
 from tester.service.protocol import Accepted, Event, Refused, encode
@@ -32,7 +33,7 @@ class FakeService:
 
     def __init__(self, folder: Path, *, service: str = "life-1", uid: int | None = None) -> None:
         """Listen in ``folder`` once entered; the first state is ``tests.tester.service.views.state()``."""
-        self.gateway = Gateway(self._hear, service, "0.0", Queries(folder))
+        self.gateway = Gateway(self._hear, service, "0.0", Queries(folder), Hook(""))
         self.address: Address = UnixAddress(folder / "service.sock")
         self.orders: list[Order] = []
         self.presence = Presence("", 0, 0, False)
