@@ -79,7 +79,7 @@ def folder() -> Path:
 def default_address(where: Path | None = None) -> Address:
     """Return where the user's service is, or would be."""
     where = where or folder()
-    if HAS_UNIX:
+    if HAS_UNIX and not (where / CARD).exists():
         return UnixAddress(where / SOCKET)
     return read_card(where / CARD)
 
@@ -95,9 +95,9 @@ def address_of(text: str) -> Address:
     return UnixAddress(Path(text.removeprefix("unix:")))
 
 
-def new_tcp_address() -> TcpAddress:
+def new_tcp_address(port: int = 0) -> TcpAddress:
     """Return a loopback address with a fresh token; port 0 = any that is free."""
-    return TcpAddress("127.0.0.1", 0, secrets.token_urlsafe(32))
+    return TcpAddress("127.0.0.1", port, secrets.token_urlsafe(32))
 
 
 def write_card(address: TcpAddress, path: Path) -> None:

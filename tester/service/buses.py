@@ -20,6 +20,7 @@ Reader = LoadCell | HeatingJacket | IrThermometer
 class LoadedWire(Protocol):
     """A simulated bus, which knows its load."""
 
+    @property
     def load(self) -> float:
         """Return the share of the last second in which the bus was taken, 0..1."""
         ...
@@ -76,7 +77,7 @@ class BusWatch:
     def bus_views(self) -> tuple[BusView, ...]:
         """Return the buses."""
         can = self.devices.can
-        load = 100.0 * can.load() if isinstance(can, LoadedWire) else None
+        load = 100.0 * can.load if isinstance(can, LoadedWire) else None
         errors = sum(drive.malformed for drive in self.devices.drives) + sum(self._emergencies.values())
         found = [BusView("can", "can", load, errors, f"{self.rig.can.bitrate // 1000} kbit/s")]
         for (name, config), (_, link) in zip(self.rig.lines.items(), self.devices.lines, strict=True):

@@ -16,6 +16,7 @@ _STRICT = ConfigDict(extra="forbid")
 """Commands with a key that nobody knows are refused: a misspelt option must not be ignored."""
 
 Name = Annotated[str, Field(max_length=200)]
+PathText = Annotated[str, Field(max_length=4096)]
 Note = Annotated[str, Field(max_length=2000)]
 RecipeText = Annotated[str, Field(max_length=262_144)]
 
@@ -46,9 +47,9 @@ class RunRecipe:
     """
 
     __pydantic_config__: ClassVar[ConfigDict] = _STRICT
-    recipe: Name
+    recipe: PathText
     text: RecipeText = ""
-    rig: Name = ""
+    rig: PathText = ""
     overrides: Annotated[tuple[Name, ...], Field(max_length=50)] = ()
     seed: Annotated[int, Field(ge=0, lt=2**63)] = 0
     speed: Annotated[float, Field(gt=0, le=1e6, allow_inf_nan=False)] | None = 1.0
@@ -63,7 +64,7 @@ class ResumeRun:
     """Go on with an interrupted run at its first uncommitted repeat. Result as of ``run``."""
 
     __pydantic_config__: ClassVar[ConfigDict] = _STRICT
-    run: Name
+    run: PathText
     speed: Annotated[float, Field(gt=0, le=1e6, allow_inf_nan=False)] | None = 1.0
     yes: bool = False
     reason: Note = ""
@@ -168,9 +169,9 @@ class CheckRecipe:
     """Check a recipe against the rig. Result: ``{"problems": [{"line", "column", "message"}]}``, empty = valid."""
 
     __pydantic_config__: ClassVar[ConfigDict] = _STRICT
-    recipe: Name
+    recipe: PathText
     text: RecipeText = ""
-    rig: Name = ""
+    rig: PathText = ""
     overrides: Annotated[tuple[Name, ...], Field(max_length=50)] = ()
     command: Literal["check"] = "check"
 
@@ -180,9 +181,9 @@ class ShowPlan:
     """Plan a recipe. Result: what `tester plan --json` prints."""
 
     __pydantic_config__: ClassVar[ConfigDict] = _STRICT
-    recipe: Name
+    recipe: PathText
     text: RecipeText = ""
-    rig: Name = ""
+    rig: PathText = ""
     overrides: Annotated[tuple[Name, ...], Field(max_length=50)] = ()
     command: Literal["plan"] = "plan"
 

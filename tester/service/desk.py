@@ -1,4 +1,4 @@
-"""The desk between rig and clients: what is known of the rig goes out, what clients want comes in, between two ticks."""
+"""The desk between rig and clients: what is known goes out, what clients want comes in, between two ticks."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from tester import clock
-from tester.engine.run import Run
+from tester.engine.run import Outcome, Run
 from tester.rig import RigConfig
 from tester.service.alarms import AlarmList, Cause
 from tester.service.hub import Hub
@@ -23,8 +23,10 @@ from tester.store.space import MARGIN
 DISK_EVERY_S = 10.0
 LOW_BYTES = 500_000_000
 """Less than this is low whatever the run needs [A]: one compound of Table 2 takes some tens of MB."""
-TREND = ("friction", "load", "load=", "surface", "surface=", "hub", "hub=", "slip", "slip=", "wheel_speed", "belt_speed",
-         "sideslip", "heat")  # fmt: skip
+TREND = (
+    "friction", "load", "load=", "surface", "surface=", "hub", "hub=", "slip", "slip=", "wheel_speed", "belt_speed",
+    "sideslip", "heat",
+)  # fmt: skip
 """Where a row of the trend (after its two times) comes from; ``=``: the setpoint. In the order of TREND_COLUMNS."""
 NOTIFIED = frozenset({"trip"})
 """Kinds of events of which the notify hook is told; hold, prompt, finished, disk come from elsewhere."""
@@ -82,6 +84,16 @@ class Desk:
         self.watch = self.hand = None
         self.run = view
         self._due_s = float("-inf")
+
+    def ended(self, view: RunView, outcome: Outcome) -> None:
+        """The run is over: tell how, and latch after a trip."""
+        text = f"{view.name}: {view.outcome}" + (f": {view.reason}" if view.reason else "")
+        self.run = view
+        self.tell("run", text, "info" if outcome is Outcome.DONE else "warning")
+        self.notify("finished", text)
+        if outcome is Outcome.TRIPPED:
+            self.latched = view.reason or view.outcome
+        self.detach(view)
 
     def heard(self, t_s: float, kind: str, text: str, severity: str) -> None:
         """Pass on what the run records."""

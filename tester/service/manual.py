@@ -133,25 +133,26 @@ class ManualExecutor(Executor):
         if axis in ("belt", "both"):
             wanted.belt_m_s = _within(wanted.belt_m_s + sign * SPEED_STEP_M_S, 0.0, limits.belt_speed_m_s)
         if axis == "sideslip":
-            wanted.sideslip_deg = _within(
-                wanted.sideslip_deg + sign * ANGLE_STEP_DEG, -limits.sideslip_deg, limits.sideslip_deg
-            )
+            sideslip_deg = wanted.sideslip_deg + sign * ANGLE_STEP_DEG
+            wanted.sideslip_deg = _within(sideslip_deg, -limits.sideslip_deg, limits.sideslip_deg)
         elif axis == "camber":
-            wanted.camber_deg = _within(wanted.camber_deg + sign * ANGLE_STEP_DEG, -limits.camber_deg, limits.camber_deg)
+            wanted.camber_deg = _within(
+                wanted.camber_deg + sign * ANGLE_STEP_DEG, -limits.camber_deg, limits.camber_deg
+            )
         elif axis == "press":
-            return self._press(ctx, sign)
+            return self._load(ctx, sign)
         elif axis == "heat":
-            return self._heat(ctx, sign)
+            return self._warm(ctx, sign)
         return ""
 
-    def _press(self, ctx: Context, sign: float) -> str:
+    def _load(self, ctx: Context, sign: float) -> str:
         wanted = self.wanted
         if sign > 0.0 and (wanted.wheel_m_s < 2.0 * STANDING_M_S or wanted.wheel_m_s != wanted.belt_m_s):
             return "load only with wheel and belt turning at the same speed"
         wanted.load_n = _within(wanted.load_n + sign * LOAD_STEP_N, 0.0, ctx.rig.limits.load_n)
         return ""
 
-    def _heat(self, ctx: Context, sign: float) -> str:
+    def _warm(self, ctx: Context, sign: float) -> str:
         wanted, surface = self.wanted, ctx.readings.surface_c
         if wanted.wheel_m_s < 2.0 * STANDING_M_S:
             return "heat only with the wheel turning"

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from types import FrameType
+from typing import cast
 
 from tester import clock
 from tester.engine.context import Progress as RunProgress
@@ -41,7 +42,7 @@ class RunScreen:
         self.session: Session | None = None
         self.name = ""
         self.missing: list[str] = []
-        self.exit: int | None = None
+        self.messages: list[str] = []
         self._begun = begun
         self._started = False
 
@@ -81,16 +82,14 @@ class RunScreen:
 
     def message(self, text: str) -> None:
         """Tell every client."""
+        self.messages.append(text)
         self.desk.tell("message", text)
 
     def emit(self, record: dict[str, object]) -> None:
         """Take the figures of the end."""
-        match record:
-            case {"event": "end", "exit": int(code), "missing": list(missing)}:
-                self.exit = code
-                self.missing = [str(one) for one in missing]
-            case _:
-                pass
+        missing = record.get("missing")
+        if record.get("event") == "end" and isinstance(missing, list):
+            self.missing = [str(one) for one in cast("list[object]", missing)]
 
     def result(self, line: str) -> None:
         """Nothing: clients know the folder."""

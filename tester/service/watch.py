@@ -77,10 +77,10 @@ class RunWatch:
         """Return the soak under way, None where there is none."""
         activity = self.run.engine.executor.activity
         soak: SoakTo | None = None
-        if isinstance(activity, HeatUp) and activity.rolling:
-            soak = activity.soak
-        elif isinstance(activity, MeasureCondition) and not activity.soaked:
-            soak = activity.soak
+        if isinstance(activity, HeatUp):
+            soak = activity.soak if activity.rolling else None
+        elif isinstance(activity, MeasureCondition):
+            soak = None if activity.soaked else activity.soak
         if soak is None:
             return None
         surface = self.run.engine.ctx.gates.surface.slow_c
@@ -123,7 +123,9 @@ class RunWatch:
             alarms.set(late, Cause(name, 2, f"{value.age_s or 0.0:.0f} s old", "in contact the run stops"), now)
         for device in self.buses.device_views(now):
             lost = not device.online
-            alarms.set(lost, Cause(f"{device.name} offline", 2, device.detail or "does not answer", "the run stops"), now)
+            alarms.set(
+                lost, Cause(f"{device.name} offline", 2, device.detail or "does not answer", "the run stops"), now
+            )
 
     def watch_trip(self, alarms: AlarmList, now: float) -> None:
         """Raise what has stopped the rig."""
