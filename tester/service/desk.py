@@ -32,21 +32,32 @@ NOTIFIED = frozenset({"trip"})
 """Kinds of events of which the notify hook is told; hold, prompt, finished, disk come from elsewhere."""
 
 
+def nobody_obeys(order: Order) -> None:
+    """Leave an order undone: nobody has taken the desk yet."""
+
+
+def nobody_minds() -> None:
+    """Do nothing about a change of control."""
+
+
 @dataclass(slots=True)
 class Desk:
-    """What is known now. ``obey`` is called with every order; ``watch`` is the run under way."""
+    """What is known now. ``obey`` is called with every order, ``lost_control`` when another client controls; ``watch``
+    is the run under way."""
 
     hub: Hub
     rig: RigConfig
     runs: Path
-    obey: Callable[[Order], None]
-    lost_control: Callable[[], None]
+    obey: Callable[[Order], None] = field(default=nobody_obeys)
+    lost_control: Callable[[], None] = field(default=nobody_minds)
     watch: RunWatch | None = None
     hand: ManualExecutor | None = None
     run: RunView | None = None
     tick: TickView = field(default_factory=lambda: TickView(0.0, 0.0, 0))
     latched: str = ""
     """Why nothing may start before somebody has acknowledged."""
+    tripped: str = ""
+    """Name of the alarm of that trip."""
     interrupted: tuple[str, ...] = ()
     needed: int = 0
     """Bytes that the run is expected to take."""
@@ -81,6 +92,8 @@ class Desk:
         """The run is over."""
         if self.watch is not None:
             self.watch.run.engine.ctx.journal.heard = None
+            for name in self.watch.watched:
+                self.alarms.clear(name)
         self.watch = self.hand = None
         self.run = view
         self._due_s = float("-inf")
@@ -91,9 +104,16 @@ class Desk:
         self.run = view
         self.tell("run", text, "info" if outcome is Outcome.DONE else "warning")
         self.notify("finished", text)
-        if outcome is Outcome.TRIPPED:
-            self.latched = view.reason or view.outcome
+        if self.watch is not None and (trip := self.watch.run.engine.control.state.trip) is not None:
+            self.latched, self.tripped = view.reason or view.outcome, trip.name
         self.detach(view)
+
+    def unlatch(self, by: str) -> None:
+        """Take an acknowledgement: the next run may begin."""
+        if self.latched:
+            self.tell("mode", f"acknowledged by {by}")
+            self.alarms.clear(self.tripped)
+        self.latched, self.tripped, self.interrupted = "", "", ()
 
     def heard(self, t_s: float, kind: str, text: str, severity: str) -> None:
         """Pass on what the run records."""

@@ -11,6 +11,7 @@ from tester import clock
 from tester.engine.context import Progress as RunProgress
 from tester.engine.prompts import Prompts
 from tester.service.desk import Desk
+from tester.service.orders import Holdable
 from tester.service.state import RunView, TickView
 from tester.session import Session, SessionOptions
 
@@ -26,6 +27,8 @@ class ServiceSession(Session):
 
     def _on_signal(self, number: int, _frame: FrameType | None) -> None:
         self._tell_signal()
+        if isinstance(self.run_, Holdable):
+            self.run_.stays_latched = False  # nobody will be there to acknowledge
         super()._on_signal(number, _frame)
 
 
@@ -71,6 +74,8 @@ class RunScreen:
                 started_utc=clock.utc_now(),
             )  # fmt: skip
             self._begun(self.view)
+        if isinstance(session.run_, Holdable):
+            session.run_.stays_latched = True
         self.desk.attach(session.run_, self.view)
 
     def attend(self, prompts: Prompts) -> None:

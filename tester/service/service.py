@@ -8,12 +8,10 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 from types import FrameType
-from typing import Protocol, runtime_checkable
 
 from drivers.ports import BusLost
 from recipes import UnknownRecipe
 from tester import clock
-from tester.control.state import Mode
 from tester.engine.build import build_run
 from tester.engine.prompts import Prompts
 from tester.engine.run import Outcome
@@ -21,21 +19,15 @@ from tester.engine.tickers import TickStatistics, run_real_time, run_simulated
 from tester.lock import RUN_LOCK, ExclusiveUse, user_of
 from tester.rig import load_rig
 from tester.service.commands import (
-    Acknowledge,
-    Answer,
     Arm,
-    Hold,
-    Jog,
-    Release,
     ResumeRun,
     RunRecipe,
-    Stop,
-    Tare,
 )
 from tester.service.desk import Desk
 from tester.service.hub import Hub
 from tester.service.link import Order
 from tester.service.manual import empty_plan, no_record, take_over
+from tester.service.orders import Orders
 from tester.service.running import RunScreen, ServiceSession
 from tester.service.state import RunView
 from tester.session import CannotStartError, SessionOptions, connect_ports, hold_rig
@@ -68,168 +60,40 @@ class Service:
         """Read the rig file; raises InvalidSource. Nothing is connected."""
         self.options = options
         self.rig = load_rig(options.rig, options.overrides)
-        self.desk = Desk(hub, self.rig, options.runs, self.obey, self.lost_control)
-        self.ending = False
-        self.job: Order | None = None
-        self._armed_by = 0
+        self.desk = Desk(hub, self.rig, options.runs)
+        self.orders = Orders(self.desk)
 
     # -- the loop ---------------------------------------------------------------------------------------------
 
     def serve(self) -> None:
         """Serve until the process is told to end (TERM, INT), and leave at standstill."""
         desk = self.desk
-        with self._signals():
+        with Signals(self.end):
             desk.interrupted = tuple(interrupted_runs(self.options.runs))
             for name in desk.interrupted:
                 desk.tell("run", f"{name} was cut off: `tester resume {name}` goes on with it", "warning")
-            while not self.ending:
+            while not self.orders.ending:
                 desk.poll(0.0)
-                if self.job is not None:
-                    self._carry_out(self.job)
-                    self.job = None
+                if self.orders.job is not None:
+                    self._carry_out(self.orders.job)
+                    self.orders.job = None
                 else:
                     desk.wait()
         desk.tell("service", "the service ends")
         desk.show()
 
-    def _signals(self) -> Signals:
-        return Signals(self.end)
-
     def end(self) -> None:
         """End as soon as nothing is under way any more."""
-        self.ending = True
-
-    # -- orders -----------------------------------------------------------------------------------------------
-
-    def obey(self, order: Order) -> None:
-        """Carry out an order, or say why not."""
-        action = order.action
-        if isinstance(action, Stop):
-            self._stop(order, action)
-        elif isinstance(action, RunRecipe | ResumeRun):
-            self._begin(order)
-        elif isinstance(action, Arm):
-            self._arm(order, action)
-        elif isinstance(action, Acknowledge):
-            self._acknowledge(order, action)
-        elif isinstance(action, Answer):
-            self._reply(order, self._answer(order, action))
-        elif isinstance(action, Jog | Tare):
-            self._reply(order, self._by_hand(action))
-        else:
-            self._reply(order, self._hold(order, action))
-
-    def _reply(self, order: Order, refusal: str) -> None:
-        hub = self.desk.hub
-        if refusal:
-            hub.refuse(order, refusal)
-        else:
-            hub.accept(order)
-
-    def _stop(self, order: Order, action: Stop) -> None:
-        """STOP: whoever says it, whatever is under way."""
-        desk = self.desk
-        kind = "fast stop" if action.fast else "stop"
-        desk.tell("command", f"{kind} by {order.name}", "warning")
-        if desk.watch is not None:
-            desk.watch.run.request_stop(f"{kind} by {order.name}", fast=action.fast)
-        elif self.job is not None:
-            desk.hub.refuse(self.job, f"{kind} by {order.name}")
-            self.job = None
-        desk.hub.accept(order)
-
-    def _hold(self, order: Order, action: Hold | Release) -> str:
-        """Hold or release a run; return "" or why not."""
-        watch = self.desk.watch
-        if watch is None:
-            return "nothing runs"
-        name = "hold" if isinstance(action, Hold) else "release"
-        self.desk.tell("command", f"{name} by {order.name}")
-        run = watch.run
-        if not isinstance(run, Holdable):
-            return "this rig cannot be held"
-        if isinstance(action, Hold):
-            return run.request_hold(f"held by {order.name}")
-        return run.request_release(f"released by {order.name}")
-
-    def _acknowledge(self, order: Order, action: Acknowledge) -> None:
-        """Acknowledge alarms, a latched rig, and what was found at the start. Nothing moves by it."""
-        desk = self.desk
-        count = desk.alarms.acknowledge(action.number, order.name)
-        refusal = "" if count or desk.latched or desk.interrupted else "nothing to acknowledge"
-        run = desk.watch.run if desk.watch is not None else None
-        if run is not None and run.engine.control.state.mode is Mode.LATCHED and isinstance(run, Holdable):
-            refusal = run.request_ack()
-        if not refusal and action.number == 0 and run is None:
-            if desk.latched:
-                desk.tell("mode", f"acknowledged by {order.name}: the rig is idle")
-            desk.latched, desk.interrupted = "", ()
-        self._reply(order, refusal)
-
-    def _answer(self, order: Order, action: Answer) -> str:
-        """Answer the prompt that waits; return "" or why not."""
-        watch = self.desk.watch
-        waiting = watch.run.engine.ctx.prompts.waiting if watch is not None else None
-        if waiting is None or waiting.number != action.number:
-            return f"prompt {action.number} does not wait for an answer"
-        self.desk.tell("prompt", f"{order.name} answers: {action.answer}")
-        if action.answer.strip().lower() not in ("n", "no"):
-            waiting.answer = action.answer.strip() or "yes"
-        return ""
-
-    def _by_hand(self, action: Jog | Tare) -> str:
-        """Take a step in manual mode; return "" or why not."""
-        desk = self.desk
-        if desk.hand is None or desk.watch is None or desk.watch.mode[0] != "RUN":
-            return "manual mode is not armed"
-        ctx = desk.watch.run.engine.ctx
-        if isinstance(action, Tare):
-            return desk.hand.tare(ctx)
-        return desk.hand.jog(ctx, action.axis, action.direction)
-
-    def lost_control(self) -> None:
-        """Disarm manual mode: whoever armed it does not control any more."""
-        hand = self.desk.hand
-        if hand is not None and self.desk.hub.presence.controller_id != self._armed_by:
-            hand.disarm()
+        self.orders.ending = True
 
     # -- what begins ------------------------------------------------------------------------------------------
-
-    def _begin(self, order: Order) -> None:
-        """Take an order that begins something, if nothing is under way."""
-        refusal = self._occupied()
-        if refusal:
-            self.desk.hub.refuse(order, refusal)
-        else:
-            self.job = order
-
-    def _occupied(self) -> str:
-        desk = self.desk
-        if self.ending:
-            return "the service is ending"
-        if desk.hand is not None:
-            return "manual mode is armed"
-        if desk.watch is not None or self.job is not None:
-            return f"a run is under way: {desk.run.name if desk.run is not None else 'it begins'}"
-        if desk.latched:
-            return f"the rig is latched ({desk.latched}): acknowledge first"
-        return ""
-
-    def _arm(self, order: Order, action: Arm) -> None:
-        if action.on:
-            self._begin(order)
-            return
-        hand = self.desk.hand
-        if hand is not None:
-            hand.disarm()
-        self._reply(order, "" if hand is not None else "manual mode is not armed")
 
     def _carry_out(self, order: Order) -> None:
         """Carry out what an order begins, to its end."""
         action = order.action
         self.desk.run = None
         if isinstance(action, Arm):
-            self._armed_by = order.client
+            self.orders.armed_by = order.client
             self._manual(order)
         elif isinstance(action, RunRecipe):
             self._run(order, action)
@@ -320,26 +184,9 @@ class Service:
         desk.ended(replace(view, outcome=run.outcome.value, reason=run.reason), run.outcome)
 
     def _poll_manual(self, now_s: float) -> None:
-        if self.ending and self.desk.watch is not None:
+        if self.orders.ending and self.desk.watch is not None:
             self.desk.watch.run.request_stop("the service ends")
         self.desk.poll(now_s)
-
-
-@runtime_checkable
-class Holdable(Protocol):
-    """A run that can be held and acknowledged."""
-
-    def request_hold(self, why: str) -> str:
-        """Hold; return "" or why not."""
-        ...
-
-    def request_release(self, why: str) -> str:
-        """Go on; return "" or why not."""
-        ...
-
-    def request_ack(self) -> str:
-        """Acknowledge a trip; return "" or why not."""
-        ...
 
 
 class Signals:

@@ -31,6 +31,10 @@ MODES = {Mode.IDLE: "IDLE", Mode.RUN: "RUN", Mode.STOPPING: "STOPPING", Mode.COO
          Mode.FAST_STOP: "FAST STOP", Mode.LATCHED: "LATCHED"}  # fmt: skip
 
 
+RESTING = (Mode.IDLE, Mode.LATCHED)
+"""Modes in which drives are let go of at the end of a run."""
+
+
 class RunWatch:
     """Looks at one run, between two ticks."""
 
@@ -44,6 +48,9 @@ class RunWatch:
         self.buses = BusWatch(engine.devices, self.rig)
         self.frames = FrameLog(engine.devices, tuple(self.rig.lines))
         self.track = PlanTrack(plan, estimate(plan, self.rig))
+        self.watched: set[str] = set()
+        """Names of the alarms that stand for this run's devices: they go with it."""
+        self._tripped = ""
         self._asked_utc: dict[int, str] = {}
 
     # -- what is shown ----------------------------------------------------------------------------------------
@@ -113,12 +120,13 @@ class RunWatch:
 
     def watch_values(self, alarms: AlarmList, now: float, values: tuple[Value, ...]) -> None:
         """Raise and clear what follows from what is shown: data that has stopped coming, a device that is lost."""
-        if self.run.connector.stage is not Stage.READY:
+        if self.run.connector.stage is not Stage.READY or self.run.engine.control.state.mode in RESTING:
             return
         for value in values:
             if value.key not in ("load", "slip", "surface", "hub"):
                 continue
             name = f"no fresh data: {value.label}"
+            self.watched.add(name)
             late = value.quality == "stale" and value.age_s is not None and value.age_s > 2.0
             alarms.set(late, Cause(name, 2, f"{value.age_s or 0.0:.0f} s old", "in contact the run stops"), now)
         for device in self.buses.device_views(now):
@@ -128,8 +136,12 @@ class RunWatch:
             )
 
     def watch_trip(self, alarms: AlarmList, now: float) -> None:
-        """Raise what has stopped the rig."""
+        """Raise what has stopped the rig, for as long as it is latched."""
         trip = self.run.engine.control.state.trip
         if trip is not None:
             consequence = "the rig comes to a standstill; nothing moves before it is acknowledged"
             alarms.raise_(Cause(trip.name, 1, trip.text, consequence), now)
+            self._tripped = trip.name
+        elif self._tripped:
+            alarms.clear(self._tripped)
+            self._tripped = ""
