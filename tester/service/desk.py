@@ -20,6 +20,8 @@ from tester.service.values import unknown_values
 from tester.service.watch import RunWatch
 from tester.store.space import MARGIN
 
+UNWATCHED_S = 1.0
+"""Period of states while nobody is connected, s: the gateway's trend goes on, at a rate that costs nothing."""
 DISK_EVERY_S = 10.0
 LOW_BYTES = 500_000_000
 """Less than this is low whatever the run needs [A]: one compound of Table 2 takes some tens of MB."""
@@ -143,12 +145,13 @@ class Desk:
         for heard in self.hub.hear():
             if isinstance(heard, Order):
                 self.obey(heard)
-                self._due_s = float("-inf")  # what it has changed is seen at once
+            self._due_s = float("-inf")  # what has changed is seen at once
         self._notice_control()
         wall_s = clock.monotonic()
         if wall_s >= self._due_s:
-            late = wall_s - self._due_s
-            self._due_s = wall_s + (SNAPSHOT_S if not late < SNAPSHOT_S else SNAPSHOT_S - late)
+            period_s = SNAPSHOT_S if self.hub.watched else UNWATCHED_S
+            late_s = wall_s - self._due_s
+            self._due_s = wall_s + (period_s - late_s if late_s < period_s else period_s)
             self.show()
 
     def wait(self) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import signal
+import socket
 import sys
 from contextlib import suppress
 from dataclasses import dataclass
@@ -39,9 +40,12 @@ SETTINGS: TypeAdapter[Settings] = TypeAdapter(Settings)
 
 async def _serve(reader: asyncio.StreamReader, writer: asyncio.StreamWriter, settings: Settings) -> None:
     queries = Queries(Path(settings.runs), settings.rig)
-    gateway = Gateway(
-        lambda line: writer.write(line + b"\n"), settings.service, settings.software, queries, Hook(settings.notify)
-    )
+
+    def tell(line: bytes) -> None:
+        if not writer.is_closing():
+            writer.write(line + b"\n")
+
+    gateway = Gateway(tell, settings.service, settings.software, queries, Hook(settings.notify))
     path = Path(settings.path)
     address = TcpAddress("127.0.0.1", settings.port, settings.token) if settings.token else UnixAddress(path)
     async with listening(gateway, address) as listens:
@@ -55,8 +59,9 @@ async def _serve(reader: asyncio.StreamReader, writer: asyncio.StreamWriter, set
                 await gateway.all_told()
 
 
-async def _main(link: str) -> None:
-    reader, writer = await asyncio.open_connection(sock=link_of(link), limit=2 * MOST_QUEUED)
+async def serve_link(link: socket.socket) -> None:
+    """Serve clients for the owner at the other end of ``link``, until it ends."""
+    reader, writer = await asyncio.open_connection(sock=link, limit=2 * MOST_QUEUED)
     settings = SETTINGS.validate_json(await reader.readline())
     with suppress(ConnectionError):
         await _serve(reader, writer, settings)
@@ -68,4 +73,4 @@ if __name__ == "__main__":
         signal.signal(number, signal.SIG_IGN)  # it ends with its owner, who comes to a standstill first
     if hasattr(signal, "SIGHUP"):
         signal.signal(signal.SIGHUP, signal.SIG_IGN)
-    asyncio.run(_main(sys.argv[1]))
+    asyncio.run(serve_link(link_of(sys.argv[1])))

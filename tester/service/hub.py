@@ -67,6 +67,11 @@ class Hub:
         """Who is connected."""
         return ClientsView(self.presence.controller, self.presence.controller_id, self.presence.viewers)
 
+    @property
+    def watched(self) -> bool:
+        """Somebody is connected."""
+        return self.presence.viewers > 0 or self.presence.controller_id != 0
+
     # -- saying -----------------------------------------------------------------------------------------------
 
     def event(self, kind: str, text: str, severity: str = "info", t_s: float = 0.0, run: str = "") -> None:
@@ -138,9 +143,13 @@ class Hub:
 
     def open(self) -> None:
         """Start the gateway. Raises OSError."""
+        self._process, ours = spawn("tester.service.gateway_process", ())
+        self.adopt(OwnerEnd(ours))
+
+    def adopt(self, end: OwnerEnd) -> None:
+        """Talk through ``end`` from now on: tell the gateway behind it what it must know."""
         address = self.config.address
-        process, ours = spawn("tester.service.gateway_process", ())
-        self._process, self._end = process, OwnerEnd(ours)
+        self._end = end
         tcp = isinstance(address, TcpAddress)
         path = self.config.card if isinstance(address, TcpAddress) else address.path
         settings = Settings(
