@@ -68,7 +68,8 @@ class ExclusiveUse:
 
     def lock_file(self, resource: str, path: Path, run: str, *, lasting: bool = True) -> None:
         """Lock one file; one that is not ``lasting`` goes when it is released. Raises RigInUseError, OSError."""
-        self._held.append(_locked(path, resource, Holder(os.getpid(), _user(), clock.utc_now(), run)))
+        holder = Holder(os.getpid(), _user(), clock.utc_now(), run)
+        self._held.append(_locked(path, resource, holder, mode=0o666 if lasting else 0o644))
         if not lasting:
             self._files.append(path)
 
@@ -128,10 +129,10 @@ def _file_name(resource: str) -> str:
     return f"friction-tester-{name}-{sha256(resource.encode()).hexdigest()[:8]}.lock"
 
 
-def _locked(path: Path, resource: str, holder: Holder) -> int:
+def _locked(path: Path, resource: str, holder: Holder, *, mode: int) -> int:
     """Return the descriptor of a lock file that is ours now."""
     while True:
-        descriptor = _open(path)
+        descriptor = _open(path, mode)
         try:
             if not _try_lock(descriptor):
                 other = holder_of(path)
@@ -154,15 +155,15 @@ def _still_there(path: Path, descriptor: int) -> bool:
         return False
 
 
-def _open(path: Path) -> int:
-    """Open a lock file that everybody at this machine may lock, whoever made it."""
+def _open(path: Path, mode: int) -> int:
+    """Open a lock file; one for the whole machine may be locked by everybody, whoever made it."""
     try:
         # Not O_CREAT where it exists: Linux forbids that for somebody else's file in a sticky folder.
         return os.open(path, os.O_RDWR)
     except FileNotFoundError:
-        descriptor = os.open(path, os.O_RDWR | os.O_CREAT, 0o666)
+        descriptor = os.open(path, os.O_RDWR | os.O_CREAT, mode)
     if hasattr(os, "fchmod"):
-        os.fchmod(descriptor, 0o666)  # whatever the umask is
+        os.fchmod(descriptor, mode)  # whatever the umask is
     return descriptor
 
 

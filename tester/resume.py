@@ -21,6 +21,7 @@ from tester.recipe.remaining import remaining
 from tester.rig import RigConfig, load_rig
 from tester.rig.load import load_rig_text
 from tester.source import read_tree
+from tester.store.files import write_text
 from tester.store.reader import RunReader
 from tester.store.recorder import calibration_sha256, text_sha256
 from tester.store.records import Change, ConditionInfo, StoredCondition, StoredRun
@@ -86,8 +87,8 @@ def prepare(folder: Path, reason: str, operator: str) -> Resumed | str:
         if any(change.subject != "recipe" for change in found.changes):
             writer.replace_rig(found.rig.text, calibration_of(found.rig), point.session, found.rig_source)
         if found.changes:
-            (folder / "recipe.yaml").write_text(found.recipe_text, encoding="utf-8", newline="\n")
-            (folder / "rig.yaml").write_text(found.rig.text, encoding="utf-8", newline="\n")
+            write_text(folder / "recipe.yaml", found.recipe_text)
+            write_text(folder / "rig.yaml", found.rig.text)
         writer.event(0.0, "resume", f"stretch {session.session} of the run{': ' + reason if reason else ''}")
 
     if any(change.subject == "calibration" for change in found.changes):

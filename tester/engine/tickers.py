@@ -10,7 +10,6 @@ from typing import Protocol
 
 from tester import clock
 
-
 POLL_S = 0.02
 """Period of ``poll``, s of wall time: a STOP from a screen is heard within it."""
 LEAVE_S = 0.002

@@ -14,6 +14,7 @@ from tester.service.alarms import AlarmList, Cause
 from tester.service.hub import Hub
 from tester.service.link import Order
 from tester.service.manual import ManualExecutor
+from tester.service.progress import PlanTrack
 from tester.service.protocol import SNAPSHOT_S
 from tester.service.state import Check, DiskView, ManualView, ProgressView, RunView, StateView, TickView, Value
 from tester.service.values import unknown_values
@@ -42,6 +43,10 @@ def nobody_minds() -> None:
     """Do nothing about a change of control."""
 
 
+def nothing_rests(fast: bool) -> None:
+    """Do nothing: the run is all there is."""
+
+
 @dataclass(slots=True)
 class Desk:
     """What is known now. ``obey`` is called with every order, ``lost_control`` when another client controls; ``watch``
@@ -52,6 +57,8 @@ class Desk:
     runs: Path
     obey: Callable[[Order], None] = field(default=nobody_obeys)
     lost_control: Callable[[], None] = field(default=nobody_minds)
+    stop_rest: Callable[[bool], None] = field(default=nothing_rests)
+    """Called with STOP (fast or not) for what the run under way has not begun yet."""
     watch: RunWatch | None = None
     hand: ManualExecutor | None = None
     run: RunView | None = None
@@ -82,13 +89,20 @@ class Desk:
 
     # -- runs -------------------------------------------------------------------------------------------------
 
-    def attach(self, run: Run, view: RunView, hand: ManualExecutor | None = None) -> None:
+    def attach(self, run: Run, track: PlanTrack, view: RunView, hand: ManualExecutor | None = None) -> None:
         """Look after a run from now on."""
-        self.watch, self.hand, self.run = RunWatch(run), hand, view
+        self.watch, self.hand, self.run = RunWatch(run, track), hand, view
         run.engine.ctx.journal.heard = self.heard
         self.now_s = 0.0
         self._asked = 0
         self.hub.plan(None if hand is not None else self.watch.track.view())
+
+    def specimen(self, run: Run) -> None:
+        """Note which compound is on the rig."""
+        wheel, view = run.engine.ctx.wheel, self.run
+        if view is not None and wheel.specimen and view.compound != wheel.compound:
+            note = run.engine.executor.plan.specimen(wheel.specimen).note
+            self.run = replace(view, compound=wheel.compound, note=note)
 
     def detach(self, view: RunView | None) -> None:
         """The run is over."""
@@ -97,6 +111,7 @@ class Desk:
             for name in self.watch.watched:
                 self.alarms.clear(name)
         self.watch = self.hand = None
+        self.stop_rest = nothing_rests
         self.run = view
         self._due_s = float("-inf")
 

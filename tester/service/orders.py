@@ -84,6 +84,7 @@ class Orders:
         desk.tell("command", f"{kind} by {order.name}", "warning")
         if desk.watch is not None:
             desk.watch.run.request_stop(f"{kind} by {order.name}", fast=action.fast)
+            desk.stop_rest(action.fast)
         elif self.job is not None:
             desk.hub.refuse(self.job, f"{kind} by {order.name}")
             self.job = None

@@ -8,22 +8,72 @@ from types import FrameType
 from typing import cast
 
 from tester import clock
+from tester.campaign.endings import Stop
+from tester.campaign.folder import Begin, Job, Work
 from tester.engine.context import Progress as RunProgress
 from tester.engine.prompts import Prompts
+from tester.engine.run import Run
+from tester.recipe.estimate import estimate
 from tester.service.desk import Desk
 from tester.service.orders import Holdable
+from tester.service.progress import PlanTrack
 from tester.service.state import RunView, TickView
 from tester.session import Session, SessionOptions
+from tester.store.space import expected_bytes
 
 
 class ServiceSession(Session):
-    """A session that tells the service of signals."""
+    """A session whose runs the desk looks after. ``begun_``: called once, with what is known of the run."""
 
-    def __init__(self, options: SessionOptions, screen: RunScreen, on_signal: Callable[[], None]) -> None:
+    def __init__(
+        self,
+        options: SessionOptions,
+        screen: RunScreen,
+        on_signal: Callable[[], None],
+        begun: Callable[[RunView], None],
+    ) -> None:
         """``on_signal``: called when the process is asked to end."""
         super().__init__(options, screen)
+        self.desk = screen.desk
+        self.view = screen.view
+        self._screen = screen
         self._tell_signal = on_signal
-        screen.session = self
+        self._tell_begun = begun
+        self._track: PlanTrack | None = None
+
+    def begun(self, run: Run) -> None:
+        """Look after a part's run; the first one begins the whole."""
+        super().begun(run)
+        if self._track is None:
+            return
+        if not self.view.name:
+            folder = self.folder
+            assert folder is not None
+            self.view = replace(
+                self.view, name=folder.name, folder=str(folder), recipe=self._screen.name, started_utc=clock.utc_now()
+            )
+            self._tell_begun(self.view)
+        if isinstance(run, Holdable):
+            run.stays_latched = True
+        self.desk.attach(run, self._track, self.view)
+        self.desk.stop_rest = self._stop_rest
+
+    def poll(self, now_s: float, run: Run, share: float) -> None:
+        """Let the desk look, and clients speak."""
+        self.desk.tick = TickView(0.0, self.statistics.late_max_s, self.statistics.overruns)
+        self.desk.specimen(run)
+        self.desk.poll(now_s)
+
+    def _record(self, job: Job, work: Work, begin: Begin) -> int:
+        """Estimate the plan before anything moves, then go on as ever."""
+        expected = estimate(work.plan, work.rig)
+        self._track = PlanTrack(work.plan, expected)
+        self.desk.needed = round(expected_bytes(work.plan, expected))
+        return super()._record(job, work, begin)
+
+    def _stop_rest(self, fast: bool) -> None:
+        """Begin no further part."""
+        self.stop(Stop.FAST if fast else Stop.TERMINATED)
 
     def _on_signal(self, number: int, _frame: FrameType | None) -> None:
         self._tell_signal()
@@ -33,50 +83,25 @@ class ServiceSession(Session):
 
 
 class RunScreen:
-    """Shows a session to the desk. ``begun`` is called once, when the run is under way."""
+    """Tells the desk what a session says."""
 
     can_ask = True
 
-    def __init__(self, desk: Desk, view: RunView, *, answer_yes: bool, begun: Callable[[RunView], None]) -> None:
+    def __init__(self, desk: Desk, view: RunView, *, answer_yes: bool) -> None:
         """``view``: what is known of the run before it begins."""
         self.desk = desk
         self.view = view
         self.answer_yes = answer_yes
-        self.session: Session | None = None
         self.name = ""
         self.missing: list[str] = []
         self.messages: list[str] = []
-        self._begun = begun
-        self._started = False
 
     def begin(self, name: str) -> None:
         """Take the recipe's name."""
         self.name = name
 
     def show(self, now_s: float, run: RunProgress, share: float) -> None:
-        """Let the desk look, and clients speak."""
-        session, desk = self.session, self.desk
-        assert session is not None
-        under_way = session.run_
-        if under_way is not None and (desk.watch is None or desk.watch.run is not under_way):
-            self._attach(session)
-        statistics = session.statistics
-        desk.tick = TickView(0.0, statistics.late_max_s, statistics.overruns)
-        desk.poll(now_s)
-
-    def _attach(self, session: Session) -> None:
-        assert session.run_ is not None
-        if not self._started:
-            self._started = True
-            folder = session.folder
-            self.view = replace(
-                self.view, name=folder.name if folder else "", folder=str(folder) if folder else "", recipe=self.name,
-                started_utc=clock.utc_now(),
-            )  # fmt: skip
-            self._begun(self.view)
-        if isinstance(session.run_, Holdable):
-            session.run_.stays_latched = True
-        self.desk.attach(session.run_, self.view)
+        """Nothing: the desk looks at the run itself."""
 
     def attend(self, prompts: Prompts) -> None:
         """Nothing: clients answer by command."""

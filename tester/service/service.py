@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import signal
+import sqlite3
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass, replace
@@ -12,11 +13,15 @@ from types import FrameType
 from drivers.ports import BusLost
 from recipes import UnknownRecipe
 from tester import clock
+from tester.campaign.claims import hold_rig
+from tester.campaign.endings import CannotStartError
+from tester.campaign.part_run import connect_ports
 from tester.engine.build import build_run
 from tester.engine.prompts import Prompts
 from tester.engine.run import Outcome
 from tester.engine.tickers import TickStatistics, run_real_time, run_simulated
 from tester.lock import RUN_LOCK, ExclusiveUse, user_of
+from tester.recipe.estimate import estimate
 from tester.rig import load_rig
 from tester.service.commands import (
     Arm,
@@ -28,9 +33,10 @@ from tester.service.hub import Hub
 from tester.service.link import Order
 from tester.service.manual import empty_plan, no_record, take_over
 from tester.service.orders import Orders
+from tester.service.progress import PlanTrack
 from tester.service.running import RunScreen, ServiceSession
 from tester.service.state import RunView
-from tester.session import CannotStartError, SessionOptions, connect_ports, hold_rig
+from tester.session import SessionOptions
 from tester.source import InvalidSource
 from tester.store.catalogue import find_run
 from tester.store.reader import DATABASE, RunReader
@@ -38,7 +44,7 @@ from tester.store.schema import StoreError
 
 NEWEST_RUNS = 200
 """So many runs are looked at for one that was cut off, the newest first."""
-REFUSED = (CannotStartError, InvalidSource, UnknownRecipe, StoreError, OSError)
+REFUSED = (CannotStartError, InvalidSource, UnknownRecipe, StoreError, OSError, sqlite3.Error)
 """What keeps a run from beginning."""
 
 
@@ -135,31 +141,31 @@ class Service:
     ) -> None:
         """Carry out a session from its beginning to its tables."""
         desk = self.desk
-        view = RunView("", "", "", "", notes, options.operator, options.seed, self.rig.simulated, options.lapse, "",
+        view = RunView("", "", "", "", "", options.operator, options.seed, self.rig.simulated, options.lapse, "",
                        Outcome.RUNNING.value, "", None, ())  # fmt: skip
-        begun = False
 
-        def begin(view: RunView) -> None:
-            nonlocal begun
-            begun = True
+        def begun(view: RunView) -> None:
             desk.hub.accept(order, {"run": view.name, "folder": view.folder})
+            if notes:
+                desk.tell("note", notes)
 
-        screen = RunScreen(desk, view, answer_yes=yes, begun=begin)
-        session = ServiceSession(options, screen, self.end)
-        problem = ""
+        screen = RunScreen(desk, view, answer_yes=yes)
+        session = ServiceSession(options, screen, self.end, begun)
+        problem, code = "", None
         try:
             code = work(session)
         except REFUSED as error:
-            problem, code = str(error), None
-        if not begun:
+            problem = str(error)
+        if not session.view.name:
             desk.hub.refuse(order, problem or "; ".join(screen.messages) or "the run has ended before it began")
             desk.detach(None)
             return
-        run = session.run_
-        outcome = run.outcome if run is not None else Outcome.FAILED
-        ended = replace(screen.view, outcome=outcome.value, reason=problem or (run.reason if run is not None else ""),
-                        exit=code, missing=tuple(screen.missing))  # fmt: skip
-        desk.ended(ended, outcome)
+        outcome = session.ending.outcome if session.ending is not None else Outcome.FAILED
+        reason = problem or (session.ending.reason if session.ending is not None else "")
+        known = desk.run or session.view
+        desk.ended(
+            replace(known, outcome=outcome.value, reason=reason, exit=code, missing=tuple(screen.missing)), outcome
+        )
 
     def _manual(self, order: Order) -> None:
         """Connect the rig and let the client that asked move it."""
@@ -174,7 +180,8 @@ class Service:
                 desk.hub.refuse(order, str(error))
                 return
             run = build_run(rig, empty_plan(), ports, attendant, no_record(), Prompts())
-            desk.attach(run, view, take_over(run))
+            hand = take_over(run)
+            desk.attach(run, PlanTrack(hand.plan, estimate(hand.plan, rig)), view, hand)
             desk.hub.accept(order)
             statistics = TickStatistics()
             if world is not None:

@@ -11,7 +11,6 @@ from tester.engine.connect import Stage
 from tester.engine.run import Run
 from tester.engine.thermal_steps import HeatUp, SoakTo
 from tester.process import GATE_LOAD, GATE_SETTLING, GATE_SLIP, GATE_SPEED, GATE_TEMPERATURE
-from tester.recipe.estimate import estimate
 from tester.service.alarms import AlarmList, Cause
 from tester.service.buses import BusWatch
 from tester.service.frames import FrameLog
@@ -38,16 +37,16 @@ RESTING = (Mode.IDLE, Mode.LATCHED)
 class RunWatch:
     """Looks at one run, between two ticks."""
 
-    def __init__(self, run: Run) -> None:
-        """Work out what stays the same; the plan is estimated here, before anything moves."""
+    def __init__(self, run: Run, track: PlanTrack) -> None:
+        """Work out what stays the same. ``track``: of the whole plan, of which this run may be a part."""
         self.run = run
         engine = run.engine
         self.rig = engine.ctx.rig
-        plan = engine.executor.plan
         self.values = ValueView(engine)
         self.buses = BusWatch(engine.devices, self.rig)
         self.frames = FrameLog(engine.devices, tuple(self.rig.lines))
-        self.track = PlanTrack(plan, estimate(plan, self.rig))
+        self.track = track
+        track.begin_part(engine.executor.plan)
         self.watched: set[str] = set()
         """Names of the alarms that stand for this run's devices: they go with it."""
         self._tripped = ""

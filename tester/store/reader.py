@@ -7,8 +7,10 @@ from __future__ import annotations
 
 import sqlite3
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import closing
 from dataclasses import dataclass, fields
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from types import TracebackType
 from typing import TYPE_CHECKING, Literal, TypeVar
 
@@ -33,7 +35,7 @@ from tester.store.records import (
     WheelInfo,
 )
 from tester.store.sample_blocks import unpack, unpack_array
-from tester.store.schema import VERSION, StoreError, version_of
+from tester.store.schema import VERSION, StoreError, migrate, version_of
 
 if TYPE_CHECKING:
     from array import array
@@ -91,6 +93,22 @@ def _record(record: type[T], row: Row, **given: object) -> T:
     return build(**values, **given)
 
 
+def _read_only(path: Path) -> sqlite3.Connection:
+    """Return a connection that reads; raises sqlite3.Error."""
+    uri = f"{path.absolute().as_uri()}?mode=ro"
+    connection = sqlite3.connect(uri, uri=True)
+    try:
+        connection.execute("SELECT count(*) FROM sqlite_master")
+    except sqlite3.OperationalError:
+        # A power cut at the very beginning or end of a run leaves a rollback journal, which a reader may not play back.
+        connection.close()
+        with closing(sqlite3.connect(path)) as repairing:
+            repairing.execute("SELECT count(*) FROM sqlite_master")
+        connection = sqlite3.connect(uri, uri=True)
+    connection.row_factory = sqlite3.Row
+    return connection
+
+
 class RunReader:
     """A run's record, from its folder or its ``run.db``; use in a ``with`` block or close it.
 
@@ -100,20 +118,32 @@ class RunReader:
     def __init__(self, path: Path) -> None:
         """Open the record for reading."""
         self.path = path / DATABASE if path.is_dir() else path
+        self._copy: TemporaryDirectory[str] | None = None
         if not self.path.is_file():
             raise StoreError(f"no run in {path}")
         try:
-            self._connection = sqlite3.connect(f"{self.path.absolute().as_uri()}?mode=ro", uri=True)
-            self._connection.row_factory = sqlite3.Row
-            version = version_of(self._connection)
+            self._connection = self._opened()
         except sqlite3.Error as error:
             raise StoreError(f"{self.path} cannot be read: {error}") from error
+
+    def _opened(self) -> sqlite3.Connection:
+        connection = _read_only(self.path)
+        try:
+            version = version_of(connection)
         except StoreError as error:
-            self._connection.close()
+            connection.close()
             raise StoreError(f"{self.path}: {error}") from error
-        if version != VERSION:
-            self._connection.close()
-            raise StoreError(f"{self.path} has schema {version}, this version reads {VERSION}")
+        if version == VERSION:
+            return connection
+        if version == 0:
+            connection.close()
+            raise StoreError(f"{self.path}: the run was not begun")
+        # An older record stays as it is (its manifest holds); a copy is brought to the present schema.
+        self._copy = TemporaryDirectory(prefix="tester-", ignore_cleanup_errors=True)
+        with closing(connection), closing(sqlite3.connect(Path(self._copy.name) / DATABASE)) as present:
+            connection.backup(present)
+            migrate(present)
+        return _read_only(Path(self._copy.name) / DATABASE)
 
     def __enter__(self) -> RunReader:
         """Return the reader."""
@@ -128,6 +158,8 @@ class RunReader:
     def close(self) -> None:
         """Let go of the file."""
         self._connection.close()
+        if self._copy is not None:
+            self._copy.cleanup()
 
     def _rows(self, sql: str, values: tuple[Cell, ...] = ()) -> Iterator[Row]:
         try:

@@ -22,6 +22,7 @@ from threading import Thread
 
 from tester.analysis.results import Burst, RepeatResult
 from tester.process import SAMPLE_COLUMNS
+from tester.store.files import sync_folder
 from tester.store.recorder import Batch, NullRecorder, Recorder, Ticket, no_utc
 from tester.store.sample_blocks import BLOCK_ROWS, pack
 from tester.store.schema import StoreError, migrate, version_of
@@ -46,6 +47,9 @@ def _open(path: Path) -> sqlite3.Connection:
     connection = sqlite3.connect(path, isolation_level=None, check_same_thread=False)
     try:
         version_of(connection)  # before anything is changed in a file that may be somebody else's
+        # EXTRA until the log is in use: the deletion of a rollback journal is synced too. One that came back after a
+        # power cut would take back everything since.
+        connection.execute("PRAGMA synchronous = EXTRA")
         connection.execute("PRAGMA journal_mode = WAL")
         connection.execute("PRAGMA synchronous = FULL")
         migrate(connection)
@@ -55,6 +59,7 @@ def _open(path: Path) -> sqlite3.Connection:
         columns = connection.execute("SELECT name FROM sample_column ORDER BY position").fetchall()
         if tuple(name for (name,) in columns) != SAMPLE_COLUMNS:
             raise StoreError(f"{path.name} was recorded with other sample columns and cannot be continued")
+        sync_folder(path.parent)
     except (sqlite3.Error, StoreError):
         connection.close()
         raise
@@ -129,7 +134,7 @@ class RunWriter(Recorder):
 
     def _full(self, row: tuple[float, ...]) -> None:
         if self._synchronous and self.failed is None:
-            self._service()
+            self.service()
         elif self._lossless:
             while len(self._queue) >= self._limit and self.failed is None:
                 self._room.clear()
@@ -144,7 +149,7 @@ class RunWriter(Recorder):
         self._queue.append(batch)
         if self._synchronous:
             if self.failed is None:
-                self._service()
+                self.service()
         elif batch.urgent:
             self._wake.set()
 
@@ -174,6 +179,7 @@ class RunWriter(Recorder):
             # Not WAL any more: a finished run is one file that reading does not touch. Somebody who reads it just now
             # prevents that; then the log is folded in when the last of them leaves, and the file stays WAL.
             self._connection.execute("PRAGMA busy_timeout = 0")
+            self._connection.execute("PRAGMA synchronous = EXTRA")
             with suppress(sqlite3.OperationalError):
                 self._connection.execute("PRAGMA journal_mode = DELETE")
         self._connection.close()
@@ -185,13 +191,14 @@ class RunWriter(Recorder):
             while not self._stopping and self.failed is None:
                 self._wake.wait(self._poll_s)
                 self._wake.clear()
-                self._service()
+                self.service()
         finally:
             # Whoever waits for this thread must not wait for ever, whatever ended it.
             if not self._stopping and self.failed is None:
                 self.failed = "the recorder has ended unexpectedly"
 
-    def _service(self) -> None:
+    def service(self) -> None:
+        """Take what has come and commit what is due: what the logger's thread does ten times a second."""
         self._drain()
         waited = self._clock() - self._committed_at
         if self._urgent or waited >= self._commit_after_s or len(self._rows) >= LOSSLESS_LIMIT:
