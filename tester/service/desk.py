@@ -121,9 +121,17 @@ class Desk:
         self.run = view
         self.tell("run", text, "info" if outcome is Outcome.DONE else "warning")
         self.notify("finished", text)
-        if self.watch is not None and (trip := self.watch.run.engine.control.state.trip) is not None:
-            self.latched, self.tripped = view.reason or view.outcome, trip.name
+        if outcome is Outcome.TRIPPED and self.watch is not None and not self.watch.acknowledged:
+            self._latch(view.reason or view.outcome, self.watch)
         self.detach(view)
+
+    def _latch(self, reason: str, watch: RunWatch) -> None:
+        """Let nothing begin before somebody has acknowledged."""
+        watch.watch_trip(self.alarms, self.now_s)
+        if not watch.tripped:  # the wire is gone: control has had nothing to decide
+            watch.tripped = "rig lost"
+            self.alarms.raise_(Cause(watch.tripped, 1, reason, "the drives stop by their own watchdogs"), self.now_s)
+        self.latched, self.tripped = reason, watch.tripped
 
     def unlatch(self, by: str) -> None:
         """Take an acknowledgement: the next run may begin."""

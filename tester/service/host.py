@@ -38,7 +38,7 @@ def host(rig: str, overrides: tuple[str, ...], runs: str, url: str, port: int | 
             sys.stderr.write(f"{error}\n")
             return EXIT_FAILED
         hub = Hub(HubConfig(address, where / CARD, Path(runs), rig, notify))
-        service = Service(ServiceOptions(rig, overrides, Path(runs), where), hub)
+        service = Service(ServiceOptions(rig, overrides, Path(runs)), hub)
         hub.open()
         sys.stderr.write(f'rig "{service.rig.name}" is served at {address}\n')
         sys.stderr.flush()

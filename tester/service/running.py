@@ -46,17 +46,19 @@ class ServiceSession(Session):
         super().begun(run)
         if self._track is None:
             return
-        if not self.view.name:
+        first = not self.view.name
+        if first:
             folder = self.folder
             assert folder is not None
             self.view = replace(
                 self.view, name=folder.name, folder=str(folder), recipe=self._screen.name, started_utc=clock.utc_now()
             )
-            self._tell_begun(self.view)
         if isinstance(run, Holdable):
             run.stays_latched = True
         self.desk.attach(run, self._track, self.view)
         self.desk.stop_rest = self._stop_rest
+        if first:
+            self._tell_begun(self.view)
 
     def poll(self, now_s: float, run: Run, share: float) -> None:
         """Let the desk look, and clients speak."""

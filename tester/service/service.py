@@ -7,6 +7,7 @@ import sqlite3
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from hashlib import sha256
 from pathlib import Path
 from types import FrameType
 
@@ -42,6 +43,8 @@ from tester.store.catalogue import find_run
 from tester.store.reader import DATABASE, RunReader
 from tester.store.schema import StoreError
 
+RECIPES = ".recipes"
+"""Folder beside the runs for recipes that came as text, named by their content."""
 NEWEST_RUNS = 200
 """So many runs are looked at for one that was cut off, the newest first."""
 REFUSED = (CannotStartError, InvalidSource, UnknownRecipe, StoreError, OSError, sqlite3.Error)
@@ -55,8 +58,6 @@ class ServiceOptions:
     rig: str = "sim"
     overrides: tuple[str, ...] = ()
     runs: Path = Path("runs")
-    spool: Path = Path()
-    """The service's own folder: recipes that come as text are put there."""
 
 
 class Service:
@@ -129,11 +130,13 @@ class Service:
         self._session(order, options, action.yes, "", lambda session: session.resume(folder, action.reason))
 
     def _spooled(self, action: RunRecipe) -> str:
-        """Write a recipe that came as text where the session can read it."""
+        """Write a recipe that came as text where the session can read it, and a resumed run finds it unchanged."""
         if not action.text:
             return ""
-        file = self.options.spool / "recipe.yaml"
-        file.write_text(action.text, encoding="utf-8")
+        digest = sha256(action.text.encode()).hexdigest()[:16]
+        file = self.options.runs / RECIPES / f"{digest}.yaml"
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(action.text, encoding="utf-8", newline="\n")
         return str(file)
 
     def _session(
@@ -146,8 +149,8 @@ class Service:
 
         def begun(view: RunView) -> None:
             desk.hub.accept(order, {"run": view.name, "folder": view.folder})
-            if notes:
-                desk.tell("note", notes)
+            if notes and desk.watch is not None:
+                desk.watch.run.engine.ctx.journal.event(0.0, "note", notes)
 
         screen = RunScreen(desk, view, answer_yes=yes)
         session = ServiceSession(options, screen, self.end, begun)

@@ -49,7 +49,10 @@ class RunWatch:
         track.begin_part(engine.executor.plan)
         self.watched: set[str] = set()
         """Names of the alarms that stand for this run's devices: they go with it."""
-        self._tripped = ""
+        self.tripped = ""
+        """Name of the alarm of the trip that latches the rig."""
+        self.acknowledged = False
+        """There was a trip, and it has been acknowledged."""
         self._asked_utc: dict[int, str] = {}
 
     # -- what is shown ----------------------------------------------------------------------------------------
@@ -140,7 +143,7 @@ class RunWatch:
         if trip is not None:
             consequence = "the rig comes to a standstill; nothing moves before it is acknowledged"
             alarms.raise_(Cause(trip.name, 1, trip.text, consequence), now)
-            self._tripped = trip.name
-        elif self._tripped:
-            alarms.clear(self._tripped)
-            self._tripped = ""
+            self.tripped = trip.name
+        elif self.tripped:
+            alarms.clear(self.tripped)
+            self.tripped, self.acknowledged = "", True
