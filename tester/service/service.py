@@ -47,6 +47,8 @@ RECIPES = ".recipes"
 """Folder beside the runs for recipes that came as text, named by their content."""
 NEWEST_RUNS = 200
 """So many runs are looked at for one that was cut off, the newest first."""
+MANUAL_LAPSE = 1.0
+"""A person moves a simulated rig in real time."""
 REFUSED = (CannotStartError, InvalidSource, UnknownRecipe, StoreError, OSError, sqlite3.Error)
 """What keeps a run from beginning."""
 
@@ -188,7 +190,7 @@ class Service:
             desk.hub.accept(order)
             statistics = TickStatistics()
             if world is not None:
-                run_simulated(run, world, lapse=1.0, poll=self._poll_manual)
+                run_simulated(run, world, lapse=MANUAL_LAPSE, poll=self._poll_manual)
             else:
                 run_real_time(run, None, poll=self._poll_manual, statistics=statistics)
         desk.ended(replace(view, outcome=run.outcome.value, reason=run.reason), run.outcome)

@@ -23,7 +23,7 @@ from tester.service.protocol import Event, Frames
 from tester.service.service import Service, ServiceOptions
 from tester.service.state import PlanView, StateView
 
-Script = Generator[Order | Presence | None]
+Script = Generator[Order | Presence | list[Order | Presence] | None]
 MOST_POLLS = 20_000
 """A script that has not ended by then hangs."""
 
@@ -98,7 +98,7 @@ class Stage(Hub):
             return []
         if isinstance(heard, Presence):
             self.presence = heard
-        return [] if heard is None else [heard]
+        return heard if isinstance(heard, list) else [] if heard is None else [heard]
 
     def wait(self, seconds: float) -> None:
         pass
