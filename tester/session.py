@@ -32,6 +32,7 @@ from tester.recipe.check import load_checked
 from tester.recipe.loader import LoadedRecipe
 from tester.resume import prepare
 from tester.rig import RigConfig, load_rig
+from tester.store.catalogue import cut_off
 from tester.store.reader import RunReader
 from tester.store.resume import FINISHED
 from tester.store.writer import RunWriter
@@ -125,6 +126,8 @@ class Session:
             self.screen.message(refusal)
             return EXIT_USAGE
         options.out.mkdir(parents=True, exist_ok=True)
+        for folder in cut_off(options.out):
+            self.screen.message(f"{folder.name} was cut off: tester resume {folder} goes on with it")
         enough_room(options.out, work.plan, rig)
         with ExclusiveUse() as use:
             hold_rig(use, rig, work.plan.name)

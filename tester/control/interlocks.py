@@ -70,7 +70,9 @@ def _can_stale(view: View) -> bool:
     r = view.readings
     if not (view.demand.enabled and r.drives_enabled):
         return False
-    limit = min(view.bounds.stale_can_scans * view.scan_s, view.bounds.stale_can_s)
+    # Drives answer a scan's SYNC: after a late one their data is as old as that scan was long ("scan late" judges).
+    period_s = max(view.scan_s, r.now_s - view.state.last_s)
+    limit = min(view.bounds.stale_can_scans * period_s, view.bounds.stale_can_s)
     oldest = min(r.wheel_at_s, r.belt_at_s, r.press_at_s, r.sideslip_at_s, r.camber_at_s)
     return not (r.now_s - oldest <= limit)
 

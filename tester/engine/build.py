@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import ExitStack
 from dataclasses import dataclass
 from math import log, pi
 
@@ -28,6 +29,7 @@ from tester.engine.results import StoredResults
 from tester.engine.resume import take_up
 from tester.engine.run import Run
 from tester.engine.sampler import Sampler
+from tester.pace import Pace
 from tester.process import Demand, Readings, Setpoints
 from tester.recipe.plan import Plan
 from tester.rig import LineConfig, RigConfig
@@ -37,10 +39,20 @@ from tester.store.resume import ResumePoint
 
 @dataclass(frozen=True, slots=True)
 class Ports:
-    """The wires to a rig: one CAN bus, and the Modbus lines by their names in the rig file."""
+    """The wires to a rig: one CAN bus, and the Modbus lines by their names in the rig file.
+
+    Real ones come with the clock that stamps what arrives on them (``pace``) and are closed by ``opened``.
+    """
 
     can: CanPort
     lines: dict[str, LinePort]
+    pace: Pace | None = None
+    opened: ExitStack | None = None
+
+    def close(self) -> None:
+        """Give the wires back."""
+        if self.opened is not None:
+            self.opened.close()
 
 
 def build_devices(rig: RigConfig, ports: Ports) -> Devices:

@@ -51,7 +51,7 @@ class ConditionEnd:
 class Results(Protocol):
     """Where repeats and conditions go: reduction and store behind one door."""
 
-    def committed(self, step: ConditionStep) -> int:
+    def repeats_done(self, step: ConditionStep) -> int:
         """Return how many repeats of a condition an earlier stretch of the run committed."""
         ...
 
@@ -93,7 +93,7 @@ class MeasureCondition:
         self.before: Sequence | None = None
         self.soak: SoakTo | None = None
         self.soaked = False
-        self.repeat = results.committed(step)
+        self.repeat = results.repeats_done(step)
         self.key = 0
         self.measuring: MeasureRepeat | None = None
         self.outcome: RepeatOutcome | None = None

@@ -42,7 +42,7 @@ class StoredResults:
         self.earlier: dict[int, ConditionSoFar] = {}
         """What earlier stretches of an interrupted run committed of conditions that were not over."""
 
-    def committed(self, step: ConditionStep) -> int:
+    def repeats_done(self, step: ConditionStep) -> int:
         """Return how many repeats of a condition an earlier stretch of the run committed."""
         earlier = self.earlier.get(step.condition)
         return len(earlier.results) if earlier is not None else 0
@@ -66,7 +66,7 @@ class StoredResults:
 
     def begin_repeat(self, ctx: Context, step: ConditionStep, repeat: int, attempt: int) -> int:
         """Open a repeat; return the key that its samples carry."""
-        committed = self.committed(step)
+        committed = self.repeats_done(step)
         if repeat == committed + 1:
             self.repeats = list(self.earlier[step.condition].results) if committed else []
             self.recorder.begin_condition(step.condition, ctx.now)

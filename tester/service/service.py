@@ -188,11 +188,13 @@ class Service:
             hand = take_over(run)
             desk.attach(run, PlanTrack(hand.plan, estimate(hand.plan, rig)), view, hand)
             desk.hub.accept(order)
-            statistics = TickStatistics()
-            if world is not None:
-                run_simulated(run, world, lapse=MANUAL_LAPSE, poll=self._poll_manual)
-            else:
-                run_real_time(run, None, poll=self._poll_manual, statistics=statistics)
+            try:
+                if world is not None:
+                    run_simulated(run, world, lapse=MANUAL_LAPSE, poll=self._poll_manual)
+                else:
+                    run_real_time(run, None, poll=self._poll_manual, statistics=TickStatistics(), pace=ports.pace)
+            finally:
+                ports.close()
         desk.ended(replace(view, outcome=run.outcome.value, reason=run.reason), run.outcome)
 
     def _poll_manual(self, now_s: float) -> None:

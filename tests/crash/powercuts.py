@@ -158,9 +158,7 @@ def _read(image: Path, made: Recorded, known: Known, damage: Damage) -> None:
             if reader.integrity_problems():
                 damage.unreadable.append("integrity")
             found = {
-                (r.condition, r.repeat): r.result
-                for r in reader.repeats()
-                if r.result.status is RepeatStatus.VALID
+                (r.condition, r.repeat): r.result for r in reader.repeats() if r.result.status is RepeatStatus.VALID
             }
             damage.lost_repeats += len(known.repeats - set(found))
             damage.wrong_values += sum(made.repeats.get(place) != r.mu_resultant for place, r in found.items())

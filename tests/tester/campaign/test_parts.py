@@ -28,8 +28,8 @@ from tests.tester.engine.bench import SHORT
 from tests.tester.test_session import TABLES, Ended, Screen
 
 TWO = SHORT.replace('  - compound: "1#"\n', '  - compound: "1#"\n  - compound: "2#"\n').replace("14 rev", "7 rev")
-RUN_IN = ("sim.running_in=0",)
-"""Wheels that are run in already: noise and scatter as they are, and the window soon long enough."""
+STEADY = ("sim.running_in=0", "sim.scatter=0")
+"""A coefficient that stands still, seen through the noise of every sensor: the window is soon long enough."""
 ROOT = Path(__file__).parents[3]
 
 
@@ -42,7 +42,7 @@ def run(
     recipe.write_text(text, encoding="utf-8")
     screen = screen or Screen()
     bus_log = home / "bus" if options.get("bus_log") else None
-    chosen = SessionOptions(str(recipe), overrides=overrides or RUN_IN, out=home / "runs", jobs=jobs, bus_log=bus_log)
+    chosen = SessionOptions(str(recipe), overrides=overrides or STEADY, out=home / "runs", jobs=jobs, bus_log=bus_log)
     return Ended(Session(chosen, screen).run(), screen, home / "runs")
 
 

@@ -192,7 +192,7 @@ def test_a_file_that_is_no_database_is_refused(tmp_path: Path) -> None:
 
 def test_an_empty_file_is_refused(tmp_path: Path) -> None:
     (tmp_path / "run.db").touch()
-    with pytest.raises(StoreError, match="schema 0"):
+    with pytest.raises(StoreError, match="not begun"):
         RunReader(tmp_path)
 
 

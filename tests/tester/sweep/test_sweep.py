@@ -12,6 +12,7 @@ import pytest
 
 from tester.rig.template import hardware_text
 from tester.source import InvalidSource
+from tester.sweep import sweep as module
 from tester.sweep.case import CaseResult, Task, run_case
 from tester.sweep.executors import local
 from tester.sweep.grid import axes_of
@@ -124,21 +125,30 @@ def test_an_interrupt_keeps_what_is_there_in_order(tmp_path: Path) -> None:
     assert rows_of(folder, "summary.csv")[0]["runs"] == "3" and rows_of(folder, "totals.csv")[0]["done"] == "3"
 
 
-def test_a_case_gives_what_tester_run_gives(tmp_path: Path) -> None:
-    (task,) = sweep_of(tmp_path, *QUIET, seeds=1).tasks
-    found = run_case(task)
+def test_a_case_gives_what_tester_run_gives_in_whatever_process(tmp_path: Path) -> None:
+    sweep = sweep_of(tmp_path, *QUIET, seeds=1)
+    found = run_case(sweep.tasks[0])
     (one,) = found.rows
     assert (found.outcome, found.exit_code, found.wheels, found.missing) == ("done", 0, 1, 0)
     assert found.rig_seconds > 60.0 and one.mu == pytest.approx(0.73, abs=0.01)
     assert (one.compound, one.slip_velocity_mm_s, one.load_n, one.n_valid) == ("1#", 300.0, 200.0, 1)
+    with local(1) as submit:
+        there = submit(run_case, sweep.tasks[0]).result()
+    assert repr(there) == repr(found)  # not-a-number is not equal to itself
 
 
-def test_the_order_of_arrival_does_not_show_in_the_files(tmp_path: Path) -> None:
-    def files(jobs: int) -> dict[str, bytes]:
-        home = tmp_path / str(jobs)
-        home.mkdir()
-        with local(jobs) as submit:
-            folder, _ = carry_out(sweep_of(home, "sim.running_in=0", "sim.scatter=0,1", seeds=1), submit, Heard())
+def test_the_order_of_arrival_does_not_show_in_the_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def files(name: str) -> dict[str, bytes]:
+        (tmp_path / name).mkdir()
+        sweep = sweep_of(tmp_path / name, "sim.scatter=0,1", seeds=3)
+        heard = Heard()
+        folder, _ = carry_out(sweep, at_once(lambda task: result(task.case, row(), point=task.point)), heard)
+        arrived.append(heard.cases)
         return {path.name: path.read_bytes() for path in folder.iterdir()}
 
-    assert files(1) == files(2)
+    arrived: list[list[int]] = []
+    monkeypatch.setattr(module, "as_completed", lambda futures: list(futures))
+    first = files("first")
+    monkeypatch.setattr(module, "as_completed", lambda futures: list(futures)[::-1])
+    assert files("second") == first
+    assert arrived == [[1, 2, 3, 4, 5, 6], [6, 5, 4, 3, 2, 1]]
