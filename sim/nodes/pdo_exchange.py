@@ -100,7 +100,7 @@ class PdoExchange:
         self._event_tpdos: tuple[TransmitPdo, ...] = ()
         self._status_on_event = False
         self._single = False
-        self.take_sample = _nothing
+        self.take_sample: Callable[[], bytes] = _nothing
         self.sample_id = 0
         self.sample = b""
         self.stale = True
