@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Protocol, runtime_checkable
-
 from tester.control.state import Mode
 from tester.service.commands import (
     Acknowledge,
@@ -19,25 +17,6 @@ from tester.service.commands import (
 )
 from tester.service.desk import Desk
 from tester.service.link import Order
-
-
-@runtime_checkable
-class Holdable(Protocol):
-    """A run that can be held and acknowledged. ``stays_latched``: after a trip it goes on until it is acknowledged."""
-
-    stays_latched: bool
-
-    def request_hold(self, why: str) -> str:
-        """Hold; return "" or why not."""
-        ...
-
-    def request_release(self, why: str) -> str:
-        """Go on; return "" or why not."""
-        ...
-
-    def request_ack(self) -> str:
-        """Acknowledge a trip; return "" or why not."""
-        ...
 
 
 class Orders:
@@ -98,8 +77,6 @@ class Orders:
         name = "hold" if isinstance(action, Hold) else "release"
         self.desk.tell("command", f"{name} by {order.name}")
         run = watch.run
-        if not isinstance(run, Holdable):
-            return "this rig cannot be held"
         if isinstance(action, Hold):
             return run.request_hold(f"held by {order.name}")
         return run.request_release(f"released by {order.name}")
@@ -113,7 +90,7 @@ class Orders:
         run = desk.watch.run if desk.watch is not None else None
         if run is None and action.number in (0, trip):
             desk.unlatch(order.name)
-        elif run is not None and run.engine.control.state.mode is Mode.LATCHED and isinstance(run, Holdable):
+        elif run is not None and run.engine.control.state.mode is Mode.LATCHED:
             refusal = run.request_ack()
         self._reply(order, refusal)
 

@@ -15,7 +15,6 @@ from tester.engine.prompts import Prompts
 from tester.engine.run import Run
 from tester.recipe.estimate import estimate
 from tester.service.desk import Desk
-from tester.service.orders import Holdable
 from tester.service.progress import PlanTrack
 from tester.service.state import RunView, TickView
 from tester.session import Session, SessionOptions
@@ -53,8 +52,7 @@ class ServiceSession(Session):
             self.view = replace(
                 self.view, name=folder.name, folder=str(folder), recipe=self._screen.name, started_utc=clock.utc_now()
             )
-        if isinstance(run, Holdable):
-            run.stays_latched = True
+        run.stays_latched = True
         self.desk.attach(run, self._track, self.view)
         self.desk.stop_rest = self._stop_rest
         if first:
@@ -79,7 +77,7 @@ class ServiceSession(Session):
 
     def _on_signal(self, number: int, _frame: FrameType | None) -> None:
         self._tell_signal()
-        if isinstance(self.run_, Holdable):
+        if self.run_ is not None:
             self.run_.stays_latched = False  # nobody will be there to acknowledge
         super()._on_signal(number, _frame)
 

@@ -18,6 +18,7 @@ MODES = (
     "INTERRUPTED",
     "CONNECTING",
     "IDLE",
+    "ARMED",
     "RUN",
     "HOLD",
     "STOPPING",

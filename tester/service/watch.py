@@ -26,10 +26,8 @@ GATES = (
     ("settling", GATE_SETTLING),
 )
 NO_MODE = "CONNECTING"
-MODES = {Mode.IDLE: "IDLE", Mode.RUN: "RUN", Mode.STOPPING: "STOPPING", Mode.COOLDOWN: "COOLDOWN",
-         Mode.FAST_STOP: "FAST STOP", Mode.LATCHED: "LATCHED"}  # fmt: skip
-
-
+MODES = {Mode.EMERGENCY: "E-STOP"}
+"""Modes that are shown under another name than control's."""
 RESTING = (Mode.IDLE, Mode.LATCHED)
 """Modes in which drives are let go of at the end of a run."""
 

@@ -260,6 +260,28 @@ def test_a_trip_latches_until_it_is_acknowledged(tmp_path: Path) -> None:
     assert run is not None and run.outcome == "tripped"
 
 
+def test_a_held_run_goes_on_when_it_is_released(tmp_path: Path) -> None:
+    def script(stage: Stage) -> Script:
+        yield stage.order(RUN)
+        yield from stage.until(lambda view: view.mode == "RUN" and view.progress.condition == 1)
+        yield stage.order(Hold())
+        yield from stage.until(lambda view: view.mode == "HOLD" and view.mode_since_s > 5.0)
+        yield stage.order(Release())
+        yield from stage.until(running)
+        yield stage.order(Release())
+        yield None
+        assert "nothing to release" in stage.refused["release"]
+        yield stage.order(Stop())
+        yield from stage.until(over)
+
+    stage = play(tmp_path, script)
+    assert set(stage.accepted) >= {"hold", "release"}
+    assert any(name == "hold" for name, _ in stage.notes)
+    held = [view for view in stage.views if view.mode == "HOLD"][-1]
+    load = held.value("load")
+    assert load is not None and load.value is not None and load.value < 5.0
+
+
 def test_term_stops_the_run_and_ends_the_service(tmp_path: Path) -> None:
     def script(stage: Stage) -> Script:
         yield stage.order(RUN)
