@@ -73,7 +73,7 @@ class ServiceSession(Session):
 
     def _stop_rest(self, fast: bool) -> None:
         """Begin no further part."""
-        self.stop(Stop.FAST if fast else Stop.TERMINATED)
+        self.stop(Stop.FAST if fast else Stop.INTERRUPTED)
 
     def _on_signal(self, number: int, _frame: FrameType | None) -> None:
         self._tell_signal()

@@ -199,7 +199,7 @@ class Service:
 
     def _poll_manual(self, now_s: float) -> None:
         if self.orders.ending and self.desk.watch is not None:
-            self.desk.watch.run.request_stop("the service ends")
+            self.desk.watch.run.request_stop("the service ends", cool=False)
         self.desk.poll(now_s)
 
 
