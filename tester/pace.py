@@ -21,9 +21,10 @@ class Pace:
         """Return the seconds since the start."""
         return clock.monotonic() - self._origin_s
 
-    def wait_until(self, due_s: float) -> None:
-        """Return at ``due_s`` (s)."""
+    def wait_until(self, due_s: float) -> bool:
+        """Return at ``due_s`` (s); True where something urgent has ended the wait."""
         clock.sleep_until(self._origin_s + due_s)
+        return False
 
 
 class UrgentPace(Pace):
@@ -35,8 +36,8 @@ class UrgentPace(Pace):
         self._urgent = Event()
         self._catch_up_s = catch_up_s
 
-    def wait_until(self, due_s: float) -> None:
-        """Return at ``due_s`` (s), or as soon as something urgent has arrived since the last wait began.
+    def wait_until(self, due_s: float) -> bool:
+        """Return at ``due_s`` (s), or with True as soon as something urgent has arrived since the last wait began.
 
         After a wait that ended late the receiving threads get a moment first: the scan would take data for stale that
         is there already.
@@ -46,7 +47,9 @@ class UrgentPace(Pace):
             self._urgent.wait(delay)
         if self._catch_up_s and self.now() - due_s > LATE_S:
             clock.sleep_until(clock.monotonic() + self._catch_up_s)
+        urgent = self._urgent.is_set()
         self._urgent.clear()
+        return urgent
 
     def hurry(self) -> None:
         """End the wait under way, or the next one: from any thread."""

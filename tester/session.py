@@ -24,6 +24,7 @@ from tester.engine.context import Progress as RunProgress
 from tester.engine.prompts import Prompts
 from tester.engine.results import condition_records
 from tester.engine.run import Outcome, Run
+from tester.engine.tickers import TickStatistics
 from tester.export import write_all
 from tester.lock import ExclusiveUse
 from tester.provenance import recipe_source, rig_source, run_info, session_info
@@ -117,6 +118,7 @@ class Session:
         self.ending: Ending | None = None
         self.prompts = Prompts(automatic=screen.answer_yes)
         """Of all parts that run in this process: each has a number of its own."""
+        self.statistics = TickStatistics()
         self._level = Stop.NONE
         self._pool: Pool | None = None
 

@@ -15,6 +15,7 @@ from tester.campaign.pool import Pool, say, stop_level
 from tester.engine.context import Progress
 from tester.engine.prompts import Prompts
 from tester.engine.run import Outcome, Run
+from tester.engine.tickers import TickStatistics
 
 POLL_S = 0.1
 """How often the parent looks for reports, s of wall time."""
@@ -78,6 +79,7 @@ class _Reporting:
     """A watch that tells the parent how far the part is, and hears from it when to stop."""
 
     def __init__(self) -> None:
+        self.statistics = TickStatistics()
         self._heard = Stop.NONE
 
     def begun(self, run: Run) -> None:

@@ -30,6 +30,9 @@ WHEEL_EVERY_S = 1.0
 class Watch(Protocol):
     """Who looks after a part while it runs."""
 
+    statistics: TickStatistics
+    """Is told how punctual the ticks are, in real time."""
+
     def begun(self, run: Run) -> None:
         """Take notice of the run: from now on it can be stopped."""
         ...
@@ -141,7 +144,7 @@ def _tick(
     if world is not None:
         # Also at --speed 1: counted ticks, not measured ones, so that no speed changes a result.
         return run_simulated(run, world, lapse=lapse, poll=poll)
-    return run_real_time(run, world, poll=poll, statistics=TickStatistics(), pace=pace)
+    return run_real_time(run, world, poll=poll, statistics=watch.statistics, pace=pace)
 
 
 def connect_ports(rig: RigConfig, seed: int, log: BusLog | None) -> tuple[Ports, World | None, Attendant]:

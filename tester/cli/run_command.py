@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import click
+from click.core import ParameterSource
 
 from tester.cli.options import json_option, rig_option, set_option
 
@@ -34,8 +35,11 @@ from tester.cli.options import json_option, rig_option, set_option
 )
 @click.option("--bus-log", default=None, metavar="DIR", help="Write every CAN and Modbus frame into this folder.")
 @click.option("--operator", default="", metavar="NAME", help="Who runs the test; stored with the run.")
+@click.option("--detach", is_flag=True, help="Have the service run it (`tester serve`), and return.")
 @json_option
+@click.pass_context
 def run(
+    context: click.Context,
     recipe: str,
     rig_name: str,
     overrides: tuple[str, ...],
@@ -46,6 +50,7 @@ def run(
     jobs: int,
     bus_log: str | None,
     operator: str,
+    detach: bool,
     as_json: bool,
 ) -> int:
     """Run RECIPE (a file, or the name of a shipped recipe) and print the run's folder as the last line.
@@ -53,6 +58,13 @@ def run(
     Ctrl+C stops in a controlled way; a second one stops fast. On a terminal: h holds (lifts, keeps the heat), r
     releases, a aborts, s or Ctrl+X stops fast.
     """
+    if detach:
+        given = {name for name in context.params if context.get_parameter_source(name) is ParameterSource.COMMANDLINE}
+        if given & {"out", "bus_log"}:
+            raise click.UsageError("--out and --bus-log are the service's to choose: not with --detach")
+        rig = rig_name if "rig_name" in given else ""
+        return _detached(recipe, rig, overrides, seed, time_lapse(speed), yes, operator)
+
     from pathlib import Path
 
     from tester.cli.console import Console
@@ -71,6 +83,24 @@ def run(
     )
     session = Session(options, Console(as_json=as_json, answer_yes=yes))
     return carried_out(session.run)
+
+
+def _detached(
+    recipe: str, rig: str, overrides: tuple[str, ...], seed: int, lapse: float | None, yes: bool, operator: str
+) -> int:
+    """Have the service run a recipe; its files are named so that the service finds them from its own folder."""
+    from pathlib import Path
+
+    from tester.cli.service_commands import run_detached
+    from tester.service.commands import RunRecipe
+
+    def found(name: str) -> str:
+        return str(Path(name).resolve()) if Path(name).is_file() else name
+
+    action = RunRecipe(
+        found(recipe), rig=found(rig), overrides=overrides, seed=seed, speed=lapse, yes=yes, operator=operator
+    )
+    return run_detached("", action)
 
 
 def carried_out(work: Callable[[], int]) -> int:

@@ -13,6 +13,11 @@ from typing import Protocol
 from tester import clock
 from tester.pace import Pace
 
+POLL_S = 0.02
+"""Period of ``poll``, s of wall time: a STOP from a screen is heard within it."""
+LEAVE_S = 0.002
+"""No poll begins this shortly before a tick is due, s."""
+
 
 class Ticked(Protocol):
     """What a ticker drives."""
@@ -74,8 +79,8 @@ def next_tick(now: float, wanted: float, urgent: float) -> float:
 def run_simulated(engine: Ticked, world: World, *, lapse: float | None, poll: Callable[[float], None]) -> float:
     """Run to the end in simulated time; return the rig seconds.
 
-    ``lapse``: rig seconds per second of wall time, or None for as fast as it goes. ``poll`` is called about ten times
-    a second of wall time (display, keys); it must not block for long.
+    ``lapse``: rig seconds per second of wall time, or None for as fast as it goes. ``poll`` is called about every
+    ``POLL_S`` of wall time (display, commands), between two ticks as well; it must not block for long.
     """
     now = 0.0
     origin = clock.monotonic()
@@ -86,14 +91,17 @@ def run_simulated(engine: Ticked, world: World, *, lapse: float | None, poll: Ca
             wanted = engine.tick(now)
             later = next_tick(now, wanted, world.urgent_s)
             if lapse is not None:
-                clock.sleep_until(origin + later / lapse)
+                poll_due = _wait(origin + later / lapse, now, poll, poll_due)
             wall = clock.monotonic()
             if wall >= poll_due:
                 poll(now)
-                poll_due = wall + 0.1
-            while engine.waiting:
-                poll(now)
-                clock.sleep_until(clock.monotonic() + 0.02)
+                poll_due = wall + POLL_S
+            if engine.waiting:
+                asked = clock.monotonic()
+                while engine.waiting:
+                    poll(now)
+                    clock.sleep_until(clock.monotonic() + POLL_S)
+                origin += clock.monotonic() - asked  # a person's time is not made up for
             now = later
     return now
 
@@ -112,11 +120,10 @@ def run_real_time(
     stamps what arrives, and what ends a wait early; by default one that starts now.
     """
     pace = pace or Pace()
-    now = pace.now()
-    due = poll_due = now
+    now = due = poll_due = pace.now()
     with collector_at_rest(), scan_first():
         while not engine.finished:
-            pace.wait_until(due)
+            poll_due = _wait_paced(pace, due, now, poll, poll_due)
             now = pace.now()
             statistics.note(now - due)
             if world is not None:
@@ -124,11 +131,12 @@ def run_real_time(
             due = engine.tick(now)
             if world is not None:
                 due = min(due, world.urgent_s)
-            if due < pace.now():
+            wall = pace.now()
+            if due < wall:
                 statistics.overruns += 1
-            if now >= poll_due:
+            if wall >= poll_due:
                 poll(now)
-                poll_due = now + 0.1
+                poll_due = wall + POLL_S
     return pace.now()
 
 
@@ -145,6 +153,31 @@ def scan_first() -> Generator[None, None, None]:
         yield
     finally:
         sys.setswitchinterval(before)
+
+
+def _wait(deadline: float, now: float, poll: Callable[[float], None], poll_due: float) -> float:
+    """Wait until a deadline of the wall clock, polling meanwhile; return when the next poll is due."""
+    while True:
+        wall = clock.monotonic()
+        if wall >= poll_due and deadline - wall > LEAVE_S:
+            poll(now)
+            poll_due = wall + POLL_S
+        if max(poll_due, wall) + LEAVE_S >= deadline:
+            clock.sleep_until(deadline)
+            return poll_due
+        clock.sleep_until(poll_due)
+
+
+def _wait_paced(pace: Pace, due: float, now: float, poll: Callable[[float], None], poll_due: float) -> float:
+    """Wait until ``due`` or something urgent, polling meanwhile; return when the next poll is due."""
+    while True:
+        at = pace.now()
+        if at >= poll_due and due - at > LEAVE_S:
+            poll(now)
+            poll_due = at + POLL_S
+        last = max(poll_due, at) + LEAVE_S >= due
+        if pace.wait_until(due if last else poll_due) or last:
+            return poll_due
 
 
 class collector_at_rest:  # noqa: N801 - reads as a statement

@@ -109,6 +109,8 @@ class Recorder:
     """Why nothing more can be written; the run is to end in a controlled stop."""
     overruns: int = 0
     """Samples that were dropped because the queue was full."""
+    heard: Callable[[float, str, str, str], None] | None = None
+    """Is told of every event as it is recorded: rig time in s, kind, text, severity."""
 
     def sample(self, row: tuple[float, ...]) -> None:
         """Record one sample: a value for each of SAMPLE_COLUMNS, as an exact tuple. For every scan: < 1 us."""
@@ -296,6 +298,8 @@ class Recorder:
 
     def event(self, t_s: float, kind: str, text: str, severity: str = "info", data: str = "") -> None:
         """Record an event, in order. Severities: debug, info, warning, alarm, trip; the last two at once."""
+        if self.heard is not None:
+            self.heard(t_s, kind, text, severity)
         self._events += 1
         columns: dict[str, Value] = {
             "sequence": self._events,
