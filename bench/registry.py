@@ -26,6 +26,7 @@ class Topic(NamedTuple):
 TOPICS: dict[str, Topic] = {
     "speed": Topic("bench.speed", "rig seconds per CPU second: whole runs, and the flat 100 Hz tick while sliding"),
     "scan": Topic("bench.scan_cost", "where the time of a scan goes"),
+    "jobs": Topic("bench.jobs", "two jobs beside one on four equal specimens, and what putting parts together costs"),
     "lateness": Topic("bench.lateness", "punctuality in real time beside a bare loop, CPU share, missed ticks"),
     "collector": Topic("bench.collector", "garbage-collection pauses during a run"),
     "can": Topic("bench.can_cycle", "process data on CAN: codec and whole cycle, beside canopen and python-can"),

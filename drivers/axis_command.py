@@ -27,14 +27,16 @@ class AxisCommand:
     """The command side of a drive: composes RPDO1 from what is wanted and from the last statusword.
 
     The bytes are composed again only when something they depend on has changed.
+    ``aimed`` is the target as it was last asked for, NaN when it has to be asked for again. ``news`` is set with
+    every change of what is known of the drive's state; whoever takes note of it clears it.
     ``inhibited``: the drive left operation, or a fault, while the goal was ENABLED; another goal must be set
     before ENABLED counts again, so that nothing restarts by itself.
     """
 
-    __slots__ = ("_at_rest", "_dirty", "_goal", "_halt", "_high", "_homing", "_homing_start", "_low",
+    __slots__ = ("_at_rest", "_goal", "_halt", "_high", "_homing", "_homing_start", "_low",
                  "_new_set_point", "_outputs", "_per_unit", "_position_mode", "_raw", "_resetting", "_rpdo",
-                 "_set_point", "_target", "_target_counts", "config", "connected", "homing_scans", "inhibited",
-                 "lost", "state", "statusword")
+                 "_set_point", "_target", "_target_counts", "aimed", "config", "connected", "dirty", "homing_scans",
+                 "inhibited", "lost", "news", "state", "statusword")
 
     def __init__(self, config: AxisConfig) -> None:
         self.config = config
@@ -59,6 +61,8 @@ class AxisCommand:
         self._outputs = 0
         self._target = 0.0
         self._target_counts: int = 0
+        self.aimed = math.nan
+        self.news = True
         self._at_rest = True             # not following the target
         self._new_set_point = False      # controlword bit 4 is up
         self._set_point: int = 0         # position sent last with bit 4, counts
@@ -66,7 +70,7 @@ class AxisCommand:
         self._homing = False
         self._homing_start = False
         self._rpdo: bytes | None = None
-        self._dirty = True
+        self.dirty = True
 
     @property
     def target(self) -> float:
@@ -79,10 +83,15 @@ class AxisCommand:
 
     @target.setter
     def target(self, value: float) -> None:
-        if value == self._target:
+        self.aim(value)
+
+    def aim(self, value: float) -> None:
+        """Set ``target``; the same as last time costs a comparison (compare ``aimed`` to save the call, too)."""
+        if value == self.aimed:
             return
         if not math.isfinite(value):
             raise ValueError(f"{self.config.name}: target {value} is not a number")
+        self.aimed = value
         if value < self._low:
             value = self._low
         elif value > self._high:
@@ -91,7 +100,7 @@ class AxisCommand:
         counts = round(self._target * self._per_unit)
         if counts != self._target_counts:
             self._target_counts = counts
-            self._dirty = True
+            self.dirty = True
 
     @property
     def goal(self) -> Goal:
@@ -105,7 +114,7 @@ class AxisCommand:
         self._goal = goal
         if goal is not Goal.ENABLED:
             self.inhibited = False
-        self._dirty = True
+        self.dirty = True
 
     @property
     def halt(self) -> bool:
@@ -116,7 +125,7 @@ class AxisCommand:
     def halt(self, halt: bool) -> None:
         if halt is not self._halt:
             self._halt = halt
-            self._dirty = True
+            self.dirty = True
 
     @property
     def outputs(self) -> int:
@@ -147,12 +156,12 @@ class AxisCommand:
 
     def emit(self, sync: bool) -> bytes | None:
         """Return RPDO1 for this scan, None while there is nothing to command; ``sync``: a SYNC follows."""
-        if self._dirty:
+        if self.dirty:
             self._compose()
         rpdo = self._rpdo
         if self._resetting and sync:        # a synchronous RPDO acts at the SYNC: the edge has been seen
             self._resetting = False
-            self._dirty = True
+            self.dirty = True
         return rpdo
 
     def set_homing(self, active: bool, start: bool = False) -> None:
@@ -163,7 +172,7 @@ class AxisCommand:
         self._homing = active
         self._homing_start = start
         self.homing_scans = 0
-        self._dirty = True
+        self.dirty = True
 
     def take_statusword(self, statusword: int) -> None:
         """Take a statusword that differs from the last one."""
@@ -175,24 +184,25 @@ class AxisCommand:
                     and state is not State.OPERATION_ENABLED):
                 self.inhibited = True
         self.statusword = statusword
-        self._dirty = True
+        self.dirty = self.news = True
 
     def _request_reset(self) -> None:
         """Raise controlword bit 7 once, up to the next SYNC; the drive then stays disabled."""
         self.inhibited = True
         self._resetting = True
-        self._dirty = True
+        self.dirty = self.news = True
 
     def _hold_still(self, raw: int) -> None:
         """Make the present position (counts), or standstill, the target."""
         self._raw = raw
         self._target_counts = raw if self._position_mode else 0
         self._target = raw / self._per_unit if self._position_mode else 0.0
-        self._dirty = True
+        self.aimed = math.nan
+        self.dirty = True
 
     def _compose(self) -> None:
         """Compose RPDO1 from the goal, the target and the last statusword."""
-        self._dirty = False
+        self.dirty = False
         if not self.connected:
             self._rpdo = None
             return
@@ -217,7 +227,7 @@ class AxisCommand:
             if self._homing_start:
                 word |= cia402.HOMING_START
                 self.homing_scans += 1
-                self._dirty = True           # count every scan
+                self.dirty = True           # count every scan
             return _RPDO1(word, self._raw if self._position_mode else 0)
         if not self._position_mode:
             self._at_rest = False

@@ -89,6 +89,7 @@ class SimRig:
             for name, line in spec.lines.items()
         }
         self.now_s = 0.0
+        self._plant_s = 0.0
         self._wheel, self._belt, self._press = self.axes["wheel"], self.axes["belt"], self.axes["press"]
         self._sideslip, self._camber = self.axes.get("sideslip"), self.axes.get("camber")
         self._drives = tuple(self.axes.values())
@@ -118,32 +119,50 @@ class SimRig:
 
     def _step(self, t0: float, t1: float) -> None:
         self.now_s = t1
+        still = True
         for drive in self._drives:
-            drive.advance(t0, t1)
+            if drive.watching or drive.due_s <= t1 or not drive.axis.still:
+                drive.advance(t0, t1)
+                still = still and drive.axis.still
+            else:
+                drive.now_s = t1
         jacket = self.jacket
-        jacket.advance(t0, t1)
-        plant, press, io = self.plant, self._press.axis, self._press.io
-        heater_w = jacket.heater_w if io is not None and io.contactor_closed else 0.0
+        if jacket.due_s <= t1:
+            jacket.advance(t0, t1)
+        plant = self.plant
+        elapsed = t1 - self._plant_s
+        if still and elapsed < LONGEST_STEP_S - 1e-6 and plant.force_z_n == 0.0:
+            return  # nothing but temperatures changes, and they take their time
+        self._plant_s = t1
+        wheel_axis, belt_axis, press = self._wheel.axis, self._belt.axis, self._press.axis
+        io = self._press.io
+        wheel_rad_s, belt_m_s = wheel_axis.value, belt_axis.value
+        wheel_speed, belt_speed = plant.wheel_speed, plant.belt_speed
         plant.advance(
-            t1 - t0,
-            self._wheel.axis.value / plant.wheel_speed.factor,
-            self._belt.axis.value / plant.belt_speed.factor,
+            elapsed,
+            wheel_rad_s / wheel_speed.factor,
+            belt_m_s / belt_speed.factor,
             press.position,
             press.value,
             self._sideslip.axis.position if self._sideslip is not None else 0.0,
             self._camber.axis.position if self._camber is not None else 0.0,
-            heater_w,
+            jacket.heater_w if io is not None and io.contactor_closed else 0.0,
         )
-        self._wheel.torque_nm = plant.drive_torque_nm
         # Encoders are noisy while they turn.
-        turning = self._wheel.axis.value != 0.0
-        self._wheel.encoder_error = plant.wheel_speed.error() * 2000.0 / plant.diameter_mm if turning else 0.0
-        self._belt.encoder_error = plant.belt_speed.error() if self._belt.axis.value != 0.0 else 0.0
+        if wheel_rad_s != 0.0:
+            self._wheel.load(plant.drive_torque_nm, wheel_speed.error() * 2000.0 / plant.diameter_mm)
+        elif self._wheel.encoder_error != 0.0 or self._wheel.torque_nm != plant.drive_torque_nm:
+            self._wheel.load(plant.drive_torque_nm, 0.0)
+        if belt_m_s != 0.0:
+            self._belt.load(0.0, belt_speed.error())
+        elif self._belt.encoder_error != 0.0:
+            self._belt.load(0.0, 0.0)
 
     # -- the person's side ----------------------------------------------------------------------------------------
 
     def install(self, specimen: int, wheel: int, compound: str, *, new_specimen: bool) -> None:
         """Mount a new wheel."""
+        self._plant_s = self.now_s
         self.plant.install(specimen, wheel, compound, new_specimen)
 
     def remount(self, specimen: int, wheel: int, compound: str, diameter_mm: float, sliding_m: float) -> None:

@@ -1,63 +1,40 @@
-"""One recipe on one rig from the outside: files, folder, rig, run, results, exit code."""
+"""One recipe on one rig from the outside: files, folder, rig, parts, results, exit code."""
 
 from __future__ import annotations
 
-import re
 import signal
-from collections.abc import Callable
+from collections.abc import Generator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from threading import current_thread, main_thread
 from types import FrameType
 from typing import Protocol
 
-from drivers.ports import BusLost
 from recipes import find
-from tester import clock
-from tester.bus_log import BusLog
-from tester.engine.build import Ports, build_run
-from tester.engine.context import Attendant, Nobody
+from tester.campaign.claims import enough_room, hold_rig, hold_run
+from tester.campaign.crew import Sight, side_by_side
+from tester.campaign.endings import EXIT_REFUSED, EXIT_USAGE, CannotStartError, Ending, PartEnd, Stop, ending_of
+from tester.campaign.folder import Begin, Job, Work, beginning_of, make_folder, specimens_of, work_of, write_sources
+from tester.campaign.part_run import run_part
+from tester.campaign.pool import Pool
+from tester.campaign.split import Part
+from tester.campaign.together import put_together, recover
 from tester.engine.context import Progress as RunProgress
 from tester.engine.prompts import Prompts
 from tester.engine.results import condition_records
 from tester.engine.run import Outcome, Run
-from tester.engine.tickers import TickStatistics, World, run_real_time, run_simulated
 from tester.export import write_all
-from tester.lock import RUN_LOCK, ExclusiveUse, RigInUseError
-from tester.provenance import (
-    recipe_source,
-    record_parameters,
-    record_statistics,
-    rig_source,
-    run_info,
-    session_info,
-)
+from tester.lock import ExclusiveUse
+from tester.provenance import recipe_source, rig_source, run_info, session_info
 from tester.recipe.check import load_checked
-from tester.recipe.estimate import estimate
-from tester.recipe.expand import expand
-from tester.recipe.plan import Plan
+from tester.recipe.loader import LoadedRecipe
 from tester.resume import prepare
 from tester.rig import RigConfig, load_rig
 from tester.store.catalogue import cut_off
-from tester.store.files import write_text
 from tester.store.reader import RunReader
-from tester.store.records import SpecimenInfo
-from tester.store.resume import FINISHED, ResumePoint
-from tester.store.space import expected_bytes, too_little_room
+from tester.store.resume import FINISHED
 from tester.store.writer import RunWriter
-
-EXIT_CODES: dict[Outcome, int] = {
-    Outcome.DONE: 0,
-    Outcome.FAILED: 1,
-    Outcome.UNREACHABLE: 4,
-    Outcome.TRIPPED: 5,
-    Outcome.STOPPED: 5,
-}
-EXIT_REFUSED = 3
-"""Recipe, rig or calibration are not those of the run that is to go on."""
-EXIT_INCOMPLETE = 6
-EXIT_INTERRUPTED = 130
-WHEEL_EVERY_S = 1.0
-"""The wheel's wear is stored this often of wall time: what an interruption loses of it."""
 
 
 class Screen(Protocol):
@@ -75,7 +52,7 @@ class Screen(Protocol):
         ...
 
     def show(self, now_s: float, run: RunProgress, share: float) -> None:
-        """Show where the run is."""
+        """Show where the run is, or one of its parts (``run.part`` of ``run.parts``)."""
         ...
 
     def attend(self, prompts: Prompts) -> None:
@@ -111,30 +88,10 @@ class SessionOptions:
     lapse: float | None = None
     bus_log: Path | None = None
     operator: str = ""
-
-
-class CannotStartError(Exception):
-    """The run cannot begin; the message says why, ``code`` is the exit code."""
-
-    def __init__(self, message: str, code: int = 1) -> None:
-        """``code``: 1 unless told."""
-        super().__init__(message)
-        self.code = code
-
-
-@dataclass(frozen=True, slots=True)
-class Work:
-    """What is to be done: a plan, or what is left of one, on a rig, into a folder.
-
-    ``begin`` records the beginning; ``point`` is where an interrupted run goes on.
-    """
-
-    folder: Path
-    rig: RigConfig
-    plan: Plan
-    seed: int
-    begin: Callable[[RunWriter], None]
-    point: ResumePoint | None = None
+    jobs: int = 1
+    """Processes in which independent parts run side by side (simulated rig only)."""
+    samples: bool = True
+    """Whether samples are kept."""
 
 
 class Session:
@@ -146,44 +103,36 @@ class Session:
         self.screen = screen
         self.interrupts = 0
         self.run_: Run | None = None
+        """The part that runs in this process, or ran in it last."""
+        self.folder: Path | None = None
+        self.ending: Ending | None = None
+        self.prompts = Prompts(automatic=screen.answer_yes)
+        """Of all parts that run in this process: each has a number of its own."""
+        self._level = Stop.NONE
+        self._pool: Pool | None = None
 
     def run(self) -> int:
-        """Run to the end; return the exit code. Raises InvalidSource for an invalid recipe or
-        rig file, FileNotFoundError where there is no such recipe."""
+        """Run to the end; return the exit code. Raises InvalidSource for an invalid recipe or rig file,
+        FileNotFoundError where there is no such recipe, CannotStartError."""
         options = self.options
         rig = load_rig(options.rig, options.overrides)
         path = find(options.recipe)
         recipe = load_checked(path, rig)
-        plan = expand(recipe.recipe, rig)
-        if self._nobody_to_ask():
-            return 2
+        work = work_of(recipe.recipe, rig)
+        refusal = self._refusal(work.rig)
+        if refusal:
+            self.screen.message(refusal)
+            return EXIT_USAGE
         options.out.mkdir(parents=True, exist_ok=True)
-        for folder in cut_off(options.out):
-            self.screen.message(f"{folder.name} was cut off: tester resume {folder} goes on with it")
-        enough_room(options.out, plan, rig)
+        for left in cut_off(options.out):
+            self.screen.message(f"{left.name} was cut off: tester resume {left} goes on with it")
+        enough_room(options.out, work.plan, rig)
         with ExclusiveUse() as use:
-            hold_rig(use, rig, plan.name)
-            folder = make_folder(options.out, plan.name)
+            hold_rig(use, rig, work.plan.name)
+            folder = make_folder(options.out, work.plan.name)
             hold_run(use, folder)
-            write_text(folder / "recipe.yaml", recipe.tree.text)
-            write_text(folder / "rig.yaml", rig.text)
-            info = run_info(
-                folder.name,
-                plan,
-                recipe,
-                rig,
-                seed=options.seed,
-                operator=options.operator,
-                recipe_source=recipe_source(path),
-                rig_source=rig_source(options.rig, options.overrides),
-            )
-
-            def begin(writer: RunWriter) -> None:
-                specimens = [SpecimenInfo(s.index, s.compound, s.note) for s in plan.specimens]
-                writer.begin_run(info, specimens, condition_records(plan))
-                writer.begin_session(session_info(1, 0.0, options.operator))
-
-            return self._record(Work(folder, rig, plan, options.seed, begin))
+            write_sources(folder, recipe.tree.text, rig)
+            return self._record(self._job(folder, options.seed), work, self._beginning(folder, path, recipe, work))
 
     def resume(self, folder: Path, reason: str = "") -> int:
         """Go on with an interrupted run; return the exit code. ``reason``: why it may although something changed.
@@ -198,183 +147,154 @@ class Session:
             return 0
         with ExclusiveUse() as use:
             hold_run(use, folder)
+            recover(folder)
             resumed = prepare(folder, reason, self.options.operator)
             if isinstance(resumed, str):
                 raise CannotStartError(resumed, EXIT_REFUSED)
-            if self._nobody_to_ask():
-                return 2
+            refusal = self._refusal(resumed.rig)
+            if refusal:
+                self.screen.message(refusal)
+                return EXIT_USAGE
             enough_room(folder, resumed.plan, resumed.rig)
             hold_rig(use, resumed.rig, folder.name)
             self.screen.message(resumed.summary)
-            return self._record(
-                Work(folder, resumed.rig, resumed.plan, resumed.seed, resumed.begin, point=resumed.point)
-            )
+            # What is left goes on in the run's own record, one specimen after the other.
+            work = Work(resumed.rig, resumed.plan, (Part(1, resumed.plan, last_wheel=0),), resumed.point)
+            return self._record(self._job(folder, resumed.seed), work, resumed.begin)
 
-    def _nobody_to_ask(self) -> bool:
-        nobody = not self.screen.answer_yes and not self.screen.can_ask
-        if nobody:
-            self.screen.message("the recipe asks a person, and nobody is at this terminal: use --yes")
-        return nobody
+    def stop(self, level: Stop) -> None:
+        """Stop the run, from a signal handler or another thread too: what is begun ends, and nothing more is begun."""
+        self._level = max(self._level, level)
+        if self._pool is not None:
+            self._pool.stop(self._level)
+        if self.run_ is not None:
+            self.run_.request_stop(self._level.text, fast=self._level is Stop.FAST)
+
+    # -- a watch over the part in this process (tester.campaign.part_run.Watch) -----------------------------------
+
+    def begun(self, run: Run) -> None:
+        """Take notice of a part's run; a stop that came between two parts is for it."""
+        self.run_ = run
+        if self._level is not Stop.NONE:
+            self.stop(self._level)
+
+    def poll(self, now_s: float, run: Run, share: float) -> None:
+        """Show the part that runs in this process and attend to its prompts."""
+        ctx = run.engine.ctx
+        self.screen.show(now_s, ctx.progress, share)
+        self.screen.attend(ctx.prompts)
 
     # -- parts ------------------------------------------------------------------------------------------------
 
-    def _record(self, work: Work) -> int:
-        writer = RunWriter(
-            work.folder / "run.db", clock=clock.monotonic, utc=clock.utc_now, lossless=work.rig.can.interface == "sim"
+    def _refusal(self, rig: RigConfig) -> str:
+        """Return why the options do not go with the rig or the recipe, "" where they do."""
+        jobs = self.options.jobs
+        if jobs > 1 and not rig.simulated:
+            return f"--jobs {jobs}: only a simulated rig can be there several times, and this one is real"
+        if self.screen.answer_yes:
+            return ""
+        if jobs > 1:
+            return f"--jobs {jobs}: nobody can answer the prompts of several parts; use --yes, or one job"
+        if not self.screen.can_ask:
+            return "the recipe asks a person, and nobody is at this terminal: use --yes"
+        return ""
+
+    def _job(self, folder: Path, seed: int) -> Job:
+        return Job(folder, seed, self.options.lapse, self.options.bus_log, self.options.samples)
+
+    def _beginning(self, folder: Path, path: Path, recipe: LoadedRecipe, work: Work) -> Begin:
+        """Return what begins the run's record: the whole plan, and where everything comes from."""
+        o = self.options
+        info = run_info(
+            folder.name,
+            work.plan,
+            recipe,
+            work.rig,
+            seed=o.seed,
+            operator=o.operator,
+            recipe_source=recipe_source(path),
+            rig_source=rig_source(o.rig, o.overrides),
         )
+
+        def begin(writer: RunWriter) -> None:
+            writer.begin_run(info, specimens_of(work.plan), condition_records(work.plan))
+            writer.begin_session(session_info(1, 0.0, o.operator))
+
+        return begin
+
+    def _record(self, job: Job, work: Work, begin: Begin) -> int:
+        """Carry out the work into the folder; write the tables and return the exit code."""
+        self.folder = job.folder
+        self.screen.begin(work.plan.name)
         try:
-            work.begin(writer)
-            outcome, reason, seconds = self._execute(work, writer)
-            writer.finish(outcome.value, reason, seconds)
+            with self._signals():
+                if len(work.parts) == 1:
+                    end = run_part(job, work, work.parts[0], begin, self, self.prompts)
+                    self.ending = ending_of([end], 1)
+                else:
+                    ends = self._ends(job, work)
+                    self.ending = put_together(job, work, begin, ends, lambda: self._level, self._tell)
         finally:
-            writer.close()
-        return self._report(work.folder, outcome, reason, writer.failed)
+            self.screen.end()
+        return self._report(job.folder, self.ending)
 
-    def _execute(self, work: Work, writer: RunWriter) -> tuple[Outcome, str, float]:
-        rig, plan = work.rig, work.plan
-        log = BusLog(self.options.bus_log, rig) if self.options.bus_log is not None else None
-        try:
-            ports, world, attendant = connect_ports(rig, work.seed, log)
-            prompts = Prompts(automatic=self.screen.answer_yes)
-            run = build_run(rig, plan, ports, attendant, writer, prompts, work.point)
-            self.run_ = run
-            expected_s = max(estimate(plan, rig).rig_seconds, 1.0)
-            self.screen.begin(plan.name)
-            seconds = self._tick(run, world, expected_s, prompts, writer)
-            record_statistics(run.engine.devices, writer, seconds)
-            return run.outcome, run.reason, seconds
-        except BusLost as lost:
-            return Outcome.UNREACHABLE, str(lost), 0.0
-        finally:
-            if log is not None:
-                log.close()
+    def _ends(self, job: Job, work: Work) -> Generator[PartEnd]:
+        """Yield how the parts ended: one after the other in this process, or side by side in others."""
+        if self.options.jobs > 1:
+            yield from side_by_side(job, work, self.options.jobs, self._show, self._take)
+            return
+        for part in work.parts:
+            end = run_part(job, work, part, beginning_of(part, job, work), self, self.prompts)
+            yield end
+            if end.outcome is not Outcome.DONE:
+                return
 
-    def _tick(self, run: Run, world: World | None, expected_s: float, prompts: Prompts, recorder: RunWriter) -> float:
-        notes = RunNotes(run, recorder)
+    def _tell(self, end: PartEnd) -> None:
+        self.screen.emit({"event": "part end", "part": end.part, "outcome": end.outcome.value, "reason": end.reason})
 
-        def poll(now_s: float) -> None:
-            notes.poll(now_s)
-            self.screen.show(now_s, run.engine.ctx.progress, now_s / expected_s)
-            self.screen.attend(prompts)
-            if recorder.failed:
-                run.request_stop(f"the run can no longer be recorded: {recorder.failed}")
+    def _show(self, sight: Sight) -> None:
+        self.screen.show(sight.now_s, sight.progress, sight.share)
 
+    def _take(self, pool: Pool) -> None:
+        self._pool = pool
+        if self._level is not Stop.NONE:
+            pool.stop(self._level)
+
+    # -- signals ----------------------------------------------------------------------------------------------
+
+    @contextmanager
+    def _signals(self) -> Generator[None]:
+        """Stop on INT and TERM while the block lasts; only the main thread can be told."""
+        if current_thread() is not main_thread():
+            yield
+            return
         previous = {s: signal.signal(s, self._on_signal) for s in (signal.SIGINT, signal.SIGTERM)}
         try:
-            if world is not None:
-                # Also at --speed 1: counted ticks, not measured ones, so that no speed changes a result.
-                return run_simulated(run, world, lapse=self.options.lapse, poll=poll)
-            return run_real_time(run, world, poll=poll, statistics=TickStatistics())
+            yield
         finally:
             for number, handler in previous.items():
                 signal.signal(number, handler)
-            self.screen.end()
 
     def _on_signal(self, number: int, _frame: FrameType | None) -> None:
         """Stop: TERM and a first INT in a controlled way, a second INT fast."""
-        if self.run_ is None:
-            raise KeyboardInterrupt
-        if number == signal.SIGINT:
-            self.interrupts += 1
-            self.run_.request_stop("interrupted by the operator", fast=self.interrupts > 1)
-        else:
-            self.run_.request_stop("terminated")
+        if number == signal.SIGTERM:
+            self.stop(Stop.TERMINATED)
+            return
+        self.interrupts += 1
+        self.stop(Stop.FAST if self.interrupts > 1 else Stop.INTERRUPTED)
 
-    def _report(self, folder: Path, outcome: Outcome, reason: str, failed: str | None) -> int:
+    # -- results ----------------------------------------------------------------------------------------------
+
+    def _report(self, folder: Path, ending: Ending) -> int:
         """Write the tables, name what is missing in them, and return the exit code."""
         missing = [row.describe() for row in write_all(folder)]
         for line in missing:
             self.screen.message(line)
-        if reason:
-            self.screen.message(f"{outcome.value}: {reason}")
-        code = EXIT_CODES[outcome]
-        if outcome is Outcome.STOPPED and self.interrupts == 1:
-            code = EXIT_INTERRUPTED
-        elif failed:
-            self.screen.message(f"not everything could be recorded: {failed}")
-            code = EXIT_CODES[Outcome.FAILED]
-        elif outcome is Outcome.DONE and missing:
-            code = EXIT_INCOMPLETE
-        self.screen.emit({"event": "end", "outcome": outcome.value, "exit": code, "missing": missing})
+        if ending.reason:
+            self.screen.message(f"{ending.outcome.value}: {ending.reason}")
+        code = ending.exit_code(interrupted_once=self.interrupts == 1, missing=bool(missing))
+        if ending.failed:
+            self.screen.message(f"not everything could be recorded: {ending.failed}")
+        self.screen.emit({"event": "end", "outcome": ending.outcome.value, "exit": code, "missing": missing})
         self.screen.result(str(folder))
         return code
-
-
-def connect_ports(rig: RigConfig, seed: int, log: BusLog | None) -> tuple[Ports, World | None, Attendant]:
-    """Open the wires to the rig: simulated in this process, or real."""
-    if rig.can.interface == "sim":
-        from tester.simulated import simulated_ports
-
-        return simulated_ports(rig, seed, log)
-    from tester.hardware import hardware_ports
-
-    return hardware_ports(rig, log), None, Nobody()
-
-
-def make_folder(out: Path, name: str) -> Path:
-    """Create the run's folder, ``<date>T<time>-<slug>``; a second run within the second gets a number."""
-    slug = re.sub(r"[^a-z0-9]+", "-", name.lower()).strip("-")[:40] or "run"
-    base = f"{clock.local_stamp()}-{slug}"
-    out.mkdir(parents=True, exist_ok=True)
-    for number in range(1, 1000):
-        folder = out / (base if number == 1 else f"{base}-{number}")
-        try:
-            folder.mkdir()
-        except FileExistsError:
-            continue
-        return folder
-    raise CannotStartError(f"{out} holds a thousand runs of this second")
-
-
-class RunNotes:
-    """What is stored beside the scan, a few times a second: parameters once they were read back, the wheel's wear."""
-
-    def __init__(self, run: Run, recorder: RunWriter) -> None:
-        """Nothing is stored before the rig is connected."""
-        self.run = run
-        self.recorder = recorder
-        self.connected = False
-        self.wheel_due_s = 0.0
-
-    def poll(self, now_s: float) -> None:
-        """Store what is due; ``now_s`` is rig time."""
-        if not self.run.connected:
-            return
-        if not self.connected:
-            self.connected = True
-            record_parameters(self.run.engine.devices, self.recorder, now_s)
-        wall_s, wheel = clock.monotonic(), self.run.engine.ctx.wheel
-        if wheel.wheel and wall_s >= self.wheel_due_s:
-            self.wheel_due_s = wall_s + WHEEL_EVERY_S
-            self.recorder.wheel_state(wheel.wheel, wheel.diameter_mm, wheel.sliding_m, now_s)
-
-
-def enough_room(folder: Path, plan: Plan, rig: RigConfig) -> None:
-    """Raise CannotStartError unless twice what the run will take is free."""
-    missing = too_little_room(folder, expected_bytes(plan, estimate(plan, rig)))
-    if missing:
-        raise CannotStartError(missing, EXIT_CODES[Outcome.FAILED])
-
-
-def hold_rig(use: ExclusiveUse, rig: RigConfig, run: str) -> None:
-    """Lock a rig's buses; nothing for a rig simulated in this process. Raises CannotStartError."""
-    try:
-        use.lock(buses_of(rig), run)
-    except RigInUseError as error:
-        raise CannotStartError(str(error), EXIT_CODES[Outcome.UNREACHABLE]) from error
-
-
-def hold_run(use: ExclusiveUse, folder: Path) -> None:
-    """Lock a run's folder, so that nobody resumes a run that is under way. Raises CannotStartError."""
-    try:
-        use.lock_file(f"the run {folder.name}", folder / RUN_LOCK, folder.name, lasting=False)
-    except RigInUseError as error:
-        raise CannotStartError(str(error)) from error
-
-
-def buses_of(rig: RigConfig) -> list[str]:
-    """Return the buses of a rig that only one process may use."""
-    if rig.can.interface == "sim":
-        return []
-    lines = [f"line {line.port}" for line in rig.lines.values()]
-    return [f"can {rig.can.interface}:{rig.can.channel}", *lines]

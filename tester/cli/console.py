@@ -26,10 +26,11 @@ class Console:
         self.answer_yes = answer_yes
         self._terminal = RichConsole(file=sys.stderr)
         self._progress: Progress | None = None
-        self._task: TaskID | None = None
+        self._tasks: dict[int, TaskID] = {}
+        """The progress lines by part."""
         self._answers: SimpleQueue[str] = SimpleQueue()
         self._asked = 0
-        self._title = ""
+        self._titles: dict[int, str] = {}
 
     @property
     def can_ask(self) -> bool:
@@ -49,21 +50,29 @@ class Console:
                 console=self._terminal,
                 transient=True,
             )
-            self._task = self._progress.add_task(name, total=1.0)
+            self._tasks[1] = self._progress.add_task(name, total=1.0)
             self._progress.start()
 
     def show(self, now_s: float, run: RunProgress, share: float) -> None:
-        """Show where the run is: ``share`` of the estimated rig time, 0..1."""
-        if run.title != self._title:
-            self._title = run.title
-            self.emit({"event": "step", "t_s": round(now_s, 3), "step": run.step, "title": run.title})
+        """Show where the run is, or one of its parts: ``share`` of the estimated rig time, 0..1."""
+        of_part = {"part": run.part} if run.parts > 1 else {}
+        label = f"part {run.part} of {run.parts}  " if run.parts > 1 else ""
+        if run.title != self._titles.get(run.part):
+            self._titles[run.part] = run.title
+            self.emit({"event": "step", **of_part, "t_s": round(now_s, 3), "step": run.step, "title": run.title})
             if self._progress is None:
-                self.message(f"{_hours(now_s)}  {run.title}")
-        if self._progress is not None and self._task is not None:
-            text = f"{_hours(now_s)}  "
+                self.message(f"{label}{_hours(now_s)}  {run.title}")
+        if self._progress is not None:
+            text = f"{label}{_hours(now_s)}  "
             if run.repeats:
                 text += f"{run.condition}/{run.conditions} repeat {run.repeat}/{run.repeats}  "
-            self._progress.update(self._task, completed=min(share, 1.0), description=text + run.title)
+            self._show_line(self._progress, run.part, min(share, 1.0), text + run.title)
+
+    def _show_line(self, progress: Progress, part: int, share: float, text: str) -> None:
+        """Bring a part's line up to date; it gets one when it is first heard of."""
+        if part not in self._tasks:
+            self._tasks[part] = progress.add_task("", total=1.0)
+        progress.update(self._tasks[part], completed=share, description=text)
 
     def end(self) -> None:
         """Take the progress line away."""

@@ -37,6 +37,7 @@ COMMANDS: dict[str, CommandEntry] = {
     "check": CommandEntry("tester.cli.recipe_commands", "check", "Validate a recipe; every problem at once."),
     "plan": CommandEntry("tester.cli.recipe_commands", "plan", "List the steps of a recipe, with their durations."),
     "run": CommandEntry("tester.cli.run_command", "run", "Run a recipe on a rig, simulated unless told."),
+    "sweep": CommandEntry("tester.cli.sweep_command", "sweep", "Run a recipe for many seeds and rig parameters."),
     "resume": CommandEntry("tester.cli.resume_command", "resume", "Go on with an interrupted run."),
     "runs": CommandEntry("tester.cli.runs_command", "runs", "List the runs that are stored."),
     "show": CommandEntry("tester.cli.result_commands", "show", "Show what a run holds."),

@@ -24,6 +24,14 @@ from tester.cli.options import json_option, rig_option, set_option
     help="Seed of the simulated rig.",
 )
 @click.option("--speed", default=None, metavar="max|X", help="Simulated rig: as fast as it goes, or X times real time.")
+@click.option(
+    "--jobs",
+    default=1,
+    show_default=True,
+    metavar="N",
+    type=click.IntRange(1, 256),
+    help="Simulated rig: processes in which specimens run side by side; the results are the same.",
+)
 @click.option("--bus-log", default=None, metavar="DIR", help="Write every CAN and Modbus frame into this folder.")
 @click.option("--operator", default="", metavar="NAME", help="Who runs the test; stored with the run.")
 @json_option
@@ -35,6 +43,7 @@ def run(
     yes: bool,
     seed: int,
     speed: str | None,
+    jobs: int,
     bus_log: str | None,
     operator: str,
     as_json: bool,
@@ -57,6 +66,7 @@ def run(
         lapse=time_lapse(speed),
         bus_log=Path(bus_log) if bus_log else None,
         operator=operator,
+        jobs=jobs,
     )
     session = Session(options, Console(as_json=as_json, answer_yes=yes))
     return carried_out(session.run)

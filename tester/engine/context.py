@@ -105,6 +105,9 @@ class Progress:
     revolutions: float = 0.0
     revolutions_wanted: float = 0.0
     burst: int = 0
+    part: int = 1
+    """Which of the run's parts this is, and how many there are (tester.campaign)."""
+    parts: int = 1
 
 
 @dataclass(slots=True)
