@@ -11,8 +11,8 @@ from pathlib import Path
 
 import pytest
 
+from tester.campaign.claims import buses_of
 from tester.lock import ExclusiveUse, RigInUseError, user_of
-from tester.session import buses_of
 from tests.tester.recipe.texts import rig
 
 HOLD = """

@@ -173,7 +173,7 @@ def test_a_recipe_file_that_was_edited_after_the_start_is_found(again: Path, cut
     source = cut.parent.parent / "short.yaml"
     edit(source, "recipe: short", "recipe: shorter")
     try:
-        with pytest.raises(CannotStartError, match="what recipe.yaml was copied from"):
+        with pytest.raises(CannotStartError, match=r"what recipe\.yaml was copied from"):
             resume(again)
     finally:
         edit(source, "recipe: shorter", "recipe: short")
