@@ -337,6 +337,14 @@ class CanWire:
     # measures ------------------------------------------------------------------------------------------------
 
     @property
+    def arrives_s(self) -> float:
+        """Arrival of the next frame not received yet, s: the earliest it can have; infinity when none is under way."""
+        arrival = self.ready_s + self._frame_s[0]
+        if self._inbox and self._inbox[0][0] < arrival:
+            arrival = self._inbox[0][0]
+        return arrival
+
+    @property
     def load(self) -> float:
         """Share of the last second the wire was occupied, 0..1 (worst-case stuffing), as of the last receive."""
         if len(self._marks) < 2:

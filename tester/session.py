@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from threading import current_thread, main_thread
 from types import FrameType
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 from recipes import find
 from tester.campaign.claims import enough_room, hold_rig, hold_run
@@ -73,6 +73,15 @@ class Screen(Protocol):
 
     def result(self, line: str) -> None:
         """Write the run's folder."""
+        ...
+
+
+@runtime_checkable
+class Commanding(Protocol):
+    """A screen at which a person can give commands to the run."""
+
+    def commands(self) -> list[str]:
+        """Return the commands given since the last call: hold, release, abort or stop."""
         ...
 
 
@@ -168,7 +177,7 @@ class Session:
         if self._pool is not None:
             self._pool.stop(self._level)
         if self.run_ is not None:
-            self.run_.request_stop(self._level.text, fast=self._level is Stop.FAST)
+            self._level.tell(self.run_)
 
     # -- a watch over the part in this process (tester.campaign.part_run.Watch) -----------------------------------
 
@@ -183,6 +192,22 @@ class Session:
         ctx = run.engine.ctx
         self.screen.show(now_s, ctx.progress, share)
         self.screen.attend(ctx.prompts)
+        if isinstance(self.screen, Commanding):
+            for command in self.screen.commands():
+                self._command(run, command)
+
+    def _command(self, run: Run, command: str) -> None:
+        """Carry out what was asked for at the screen; what has no effect is said."""
+        refused = ""
+        if command == "hold":
+            refused = run.request_hold()
+        elif command == "release":
+            refused = run.request_release()
+        elif command == "abort":
+            run.request_abort()
+        elif command == "stop":
+            run.request_stop("stopped by the operator", fast=True)
+        self.screen.message(refused or command)
 
     # -- parts ------------------------------------------------------------------------------------------------
 

@@ -100,7 +100,7 @@ class PdoExchange:
         self._event_tpdos: tuple[TransmitPdo, ...] = ()
         self._status_on_event = False
         self._single = False
-        self.take_sample = _nothing
+        self.take_sample: Callable[[], bytes] = _nothing
         self.sample_id = 0
         self.sample = b""
         self.stale = True
@@ -126,8 +126,10 @@ class PdoExchange:
         self._wire.unfollow(self)
         self._routes.clear()
         self.fresh.clear()
-        for pdo in (*self.rpdos, *self.tpdos):
-            pdo.load()
+        for received in self.rpdos:
+            received.load()
+        for sent in self.tpdos:
+            sent.load()
         sending = [pdo for pdo in self.tpdos if pdo.cob_id is not None] if self._running else []
         for pdo in sending:
             self.owner.prepare_source(pdo)
@@ -136,10 +138,11 @@ class PdoExchange:
         self._event_tpdos = tuple(pdo for pdo in sending if not pdo.synchronous)
         self._status_on_event = any(pdo.kind != 1 and _STATUSWORD in pdo.keys for pdo in sending)
         if self._running:
-            for pdo in self.rpdos:
-                if pdo.cob_id is not None:
-                    self.owner.prepare_sink(pdo)
-                    self._listen(pdo.cob_id, pdo.on_frame, repeatable=pdo.synchronous and pdo.deadline_s == 0.0)
+            for received in self.rpdos:
+                if received.cob_id is not None:
+                    self.owner.prepare_sink(received)
+                    repeatable = received.synchronous and received.deadline_s == 0.0
+                    self._listen(received.cob_id, received.on_frame, repeatable=repeatable)
             self._single = len(self._each_sync) == 1 and not self._counted_tpdos
             if self._single:
                 self.sample_id, self.take_sample = self._each_sync[0]

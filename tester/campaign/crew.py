@@ -93,4 +93,4 @@ class _Reporting:
         level = stop_level()
         if level > self._heard:
             self._heard = level
-            run.request_stop(level.text, fast=level is Stop.FAST)
+            level.tell(run)

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import IntEnum
 
-from tester.engine.run import Outcome
+from tester.engine.run import Outcome, Run
 
 EXIT_CODES: dict[Outcome, int] = {
     Outcome.DONE: 0,
@@ -46,6 +46,10 @@ class Stop(IntEnum):
     def text(self) -> str:
         """The reason that is recorded."""
         return _STOP_TEXTS[self]
+
+    def tell(self, run: Run) -> None:
+        """Have a run stop. Whoever sends TERM waits for the end: it comes at standstill, without the cool-down."""
+        run.request_stop(self.text, fast=self is Stop.FAST, cool=self is not Stop.TERMINATED)
 
 
 _STOP_TEXTS = {

@@ -16,6 +16,7 @@ from tester.engine.context import Attendant, Nobody
 from tester.engine.prompts import Prompts
 from tester.engine.run import Outcome, Run
 from tester.engine.tickers import TickStatistics, World, run_real_time, run_simulated
+from tester.pace import Pace
 from tester.provenance import record_parameters, record_statistics
 from tester.recipe.estimate import estimate
 from tester.rig import RigConfig
@@ -89,18 +90,21 @@ def _execute(
 ) -> tuple[Outcome, str, float]:
     rig = work.rig
     log = BusLog(_log_folder(job.bus_log, work, part), rig) if job.bus_log is not None else None
+    ports: Ports | None = None
     try:
         ports, world, attendant = connect_ports(rig, job.seed, log)
         run = build_run(rig, part.plan, ports, attendant, writer, prompts, work.point)
         _place(run, work, part)
         watch.begun(run)
         expected_s = max(estimate(part.plan, rig).rig_seconds, 1.0)
-        seconds = _tick(run, world, job.lapse, expected_s, writer, watch)
+        seconds = _tick(run, world, ports.pace, job.lapse, expected_s, writer, watch)
         record_statistics(run.engine.devices, writer, seconds)
         return run.outcome, run.reason, seconds
     except BusLost as lost:
         return Outcome.UNREACHABLE, str(lost), 0.0
     finally:
+        if ports is not None:
+            ports.close()
         if log is not None:
             log.close()
 
@@ -118,7 +122,13 @@ def _place(run: Run, work: Work, part: Part) -> None:
 
 
 def _tick(
-    run: Run, world: World | None, lapse: float | None, expected_s: float, recorder: RunWriter, watch: Watch
+    run: Run,
+    world: World | None,
+    pace: Pace | None,
+    lapse: float | None,
+    expected_s: float,
+    recorder: RunWriter,
+    watch: Watch,
 ) -> float:
     notes = RunNotes(run, recorder)
 
@@ -131,7 +141,7 @@ def _tick(
     if world is not None:
         # Also at --speed 1: counted ticks, not measured ones, so that no speed changes a result.
         return run_simulated(run, world, lapse=lapse, poll=poll)
-    return run_real_time(run, world, poll=poll, statistics=TickStatistics())
+    return run_real_time(run, world, poll=poll, statistics=TickStatistics(), pace=pace)
 
 
 def connect_ports(rig: RigConfig, seed: int, log: BusLog | None) -> tuple[Ports, World | None, Attendant]:

@@ -13,6 +13,7 @@ from rich.console import Console as RichConsole
 from rich.progress import BarColumn, Progress, TaskID, TextColumn
 from rich.text import Text
 
+from tester.cli.keys import HELP, commands_of, keys_of
 from tester.engine.context import Progress as RunProgress
 from tester.engine.prompts import Prompts
 
@@ -31,6 +32,7 @@ class Console:
         self._answers: SimpleQueue[str] = SimpleQueue()
         self._asked = 0
         self._titles: dict[int, str] = {}
+        self._keys = keys_of(sys.stdin)
 
     @property
     def can_ask(self) -> bool:
@@ -42,6 +44,9 @@ class Console:
     def begin(self, name: str) -> None:
         """Show that a run has begun."""
         self.emit({"event": "begin", "run": name})
+        self._keys.begin()
+        if sys.stdin.isatty():
+            self.message(HELP)
         if self._terminal.is_terminal:
             self._progress = Progress(
                 BarColumn(bar_width=12),
@@ -74,8 +79,13 @@ class Console:
             self._tasks[part] = progress.add_task("", total=1.0)
         progress.update(self._tasks[part], completed=share, description=text)
 
+    def commands(self) -> list[str]:
+        """Return what a person asked for by a key; none while a prompt takes a line."""
+        return commands_of(self._keys.pressed())
+
     def end(self) -> None:
-        """Take the progress line away."""
+        """Take the progress line away, and give the keyboard back."""
+        self._keys.end()
         if self._progress is not None:
             self._progress.stop()
             self._progress = None
@@ -110,6 +120,7 @@ class Console:
             self._asked = waiting.number
             self.emit({"event": "prompt", "number": waiting.number, "text": waiting.text})
             self.message(f"{waiting.text} - done? [Enter] ")
+            self._keys.end()  # a line is typed, with echo
             Thread(target=_read_line, args=(sys.stdin, self._answers.put), daemon=True).start()
             return
         try:
@@ -123,6 +134,7 @@ class Console:
             self._asked = 0
         else:
             waiting.answer = answer.strip() or "yes"
+            self._keys.begin()
 
 
 def _read_line(stream: TextIO, put: Callable[[str], None]) -> None:

@@ -45,6 +45,7 @@ COMMANDS: dict[str, CommandEntry] = {
     "verify": CommandEntry("tester.cli.verify_command", "verify", "Check that a run is as it was left."),
     "export": CommandEntry("tester.cli.result_commands", "export", "Write a run's results as a table."),
     "predict": CommandEntry("tester.cli.predict_command", "predict", "The friction model's value for one condition."),
+    "sim": CommandEntry("tester.cli.sim_command", "sim", "A simulated rig in real time, on CAN and Modbus over TCP."),
     "rig": CommandEntry("tester.cli.rig_commands", "rig", "Write or show a rig file."),
     "schema": CommandEntry("tester.cli.recipe_commands", "schema", "Print the JSON Schema of recipes."),
 }

@@ -50,7 +50,8 @@ def run(
 ) -> int:
     """Run RECIPE (a file, or the name of a shipped recipe) and print the run's folder as the last line.
 
-    Ctrl+C stops in a controlled way; a second one stops fast.
+    Ctrl+C stops in a controlled way; a second one stops fast. On a terminal: h holds (lifts, keeps the heat), r
+    releases, a aborts, s or Ctrl+X stops fast.
     """
     from pathlib import Path
 

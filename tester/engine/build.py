@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import ExitStack
 from dataclasses import dataclass
 from math import log, pi
 
@@ -23,11 +24,13 @@ from tester.engine.devices import Axes, Devices
 from tester.engine.engine import Engine
 from tester.engine.executor import Executor
 from tester.engine.gates import Gates
+from tester.engine.plan_bounds import plan_bounds
 from tester.engine.prompts import Prompts
 from tester.engine.results import StoredResults
 from tester.engine.resume import take_up
 from tester.engine.run import Run
 from tester.engine.sampler import Sampler
+from tester.pace import Pace
 from tester.process import Demand, Readings, Setpoints
 from tester.recipe.plan import Plan
 from tester.rig import LineConfig, RigConfig
@@ -37,10 +40,20 @@ from tester.store.resume import ResumePoint
 
 @dataclass(frozen=True, slots=True)
 class Ports:
-    """The wires to a rig: one CAN bus, and the Modbus lines by their names in the rig file."""
+    """The wires to a rig: one CAN bus, and the Modbus lines by their names in the rig file.
+
+    Real ones come with the clock that stamps what arrives on them (``pace``) and are closed by ``opened``.
+    """
 
     can: CanPort
     lines: dict[str, LinePort]
+    pace: Pace | None = None
+    opened: ExitStack | None = None
+
+    def close(self) -> None:
+        """Give the wires back."""
+        if self.opened is not None:
+            self.opened.close()
 
 
 def build_devices(rig: RigConfig, ports: Ports) -> Devices:
@@ -107,7 +120,7 @@ def build_run(
     devices = build_devices(rig, ports)
     load = LoadLoop()
     state = ControlState(Setpoints(), load, HeatLoop(rig.loops.heat.hub_min_c))
-    control = Control(rig, state, loss_ratios(rig))
+    control = Control(rig, state, loss_ratios(rig), plan_bounds(plan, rig))
     geometry = rig.geometry
     ctx = Context(
         rig=rig,
@@ -121,10 +134,11 @@ def build_run(
         wheel=WheelLife(installed_mm=geometry.wheel_diameter_mm, width_mm=geometry.wheel_width_mm),
         contact=load,
         ambient_c=rig.ambient_c,
+        wheel_changed=control.view.wheel_changed,
     )
     results = StoredResults(recorder)
     executor = Executor(plan, results, hardware=not rig.simulated)
     if point is not None:
         take_up(executor, results, point)
     engine = Engine(devices, control, executor, ctx, Sampler(recorder))
-    return Run(Connector(devices), engine)
+    return Run(Connector(devices, rig), engine)

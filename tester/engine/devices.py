@@ -14,8 +14,9 @@ from drivers.ir_thermometer import IrThermometer
 from drivers.jacket import HeatingJacket
 from drivers.load_cell import LoadCell
 from drivers.modbus import ModbusLink
-from drivers.ports import CanPort, ForeseeingPort, LinePort
+from drivers.ports import BusLost, CanPort, ForeseeingPort, LinePort
 from drivers.servo import ServoDrive
+from tester.engine.inspection import Inspector
 from tester.process import NEVER, Readings, Setpoints
 
 INPUT_SAFETY_CHAIN = 1 << 16
@@ -26,7 +27,7 @@ OUTPUT_CONTACTOR = 1 << 16
 
 # Bound once: a look-up on the enum class costs several times as much in every scan (CPython 3.11).
 _OPERATING, _FAULT_REACTION, _FAULT = State.OPERATION_ENABLED, State.FAULT_REACTION, State.FAULT
-_ENABLED, _DISABLED, _QUICK_STOP = Goal.ENABLED, Goal.DISABLED, Goal.QUICK_STOP
+_ENABLED, _DISABLED, _QUICK_STOP, _FREE = Goal.ENABLED, Goal.DISABLED, Goal.QUICK_STOP, Goal.FREE
 _RADIANS_PER_DEGREE = pi / 180.0
 _TURN = 2.0 * pi
 
@@ -63,7 +64,14 @@ class Devices:
     manual_camber_deg: float = 0.0
     news: bool = True
     """A drive's state, an input or an emergency is new in this scan."""
+    lost: str = ""
+    """Why a wire is gone. It is never used again: what waits in its queues must not be sent later."""
+    _can_alive: bool = True
+    _cell_counts: tuple[int, int, int, int] = (0, 0, 0, 0)
+    _surface_counts: int = 0
+    _inspector: Inspector = field(init=False)
     _goal: Goal = Goal.DISABLED
+    _press_goal: Goal = Goal.DISABLED
     _last_angle_s: float = NEVER
     _lines: tuple[tuple[LinePort, ModbusLink, ForeseeingPort | None], ...] = field(init=False)
     _foreseeing: ForeseeingPort | None = field(init=False)
@@ -71,32 +79,59 @@ class Devices:
     def __post_init__(self) -> None:
         """Fix the drives' order, and see which lines are simulated ones."""
         self.drives = self.axes.present()
+        self._inspector = Inspector(self.cell, self.thermometer, self.jacket)
         self._lines = tuple(
             (port, link, port if isinstance(port, ForeseeingPort) else None) for port, link in self.lines
         )
         self._foreseeing = next((port for _, link, port in self._lines if link is self.cell.link), None)
 
     def receive(self, now: float) -> None:
-        """Take in everything that arrived."""
-        frames = self.can.receive(now)
-        if frames:
-            self.master.feed(frames, now)
+        """Take in everything that arrived; a wire that is lost is left alone from then on (``lost`` says why)."""
+        try:
+            frames = self.can.receive(now)
+        except BusLost as error:
+            self._lose_can(error)
+        else:
+            # What comes over a wire that was lost and came back is taken off it, and not believed.
+            if frames and self._can_alive:
+                self.master.feed(frames, now)
         for port, link, foreseen in self._lines:
             if foreseen is None or foreseen.arrives_s <= now:
-                chunks = port.read(now)
+                try:
+                    chunks = port.read(now)
+                except BusLost as error:
+                    self._lose_line(link, error, now)
+                    continue
                 if chunks:
                     link.feed(chunks, now)
 
+    def _lose_can(self, error: BusLost) -> None:
+        self.lost = self.lost or f"bus lost: {error}"
+        self._can_alive = False
+
+    def _lose_line(self, link: ModbusLink, error: BusLost, now: float) -> None:
+        """Go on without a line: what it carried is not valid any more."""
+        self.lost = self.lost or f"line lost: {error}"
+        self._lines = tuple(entry for entry in self._lines if entry[1] is not link)
+        for station in link.stations:
+            station.owner.lost(now)
+        if link is self.cell.link:
+            self._foreseeing = None
+
     def transmit(self, now: float, *, scan: bool, next_scan_s: float = NEVER) -> float:
         """Send what is due and return the next time a driver wants to be served; ``next_scan_s`` if it is known."""
-        if scan:
-            self.master.scan(self.can, now, next_scan_s)
-        else:
-            self.master.service(self.can, now)
-        deadline = self.master.deadline
-        for port, link, _ in self._lines:
-            if now >= link.wants_s:
-                link.service(port, now, scan=scan)
+        deadline = inf
+        if self._can_alive:
+            try:
+                if scan:
+                    self.master.scan(self.can, now, next_scan_s)
+                else:
+                    self.master.service(self.can, now)
+            except BusLost as error:
+                self._lose_can(error)
+            else:
+                deadline = self.master.deadline
+        self.transmit_lines(now, scan=scan)
         # Only the load cell's line may ask for a tick of its own (its retry has to fit into a scan); the slow
         # line's next request can wait for the next scan. A simulated line knows that the reply will be in time.
         watch = self.cell.link
@@ -105,6 +140,15 @@ class Devices:
             return deadline
         wire = self._foreseeing
         return deadline if wire is not None and watch.only_watches and wire.arrives_s <= wish else wish
+
+    def transmit_lines(self, now: float, *, scan: bool = True) -> None:
+        """Send what is due on the Modbus lines alone."""
+        for port, link, _ in self._lines:
+            if now >= link.wants_s:
+                try:
+                    link.service(port, now, scan=scan)
+                except BusLost as error:
+                    self._lose_line(link, error, now)
 
     def fill(self, r: Readings, now: float, diameter_mm: float) -> None:
         """Bring the process image up to date."""
@@ -117,14 +161,26 @@ class Devices:
                 self.news = True
         if self.news:
             self._fill_status(r)
+        if self.lost:
+            r.bus_fault = self.lost
+        if self.master.foreign_master:
+            r.foreign_master = self.master.foreign_frame
         cell = self.cell
         r.force_x_n, r.force_y_n, r.force_z_n, r.moment_z_nm = cell.fx_n, cell.fy_n, cell.fz_n, cell.mz_nm
         r.cell_valid, r.cell_at_s = cell.valid, cell.stamp_s
+        if cell.counts != self._cell_counts:
+            self._cell_counts = cell.counts
+            r.cell_changed_s = cell.stamp_s
         thermometer = self.thermometer
         r.surface_c, r.surface_valid, r.surface_at_s = thermometer.surface_c, thermometer.valid, thermometer.stamp_s
+        if thermometer.counts != self._surface_counts:
+            self._surface_counts = thermometer.counts
+            r.surface_changed_s = thermometer.stamp_s
         jacket = self.jacket
         r.hub_c, r.heat_percent = jacket.hub_c, jacket.output_percent
         r.jacket_valid, r.jacket_at_s = jacket.valid, jacket.stamp_s
+        if now >= self._inspector.due_s:
+            self._inspector.inspect(r, now)
 
     def _fill_motion(self, r: Readings, axes: Axes, diameter_mm: float) -> None:
         wheel, belt, press = axes.wheel, axes.belt, axes.press
@@ -169,7 +225,7 @@ class Devices:
                 enabled = False
                 if not fault and (state is _FAULT or state is _FAULT_REACTION):
                     fault = _fault_text(drive)
-            if not fault and (drive.lost or drive.rebooted):
+            if not fault and (drive.lost or drive.rebooted or drive.emergency is not None):
                 fault = _fault_text(drive)
         r.drives_enabled, r.drives_disabled, r.drive_fault = enabled, disabled, fault
         inputs = self.axes.press.inputs
@@ -180,13 +236,15 @@ class Devices:
     def apply(self, out: Setpoints) -> None:
         """Hand the setpoints to the drivers; the frames leave with ``transmit``."""
         axes = self.axes
-        goal = _QUICK_STOP if out.quick_stop else _ENABLED if out.enable else _DISABLED
+        wanted = _ENABLED if out.enable else _DISABLED
+        goal = _FREE if out.power_off else _QUICK_STOP if out.quick_stop else wanted
+        # A quick-stopped press would stay in contact: it keeps its own retraction, as long as it is to have power.
+        press_goal = wanted if goal is _QUICK_STOP else goal
         wheel, belt, press, sideslip, camber = axes.wheel, axes.belt, axes.press, axes.sideslip, axes.camber
-        if goal is not self._goal or self.news:
-            self._goal = goal
+        if goal is not self._goal or press_goal is not self._press_goal or self.news:
+            self._goal, self._press_goal = goal, press_goal
             for drive in self.drives:
-                # A quick-stopped press would stay in contact: it keeps its own retraction.
-                drive.goal = _ENABLED if goal is _QUICK_STOP and drive is press else goal
+                drive.goal = press_goal if drive is press else goal
         if out.wheel_rad_s != wheel.aimed:
             wheel.aim(out.wheel_rad_s)
         if out.belt_m_s != belt.aimed:
@@ -200,7 +258,8 @@ class Devices:
         press.outputs = OUTPUT_CONTACTOR if out.contactor else 0
         jacket = self.jacket
         jacket.enable(out.heat)
-        jacket.set_setpoint(out.hub_c)
+        if not out.jacket_silent:
+            jacket.set_setpoint(out.hub_c)
 
     def poll_cell_every(self, seconds: float) -> None:
         """Poll the load cell at this period, s; 0 = with every scan."""

@@ -92,6 +92,10 @@ class StoredResults:
         ticket = self.recorder.commit_repeat(key, result, bursts_of(blocks))
         return RepeatOutcome(result.status, _line(result), ticket)
 
+    def void_repeat(self, ctx: Context, key: int, reason: str) -> None:
+        """Record that a repeat was cut off; a further attempt follows."""
+        self.recorder.void_repeat(key, reason, ctx.now)
+
     def finish_condition(self, ctx: Context, step: ConditionStep, end: ConditionEnd) -> str:
         """Sum a condition up from its repeats and commit it; return a line for people."""
         status = CONDITION_STATUS.get(end.ending) if end.ending is not None else None
