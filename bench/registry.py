@@ -33,7 +33,7 @@ TOPICS: dict[str, Topic] = {
     "can": Topic("bench.can_cycle", "process data on CAN: codec and whole cycle, beside canopen and python-can"),
     "modbus": Topic("bench.modbus_line", "a transaction on a pseudo-terminal beside raw bytes and two libraries"),
     "service": Topic("bench.service_shell", "what clients cost the scan, CPU of the service, STOP, coming back"),
-    "recorder": Topic("bench.recording", "rows per second, and the CPU share of recording at 100 Hz"),
+    "recorder": Topic("bench.recording", "rows per second, CPU share, samples lost at 1 kHz, a disk hog beside it"),
     "startup": Topic("bench.startup", "CPU time of the commands up to their first work"),
     "recipe": Topic("bench.big_recipe", "a recipe of 100,000 conditions"),
     "model": Topic("bench.model", "friction model on arrays beside bare NumPy"),

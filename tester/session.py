@@ -135,8 +135,8 @@ class Session:
             self.screen.message(refusal)
             return EXIT_USAGE
         options.out.mkdir(parents=True, exist_ok=True)
-        for folder in cut_off(options.out):
-            self.screen.message(f"{folder.name} was cut off: tester resume {folder} goes on with it")
+        for left in cut_off(options.out):
+            self.screen.message(f"{left.name} was cut off: tester resume {left} goes on with it")
         enough_room(options.out, work.plan, rig)
         with ExclusiveUse() as use:
             hold_rig(use, rig, work.plan.name)

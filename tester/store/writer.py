@@ -3,8 +3,9 @@
 The scan's thread only appends: to one deque that carries samples (tuples) and batches of statements in the
 order in which they came. Appending to and popping from a deque is atomic, so no lock is held in a scan. The
 logger's thread takes what has come and commits it in one transaction: every second of wall time, and at
-once for an urgent batch (a repeat, an alarm). What is taken stays in memory until COMMIT has returned;
-after an error nothing more is written, ``failed`` says why, and ``close`` tries once more.
+once for an urgent batch (a repeat, an alarm). What is taken stays in memory until COMMIT has returned. After
+an error ``failed`` says why for good: the run is to stop. What is in memory stays there, no more than the queue's
+limit, and is tried again every second while the rig comes to rest, and by ``close``.
 
 A full queue drops the sample and counts it, for a real rig waits for nobody. ``lossless`` (simulated time)
 waits instead, and waits for the COMMIT of a repeat, so that results do not depend on the disk's speed.
@@ -33,6 +34,9 @@ and a busy machine take."""
 
 QUEUE_LIMIT = 65536
 """Items the queue holds before samples are dropped: ten minutes at 100 Hz, a minute at 1 kHz."""
+
+RETRY_S = 1.0
+"""After a write error the next attempt is made this much later."""
 
 LOSSLESS_LIMIT = 8192
 """Items the queue holds before the simulation waits; also the most samples in one transaction."""
@@ -189,7 +193,7 @@ class RunWriter(Recorder):
 
     def _run(self) -> None:
         try:
-            while not self._stopping and self.failed is None:
+            while not self._stopping:
                 self._wake.wait(self._poll_s)
                 self._wake.clear()
                 self.service()
@@ -200,9 +204,19 @@ class RunWriter(Recorder):
 
     def service(self) -> None:
         """Take what has come and commit what is due: what the logger's thread does ten times a second."""
-        self._drain()
         waited = self._clock() - self._committed_at
+        if self.failed is not None:
+            self._try_again(waited)
+            return
+        self._drain()
         if self._urgent or waited >= self._commit_after_s or len(self._rows) >= LOSSLESS_LIMIT:
+            self._commit()
+
+    def _try_again(self, waited_s: float) -> None:
+        """Write what an error has kept in memory, a second after the last attempt."""
+        if waited_s >= RETRY_S:
+            if len(self._rows) < QUEUE_LIMIT:  # else the queue fills, and what comes is dropped and counted
+                self._drain()
             self._commit()
 
     def _drain(self) -> None:
@@ -228,6 +242,7 @@ class RunWriter(Recorder):
             self._rows.clear()
             for batch in self._batches:
                 batch.ticket.done = True
+                batch.ticket.error = None
             self._batches.clear()
         self._urgent = False
         self._committed_at = self._clock()
@@ -264,7 +279,8 @@ class RunWriter(Recorder):
                 first = end
 
     def _fail(self, error: Exception) -> None:
-        self.failed = f"{type(error).__name__}: {error}"
+        self.failed = self.failed or f"{type(error).__name__}: {error}"
+        self._committed_at = self._clock()
         for batch in self._batches:
             batch.ticket.error = self.failed
         self._urgent = False

@@ -20,6 +20,7 @@ from typing import Any
 
 from tester import clock
 from tester.analysis.results import Burst, RepeatResult
+from tester.campaign.together import recover
 from tester.cli.console import Console
 from tester.engine.tickers import collector_at_rest
 from tester.export.verify import verify
@@ -35,22 +36,22 @@ RECIPE = """\
 recipe: crash test
 specimens:
   - compound: "1#"
-pre_grind: {wheel_speed: 0.8 m/s, belt_speed: 0.6 m/s, load: 200 N, duration: 10 s}
-rest: {at_least: 10 s, until: 25 degC, within: 10 degC}
+{second}pre_grind: {{wheel_speed: 0.8 m/s, belt_speed: 0.6 m/s, load: 200 N, duration: 10 s}}
+rest: {{at_least: 10 s, until: 25 degC, within: 10 degC}}
 measure:
   wheel_speed: 0.8 m/s
   repeats: 3
   min_valid: 1
   window: 10 rev
   temperature_band: 4 degC
-  soak: {within: 2 degC, for: 2 s}
+  soak: {{within: 2 degC, for: 2 s}}
 grids:
   - name: load
     slip_velocity: 100 mm/s
-    load: [50 N, 80 N, 100 N]
+    load: [{loads}]
     temperature: 24 degC
 """
-CONDITIONS, REPEATS = 3, 3
+REPEATS = 3
 SEED = 5
 OVERRIDES = ("sim.running_in=0", "sim.noise=0", "sim.friction_heat_fraction=0", "sim.variability.within=0")
 """A wheel that is run in, sensors without noise, no heat, so that every repeat is short; the scatter from repeat to
@@ -65,6 +66,21 @@ LATEST_S = 1.0
 Place = tuple[int, int]
 
 
+@dataclass(frozen=True, slots=True)
+class Scenario:
+    """What is run: a recipe, and how many conditions it has. Two specimens begin in records of their own."""
+
+    name: str
+    recipe: str
+    conditions: int
+
+
+SCENARIOS = (
+    Scenario("one specimen", RECIPE.format(second="", loads="50 N, 80 N, 100 N"), 3),
+    Scenario("two specimens", RECIPE.format(second='  - compound: "3#"\n', loads="50 N, 80 N"), 4),
+)
+
+
 # -- the process that is killed -----------------------------------------------------------------------------------
 
 
@@ -75,6 +91,7 @@ class TellingWriter(RunWriter):
 
     def __init__(self, *arguments: Any, **options: Any) -> None:
         self._places: dict[int, Place] = {}
+        self._path = str(arguments[0])
         self._tell_due = 0.0
         super().__init__(*arguments, **options)
 
@@ -95,7 +112,7 @@ class TellingWriter(RunWriter):
         now = clock.monotonic()
         if now >= self._tell_due:
             self._tell_due = now + 0.1
-            self.pipe.send(("sample", row[0] + self.origin_s, now))
+            self.pipe.send(("sample", self._path, row[0] + self.origin_s, now))
 
 
 def work(pipe: Connection, recipe: str, out: str, folder: str) -> None:
@@ -139,8 +156,8 @@ class Told:
     """What a process said before it was killed."""
 
     repeats: dict[Place, tuple[float, int]] = field(default_factory=dict[Place, tuple[float, int]])
-    samples: list[tuple[float, float]] = field(default_factory=list[tuple[float, float]])
-    """Rig time of a sample, and the wall time at which it was given to the recorder."""
+    samples: list[tuple[str, float, float]] = field(default_factory=list[tuple[str, float, float]])
+    """The record a sample is for, its rig time, and the wall time at which it was given to the recorder."""
     exit: int | None = None
 
 
@@ -180,8 +197,8 @@ def _listen(pipe: Connection, told: Told, deadline: float | None) -> bool:
         match said:
             case ("repeat", place, mu, bursts):
                 told.repeats[place] = (mu, bursts)
-            case ("sample", rig_s, wall_s):
-                told.samples.append((rig_s, wall_s))
+            case ("sample", path, rig_s, wall_s):
+                told.samples.append((path, rig_s, wall_s))
             case ("end", code):
                 told.exit = code
 
@@ -189,8 +206,8 @@ def _listen(pipe: Connection, told: Told, deadline: float | None) -> bool:
 class Campaign:
     """One run of the recipe, killed again and again until it ends; what is committed is remembered here."""
 
-    def __init__(self, recipe: Path, out: Path, found: Found, random: Random) -> None:
-        self.recipe, self.out, self.found, self.random = recipe, out, found, random
+    def __init__(self, scenario: Scenario, recipe: Path, out: Path, found: Found, random: Random) -> None:
+        self.scenario, self.recipe, self.out, self.found, self.random = scenario, recipe, out, found, random
         self.known: dict[Place, tuple[float, int]] = {}
         self.kills = 0
 
@@ -219,6 +236,8 @@ class Campaign:
     def _look(self, folder: Path, told: Told, killed_at: float) -> None:
         found = self.found
         try:
+            self._samples(told, killed_at)
+            recover(folder)
             with RunReader(folder) as reader:
                 found.unreadable += reader.integrity_problems()
                 stored = {(r.condition, r.repeat): r for r in reader.repeats()}
@@ -227,14 +246,31 @@ class Campaign:
                     if place in stored:
                         same = stored[place].result.mu_resultant == mu or not isfinite(mu)
                         found.wrong_values += not same or len(reader.bursts(stored[place].key)) != bursts
-                newest = max((block.columns["time_s"][-1] for block in reader.sample_blocks()), default=0.0)
-                found.wrong_points += resume_point(reader).next_repeat not in _right_points(set(stored))
+                found.wrong_points += resume_point(reader).next_repeat not in self._right_points(set(stored))
         except StoreError as error:
             found.unreadable.append(str(error))
+
+    def _samples(self, told: Told, killed_at: float) -> None:
+        """Look how old the oldest sample is that is missing, of those given to the record that was written last."""
+        if not told.samples:
             return
-        due = [wall_s for rig_s, wall_s in told.samples if rig_s > newest]
+        path = Path(told.samples[-1][0])
+        with RunReader(path) as reader:
+            newest = max((block.columns["time_s"][-1] for block in reader.sample_blocks()), default=-1.0)
+        due = [wall_s for where, rig_s, wall_s in told.samples if where == str(path) and rig_s > newest]
         if due:
-            found.missing_s = max(found.missing_s, killed_at - due[0])
+            self.found.missing_s = max(self.found.missing_s, killed_at - due[0])
+
+    def _right_points(self, stored: set[Place]) -> tuple[Place | None, ...]:
+        """Return where a run with these repeats may go on: at the first one missing; None = its condition not begun."""
+        order = [(c, r) for c in range(1, self.scenario.conditions + 1) for r in range(1, REPEATS + 1)]
+        missing = next((place for place in order if place not in stored), None)
+        if missing is None:
+            return None, (self.scenario.conditions, REPEATS + 1)
+        if missing[1] == 1:
+            # Not begun, begun, or the condition before is measured and its end not yet committed.
+            return None, missing, (missing[0] - 1, REPEATS + 1)
+        return (missing,)
 
 
 def _begun(out: Path) -> Path | None:
@@ -245,18 +281,6 @@ def _begun(out: Path) -> Path | None:
             if tables and connection.execute("SELECT count(*) FROM run").fetchone()[0]:
                 return path.parent
     return None
-
-
-def _right_points(stored: set[Place]) -> tuple[Place | None, ...]:
-    """Return where a run with these repeats may go on: at the first one missing; None = its condition was not begun."""
-    order = [(c, r) for c in range(1, CONDITIONS + 1) for r in range(1, REPEATS + 1)]
-    missing = next((place for place in order if place not in stored), None)
-    if missing is None:
-        return None, (CONDITIONS, REPEATS + 1)
-    if missing[1] == 1:
-        # Not begun, begun, or the condition before is measured and its end not yet committed.
-        return None, missing, (missing[0] - 1, REPEATS + 1)
-    return (missing,)
 
 
 @dataclass(frozen=True, slots=True)
@@ -280,6 +304,14 @@ def table_of(folder: Path) -> Table:
     return Table(tuple(rows), tuple(means))
 
 
+def _undisturbed(recipe: Path, out: Path) -> tuple[Table, float]:
+    """Run a recipe without a kill; return its table and the wall time it took, s."""
+    begun = clock.monotonic()
+    told, _ = one_process(recipe, out, None, None)
+    assert told.exit == 0, f"the undisturbed run ended with {told.exit}"
+    return table_of(next(out.iterdir())), clock.monotonic() - begun
+
+
 def compare(found: Found, undisturbed: Table, interrupted: Table) -> None:
     """Hold an interrupted run against the undisturbed one."""
     if undisturbed.rows != interrupted.rows:
@@ -292,26 +324,24 @@ def compare(found: Found, undisturbed: Table, interrupted: Table) -> None:
 
 def measure(folder: Path, kills: int, seed: int = 1) -> Iterator[Figure]:
     """Yield the figures of ``kills`` kills, and of one run that is interrupted five times."""
-    recipe = folder / "crash.yaml"
-    recipe.write_text(RECIPE, encoding="utf-8")
     found, random = Found(), Random(seed)
+    undisturbed: dict[str, tuple[Table, float]] = {}
+    number = 0
     with collector_at_rest():
-        begun = clock.monotonic()
-        told, _ = one_process(recipe, folder / "undisturbed", None, None)
-        whole_s = clock.monotonic() - begun
-        assert told.exit == 0, f"the undisturbed run ended with {told.exit}"
-        undisturbed = table_of(next((folder / "undisturbed").iterdir()))
-        number = 0
         while found.kills < kills:
+            scenario = SCENARIOS[number % len(SCENARIOS)]
             number += 1
-            out = folder / f"run-{number}"
-            campaign = Campaign(recipe, out, found, random)
-            # The first one is interrupted five times, whatever the machine's speed; the others at random.
-            wanted = min(5 if number == 1 else 8, kills - found.kills)
-            ended = campaign.run((0.02 * whole_s, 0.6 * whole_s), wanted)
+            recipe = folder / f"{scenario.conditions}.yaml"
+            if scenario.name not in undisturbed:
+                recipe.write_text(scenario.recipe, encoding="utf-8")
+                undisturbed[scenario.name] = _undisturbed(recipe, folder / scenario.name)
+            table, whole_s = undisturbed[scenario.name]
+            campaign = Campaign(scenario, recipe, folder / f"run-{number}", found, random)
+            # Five interruptions each, more or fewer as it comes: a run may end before it is killed.
+            ended = campaign.run((0.02 * whole_s, 0.6 * whole_s), min(5, kills - found.kills))
             if ended is not None:
                 found.ended += 1
-                compare(found, undisturbed, table_of(ended))
+                compare(found, table, table_of(ended))
                 found.unreadable += verify(ended).problems
     yield equal("kills", found.kills, kills)
     note = f"{found.ended} runs, {found.early} of the kills before anything was on the disk"
