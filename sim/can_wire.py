@@ -44,23 +44,25 @@ class CanNode(Protocol):
         ...
 
 
-class SyncFollower(Protocol):
-    """A device that answers SYNC."""
+class SyncFollower:
+    """A device that answers SYNC.
 
-    plain: bool
-    """Nothing but one TPDO goes with the next SYNC: ``sample`` under ``sample_id``, taken anew where ``stale``."""
-    stale: bool
-    sample: bytes
-    sample_id: int
+    ``plain``: nothing but one TPDO goes with the next SYNC: ``sample`` under ``sample_id``, or what ``take_sample``
+    returns where it is ``stale``.
+    """
 
-    @property
-    def take_sample(self) -> Callable[[], bytes]:
-        """What returns what the TPDO shows now."""
-        ...
+    __slots__ = ("plain", "sample", "sample_id", "stale", "take_sample")
+
+    def __init__(self, take_sample: Callable[[], bytes]) -> None:
+        """Answer by ``on_sync`` until something else is said."""
+        self.plain = False
+        self.stale = True
+        self.sample = b""
+        self.sample_id = 0
+        self.take_sample = take_sample
 
     def on_sync(self, t: float) -> None:
         """Act on a SYNC that arrived at ``t`` s and answer it."""
-        ...
 
 
 class Beat:

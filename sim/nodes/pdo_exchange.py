@@ -7,7 +7,7 @@ from math import inf
 from typing import Protocol
 
 from drivers.canopen import objects as o
-from sim.can_wire import CanWire, Listener
+from sim.can_wire import CanWire, Listener, SyncFollower
 from sim.nodes.object_store import ObjectStore
 from sim.nodes.pdo_channels import ReceivePdo, TransmitPdo
 
@@ -53,7 +53,7 @@ class PdoOwner(Protocol):
         ...
 
 
-class PdoExchange:
+class PdoExchange(SyncFollower):
     """All PDOs of one device; running while the device is OPERATIONAL.
 
     ``due_s`` is the next deadline or event timer; ``urgent`` marks the next synchronous TPDO as urgent for the wire.
@@ -74,18 +74,14 @@ class PdoExchange:
         "due_s",
         "fresh",
         "owner",
-        "plain",
         "rpdos",
-        "sample",
-        "sample_id",
-        "stale",
-        "take_sample",
         "tpdos",
         "urgent",
     )
 
     def __init__(self, owner: PdoOwner, wire: CanWire, store: ObjectStore) -> None:
         """Create the two receive and two transmit PDOs of a device, not running."""
+        super().__init__(_nothing)
         self.owner = owner
         self._wire = wire
         self._store = store
@@ -100,11 +96,6 @@ class PdoExchange:
         self._event_tpdos: tuple[TransmitPdo, ...] = ()
         self._status_on_event = False
         self._single = False
-        self.take_sample: Callable[[], bytes] = _nothing
-        self.sample_id = 0
-        self.sample = b""
-        self.stale = True
-        self.plain = False
         self.urgent = False
         self.due_s = inf
 
