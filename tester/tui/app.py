@@ -19,7 +19,10 @@ from tester.tui.dialogs.log import TextDialog
 from tester.tui.filters import AsciiOnly, Colourless
 from tester.tui.host import HostApp, TuiOptions
 from tester.tui.theme import CSS, DARK, THEMES
+from tester.tui.views.bus import BusView
+from tester.tui.views.manual import ManualView
 from tester.tui.views.recipes import RecipesView
+from tester.tui.views.results import ResultsView
 from tester.tui.views.run import RunView
 from tester.tui.views.view import View
 from tester.tui.widgets.head import TABS, KeyLine, StateLine, TabLine
@@ -84,6 +87,9 @@ class TesterApp(HostApp):
         """Return the screens."""
         yield RecipesView(id="recipes")
         yield RunView(plain=self.options.plain, id="run")
+        yield ManualView(id="manual")
+        yield ResultsView(id="results")
+        yield BusView(id="bus")
 
     def on_mount(self) -> None:
         """Begin to listen."""
@@ -116,6 +122,8 @@ class TesterApp(HostApp):
             panel.show(self.scene)
         base.query_one(SmallPanel).show(self.scene)
         self.view.show(self.scene)
+        if self.screen is base and base.focused is None:
+            self.view.enter()  # a dialog that changed the screen below it has closed
 
     # -- keys -------------------------------------------------------------------------------------------------
 

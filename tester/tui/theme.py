@@ -115,22 +115,24 @@ Checkbox { background: $surface; border: none; padding: 0; }
 Dialog.-tall > #box { width: 100%; height: 100%; }
 
 #manual-values { height: 12; }
-#manual-axes { height: 10; }
-#manual-state { height: 1fr; }
+#manual-axes { width: 1fr; height: 100%; }
+#manual-state { height: 5; }
+#manual-events { height: 1fr; }
 #runs { height: 35%; }
 #conditions { height: 1fr; }
 #plot { height: 40%; display: none; }
 Screen.-wide #plot { display: block; }
 Screen.-wide #runs { height: 25%; }
-#devices { height: auto; max-height: 50%; }
-#buses { height: 4; }
+#devices { height: 10; }
+#buses { height: 6; }
+Screen.-wide #devices { height: 14; }
 #frames { height: 1fr; }
 #filter { display: none; height: 1; }
 #filter.-open { display: block; }
 
 #time { height: 2; padding: 0 1; }
 ToastRack { margin-bottom: 1; }
-Toast { width: 60; max-width: 80%; background: $panel; }
+Toast { width: 60; max-width: 80%; background: $panel; padding: 0 1; margin-top: 0; }
 Tooltip { display: none; }
 CommandPalette { background: transparent; }
 CommandPalette > Vertical { background: $surface; margin-bottom: 1; }

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from pydantic import JsonValue
 from textual.containers import Horizontal
 from textual.widget import Widget
-from textual.widgets import Button, Checkbox, Input
+from textual.widgets import Button, Checkbox, Input, Static
 
 from tester.service.commands import RunRecipe, ShowPlan
 from tester.service.state import Check
@@ -19,6 +19,7 @@ from tester.tui.words import clean, hours
 
 LATER = ("guard and safety chain", "zero of the load cell", "watchdogs of the drives")
 """What the service shows before a drive is armed, and refuses to start without (docs/safety.md)."""
+ASK = "Answer questions (install wheel, clean debris) by itself:"
 MAX = "max"
 
 
@@ -61,7 +62,7 @@ class StartDialog(Dialog):
         yield field("Notes", entry("notes", limit=1500))
         if simulated:
             yield field("Rig s per second", entry("speed", speed_words(self.host.options.speed), hint="1, 60, max"))
-        yield Checkbox("answer questions by itself (install wheel, clean debris)", id="yes", value=False, compact=True)
+        yield Checkbox(f"{ASK} no", id="yes", value=False, compact=True)
         with Horizontal(classes="buttons"):
             yield Button("Start (Enter)", id="start", compact=True)
             yield Button("Back", id="back", compact=True)
@@ -69,11 +70,7 @@ class StartDialog(Dialog):
     def _checks(self) -> tuple[Check, ...]:
         known = self.host.scene.state.preflight if self.host.scene.state is not None else ()
         names = {check.name for check in known}
-        later = tuple(
-            Check(name, None, "proved when the rig is connected, before anything moves")
-            for name in LATER
-            if name not in names
-        )
+        later = tuple(Check(name, None, "proved at connecting, before motion") for name in LATER if name not in names)
         return (Check("recipe", True, "valid on this rig"), *known, *later)
 
     def on_mount(self) -> None:
@@ -84,7 +81,7 @@ class StartDialog(Dialog):
     async def _plan(self) -> None:
         found = await self.host.ask(ShowPlan(self.recipe.reference, self.recipe.sent))
         if self.is_attached and isinstance(found, dict):
-            self.query_one("#plan", expect_type=type(line(""))).update("".join(map(str, totals(found))))
+            self.query_one("#plan", Static).update("".join(map(str, totals(found))))
 
     def on_button_pressed(self, event: Button.Pressed) -> None:
         """Start, or go back."""
@@ -93,6 +90,10 @@ class StartDialog(Dialog):
             self._start()
         else:
             self.dismiss(None)
+
+    def on_checkbox_changed(self, event: Checkbox.Changed) -> None:
+        """Say in words what a colour says: not every terminal has one."""
+        event.checkbox.label = f"{ASK} {'yes' if event.value else 'no'}"
 
     def on_input_submitted(self, event: Input.Submitted) -> None:
         """Enter in a field leads on to the button."""

@@ -128,6 +128,8 @@ class RecipesView(View):
         problems = self.query_one("#problems", OptionList)
         problems.clear_options()
         failed = self.failed.get(str(recipe.path), "")
+        if not found and not failed and problems.has_focus:
+            self.enter()
         problems.display = bool(found or failed)
         if failed:
             problems.add_option(Option(clean(failed)))

@@ -68,7 +68,7 @@ def _step(progress: ProgressView, soak: SoakView | None, gates: tuple[Gate, ...]
     if soak is not None:
         words = soak_words(soak)
         return [fit(text, max(width - len(words) - 3, 0)), "   ", fit(words, width)]
-    if closed := [clean(gate.key) for gate in gates if not gate.open]:
+    if progress.burst and (closed := [clean(gate.key) for gate in gates if not gate.open]):
         text += f"   waits for {', '.join(closed)}"
     return [fit(text, width)]
 
