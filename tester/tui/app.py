@@ -9,6 +9,7 @@ from textual.app import ComposeResult, SystemCommand
 from textual.binding import Binding, BindingType
 from textual.filter import LineFilter
 from textual.screen import Screen
+from textual.widget import Widget
 from textual.widgets import ContentSwitcher
 
 from tester import clock
@@ -25,7 +26,7 @@ from tester.tui.views.recipes import RecipesView
 from tester.tui.views.results import ResultsView
 from tester.tui.views.run import RunView
 from tester.tui.views.view import View
-from tester.tui.widgets.head import TABS, KeyLine, StateLine, TabLine
+from tester.tui.widgets.head import TABS, KeyLine, StateLine, TabLine, Tabs
 from tester.tui.widgets.small import SmallPanel
 
 SMALLEST = (60, 15)
@@ -46,6 +47,10 @@ class TesterApp(HostApp):
 
     TITLE = "friction-tester"
     CSS = CSS
+    FIRST: ClassVar[str] = "recipes"
+    """The screen shown first."""
+    EVERYWHERE: ClassVar[str] = EVERYWHERE
+    SCREENS_HERE: ClassVar[Tabs] = TABS
     BINDINGS: ClassVar[list[BindingType]] = [
         *(Binding(key, f"go_to('{name}')", title, show=False) for key, title, name in TABS),
         Binding("f1", "help", "Help", show=False),
@@ -78,10 +83,15 @@ class TesterApp(HostApp):
         """Lay out the fixed lines and the screens."""
         yield StateLine(id="state")
         yield TabLine(id="tabs")
-        with ContentSwitcher(initial="recipes", id="views"):
+        with ContentSwitcher(initial=self.FIRST, id="views"):
             yield from self.views()
         yield SmallPanel(id="tiny")
+        yield from self.below()
         yield KeyLine(id="keys")
+
+    def below(self) -> Iterable[Widget]:
+        """Return what stands above the last line."""
+        return ()
 
     def views(self) -> Iterable[View]:
         """Return the screens."""
@@ -95,7 +105,8 @@ class TesterApp(HostApp):
         """Begin to listen."""
         if not self.options.theme and self.console.color_system == "standard":
             self.theme = THEMES["16"].name
-        self.go_to("recipes")
+        self.query_one(TabLine).tabs = self.SCREENS_HERE
+        self.go_to(self.FIRST)
         self.connect()
 
     def on_resize(self) -> None:
@@ -115,9 +126,9 @@ class TesterApp(HostApp):
 
     def scene_changed(self) -> None:
         """Show what has changed: the fixed lines and the screen that is seen."""
-        if not self.screen_stack:
-            return
-        base = self.screen_stack[0]
+        base = self.screen_stack[0] if self.screen_stack else None
+        if base is None or not base.query("#keys"):
+            return  # before the first layout, and while the screen is taken down
         for panel in (base.query_one(StateLine), base.query_one(TabLine), base.query_one(KeyLine)):
             panel.show(self.scene)
         base.query_one(SmallPanel).show(self.scene)
@@ -130,6 +141,9 @@ class TesterApp(HostApp):
     def go_to(self, name: str) -> None:
         """Show another screen."""
         base = self.screen_stack[0]
+        if not base.query(f"#{name}"):
+            self.say("that screen needs a service: `tester tui`")
+            return
         before = self.view
         base.query_one(ContentSwitcher).current = name
         if before is not self.view:
@@ -148,7 +162,7 @@ class TesterApp(HostApp):
     def action_help(self) -> None:
         """Show the help of this screen."""
         if not isinstance(self.screen, Dialog):
-            self.push_screen(TextDialog("Help", f"{self.view.HELP}{EVERYWHERE}"))
+            self.push_screen(TextDialog("Help", f"{self.view.HELP}{self.EVERYWHERE}"))
 
     def action_hold(self) -> None:
         """HOLD, no question."""
@@ -193,7 +207,7 @@ class TesterApp(HostApp):
         yield SystemCommand("Resume", "End HOLD, or go on with a run that was cut off (r)", self.action_resume)
         yield SystemCommand("Abort…", "Controlled stop of the run (x)", self.action_abort)
         yield SystemCommand("Acknowledge", "The alarm of line 2 (a)", self.action_acknowledge)
-        for key, title, name in TABS:
+        for key, title, name in self.SCREENS_HERE:
             yield SystemCommand(f"Screen: {title}", key.upper(), lambda name=name: self.go_to(name))
         yield SystemCommand("Take control", "From the client that has it", self.action_take_control)
         for name in THEMES:

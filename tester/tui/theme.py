@@ -58,7 +58,7 @@ ContentSwitcher { height: 1fr; }
 View { height: 100%; width: 100%; }
 .box { border: round $secondary; padding: 0 1; }
 .trend { width: 1fr; height: 100%; padding: 0; }
-#tiny { display: none; height: 1fr; padding: 0 1; }
+#tiny { display: none; height: 1fr; }
 Screen.-tiny #tiny { display: block; }
 Screen.-tiny ContentSwitcher { display: none; }
 
@@ -96,10 +96,10 @@ TextArea { background: $background; }
 TextArea .text-area--cursor-line { background: $panel; text-style: bold; }
 TextArea .text-area--cursor-gutter { text-style: bold reverse; }
 
-Dialog { background: transparent; align: center middle; padding: 2 0 1 0; }
+Dialog { background: transparent; align: center top; }
 Dialog > #box {
     width: 76; max-width: 100%; height: auto; max-height: 100%; background: $surface; border: heavy $accent;
-    padding: 0 1; overflow-y: auto;
+    padding: 0 1; overflow-y: auto; margin: 2 0 1 0;
 }
 Dialog .line { height: auto; width: 100%; }
 Dialog .field { height: 1; width: 100%; }
@@ -130,10 +130,10 @@ Screen.-wide #devices { height: 14; }
 #filter { display: none; height: 1; }
 #filter.-open { display: block; }
 
-#time { height: 2; padding: 0 1; }
+#time { height: 1; width: 100%; }
 ToastRack { margin-bottom: 1; }
 Toast { width: 60; max-width: 80%; background: $panel; padding: 0 1; margin-top: 0; }
 Tooltip { display: none; }
 CommandPalette { background: transparent; }
-CommandPalette > Vertical { background: $surface; margin-bottom: 1; }
+CommandPalette > Vertical { background: $surface; margin: 2 0 1 0; }
 """

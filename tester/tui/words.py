@@ -51,10 +51,15 @@ def minutes(seconds: float | None) -> str:
 def clock_text(utc: str, *, seconds: bool = False) -> str:
     """Return the local time of day of an ISO 8601 text in UTC; the text itself where it is none."""
     try:
-        moment = datetime.fromisoformat(utc).astimezone()
+        moment = local(datetime.fromisoformat(utc))
     except ValueError:
         return clean(utc, 20)
     return moment.strftime("%H:%M:%S" if seconds else "%H:%M")
+
+
+def local(moment: datetime) -> datetime:
+    """Return a moment in the time zone of the machine."""
+    return moment.astimezone()
 
 
 def fit(text: str, width: int) -> str:

@@ -38,6 +38,12 @@ def speed_of(text: str) -> float | None:
     return speed
 
 
+class PlainCheckbox(Checkbox):
+    """A box whose label says whether it is set: Textual shows that by colour alone."""
+
+    BUTTON_INNER = "·"
+
+
 class StartDialog(Dialog):
     """The last look before a run begins."""
 
@@ -62,7 +68,7 @@ class StartDialog(Dialog):
         yield field("Notes", entry("notes", limit=1500))
         if simulated:
             yield field("Rig s per second", entry("speed", speed_words(self.host.options.speed), hint="1, 60, max"))
-        yield Checkbox(f"{ASK} no", id="yes", value=False, compact=True)
+        yield PlainCheckbox(f"{ASK} no", id="yes", value=False, compact=True)
         with Horizontal(classes="buttons"):
             yield Button("Start (Enter)", id="start", compact=True)
             yield Button("Back", id="back", compact=True)

@@ -104,6 +104,7 @@ class ResultsView(View):
         """Look for runs again."""
         if self.host.options.view_only or self.host.link is None:
             return
+        self.runs_table.border_title = "Runs: looking …"
         self.run_worker(self._list(), group="runs", exclusive=True, exit_on_error=False)
 
     async def _list(self) -> None:

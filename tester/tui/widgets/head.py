@@ -7,7 +7,8 @@ from tester.tui.scene import STALE_S, Scene
 from tester.tui.widgets.panel import ABNORMAL, FAINT, NOTICE, WARNING, Panel, Part, Parts
 from tester.tui.words import clean, clock_text, fit, hours, number
 
-TABS = (("f2", "Recipes", "recipes"), ("f3", "Run", "run"), ("f4", "Manual", "manual"),
+Tabs = tuple[tuple[str, str, str], ...]
+TABS: Tabs = (("f2", "Recipes", "recipes"), ("f3", "Run", "run"), ("f4", "Manual", "manual"),
         ("f5", "Results", "results"), ("f6", "Bus", "bus"))  # fmt: skip
 """Key, title, id of each screen."""
 CALM_MODES = frozenset({"RUN", "IDLE", "OFFLINE", "ARMED", "CONNECTING", "MANUAL"})
@@ -92,6 +93,7 @@ class TabLine(Panel):
     """Line 2: the screens; in their place the top alarm while one is not acknowledged."""
 
     current = "recipes"
+    tabs: Tabs = TABS
 
     def picture(self, scene: Scene, width: int, height: int) -> Parts:
         """Return the line."""
@@ -101,7 +103,7 @@ class TabLine(Panel):
             text = fit(f" {alarm_words(alarm)}", width - len(key))
             return [(text.ljust(width - len(key)) + key, ALARM_STYLES[alarm.priority])]
         parts: Parts = []
-        for key, title, name in TABS:
+        for key, title, name in self.tabs:
             label = f" {key.upper()} {title} "
             parts.append((label, "bold reverse") if name == self.current else label)
         return _cut(parts, width)

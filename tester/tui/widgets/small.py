@@ -8,14 +8,14 @@ from tester.tui.words import clean, fit
 
 
 class SmallPanel(Panel):
-    """State, the question that waits, and that the run goes on."""
+    """That the run goes on, the question that waits, why the rig is in its mode."""
 
     def picture(self, scene: Scene, width: int, height: int) -> Parts:
         """Return some lines."""
         texts = ["terminal too small,", "the run continues"]
         if scene.state is not None:
-            texts.insert(0, f"{clean(scene.state.mode)} {clean(scene.state.mode_text)}".rstrip())
             if scene.state.prompt is not None:
                 texts.append(f"asks: {clean(scene.state.prompt.text)}")
+            texts.append(clean(scene.state.mode_text))
         lines: list[Parts] = [[fit(text, width)] for text in texts[:height]]
         return rows(lines)

@@ -16,6 +16,7 @@ from tester.service.queries import Queries
 from tester.service.state import TREND_COLUMNS, PlanView, StateView
 from tester.tui.app import TesterApp
 from tester.tui.host import TuiOptions
+from tester.tui.views.recipes import RecipesView
 from tests.tester.service.fake import FakeService
 from tests.tester.service.views import plan as a_plan
 from tests.tester.service.views import state as a_state
@@ -69,6 +70,11 @@ class Stage:
         await self.until(lambda: any(isinstance(o.action, kind) for o in self.fake.orders), kind.__name__)
         return next(o.action for o in reversed(self.fake.orders) if isinstance(o.action, kind))
 
+    def checked(self) -> bool:
+        """Return whether every recipe has been checked."""
+        view = self.app.screen_stack[0].query_one(RecipesView)
+        return self.app.options.view_only or all(str(one.path) in view.checked for one in view.recipes)
+
     def text(self) -> str:
         """Return what is on the screen, a line a row."""
         return screen_text(self.app)
@@ -82,6 +88,13 @@ def screen_text(app: TesterApp) -> str:
     """Return what is on the screen, dialogs included."""
     strips = app.screen._compositor.render_strips()  # the only way to the composed picture
     return "\n".join("".join(segment.text for segment in strip).rstrip() for strip in strips)
+
+
+def colours(app: TesterApp) -> set[str]:
+    """Return the colours that leave for the terminal."""
+    strips = app.screen._compositor.render_strips()
+    styles = [segment.style for strip in strips for segment in strip if segment.style is not None]
+    return {str(colour) for style in styles for colour in (style.color, style.bgcolor) if colour is not None}
 
 
 def trend() -> list[tuple[float | None, ...]]:
@@ -100,7 +113,7 @@ def trend() -> list[tuple[float | None, ...]]:
 
 @asynccontextmanager
 async def stage(
-    folder: Path, size: tuple[int, int] = (80, 24), *, plain: bool = False, view_only: bool = False, theme: str = ""
+    folder: Path, size: tuple[int, int] = (80, 24), *, plain: bool = False, view_only: bool = False, theme: str = "dark"
 ) -> AsyncIterator[Stage]:
     """Open a screen of some size before a service that has one recipe to offer."""
     now = [100.0]
@@ -113,7 +126,7 @@ async def stage(
             runs=folder / "runs",
         )  # fmt: skip
         app = TesterApp(options, lambda: now[0])
-        async with app.run_test(size=size) as pilot:
+        async with app.run_test(size=size, notifications=True) as pilot:
             made = Stage(fake, app, pilot, now)
             await made.until(lambda: app.scene.state is not None, "the service is found")
             fake.plan(a_plan())
