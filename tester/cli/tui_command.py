@@ -40,13 +40,25 @@ class SpeedType(click.ParamType[float | None]):
 @click.option("--theme", type=click.Choice(["dark", "light", "16"]), default=None, help="Colours.")
 @click.option("--ascii", "plain", is_flag=True, help="Draw with ASCII characters only.")
 @click.option("--view", "view_only", is_flag=True, help="Watch only: command nothing, start no service.")
+@click.option("--web", is_flag=True, help="Serve a view-only screen to browsers of this machine (extra: web).")
+@click.option("--port", type=click.IntRange(1, 65535), default=8000, show_default=True, help="Of --web.")
 def tui(
-    address: str, rig_name: str, speed: float | None, out: str, theme: str | None, plain: bool, view_only: bool
+    address: str,
+    rig_name: str,
+    speed: float | None,
+    out: str,
+    theme: str | None,
+    plain: bool,
+    view_only: bool,
+    web: bool,
+    port: int,
 ) -> int:
     """Show the rig, choose recipes, run them, see results. Starts the service if none runs.
 
     F12 or Ctrl+X is STOP on every screen. Leaving with q touches no run.
     """
+    if web:
+        return _serve(port, address)
     from tester.service.address import AddressError, address_of
     from tester.tui.app import TesterApp
     from tester.tui.host import TuiOptions
@@ -65,3 +77,13 @@ def tui(
     if farewell:
         click.echo(farewell, err=True)
     return app.return_code or 0
+
+
+def _serve(port: int, address: str) -> int:
+    from tester.tui.web import serve
+
+    try:
+        serve(port, address)
+    except ImportError:
+        raise click.UsageError('--web needs textual-serve: pip install "friction-tester[web]"') from None
+    return 0

@@ -25,7 +25,7 @@ from tester.tui.views.manual import ManualView
 from tester.tui.views.recipes import RecipesView
 from tester.tui.views.results import ResultsView
 from tester.tui.views.run import RunView
-from tester.tui.views.view import View
+from tester.tui.views.view import Keys, View
 from tester.tui.widgets.head import TABS, KeyLine, StateLine, TabLine, Tabs
 from tester.tui.widgets.small import SmallPanel
 
@@ -133,7 +133,7 @@ class TesterApp(HostApp):
             panel.show(self.scene)
         base.query_one(SmallPanel).show(self.scene)
         self.view.show(self.scene)
-        if self.screen is base and base.focused is None:
+        if self.screen is base and (base.focused is None or self.view not in base.focused.ancestors_with_self):
             self.view.enter()  # a dialog that changed the screen below it has closed
 
     # -- keys -------------------------------------------------------------------------------------------------
@@ -149,10 +149,14 @@ class TesterApp(HostApp):
         if before is not self.view:
             before.leave()
         base.query_one(TabLine).current = name
-        base.query_one(KeyLine).keys = self.view.KEYS
+        base.query_one(KeyLine).keys = self.keys_of(self.view)
         if self.screen is base:
             self.view.enter()
         self.scene_changed()
+
+    def keys_of(self, view: View) -> Keys:
+        """Return what the last line names on a screen."""
+        return view.KEYS
 
     def action_go_to(self, name: str) -> None:
         """Show another screen."""

@@ -16,7 +16,7 @@ from tester.tui.scene import Scene
 from tester.tui.stored import Stored
 from tester.tui.views.results import ResultsView
 from tester.tui.views.run import RunView
-from tester.tui.views.view import View
+from tester.tui.views.view import Keys, View
 from tester.tui.widgets.head import TABS, Tabs
 from tester.tui.widgets.panel import FAINT, Panel, Parts
 from tester.tui.words import minutes
@@ -43,7 +43,7 @@ class TimeLine(Panel):
     def picture(self, scene: Scene, width: int, height: int) -> Parts:
         """Return the slider."""
         words = f" {'▶' if self.playing else '⏸'} {minutes(self.at_s)} / {minutes(self.length_s)}  x{self.speed:g} "
-        keys = " ←→ s Home End "
+        keys = " Home End PgUp PgDn "
         room = width - len(words) - len(keys)
         if room < 5:
             return [words[:width]]
@@ -85,6 +85,11 @@ class ReplayApp(TesterApp):
     def below(self) -> Iterable[Widget]:
         """Return the slider."""
         yield TimeLine(id="time")
+
+    def keys_of(self, view: View) -> Keys:
+        """Return the keys of a replay."""
+        own = (("p", "Plot"), ("e", "Export")) if isinstance(view, ResultsView) else (("l", "Log"),)
+        return (("space", "Play"), ("←→", "10 s"), ("s", "Faster"), *own, ("F1", "Help"), ("q", "Leave"))
 
     def connect(self) -> None:
         """Show the run's beginning."""
