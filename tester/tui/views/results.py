@@ -145,6 +145,7 @@ class ResultsView(View):
             return
         if self.is_attached:
             self.open(stored)
+            self.conditions_table.focus()
 
     def open(self, stored: Stored) -> None:
         """Show a run's conditions."""
@@ -154,7 +155,6 @@ class ResultsView(View):
         for row in stored.rows:
             table.add_row(*(Text(clean(cell, 80)) for cell in row.cells))
         table.border_title = Text(f"{clean(stored.name)}: {clean(stored.recipe)}, {clean(stored.status)}")
-        table.focus()
         self._plot(0)
 
     def _plot(self, axis: int) -> None:
