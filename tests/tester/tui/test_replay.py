@@ -41,9 +41,10 @@ def playback(run: Path) -> Playback:
     return load(run)
 
 
-def replay(
-    run: Path, playback: Playback, act: Callable[[ReplayApp, Callable[..., Awaitable[None]]], Awaitable[None]]
-) -> None:
+Press = Callable[..., Awaitable[None]]
+
+
+def replay(run: Path, playback: Playback, act: Callable[[ReplayApp, Press], Awaitable[None]]) -> None:
     """Open a replay and do something with it."""
 
     async def main() -> None:

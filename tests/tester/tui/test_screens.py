@@ -106,7 +106,7 @@ def test_themes_show_the_same_text(theme: str, tmp_path: Path) -> None:
 
 def test_no_size_from_200x50_to_20x5_breaks_a_screen(tmp_path: Path) -> None:
     async def act(on: Stage) -> None:
-        for number, (key, share) in enumerate((k, s) for s in range(10, -1, -1) for k in KEYS.values()):
+        for number, (key, share) in enumerate((k, s) for s in range(10, -1, -2) for k in KEYS.values()):
             if number % 2:
                 await on.show(STATES["alarm"] if number % 3 else STATES["normal"], plan())
             await on.pilot.resize_terminal(20 + 18 * share, 5 + 9 * share // 2)
