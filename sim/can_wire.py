@@ -171,13 +171,13 @@ class CanWire:
         ranked = self._ranked.setdefault(can_id, [])
         ranked.append((rank, listener))
         ranked.sort(key=_rank)
-        self._routes[can_id] = tuple(entry[1] for entry in ranked)
+        self._route(can_id, ranked)
 
     def forget(self, can_id: int, listener: Listener) -> None:
         """Stop calling ``listener`` for this identifier; nothing happens when it was not listening."""
         ranked = [entry for entry in self._ranked.get(can_id, ()) if entry[1] != listener]
         self._ranked[can_id] = ranked
-        self._routes[can_id] = tuple(entry[1] for entry in ranked)
+        self._route(can_id, ranked)
 
     def transmit(self, can_id: int, data: bytes, t: float, urgent: bool = False) -> None:
         """Send a node's frame to the computer, ready to go at ``t`` s.
@@ -221,6 +221,10 @@ class CanWire:
         return (occupied1 - occupied0) / (t1 - t0)
 
     # inner ---------------------------------------------------------------------------------------------------
+
+    def _route(self, can_id: int, ranked: list[tuple[int, Listener]]) -> None:
+        """Take over who listens to an identifier."""
+        self._routes[can_id] = tuple(entry[1] for entry in ranked)
 
     def _settle(self, now: float) -> None:
         """Give the wire to every waiting frame that was ready by ``now`` s, in order of readiness, then identifier."""

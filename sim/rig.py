@@ -70,10 +70,12 @@ class SimRig:
     at the rig.
     """
 
-    def __init__(self, spec: RigSpec, parameters: SimParameters, seed: int) -> None:
-        """Switch everything on at time 0."""
+    def __init__(
+        self, spec: RigSpec, parameters: SimParameters, seed: int, can_wire: type[CanWire] = CanWire
+    ) -> None:
+        """Switch everything on at time 0; ``can_wire``: the kind of bus, another one where it can be faulty."""
         self.plant = Plant(parameters, seed)
-        self.can = CanWire(spec.bitrate)
+        self.can = can_wire(spec.bitrate)
         self.axes = {name: self._drive(name, config) for name, config in spec.axes.items()}
         self.cell = CellSlave(load_profile(spec.load_cell.profile), spec.load_cell.unit_id, self.plant)
         ir = spec.ir_thermometer

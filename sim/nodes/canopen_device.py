@@ -85,8 +85,8 @@ class CanopenDevice:
         store.hooks[o.CONSUMER_HEARTBEAT] = self._on_consumer_written
         store.hooks[o.PRODUCER_HEARTBEAT] = self._on_producer_written
         wire.attach(self)
-        wire.listen(o.NMT_ID, self._on_nmt)
-        wire.listen(o.SDO_REQUEST_BASE + self.node_id, self._on_sdo)
+        wire.listen(o.NMT_ID, self._on_nmt, self.node_id)
+        wire.listen(o.SDO_REQUEST_BASE + self.node_id, self._on_sdo, self.node_id)
 
     # what a subclass does ------------------------------------------------------------------------------------
 
@@ -228,6 +228,11 @@ class CanopenDevice:
 
     # heartbeats ----------------------------------------------------------------------------------------------
 
+    def withhold_heartbeat(self, withheld: bool) -> None:
+        """Send no heartbeat (True) although 0x1017 asks for it, or send it again."""
+        self._heartbeat_at = self.now_s + self._heartbeat_s if self._heartbeat_s and not withheld else inf
+        self.reschedule()
+
     def _on_producer_written(self, sub: int, value: int) -> None:
         self._heartbeat_s = value * 1e-3
         self._heartbeat_at = self.now_s + self._heartbeat_s if value else inf
@@ -240,7 +245,7 @@ class CanopenDevice:
         if node and milliseconds:
             self._consumer_id = o.HEARTBEAT_BASE + node
             self._consumer_timeout_s = milliseconds * 1e-3
-            self.wire.listen(self._consumer_id, self._on_heartbeat)
+            self.wire.listen(self._consumer_id, self._on_heartbeat, self.node_id)
         self.reschedule()
 
     def _forget_consumer(self) -> None:
