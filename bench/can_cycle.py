@@ -13,7 +13,7 @@ from bench.live import SLIDING_RECIPE, LiveRun, live_run
 from bench.stopwatch import cpu_us_per
 from drivers.canopen import objects as o
 from drivers.canopen.pdo import RPDO1_VELOCITY, TPDO1_VELOCITY
-from drivers.ports import CanFrame
+from drivers.ports import CanFrame, FrameByFrame
 
 PDO_LIMIT = 0.2
 """Asked of encoding and decoding process data, beside PyPI canopen."""
@@ -124,7 +124,7 @@ def canopen_pdo() -> Callable[[int], None] | None:
 # Five axes -----------------------------------------------------------------------------------------------------
 
 
-class MemoryPort:
+class MemoryPort(FrameByFrame):
     """A CAN port without a wire: the drives' answers wait when the computer asks."""
 
     def __init__(self, answers: list[list[CanFrame]]) -> None:
@@ -197,7 +197,7 @@ def _compared(
     ]
 
 
-class _VirtualBus:
+class _VirtualBus(FrameByFrame):
     """python-can's bus in this process: what the computer sends is taken off it, what the drives answer put on it."""
 
     def __init__(self, answers: list[list[CanFrame]]) -> None:

@@ -31,9 +31,9 @@ class AxisCommand:
     before ENABLED counts again, so that nothing restarts by itself.
     """
 
-    __slots__ = ("_at_rest", "_dirty", "_goal", "_halt", "_high", "_homing", "_homing_start", "_low",
+    __slots__ = ("_at_rest", "_goal", "_halt", "_high", "_homing", "_homing_start", "_low",
                  "_new_set_point", "_outputs", "_per_unit", "_position_mode", "_raw", "_resetting", "_rpdo",
-                 "_set_point", "_target", "_target_counts", "config", "connected", "homing_scans", "inhibited",
+                 "_set_point", "_target", "_target_counts", "config", "connected", "dirty", "homing_scans", "inhibited",
                  "lost", "state", "statusword")
 
     def __init__(self, config: AxisConfig) -> None:
@@ -66,7 +66,7 @@ class AxisCommand:
         self._homing = False
         self._homing_start = False
         self._rpdo: bytes | None = None
-        self._dirty = True
+        self.dirty = True
 
     @property
     def target(self) -> float:
@@ -91,7 +91,7 @@ class AxisCommand:
         counts = round(self._target * self._per_unit)
         if counts != self._target_counts:
             self._target_counts = counts
-            self._dirty = True
+            self.dirty = True
 
     @property
     def goal(self) -> Goal:
@@ -105,7 +105,7 @@ class AxisCommand:
         self._goal = goal
         if goal is not Goal.ENABLED:
             self.inhibited = False
-        self._dirty = True
+        self.dirty = True
 
     @property
     def halt(self) -> bool:
@@ -116,7 +116,7 @@ class AxisCommand:
     def halt(self, halt: bool) -> None:
         if halt is not self._halt:
             self._halt = halt
-            self._dirty = True
+            self.dirty = True
 
     @property
     def outputs(self) -> int:
@@ -147,12 +147,12 @@ class AxisCommand:
 
     def emit(self, sync: bool) -> bytes | None:
         """Return RPDO1 for this scan, None while there is nothing to command; ``sync``: a SYNC follows."""
-        if self._dirty:
+        if self.dirty:
             self._compose()
         rpdo = self._rpdo
         if self._resetting and sync:        # a synchronous RPDO acts at the SYNC: the edge has been seen
             self._resetting = False
-            self._dirty = True
+            self.dirty = True
         return rpdo
 
     def set_homing(self, active: bool, start: bool = False) -> None:
@@ -163,7 +163,7 @@ class AxisCommand:
         self._homing = active
         self._homing_start = start
         self.homing_scans = 0
-        self._dirty = True
+        self.dirty = True
 
     def take_statusword(self, statusword: int) -> None:
         """Take a statusword that differs from the last one."""
@@ -175,24 +175,24 @@ class AxisCommand:
                     and state is not State.OPERATION_ENABLED):
                 self.inhibited = True
         self.statusword = statusword
-        self._dirty = True
+        self.dirty = True
 
     def _request_reset(self) -> None:
         """Raise controlword bit 7 once, up to the next SYNC; the drive then stays disabled."""
         self.inhibited = True
         self._resetting = True
-        self._dirty = True
+        self.dirty = True
 
     def _hold_still(self, raw: int) -> None:
         """Make the present position (counts), or standstill, the target."""
         self._raw = raw
         self._target_counts = raw if self._position_mode else 0
         self._target = raw / self._per_unit if self._position_mode else 0.0
-        self._dirty = True
+        self.dirty = True
 
     def _compose(self) -> None:
         """Compose RPDO1 from the goal, the target and the last statusword."""
-        self._dirty = False
+        self.dirty = False
         if not self.connected:
             self._rpdo = None
             return
@@ -217,7 +217,7 @@ class AxisCommand:
             if self._homing_start:
                 word |= cia402.HOMING_START
                 self.homing_scans += 1
-                self._dirty = True           # count every scan
+                self.dirty = True           # count every scan
             return _RPDO1(word, self._raw if self._position_mode else 0)
         if not self._position_mode:
             self._at_rest = False

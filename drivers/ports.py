@@ -6,6 +6,7 @@ caller's monotonic clock (simulated or real); the caller passes ``now`` and no p
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from typing import Protocol, runtime_checkable
 
 CanFrame = tuple[float, int, bytes]
@@ -23,9 +24,31 @@ class CanPort(Protocol):
         """Queue one data frame for transmission; raises BusLost."""
         ...
 
+    def send_cycle(self, frames: tuple[tuple[int, bytes], ...], now: float) -> None:
+        """Queue (identifier, data) of one bus cycle in this order; raises BusLost.
+
+        The very same tuple again says that nothing in it has changed: a port may make use of that.
+        """
+        ...
+
     def receive(self, now: float) -> list[CanFrame]:
         """Return every frame that arrived up to ``now``, oldest first; raises BusLost."""
         ...
+
+
+class FrameByFrame(ABC):
+    """A port that sends the frames of a cycle one by one."""
+
+    __slots__ = ()
+
+    @abstractmethod
+    def send(self, can_id: int, data: bytes, now: float) -> None:
+        """Queue one data frame for transmission."""
+
+    def send_cycle(self, frames: tuple[tuple[int, bytes], ...], now: float) -> None:
+        """Queue the frames of one bus cycle."""
+        for can_id, data in frames:
+            self.send(can_id, data, now)
 
 
 class LinePort(Protocol):

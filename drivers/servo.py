@@ -156,7 +156,7 @@ class ServoDrive(AxisCommand):
         if statusword != self.statusword:
             self.take_statusword(statusword)
         if self._at_rest and self._position_mode:
-            self._dirty = True
+            self.dirty = True
         self._raw = raw
         self.actual = raw / self._raw_per_unit
         self.torque_nm = torque * self._nm_per_mille
@@ -197,7 +197,8 @@ class ServoDrive(AxisCommand):
         if self.heartbeat.expired(now):
             self.lost = True
             self.online = False
-            self._dirty = True
+            self.usual_heartbeat = b""
+            self.dirty = True
 
     def emit_outputs(self) -> bytes | None:
         """Return RPDO2 when the outputs have changed, else None; a lost drive is sent zeros."""
@@ -242,9 +243,9 @@ class ServoDrive(AxisCommand):
         """Command nothing any more; the readings stay, and age."""
         self.connected = False
         self.online = False
-        self.tpdo1_data = b""
+        self.tpdo1_data = self.usual_heartbeat = b""
         self.heartbeat.disarm()
-        self._dirty = True
+        self.dirty = True
 
     def finish_homing(self, raw: int) -> None:
         """Take the position of a homed axis, counts, as reading and as target."""

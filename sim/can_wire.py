@@ -11,9 +11,11 @@ from __future__ import annotations
 from bisect import bisect_right, insort
 from collections import deque
 from collections.abc import Callable
+from heapq import heapify, heapreplace
 from math import inf
 from typing import Protocol
 
+from drivers.canopen.objects import SYNC_ID
 from drivers.ports import BusLost, CanFrame
 
 Listener = Callable[[bytes, float], None]
@@ -41,6 +43,36 @@ class CanNode(Protocol):
         ...
 
 
+class SyncFollower(Protocol):
+    """A device that answers SYNC."""
+
+    plain: bool
+    """Nothing but one TPDO goes with the next SYNC: ``sample`` under ``sample_id``, taken anew where ``stale``."""
+    stale: bool
+    sample: bytes
+    sample_id: int
+
+    def take_sample(self) -> bytes:
+        """Return what the TPDO shows now."""
+        ...
+
+    def on_sync(self, t: float) -> None:
+        """Act on a SYNC that arrived at ``t`` s and answer it."""
+        ...
+
+
+class Beat:
+    """A frame that a node sends in a fixed period, by itself."""
+
+    __slots__ = ("can_id", "data", "period_s")
+
+    def __init__(self, can_id: int, data: bytes, period_s: float) -> None:
+        """Take the identifier, the data and the period in s (> 0)."""
+        self.can_id = can_id
+        self.data = data
+        self.period_s = period_s
+
+
 def frame_bits(length: int) -> int:
     """Return the worst-case bits of a standard data frame with ``length`` data bytes, intermission included.
 
@@ -50,7 +82,7 @@ def frame_bits(length: int) -> int:
     return 47 + 8 * length + (33 + 8 * length) // 4
 
 
-def _rank(entry: tuple[int, Listener]) -> int:
+def _rank(entry: tuple[int, object]) -> int:
     return entry[0]
 
 
@@ -58,25 +90,33 @@ class CanWire:
     """The bus and the computer's port on it (``drivers.ports.CanPort``).
 
     ``urgent_s`` is the arrival time of the earliest urgent frame not yet received (emergency, boot-up, change of a
-    drive's state, input change), infinity if there is none. ``tap`` sees every frame in both directions.
+    drive's state, input change), infinity if there is none. ``ready_s`` is when the next frame that a node sends by
+    itself asks for the wire. ``tap`` sees every frame in both directions.
     """
 
     __slots__ = (
+        "_beats",
         "_busy_s",
+        "_cycle",
+        "_cycle_s",
+        "_followers",
         "_frame_s",
         "_inbox",
         "_mark_due_s",
         "_marks",
         "_pending",
         "_ranked",
+        "_ranked_followers",
+        "_repeatable",
         "_routes",
         "_sequence",
+        "_tap",
         "_urgent",
         "bitrate",
         "connected",
         "nodes",
         "occupied_s",
-        "tap",
+        "ready_s",
         "urgent_s",
     )
 
@@ -84,8 +124,9 @@ class CanWire:
         """Create an idle bus; ``bitrate`` in bit/s."""
         self.bitrate = bitrate
         self.nodes: list[CanNode] = []
-        self.tap: CanTap | None = None
+        self._tap: CanTap | None = None
         self.urgent_s = inf
+        self.ready_s = inf
         self.connected = True
         self.occupied_s = 0.0
         self._frame_s = tuple(frame_bits(length) / bitrate for length in range(9))
@@ -94,12 +135,28 @@ class CanWire:
         self._ranked: dict[int, list[tuple[int, Listener]]] = {}
         self._inbox: list[CanFrame] = []
         self._pending: list[tuple[float, int, int, bytes, bool]] = []
+        self._beats: list[tuple[float, int, Beat]] = []  # a heap
+        self._followers: tuple[SyncFollower, ...] = ()
+        self._ranked_followers: list[tuple[int, SyncFollower]] = []
+        self._repeatable: set[int] = set()
+        self._cycle: tuple[tuple[int, bytes], ...] | None = None  # that every listener has taken already
+        self._cycle_s = 0.0
         self._sequence = 0
         self._urgent: list[float] = []
         self._marks: deque[tuple[float, float]] = deque()
         self._mark_due_s = -inf
 
     # the computer's side -------------------------------------------------------------------------------------
+
+    @property
+    def tap(self) -> CanTap | None:
+        """Who sees every frame, None for nobody."""
+        return self._tap
+
+    @tap.setter
+    def tap(self, tap: CanTap | None) -> None:
+        self._tap = tap
+        self.forget_cycle()
 
     def send(self, can_id: int, data: bytes, now: float) -> None:
         """Put a frame on the wire at ``now`` s or when it is free; every listening node is called in place.
@@ -108,8 +165,8 @@ class CanWire:
         """
         if not self.connected:
             raise BusLost("the simulated CAN adapter is disconnected")
-        if self._pending and self._pending[0][0] <= now:
-            self._settle(now)
+        if self.ready_s <= now:
+            self.settle(now)
         try:
             length_s = self._frame_s[len(data)]
         except IndexError:
@@ -118,17 +175,39 @@ class CanWire:
         arrival = (start if start > now else now) + length_s
         self._busy_s = arrival
         self.occupied_s += length_s
-        if self.tap is not None:
-            self.tap.frame(arrival, can_id, data, True)
+        if self._tap is not None:
+            self._tap.frame(arrival, can_id, data, True)
         listeners = self._routes.get(can_id)
         if listeners is not None:
             for listener in listeners:
                 listener(data, arrival)
+        if can_id == SYNC_ID:
+            self._answer(arrival)
+
+    def send_cycle(self, frames: tuple[tuple[int, bytes], ...], now: float) -> None:
+        """Send the frames of a bus cycle one after the other.
+
+        A cycle that every listener has taken already, and that ends with SYNC, only takes its time on the wire: equal
+        process data mean nothing new to a drive. SYNC is answered as ever.
+        """
+        if frames is not self._cycle:
+            for can_id, data in frames:
+                self.send(can_id, data, now)
+            self._remember(frames)
+            return
+        if not self.connected:
+            raise BusLost("the simulated CAN adapter is disconnected")
+        if self.ready_s <= now:
+            self.settle(now)
+        start = self._busy_s
+        self._busy_s = arrival = (start if start > now else now) + self._cycle_s
+        self.occupied_s += self._cycle_s
+        self._answer(arrival)
 
     def receive(self, now: float) -> list[CanFrame]:
         """Return the frames that arrived up to ``now`` s, oldest first; raises BusLost when disconnected."""
-        if self._pending and self._pending[0][0] <= now:
-            self._settle(now)
+        if self.ready_s <= now:
+            self.settle(now)
         if not self.connected:
             raise BusLost("the simulated CAN adapter is disconnected")
         if self.urgent_s <= now:
@@ -162,12 +241,19 @@ class CanWire:
         """Add a node to ``nodes``; it subscribes to identifiers by ``listen``."""
         self.nodes.append(node)
 
-    def listen(self, can_id: int, listener: Listener, rank: int = 0) -> None:
+    def listen(self, can_id: int, listener: Listener, rank: int = 0, *, repeatable: bool = False) -> None:
         """Call ``listener`` for every frame of the computer with this identifier.
 
         Listeners are called in the order of ``rank``: nodes that answer a broadcast at the same time give their
-        node id, because the lowest identifier wins the wire.
+        node id, because the lowest identifier wins the wire. ``repeatable``: the same data again mean nothing to the
+        listener, and when they came does not either; it need not be called for them (``forget_cycle``).
         """
+        first = not self._routes.get(can_id)
+        if repeatable and (first or can_id in self._repeatable):
+            self._repeatable.add(can_id)
+        else:
+            self._repeatable.discard(can_id)
+        self.forget_cycle()
         ranked = self._ranked.setdefault(can_id, [])
         ranked.append((rank, listener))
         ranked.sort(key=_rank)
@@ -175,9 +261,41 @@ class CanWire:
 
     def forget(self, can_id: int, listener: Listener) -> None:
         """Stop calling ``listener`` for this identifier; nothing happens when it was not listening."""
+        self.forget_cycle()
         ranked = [entry for entry in self._ranked.get(can_id, ()) if entry[1] != listener]
         self._ranked[can_id] = ranked
         self._route(can_id, ranked)
+
+    def forget_cycle(self) -> None:
+        """Have the next cycle taken by every listener, whatever it holds."""
+        self._cycle = None
+
+    def follow(self, follower: SyncFollower, rank: int) -> None:
+        """Have a device answer SYNC, in the order of ``rank`` (its node id)."""
+        self._ranked_followers.append((rank, follower))
+        self._ranked_followers.sort(key=_rank)
+        self._adopt_followers(self._ranked_followers)
+        self.forget_cycle()
+
+    def unfollow(self, follower: SyncFollower) -> None:
+        """Let a device answer SYNC no more; nothing happens when it did not."""
+        self._ranked_followers = [entry for entry in self._ranked_followers if entry[1] is not follower]
+        self._adopt_followers(self._ranked_followers)
+        self.forget_cycle()
+
+    def beat(self, beat: Beat, first_s: float) -> None:
+        """Send a node's frame at ``first_s`` s and then in its period, until ``unbeat``."""
+        self._beats.append((first_s, beat.can_id, beat))
+        heapify(self._beats)
+        self._find_ready()
+
+    def unbeat(self, beat: Beat, t: float) -> None:
+        """End a periodic frame at ``t`` s; nothing happens when it was not sent."""
+        if self.ready_s <= t:
+            self.settle(t)
+        self._beats = [entry for entry in self._beats if entry[2] is not beat]
+        heapify(self._beats)
+        self._find_ready()
 
     def transmit(self, can_id: int, data: bytes, t: float, urgent: bool = False) -> None:
         """Send a node's frame to the computer, ready to go at ``t`` s.
@@ -190,14 +308,16 @@ class CanWire:
         if t > start:
             self._sequence += 1  # equal identifiers keep their order
             insort(self._pending, (t, can_id, self._sequence, data, urgent))
+            if t < self.ready_s:
+                self.ready_s = t
             if urgent and self.connected:
                 self.urgent_s = min(self.urgent_s, t + length_s)
             return
         arrival = start + length_s
         self._busy_s = arrival
         self.occupied_s += length_s
-        if self.tap is not None:
-            self.tap.frame(arrival, can_id, data, False)
+        if self._tap is not None:
+            self._tap.frame(arrival, can_id, data, False)
         if self.connected:
             self._inbox.append((arrival, can_id, data))
             if urgent:
@@ -205,7 +325,7 @@ class CanWire:
 
     def inject(self, can_id: int, data: bytes, now: float) -> None:
         """Send a frame of a third party (a second master): the nodes act on it and the computer sees it."""
-        self._settle(now)
+        self.settle(now)
         arrival = max(self._busy_s, now) + self._frame_s[len(data)]
         self._inbox.append((arrival, can_id, data))
         self.send(can_id, data, now)
@@ -226,16 +346,70 @@ class CanWire:
         """Take over who listens to an identifier."""
         self._routes[can_id] = tuple(entry[1] for entry in ranked)
 
-    def _settle(self, now: float) -> None:
+    def _adopt_followers(self, ranked: list[tuple[int, SyncFollower]]) -> None:
+        """Take over who answers SYNC."""
+        self._followers = tuple(entry[1] for entry in ranked)
+
+    def _remember(self, frames: tuple[tuple[int, bytes], ...]) -> None:
+        """Note a cycle that was taken, if it need not be taken again."""
+        repeatable = self._repeatable
+        rpdos = frames[:-1]
+        if self._tap is None and frames and frames[-1][0] == SYNC_ID and not self._routes.get(SYNC_ID):
+            if all(can_id in repeatable or not self._routes.get(can_id) for can_id, _ in rpdos):
+                self._cycle = frames
+                self._cycle_s = sum(self._frame_s[len(data)] for _, data in frames)
+
+    def _answer(self, t: float) -> None:
+        """Have every device answer a SYNC that arrived at ``t`` s; the lowest identifier goes first."""
+        inbox, frame_s = self._inbox, self._frame_s
+        quick = self.connected and self._tap is None
+        arrival = self._busy_s
+        for follower in self._followers:
+            if quick and follower.plain:
+                data = follower.take_sample() if follower.stale else follower.sample
+                length_s = frame_s[len(data)]
+                arrival += length_s
+                self.occupied_s += length_s
+                inbox.append((arrival, follower.sample_id, data))
+            else:
+                self._busy_s = arrival
+                follower.on_sync(t)
+                arrival = self._busy_s
+        self._busy_s = arrival
+
+    def settle(self, now: float) -> None:
         """Give the wire to every waiting frame that was ready by ``now`` s, in order of readiness, then identifier."""
-        pending = self._pending
-        while pending and pending[0][0] <= now:
+        pending, beats = self._pending, self._beats
+        frame_s, quick = self._frame_s[1], self.connected and self._tap is None
+        while True:
+            first = pending[0] if pending else None
+            if beats:
+                due, can_id, beat = beats[0]
+                if due <= now and (first is None or (due, can_id) <= first[:2]):
+                    heapreplace(beats, (due + beat.period_s, can_id, beat))
+                    if due < self._busy_s:
+                        due = self._busy_s
+                    if quick:
+                        self._busy_s = due = due + frame_s
+                        self.occupied_s += frame_s
+                        self._inbox.append((due, can_id, beat.data))
+                    else:
+                        self._busy_s = due
+                        self.transmit(can_id, beat.data, due)
+                    continue
+            if first is None or first[0] > now:
+                break
             t, can_id, _, data, urgent = pending.pop(0)
             if t > self._busy_s:
                 self._busy_s = t
             self.transmit(can_id, data, t, urgent)
+        self._find_ready()
         if self.urgent_s < inf:
             self._find_urgent(now)
+
+    def _find_ready(self) -> None:
+        ready = self._pending[0][0] if self._pending else inf
+        self.ready_s = min(ready, self._beats[0][0]) if self._beats else ready
 
     def _note_urgent(self, arrival: float) -> None:
         self._urgent.append(arrival)

@@ -76,6 +76,7 @@ class SimRig:
         """Switch everything on at time 0; ``can_wire``: the kind of bus, another one where it can be faulty."""
         self.plant = Plant(parameters, seed)
         self.can = can_wire(spec.bitrate)
+        self._spring_mm_s = PRESS_SPRING_MM_S if parameters.press_on_power_loss == "retract" else 0.0
         self.axes = {name: self._drive(name, config) for name, config in spec.axes.items()}
         self.cell = CellSlave(load_profile(spec.load_cell.profile), spec.load_cell.unit_id, self.plant)
         ir = spec.ir_thermometer
@@ -99,7 +100,7 @@ class SimRig:
         if name != "press":
             return Cia402Slave(config, self.can, serial_number=config.node_id)
         screw = VelocityAxis(config.acceleration, config.deceleration, lag_s=PRESS_LAG_S, low=0.0, high=PRESS_TRAVEL_MM)
-        return Cia402Slave(config, self.can, screw, serial_number=config.node_id, unpowered_velocity=PRESS_SPRING_MM_S)
+        return Cia402Slave(config, self.can, screw, serial_number=config.node_id, unpowered_velocity=self._spring_mm_s)
 
     # -- the wires' side ------------------------------------------------------------------------------------------
 
@@ -121,26 +122,36 @@ class SimRig:
     def _step(self, t0: float, t1: float) -> None:
         self.now_s = t1
         for drive in self._drives:
-            drive.advance(t0, t1)
+            if drive.watching or drive.due_s <= t1 or not drive.axis.still:
+                drive.advance(t0, t1)
+            else:
+                drive.now_s = t1
         jacket = self.jacket
-        jacket.advance(t0, t1)
-        plant, press, io = self.plant, self._press.axis, self._press.io
-        heater_w = jacket.heater_w if io is not None and io.contactor_closed else 0.0
+        if jacket.due_s <= t1:
+            jacket.advance(t0, t1)
+        wheel_axis, belt_axis, press = self._wheel.axis, self._belt.axis, self._press.axis
+        plant, io = self.plant, self._press.io
+        wheel_rad_s, belt_m_s = wheel_axis.value, belt_axis.value
+        wheel_speed, belt_speed = plant.wheel_speed, plant.belt_speed
         plant.advance(
             t1 - t0,
-            self._wheel.axis.value / plant.wheel_speed.factor,
-            self._belt.axis.value / plant.belt_speed.factor,
+            wheel_rad_s / wheel_speed.factor,
+            belt_m_s / belt_speed.factor,
             press.position,
             press.value,
             self._sideslip.axis.position if self._sideslip is not None else 0.0,
             self._camber.axis.position if self._camber is not None else 0.0,
-            heater_w,
+            jacket.heater_w if io is not None and io.contactor_closed else 0.0,
         )
-        self._wheel.torque_nm = plant.drive_torque_nm
         # Encoders are noisy while they turn.
-        turning = self._wheel.axis.value != 0.0
-        self._wheel.encoder_error = plant.wheel_speed.error() * 2000.0 / plant.diameter_mm if turning else 0.0
-        self._belt.encoder_error = plant.belt_speed.error() if self._belt.axis.value != 0.0 else 0.0
+        if wheel_rad_s != 0.0:
+            self._wheel.load(plant.drive_torque_nm, wheel_speed.error() * 2000.0 / plant.diameter_mm)
+        elif self._wheel.encoder_error != 0.0 or self._wheel.torque_nm != plant.drive_torque_nm:
+            self._wheel.load(plant.drive_torque_nm, 0.0)
+        if belt_m_s != 0.0:
+            self._belt.load(0.0, belt_speed.error())
+        elif self._belt.encoder_error != 0.0:
+            self._belt.load(0.0, 0.0)
 
     # -- the person's side ----------------------------------------------------------------------------------------
 

@@ -12,7 +12,7 @@ from typing import TextIO
 
 import can
 
-from drivers.ports import CanFrame, CanPort, LinePort
+from drivers.ports import CanFrame, CanPort, FrameByFrame, LinePort
 from tester.rig import RigConfig
 
 CHANNEL = "can0"
@@ -77,7 +77,7 @@ class BusLog:
             line.close()
 
 
-class TappedCan:
+class TappedCan(FrameByFrame):
     """A CAN port whose frames are logged on their way (hardware; a simulated wire has taps of its own)."""
 
     def __init__(self, port: CanPort, log: CanLog) -> None:

@@ -36,6 +36,10 @@ class SkewedCan:
         """Send a frame; raises BusLost."""
         self.port.send(can_id, data, now - self.skew.ahead_s)
 
+    def send_cycle(self, frames: tuple[tuple[int, bytes], ...], now: float) -> None:
+        """Send the frames of a bus cycle; raises BusLost."""
+        self.port.send_cycle(frames, now - self.skew.ahead_s)
+
     def receive(self, now: float) -> list[CanFrame]:
         """Return what arrived, stamped with the computer's clock; raises BusLost."""
         ahead_s = self.skew.ahead_s
@@ -102,7 +106,7 @@ class FaultyRun:
 
     def advance(self, now: float) -> None:
         """Let the rig live until ``now`` s, and let happen on the way what is to happen."""
-        script, rig, scene = self.script, self._rig, self._scene
+        script, scene = self.script, self._scene
         while script.due_s <= now:
             due_s = max(script.due_s, self._now_s)
             self._live(due_s)
@@ -110,7 +114,6 @@ class FaultyRun:
         self._live(now)
         if script.happened:
             self._tell(now)
-        del rig
 
     def tick(self, now: float) -> float:
         """Do what is due in the controlling process, if it gets to do anything."""

@@ -38,7 +38,7 @@ class CanMaster:
     it; the caller clears them. ``unknown_frames`` counts frames of nobody added here.
     """
 
-    __slots__ = ("_by_node", "_dialogues", "_drives", "_heartbeat", "_heartbeat_due", "_heartbeats", "_io_drives",
+    __slots__ = ("_by_node", "_cycle", "_cycle_syncs", "_dialogues", "_drives", "_heartbeat", "_heartbeat_due", "_heartbeats", "_io_drives",
                  "_tpdo1", "_withheld", "deadline", "foreign_frame", "foreign_master", "heartbeat_s", "node_id",
                  "sdo_timeout_s", "sync", "unknown_frames")
 
@@ -54,6 +54,8 @@ class CanMaster:
         self._heartbeat = (o.HEARTBEAT_BASE + node_id, bytes((o.NmtState.OPERATIONAL,)))
         self._heartbeat_due = -math.inf
         self._withheld = False
+        self._cycle: tuple[tuple[int, bytes], ...] = ()
+        self._cycle_syncs = False
         self._drives: list[ServoDrive] = []
         self._io_drives: list[ServoDrive] = []
         self._by_node: dict[int, ServoDrive] = {}
@@ -107,16 +109,21 @@ class CanMaster:
 
     def feed(self, frames: list[CanFrame], now: float) -> None:
         """Take the frames that arrived up to ``now``, oldest first."""
-        tpdo1, heartbeats = self._tpdo1, self._heartbeats
+        tpdo1, heartbeats = self._tpdo1.get, self._heartbeats.get
+        talking = bool(self._dialogues)
         for t, can_id, data in frames:
-            if can_id in tpdo1:
-                drive = tpdo1[can_id]
+            drive = tpdo1(can_id)
+            if drive is not None:
                 if data == drive.tpdo1_data:
                     drive.stamp_s = t
                 else:
                     drive.on_tpdo1(t, data)
-            elif can_id in heartbeats and data == heartbeats[can_id].usual_heartbeat and not self._dialogues:
-                heartbeats[can_id].heartbeat.heard(t)
+                continue
+            drive = heartbeats(can_id)
+            if drive is not None and data == drive.usual_heartbeat and not talking:
+                monitor = drive.heartbeat
+                monitor.heard_s = t
+                monitor.due = t + monitor.timeout_s
             else:
                 self._route(t, can_id, data)
 
@@ -126,22 +133,29 @@ class CanMaster:
         A heartbeat that would fall due before ``until`` (s), the next scan, leaves with this one: it keeps its
         period at most, and needs no tick of its own.
         """
-        send = port.send
         sync = self.sync
         for drive in self._io_drives:
             outputs = drive.emit_outputs()
             if outputs is not None:
-                send(drive.rpdo2_id, outputs, now)
+                port.send(drive.rpdo2_id, outputs, now)
+        changed = sync is not self._cycle_syncs
         for drive in self._drives:
-            data = drive.emit(sync)
-            if data is not None:
-                send(drive.rpdo1_id, data, now)
-        if sync:
-            send(o.SYNC_ID, b"", now)
+            if drive.dirty:
+                changed = True
+        if changed:
+            self._compose(sync)
+        port.send_cycle(self._cycle, now)
         if self._heartbeat_due < until - EARLY_S:
             self._heartbeat_due = self.deadline = now
         if self._dialogues or now + EARLY_S >= self.deadline:
             self._serve(port, now)
+
+    def _compose(self, sync: bool) -> None:
+        """Put the commands of all drives, and SYNC, into the cycle; the same tuple stays while nothing changes."""
+        found = ((drive.rpdo1_id, drive.emit(sync)) for drive in self._drives)
+        frames = tuple((can_id, data) for can_id, data in found if data is not None)
+        self._cycle = (*frames, (o.SYNC_ID, b"")) if sync else frames
+        self._cycle_syncs = sync
 
     def service(self, port: CanPort, now: float) -> None:
         """Send our heartbeat when due and go on with the conversations; notice drives that fell silent."""

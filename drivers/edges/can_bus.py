@@ -13,7 +13,7 @@ from collections.abc import Callable
 from threading import Thread
 from typing import TYPE_CHECKING, Any
 
-from drivers.ports import BusLost, CanFrame
+from drivers.ports import BusLost, CanFrame, FrameByFrame
 
 if TYPE_CHECKING:
     import can
@@ -26,7 +26,7 @@ _BUS_OFF = 0x40
 """Class bit of a SocketCAN error frame (linux/can/error.h, CAN_ERR_BUSOFF)."""
 
 
-class PythonCanPort:
+class PythonCanPort(FrameByFrame):
     """A CanPort over an open python-can bus.
 
     ``clock`` gives the arrival times, in seconds of the caller's clock; it is called in the receive thread.

@@ -6,11 +6,20 @@ from bisect import insort
 
 from drivers.canopen import emcy
 from drivers.canopen import objects as o
-from sim.can_wire import CanWire, Listener
+from sim.can_wire import CanWire, Listener, SyncFollower
 from sim.faults.scene import Effect, Scene
 
 _NODE = 0x7F
 _FUNCTION = 0x780
+
+
+class Unseen:
+    """A tap that sees nothing."""
+
+    __slots__ = ()
+
+    def frame(self, t: float, can_id: int, data: bytes, from_pc: bool) -> None:
+        """Take no note of a frame."""
 
 
 class FaultyCanWire(CanWire):
@@ -21,11 +30,12 @@ class FaultyCanWire(CanWire):
     identifier; ``repeated`` doubles every frame; ``silent`` loses everything and tells nobody.
     """
 
-    __slots__ = ("_counted", "_cut", "frozen", "late_s", "loss", "lost", "repeated", "silent", "spoiled")
+    __slots__ = ("_counted", "_cut", "_own_tap", "frozen", "late_s", "loss", "lost", "repeated", "silent", "spoiled")
 
     def __init__(self, bitrate: int = 500_000) -> None:
         """Create an idle bus without faults; ``bitrate`` in bit/s."""
         self._cut: frozenset[int] = frozenset()
+        self._own_tap = Unseen()
         super().__init__(bitrate)
         self.spoiled = False
         self.lost: frozenset[int] = frozenset()
@@ -41,6 +51,12 @@ class FaultyCanWire(CanWire):
         self.spoiled = bool(
             self.lost or self.frozen or self.late_s or self.loss or self.repeated or self.silent or self._cut
         )
+        # A bus with a tap takes no short cuts: each frame of it comes through ``send`` or ``transmit``.
+        if self.spoiled and self.tap is None:
+            self.tap = self._own_tap
+        elif not self.spoiled and self.tap is self._own_tap:
+            self.tap = None
+        self.forget_cycle()
 
     def cut(self, node_id: int, off: bool) -> None:
         """Take a node off the bus (True), or put it on again: it neither hears nor is heard."""
@@ -48,6 +64,7 @@ class FaultyCanWire(CanWire):
         self.note_faults()
         for can_id, ranked in self._ranked.items():
             self._route(can_id, ranked)
+        self._adopt_followers(self._ranked_followers)
 
     def occupy(self, now: float, seconds: float) -> None:
         """Let a stranger's frames of high priority have the wire for this long."""
@@ -56,6 +73,9 @@ class FaultyCanWire(CanWire):
 
     def _route(self, can_id: int, ranked: list[tuple[int, Listener]]) -> None:
         super()._route(can_id, [entry for entry in ranked if entry[0] not in self._cut])
+
+    def _adopt_followers(self, ranked: list[tuple[int, SyncFollower]]) -> None:
+        super()._adopt_followers([entry for entry in ranked if entry[0] not in self._cut])
 
     def send(self, can_id: int, data: bytes, now: float) -> None:
         """Send a frame of the computer, unless a fault has it; raises BusLost when the adapter is gone."""
@@ -66,6 +86,14 @@ class FaultyCanWire(CanWire):
             if self.repeated:
                 super().send(can_id, data, now)
         super().send(can_id, data, now)
+
+    def send_cycle(self, frames: tuple[tuple[int, bytes], ...], now: float) -> None:
+        """Send the frames of a bus cycle; on a spoiled bus each is looked at."""
+        if self.spoiled:
+            for can_id, data in frames:
+                self.send(can_id, data, now)
+        else:
+            super().send_cycle(frames, now)
 
     def transmit(self, can_id: int, data: bytes, t: float, urgent: bool = False) -> None:
         """Send a node's frame, unless a fault has it."""
@@ -84,9 +112,10 @@ class FaultyCanWire(CanWire):
     def _late(self, can_id: int, data: bytes, t: float, urgent: bool) -> None:
         """Queue a frame for later; what goes through ``transmit`` again must not be delayed twice."""
         arrival = t + self._frame_s[len(data)]
-        insort(self._inbox, (arrival, can_id, data))
-        if urgent and self.connected:
-            self._note_urgent(arrival)
+        if self.connected:
+            insort(self._inbox, (arrival, can_id, data))
+            if urgent:
+                self._note_urgent(arrival)
 
     def _loses(self, can_id: int) -> bool:
         if self.silent or can_id in self.lost:

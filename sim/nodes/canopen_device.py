@@ -9,7 +9,7 @@ from math import inf
 
 from drivers.canopen import objects as o
 from drivers.canopen.objects import NmtCommand, NmtState
-from sim.can_wire import CanWire
+from sim.can_wire import Beat, CanWire
 from sim.nodes import communication_objects
 from sim.nodes.emergencies import Emergencies
 from sim.nodes.object_store import ObjectStore
@@ -43,10 +43,6 @@ class CanopenDevice:
         "_consumer_id",
         "_consumer_timeout_s",
         "_heartbeat",
-        "_heartbeat_at",
-        "_heartbeat_id",
-        "_heartbeat_s",
-        "_other_at",
         "_sdo",
         "_turnaround_s",
         "due_s",
@@ -71,13 +67,11 @@ class CanopenDevice:
         self.nmt = BOOTING
         self._boot_s = boot_s
         self._turnaround_s = turnaround_s
-        self._heartbeat_id = o.HEARTBEAT_BASE + self.node_id
         self._consumer_id = 0
         self._consumer_timeout_s = 0.0
         self._consumer_heard_s = -inf
-        self._boot_at = self._heartbeat_at = self._consumer_at = self._other_at = inf
-        self._heartbeat = b"\0"
-        self._heartbeat_s = 0.0
+        self._boot_at = self._consumer_at = inf
+        self._heartbeat = Beat(o.HEARTBEAT_BASE + self.node_id, b"\0", inf)
         self._sdo = SdoServer(store)
         self.emergencies = Emergencies(wire, store)
         self.pdos = PdoExchange(self, wire, store)
@@ -146,7 +140,8 @@ class CanopenDevice:
         self.emergencies.reset(communication_only)
         self._sdo.reset()
         self._forget_consumer()
-        self._boot_at = self._heartbeat_at = inf
+        self._boot_at = inf
+        self.wire.unbeat(self._heartbeat, self.now_s)
 
     def _boot(self, t: float) -> None:
         self._boot_at = inf
@@ -154,7 +149,7 @@ class CanopenDevice:
         self.emergencies.refresh()
         self._on_consumer_written(1, self.store.values[(o.CONSUMER_HEARTBEAT, 1)])
         self._on_producer_written(0, self.store.values[(o.PRODUCER_HEARTBEAT, 0)])
-        self.wire.transmit(self._heartbeat_id, b"\0", t, True)
+        self.wire.transmit(self._heartbeat.can_id, b"\0", t, True)
         self._enter(PRE_OPERATIONAL, t)
         self._application_ready(t)
 
@@ -181,7 +176,9 @@ class CanopenDevice:
             return
         was_operational = self.nmt == OPERATIONAL
         self.nmt = nmt
-        self._heartbeat = bytes((nmt,))
+        if self.wire.ready_s <= t:
+            self.wire.settle(t)  # what fell due before tells the state before
+        self._heartbeat.data = bytes((nmt,))
         self.emergencies.allowed = nmt in (PRE_OPERATIONAL, OPERATIONAL)
         if nmt == OPERATIONAL:
             self.pdos.start(t)
@@ -194,22 +191,15 @@ class CanopenDevice:
     def advance(self, t0: float, t1: float) -> None:
         """Move from ``t0`` to ``t1`` s; every timer fires at its own time."""
         while self.due_s <= t1:
-            if self.due_s < self._other_at:
-                self._beat()
-            else:
-                self.fire(max(t0, self.due_s))
+            self.fire(max(t0, self.due_s))
         self.now_s = t1
 
     def reschedule(self) -> None:
         """Find the next timer."""
-        other = min(self._boot_at, self._consumer_at, self.pdos.due_s, self._application_due())
-        self._other_at = other
-        self.due_s = min(self._heartbeat_at, other)
+        self.due_s = min(self._boot_at, self._consumer_at, self.pdos.due_s, self._application_due())
 
     def fire(self, t: float) -> None:
         """Do what has fallen due by ``t`` s."""
-        if self._heartbeat_at <= t:
-            self._beat()
         if self._boot_at <= t:
             self._boot(t)
         if self._consumer_at <= t:
@@ -219,24 +209,21 @@ class CanopenDevice:
         self._application_fire(t)
         self.reschedule()
 
-    def _beat(self) -> None:
-        """Send the heartbeat that is due, stamped with its own time."""
-        due = self._heartbeat_at
-        self.wire.transmit(self._heartbeat_id, self._heartbeat, due)
-        self._heartbeat_at = due = due + self._heartbeat_s
-        self.due_s = due if due < self._other_at else self._other_at
-
     # heartbeats ----------------------------------------------------------------------------------------------
 
     def withhold_heartbeat(self, withheld: bool) -> None:
         """Send no heartbeat (True) although 0x1017 asks for it, or send it again."""
-        self._heartbeat_at = self.now_s + self._heartbeat_s if self._heartbeat_s and not withheld else inf
-        self.reschedule()
+        beat = self._heartbeat
+        self.wire.unbeat(beat, self.now_s)
+        if not withheld and beat.period_s < inf and self.nmt != BOOTING:
+            self.wire.beat(beat, self.now_s + beat.period_s)
 
     def _on_producer_written(self, sub: int, value: int) -> None:
-        self._heartbeat_s = value * 1e-3
-        self._heartbeat_at = self.now_s + self._heartbeat_s if value else inf
-        self.reschedule()
+        beat = self._heartbeat
+        self.wire.unbeat(beat, self.now_s)
+        if value:
+            beat.period_s = value * 1e-3
+            self.wire.beat(beat, self.now_s + beat.period_s)
 
     def _on_consumer_written(self, sub: int, value: int) -> None:
         """Watch the node that 0x1016 names; the watch begins with its first heartbeat (CiA 301, 7.2.8.2.2.3)."""

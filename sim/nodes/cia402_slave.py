@@ -129,17 +129,15 @@ class Cia402Slave(DrivePower):
         """Move axis and timers from ``t0`` to ``t1`` s; what falls due in between is done and stamped at its time."""
         while self.due_s <= t1:
             t = self.due_s
-            if t < self._other_at:
-                self._beat()
-                continue
             if t > t0:
                 self._move(t0, t)
                 t0 = t
             self.fire(t0)
-        if self._watching:
+        if self.watching:
             self._move(t0, t1)
         elif not self.axis.still:
             self.axis.step(t1 - t0)
+            self.pdos.stale = True
         self.now_s = t1
 
     def _move(self, t0: float, t1: float) -> None:
@@ -147,16 +145,17 @@ class Cia402Slave(DrivePower):
         axis = self.axis
         if not axis.still:
             axis.step(t1 - t0)
+            self.pdos.stale = True
         self.now_s = t1
         if self._leaving is not None and self._at_rest():
             self._arrived_at_rest()
             self.update(t1)
         mode = self.mode
         if mode is None:
-            self._watching = self._leaving is not None
+            self.watching = self._leaving is not None
             return
         leaving = self._leaving is not None
-        self._watching = mode.watch(t1, self.state is State.OPERATION_ENABLED and not leaving) or leaving
+        self.watching = mode.watch(t1, self.state is State.OPERATION_ENABLED and not leaving) or leaving
         if mode.bits != self._mode_bits:
             self.update(t1)
 
@@ -168,6 +167,12 @@ class Cia402Slave(DrivePower):
             self.pdos.send_events(t)
 
     # the world around the drive ------------------------------------------------------------------------------
+
+    def load(self, torque_nm: float, encoder_error: float) -> None:
+        """Put a torque on the shaft (N m) and an error on the encoder's reading (units of the axis)."""
+        self.torque_nm = torque_nm
+        self.encoder_error = encoder_error
+        self.pdos.stale = True
 
     def set_safety_chain(self, healthy: bool) -> None:
         """Set input bit 16; an open chain lets the contactor drop out."""
@@ -184,7 +189,7 @@ class Cia402Slave(DrivePower):
     def block(self, blocked: bool) -> None:
         """Hold the shaft by force, or free it."""
         self.axis.block(blocked)
-        self._watching = True
+        self.watching = True
 
     # commands ------------------------------------------------------------------------------------------------
 
@@ -205,7 +210,7 @@ class Cia402Slave(DrivePower):
                 mode.follow(controlword, t)
             else:
                 mode.note(controlword)
-        self._watching = True
+        self.watching = True
         self.update(t)
 
     def _take_velocity(self, data: bytes, t: float) -> None:
@@ -215,7 +220,7 @@ class Cia402Slave(DrivePower):
         values[_TARGET_VELOCITY] = target
         if self._steady and controlword == self._controlword and self._velocity is not None:
             self._velocity.retarget(target)
-            self._watching = True
+            self.watching = True
         else:
             values[_CONTROLWORD] = controlword
             self.process(t)
@@ -281,8 +286,9 @@ class Cia402Slave(DrivePower):
             word |= cia402.WARNING
         if word != self.statusword:
             if (word ^ self.statusword) & urgent:
-                self.pdos.urgent = True
+                self.pdos.make_urgent()
             self.statusword = word
+            self.pdos.stale = True
             self.pdos.status_changed(t)
 
     def prepare_source(self, pdo: TransmitPdo) -> None:
@@ -302,6 +308,7 @@ class Cia402Slave(DrivePower):
         self._sent_value = 0.0
         self._sent_torque = 0.0
         self._sent_data = b""
+        self.pdos.stale = True
 
     def _sample(self) -> bytes:
         """Return statusword, actual value and torque packed; the same bytes while none of them changed."""
@@ -318,4 +325,7 @@ class Cia402Slave(DrivePower):
                 self._sent_data = _TPDO1(self.statusword, counts, per_mille)
             except struct.error:
                 self._sent_data = _TPDO1(self.statusword, wrapped_i32(counts), clamped_i16(per_mille))
-        return self._sent_data
+        pdos = self.pdos
+        pdos.sample = data = self._sent_data
+        pdos.stale = False
+        return data

@@ -29,14 +29,16 @@ _HOLDING = 5
 
 
 class DrivePower(CanopenDevice):
-    """A device with a power stage on an axis; see ``cia402_slave.Cia402Slave``."""
+    """A device with a power stage on an axis; see ``cia402_slave.Cia402Slave``.
+
+    ``watching`` says that its status may change without a command: it wants to be advanced.
+    """
 
     __slots__ = (
         "_causes",
         "_controlword",
         "_leaving",
         "_steady",
-        "_watching",
         "axis",
         "coast_deceleration",
         "io",
@@ -47,6 +49,7 @@ class DrivePower(CanopenDevice):
         "state",
         "torque_off",
         "unpowered_velocity",
+        "watching",
     )
 
     def __init__(
@@ -75,7 +78,7 @@ class DrivePower(CanopenDevice):
         self._controlword = 0
         self._leaving: State | None = None  # where a ramp down ends
         self._steady = False  # nothing but the target can be new in the next process data
-        self._watching = False  # status bits may change with time
+        self.watching = False  # status bits may change with time
 
     def update(self, t: float) -> None:
         """Compose the statusword."""
@@ -172,7 +175,7 @@ class DrivePower(CanopenDevice):
         self.state = meanwhile
         self._leaving = end
         self._steady = False
-        self._watching = True
+        self.watching = True
         self._decelerate(self.ramps.deceleration if option in (1, _HOLDING) else self.ramps.quick_stop)
         if self._at_rest():
             self._arrived_at_rest()
@@ -204,7 +207,7 @@ class DrivePower(CanopenDevice):
     def _enable(self) -> None:
         """Let the mode drive the axis; without one it is held."""
         self._leaving = None
-        self._watching = True
+        self.watching = True
         if self.mode is not None:
             self.mode.start()
         else:
@@ -215,7 +218,7 @@ class DrivePower(CanopenDevice):
         self.state = state
         self._leaving = None
         self._steady = False
-        self._watching = True
+        self.watching = True
         # The next controlword acts in the new state even if its bytes are those of the last one.
         self.pdos.refresh()
         axis = self.axis
@@ -233,7 +236,7 @@ class DrivePower(CanopenDevice):
             return False
         self.mode = mode
         self._steady = False
-        self._watching = True
+        self.watching = True
         if mode is not None:
             mode.note(self._controlword)
             mode.start()

@@ -132,6 +132,7 @@ class Receiver(Protocol):
     """Where received PDOs go."""
 
     fresh: list[ReceivePdo]
+    plain: bool
 
     def take(self, pdo: ReceivePdo, data: bytes, t: float) -> None:
         """Apply the data of a PDO."""
@@ -206,6 +207,7 @@ class ReceivePdo:
         if len(data) == self._plain_size and not self.faulty:
             self.data = self.held = data
             self._receiver.fresh.append(self)
+            self._receiver.plain = False
         else:
             self._receiver.examine(self, data, t)
 

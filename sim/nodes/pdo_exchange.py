@@ -57,6 +57,8 @@ class PdoExchange:
     """All PDOs of one device; running while the device is OPERATIONAL.
 
     ``due_s`` is the next deadline or event timer; ``urgent`` marks the next synchronous TPDO as urgent for the wire.
+    ``plain`` says that the next SYNC asks for nothing but ``sample``, the TPDO ``sample_id``; while it is ``stale`` it
+    has to be taken anew (``sim.can_wire.SyncFollower``).
     """
 
     __slots__ = (
@@ -65,15 +67,19 @@ class PdoExchange:
         "_event_tpdos",
         "_routes",
         "_running",
-        "_single_id",
-        "_single_source",
+        "_single",
         "_status_on_event",
         "_store",
         "_wire",
         "due_s",
         "fresh",
         "owner",
+        "plain",
         "rpdos",
+        "sample",
+        "sample_id",
+        "stale",
+        "take_sample",
         "tpdos",
         "urgent",
     )
@@ -93,8 +99,12 @@ class PdoExchange:
         self._counted_tpdos: tuple[TransmitPdo, ...] = ()
         self._event_tpdos: tuple[TransmitPdo, ...] = ()
         self._status_on_event = False
-        self._single_id = 0
-        self._single_source = _nothing
+        self._single = False
+        self.take_sample = _nothing
+        self.sample_id = 0
+        self.sample = b""
+        self.stale = True
+        self.plain = False
         self.urgent = False
         self.due_s = inf
 
@@ -113,6 +123,7 @@ class PdoExchange:
         """Take over the PDO parameters and listen accordingly."""
         for can_id, listener in self._routes:
             self._wire.forget(can_id, listener)
+        self._wire.unfollow(self)
         self._routes.clear()
         self.fresh.clear()
         for pdo in (*self.rpdos, *self.tpdos):
@@ -128,16 +139,23 @@ class PdoExchange:
             for pdo in self.rpdos:
                 if pdo.cob_id is not None:
                     self.owner.prepare_sink(pdo)
-                    self._listen(pdo.cob_id, pdo.on_frame)
-            single = len(self._each_sync) == 1 and not self._counted_tpdos
-            if single:
-                self._single_id, self._single_source = self._each_sync[0]
-            self._listen(o.SYNC_ID, self._on_sync_single if single else self._on_sync)
+                    self._listen(pdo.cob_id, pdo.on_frame, repeatable=pdo.synchronous and pdo.deadline_s == 0.0)
+            self._single = len(self._each_sync) == 1 and not self._counted_tpdos
+            if self._single:
+                self.sample_id, self.take_sample = self._each_sync[0]
+            self.plain = self._single and not self.urgent
+            self.stale = True
+            self._wire.follow(self, self._store.node_id)
         self._find_due()
 
-    def _listen(self, can_id: int, listener: Listener) -> None:
+    def _listen(self, can_id: int, listener: Listener, *, repeatable: bool) -> None:
         self._routes.append((can_id, listener))
-        self._wire.listen(can_id, listener, self._store.node_id)
+        self._wire.listen(can_id, listener, self._store.node_id, repeatable=repeatable)
+
+    def make_urgent(self) -> None:
+        """Mark the next synchronous TPDO as urgent for the wire."""
+        self.urgent = True
+        self.plain = False
 
     # in ------------------------------------------------------------------------------------------------------
 
@@ -160,6 +178,7 @@ class PdoExchange:
             self._find_due()
         if pdo.synchronous:
             self.fresh.append(pdo)
+            self.plain = False
         else:
             pdo.sink(data, t)
 
@@ -167,20 +186,11 @@ class PdoExchange:
         """Let the next frame of every RPDO count as new, even with the bytes of the last one."""
         for pdo in self.rpdos:
             pdo.data = None
+        self._wire.forget_cycle()
 
     # out -----------------------------------------------------------------------------------------------------
 
-    def _on_sync_single(self, data: bytes, t: float) -> None:
-        """Do what ``_on_sync`` does, where one TPDO goes with each SYNC and nothing else."""
-        if self.fresh:
-            self._drain(t)
-        if self.urgent:
-            self._wire.transmit(self._single_id, self._single_source(), t, True)
-            self.urgent = False
-        else:
-            self._wire.transmit(self._single_id, self._single_source(), t)
-
-    def _on_sync(self, data: bytes, t: float) -> None:
+    def on_sync(self, t: float) -> None:
         """Apply what came for this SYNC and send the TPDOs that go with it."""
         self._drain(t)
         for cob_id, source in self._each_sync:
@@ -189,6 +199,7 @@ class PdoExchange:
             if pdo.cob_id is not None and pdo.sync_due():
                 self._wire.transmit(pdo.cob_id, pdo.source(), t, self.urgent)
         self.urgent = False
+        self.plain = self._single
 
     def _drain(self, t: float) -> None:
         for pdo in self.fresh:
@@ -225,7 +236,7 @@ class PdoExchange:
                 pdo.deadline_at = pdo.stamp_s + pdo.deadline_s
                 if pdo.deadline_at <= t:
                     pdo.deadline_at = inf
-                    pdo.data = None
+                    self.refresh()
                     self.owner.deadline_missed(t)
         self.send_events(t)
 

@@ -5,6 +5,7 @@ Inputs fill the process image from the drivers, outputs hand setpoints to them. 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from math import cos, inf, pi, sin
 
@@ -67,10 +68,19 @@ class Devices:
     def __post_init__(self) -> None:
         """Fix the drives' order, and see whether the load cell's line is a simulated one."""
         self.drives = self.axes.present()
+        self._foresee()
+
+    def _foresee(self) -> None:
         self._foreseeing = None
         for port, link in self.lines:
             if link is self.cell.link and isinstance(port, ForeseeingPort):
                 self._foreseeing = port
+
+    def rewire(self, can: CanPort, lines: Sequence[LinePort]) -> None:
+        """Speak through other ports from now on; ``lines`` in the order of the ones in use."""
+        self.can = can
+        self.lines = [(port, link) for port, (_, link) in zip(lines, self.lines, strict=True)]
+        self._foresee()
 
     def receive(self, now: float) -> None:
         """Take in everything that arrived."""

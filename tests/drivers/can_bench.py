@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 from drivers.axis import AxisConfig
 from drivers.canopen.master import CanMaster
-from drivers.ports import CanFrame
+from drivers.ports import CanFrame, FrameByFrame
 from drivers.servo import ServoDrive
 
 NODE = 5
@@ -63,7 +63,7 @@ def joined(config: AxisConfig, statusword: int = 0x0240, raw: int = 0) -> ServoD
     return drive
 
 
-class BenchDrive:
+class BenchDrive(FrameByFrame):
     """A CanPort with one drive behind it: boot-up, NMT, heartbeat on request and an expedited SDO server.
 
     ``objects`` are its values by (index, sub); ``aborts`` gives abort codes by ("read" or "write", index, sub);

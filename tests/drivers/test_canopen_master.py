@@ -12,14 +12,14 @@ from drivers.canopen.conversation import Conversation, SdoRead, SdoWrite, SendNm
 from drivers.canopen.master import CanMaster
 from drivers.canopen.objects import DataType, NmtCommand
 from drivers.cia402 import Goal, State
-from drivers.ports import BusLost, CanFrame
+from drivers.ports import BusLost, CanFrame, FrameByFrame
 from drivers.servo import ServoDrive
 from tests.drivers.can_bench import BenchDrive, converse, joined, tpdo1, wheel, yaw
 
 HEARTBEAT: tuple[int, bytes] = (0x77F, b"\x05")
 
 
-class Recorder:
+class Recorder(FrameByFrame):
     """A CanPort that keeps what is sent."""
 
     def __init__(self) -> None:
@@ -241,7 +241,7 @@ def test_five_drives_are_brought_up_side_by_side() -> None:
         master.add(drive)
         master.start(drive, drive.connect())
 
-    class Together:
+    class Together(FrameByFrame):
         def send(self, can_id: int, data: bytes, now: float) -> None:
             for bench in benches:
                 bench.send(can_id, data, now)

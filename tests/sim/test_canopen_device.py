@@ -133,7 +133,7 @@ def test_heartbeats_carry_their_true_times_inside_a_long_advance(bench: DriveBen
 
 def test_the_next_timer_is_known(bench: DriveBench) -> None:
     bench.write(0x1017, 0, 50, 2)
-    assert bench.now < bench.drive.due_s <= bench.now + 0.05
+    assert bench.now < bench.wire.ready_s <= bench.now + 0.05
 
 
 def arm(bench: DriveBench, milliseconds: int = 200) -> None:

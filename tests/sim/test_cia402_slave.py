@@ -92,7 +92,7 @@ def test_the_ramp_has_the_acceleration_set() -> None:
 
 def test_the_tpdo_carries_status_velocity_and_torque() -> None:
     bench = turning()
-    bench.drive.torque_nm = -5.0
+    bench.drive.load(-5.0, 0.0)
     bench.cycle(0x0F, 10_000)
     status, velocity, torque = bench.sample()
     assert (velocity, torque) == (10_000, -250)
@@ -101,7 +101,7 @@ def test_the_tpdo_carries_status_velocity_and_torque() -> None:
 
 def test_torque_beyond_the_field_is_clamped() -> None:
     bench = turning()
-    bench.drive.torque_nm = 1e6
+    bench.drive.load(1e6, 0.0)
     bench.cycle(0x0F, 10_000)
     assert bench.sample()[2] == 32767
     assert bench.read(0x6077) == 32767

@@ -111,7 +111,7 @@ def test_speeds_arrive_in_engineering_units(bus: Bus) -> None:
 
 def test_torque_arrives_in_newton_metres(bus: Bus) -> None:
     bus.enable()
-    bus.nodes[0].torque_nm = -7.5
+    bus.nodes[0].load(-7.5, 0.0)
     bus.tick(2)
     assert bus.drives[0].torque_nm == pytest.approx(-7.5, abs=0.011)
 

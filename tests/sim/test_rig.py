@@ -87,6 +87,7 @@ def test_the_jacket_heats_only_through_a_closed_contactor(rolling: Simulation, m
     monkeypatch.setattr(JacketSlave, "advance", lambda jacket, *_: setattr(jacket, "heater_w", 200.0))
     io = world.axes["press"].io
     assert io is not None and io.contactor_closed
+    world.jacket.due_s = world.now_s  # a cycle of the controller is due
     world.advance(world.now_s + 0.01)
     io.contactor_closed = False
     world.advance(world.now_s + 0.01)

@@ -10,6 +10,7 @@ from pathlib import Path
 import can
 import pytest
 
+from drivers.ports import FrameByFrame
 from tester.bus_log import BusLog, CanLog, LineLog, TappedCan, TappedLine
 from tester.engine.build import build_run
 from tester.engine.prompts import Prompts
@@ -110,7 +111,7 @@ def test_the_axes_file_turns_counts_into_units(folder: Path) -> None:
     assert axes["sideslip"]["rpdo1"] == ["6040 controlword", "607A position"]
 
 
-class Port:
+class Port(FrameByFrame):
     """A CAN adapter and a serial line that answer what they are given."""
 
     def __init__(self) -> None:
