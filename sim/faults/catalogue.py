@@ -89,9 +89,11 @@ def _modbus_rows() -> Iterator[FaultKind]:
         when, budget_s = _WATCHED[device], _SILENT_S[device]
         yield FaultKind(f"{device} silent", partial(m.Impaired, device, "silence"), when, TRIP, budget_s)
         yield FaultKind(f"{device} without supply", partial(m.DeviceOff, device), when, TRIP, budget_s)
-        yield FaultKind(f"{device} reset", partial(m.DeviceReset, device), when, TRIP, budget_s)
+        yield FaultKind(f"{device} reset", partial(m.DeviceReset, device), when, TRIP, budget_s,
+                        lasts_s=m.REBOOT_S)
         yield FaultKind(f"{device} CRC errors", partial(m.Impaired, device, "corrupt"), when, TRIP, budget_s)
-        yield FaultKind(f"{device} garbage", partial(m.Impaired, device, "noise"), when, TRIP, budget_s)
+        yield FaultKind(f"{device} garbage", partial(m.Impaired, device, "noise"), when, MAY, budget_s,
+                        note="a few bytes before a reply can be told from it by its check sum")
         yield FaultKind(f"{device} replies cut short", partial(m.Impaired, device, "truncate"), when, TRIP, budget_s)
         yield FaultKind(f"{device} replies of another address", partial(m.Impaired, device, "wrong_id"), when, TRIP,
                         budget_s)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Enum
+from math import inf
 
 from sim.faults.scene import Effect
 
@@ -12,7 +13,7 @@ from sim.faults.scene import Effect
 class Exposure(Enum):
     """When a fault can be noticed at all: its budget counts from then on."""
 
-    ALWAYS = "at once"
+    ALWAYS = "at once, once the drives are connected"
     CONNECTING = "at the next connection"
     ENABLED = "while the drives are on"
     TURNING = "while the wheel turns"
@@ -20,7 +21,6 @@ class Exposure(Enum):
     PRESSING = "while a load is held"
     SLIDING = "in contact, with slip"
     HEATING = "while the jacket heats"
-    STANDING_LOADED = "in contact, with one drive standing"
 
 
 class Reaction(Enum):
@@ -41,7 +41,7 @@ class FaultKind:
     ``make`` gets the value, where the fault has one (``unit`` not None), and ``value`` where none is given.
     ``budget_s`` counts from the onset, or from when the fault can be noticed (``exposure``), to the safe commands.
     ``force_stays`` and ``heat_stays``: the force, or the heat, cannot go by any command (the reason is in ``note``).
-    ``slow``: a matter of temperature, watched for two minutes and more.
+    ``lasts_s``: it is over by itself after this time. ``slow``: a matter of temperature, watched for two minutes and more.
     """
 
     phrase: str
@@ -51,6 +51,7 @@ class FaultKind:
     budget_s: float
     unit: str | None = None
     value: float = 0.0
+    lasts_s: float = inf
     slow: bool = False
     force_stays: bool = False
     heat_stays: bool = False
