@@ -90,7 +90,7 @@ class HarmObserver:
     _standing_j: float = 0.0
 
     def look(self, must_stand: bool) -> None:
-        """Look at the rig as it is now; ``must_stand``: latched, idle or emergency stop, and time enough to be at rest."""
+        """Look at the rig as it is now; ``must_stand``: latched, idle or emergency stop, and time enough to rest."""
         rig, now = self.rig, self.rig.now_s
         dt = now - self._last_s
         if dt <= 0.0:

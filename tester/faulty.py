@@ -172,7 +172,8 @@ class FaultyRun:
         """Let the computer's clock be ahead by this much more."""
         if self.skew.ahead_s == 0.0:
             devices = self.run.engine.devices
-            devices.rewire(SkewedCan(devices.can, self.skew), [SkewedLine(port, self.skew) for port, _ in devices.lines])
+            lines = [SkewedLine(port, self.skew) for port, _ in devices.lines]
+            devices.rewire(SkewedCan(devices.can, self.skew), lines)
         self.skew.ahead_s += seconds
 
     def operate(self, action: str) -> None:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import os
 import re
 import signal
 from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from types import FrameType
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 from drivers.ports import BusLost
 from recipes import find
@@ -20,7 +21,7 @@ from tester.engine.context import Progress as RunProgress
 from tester.engine.prompts import Prompts
 from tester.engine.results import condition_records
 from tester.engine.run import Outcome, Run
-from tester.engine.tickers import TickStatistics, World, run_real_time, run_simulated
+from tester.engine.tickers import TickStatistics, run_real_time, run_simulated
 from tester.export import write_all
 from tester.recipe.check import load_checked
 from tester.recipe.estimate import estimate
@@ -31,6 +32,10 @@ from tester.rig import RigConfig, load_rig
 from tester.store.records import RunInfo, SpecimenInfo
 from tester.store.writer import RunWriter
 
+if TYPE_CHECKING:
+    from sim.faults import FaultScript
+    from sim.rig import SimRig
+
 EXIT_CODES: dict[Outcome, int] = {
     Outcome.DONE: 0,
     Outcome.FAILED: 1,
@@ -40,6 +45,8 @@ EXIT_CODES: dict[Outcome, int] = {
 }
 EXIT_INCOMPLETE = 6
 EXIT_INTERRUPTED = 130
+KILLED = 137
+"""Exit status of a process that a fault script kills: what a shell shows for SIGKILL."""
 SHOWN_VERSIONS = ("friction-tester", "numpy", "pymodbus", "python-can", "pydantic")
 """Distributions whose versions are stored with a run."""
 
@@ -95,6 +102,8 @@ class SessionOptions:
     lapse: float | None = None
     bus_log: Path | None = None
     operator: str = ""
+    faults: tuple[str, ...] = ()
+    """Lines of a fault script (sim.faults.language), beside those of the rig file."""
 
 
 class CannotStartError(Exception):
@@ -116,6 +125,7 @@ class Session:
         rig file, FileNotFoundError where there is no such recipe."""
         options = self.options
         rig = load_rig(options.rig, options.overrides)
+        self._script(rig)  # a line that cannot be read ends the run before it begins
         recipe = load_checked(find(options.recipe), rig)
         plan = expand(recipe.recipe, rig)
         if not self.screen.answer_yes and not self.screen.can_ask:
@@ -147,13 +157,14 @@ class Session:
     def _execute(self, rig: RigConfig, plan: Plan, writer: RunWriter) -> tuple[Outcome, str, float]:
         log = BusLog(self.options.bus_log, rig) if self.options.bus_log is not None else None
         try:
-            ports, world, attendant = connect_ports(rig, self.options.seed, log)
+            script = self._script(rig)
+            ports, world, attendant = connect_ports(rig, self.options.seed, log, faulty=script is not None)
             prompts = Prompts(automatic=self.screen.answer_yes)
             run = build_run(rig, plan, ports, attendant, writer, prompts)
             self.run_ = run
             expected_s = max(estimate(plan, rig).rig_seconds, 1.0)
             self.screen.begin(plan.name)
-            seconds = self._tick(run, world, expected_s, prompts, writer)
+            seconds = self._tick(run, world, script, expected_s, prompts, writer)
             record_parameters(run, writer, seconds)
             return run.outcome, run.reason, seconds
         except BusLost as lost:
@@ -162,7 +173,29 @@ class Session:
             if log is not None:
                 log.close()
 
-    def _tick(self, run: Run, world: World | None, expected_s: float, prompts: Prompts, recorder: RunWriter) -> float:
+    def _script(self, rig: RigConfig) -> FaultScript | None:
+        """Return the fault script of rig file and command line, if there is one."""
+        texts = (*rig.sim.faults, *self.options.faults)
+        if not texts:
+            return None
+        if rig.can.interface != "sim":
+            raise CannotStartError("faults happen on the simulated rig only")
+        from sim.faults import FaultScript, FaultTextError, parse_script
+
+        try:
+            return FaultScript().add(parse_script(texts))
+        except FaultTextError as error:
+            raise CannotStartError(str(error)) from error
+
+    def _tick(
+        self,
+        run: Run,
+        world: SimRig | None,
+        script: FaultScript | None,
+        expected_s: float,
+        prompts: Prompts,
+        recorder: RunWriter,
+    ) -> float:
         def poll(now_s: float) -> None:
             self.screen.show(now_s, run.engine.ctx.progress, now_s / expected_s)
             self.screen.attend(prompts)
@@ -171,6 +204,11 @@ class Session:
 
         previous = {s: signal.signal(s, self._on_signal) for s in (signal.SIGINT, signal.SIGTERM)}
         try:
+            if world is not None and script is not None:
+                from tester.faulty import FaultyRun
+
+                faulty = FaultyRun(run, world, script, on_kill=die)
+                return run_simulated(faulty, faulty, lapse=self.options.lapse, poll=poll)
             if world is not None:
                 # Also at --speed 1: counted ticks, not measured ones, so that no speed changes a result.
                 return run_simulated(run, world, lapse=self.options.lapse, poll=poll)
@@ -210,11 +248,22 @@ class Session:
         return code
 
 
-def connect_ports(rig: RigConfig, seed: int, log: BusLog | None) -> tuple[Ports, World | None, Attendant]:
-    """Open the wires to the rig: simulated in this process, or real."""
+def die() -> None:
+    """End this process as a kill does: at once, nothing closed, nothing flushed."""
+    os._exit(KILLED)
+
+
+def connect_ports(
+    rig: RigConfig, seed: int, log: BusLog | None, *, faulty: bool = False
+) -> tuple[Ports, SimRig | None, Attendant]:
+    """Open the wires to the rig: simulated in this process (its bus spoilable where ``faulty``), or real."""
     if rig.can.interface == "sim":
         from tester.simulated import simulated_ports
 
+        if faulty:
+            from sim.faults.can import FaultyCanWire
+
+            return simulated_ports(rig, seed, log, FaultyCanWire)
         return simulated_ports(rig, seed, log)
     from tester.hardware import hardware_ports
 

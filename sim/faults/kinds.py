@@ -41,7 +41,8 @@ class FaultKind:
     ``make`` gets the value, where the fault has one (``unit`` not None), and ``value`` where none is given.
     ``budget_s`` counts from the onset, or from when the fault can be noticed (``exposure``), to the safe commands.
     ``force_stays`` and ``heat_stays``: the force, or the heat, cannot go by any command (the reason is in ``note``).
-    ``lasts_s``: it is over by itself after this time. ``slow``: a matter of temperature, watched for two minutes and more.
+    ``lasts_s``: it is over by itself after this time.
+    ``slow``: a matter of temperature, watched for two minutes and more.
     """
 
     phrase: str

@@ -5,8 +5,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import nan
+from typing import cast
 
 from sim.faults.scene import Effect, Scene
+from sim.nodes.cell_slave import ForceSource
+from sim.nodes.ir_slave import SurfaceSource
+from sim.nodes.jacket_slave import HubSource
 from sim.noise import NormalStream
 
 Forces = tuple[float, float, float, float]
@@ -21,7 +25,7 @@ _OFF_SCALE_N = 1e5
 class SpoiledForces:
     """A load cell with something wrong with its normal force: what it measures and what it makes of it."""
 
-    source: object
+    source: ForceSource
     kind: str
     value: float
     since_s: float
@@ -30,7 +34,7 @@ class SpoiledForces:
 
     def forces_measured(self, t: float) -> Forces:
         """Return Fx, Fy, Fz in N and the moment in N m as they appear at ``t`` s."""
-        x, y, z, m = self.source.forces_measured(t)  # type: ignore[attr-defined]
+        x, y, z, m = self.source.forces_measured(t)
         if not self.active:
             return x, y, z, m
         return x, y, spoiled(self.kind, z, self.value, t - self.since_s, self.noise, 0.0), m
@@ -40,7 +44,7 @@ class SpoiledForces:
 class SpoiledTemperature:
     """A temperature sensor with something wrong; it stands in for the plant where a device asks for it."""
 
-    source: object
+    source: SurfaceSource | HubSource
     kind: str
     value: float
     since_s: float
@@ -51,11 +55,11 @@ class SpoiledTemperature:
 
     def surface_measured_c(self, t: float) -> float:
         """Return the surface temperature in degC as it appears."""
-        return self._spoil(self.source.surface_measured_c(t), t)  # type: ignore[attr-defined]
+        return self._spoil(cast("SurfaceSource", self.source).surface_measured_c(t), t)
 
     def hub_measured_c(self, t: float) -> float:
         """Return the hub temperature in degC as it appears."""
-        return self._spoil(self.source.hub_measured_c(t), t)  # type: ignore[attr-defined]
+        return self._spoil(cast("HubSource", self.source).hub_measured_c(t), t)
 
     def _spoil(self, true_c: float, t: float) -> float:
         if not self.active:

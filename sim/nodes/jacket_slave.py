@@ -43,8 +43,8 @@ class JacketSlave(ModbusSlave):
 
     ``heater_w`` is its heat before the contactor in the supply, also given to ``sink``. ``running``, ``setpoint_c``,
     ``lease_s`` (0 = off), ``lease_expired``, ``limited`` and ``sensor_broken`` tell its state; setting
-    ``sensor_broken`` or ``stuck_output`` (in %) makes it faulty; ``stuck_element`` (in %) is the heat that flows whatever
-    the output says: a shorted relay, or an open line.
+    ``sensor_broken`` or ``stuck_output`` (in %) makes it faulty; ``stuck_element`` (in %) is the heat that flows
+    whatever the output says: a shorted relay, or an open line.
     """
 
     def __init__(

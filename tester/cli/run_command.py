@@ -23,6 +23,13 @@ from tester.cli.options import json_option, rig_option, set_option
 )
 @click.option("--speed", default=None, metavar="max|X", help="Simulated rig: as fast as it goes, or X times real time.")
 @click.option("--bus-log", default=None, metavar="DIR", help="Write every CAN and Modbus frame into this folder.")
+@click.option(
+    "--fault",
+    "faults",
+    multiple=True,
+    metavar="TEXT",
+    help='Simulated rig: let something fail, e.g. "t=130 s: belt drive heartbeat lost for 3 s". May be given again.',
+)
 @click.option("--operator", default="", metavar="NAME", help="Who runs the test; stored with the run.")
 @json_option
 def run(
@@ -34,6 +41,7 @@ def run(
     seed: int,
     speed: str | None,
     bus_log: str | None,
+    faults: tuple[str, ...],
     operator: str,
     as_json: bool,
 ) -> int:
@@ -44,7 +52,7 @@ def run(
     from pathlib import Path
 
     from tester.cli.console import Console
-    from tester.session import Session, SessionOptions
+    from tester.session import CannotStartError, Session, SessionOptions
 
     lapse, refused = _lapse(speed)
     if refused:
@@ -58,11 +66,12 @@ def run(
         lapse=lapse,
         bus_log=Path(bus_log) if bus_log else None,
         operator=operator,
+        faults=faults,
     )
     console = Console(as_json=as_json, answer_yes=yes)
     try:
         return Session(options, console).run()
-    except FileNotFoundError as error:
+    except (FileNotFoundError, CannotStartError) as error:
         raise click.UsageError(str(error)) from error
 
 

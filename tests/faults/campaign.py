@@ -126,7 +126,8 @@ def do_share(share: Share) -> list[Verdict]:
 
     def look(moment: Moment, twins: Twins) -> None:
         for names in by_tick[moment]:
-            verdicts.append(Judge(twins(), Case(share.recipe, moment.tick, moment.place, names), budgets=share.budgets).run())
+            case = Case(share.recipe, moment.tick, moment.place, names)
+            verdicts.append(Judge(twins(), case, budgets=share.budgets).run())
 
     visit(share.recipe, by_tick, look, share.overrides)
     return verdicts

@@ -31,7 +31,7 @@ HARDWARE_MUST_HOLD: tuple[MustHold, ...] = (
     MustHold("contactor welded", "jacket relay shorted", "thermal cut-out on the hub, in the heater's supply",
              "both switches of the heater stay closed"),
     MustHold("contactor welded", "jacket output stuck on", "thermal cut-out on the hub, in the heater's supply",
-             "the controller's output and the contactor stay on; the controller's limiter does not act on a stuck output"),
+             "output and contactor stay on; the controller's limiter does not act on a stuck output"),
     MustHold("press stuck", "", "mechanical stop of the press, and the safe-torque-off of both drives",
              "a jammed press cannot be lifted: whatever else fails happens under load"),
     MustHold("press runs away", "", "mechanical stop or slipping clutch of the press at 480 N",

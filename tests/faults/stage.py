@@ -103,7 +103,7 @@ class Stage:
 
     @property
     def copyable(self) -> bool:
-        """Nothing is being said to a drive outside the scan: such a conversation is a generator (drivers, servo_setup)."""
+        """Nothing is being said to a drive outside the scan: such a conversation is a generator."""
         devices = self.run.engine.devices
         return not any(devices.master.busy(drive) for drive in devices.drives)
 
