@@ -27,14 +27,16 @@ class AxisCommand:
     """The command side of a drive: composes RPDO1 from what is wanted and from the last statusword.
 
     The bytes are composed again only when something they depend on has changed.
+    ``aimed`` is the target as it was last asked for, NaN when it has to be asked for again. ``news`` is set with
+    every change of what is known of the drive's state; whoever takes note of it clears it.
     ``inhibited``: the drive left operation, or a fault, while the goal was ENABLED; another goal must be set
     before ENABLED counts again, so that nothing restarts by itself.
     """
 
     __slots__ = ("_at_rest", "_goal", "_halt", "_high", "_homing", "_homing_start", "_low",
                  "_new_set_point", "_outputs", "_per_unit", "_position_mode", "_raw", "_resetting", "_rpdo",
-                 "_set_point", "_target", "_target_counts", "config", "connected", "dirty", "homing_scans", "inhibited",
-                 "lost", "state", "statusword")
+                 "_set_point", "_target", "_target_counts", "aimed", "config", "connected", "dirty", "homing_scans",
+                 "inhibited", "lost", "news", "state", "statusword")
 
     def __init__(self, config: AxisConfig) -> None:
         self.config = config
@@ -59,6 +61,8 @@ class AxisCommand:
         self._outputs = 0
         self._target = 0.0
         self._target_counts: int = 0
+        self.aimed = math.nan
+        self.news = True
         self._at_rest = True             # not following the target
         self._new_set_point = False      # controlword bit 4 is up
         self._set_point: int = 0         # position sent last with bit 4, counts
@@ -79,10 +83,15 @@ class AxisCommand:
 
     @target.setter
     def target(self, value: float) -> None:
-        if value == self._target:
+        self.aim(value)
+
+    def aim(self, value: float) -> None:
+        """Set ``target``; the same as last time costs a comparison (compare ``aimed`` to save the call, too)."""
+        if value == self.aimed:
             return
         if not math.isfinite(value):
             raise ValueError(f"{self.config.name}: target {value} is not a number")
+        self.aimed = value
         if value < self._low:
             value = self._low
         elif value > self._high:
@@ -175,19 +184,20 @@ class AxisCommand:
                     and state is not State.OPERATION_ENABLED):
                 self.inhibited = True
         self.statusword = statusword
-        self.dirty = True
+        self.dirty = self.news = True
 
     def _request_reset(self) -> None:
         """Raise controlword bit 7 once, up to the next SYNC; the drive then stays disabled."""
         self.inhibited = True
         self._resetting = True
-        self.dirty = True
+        self.dirty = self.news = True
 
     def _hold_still(self, raw: int) -> None:
         """Make the present position (counts), or standstill, the target."""
         self._raw = raw
         self._target_counts = raw if self._position_mode else 0
         self._target = raw / self._per_unit if self._position_mode else 0.0
+        self.aimed = math.nan
         self.dirty = True
 
     def _compose(self) -> None:

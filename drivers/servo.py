@@ -109,6 +109,7 @@ class ServoDrive(AxisCommand):
         The drive then stops in SWITCH_ON_DISABLED: ENABLED counts only after another goal was set.
         """
         self.emergency = None
+        self.news = True
         if self.state is State.FAULT:
             self._request_reset()
 
@@ -169,6 +170,7 @@ class ServoDrive(AxisCommand):
             self.malformed += 1
         elif self.connected:
             (self.inputs,) = _IO_UNPACK(data)
+            self.news = True
             self.inputs_stamp_s = t
 
     def on_heartbeat(self, t: float, nmt_state: int) -> None:
@@ -181,12 +183,14 @@ class ServoDrive(AxisCommand):
                 self.lost = True
                 self.disconnect()
         self.heartbeat.heard(t)
+        self.news = True
         self.online = self.connected and not self.lost and nmt_state == o.NmtState.OPERATIONAL
 
     def on_emergency(self, t: float, data: bytes) -> None:
         """Take an EMCY message that arrived at ``t``."""
         emergency = emcy.decode(data, t)
         self.emergency = None if emergency.is_reset else emergency
+        self.news = True
         if len(self.emergency_log) < _MAX_EMERGENCIES:
             self.emergency_log.append(emergency)
         else:
@@ -198,7 +202,7 @@ class ServoDrive(AxisCommand):
             self.lost = True
             self.online = False
             self.usual_heartbeat = b""
-            self.dirty = True
+            self.dirty = self.news = True
 
     def emit_outputs(self) -> bytes | None:
         """Return RPDO2 when the outputs have changed, else None; a lost drive is sent zeros."""
@@ -231,6 +235,7 @@ class ServoDrive(AxisCommand):
     def finish_connect(self, statusword: int, raw: int, inputs: int) -> None:
         """Take over a device that is configured and OPERATIONAL; ``raw`` is TPDO1's field in counts."""
         self.connected = True
+        self.news = True
         self.online = self.nmt_state == o.NmtState.OPERATIONAL
         self.heartbeat.arm()
         self.take_statusword(statusword)
@@ -245,7 +250,7 @@ class ServoDrive(AxisCommand):
         self.online = False
         self.tpdo1_data = self.usual_heartbeat = b""
         self.heartbeat.disarm()
-        self.dirty = True
+        self.dirty = self.news = True
 
     def finish_homing(self, raw: int) -> None:
         """Take the position of a homed axis, counts, as reading and as target."""

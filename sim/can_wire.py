@@ -12,6 +12,7 @@ from bisect import bisect_right, insort
 from collections import deque
 from collections.abc import Callable
 from heapq import heapify, heapreplace
+from itertools import accumulate
 from math import inf
 from typing import Protocol
 
@@ -104,19 +105,20 @@ class CanWire:
         "_inbox",
         "_mark_due_s",
         "_marks",
+        "_offsets_s",
         "_pending",
         "_ranked",
         "_ranked_followers",
         "_repeatable",
         "_routes",
         "_sequence",
-        "_tap",
         "_urgent",
         "bitrate",
         "connected",
         "nodes",
         "occupied_s",
         "ready_s",
+        "tap",
         "urgent_s",
     )
 
@@ -124,7 +126,7 @@ class CanWire:
         """Create an idle bus; ``bitrate`` in bit/s."""
         self.bitrate = bitrate
         self.nodes: list[CanNode] = []
-        self._tap: CanTap | None = None
+        self.tap: CanTap | None = None
         self.urgent_s = inf
         self.ready_s = inf
         self.connected = True
@@ -141,22 +143,13 @@ class CanWire:
         self._repeatable: set[int] = set()
         self._cycle: tuple[tuple[int, bytes], ...] | None = None  # that every listener has taken already
         self._cycle_s = 0.0
+        self._offsets_s: tuple[float, ...] = ()
         self._sequence = 0
         self._urgent: list[float] = []
         self._marks: deque[tuple[float, float]] = deque()
         self._mark_due_s = -inf
 
     # the computer's side -------------------------------------------------------------------------------------
-
-    @property
-    def tap(self) -> CanTap | None:
-        """Who sees every frame, None for nobody."""
-        return self._tap
-
-    @tap.setter
-    def tap(self, tap: CanTap | None) -> None:
-        self._tap = tap
-        self.forget_cycle()
 
     def send(self, can_id: int, data: bytes, now: float) -> None:
         """Put a frame on the wire at ``now`` s or when it is free; every listening node is called in place.
@@ -175,8 +168,8 @@ class CanWire:
         arrival = (start if start > now else now) + length_s
         self._busy_s = arrival
         self.occupied_s += length_s
-        if self._tap is not None:
-            self._tap.frame(arrival, can_id, data, True)
+        if self.tap is not None:
+            self.tap.frame(arrival, can_id, data, True)
         listeners = self._routes.get(can_id)
         if listeners is not None:
             for listener in listeners:
@@ -187,22 +180,33 @@ class CanWire:
     def send_cycle(self, frames: tuple[tuple[int, bytes], ...], now: float) -> None:
         """Send the frames of a bus cycle one after the other.
 
-        A cycle that every listener has taken already, and that ends with SYNC, only takes its time on the wire: equal
-        process data mean nothing new to a drive. SYNC is answered as ever.
+        A frame that its listeners have taken already only takes its time on the wire: equal process data mean nothing
+        new to a drive. SYNC is answered as ever.
         """
-        if frames is not self._cycle:
+        taken = self._cycle
+        if taken is None or len(taken) != len(frames):
+            self._remember(frames)  # before a listener may ask to forget it
             for can_id, data in frames:
                 self.send(can_id, data, now)
-            self._remember(frames)
             return
         if not self.connected:
             raise BusLost("the simulated CAN adapter is disconnected")
         if self.ready_s <= now:
             self.settle(now)
-        start = self._busy_s
-        self._busy_s = arrival = (start if start > now else now) + self._cycle_s
+        start = self._busy_s if self._busy_s > now else now
+        self._busy_s = end = start + self._cycle_s
         self.occupied_s += self._cycle_s
-        self._answer(arrival)
+        if frames is not taken:
+            # Frames of a cycle keep their lengths and places: each is told when it was complete.
+            self._cycle = frames
+            for frame, before, offset_s in zip(frames, taken, self._offsets_s, strict=True):
+                if frame is not before:
+                    for listener in self._routes.get(frame[0], ()):
+                        listener(frame[1], start + offset_s)
+        if self.tap is not None:
+            for (can_id, data), offset_s in zip(frames, self._offsets_s, strict=True):
+                self.tap.frame(start + offset_s, can_id, data, True)
+        self._answer(end)
 
     def receive(self, now: float) -> list[CanFrame]:
         """Return the frames that arrived up to ``now`` s, oldest first; raises BusLost when disconnected."""
@@ -316,8 +320,8 @@ class CanWire:
         arrival = start + length_s
         self._busy_s = arrival
         self.occupied_s += length_s
-        if self._tap is not None:
-            self._tap.frame(arrival, can_id, data, False)
+        if self.tap is not None:
+            self.tap.frame(arrival, can_id, data, False)
         if self.connected:
             self._inbox.append((arrival, can_id, data))
             if urgent:
@@ -351,18 +355,19 @@ class CanWire:
         self._followers = tuple(entry[1] for entry in ranked)
 
     def _remember(self, frames: tuple[tuple[int, bytes], ...]) -> None:
-        """Note a cycle that was taken, if it need not be taken again."""
-        repeatable = self._repeatable
-        rpdos = frames[:-1]
-        if self._tap is None and frames and frames[-1][0] == SYNC_ID and not self._routes.get(SYNC_ID):
-            if all(can_id in repeatable or not self._routes.get(can_id) for can_id, _ in rpdos):
-                self._cycle = frames
-                self._cycle_s = sum(self._frame_s[len(data)] for _, data in frames)
+        """Note a cycle that was taken, if its frames need not be taken again while they stay the same."""
+        self._cycle = None
+        if not frames or frames[-1][0] != SYNC_ID or self._routes.get(SYNC_ID):
+            return
+        if all(can_id in self._repeatable or not self._routes.get(can_id) for can_id, _ in frames[:-1]):
+            self._cycle = frames
+            self._offsets_s = tuple(accumulate(self._frame_s[len(data)] for _, data in frames))
+            self._cycle_s = self._offsets_s[-1]
 
     def _answer(self, t: float) -> None:
         """Have every device answer a SYNC that arrived at ``t`` s; the lowest identifier goes first."""
         inbox, frame_s = self._inbox, self._frame_s
-        quick = self.connected and self._tap is None
+        quick = self.connected and self.tap is None
         arrival = self._busy_s
         for follower in self._followers:
             if quick and follower.plain:
@@ -380,7 +385,7 @@ class CanWire:
     def settle(self, now: float) -> None:
         """Give the wire to every waiting frame that was ready by ``now`` s, in order of readiness, then identifier."""
         pending, beats = self._pending, self._beats
-        frame_s, quick = self._frame_s[1], self.connected and self._tap is None
+        frame_s, quick = self._frame_s[1], self.connected and self.tap is None
         while True:
             first = pending[0] if pending else None
             if beats:

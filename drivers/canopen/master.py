@@ -24,6 +24,7 @@ _MASTER_FUNCTIONS = {
     o.SDO_REQUEST_BASE: "SDO request",
 }
 """What only a master sends: received, it is somebody else's."""
+_SYNC = (o.SYNC_ID, b"")
 
 
 class CanMaster:
@@ -38,7 +39,7 @@ class CanMaster:
     it; the caller clears them. ``unknown_frames`` counts frames of nobody added here.
     """
 
-    __slots__ = ("_by_node", "_cycle", "_cycle_syncs", "_dialogues", "_drives", "_heartbeat", "_heartbeat_due", "_heartbeats", "_io_drives",
+    __slots__ = ("_by_node", "_commands", "_cycle", "_cycle_syncs", "_dialogues", "_drives", "_heartbeat", "_heartbeat_due", "_heartbeats", "_io_drives",
                  "_tpdo1", "_withheld", "deadline", "foreign_frame", "foreign_master", "heartbeat_s", "node_id",
                  "sdo_timeout_s", "sync", "unknown_frames")
 
@@ -54,6 +55,7 @@ class CanMaster:
         self._heartbeat = (o.HEARTBEAT_BASE + node_id, bytes((o.NmtState.OPERATIONAL,)))
         self._heartbeat_due = -math.inf
         self._withheld = False
+        self._commands: list[tuple[int, bytes] | None] = []
         self._cycle: tuple[tuple[int, bytes], ...] = ()
         self._cycle_syncs = False
         self._drives: list[ServoDrive] = []
@@ -84,6 +86,7 @@ class CanMaster:
         if node_id == self.node_id or node_id in self._by_node:
             raise ValueError(f"{drive.config.name}: node id {node_id} is taken")
         self._drives.append(drive)
+        self._commands.append(None)
         if drive.config.digital_io:
             self._io_drives.append(drive)
         self._by_node[node_id] = drive
@@ -139,9 +142,11 @@ class CanMaster:
             if outputs is not None:
                 port.send(drive.rpdo2_id, outputs, now)
         changed = sync is not self._cycle_syncs
-        for drive in self._drives:
+        for i, drive in enumerate(self._drives):
             if drive.dirty:
                 changed = True
+                data = drive.emit(sync)
+                self._commands[i] = None if data is None else (drive.rpdo1_id, data)
         if changed:
             self._compose(sync)
         port.send_cycle(self._cycle, now)
@@ -151,10 +156,9 @@ class CanMaster:
             self._serve(port, now)
 
     def _compose(self, sync: bool) -> None:
-        """Put the commands of all drives, and SYNC, into the cycle; the same tuple stays while nothing changes."""
-        found = ((drive.rpdo1_id, drive.emit(sync)) for drive in self._drives)
-        frames = tuple((can_id, data) for can_id, data in found if data is not None)
-        self._cycle = (*frames, (o.SYNC_ID, b"")) if sync else frames
+        """Put the commands of all drives, and SYNC, into the cycle; what has not changed stays the same object."""
+        frames = tuple([frame for frame in self._commands if frame is not None])
+        self._cycle = (*frames, _SYNC) if sync else frames
         self._cycle_syncs = sync
 
     def service(self, port: CanPort, now: float) -> None:

@@ -75,6 +75,12 @@ class Phase(Enum):
     LIFT = "lift"
 
 
+# Bound once: a look-up on the enum class costs several times as much in every scan (CPython 3.11).
+_TARE, _ROLL, _READY, _COOL, _MOVE_IN, _COUNT, _MOVE_OUT = (
+    Phase.TARE, Phase.ROLL, Phase.READY, Phase.COOL, Phase.MOVE_IN, Phase.COUNT, Phase.MOVE_OUT
+)  # fmt: skip
+
+
 class Ending(Enum):
     """How a repeat ended."""
 
@@ -147,23 +153,24 @@ class MeasureRepeat:
     def step(self, ctx: Context) -> bool:
         """Advance by one scan; done when lifted with ``ending`` set."""
         self._show(ctx)
-        if self.phase is Phase.TARE:
-            self._tare(ctx)
-        elif self.phase is Phase.ROLL:
+        phase = self.phase
+        if phase is _COUNT:
+            self._count(ctx)
+        elif phase is _READY:
+            self._ready(ctx)
+        elif phase is _ROLL:
             self._demand_heat(ctx)
             if self.moves.step(ctx):
                 self._to_ready(ctx)
-        elif self.phase is Phase.READY:
-            self._ready(ctx)
-        elif self.phase is Phase.COOL:
+        elif phase is _TARE:
+            self._tare(ctx)
+        elif phase is _COOL:
             self._cool(ctx)
-        elif self.phase is Phase.MOVE_IN:
+        elif phase is _MOVE_IN:
             ctx.demand.freeze_heat = True
             if self.moves.step(ctx):
                 self._begin_burst(ctx)
-        elif self.phase is Phase.COUNT:
-            self._count(ctx)
-        elif self.phase is Phase.MOVE_OUT:
+        elif phase is _MOVE_OUT:
             if self.moves.step(ctx):
                 self._to_ready(ctx)
         elif self.moves.step(ctx):
@@ -388,9 +395,9 @@ class MeasureRepeat:
 
     def _show(self, ctx: Context) -> None:
         progress = ctx.progress
-        progress.phase = self.phase.value
+        progress.phase = self.phase._value_
         progress.burst = self.bursts
-        progress.revolutions = float(self.revolutions)
+        progress.revolutions = float(len(self.counter.blocks))
 
 
 class Settle:

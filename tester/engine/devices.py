@@ -62,6 +62,9 @@ class Devices:
     drives: tuple[ServoDrive, ...] = field(init=False)
     manual_sideslip_deg: float = 0.0
     manual_camber_deg: float = 0.0
+    news: bool = True
+    """A drive's state, an input or an emergency is new in this scan."""
+    _goal: Goal = Goal.DISABLED
     _last_angle_s: float = NEVER
     _foreseeing: ForeseeingPort | None = field(init=False)
 
@@ -113,7 +116,13 @@ class Devices:
         """Bring the process image up to date."""
         r.now_s = now
         self._fill_motion(r, self.axes, diameter_mm)
-        self._fill_status(r)
+        self.news = False
+        for drive in self.drives:
+            if drive.news:
+                drive.news = False
+                self.news = True
+        if self.news:
+            self._fill_status(r)
         cell = self.cell
         r.force_x_n, r.force_y_n, r.force_z_n, r.moment_z_nm = cell.fx_n, cell.fy_n, cell.fz_n, cell.mz_nm
         r.cell_valid, r.cell_at_s = cell.valid, cell.stamp_s
@@ -178,17 +187,23 @@ class Devices:
         """Hand the setpoints to the drivers; the frames leave with ``transmit``."""
         axes = self.axes
         goal = _QUICK_STOP if out.quick_stop else _ENABLED if out.enable else _DISABLED
-        for drive in self.drives:
-            # A quick-stopped press would stay in contact: it keeps its own retraction.
-            drive.goal = _ENABLED if goal is _QUICK_STOP and drive is axes.press else goal
-        axes.wheel.target = out.wheel_rad_s
-        axes.belt.target = out.belt_m_s
-        axes.press.target = out.press_mm_s
-        if axes.sideslip is not None:
-            axes.sideslip.target = out.sideslip_deg
-        if axes.camber is not None:
-            axes.camber.target = out.camber_deg
-        axes.press.outputs = OUTPUT_CONTACTOR if out.contactor else 0
+        wheel, belt, press, sideslip, camber = axes.wheel, axes.belt, axes.press, axes.sideslip, axes.camber
+        if goal is not self._goal or self.news:
+            self._goal = goal
+            for drive in self.drives:
+                # A quick-stopped press would stay in contact: it keeps its own retraction.
+                drive.goal = _ENABLED if goal is _QUICK_STOP and drive is press else goal
+        if out.wheel_rad_s != wheel.aimed:
+            wheel.aim(out.wheel_rad_s)
+        if out.belt_m_s != belt.aimed:
+            belt.aim(out.belt_m_s)
+        if out.press_mm_s != press.aimed:
+            press.aim(out.press_mm_s)
+        if sideslip is not None and out.sideslip_deg != sideslip.aimed:
+            sideslip.aim(out.sideslip_deg)
+        if camber is not None and out.camber_deg != camber.aimed:
+            camber.aim(out.camber_deg)
+        press.outputs = OUTPUT_CONTACTOR if out.contactor else 0
         jacket = self.jacket
         jacket.enable(out.heat)
         jacket.set_setpoint(out.hub_c)

@@ -92,6 +92,8 @@ class Engine:
                     journal.trip(event.at_s, trip.name, event.text)
                 journal.event(event.at_s, event.kind, event.text, "trip" if event.kind == "trip" else "info")
             events.clear()
+        if not self.devices.news:
+            return
         for drive in self.devices.drives:
             if drive.emergency_log:
                 for emergency in drive.take_emergencies():

@@ -73,20 +73,23 @@ class SurfaceTrend:
     slow_c: float = float("nan")
     stamp_s: float = float("-inf")
     rate_k_s: float = 0.0
+    now_c: float = float("nan")
+    """The temperature with the thermometer's lag and that of the filter allowed for, degC."""
 
-    def update(self, surface_c: float, stamp_s: float) -> None:
-        """Take in a reading; one that is not newer than the last is ignored."""
+    def update(self, surface_c: float, stamp_s: float, lag_s: float) -> None:
+        """Take in a reading of a thermometer with a lag; one that is not newer than the last is ignored."""
         if stamp_s <= self.stamp_s or not isfinite(surface_c):
             return
         dt, self.stamp_s = stamp_s - self.stamp_s, stamp_s
         if not isfinite(self.fast_c) or dt > 10.0:
-            self.fast_c = self.slow_c = surface_c
+            self.fast_c = self.slow_c = self.now_c = surface_c
             self.rate_k_s = 0.0
             return
         self.fast_c += (surface_c - self.fast_c) * dt / (RATE_FAST_S + dt)
         self.slow_c += (surface_c - self.slow_c) * dt / (RATE_SLOW_S + dt)
         rate = (self.fast_c - self.slow_c) / (RATE_SLOW_S - RATE_FAST_S)
-        self.rate_k_s = min(max(rate, -RATE_LIMIT_K_S), RATE_LIMIT_K_S)
+        self.rate_k_s = rate = min(max(rate, -RATE_LIMIT_K_S), RATE_LIMIT_K_S)
+        self.now_c = self.fast_c + rate * (lag_s + RATE_FAST_S)
 
 
 class Gates:
@@ -99,6 +102,8 @@ class Gates:
         self.load = Average(config.load_filter_s, 10.0)
         self.slip = Average(config.slip_filter_s, 0.02)
         self.surface = SurfaceTrend()
+        self._lag_s = config.ir_lag_s
+        self._transient_s = config.contact_transient_s
         self._load_share = config.load_percent * 0.01
         self._speed_share = config.speed_percent * 0.01
         self._slip_share = config.slip_percent * 0.01
@@ -108,7 +113,7 @@ class Gates:
 
     def surface_now_c(self) -> float:
         """Return the surface temperature with the thermometer's lag and that of its filter allowed for, degC."""
-        return self.surface.fast_c + self.surface.rate_k_s * (self.config.ir_lag_s + RATE_FAST_S)
+        return self.surface.now_c
 
     def update(self, r: Readings, dt: float) -> int:
         """Return the mask of closed gates for this scan (0 = the sample counts)."""
@@ -125,9 +130,11 @@ class Gates:
         slip = self.slip.update(r.slip_m_s, t.slip_m_s, dt)
         if not abs(slip - t.slip_m_s) <= max(self._slip_share * t.slip_m_s, self._slip_floor_m_s):
             mask |= GATE_SLIP
-        self.surface.update(r.surface_c, r.surface_at_s)
-        if not abs(self.surface_now_c() - t.temperature_c) <= t.band_k:
+        surface = self.surface
+        if r.surface_at_s > surface.stamp_s:
+            surface.update(r.surface_c, r.surface_at_s, self._lag_s)
+        if not abs(surface.now_c - t.temperature_c) <= t.band_k:
             mask |= GATE_TEMPERATURE
-        if not r.now_s - self.touched_s >= self.config.contact_transient_s:
+        if not r.now_s - self.touched_s >= self._transient_s:
             mask |= GATE_SETTLING
         return mask

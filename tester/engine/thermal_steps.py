@@ -17,6 +17,9 @@ HEAT_AT_MOST_S = 5400.0
 COOL_AT_MOST_S = 3 * 3600.0
 """Longest cooling of a hub before a person may touch it; then a prompt says how warm it is [A]."""
 
+SHOW_S = 1.0
+"""How often people are told how far a wait has come, s."""
+
 
 def roll(wheel_speed_m_s: float, load_n: float) -> Sequence:
     """Return the moves into rolling contact: drives on, straight, matched speeds, load. No slip, hardly any heat."""
@@ -55,6 +58,7 @@ class SoakTo:
         self.at_most_s = at_most_s
         self.began_s = float("nan")
         self.since_s = float("inf")
+        self.shown_s = float("-inf")
         self.reached = False
 
     def step(self, ctx: Context) -> bool:
@@ -64,7 +68,9 @@ class SoakTo:
         ctx.demand.surface_c = self.target_c
         ctx.demand.freeze_heat = False
         surface = ctx.gates.surface.slow_c
-        ctx.progress.phase = f"soak {surface:.1f} of {self.target_c:.1f} degC"
+        if ctx.now >= self.shown_s:
+            self.shown_s = ctx.now + SHOW_S
+            ctx.progress.phase = f"soak {surface:.1f} of {self.target_c:.1f} degC"
         inside = abs(surface - self.target_c) <= self.within_k
         self.since_s = min(self.since_s, ctx.now) if inside else float("inf")
         self.reached = ctx.now - self.since_s >= self.for_s
@@ -104,6 +110,7 @@ class RestStep:
         self.moves = Sequence(Lift(), Turn(0.0, 0.0), Power(False))
         self.standing = False
         self.began_s = float("nan")
+        self.shown_s = float("-inf")
         self.late: Activity | None = None
         self.ask_when_late = ask_when_late
 
@@ -117,9 +124,10 @@ class RestStep:
             self.began_s = ctx.now
         waited = ctx.now - self.began_s
         surface, until = ctx.readings.surface_c, self.rest.until_c
-        ctx.progress.phase = (
-            f"rest {waited / 60:.0f} of {self.rest.at_least_s / 60:.0f} min, surface {surface:.1f} degC"
-        )
+        if ctx.now >= self.shown_s:
+            self.shown_s = ctx.now + SHOW_S
+            minutes = f"{waited / 60:.0f} of {self.rest.at_least_s / 60:.0f} min"
+            ctx.progress.phase = f"rest {minutes}, surface {surface:.1f} degC"
         # Resting only cools: a laboratory colder than `until` is not a reason to wait.
         cool = until is None or surface <= until + self.rest.within_k
         if waited >= self.rest.at_least_s and cool:
@@ -142,6 +150,7 @@ class CoolDown:
         self.moves = Sequence(Power(True), Lift(), Turn(creep_m_s, creep_m_s))
         self.turning = False
         self.began_s = float("nan")
+        self.shown_s = float("-inf")
 
     def step(self, ctx: Context) -> bool:
         """Done when cool, or out of time (the prompt to install follows and tells the temperature)."""
@@ -151,5 +160,7 @@ class CoolDown:
             return False
         if not isfinite(self.began_s):
             self.began_s = ctx.now
-        ctx.progress.phase = f"cool to {self.below_c:.0f} degC, hub {ctx.readings.hub_c:.1f} degC"
+        if ctx.now >= self.shown_s:
+            self.shown_s = ctx.now + SHOW_S
+            ctx.progress.phase = f"cool to {self.below_c:.0f} degC, hub {ctx.readings.hub_c:.1f} degC"
         return ctx.readings.hub_c < self.below_c or ctx.now - self.began_s > COOL_AT_MOST_S

@@ -24,6 +24,8 @@ def devices() -> Devices:
 
 def filled(devices: Devices, diameter_mm: float = 90.0, now: float = 1.0) -> Readings:
     readings = Readings()
+    for drive in devices.drives:
+        drive.news = True  # the tests set states by hand
     devices.fill(readings, now, diameter_mm)
     return readings
 

@@ -117,13 +117,13 @@ def test_an_average_that_was_never_fed_is_unknown() -> None:
 def test_the_rate_of_the_surface_is_found_from_its_readings() -> None:
     trend = SurfaceTrend()
     for i in range(60):
-        trend.update(20.0 + 0.5 * 0.2 * i, 0.2 * i)
+        trend.update(20.0 + 0.5 * 0.2 * i, 0.2 * i, 0.3)
     assert trend.rate_k_s == pytest.approx(0.5, rel=0.05)
 
 
 def test_a_repeated_reading_is_not_taken_twice() -> None:
     trend = SurfaceTrend()
     for _ in range(10):
-        trend.update(20.0, 1.0)
-    trend.update(30.0, 1.0)
+        trend.update(20.0, 1.0, 0.3)
+    trend.update(30.0, 1.0, 0.3)
     assert trend.fast_c == 20.0
