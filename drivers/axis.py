@@ -52,6 +52,7 @@ class AxisConfig:
     heartbeat_s: Annotated[float, "s"] = 0.05        # 0x1017: the drive's own
     consumer_heartbeat_s: Annotated[float, "s"] = 0.2    # 0x1016: how long the drive waits for ours
     rpdo_deadline_s: Annotated[float, "s"] = 0.0     # 0x1400:05; 0: off, the heartbeat watches
+    proves_watchdog: bool = True                     # takes part in the proof at arming; false: it cannot report 0x8130
 
     def __post_init__(self) -> None:
         for problem in self._problems():

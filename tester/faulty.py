@@ -180,8 +180,8 @@ class FaultyRun:
         """Let the operator ask for something."""
         run = self.run
         if action == "hold":
-            run.hold("operator")
+            run.request_hold()
         elif action == "release":
-            run.release()
+            run.request_release()
         else:
             run.request_stop(f"operator: {action}", fast=action == "fast stop")

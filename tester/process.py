@@ -90,6 +90,14 @@ class Readings:
     """No drive applies torque."""
     drive_fault: str = ""
     """First drive fault, loss or emergency, as text; empty while all are healthy."""
+    bus_fault: str = ""
+    """Which wire is gone (CAN adapter, serial line), as text; empty while all are there."""
+    foreign_master: str = ""
+    """First frame on the CAN bus that only another master sends, as text; empty while we are alone."""
+    device_fault: str = ""
+    """First Modbus device that refuses what it is asked or says that our commands do not come; empty = none."""
+    line_errors: float = 0.0
+    """Largest share of failed requests among the Modbus devices, of the last few seconds, 0..1."""
     yaw_reached: bool = False
     """Sideslip and camber drives report their targets reached."""
     safety_chain: bool = False
@@ -102,10 +110,14 @@ class Readings:
     moment_z_nm: float = NAN
     cell_valid: bool = False
     cell_at_s: float = NEVER
+    cell_changed_s: float = NEVER
+    """When a reading of the cell last differed from the one before."""
 
     surface_c: float = NAN
     surface_valid: bool = False
     surface_at_s: float = NEVER
+    surface_changed_s: float = NEVER
+    """When a reading of the thermometer last differed from the one before."""
     hub_c: float = NAN
     heat_percent: float = NAN
     jacket_valid: bool = False
@@ -152,3 +164,7 @@ class Setpoints:
     heat: bool = False
     """Jacket controller in run (True) or standby."""
     contactor: bool = False
+    power_off: bool = False
+    """Every power stage off at once: what is left when a drive does not stop or the press does not lift."""
+    jacket_silent: bool = False
+    """The jacket's setpoint is not renewed any more: its lease ends the heating when standby does not."""

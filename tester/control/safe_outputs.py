@@ -19,3 +19,22 @@ def safe_outputs(setpoints: Setpoints, rig: RigConfig, *, fast: bool) -> None:
     setpoints.wheel_rad_s = 0.0
     setpoints.belt_m_s = 0.0
     setpoints.quick_stop = fast
+
+
+def no_outputs(setpoints: Setpoints, rig: RigConfig) -> None:
+    """Set every command to zero and want no power: at rest."""
+    safe_outputs(setpoints, rig, fast=False)
+    setpoints.press_mm_s = 0.0
+    setpoints.enable = False
+    setpoints.power_off = False
+    setpoints.jacket_silent = False
+
+
+def mirror_emergency(setpoints: Setpoints, rig: RigConfig) -> None:
+    """Set every command to zero: the hardware has taken over, and nothing may start when it gives the power back.
+
+    The quick stop ends in power off by itself; the press wants no power, so that its spring lifts it.
+    """
+    safe_outputs(setpoints, rig, fast=True)
+    setpoints.press_mm_s = 0.0
+    setpoints.enable = False

@@ -14,22 +14,33 @@ class Mode(Enum):
     """Operating mode of the rig (safety concept, "States")."""
 
     IDLE = "idle"
+    ARMED = "armed"
+    """Every level was found clear; passed through on the way to RUN."""
     RUN = "run"
+    HOLD = "hold"
+    """Lifted, slip taken out, heat held, drives enabled: until the operator releases it."""
     STOPPING = "stopping"
     """Controlled stop: heat off, lift, both drives ramp down together."""
     COOLDOWN = "cooldown"
     """Unloaded creep, heat off, until the jacket is cool: a hot hub would bake one spot of a standing wheel."""
     FAST_STOP = "fast stop"
     """Lift, quick stop of both drives, heat off, contactor off: all in one scan."""
+    EMERGENCY = "emergency stop mirrored"
+    """The hardware's emergency stop is open: software has set all its commands to zero."""
     LATCHED = "latched"
     """Nothing moves until the cause is gone, the operator has acknowledged and the rig is armed again."""
 
 
 class Reaction(Enum):
-    """What a trip leads to."""
+    """What a level leads to that has stood for its delay. From the mildest to the hardest."""
 
+    WARN = "warning"
+    """An event in the journal."""
     CONTROLLED = "controlled stop"
     FAST = "fast stop"
+    POWER_OFF = "power off"
+    """A fast stop that has not worked: every power stage off."""
+    EMERGENCY = "emergency stop mirrored"
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,11 +55,26 @@ class Trip:
 
 @dataclass(frozen=True, slots=True)
 class Event:
-    """Something for the journal: a mode change, a trip, an acknowledgement."""
+    """Something for the journal: a mode change, a command, a trip, an acknowledgement."""
 
     at_s: float
     kind: str
     text: str
+
+
+@dataclass(slots=True)
+class StopProgress:
+    """The stop under way: when it began and how fast the drives were then."""
+
+    began_s: float = float("inf")
+    """When the rig left RUN, HOLD or COOLDOWN; infinity while no stop is under way."""
+    speed_m_s: float = 0.0
+    """The faster of wheel and belt then."""
+    fast_s: float = float("inf")
+    """When the quick stop began."""
+    fast_speed_m_s: float = 0.0
+    creeps: bool = False
+    """The wheel is meant to turn: cool-down."""
 
 
 @dataclass(slots=True)
@@ -61,16 +87,23 @@ class ControlState:
     mode: Mode = Mode.IDLE
     mode_since_s: float = 0.0
     trip: Trip | None = None
+    held: int = 0
+    """Levels that hold in this scan, a bit for each row of the interlock table in its order."""
+    tripped: int = 0
+    """Rows that have tripped (or warned, while their level stands) since the last acknowledgement."""
     pending_s: list[float] = field(default_factory=list[float])
-    """Since when each interlock's condition has held (inf = it does not hold), in the table's order."""
+    """Since when each interlock's level has held (inf = it does not hold), in the table's order."""
     events: list[Event] = field(default_factory=list[Event])
-    """Raised in this scan, in order; the engine takes them out before the outputs leave."""
+    """Raised since the last scan, in order; the engine takes them out before the outputs leave."""
     last_s: float = float("-inf")
     turning_since_s: float = float("inf")
     """Since when the wheel has been confirmed turning."""
+    stop: StopProgress = field(default_factory=StopProgress)
     stop_requested: str = ""
     cooled: bool = False
-    """The cool-down of this run is over, whether the jacket got cool or not."""
+    """The cool-down of this run is over (or not wanted), whether the jacket got cool or not."""
+    ack_until_s: float = float("-inf")
+    """An acknowledgement was given: it counts if every cause is gone by then."""
     hub_ceiling: list[tuple[float, float]] = field(default_factory=list[tuple[float, float]])
     """(time, hub setpoint) of the last ten minutes, falling ones only: the first is the highest (runaway limit)."""
 

@@ -2,44 +2,65 @@
 
 from __future__ import annotations
 
-from math import copysign, cos, inf, isfinite, radians
+from math import copysign, inf, isfinite
 
-from tester.control.interlocks import INTERLOCKS, STANDING_M_S, UNLOADED_N, View
-from tester.control.safe_outputs import safe_outputs
+from tester.control.interlocks import INTERLOCKS, WARNINGS
+from tester.control.levels import heat_levels, load_levels, motion_levels, process_levels, stop_levels
+from tester.control.permissives import CONFIRMED_M_S, Bounds, may_heat, may_load, may_move, rig_bounds
+from tester.control.safe_outputs import no_outputs
 from tester.control.state import ControlState, Event, Mode, Reaction, Trip
+from tester.control.stops import (
+    after_stop,
+    begin_fast,
+    begin_stop,
+    cool_outputs,
+    emergency_outputs,
+    stop_ended,
+    stop_outputs,
+)
+from tester.control.view import UNLOADED_N, View
 from tester.process import Demand, Press, Readings, Setpoints
 from tester.rig import RigConfig
 
-TURNING_CONFIRMED_S = 0.3
-"""Heat is allowed once the wheel has been seen turning this long [A]."""
 CEILING_WINDOW_S = 600.0
 """The runaway limit looks back this long (rulings, interlocks)."""
-STOP_TIMEOUT_S = 10.0
-"""A stop that has not reached standstill by then escalates [A]."""
+ACK_WAIT_S = 1.0
+"""An acknowledged drive has reset its fault by then, s [A]; a cause that still holds refuses the acknowledgement."""
+HEAT_NOT_OFF = "heat not off"
+"""The row after which the jacket's lease is left to run out."""
+COLD_K = 3.0
+"""A hub this near to ambient is cold: the rubber on it is, too (safety concept, "both at the start")."""
 
 # Bound once: a look-up on the enum class costs several times as much in every scan (CPython 3.11).
-_IDLE, _RUN, _STOPPING, _COOLDOWN, _FAST_STOP, _LATCHED = (
-    Mode.IDLE, Mode.RUN, Mode.STOPPING, Mode.COOLDOWN, Mode.FAST_STOP, Mode.LATCHED
+_IDLE, _RUN, _HOLD, _STOPPING, _COOLDOWN, _FAST_STOP, _EMERGENCY, _LATCHED = (
+    Mode.IDLE, Mode.RUN, Mode.HOLD, Mode.STOPPING, Mode.COOLDOWN, Mode.FAST_STOP, Mode.EMERGENCY, Mode.LATCHED
 )  # fmt: skip
-_LOAD = Press.LOAD
+_LOAD, _LIFT = Press.LOAD, Press.LIFT
+_AT_REST = frozenset({Mode.IDLE, Mode.ARMED, Mode.LATCHED})
+_WORKING = frozenset({Mode.RUN, Mode.HOLD})
 
 
 class Control:
     """The rig's control: holds its configuration and its state, and nothing else."""
 
-    def __init__(self, rig: RigConfig, state: ControlState, loss_ratios: tuple[float, float]) -> None:
+    def __init__(
+        self, rig: RigConfig, state: ControlState, loss_ratios: tuple[float, float], recipe: Bounds | None = None
+    ) -> None:
         """Bind configuration and state.
 
         ``loss_ratios``: steady hub-surface difference per kelvin above ambient, (lifted, in rolling contact).
+        ``recipe``: the most the recipe asks for; commands stay within it and the rig's own bounds.
         """
         self.rig = rig
         self.state = state
         self.loss_ratios = loss_ratios
+        self.bounds = rig_bounds(rig) if recipe is None else rig_bounds(rig).within(recipe)
         self._withdrawn = Demand()
-        """What is wanted in every mode but RUN: nothing. A stop is not watched against the load it takes off."""
-        self._conditions = tuple(row.condition for row in INTERLOCKS)
+        """What is wanted in every mode but RUN and HOLD: nothing. A stop is not watched against the load it lifts."""
+        self._held = Demand()
+        """What is wanted in HOLD."""
         self._delays = tuple(row.delay_s(rig) for row in INTERLOCKS)
-        self._view = View(state, rig)
+        self.view = View(state, rig)
         state.pending_s = [inf] * len(INTERLOCKS)
 
     def step(self, demand: Demand, readings: Readings, scan_s: float) -> Setpoints:
@@ -47,144 +68,266 @@ class Control:
         state, now = self.state, readings.now_s
         mode = state.mode
         if mode is not _RUN:
-            demand = self._withdrawn
-            demand.enabled = state.setpoints.enable
-        dt = min(max(now - state.last_s, 0.0), 0.2)
-        if mode is not _IDLE and mode is not _LATCHED:
-            self._watch(demand, readings, scan_s)
-            mode = state.mode
+            if mode is _HOLD:
+                demand = self._held
+            else:
+                demand = self._withdrawn
+                demand.enabled = state.setpoints.enable
+        dt = now - state.last_s
+        if not (0.0 <= dt <= 0.2):
+            dt = 0.2 if dt > 0.2 else 0.0
+        self._watch(demand, readings, scan_s, dt)
+        mode = state.mode
         state.last_s = now
         if mode is _RUN:
             self._run(demand, readings, dt)
-        elif mode is _STOPPING or mode is _FAST_STOP:
-            self._stop(readings, now)
-        elif mode is _COOLDOWN:
-            self._cool_down(readings, now)
         else:
-            self._rest_commands()
+            self._other(mode, readings, dt)
         return state.setpoints
+
+    def _other(self, mode: Mode, readings: Readings, dt: float) -> None:
+        state, view = self.state, self.view
+        if mode is _HOLD:
+            self._hold(readings, dt)
+        elif mode is _STOPPING or mode is _FAST_STOP:
+            stop_outputs(state, view)
+            if stop_ended(state, view):
+                after_stop(state, view)
+        elif mode is _EMERGENCY:
+            emergency_outputs(state, view)
+            if stop_ended(state, view):
+                after_stop(state, view)
+        elif mode is _COOLDOWN:
+            if cool_outputs(state, view):
+                begin_stop(state, view, readings.now_s, self.bounds)
+        else:
+            no_outputs(state.setpoints, self.rig)
+            if mode is _LATCHED and state.ack_until_s > -inf:
+                self._acknowledge(readings.now_s)
 
     # -- requests -------------------------------------------------------------------------------------------
 
-    def start(self, now: float) -> str:
-        """Enter RUN; return "" or why not."""
-        if self.state.mode is not Mode.IDLE:
-            return f"the rig is in {self.state.mode.value}, not idle"
-        self.state.stop_requested = ""
-        self.state.cooled = False
-        self.state.last_s = now
-        self.state.enter(Mode.RUN, now, "start")
+    def start(self, readings: Readings) -> str:
+        """Arm and enter RUN: one arming edge. Return "" or which levels stand in the way.
+
+        ``readings`` are of now; every level of the table is evaluated on them.
+        """
+        state, now = self.state, readings.now_s
+        if state.mode is not _IDLE:
+            return f"the rig is in {state.mode.value}, not idle"
+        state.last_s = now
+        state.stop_requested = ""
+        state.cooled = False
+        state.stop.began_s = inf
+        state.held = state.tripped = 0
+        state.pending_s[:] = [inf] * len(INTERLOCKS)
+        demand = self._withdrawn
+        demand.enabled = False
+        self.view.look(demand, readings, 0.0, 0.0)
+        holding = names_of(self._levels() & ~WARNINGS)
+        cold = abs(readings.hub_c - self.rig.ambient_c) <= COLD_K
+        if cold and not abs(readings.surface_c - readings.hub_c) <= self.rig.interlocks.start_k:
+            holding.append(f"thermometer at {readings.surface_c:.1f} degC, hub cold at {readings.hub_c:.1f} degC")
+        if holding:
+            return "not armed: " + ", ".join(holding)
+        state.enter(Mode.ARMED, now, "every level clear")
+        state.enter(_RUN, now, "start")
         return ""
 
-    def request_stop(self, now: float, why: str, *, fast: bool = False) -> None:
-        """Begin a controlled (or fast) stop; idempotent, and never slows one that is under way."""
+    def request_hold(self, demand: Demand, now: float, why: str) -> str:
+        """Hold a run: lift, take the slip out, keep the heat. Return "" or why not; idempotent."""
         state = self.state
-        if state.mode in (Mode.IDLE, Mode.LATCHED, Mode.FAST_STOP):
+        if state.mode is _HOLD:
+            return ""
+        if state.mode is not _RUN:
+            return f"nothing runs that could be held: the rig is in {state.mode.value}"
+        held = self._held
+        held.enabled = demand.enabled
+        held.press, held.load_n, held.quick_touch = _LIFT, 0.0, False
+        held.wheel_speed_m_s = held.belt_speed_m_s = demand.wheel_speed_m_s
+        held.sideslip_deg, held.camber_deg = demand.sideslip_deg, demand.camber_deg
+        held.surface_c, held.freeze_heat = demand.surface_c, False
+        state.enter(_HOLD, now, why)
+        return ""
+
+    def request_release(self, now: float, why: str) -> str:
+        """Go on after a hold; return "" or why not."""
+        if self.state.mode is not _HOLD:
+            return f"nothing to release: the rig is in {self.state.mode.value}"
+        self.state.enter(_RUN, now, why)
+        return ""
+
+    def request_stop(self, now: float, why: str, *, fast: bool = False, cool: bool = True) -> None:
+        """Begin a controlled (or fast) stop; idempotent, and never slows one that is under way.
+
+        ``cool``: the wheel goes on turning, unloaded, while the jacket is hot.
+        """
+        state = self.state
+        mode = state.mode
+        if not cool:
+            state.cooled = True
+        if mode in _AT_REST or mode is _FAST_STOP or mode is _EMERGENCY:
             return
         state.stop_requested = state.stop_requested or why
+        if mode is not _STOPPING:
+            begin_stop(state, self.view, now, self.bounds)
         if fast:
-            state.enter(Mode.FAST_STOP, now, why)
-        elif state.mode is not Mode.STOPPING:
-            state.enter(Mode.STOPPING, now, why)
+            begin_fast(state, self.view, now, self.bounds)
+            state.enter(_FAST_STOP, now, why)
+        elif mode in _WORKING or (mode is _COOLDOWN and state.cooled):
+            state.enter(_STOPPING, now, why)
 
-    def acknowledge(self, now: float) -> str:
-        """Leave LATCHED for IDLE; return "" or why not."""
-        if self.state.mode is not Mode.LATCHED:
-            return "nothing to acknowledge"
-        self.state.trip = None
-        self.state.enter(Mode.IDLE, now, "acknowledged")
+    def request_ack(self, now: float) -> str:
+        """Acknowledge a latched trip: IDLE follows once every cause is gone. Return "" or why not; idempotent."""
+        state = self.state
+        if state.mode is not _LATCHED:
+            return f"nothing to acknowledge: the rig is in {state.mode.value}"
+        if state.ack_until_s < now:
+            state.ack_until_s = now + ACK_WAIT_S
         return ""
+
+    def _acknowledge(self, now: float) -> None:
+        """Leave LATCHED where nothing holds any more; refuse when something still does after a while."""
+        state = self.state
+        holding = state.held & ~WARNINGS
+        if not holding:
+            state.ack_until_s = -inf
+            state.trip = None
+            state.tripped = 0
+            state.enter(_IDLE, now, "acknowledged")
+        elif now > state.ack_until_s:
+            state.ack_until_s = -inf
+            names = ", ".join(names_of(holding))
+            state.events.append(Event(now, "acknowledgement", f"refused, still there: {names}"))
 
     # -- interlocks -----------------------------------------------------------------------------------------
 
-    def _watch(self, demand: Demand, readings: Readings, scan_s: float) -> None:
+    def _watch(self, demand: Demand, readings: Readings, scan_s: float, dt: float) -> None:
         """Evaluate every row of the table: a level that has held for its delay trips."""
-        view, pending = self._view, self.state.pending_s
-        view.look(demand, readings, scan_s)
-        for i, condition in enumerate(self._conditions):
-            if condition(view):
-                self._hold(i, readings)
-            else:
-                pending[i] = inf
-
-    def _hold(self, i: int, readings: Readings) -> None:
-        """Note that the condition of row ``i`` holds, and trip when it has for its delay."""
-        pending, now = self.state.pending_s, readings.now_s
-        if pending[i] > now:
-            pending[i] = now
-        if now - pending[i] >= self._delays[i] - 1e-9:
-            row = INTERLOCKS[i]
-            self._trip(Trip(now, row.name, row.cause + _detail(readings), row.reaction))
-
-    def _trip(self, trip: Trip) -> None:
         state = self.state
+        self.view.look(demand, readings, scan_s, dt)
+        held = self._levels()
+        if held or state.held:
+            self._time(held, readings)
+
+    def _levels(self) -> int:
+        view = self.view
+        held = process_levels(view) | motion_levels(view) | load_levels(view) | heat_levels(view)
+        if view.stopped_s >= 0.0:
+            held |= stop_levels(view)
+        return held
+
+    def _time(self, held: int, readings: Readings) -> None:
+        """Note since when levels hold, and trip those that have for their delay."""
+        state, now, delays = self.state, readings.now_s, self._delays
+        pending = state.pending_s
+        gone = state.held & ~held
+        state.held = held
+        state.tripped &= ~(gone & WARNINGS)
+        while gone:
+            lowest = gone & -gone
+            gone ^= lowest
+            pending[lowest.bit_length() - 1] = inf
+        due = held & ~state.tripped
+        while due:
+            lowest = due & -due
+            due ^= lowest
+            i = lowest.bit_length() - 1
+            if pending[i] > now:
+                pending[i] = now
+            if now - pending[i] >= delays[i] - 1e-9:
+                self._trip(i, lowest, readings)
+
+    def _trip(self, i: int, own: int, readings: Readings) -> None:
+        """Act on a row that is due: warn, or stop by its reaction. At rest nothing is left to stop."""
+        state, row, now = self.state, INTERLOCKS[i], readings.now_s
+        if row.reaction is Reaction.WARN:
+            state.tripped |= own
+            state.events.append(Event(now, "warning", f"{row.name}: {row.cause}"))
+            return
+        if state.mode in _AT_REST:
+            return
+        state.tripped |= own
+        text = row.cause + _detail(readings)
         if state.trip is None:
-            state.trip = trip
-            state.events.append(Event(trip.at_s, "trip", f"{trip.name}: {trip.text}"))
-        if trip.reaction is Reaction.FAST and state.mode is not Mode.FAST_STOP:
-            state.enter(Mode.FAST_STOP, trip.at_s, trip.name)
-        elif trip.reaction is Reaction.CONTROLLED and state.mode is Mode.RUN:
-            state.enter(Mode.STOPPING, trip.at_s, trip.name)
+            state.trip = Trip(now, row.name, text, row.reaction)
+            state.events.append(Event(now, "trip", f"{row.name}: {text}"))
+        else:
+            state.events.append(Event(now, "alarm", f"{row.name}: {text}"))
+        self._react(row.reaction, now, row.name)
+
+    def _react(self, reaction: Reaction, now: float, why: str) -> None:
+        state, mode = self.state, self.state.mode
+        if mode in _WORKING or mode is _COOLDOWN:
+            begin_stop(state, self.view, now, self.bounds)
+        if reaction is Reaction.EMERGENCY:
+            if mode is not _EMERGENCY:
+                begin_fast(state, self.view, now, self.bounds)
+                state.enter(_EMERGENCY, now, why)
+        elif reaction is Reaction.CONTROLLED:
+            if mode in _WORKING:
+                state.enter(_STOPPING, now, why)
+            elif mode is _COOLDOWN:
+                state.stop.creeps = True
+        elif mode is not _EMERGENCY:
+            begin_fast(state, self.view, now, self.bounds)
+            if mode is not _FAST_STOP:
+                state.enter(_FAST_STOP, now, why)
+        if reaction is Reaction.POWER_OFF:
+            state.setpoints.power_off = True
+        if why == HEAT_NOT_OFF:
+            state.setpoints.jacket_silent = True
 
     # -- modes ----------------------------------------------------------------------------------------------
 
     def _run(self, demand: Demand, readings: Readings, dt: float) -> None:
-        out, state, limits = self.state.setpoints, self.state, self.rig.limits
-        out.enable = demand.enabled
+        out, state, bounds = self.state.setpoints, self.state, self.bounds
+        out.enable = demand.enabled and may_move(readings)
         out.quick_stop = False
-        out.contactor = True
         out.sideslip_deg, out.camber_deg = self._yaw(demand, readings)
-        wheel = _bounded(demand.wheel_speed_m_s, limits.wheel_speed_m_s)
-        out.belt_m_s = _bounded(demand.belt_speed_m_s, limits.belt_speed_m_s)
+        wheel = _bounded(demand.wheel_speed_m_s, bounds.wheel_speed_m_s)
+        out.belt_m_s = _bounded(demand.belt_speed_m_s, bounds.belt_speed_m_s)
         out.wheel_rad_s = wheel / (readings.diameter_mm * 0.5e-3) if readings.diameter_mm > 1.0 else 0.0
         load = self.rig.loops.load
-        if demand.press is _LOAD and not self._may_load(demand, readings):
-            out.press_mm_s = -load.lift_speed_mm_s if readings.force_z_n > UNLOADED_N else 0.0
-        else:
-            out.press_mm_s = state.load.velocity(demand, readings, dt, load, self.rig.axes.press)
         if not readings.drives_enabled:
             out.press_mm_s = 0.0
+        elif demand.press is _LOAD and not may_load(state, demand, readings, self.rig, bounds.load_n):
+            out.press_mm_s = -load.lift_speed_mm_s if not (readings.force_z_n <= UNLOADED_N) else 0.0
+        else:
+            out.press_mm_s = state.load.velocity(demand, readings, dt, load, self.rig.axes.press)
         self._heat(demand, readings)
+
+    def _hold(self, readings: Readings, dt: float) -> None:
+        """Command what a hold wants; one that lasts too long ends in a controlled stop."""
+        state, now = self.state, readings.now_s
+        if now - state.mode_since_s > self.rig.interlocks.hold_at_most_s:
+            self.request_stop(now, "held too long")
+            stop_outputs(state, self.view)
+        else:
+            self._run(self._held, readings, dt)
 
     def _yaw(self, demand: Demand, readings: Readings) -> tuple[float, float]:
         """Sideslip and camber move only unloaded; under load they stay where they were commanded."""
-        out, limits = self.state.setpoints, self.rig.limits
+        out, bounds = self.state.setpoints, self.bounds
         if not readings.force_z_n < UNLOADED_N:
             return out.sideslip_deg, out.camber_deg
-        return _bounded(demand.sideslip_deg, limits.sideslip_deg), _bounded(demand.camber_deg, limits.camber_deg)
-
-    def _may_load(self, demand: Demand, readings: Readings) -> bool:
-        """Load only with both speeds confirmed, their difference bounded, the angles in place and the data fresh."""
-        r, limits = readings, self.rig.limits
-        confirmed = r.wheel_speed_m_s > 2.0 * STANDING_M_S and r.belt_speed_m_s > 2.0 * STANDING_M_S
-        lateral = abs(r.wheel_speed_m_s * cos(radians(r.sideslip_deg)) - r.belt_speed_m_s)
-        fresh = r.cell_valid and r.now_s - r.cell_at_s <= self.rig.interlocks.stale_cell_s
-        in_contact = self.state.load.in_contact
-        return (
-            confirmed
-            and fresh
-            and (in_contact or r.yaw_reached)
-            and lateral <= self.rig.interlocks.max_slip_m_s
-            and demand.load_n <= limits.load_n
-        )
+        return _bounded(demand.sideslip_deg, bounds.sideslip_deg), _bounded(demand.camber_deg, bounds.camber_deg)
 
     def _heat(self, demand: Demand, readings: Readings) -> None:
         out, state, loop, now = self.state.setpoints, self.state, self.rig.loops.heat, readings.now_s
-        if not readings.wheel_speed_m_s > 2.0 * STANDING_M_S:
+        if not readings.wheel_speed_m_s > CONFIRMED_M_S:
             state.turning_since_s = inf
         elif state.turning_since_s > now:
             state.turning_since_s = now
         wanted = isfinite(demand.surface_c)
-        allowed = (
-            now - state.turning_since_s >= TURNING_CONFIRMED_S and readings.jacket_valid and readings.surface_valid
-        )
-        out.heat = wanted and allowed
+        out.heat = out.contactor = wanted and may_heat(state, readings, self.rig.interlocks)
         if not wanted:
             out.hub_c = loop.hub_min_c
         elif not demand.freeze_heat:
-            target = min(demand.surface_c, self.rig.limits.surface_c)
+            target = min(demand.surface_c, self.bounds.surface_c)
             ratio = self.loss_ratios[1 if state.load.in_contact else 0]
-            out.hub_c = state.heat.update(now, target, readings.surface_c, self.rig.ambient_c, ratio, loop)
+            hub_c = state.heat.update(now, target, readings.surface_c, self.rig.ambient_c, ratio, loop)
+            out.hub_c = min(hub_c, self.bounds.hub_c)
         self._note_ceiling(now, out.hub_c if out.heat else loop.hub_min_c)
 
     def _note_ceiling(self, now: float, setpoint_c: float) -> None:
@@ -196,51 +339,10 @@ class Control:
         while ceiling[0][0] < now - CEILING_WINDOW_S:
             ceiling.pop(0)
 
-    def _stop(self, readings: Readings, now: float) -> None:
-        state, out = self.state, self.state.setpoints
-        fast = state.mode is Mode.FAST_STOP
-        loaded = not readings.force_z_n < UNLOADED_N
-        matched = abs(readings.slip_m_s) < 2.0 * STANDING_M_S
-        wheel_rad_s, still_slipping = out.wheel_rad_s, loaded and not matched and now - state.mode_since_s < 0.5
-        safe_outputs(out, self.rig, fast=fast)
-        if not fast and still_slipping and readings.wheel_speed_m_s > 0.0:
-            # Slip to zero first: with equal decelerations the slower belt would stand while the wheel still turns.
-            out.wheel_rad_s = wheel_rad_s
-            out.belt_m_s = _bounded(readings.wheel_speed_m_s, self.rig.limits.belt_speed_m_s)
-        lifted = readings.press_mm <= state.load.lifted_mm(self.rig.loops.load) + 0.2
-        if lifted:
-            out.press_mm_s = 0.0
-        standing = abs(readings.wheel_speed_m_s) < STANDING_M_S and abs(readings.belt_speed_m_s) < STANDING_M_S
-        if (standing and lifted and not loaded) or now - state.mode_since_s > STOP_TIMEOUT_S:
-            self._after_stop(readings, now)
 
-    def _after_stop(self, readings: Readings, now: float) -> None:
-        state, interlocks = self.state, self.rig.interlocks
-        if state.mode is Mode.FAST_STOP or state.trip is not None:
-            state.enter(Mode.LATCHED, now, "standstill")
-        elif readings.hub_c > interlocks.cooldown_hub_c and readings.drives_enabled and not state.cooled:
-            state.enter(Mode.COOLDOWN, now, "jacket hot")
-        else:
-            state.enter(Mode.IDLE, now, "standstill")
-        if state.mode is not Mode.COOLDOWN:
-            self._rest_commands()
-
-    def _cool_down(self, readings: Readings, now: float) -> None:
-        state, out, interlocks = self.state, self.state.setpoints, self.rig.interlocks
-        safe_outputs(out, self.rig, fast=False)
-        out.press_mm_s = 0.0
-        cool = readings.hub_c <= interlocks.cooldown_hub_c
-        if cool or now - state.mode_since_s > interlocks.cooldown_at_most_s:
-            state.cooled = True
-            state.enter(Mode.STOPPING, now, "cooled down" if cool else "cool-down time over")
-            return
-        out.wheel_rad_s = interlocks.cooldown_speed_m_s / (readings.diameter_mm * 0.5e-3)
-
-    def _rest_commands(self) -> None:
-        out = self.state.setpoints
-        safe_outputs(out, self.rig, fast=False)
-        out.press_mm_s = 0.0
-        out.enable = False
+def names_of(levels: int) -> list[str]:
+    """Return the names of the rows whose bits are set."""
+    return [row.name for i, row in enumerate(INTERLOCKS) if levels >> i & 1]
 
 
 def _bounded(value: float, limit: float) -> float:
@@ -257,4 +359,9 @@ def _detail(readings: Readings) -> str:
         f" belt {readings.belt_speed_m_s:.3f} m/s,"
         f" surface {readings.surface_c:.1f} degC, hub {readings.hub_c:.1f} degC)"
     )
-    return f" [{readings.drive_fault}]{text}" if readings.drive_fault else text
+    said = "; ".join(
+        said
+        for said in (readings.drive_fault, readings.bus_fault, readings.foreign_master, readings.device_fault)
+        if said
+    )
+    return f" [{said}]{text}" if said else text

@@ -23,6 +23,7 @@ from tester.engine.devices import Axes, Devices
 from tester.engine.engine import Engine
 from tester.engine.executor import Executor
 from tester.engine.gates import Gates
+from tester.engine.plan_bounds import plan_bounds
 from tester.engine.prompts import Prompts
 from tester.engine.results import StoredResults
 from tester.engine.run import Run
@@ -99,7 +100,7 @@ def build_run(
     devices = build_devices(rig, ports)
     load = LoadLoop()
     state = ControlState(Setpoints(), load, HeatLoop(rig.loops.heat.hub_min_c))
-    control = Control(rig, state, loss_ratios(rig))
+    control = Control(rig, state, loss_ratios(rig), plan_bounds(plan, rig))
     geometry = rig.geometry
     ctx = Context(
         rig=rig,
@@ -113,7 +114,8 @@ def build_run(
         wheel=WheelLife(installed_mm=geometry.wheel_diameter_mm, width_mm=geometry.wheel_width_mm),
         contact=load,
         ambient_c=rig.ambient_c,
+        wheel_changed=control.view.wheel_changed,
     )
     executor = Executor(plan, StoredResults(recorder), hardware=not rig.simulated)
     engine = Engine(devices, control, executor, ctx, Sampler(recorder))
-    return Run(Connector(devices), engine)
+    return Run(Connector(devices, rig), engine)

@@ -61,6 +61,10 @@ class Results(Protocol):
         """Reduce and commit a repeat."""
         ...
 
+    def void_repeat(self, ctx: Context, key: int, reason: str) -> None:
+        """Record that a repeat was cut off; a further attempt follows."""
+        ...
+
     def finish_condition(self, ctx: Context, step: ConditionStep, end: ConditionEnd) -> str:
         """Sum a condition up from its repeats and commit it; return a line for people."""
         ...
@@ -82,11 +86,25 @@ class MeasureCondition:
         self.soak: SoakTo | None = None
         self.soaked = False
         self.repeat = 0
+        self.attempt = 1
         self.key = 0
         self.measuring: MeasureRepeat | None = None
         self.outcome: RepeatOutcome | None = None
         self.offset_k = float("nan")
         self.failed = ""
+
+    def resume(self, ctx: Context) -> None:
+        """Condition again after a hold; a repeat that was cut off is void, and done again from its tare."""
+        if self.outcome is not None:
+            return  # measured to its end, and on its way to the disk
+        if self.measuring is not None:
+            self.results.void_repeat(ctx, self.key, "held by the operator")
+            ctx.journal.event(ctx.now, "repeat", f"repeat {self.repeat}: void, held by the operator")
+            self.measuring = None
+            self.repeat -= 1
+            self.attempt += 1
+        self.before = self.soak = None
+        self.soaked = False
 
     def step(self, ctx: Context) -> bool:
         """Advance by one scan; done when the condition is committed."""
@@ -110,11 +128,14 @@ class MeasureCondition:
         step, sp = self.condition, self.condition.setpoint
         if self.before is None or self.soak is None:
             pulsed = abs(sp.slip_velocity_m_s) > 1e-9 or sp.sideslip_deg != 0.0 or sp.camber_deg != 0.0
-            self.offset_k = ctx.rig.loops.heat.rolling_offset_k
+            if not isfinite(self.offset_k):
+                self.offset_k = ctx.rig.loops.heat.rolling_offset_k
             target = sp.temperature_c - (self.offset_k if pulsed else 0.0)
             within = soak_within_k(step.soak, sp.temperature_c, ctx.ambient_c, step.temperature_band_k)
             self.soak = SoakTo(target, within, step.soak.for_s, step.soak.at_most_s)
-            self.before = Sequence(*wear_check(step, sp.wheel_speed_m_s), roll(sp.wheel_speed_m_s, sp.load_n))
+            # A condition that goes on after a hold has had its check.
+            check = wear_check(step, sp.wheel_speed_m_s) if not self.repeat and self.attempt == 1 else ()
+            self.before = Sequence(*check, roll(sp.wheel_speed_m_s, sp.load_n))
         ctx.demand.surface_c = self.soak.target_c
         ctx.demand.freeze_heat = False
         if self.before.parts:
@@ -132,8 +153,8 @@ class MeasureCondition:
 
     def _begin(self, ctx: Context) -> None:
         self.repeat += 1
-        ctx.attendant.begin_repeat(self.condition.row, self.repeat, 1)
-        self.key = self.results.begin_repeat(ctx, self.condition, self.repeat, 1)
+        ctx.attendant.begin_repeat(self.condition.row, self.repeat, self.attempt)
+        self.key = self.results.begin_repeat(ctx, self.condition, self.repeat, self.attempt)
         ctx.repeat_key = self.key
         self.measuring = MeasureRepeat(self.condition, self.reference_tare, self.offset_k)
         ctx.progress.revolutions_wanted = self.condition.window.revolutions or 0.0
@@ -151,6 +172,7 @@ class MeasureCondition:
         if not self.outcome.ticket.done:
             return False
         measured, self.measuring, self.outcome = self.measuring, None, None
+        self.attempt = 1
         if measured.ending is Ending.ZERO_DRIFT:
             self.failed = measured.detail
         if measured.ending in (Ending.ZERO_DRIFT, Ending.CANNOT_HOLD, Ending.NOT_REACHED):

@@ -1,36 +1,52 @@
-"""Bring the rig up: configure every drive, home the position axes, hear every Modbus device."""
+"""Bring the rig up: listen, configure every drive, home the position axes, hear every device, show what must hold."""
 
 from __future__ import annotations
 
 from enum import Enum
 
+from drivers.ports import BusLost
+from tester.engine.arming import Proof
 from tester.engine.devices import Devices
+from tester.rig import RigConfig
 
 CONNECT_S = 0.01
 """Period of the ticks while connecting, s: an SDO exchange takes half a millisecond on the wire."""
 TIMEOUT_S = 90.0
 """Everything must be up by then; homing of a slow axis takes the most [A]."""
+RELEASE_S = 3.0
+"""After a failure, drives that were configured are released by then [A]."""
 
 
 class Stage(Enum):
     """How far the connection is."""
 
+    LISTEN = "listen for another master"
     CONFIGURE = "configure drives"
     HOME = "home position axes"
-    LISTEN = "hear every device"
+    HEAR = "hear every device"
+    PROVE = "try out the drives' watchdogs"
+    RELEASE = "release the drives"
     READY = "ready"
     FAILED = "failed"
+
+
+_SCANNING = frozenset({Stage.HOME, Stage.HEAR, Stage.PROVE, Stage.RELEASE})
 
 
 class Connector:
     """Drives the connection, tick by tick."""
 
-    def __init__(self, devices: Devices) -> None:
-        """Nothing is sent before the first ``tick``."""
+    def __init__(self, devices: Devices, rig: RigConfig) -> None:
+        """Nothing is sent before the first ``tick``, and on the CAN bus not before the listening is over."""
         self.devices = devices
-        self.stage = Stage.CONFIGURE
+        self.rig = rig
+        self.stage = Stage.LISTEN
         self.failure = ""
+        self.shown = ""
+        """What the proof has shown; a line for the journal."""
+        self._proof: Proof | None = None
         self._started_s: float | None = None
+        self._released_s: float | None = None
 
     @property
     def finished(self) -> bool:
@@ -38,42 +54,103 @@ class Connector:
         return self.stage in (Stage.READY, Stage.FAILED)
 
     def tick(self, now: float) -> float:
-        """Do what is due at ``now``; return when to be called again (s)."""
+        """Do what is due at ``now``; return when to be called again (s). Raises BusLost."""
         devices = self.devices
-        devices.receive(now)
         if self._started_s is None:
             self._started_s = now
-            for drive in devices.drives:
-                devices.master.start(drive, drive.connect())
-        self._advance(now)
-        devices.transmit(now, scan=self.stage in (Stage.HOME, Stage.LISTEN))
+        devices.receive(now)
+        if self.stage is Stage.RELEASE:
+            self._release(now)
+        else:
+            self._advance(now, now - self._started_s)
+        if self.stage is Stage.LISTEN:
+            devices.transmit_lines(now)
+        else:
+            devices.transmit(now, scan=self.stage in _SCANNING)
+        if devices.lost:
+            raise BusLost(devices.lost)
         return now + CONNECT_S
 
-    def _advance(self, now: float) -> None:
+    def abort(self, why: str) -> None:
+        """Give up: whatever moves stops, and drives that were configured are released."""
+        if not self.finished and self.stage is not Stage.RELEASE:
+            self._fail(why)
+
+    def _advance(self, now: float, elapsed: float) -> None:
         devices = self.devices
-        busy = any(devices.master.busy(drive) for drive in devices.drives)
         refused = devices.refused()
-        assert self._started_s is not None
         if refused:
             self._fail(refused)
-        elif self.stage is Stage.CONFIGURE and not busy:
+        elif devices.master.foreign_master:
+            self._fail(f"another CANopen master is sending on this bus: {devices.master.foreign_frame}")
+        elif elapsed > TIMEOUT_S:
+            self._fail(f"not up after {TIMEOUT_S:g} s: {self._missing()}")
+        elif self.stage is Stage.LISTEN:
+            self._listen(elapsed)
+        elif not any(devices.master.busy(drive) for drive in devices.drives):
+            self._next(now)
+
+    def _listen(self, elapsed: float) -> None:
+        if elapsed < self.rig.arming.listen_s:
+            return
+        devices = self.devices
+        for drive in devices.drives:
+            devices.master.start(drive, drive.connect(self.rig.can.node))
+        self.stage = Stage.CONFIGURE
+
+    def _next(self, now: float) -> None:
+        """Go on: no conversation with a drive is under way."""
+        devices = self.devices
+        if self.stage is Stage.CONFIGURE:
             devices.master.sync = True
             for drive in devices.drives:
                 if drive.config.mode == "position":
                     devices.master.start(drive, drive.home())
             self.stage = Stage.HOME
-        elif self.stage is Stage.HOME and not busy:
-            self.stage = Stage.LISTEN
-        elif self.stage is Stage.LISTEN and devices.answering():
+        elif self.stage is Stage.HOME:
+            self.stage = Stage.HEAR
+        elif self.stage is Stage.HEAR and devices.answering():
+            self._proof = Proof(devices, self.rig)
+            self.stage = Stage.PROVE
+        elif self.stage is Stage.PROVE and self._proof is not None:
+            self._prove(self._proof, now)
+
+    def _prove(self, proof: Proof, now: float) -> None:
+        # The lease of a jacket that a program before us left behind is renewed; it stays in standby.
+        self.devices.jacket.set_setpoint(self.rig.loops.heat.hub_min_c)
+        if not proof.done:
+            proof.step(now)
+        if proof.failure:
+            self._fail(f"not armed: {proof.failure}")
+        elif proof.done:
+            self.shown = proof.proven()
             self.stage = Stage.READY
-        elif devices.master.foreign_master:
-            self._fail("another CANopen master is sending on this bus")
-        elif now - self._started_s > TIMEOUT_S:
-            self._fail(f"not up after {TIMEOUT_S:g} s: {self._missing()}")
+
+    # -- giving up ------------------------------------------------------------------------------------------
 
     def _fail(self, why: str) -> None:
-        self.stage = Stage.FAILED
         self.failure = why
+        if self.stage is Stage.LISTEN:
+            self.stage = Stage.FAILED
+            return
+        if self._proof is not None:
+            self._proof.stop()
+        master = self.devices.master
+        for drive in self.devices.drives:
+            master.cancel(drive)
+        self._released_s = None
+        self.stage = Stage.RELEASE
+
+    def _release(self, now: float) -> None:
+        """Let go of every drive that was configured, so that none takes our end for a fault."""
+        devices, master = self.devices, self.devices.master
+        if self._released_s is None:
+            self._released_s = now
+            for drive in devices.drives:
+                if drive.connected:
+                    master.start(drive, drive.release())
+        elif not any(master.busy(drive) for drive in devices.drives) or now - self._released_s > RELEASE_S:
+            self.stage = Stage.FAILED
 
     def _missing(self) -> str:
         """Name what has not answered."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from math import pi
 from typing import Protocol
@@ -100,6 +101,10 @@ class Progress:
     burst: int = 0
 
 
+def nothing_to_tell(now: float) -> None:
+    """Take note of nothing: a bench without control."""
+
+
 @dataclass(slots=True)
 class Context:
     """One per run; activities read and write it, nothing else."""
@@ -118,6 +123,8 @@ class Context:
     """The press loop: whether it is in contact, and where the wheel was touched."""
     ambient_c: float
     """Air temperature at the rig, degC."""
+    wheel_changed: Callable[[float], None] = nothing_to_tell
+    """Tells control that another wheel is on the rig, at ambient temperature (s)."""
     now: float = 0.0
     dt: float = 0.0
     moving: bool = False

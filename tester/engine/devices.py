@@ -15,8 +15,9 @@ from drivers.ir_thermometer import IrThermometer
 from drivers.jacket import HeatingJacket
 from drivers.load_cell import LoadCell
 from drivers.modbus import ModbusLink
-from drivers.ports import CanPort, ForeseeingPort, LinePort
+from drivers.ports import BusLost, CanPort, ForeseeingPort, LinePort
 from drivers.servo import ServoDrive
+from tester.engine.inspection import Inspector
 from tester.process import NEVER, Readings, Setpoints
 
 INPUT_SAFETY_CHAIN = 1 << 16
@@ -27,7 +28,7 @@ OUTPUT_CONTACTOR = 1 << 16
 
 # Bound once: a look-up on the enum class costs several times as much in every scan (CPython 3.11).
 _OPERATING, _FAULT_REACTION, _FAULT = State.OPERATION_ENABLED, State.FAULT_REACTION, State.FAULT
-_ENABLED, _DISABLED, _QUICK_STOP = Goal.ENABLED, Goal.DISABLED, Goal.QUICK_STOP
+_ENABLED, _DISABLED, _QUICK_STOP, _FREE = Goal.ENABLED, Goal.DISABLED, Goal.QUICK_STOP, Goal.FREE
 _RADIANS_PER_DEGREE = pi / 180.0
 _TURN = 2.0 * pi
 
@@ -65,12 +66,20 @@ class Devices:
     news: bool = True
     """A drive's state, an input or an emergency is new in this scan."""
     _goal: Goal = Goal.DISABLED
+    _wanted: Goal = Goal.DISABLED
     _last_angle_s: float = NEVER
     _foreseeing: ForeseeingPort | None = field(init=False)
+    lost: str = ""
+    """Why a wire is gone. It is never used again: what waits in its queues must not be sent later."""
+    _can_alive: bool = True
+    _cell_counts: tuple[int, int, int, int] = (0, 0, 0, 0)
+    _surface_counts: int = 0
+    _inspector: Inspector = field(init=False)
 
     def __post_init__(self) -> None:
         """Fix the drives' order, and see whether the load cell's line is a simulated one."""
         self.drives = self.axes.present()
+        self._inspector = Inspector(self.cell, self.thermometer, self.jacket)
         self._foresee()
 
     def _foresee(self) -> None:
@@ -86,24 +95,51 @@ class Devices:
         self._foresee()
 
     def receive(self, now: float) -> None:
-        """Take in everything that arrived."""
-        frames = self.can.receive(now)
-        if frames:
-            self.master.feed(frames, now)
+        """Take in everything that arrived; a wire that is lost is left alone from then on (``lost`` says why)."""
+        if self._can_alive:
+            try:
+                frames = self.can.receive(now)
+            except BusLost as error:
+                self._lose_can(error)
+            else:
+                if frames:
+                    self.master.feed(frames, now)
         for port, link in self.lines:
-            chunks = port.read(now)
+            try:
+                chunks = port.read(now)
+            except BusLost as error:
+                self._lose_line(link, error, now)
+                break
             if chunks:
                 link.feed(chunks, now)
 
+    def _lose_can(self, error: BusLost) -> None:
+        self.lost = self.lost or f"bus lost: {error}"
+        self._can_alive = False
+
+    def _lose_line(self, link: ModbusLink, error: BusLost, now: float) -> None:
+        """Go on without a line: what it carried is not valid any more."""
+        self.lost = self.lost or f"line lost: {error}"
+        self.lines = [entry for entry in self.lines if entry[1] is not link]
+        for station in link.stations:
+            station.owner.lost(now)
+        if link is self.cell.link:
+            self._foreseeing = None
+
     def transmit(self, now: float, *, scan: bool, next_scan_s: float = NEVER) -> float:
         """Send what is due and return the next time a driver wants to be served; ``next_scan_s`` if it is known."""
-        if scan:
-            self.master.scan(self.can, now, next_scan_s)
-        else:
-            self.master.service(self.can, now)
-        deadline = self.master.deadline
-        for port, link in self.lines:
-            link.service(port, now, scan=scan)
+        deadline = inf
+        if self._can_alive:
+            try:
+                if scan:
+                    self.master.scan(self.can, now, next_scan_s)
+                else:
+                    self.master.service(self.can, now)
+            except BusLost as error:
+                self._lose_can(error)
+            else:
+                deadline = self.master.deadline
+        self.transmit_lines(now, scan=scan)
         # Only the load cell's line may ask for a tick of its own (its retry has to fit into a scan); the slow
         # line's next request can wait for the next scan. A simulated line knows that the reply will be in time.
         watch = self.cell.link
@@ -111,6 +147,15 @@ class Devices:
         if wire is not None and watch.only_watches and wire.arrives_s <= watch.deadline:
             return deadline
         return min(deadline, watch.deadline)
+
+    def transmit_lines(self, now: float, *, scan: bool = True) -> None:
+        """Send what is due on the Modbus lines alone."""
+        for port, link in self.lines:
+            try:
+                link.service(port, now, scan=scan)
+            except BusLost as error:
+                self._lose_line(link, error, now)
+                break
 
     def fill(self, r: Readings, now: float, diameter_mm: float) -> None:
         """Bring the process image up to date."""
@@ -123,14 +168,26 @@ class Devices:
                 self.news = True
         if self.news:
             self._fill_status(r)
+        if self.lost:
+            r.bus_fault = self.lost
+        if self.master.foreign_master:
+            r.foreign_master = self.master.foreign_frame
         cell = self.cell
         r.force_x_n, r.force_y_n, r.force_z_n, r.moment_z_nm = cell.fx_n, cell.fy_n, cell.fz_n, cell.mz_nm
         r.cell_valid, r.cell_at_s = cell.valid, cell.stamp_s
+        if cell.counts != self._cell_counts:
+            self._cell_counts = cell.counts
+            r.cell_changed_s = cell.stamp_s
         thermometer = self.thermometer
         r.surface_c, r.surface_valid, r.surface_at_s = thermometer.surface_c, thermometer.valid, thermometer.stamp_s
+        if thermometer.counts != self._surface_counts:
+            self._surface_counts = thermometer.counts
+            r.surface_changed_s = thermometer.stamp_s
         jacket = self.jacket
         r.hub_c, r.heat_percent = jacket.hub_c, jacket.output_percent
         r.jacket_valid, r.jacket_at_s = jacket.valid, jacket.stamp_s
+        if now >= self._inspector.due_s:
+            self._inspector.inspect(r, now)
 
     def _fill_motion(self, r: Readings, axes: Axes, diameter_mm: float) -> None:
         wheel, belt, press = axes.wheel, axes.belt, axes.press
@@ -175,7 +232,7 @@ class Devices:
                 enabled = False
                 if not fault and (state is _FAULT or state is _FAULT_REACTION):
                     fault = _fault_text(drive)
-            if not fault and (drive.lost or drive.rebooted):
+            if not fault and (drive.lost or drive.rebooted or drive.emergency is not None):
                 fault = _fault_text(drive)
         r.drives_enabled, r.drives_disabled, r.drive_fault = enabled, disabled, fault
         inputs = self.axes.press.inputs
@@ -186,13 +243,14 @@ class Devices:
     def apply(self, out: Setpoints) -> None:
         """Hand the setpoints to the drivers; the frames leave with ``transmit``."""
         axes = self.axes
-        goal = _QUICK_STOP if out.quick_stop else _ENABLED if out.enable else _DISABLED
+        wanted = _ENABLED if out.enable else _DISABLED
+        goal = _FREE if out.power_off else _QUICK_STOP if out.quick_stop else wanted
         wheel, belt, press, sideslip, camber = axes.wheel, axes.belt, axes.press, axes.sideslip, axes.camber
-        if goal is not self._goal or self.news:
-            self._goal = goal
+        if goal is not self._goal or wanted is not self._wanted or self.news:
+            self._goal, self._wanted = goal, wanted
             for drive in self.drives:
                 # A quick-stopped press would stay in contact: it keeps its own retraction.
-                drive.goal = _ENABLED if goal is _QUICK_STOP and drive is press else goal
+                drive.goal = wanted if goal is _QUICK_STOP and drive is press else goal
         if out.wheel_rad_s != wheel.aimed:
             wheel.aim(out.wheel_rad_s)
         if out.belt_m_s != belt.aimed:
@@ -206,7 +264,8 @@ class Devices:
         press.outputs = OUTPUT_CONTACTOR if out.contactor else 0
         jacket = self.jacket
         jacket.enable(out.heat)
-        jacket.set_setpoint(out.hub_c)
+        if not out.jacket_silent:
+            jacket.set_setpoint(out.hub_c)
 
     def poll_cell_every(self, seconds: float) -> None:
         """Poll the load cell at this period, s; 0 = with every scan."""

@@ -18,7 +18,12 @@ SOONEST_S = 5e-4
 """No tick is asked for sooner after another."""
 
 # Bound once: a look-up on the enum class costs several times as much in every scan (CPython 3.11).
-_RUN, _STOPPING, _FAST_STOP = Mode.RUN, Mode.STOPPING, Mode.FAST_STOP
+_RUN, _HOLD = Mode.RUN, Mode.HOLD
+_STOPS = frozenset({Mode.STOPPING, Mode.FAST_STOP, Mode.EMERGENCY})
+HOLD_MOVES_S = 3.0
+"""A hold has lifted and taken the slip out within this, s [A]: scans come at the sliding rate until then."""
+SEVERITIES = {"trip": "trip", "alarm": "alarm", "warning": "warning"}
+"""Of control's events, by their kind; any other is information."""
 
 
 class Engine:
@@ -68,13 +73,18 @@ class Engine:
             self._wear(readings)
         ctx.moving = False
         was_in_contact = contact.in_contact
+        events = control.state.events
+        if events:
+            self._journal()  # commands given since the last scan: before what the executor says in this one
+        self._journal_emergencies()
         if control.state.mode is _RUN:
             ctx.gate = ctx.gates.update(readings, ctx.dt)
             self.executor.step(ctx)
         setpoints = control.step(ctx.demand, readings, self.period_s)
         if contact.in_contact != was_in_contact:
             ctx.gates.touched_s = now if contact.in_contact else inf
-        self._journal()
+        if events:
+            self._journal()
         devices.apply(setpoints)
         self._choose_rate(now)
         self.sampler.record(ctx, setpoints)
@@ -84,14 +94,19 @@ class Engine:
         self.ctx.wheel.slide(r.force_z_n, r.slip_m_s, self.ctx.dt, self.ctx.rig.wear.rate_mm3_per_n_m)
 
     def _journal(self) -> None:
-        events = self.control.state.events
-        if events:
-            journal, trip = self.ctx.journal, self.control.state.trip
-            for event in events:
-                if event.kind == "trip" and trip is not None:
-                    journal.trip(event.at_s, trip.name, event.text)
-                journal.event(event.at_s, event.kind, event.text, "trip" if event.kind == "trip" else "info")
-            events.clear()
+        """Queue control's events in their order; they are queued before this scan's outputs leave."""
+        state = self.control.state
+        if not state.events:
+            return
+        journal = self.ctx.journal
+        for event in state.events:
+            if event.kind == "trip" and state.trip is not None:
+                journal.trip(event.at_s, state.trip.name, event.text)
+            journal.event(event.at_s, event.kind, event.text, SEVERITIES.get(event.kind, "info"))
+        state.events.clear()
+
+    def _journal_emergencies(self) -> None:
+        """Queue what the drives reported by themselves, before the trip that it leads to."""
         if not self.devices.news:
             return
         for drive in self.devices.drives:
@@ -102,8 +117,9 @@ class Engine:
 
     def _choose_rate(self, now: float) -> None:
         """Set the period of the next scan: it follows the state (rulings, 10)."""
-        ctx, mode = self.ctx, self.control.state.mode
-        if ctx.moving or mode is _STOPPING or mode is _FAST_STOP:
+        ctx, state = self.ctx, self.control.state
+        mode = state.mode
+        if ctx.moving or mode in _STOPS or (mode is _HOLD and now - state.mode_since_s < HOLD_MOVES_S):
             self.period_s = self.sliding_s
         elif ctx.demand.enabled or not ctx.readings.drives_disabled:
             self.period_s = self.enabled_s

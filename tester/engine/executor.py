@@ -6,9 +6,10 @@ from collections import deque
 
 from tester.engine.condition import MeasureCondition, Results
 from tester.engine.context import Context
-from tester.engine.moves import Activity, Ask, MoveFailedError
+from tester.engine.moves import Activity, Ask, MoveFailedError, Resumable
 from tester.engine.thermal_steps import CoolDown, HeatUp, RestStep
 from tester.engine.wheel_steps import InstallWheel, PreGrindStep
+from tester.process import Press
 from tester.recipe.plan import (
     ConditionStep,
     Cool,
@@ -45,6 +46,18 @@ class Executor:
         """Highest wheel number in use: one that the plan did not foresee gets the next."""
         self.measured_wheel = 0
         """The wheel of the last condition. A new one measures at least one condition, else changing never ends."""
+
+    def hold(self, ctx: Context) -> None:
+        """Note that the rig is held: what is recorded meanwhile belongs to no repeat."""
+        ctx.burst = ctx.repeat_key = 0
+
+    def resume(self, ctx: Context) -> None:
+        """Go on after a hold, lifted and without slip: a repeat that was cut off is void and done again."""
+        demand = ctx.demand
+        demand.press, demand.load_n, demand.freeze_heat = Press.LIFT, 0.0, False
+        demand.belt_speed_m_s = demand.wheel_speed_m_s
+        if isinstance(self.activity, Resumable):
+            self.activity.resume(ctx)
 
     def step(self, ctx: Context) -> None:
         """Advance the run by one scan."""

@@ -7,7 +7,7 @@ state in plain attributes: a running activity can be copied.
 from __future__ import annotations
 
 from math import inf, isfinite
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 from tester.engine.context import Context
 from tester.process import Press
@@ -36,6 +36,15 @@ class Activity(Protocol):
         ...
 
 
+@runtime_checkable
+class Resumable(Protocol):
+    """An activity that has to begin something anew after a hold. One that has not goes on where it was."""
+
+    def resume(self, ctx: Context) -> None:
+        """Go on: the wheel is lifted, both drives run at the wheel's speed or stand."""
+        ...
+
+
 class MoveFailedError(Exception):
     """A move has not ended in its time: the run stops in a controlled way, with this as its reason."""
 
@@ -54,6 +63,10 @@ class Sequence:
     def __init__(self, *parts: Activity) -> None:
         """Take the parts in order."""
         self.parts = list(parts)
+        self.since_s = float("nan")
+
+    def resume(self, ctx: Context) -> None:
+        """Give the current part its whole time again."""
         self.since_s = float("nan")
 
     def step(self, ctx: Context) -> bool:

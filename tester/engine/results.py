@@ -40,7 +40,7 @@ class StoredResults:
 
     def begin_repeat(self, ctx: Context, step: ConditionStep, repeat: int, attempt: int) -> int:
         """Open a repeat; return the key that its samples carry."""
-        if repeat == 1:
+        if repeat == 1 and attempt == 1:
             self.repeats = []
             self.recorder.begin_condition(step.condition, ctx.now)
         return self.recorder.begin_repeat(step.condition, repeat, attempt, ctx.now, ctx.wheel.wheel)
@@ -62,6 +62,10 @@ class StoredResults:
         self.recorder.wheel_state(wheel.wheel, wheel.diameter_mm, wheel.sliding_m, ctx.now)
         ticket = self.recorder.commit_repeat(key, result, bursts_of(blocks))
         return RepeatOutcome(result.status, _line(result), ticket)
+
+    def void_repeat(self, ctx: Context, key: int, reason: str) -> None:
+        """Record that a repeat was cut off; a further attempt follows."""
+        self.recorder.void_repeat(key, reason, ctx.now)
 
     def finish_condition(self, ctx: Context, step: ConditionStep, end: ConditionEnd) -> str:
         """Sum a condition up from its repeats and commit it; return a line for people."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from enum import Enum
 
 from drivers.ports import BusLost
-from tester.control.state import Mode
+from tester.control.state import Mode, Trip
 from tester.engine.connect import Connector, Stage
 from tester.engine.engine import Engine
 
@@ -36,8 +36,12 @@ class Run:
         self.outcome = Outcome.RUNNING
         self.finished = False
         self.reason = ""
+        self.stays_latched = False
+        """After a trip the run goes on until it is acknowledged; else it ends, and a new one has to be started."""
         self._ended_s: float | None = None
         self._started = False
+        self._refused = False
+        self._trip: Trip | None = None
         self._releasing = False
 
     @property
@@ -45,54 +49,100 @@ class Run:
         """A prompt waits for its answer."""
         return self.engine.ctx.prompts.waiting is not None and not self.engine.control.state.stop_requested
 
-    def request_stop(self, why: str, *, fast: bool = False) -> None:
-        """Stop the run: a controlled stop, or a fast one."""
+    # Each command may be given at any time and any number of times; "" or why it had no effect is returned.
+
+    def request_stop(self, why: str, *, fast: bool = False, cool: bool = True) -> None:
+        """Stop the run: a controlled stop, or a fast one. ``cool``: turn on, unloaded, while the jacket is hot."""
         self.reason = self.reason or why
         if not self._started:
-            self.outcome, self.finished = Outcome.STOPPED, True
+            self.outcome = Outcome.STOPPED
+            self.connector.abort(why)
+            self.finished = self.connector.finished
             return
-        self.engine.control.request_stop(self.engine.ctx.now, why, fast=fast)
+        self.engine.control.request_stop(self.engine.ctx.now, why, fast=fast, cool=cool)
+
+    def request_abort(self, why: str = "aborted by the operator") -> None:
+        """Give the recipe up in a controlled stop."""
+        self.request_stop(why)
+
+    def request_hold(self, why: str = "held by the operator") -> str:
+        """Hold: lift, take the slip out, keep the heat; the repeat under way will be done again."""
+        engine = self.engine
+        if not self._started:
+            return "the rig is not up yet"
+        held = engine.control.state.mode is Mode.HOLD
+        refused = engine.control.request_hold(engine.ctx.demand, engine.ctx.now, why)
+        if not refused and not held:
+            engine.executor.hold(engine.ctx)
+        return refused
+
+    def request_release(self, why: str = "released by the operator") -> str:
+        """Go on after a hold."""
+        engine = self.engine
+        refused = engine.control.request_release(engine.ctx.now, why)
+        if not refused:
+            engine.executor.resume(engine.ctx)
+        return refused
+
+    def request_ack(self) -> str:
+        """Acknowledge a trip: drives are told to reset their faults, IDLE follows when every cause is gone."""
+        engine = self.engine
+        refused = engine.control.request_ack(engine.ctx.now)
+        if not refused:
+            for drive in engine.devices.drives:
+                drive.reset_fault()
+        return refused
 
     def tick(self, now: float) -> float:
         """Do what is due at ``now``; return when to be called again at the latest (s)."""
-        try:
-            if not self._started:
-                return self._connect(now)
+        if self._started:
             due = self.engine.tick(now)
             self._supervise(now)
+            return due
+        try:
+            return self._connect(now)
         except BusLost as lost:
-            self._lose(now, lost)
+            self._lose(lost)
             return now
-        return due
 
     def _connect(self, now: float) -> float:
         due = self.connector.tick(now)
         if self.connector.stage is Stage.FAILED:
-            self.outcome, self.reason, self.finished = Outcome.UNREACHABLE, self.connector.failure, True
+            if self.outcome is Outcome.RUNNING:
+                self.outcome, self.reason = Outcome.UNREACHABLE, self.connector.failure
+            self.finished = True
         elif self.connector.stage is Stage.READY:
-            engine = self.engine
-            engine.next_scan_s = due
-            engine.devices.fill(engine.ctx.readings, now, engine.ctx.wheel.diameter_mm)
-            self.reason = engine.control.start(now)
-            self._started = True
+            self._arm(now, due)
         return due
 
-    def _lose(self, now: float, lost: BusLost) -> None:
-        """End: without a wire nothing can be commanded, and the drives stop by their own watchdogs."""
-        self.outcome = Outcome.TRIPPED if self._started else Outcome.UNREACHABLE
-        self.reason = f"bus lost: {lost}"
-        self.finished = True
-        if self._started:
-            self.engine.ctx.journal.trip(now, "bus lost", str(lost))
+    def _arm(self, now: float, due: float) -> None:
+        """Enter RUN, or refuse to where a level of the interlock table holds."""
+        engine = self.engine
+        engine.next_scan_s = due
+        ctx = engine.ctx
+        ctx.now = now
+        engine.devices.fill(ctx.readings, now, ctx.wheel.diameter_mm)
+        ctx.journal.event(now, "arming", self.connector.shown)
+        self._started = True
+        refused = engine.control.start(ctx.readings)
+        if refused:
+            self._refused, self.reason = True, refused
+            ctx.journal.event(now, "arming", refused, "alarm")
+
+    def _lose(self, lost: BusLost) -> None:
+        """End: the rig has not come up, and without a wire it will not."""
+        self.outcome, self.finished = Outcome.UNREACHABLE, True
+        self.reason = f"bus lost: {lost}" if "lost" not in str(lost) else str(lost)
 
     def _supervise(self, now: float) -> None:
         engine = self.engine
         state = engine.control.state
+        self._trip = state.trip or self._trip
         if state.mode is Mode.RUN:
             if engine.executor.finished:
                 engine.control.request_stop(now, engine.executor.failed or "recipe finished")
             return
-        if state.mode not in (Mode.IDLE, Mode.LATCHED):
+        if state.mode not in (Mode.IDLE, Mode.LATCHED) or (state.mode is Mode.LATCHED and self.stays_latched):
             return
         devices = engine.devices
         if self._ended_s is None:
@@ -107,8 +157,10 @@ class Run:
 
     def _finish(self) -> None:
         engine = self.engine
-        trip = engine.control.state.trip
-        if trip is not None:
+        trip = self._trip
+        if self._refused:
+            self.outcome = Outcome.UNREACHABLE
+        elif trip is not None:
             self.outcome, self.reason = Outcome.TRIPPED, f"{trip.name}: {trip.text}"
         elif engine.executor.failed:
             self.outcome, self.reason = Outcome.FAILED, engine.executor.failed

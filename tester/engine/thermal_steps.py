@@ -84,7 +84,13 @@ class HeatUp:
         """``offset_k``: how far below the setpoint rolling is held (slip pulses then rise through the setpoint)."""
         self.target_c = step.temperature_c
         self.soak = SoakTo(step.temperature_c - offset_k, within_k, 0.0, HEAT_AT_MOST_S)
-        self.moves = roll(wheel_speed_m_s, min(load_n, HEAT_LOAD_N))
+        self.rolling_at = (wheel_speed_m_s, min(load_n, HEAT_LOAD_N))
+        self.moves = roll(*self.rolling_at)
+        self.rolling = False
+
+    def resume(self, ctx: Context) -> None:
+        """Touch and roll again."""
+        self.moves = roll(*self.rolling_at)
         self.rolling = False
 
     def step(self, ctx: Context) -> bool:
@@ -113,6 +119,10 @@ class RestStep:
         self.shown_s = float("-inf")
         self.late: Activity | None = None
         self.ask_when_late = ask_when_late
+
+    def resume(self, ctx: Context) -> None:
+        """Go on standing, or coming to a stand."""
+        self.moves.resume(ctx)
 
     def step(self, ctx: Context) -> bool:
         """Done when rested."""
@@ -151,6 +161,10 @@ class CoolDown:
         self.turning = False
         self.began_s = float("nan")
         self.shown_s = float("-inf")
+
+    def resume(self, ctx: Context) -> None:
+        """Go on turning, or beginning to."""
+        self.moves.resume(ctx)
 
     def step(self, ctx: Context) -> bool:
         """Done when cool, or out of time (the prompt to install follows and tells the temperature)."""

@@ -27,6 +27,12 @@ class InstallWheel:
         self.tare: TakeTare | None = None
         self.after = Sequence()
 
+    def resume(self, ctx: Context) -> None:
+        """Take the tare anew, where it had begun."""
+        self.before.resume(ctx)
+        if self.tare is not None:
+            self._begin_tare(ctx)
+
     def step(self, ctx: Context) -> bool:
         """Done when mounted and tared."""
         ctx.demand.surface_c = float("nan")
@@ -38,11 +44,14 @@ class InstallWheel:
             return False
         if self.tare is None:
             self._mount(ctx)
-            self.reference.clear()
-            limits = ctx.rig.interlocks
-            self.tare = TakeTare(REFERENCE_TARE_S, self.reference, limits.zero_warn_n, limits.zero_stop_n)
-            self.after = Sequence(Power(True), Straighten(), self.tare)
+            self._begin_tare(ctx)
         return self.after.step(ctx)
+
+    def _begin_tare(self, ctx: Context) -> None:
+        self.reference.clear()
+        limits = ctx.rig.interlocks
+        self.tare = TakeTare(REFERENCE_TARE_S, self.reference, limits.zero_warn_n, limits.zero_stop_n)
+        self.after = Sequence(Power(True), Straighten(), self.tare)
 
     @property
     def failed(self) -> str:
@@ -63,6 +72,7 @@ class InstallWheel:
             width_mm=geometry.wheel_width_mm,
         )
         ctx.contact.forget_contact()
+        ctx.wheel_changed(ctx.now)
         ctx.readings.wheel_angle_rev = 0.0
         wheel = ctx.wheel
         record = WheelInfo(
@@ -104,17 +114,28 @@ class PreGrindStep:
 
     def __init__(self, step: PreGrind) -> None:
         """The step of the plan."""
+        self.pre_grind = step
+        self.grind = Grind(step.load_n, step.duration_s)
+        self.moves = self._moves()
+
+    def _moves(self) -> Sequence:
+        step = self.pre_grind
         wheel, belt = step.wheel_speed_m_s, step.belt_speed_m_s
-        self.moves = Sequence(
+        return Sequence(
             Power(True),
             Straighten(),
             Turn(wheel, wheel),
             Load(step.load_n, for_s=2.0),
             Turn(wheel, belt),
-            Grind(step.load_n, step.duration_s),
+            self.grind,
             Turn(wheel, wheel),
             Lift(),
         )
+
+    def resume(self, ctx: Context) -> None:
+        """Touch again and grind for what is left of the time."""
+        self.grind.counting = False
+        self.moves = self._moves()
 
     def step(self, ctx: Context) -> bool:
         """Done when ground and lifted."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from drivers.axis import AxisConfig
 from tester.rig.config import (
+    ArmingConfig,
     AxesConfig,
     CanConfig,
     DeviceConfig,
@@ -25,6 +26,7 @@ from tester.rig.config import (
 from tester.rig.load import load_rig
 
 __all__ = [
+    "ArmingConfig",
     "AxesConfig",
     "AxisConfig",
     "CanConfig",

@@ -216,12 +216,59 @@ class InterlocksConfig:
     runaway_k: Annotated[float, "K", _POSITIVE]
     runaway_delay_s: Annotated[float, "s", _NOT_NEGATIVE]
     standstill_heat_delay_s: Annotated[float, "s", _NOT_NEGATIVE]
+    late_warn_s: Annotated[float, "s", _POSITIVE]
     late_scan_s: Annotated[float, "s", _POSITIVE]
+    torn_share: Annotated[float, "1", _SHARE]
+    torn_slip_m_s: Annotated[float, "m/s", _POSITIVE]
+    torn_delay_s: Annotated[float, "s", _NOT_NEGATIVE]
+    speed_error_m_s: Annotated[float, "m/s", _POSITIVE]
+    speed_error_delay_s: Annotated[float, "s", _NOT_NEGATIVE]
+    dropped_delay_s: Annotated[float, "s", _NOT_NEGATIVE]
+    frozen_cell_s: Annotated[float, "s", _POSITIVE]
+    frozen_surface_s: Annotated[float, "s", _POSITIVE]
+    frozen_model_k: Annotated[float, "K", _POSITIVE]
+    frozen_delay_s: Annotated[float, "s", _NOT_NEGATIVE]
+    jump_k: Annotated[float, "K", _POSITIVE]
+    jacket_margin_k: Annotated[float, "K", _NOT_NEGATIVE]
+    stuck_rate_k_s: Annotated[float, "K/s", _POSITIVE]
+    stuck_off_s: Annotated[float, "s", _NOT_NEGATIVE]
+    stuck_delay_s: Annotated[float, "s", _NOT_NEGATIVE]
+    open_output_percent: Annotated[float, "%", _POSITIVE]
+    open_s: Annotated[float, "s", _POSITIVE]
+    open_below_k: Annotated[float, "K", _POSITIVE]
+    open_rise_k: Annotated[float, "K", _POSITIVE]
+    model_k: Annotated[float, "K", _POSITIVE]
+    model_delay_s: Annotated[float, "s", _NOT_NEGATIVE]
+    start_k: Annotated[float, "K", _POSITIVE]
+    line_errors: Annotated[float, "1", _SHARE]
+    line_errors_delay_s: Annotated[float, "s", _NOT_NEGATIVE]
+    least_diameter_mm: Annotated[float, "mm", _POSITIVE]
+    contactor_delay_s: Annotated[float, "s", _POSITIVE]
+    heat_off_s: Annotated[float, "s", _POSITIVE]
+    lift_late_s: Annotated[float, "s", _POSITIVE]
+    lift_failed_s: Annotated[float, "s", _POSITIVE]
+    stop_margin_s: Annotated[float, "s", _POSITIVE]
+    hold_at_most_s: Annotated[float, "s", _POSITIVE]
     zero_warn_n: Annotated[float, "N", _POSITIVE]
     zero_stop_n: Annotated[float, "N", _POSITIVE]
     cooldown_hub_c: Annotated[float, "degC"]
     cooldown_speed_m_s: Annotated[float, "m/s", _POSITIVE]
     cooldown_at_most_s: Annotated[float, "s", _POSITIVE]
+
+
+@dataclass(frozen=True, slots=True)
+class ArmingConfig:
+    """What is shown before a run may move anything (tester.engine.arming)."""
+
+    listen_s: Annotated[float, "s", _NOT_NEGATIVE]
+    """Nothing is sent for this long at first: another master on the bus would be heard."""
+    bump_test: bool
+    """Turn wheel and belt a little, one after the other: each must follow, and only it."""
+    watchdog_proof: bool
+    """Withhold the PC's heartbeat with the drives enabled and creeping: every drive must report it and stop."""
+    withhold_s: Annotated[float, "s", _POSITIVE]
+    creep_m_s: Annotated[float, "m/s", _POSITIVE]
+    """Wheel and belt, unloaded, in the bump test and in the proof."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -265,6 +312,7 @@ class RigConfig:
     loops: LoopsConfig
     gates: GatesConfig
     interlocks: InterlocksConfig
+    arming: ArmingConfig
     wear: WearConfig
     observer: ObserverConfig
     sim: SimParameters = field(default_factory=SimParameters)

@@ -241,7 +241,8 @@ def test_the_hot_rig_counts_nothing_warm_as_cold(warm_run: Simulation) -> None:
     surface = [truth[row["time_s"]] for row in rows]
     # The band is 2 K; the thermometer is read five times a second.
     assert rows and max(surface) < 25.0 + 2.0 + 0.5
-    assert fmean(surface) - fmean(row["surface_c"] for row in rows) < 1.0
+    # How old its readings are depends on where in its period a burst begins: up to 0.35 s at 3 K/s.
+    assert fmean(surface) - fmean(row["surface_c"] for row in rows) < 1.1
 
 
 def test_what_is_counted_live_is_what_the_samples_say(noisy_run: Simulation) -> None:

@@ -67,7 +67,7 @@ def test_a_second_master_is_refused(simulation: Simulation) -> None:
     simulation.world.can.inject(0x080, b"", 0.005)
     connector = connect(simulation)
     assert connector.stage is Stage.FAILED
-    assert connector.failure == "another CANopen master is sending on this bus"
+    assert connector.failure == "another CANopen master is sending on this bus: SYNC 080#"
 
 
 def test_nothing_is_sent_before_the_first_tick(simulation: Simulation) -> None:

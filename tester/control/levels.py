@@ -1,0 +1,222 @@
+"""The levels of the interlock table, as plain comparisons: each function returns the bits of the rows that hold.
+
+Every comparison is made in every scan. Conditions are written so that NaN and missing data fall on the tripped side:
+``not (x <= limit)``, never ``x > limit``.
+"""
+
+from __future__ import annotations
+
+from math import isfinite
+
+from tester.control.interlocks import bit
+from tester.control.view import STANDING_M_S, UNLOADED_N, View
+from tester.process import Readings
+
+CONTACT_LEAST_N = 50.0
+"""A target below this is too near to touching to tell a lost contact (rulings, 18)."""
+SPEEDS_OLD_S = 0.5
+"""Older than this, speeds, force and position are unknown to a stop, s [A]: it does not end on them."""
+CLEAR_MM = 0.5
+"""The press stands this far off the known contact: open, whatever the cell shows [A] (runout 0.05 mm, wear)."""
+
+_CHAIN, _FAULT, _BUS, _MASTER = bit("safety chain"), bit("drive fault"), bit("bus lost"), bit("second master")
+_JUMPED, _LATE, _DELAYED = bit("clock jump"), bit("scan late"), bit("scan delayed")
+_GUARD, _DATA, _DROPPED = bit("guard open"), bit("drive data stale"), bit("drive dropped out")
+_OVERSPEED, _WHEEL, _BELT = bit("overspeed"), bit("wheel speed"), bit("belt speed")
+_STANDING, _TORN = bit("drive standing under load"), bit("belt torn")
+_CELL_STALE, _CELL_BAD = bit("load cell stale"), bit("load cell saturated")
+_CELL_FROZEN = bit("load cell frozen")
+_OVERLOAD, _OVERSHOOT = bit("overload"), bit("load overshoot")
+_CONTACT, _POWER = bit("contact lost"), bit("slip power")
+_SURFACE_HOT, _HUB_HOT, _RUNAWAY = bit("surface hot"), bit("jacket hot"), bit("jacket runaway")
+_STUCK, _OPEN, _STANDSTILL = bit("heater stuck"), bit("heater line open"), bit("heating at standstill")
+_HUB_JUMP, _SURFACE_JUMP = bit("hub sensor jump"), bit("surface sensor jump")
+_FROZEN, _MODEL = bit("thermometer frozen"), bit("surface off model")
+_SURFACE_STALE, _JACKET_STALE = bit("surface data stale"), bit("jacket data stale")
+_REFUSED, _NOISY, _WORN = bit("device refused"), bit("line noisy"), bit("wheel worn")
+_NOT_LIFTED, _LIFT_FAILED = bit("not lifted"), bit("lift failed")
+_NOT_STOPPING, _QUICK_FAILED = bit("not stopping"), bit("quick stop failed")
+_HEAT_ON, _WELDED = bit("heat not off"), bit("contactor welded")
+
+
+def process_levels(v: View) -> int:
+    """Return the levels of inputs, wires, devices and the scan itself."""
+    r, b = v.readings, v.bounds
+    held = 0
+    if not r.safety_chain:
+        held |= _CHAIN
+    if r.drive_fault:
+        held |= _FAULT
+    if r.bus_fault:
+        held |= _BUS
+    if r.foreign_master:
+        held |= _MASTER
+    if r.device_fault:
+        held |= _REFUSED
+    if not (r.line_errors <= b.line_errors):
+        held |= _NOISY
+    if not (r.diameter_mm >= b.least_diameter_mm):
+        held |= _WORN
+    late_s = r.now_s - v.state.last_s - v.scan_s
+    if not (late_s <= b.late_warn_s):
+        held |= _DELAYED
+        if not (late_s <= b.late_scan_s):
+            held |= _LATE
+    if not (r.now_s >= v.state.last_s):
+        held |= _JUMPED
+    if r.contactor_closed and not v.state.setpoints.contactor:
+        held |= _WELDED
+    return held
+
+
+def motion_levels(v: View) -> int:
+    """Return the levels of the drives."""
+    r, b = v.readings, v.bounds
+    wheel, belt = r.wheel_speed_m_s, r.belt_speed_m_s
+    held = 0
+    if v.demand.enabled:
+        if not r.guard_closed:
+            held |= _GUARD
+        if r.drives_enabled:
+            allowed = b.stale_can_scans * v.scan_s
+            since = r.now_s - (allowed if allowed < b.stale_can_s else b.stale_can_s)
+            if not (
+                r.wheel_at_s >= since
+                and r.belt_at_s >= since
+                and r.press_at_s >= since
+                and r.sideslip_at_s >= since
+                and r.camber_at_s >= since
+            ):
+                held |= _DATA
+        elif v.confirmed:
+            held |= _DROPPED
+    if not r.drives_disabled and not (
+        -v.wheel_most_m_s <= wheel <= v.wheel_most_m_s and -v.belt_most_m_s <= belt <= v.belt_most_m_s
+    ):
+        held |= _OVERSPEED
+    if v.confirmed:
+        error = b.speed_error_m_s
+        if not (v.wheel.low_m_s - error <= wheel <= v.wheel.high_m_s + error):
+            held |= _WHEEL
+        if not (v.belt.low_m_s - error <= belt <= v.belt.high_m_s + error):
+            held |= _BELT
+    if not (r.force_z_n < UNLOADED_N):
+        belt_moves = belt > STANDING_M_S or belt < -STANDING_M_S
+        if v.turning is not belt_moves or (v.pressing and not (v.turning and belt_moves)):
+            held |= _STANDING
+    return held
+
+
+def load_levels(v: View) -> int:
+    """Return the levels of load and friction; unloaded there is nothing to watch."""
+    if not v.loaded:
+        return 0
+    r, b, load = v.readings, v.bounds, v.state.load
+    fz = r.force_z_n
+    held = 0
+    if not (r.now_s - r.cell_at_s <= b.stale_cell_s):
+        held |= _CELL_STALE
+    if not r.cell_valid:
+        held |= _CELL_BAD
+    if not (fz <= v.limits.load_n):
+        held |= _OVERLOAD
+    if not (v.friction_w <= v.limits.slip_power_w):
+        held |= _POWER
+    if v.turning and not (fz < UNLOADED_N) and not (r.now_s - r.cell_changed_s <= b.frozen_cell_s):
+        held |= _CELL_FROZEN
+    if v.pressing:
+        wanted = v.demand.load_n
+        highest = load.highest_n if load.highest_n > wanted else wanted
+        if not (fz <= b.overload_factor * highest + b.overload_margin_n):
+            held |= _OVERSHOOT
+        if load.loaded:
+            lowest = load.lowest_n if load.lowest_n < wanted else wanted
+            if lowest >= CONTACT_LEAST_N and not (fz >= b.contact_share * lowest):
+                held |= _CONTACT
+            if r.slip_m_s > b.torn_slip_m_s and not (v.friction_n >= b.torn_share * fz):
+                least_nm = b.torn_share * fz * r.diameter_mm * 0.5e-3
+                if not (abs(r.drive_torque_nm) >= least_nm):
+                    held |= _TORN
+    return held
+
+
+def heat_levels(v: View) -> int:
+    """Return the levels of jacket and surface."""
+    r, b, jacket = v.readings, v.bounds, v.jacket
+    held = 0
+    heats = not (r.heat_percent <= 0.0)
+    if not (r.jacket_valid and r.now_s - r.jacket_at_s <= b.stale_jacket_s):
+        held |= _JACKET_STALE
+    if r.jacket_valid:
+        if not (r.hub_c <= v.limits.jacket_c + b.jacket_margin_k):
+            held |= _HUB_HOT
+        ceiling = v.state.hub_ceiling
+        if heats and ceiling and not (r.hub_c <= max(ceiling[0][1], v.rig.loops.heat.hub_min_c) + b.runaway_k):
+            held |= _RUNAWAY
+        if not (jacket.rate_k_s <= b.stuck_rate_k_s) and r.now_s - jacket.off_since_s >= b.stuck_off_s:
+            held |= _STUCK
+    if r.now_s - jacket.weak_since_s >= b.open_s and not (jacket.rise_k >= b.open_rise_k):
+        held |= _OPEN
+    if heats and not v.turning:
+        held |= _STANDSTILL
+    if not (jacket.jump_k <= b.jump_k):
+        held |= _HUB_JUMP
+    if v.pressing or isfinite(v.demand.surface_c):
+        if not (r.surface_valid and r.now_s - r.surface_at_s <= b.stale_ir_s):
+            held |= _SURFACE_STALE
+        if not (v.surface.jump_k <= b.jump_k):
+            held |= _SURFACE_JUMP
+    if r.surface_valid:
+        if not (r.surface_c <= v.limits.surface_c):
+            held |= _SURFACE_HOT
+        if v.turning:
+            model = v.observer.surface_c
+            if not (-b.model_k <= r.surface_c - model <= b.model_k):
+                held |= _MODEL
+            if not (r.now_s - r.surface_changed_s <= b.frozen_surface_s) or not (
+                -b.frozen_model_k <= model - v.surface.model_c <= b.frozen_model_k
+            ):
+                held |= _FROZEN
+    return held
+
+
+def stop_levels(v: View) -> int:
+    """Return the levels of a stop that does not work; call it only while one is under way."""
+    r, b, stop = v.readings, v.bounds, v.state.stop
+    since = v.stopped_s
+    held = 0
+    if not (since <= b.lift_late_s) and not unloaded(v):
+        held |= _NOT_LIFTED
+        if not (since <= b.lift_failed_s):
+            held |= _LIFT_FAILED
+    if not (since <= b.heat_off_s) and not (r.heat_percent <= 0.0) and r.contactor_closed:
+        held |= _HEAT_ON
+    if not stop.creeps and not standing(r):
+        axis = v.rig.axes.belt
+        # Slip is taken out first (half a second at most), then both come down on the ramp.
+        if not (since <= 0.5 + stop.speed_m_s / axis.deceleration + b.stop_margin_s):
+            held |= _NOT_STOPPING
+        if not (r.now_s - stop.fast_s <= stop.fast_speed_m_s / axis.quick_stop_deceleration + b.stop_margin_s):
+            held |= _QUICK_FAILED
+    return held
+
+
+def standing(r: Readings) -> bool:
+    """Tell whether wheel and belt are known to stand; what is old or unknown is not standing."""
+    since = r.now_s - SPEEDS_OLD_S
+    return (
+        r.wheel_at_s >= since
+        and r.belt_at_s >= since
+        and -STANDING_M_S < r.wheel_speed_m_s < STANDING_M_S
+        and -STANDING_M_S < r.belt_speed_m_s < STANDING_M_S
+    )
+
+
+def unloaded(v: View) -> bool:
+    """Tell whether the contact is known to be open: by a fresh force, or by the press standing clear of it."""
+    r = v.readings
+    if r.cell_valid and r.now_s - r.cell_at_s <= SPEEDS_OLD_S and r.force_z_n < UNLOADED_N:
+        return True
+    load = v.state.load
+    known = isfinite(load.contact_mm) and r.now_s - r.press_at_s <= SPEEDS_OLD_S
+    return known and r.press_mm <= load.contact_mm - CLEAR_MM

@@ -1,0 +1,135 @@
+"""What takes more than one reading to see: rates, jumps, values that stand still, speeds on their ramps.
+
+Each monitor is brought up to date when something new has arrived, not in every scan; the interlocks compare its
+results in every scan.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import inf, isfinite, nan
+
+from tester.process import Readings
+from tester.rig import InterlocksConfig
+
+RATE_FAST_S = 2.0
+RATE_SLOW_S = 6.0
+"""Time constants of the two averages whose difference gives the hub's rate [A]: 3 mK/s of noise at 5 Hz."""
+BLIND_S = 1.0
+"""After a wheel was changed, readings still on their way are not compared with those before, s [A]."""
+RAMP_SHARE = 0.3
+"""A speed on its way may follow this share of the configured ramp [A]: delays of scan and wire, and load."""
+
+
+@dataclass(slots=True)
+class JacketMonitor:
+    """The hub from poll to poll."""
+
+    stamp_s: float = -inf
+    hub_c: float = nan
+    """Last valid reading."""
+    jump_k: float = 0.0
+    """Distance of the last two valid readings."""
+    fast_c: float = nan
+    slow_c: float = nan
+    rate_k_s: float = 0.0
+    off_since_s: float = inf
+    """Since when no heat has been commanded, or none has been put out."""
+    weak_since_s: float = inf
+    """Since when the output has been high with the hub well below its setpoint."""
+    weak_from_c: float = nan
+    rise_k: float = 0.0
+    blind_until_s: float = -inf
+
+    def forget(self, now: float) -> None:
+        """Compare nothing with the readings before: a person was at the wheel and its hub."""
+        self.fast_c = nan
+        self.jump_k = 0.0
+        self.blind_until_s = now + BLIND_S
+
+    def update(self, r: Readings, heat: bool, setpoint_c: float, bounds: InterlocksConfig) -> None:
+        """Take in a new reading; ``heat`` and ``setpoint_c`` (degC) are what is commanded."""
+        stamp = r.jacket_at_s
+        dt, self.stamp_s = stamp - self.stamp_s, stamp
+        if not heat or r.heat_percent <= 0.0:
+            self.off_since_s = min(self.off_since_s, stamp)
+        else:
+            self.off_since_s = inf
+        if not r.jacket_valid:
+            return
+        hub = r.hub_c
+        known = isfinite(self.hub_c) and stamp > self.blind_until_s
+        self.jump_k = abs(hub - self.hub_c) if known else 0.0
+        self.hub_c = hub
+        if isfinite(self.fast_c) and 0.0 < dt < 10.0:
+            self.fast_c += (hub - self.fast_c) * dt / (RATE_FAST_S + dt)
+            self.slow_c += (hub - self.slow_c) * dt / (RATE_SLOW_S + dt)
+            self.rate_k_s = (self.fast_c - self.slow_c) / (RATE_SLOW_S - RATE_FAST_S)
+        else:
+            self.fast_c = self.slow_c = hub
+            self.rate_k_s = 0.0
+        self._watch_line(r, heat, setpoint_c, bounds)
+
+    def _watch_line(self, r: Readings, heat: bool, setpoint_c: float, bounds: InterlocksConfig) -> None:
+        """Measure the rise while the output is high: a heater whose line is open makes none."""
+        weak = heat and r.heat_percent >= bounds.open_output_percent and r.hub_c < setpoint_c - bounds.open_below_k
+        if not weak:
+            self.weak_since_s = inf
+            self.rise_k = 0.0
+            return
+        rise = r.hub_c - self.weak_from_c
+        if self.weak_since_s == inf or rise >= bounds.open_rise_k:
+            self.weak_since_s, self.weak_from_c = self.stamp_s, r.hub_c
+            rise = 0.0
+        self.rise_k = rise
+
+
+@dataclass(slots=True)
+class SurfaceMonitor:
+    """The thermometer from poll to poll."""
+
+    stamp_s: float = -inf
+    surface_c: float = nan
+    jump_k: float = 0.0
+    model_c: float = nan
+    """The model when the thermometer's reading last changed."""
+    changed_s: float = -inf
+    blind_until_s: float = -inf
+
+    def forget(self, now: float) -> None:
+        """Compare nothing with the readings before: another wheel is in front of the thermometer."""
+        self.jump_k = 0.0
+        self.blind_until_s = now + BLIND_S
+
+    def update(self, r: Readings, model_c: float) -> None:
+        """Take in a new reading; ``model_c`` is what the observer has for it."""
+        self.stamp_s = r.surface_at_s
+        if r.surface_changed_s > self.changed_s or not isfinite(self.model_c):
+            self.changed_s = r.surface_changed_s
+            self.model_c = model_c
+        if not r.surface_valid:
+            return
+        known = isfinite(self.surface_c) and self.stamp_s > self.blind_until_s
+        self.jump_k = abs(r.surface_c - self.surface_c) if known else 0.0
+        self.surface_c = r.surface_c
+
+
+@dataclass(slots=True)
+class SpeedTracker:
+    """Between which speeds a drive may be: its target, and where a slow ramp to it would be by now."""
+
+    ramp_m_s2: float
+    """Of the slow ramp."""
+    low_m_s: float = 0.0
+    high_m_s: float = 0.0
+
+    def begin(self, actual_m_s: float) -> None:
+        """Begin at an actual speed."""
+        self.low_m_s = min(0.0, actual_m_s)
+        self.high_m_s = max(0.0, actual_m_s)
+
+    def follow(self, target_m_s: float, dt: float) -> None:
+        """Move both ends towards a target, for ``dt`` s."""
+        high, low = self.high_m_s - self.ramp_m_s2 * dt, self.low_m_s + self.ramp_m_s2 * dt
+        self.high_m_s = target_m_s if target_m_s > high else high
+        self.low_m_s = target_m_s if target_m_s < low else low

@@ -1,0 +1,101 @@
+"""What has to be the case before heat, load and motion are commanded, and how far a command may go.
+
+A permissive is a level too: it is asked in every scan, and a command whose permissive goes away is withdrawn in that
+scan, before any interlock's delay is over.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import cos, pi
+
+from tester.control.state import ControlState
+from tester.control.view import STANDING_M_S
+from tester.process import Demand, Readings
+from tester.rig import InterlocksConfig, RigConfig
+
+TURNING_CONFIRMED_S = 0.3
+"""Heat is allowed once the wheel has been seen turning this long [A]."""
+CONFIRMED_M_S = 2.0 * STANDING_M_S
+"""A speed above this is confirmed turning."""
+HARD_LOAD_N = 500.0
+HARD_HUB_C = 155.0
+HARD_SURFACE_C = 130.0
+"""Beyond these is harm (rulings, 21), whatever a rig file or a recipe says."""
+_RADIANS = pi / 180.0
+
+
+@dataclass(frozen=True, slots=True)
+class Bounds:
+    """How far commands may go: the least of what recipe, rig and harm allow."""
+
+    load_n: float
+    wheel_speed_m_s: float
+    belt_speed_m_s: float
+    surface_c: float
+    hub_c: float
+    sideslip_deg: float
+    camber_deg: float
+
+    def within(self, other: Bounds) -> Bounds:
+        """Return the lesser of both in everything."""
+        return Bounds(
+            min(self.load_n, other.load_n),
+            min(self.wheel_speed_m_s, other.wheel_speed_m_s),
+            min(self.belt_speed_m_s, other.belt_speed_m_s),
+            min(self.surface_c, other.surface_c),
+            min(self.hub_c, other.hub_c),
+            min(self.sideslip_deg, other.sideslip_deg),
+            min(self.camber_deg, other.camber_deg),
+        )
+
+
+def rig_bounds(rig: RigConfig) -> Bounds:
+    """Return the bounds of a rig, never beyond what is harm."""
+    limits = rig.limits
+    return Bounds(
+        min(limits.load_n, HARD_LOAD_N),
+        limits.wheel_speed_m_s,
+        limits.belt_speed_m_s,
+        min(limits.surface_c, HARD_SURFACE_C),
+        min(limits.jacket_c, rig.loops.heat.hub_max_c, HARD_HUB_C),
+        limits.sideslip_deg,
+        limits.camber_deg,
+    )
+
+
+def may_move(readings: Readings) -> bool:
+    """Tell whether drives may be powered: safety chain and guard closed, every drive without a fault."""
+    return readings.safety_chain and readings.guard_closed and not readings.drive_fault
+
+
+def may_heat(state: ControlState, readings: Readings, interlocks: InterlocksConfig) -> bool:
+    """Tell whether the jacket may heat: wheel seen turning for a while, both temperatures fresh and valid."""
+    r, now = readings, readings.now_s
+    return (
+        now - state.turning_since_s >= TURNING_CONFIRMED_S
+        and r.jacket_valid
+        and r.surface_valid
+        and now - r.jacket_at_s <= interlocks.stale_jacket_s
+        and now - r.surface_at_s <= interlocks.stale_ir_s
+    )
+
+
+def may_load(state: ControlState, demand: Demand, readings: Readings, rig: RigConfig, most_n: float) -> bool:
+    """Tell whether the press may approach or press.
+
+    Both speeds confirmed and their difference bounded, the angles in place before touching, the load fresh and the
+    wanted one allowed. The drives' data are fresh: stale ones trip.
+    """
+    r, interlocks = readings, rig.interlocks
+    wheel, belt = r.wheel_speed_m_s, r.belt_speed_m_s
+    along = wheel if r.sideslip_deg == 0.0 else wheel * cos(r.sideslip_deg * _RADIANS)
+    return (
+        wheel > CONFIRMED_M_S
+        and belt > CONFIRMED_M_S
+        and r.cell_valid
+        and r.now_s - r.cell_at_s <= interlocks.stale_cell_s
+        and (state.load.in_contact or r.yaw_reached)
+        and -interlocks.max_slip_m_s <= along - belt <= interlocks.max_slip_m_s
+        and demand.load_n <= most_n
+    )

@@ -1,0 +1,108 @@
+"""The stops, scan by scan, from leaving RUN to standstill. What must have happened by when is in ``levels``."""
+
+from __future__ import annotations
+
+from math import isfinite
+
+from tester.control.levels import standing, unloaded
+from tester.control.permissives import Bounds
+from tester.control.safe_outputs import mirror_emergency, no_outputs, safe_outputs
+from tester.control.state import ControlState, Mode
+from tester.control.view import STANDING_M_S, UNLOADED_N, View
+
+STOP_TIMEOUT_S = 10.0
+"""A stop that has not reached standstill by then latches where it is, power off [A]."""
+SLIP_OUT_S = 0.5
+"""Slip is taken out under load for this long at most before both drives come down [A]."""
+MATCHED_M_S = 2.0 * STANDING_M_S
+LIFTED_MM = 0.2
+"""The press is where it was sent within this [A]."""
+
+
+def begin_stop(state: ControlState, view: View, now: float, bounds: Bounds) -> None:
+    """Note when a stop began, and how fast the drives were: what is not known counts as the most allowed."""
+    stop = state.stop
+    stop.began_s = now
+    stop.speed_m_s = _speed(view, bounds)
+    stop.fast_s = float("inf")
+    stop.creeps = False
+
+
+def begin_fast(state: ControlState, view: View, now: float, bounds: Bounds) -> None:
+    """Note when the quick stop began."""
+    if state.stop.fast_s > now:
+        state.stop.fast_s = now
+        state.stop.fast_speed_m_s = _speed(view, bounds)
+
+
+def _speed(view: View, bounds: Bounds) -> float:
+    wheel, belt = abs(view.readings.wheel_speed_m_s), abs(view.readings.belt_speed_m_s)
+    if isfinite(wheel) and isfinite(belt):
+        return max(wheel, belt)
+    return max(bounds.wheel_speed_m_s, bounds.belt_speed_m_s)
+
+
+def stop_outputs(state: ControlState, view: View) -> None:
+    """Command a controlled or a fast stop."""
+    out, r, rig = state.setpoints, view.readings, view.rig
+    fast = state.mode is not Mode.STOPPING
+    wheel_rad_s = out.wheel_rad_s
+    safe_outputs(out, rig, fast=fast)
+    loaded = not (r.force_z_n < UNLOADED_N)
+    slipping = not (-MATCHED_M_S < r.slip_m_s < MATCHED_M_S)
+    if not fast and loaded and slipping and view.stopped_s < SLIP_OUT_S and r.wheel_speed_m_s > 0.0:
+        # Slip to zero first: with equal decelerations the slower belt would stand while the wheel still turns.
+        out.wheel_rad_s = wheel_rad_s
+        out.belt_m_s = min(r.wheel_speed_m_s, rig.limits.belt_speed_m_s)
+    if r.press_mm <= state.load.lifted_mm(rig.loops.load) + LIFTED_MM:
+        out.press_mm_s = 0.0
+
+
+def stop_ended(state: ControlState, view: View) -> bool:
+    """Tell whether the rig stands, lifted and unloaded, or the time for it is over."""
+    r = view.readings
+    if r.now_s - state.mode_since_s > STOP_TIMEOUT_S:
+        return True
+    lifted = r.press_mm <= state.load.lifted_mm(view.rig.loops.load) + LIFTED_MM
+    if state.mode is Mode.EMERGENCY or state.setpoints.power_off:
+        lifted = True  # the press has no power: the open contact is what counts
+    return standing(r) and lifted and unloaded(view)
+
+
+def after_stop(state: ControlState, view: View) -> None:
+    """Leave a stop that has ended: to the cool-down, to LATCHED after a trip, else to IDLE."""
+    r, interlocks, now = view.readings, view.rig.interlocks, view.readings.now_s
+    trip = state.trip
+    hub_c = r.hub_c if r.jacket_valid else view.jacket.hub_c
+    healthy = state.mode is Mode.STOPPING and r.drives_enabled and not r.drive_fault
+    if healthy and hub_c > interlocks.cooldown_hub_c and not state.cooled:
+        state.enter(Mode.COOLDOWN, now, "jacket hot")
+        state.stop.creeps = True
+        return
+    state.stop.began_s = float("inf")
+    if trip is not None or state.mode is not Mode.STOPPING:
+        state.enter(Mode.LATCHED, now, "standstill")
+    else:
+        state.enter(Mode.IDLE, now, "standstill")
+    no_outputs(state.setpoints, view.rig)
+
+
+def emergency_outputs(state: ControlState, view: View) -> None:
+    """Mirror the hardware's emergency stop."""
+    mirror_emergency(state.setpoints, view.rig)
+
+
+def cool_outputs(state: ControlState, view: View) -> bool:
+    """Command the cool-down: unloaded creep, heat off. Return whether it is over."""
+    out, r, interlocks, now = state.setpoints, view.readings, view.rig.interlocks, view.readings.now_s
+    safe_outputs(out, view.rig, fast=False)
+    out.press_mm_s = 0.0
+    cool = r.jacket_valid and r.hub_c <= interlocks.cooldown_hub_c
+    if cool or now - state.mode_since_s > interlocks.cooldown_at_most_s:
+        state.cooled = True
+        state.enter(Mode.STOPPING, now, "cooled down" if cool else "cool-down time over")
+        return True
+    out.wheel_rad_s = interlocks.cooldown_speed_m_s / (r.diameter_mm * 0.5e-3) if r.diameter_mm > 1.0 else 0.0
+    return False
+
+

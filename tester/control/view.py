@@ -1,0 +1,118 @@
+"""What the interlocks' levels may look at in one scan, and what several of them ask for."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from math import inf
+
+from tester.control.monitors import JacketMonitor, SpeedTracker, SurfaceMonitor
+from tester.control.observer import ThermalObserver
+from tester.control.state import ControlState, Mode
+from tester.process import Demand, Press, Readings
+from tester.rig import InterlocksConfig, LimitsConfig, RigConfig
+
+STANDING_M_S = 0.02
+"""Below this a drive counts as standing [A]."""
+UNLOADED_N = 20.0
+"""Below this the contact counts as unloaded (safety concept, "load with a drive stopped")."""
+# Bound once: a look-up on the enum class costs several times as much in every scan (CPython 3.11).
+_LOAD = Press.LOAD
+_RUN, _HOLD = Mode.RUN, Mode.HOLD
+
+
+@dataclass(slots=True)
+class View:
+    """One object serves every scan: ``look`` brings it up to date."""
+
+    state: ControlState
+    rig: RigConfig
+    limits: LimitsConfig = field(init=False)
+    bounds: InterlocksConfig = field(init=False)
+    readings: Readings = field(init=False)
+    demand: Demand = field(init=False)
+    observer: ThermalObserver = field(init=False)
+    jacket: JacketMonitor = field(default_factory=JacketMonitor)
+    surface: SurfaceMonitor = field(default_factory=SurfaceMonitor)
+    wheel: SpeedTracker = field(init=False)
+    belt: SpeedTracker = field(init=False)
+    scan_s: float = 0.0
+    """Period of the scan, s."""
+    pressing: bool = False
+    """Contact is wanted."""
+    loaded: bool = True
+    """Contact is wanted or cannot be excluded."""
+    turning: bool = False
+    """The wheel is confirmed turning."""
+    confirmed: bool = False
+    """Every drive has been in operation since they were last wanted to be."""
+    friction_n: float = 0.0
+    friction_w: float = 0.0
+    """Resultant friction force and its power (NaN where a part is unknown); 0 while unloaded."""
+    stopped_s: float = -inf
+    """How long a stop has been under way; -inf while none is."""
+    wheel_most_m_s: float = field(init=False)
+    belt_most_m_s: float = field(init=False)
+    """Overspeed begins here."""
+
+    def __post_init__(self) -> None:
+        """Keep the parts of the rig file that levels compare with."""
+        rig = self.rig
+        self.limits = limits = rig.limits
+        self.bounds = bounds = rig.interlocks
+        self.observer = ThermalObserver(rig)
+        radius_m = 0.5e-3 * rig.geometry.wheel_diameter_mm
+        self.wheel = SpeedTracker(rig.axes.wheel.acceleration * radius_m)
+        self.belt = SpeedTracker(rig.axes.belt.acceleration)
+        self.wheel_most_m_s = limits.wheel_speed_m_s * (1.0 + bounds.overspeed_share)
+        self.belt_most_m_s = limits.belt_speed_m_s * (1.0 + bounds.overspeed_share)
+
+    def look(self, demand: Demand, readings: Readings, scan_s: float, dt: float) -> None:
+        """Take this scan's demand and readings, and work out what several levels ask for."""
+        self.readings = r = readings
+        self.demand = demand
+        self.scan_s = scan_s
+        state = self.state
+        self.pressing = pressing = demand.press is _LOAD
+        self.loaded = loaded = pressing or not (r.force_z_n < UNLOADED_N)
+        wheel_m_s = r.wheel_speed_m_s
+        self.turning = wheel_m_s > STANDING_M_S or wheel_m_s < -STANDING_M_S
+        self.stopped_s = r.now_s - state.stop.began_s
+        self._follow_speeds(demand, r, dt)
+        observer = self.observer
+        if loaded:
+            fx, fy = r.force_x_n, r.force_y_n
+            self.friction_n = friction = (fx * fx + fy * fy) ** 0.5
+            self.friction_w = power = friction * r.slip_m_s
+            if not (r.force_z_n < UNLOADED_N):
+                observer.rub(power, dt)
+        else:
+            self.friction_n = self.friction_w = 0.0
+        if r.now_s >= observer.due_s:
+            observer.step(r.now_s, r.hub_c if r.jacket_valid else self.jacket.hub_c, wheel_m_s, r.surface_c)
+        if r.jacket_at_s > self.jacket.stamp_s:
+            out = state.setpoints
+            self.jacket.update(r, out.heat, out.hub_c, self.bounds)
+        if r.surface_at_s > self.surface.stamp_s:
+            self.surface.update(r, observer.surface_c)
+
+    def _follow_speeds(self, demand: Demand, r: Readings, dt: float) -> None:
+        """Bring the speed trackers up to date while the drives are in operation and a step commands them."""
+        mode = self.state.mode
+        if not demand.enabled or not (mode is _RUN or mode is _HOLD):
+            self.confirmed = False
+            return
+        if not self.confirmed:
+            if not r.drives_enabled:
+                return
+            self.confirmed = True
+            self.wheel.begin(r.wheel_speed_m_s)
+            self.belt.begin(r.belt_speed_m_s)
+        out = self.state.setpoints
+        self.wheel.follow(out.wheel_rad_s * r.diameter_mm * 0.5e-3, dt)
+        self.belt.follow(out.belt_m_s, dt)
+
+    def wheel_changed(self, now: float) -> None:
+        """Begin anew with a wheel at ambient temperature: nothing is compared with the one before."""
+        self.observer.new_wheel()
+        self.surface.forget(now)
+        self.jacket.forget(now)
