@@ -97,7 +97,7 @@ def _modbus_rows() -> Iterator[FaultKind]:
         yield FaultKind(f"{device} replies cut short", partial(m.Impaired, device, "truncate"), when, TRIP, budget_s)
         yield FaultKind(f"{device} replies of another address", partial(m.Impaired, device, "wrong_id"), when, TRIP,
                         budget_s)
-        yield FaultKind(f"{device} replies late", partial(m.LateReply, device), when, TRIP, budget_s + 0.5, "ms", 0.3)
+        yield FaultKind(f"{device} replies late", partial(m.LateReply, device), when, TRIP, budget_s + 0.5, "ms", 1.5)
         yield FaultKind(f"{device} reply late once", partial(m.Impaired, device, "late", count=1, delay_s=0.02),
                         ALWAYS, RIDE, 0.0)
         yield FaultKind(f"{device} CRC error once", partial(m.Impaired, device, "corrupt", count=1), ALWAYS, RIDE, 0.0)

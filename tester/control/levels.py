@@ -16,6 +16,10 @@ CONTACT_LEAST_N = 50.0
 """A target below this is too near to touching to tell a lost contact (rulings, 18)."""
 SPEEDS_OLD_S = 0.5
 """Older than this, speeds, force and position are unknown to a stop, s [A]: it does not end on them."""
+PRESSED_N = 50.0
+"""A contact that nobody wants gets no firmer by more than this, N [A]: runout and noise are 10 N."""
+PUSHED_MM = 0.3
+"""A press that was told to lift has gone on by this at most, mm [A]: its ramp from 10 mm/s takes less."""
 CLEAR_MM = 0.5
 """The press stands this far off the known contact: open, whatever the cell shows [A] (runout 0.05 mm, wear)."""
 
@@ -78,7 +82,9 @@ def motion_levels(v: View) -> int:
         if not r.guard_closed:
             held |= _GUARD
         if r.drives_enabled:
-            allowed = b.stale_can_scans * v.scan_s
+            # After a scan that came late the drives' data cannot be younger than the scan before it.
+            gap_s = r.now_s - v.state.last_s
+            allowed = b.stale_can_scans * (gap_s if gap_s > v.scan_s else v.scan_s)
             since = r.now_s - (allowed if allowed < b.stale_can_s else b.stale_can_s)
             if not (
                 r.wheel_at_s >= since
@@ -124,7 +130,12 @@ def load_levels(v: View) -> int:
         held |= _POWER
     if v.turning and not (fz < UNLOADED_N) and not (r.now_s - r.cell_changed_s <= b.frozen_cell_s):
         held |= _CELL_FROZEN
-    if v.pressing:
+    if not v.pressing:
+        if not (fz <= v.least_n + PRESSED_N):
+            held |= _OVERSHOOT
+    else:
+        if not load.in_contact and not (r.press_mm <= v.touch_most_mm):
+            held |= _CELL_FROZEN
         wanted = v.demand.load_n
         highest = load.highest_n if load.highest_n > wanted else wanted
         if not (fz <= b.overload_factor * highest + b.overload_margin_n):
@@ -189,6 +200,8 @@ def stop_levels(v: View) -> int:
         held |= _NOT_LIFTED
         if not (since <= b.lift_failed_s):
             held |= _LIFT_FAILED
+    if not (r.press_mm <= stop.press_mm + PUSHED_MM) and not unloaded(v):
+        held |= _LIFT_FAILED
     if not (since <= b.heat_off_s) and not (r.heat_percent <= 0.0) and r.contactor_closed:
         held |= _HEAT_ON
     if not stop.creeps and not standing(r):

@@ -24,6 +24,7 @@ def begin_stop(state: ControlState, view: View, now: float, bounds: Bounds) -> N
     stop = state.stop
     stop.began_s = now
     stop.speed_m_s = _speed(view, bounds)
+    stop.press_mm = view.readings.press_mm if isfinite(view.readings.press_mm) else float("inf")
     stop.fast_s = float("inf")
     stop.creeps = False
 

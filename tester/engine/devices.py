@@ -67,6 +67,7 @@ class Devices:
     """A drive's state, an input or an emergency is new in this scan."""
     _goal: Goal = Goal.DISABLED
     _wanted: Goal = Goal.DISABLED
+    _withheld: bool = False
     _last_angle_s: float = NEVER
     _foreseeing: ForeseeingPort | None = field(init=False)
     lost: str = ""
@@ -232,7 +233,9 @@ class Devices:
                 enabled = False
                 if not fault and (state is _FAULT or state is _FAULT_REACTION):
                     fault = _fault_text(drive)
-            if not fault and (drive.lost or drive.rebooted or drive.emergency is not None):
+            if not fault and (
+                drive.lost or drive.rebooted or drive.emergency is not None or (drive.connected and not drive.remote)
+            ):
                 fault = _fault_text(drive)
         r.drives_enabled, r.drives_disabled, r.drive_fault = enabled, disabled, fault
         inputs = self.axes.press.inputs
@@ -262,6 +265,9 @@ class Devices:
         if camber is not None and out.camber_deg != camber.aimed:
             camber.aim(out.camber_deg)
         press.outputs = OUTPUT_CONTACTOR if out.contactor else 0
+        if out.power_off is not self._withheld:
+            # The last resort reaches a drive that takes no commands, too: each stops without our heartbeat.
+            self._withheld = self.master.withhold_heartbeat = out.power_off
         jacket = self.jacket
         jacket.enable(out.heat)
         if not out.jacket_silent:
@@ -308,4 +314,6 @@ def _fault_text(drive: ServoDrive) -> str:
         return f"{name}: rebooted"
     if drive.emergency is not None:
         return f"{name}: {drive.emergency.text} (0x{drive.emergency.code:04X})"
+    if drive.connected and not drive.remote:
+        return f"{name}: under local control"
     return f"{name}: fault"

@@ -26,8 +26,9 @@ from tester.store.recorder import NullRecorder, Ticket
 RUNNING = frozenset({"armed", "run", "hold"})
 STANDING = frozenset({"idle", "latched"})
 EMERGENCY = "emergency stop mirrored"
-AT_REST_S = 0.1
-"""A rig that is latched or idle may take this long to be at rest in every axis."""
+AT_REST_S = 0.3
+"""A rig that has latched may take this long to be at rest in every axis: a yaw axis comes down from 20 deg/s
+in 0.25 s on the ramp of its drive, which is disabled with the latching."""
 EMERGENCY_REST_S = 3.0
 """A mirrored emergency stop begins with the drives at speed: I5 gives them this long."""
 
