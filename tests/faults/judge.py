@@ -85,6 +85,7 @@ class Judge:
         self.committed = stage.ledger.committed
         self._exposed_s = [inf] * len(self.kinds)
         self._was_ended = stage.ended
+        self._was_running = stage.running
         stage.inject(*(Injection(When(at_s=self.onset_s), kind, text=kind.phrase) for kind in self.kinds))
         slow = any(kind.slow for kind in self.kinds)
         self.until_s = self.onset_s + (SLOW_S if slow else WATCHED_S)
@@ -96,6 +97,7 @@ class Judge:
             pass
         verdict = self.verdict
         verdict.failures += [f"harm: {name}, {text}" for name, text in stage.observer.found.items()]
+        verdict.failures += [f"invariant {name}: {text}" for name, text in stage.invariants.broken.items()]
         trip = stage.run.engine.control.state.trip
         if trip is not None:
             verdict.tripped_by = trip.name
@@ -135,8 +137,8 @@ class Judge:
             if now > self.onset_s + kind.lasts_s or not exposed(self.stage, kind.exposure):
                 self._exposed_s[i] = inf
                 continue
-            if kind.reaction is Reaction.HOLD and (self.stage.mode == "hold" or not self.stage.running):
-                continue
+            if kind.reaction is Reaction.HOLD and (self.stage.mode == "hold" or not self._was_running):
+                continue  # a rig that is not up refuses to hold
             self._exposed_s[i] = min(self._exposed_s[i], now)
             if now - max(self._exposed_s[i], self.onset_s) > kind.budget_s + ROUNDING_S:
                 return f"missed budget of {kind.budget_s:.2f} s: {kind.phrase}"

@@ -22,6 +22,7 @@ from tester.recipe.plan import Plan
 from tester.rig import RigConfig, load_rig
 from tester.simulated import simulated_ports
 from tester.store.recorder import NullRecorder, Ticket
+from tests.faults.invariants import Invariants
 
 RUNNING = frozenset({"armed", "run", "hold"})
 STANDING = frozenset({"idle", "latched"})
@@ -88,6 +89,7 @@ class Stage:
         self.faulty = FaultyRun(self.run, rig, FaultScript())
         planned = max((s.setpoint.slip_velocity_m_s * s.setpoint.load_n for s in self.plan.conditions()), default=0.0)
         self.observer = HarmObserver(rig, planned)
+        self.invariants = Invariants()
         self.next_s = 0.0
         self.ticks = 0
         self.mode = ""
@@ -139,6 +141,7 @@ class Stage:
         if mode != self.mode:
             self.mode, self.mode_since_s = mode, now
         self.observer.look(self._must_stand(now))
+        self.invariants.look(self)
         return now
 
     def _must_stand(self, now: float) -> bool:
