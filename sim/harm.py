@@ -92,8 +92,8 @@ class HarmObserver:
     def look(self, must_stand: bool) -> None:
         """Look at the rig as it is now; ``must_stand``: latched, idle or emergency stop, and time enough to rest."""
         rig, now = self.rig, self.rig.now_s
-        dt = now - self._last_s
-        if dt <= 0.0:
+        dt = now - self._last_s if self._last_s > -inf else 0.0
+        if now <= self._last_s:
             return
         self._last_s = now
         plant = rig.plant

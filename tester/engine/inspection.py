@@ -21,7 +21,7 @@ LEAST_REQUESTS = 8
 class _Record:
     """Requests and failures of a station at the last few looks, oldest first."""
 
-    __slots__ = ("name", "looks", "station")
+    __slots__ = ("looks", "name", "station")
 
     def __init__(self, name: str, station: Station) -> None:
         self.name = name
