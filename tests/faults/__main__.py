@@ -19,6 +19,8 @@ from tests.faults.judge import Verdict
 SAMPLE_CASES = 420
 SAMPLE_CPU_S, FULL_CPU_S = 120.0, 1800.0
 SAMPLE_SCANS = 40
+SPARSE = 10
+"""Emergency stop and hold come at every tenth scan: abort, fast stop and kill at every one."""
 HOLD = "sim.press_on_power_loss=hold"
 """The rig whose press stays where it is without power; sampled beside the one with a spring."""
 
@@ -94,8 +96,11 @@ def full(report: Report, jobs: int, most: int) -> None:
     doubles(report, conduct("pairs", pairs(moments, faults, PAIRS), jobs, budgets=False), most)
     held = sample(all_cases(moments, faults), SAMPLE_CASES)
     grid(report, conduct("grid, press held without power", held, jobs, (HOLD,)), 400, most)
-    for tally in every_scan.conduct(range(every_scan.scans()), jobs=jobs).values():
+    ticks = range(every_scan.scans())
+    for tally in every_scan.conduct(ticks, every_scan.EVENTS[:3], jobs).values():
         scans(report, tally, every_scan.ASKED_FOR, most)
+    for tally in every_scan.conduct(ticks[::SPARSE], every_scan.EVENTS[3:], jobs).values():
+        scans(report, tally, len(ticks[::SPARSE]), most)
 
 
 def cpu_s() -> float:

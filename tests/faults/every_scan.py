@@ -8,22 +8,18 @@ from dataclasses import dataclass
 
 from tests.faults.campaign import Tally
 from tests.faults.judge import Case, Judge, Verdict
-from tests.faults.moments import Moment, visit
-from tests.faults.recipes import SHORT
-from tests.faults.stage import Stage
+from tests.faults.moments import Moment, rehearse, visit
 
 NAME = "short"
+"""The recipe (tests.faults.recipes)."""
 EVENTS = ("operator abort", "operator fast stop", "process killed", "emergency stop pressed", "operator hold")
 ASKED_FOR = 5000
 """Injection points for each of abort, stop and kill."""
 
 
 def scans() -> int:
-    """Return how many ticks the short recipe has, from its first to the end of its run."""
-    stage = Stage(SHORT)
-    while not stage.ended:
-        stage.tick()
-    return stage.ticks
+    """Return how many ticks the short recipe has, from its first to the end of its run, power off."""
+    return rehearse(NAME)[1].ticks
 
 
 @dataclass(frozen=True, slots=True)

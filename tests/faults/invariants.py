@@ -34,8 +34,8 @@ class Invariants:
     def look(self, stage: Stage) -> None:
         """Look at the commands of the last scan, if there was a new one."""
         engine = stage.run.engine
-        if engine.scans == self._scans:
-            return
+        if engine.scans == self._scans or engine.control.state.events:
+            return  # events that wait: something was asked for after the scan, the next one acts on it
         self._scans = engine.scans
         mode = engine.control.state.mode.value
         self._heat(stage, mode)
@@ -77,7 +77,8 @@ class Invariants:
         if out.heat or out.contactor or out.press_mm_s > 0.0 or out.hub_c > engine.ctx.rig.loops.heat.hub_min_c:
             self._break(stage, "I3", f"{mode}: heat {out.heat}, contactor {out.contactor}, press {out.press_mm_s}")
         lifted = engine.ctx.contact.lifted_mm(engine.ctx.rig.loops.load)
-        if mode in ("stopping", "fast stop") and not out.press_mm_s < 0.0 and engine.ctx.readings.press_mm > lifted + 0.3:
+        high = engine.ctx.readings.press_mm > lifted + 0.3
+        if mode in ("stopping", "fast stop") and high and not out.press_mm_s < 0.0:
             self._break(stage, "I3", f"{mode}: the press is not told to lift")
         if mode == "fast stop" and (out.wheel_rad_s or out.belt_m_s or not out.quick_stop):
             self._break(stage, "I3", f"fast stop commands {out.wheel_rad_s} rad/s, {out.belt_m_s} m/s")

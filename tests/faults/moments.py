@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
+from functools import cache
 
 from tests.faults.recipes import RECIPES
 from tests.faults.stage import STANDING, Place, Stage
@@ -26,8 +27,9 @@ class Moment:
         return f"{self.step}, {self.phase}"
 
 
-def rehearse(recipe: str, overrides: Iterable[str] = ()) -> tuple[list[Moment], Stage]:
-    """Run a recipe to its end; return begin, middle and end of every step, and the stage at the end."""
+@cache
+def rehearse(recipe: str, overrides: tuple[str, ...] = ()) -> tuple[list[Moment], Stage]:
+    """Run a recipe to its end, once; return begin, middle and end of every step, and the stage at the end."""
     stage = Stage(RECIPES[recipe], overrides)
     stretches: list[tuple[Place, str, int, int]] = []
     while not stage.run.finished:

@@ -101,7 +101,7 @@ def copy_tree(to: Path) -> None:
 
 
 def apply(mutant: Mutant, tree: Path) -> None:
-    """Put a mutant into a copy. Raises ValueError when its text is not there exactly once: it has to be written anew."""
+    """Put a mutant into a copy. Raises ValueError when its text is not there exactly once."""
     path = tree / mutant.path
     text = path.read_text(encoding="utf-8")
     if text.count(mutant.old) != 1:

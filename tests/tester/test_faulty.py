@@ -26,7 +26,7 @@ def under(text: str, seconds: float) -> Stage:
     """Run on from there for some time with a script; ``t=`` counts from there."""
     stage = started().copy()
     begin = stage.next_s
-    injections = parse_script([text.replace("t=", f"t={begin + 0.001:.6f} s: ", 1)] if text.startswith("t=") else [text])
+    injections = parse_script([text.replace("t=", f"t={begin + 0.001:.6f} s: ", 1)])
     stage.inject(*injections)
     while stage.next_s < begin + seconds:
         stage.tick()
@@ -79,9 +79,9 @@ def test_a_fault_that_is_over_lets_frames_pass_again():
 
 def test_after_a_kill_the_devices_stop_by_themselves():
     stage = under("t=process killed", 3.0)
-    truth_now = stage.rig.plant
+    plant = stage.rig.plant
     assert stage.faulty.killed
-    assert truth_now.force_z_n == 0.0 and truth_now.slip_m_s == 0.0
+    assert plant.force_z_n == 0.0 and plant.slip_m_s == 0.0
     assert stage.rig.axes["wheel"].axis.value == 0.0
 
 
