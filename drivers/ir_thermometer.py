@@ -31,7 +31,9 @@ class IrThermometer(Device):
         self._surface = names.index("surface")
         self._status = names.index("status")
         self._sensor = names.index("sensor") if "sensor" in names else -1
-        self._signal = profile.signal("surface")
+        surface = profile.signal("surface")
+        self._scale, self._least, self._greatest = surface.scale, surface.least, surface.greatest
+        self._invalid_bits = profile.invalid_bits
         self._sensor_scale = profile.signal("sensor").scale if self._sensor >= 0 else nan
         self.emissivity = emissivity
         self.counts = 0
@@ -54,12 +56,11 @@ class IrThermometer(Device):
             return
         found = self._unpack(data)
         counts, status = found[self._surface], found[self._status]
-        signal = self._signal
-        value = counts * signal.scale
+        value = counts * self._scale
         self.counts = counts
         self.status = status
         self.stamp_s = t
-        self.valid = not status & self.profile.invalid_bits and signal.least <= value <= signal.greatest
+        self.valid = not status & self._invalid_bits and self._least <= value <= self._greatest
         self.surface_c = value
         if self._sensor >= 0:
             self.sensor_c = found[self._sensor] * self._sensor_scale

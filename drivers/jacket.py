@@ -42,12 +42,15 @@ class HeatingJacket(Device):
         self._status_block, self._status_place = _find_status(profile)
         self._sensor_bits = profile.bit("sensor_break")
         self._remote_bits = profile.bit("remote_fail")
-        self._pv_signal = profile.signal("pv")
+        pv = profile.signal("pv")
+        self._pv_scale, self._pv_least, self._pv_greatest = pv.scale, pv.least, pv.greatest
+        self._invalid_bits = profile.invalid_bits
         self._output_scale = profile.signal("output").scale
         self._working_scale = profile.signal("setpoint").scale
         self._register = profile.writes["setpoint"]
         self._wanted: int | None = None
         self._asked = False
+        self._asked_c = nan
         self._run_wanted = False
         self._unconfirmed = False
         switch = self._switch = profile.switches["run"]
@@ -76,17 +79,22 @@ class HeatingJacket(Device):
         It is written when it changes and twice a second; what is not asked for any more is not renewed either, and the
         controller's lease runs out. Raises ValueError unless it is a finite number.
         """
+        if celsius != self._asked_c:
+            self._change_setpoint(celsius)
+        self._asked = True
+        if not self._setpoint_write.enabled and self.ready:
+            self.link.enable(self._setpoint_write)
+
+    def _change_setpoint(self, celsius: float) -> None:
         if not isfinite(celsius):
             raise ValueError(f"the jacket's setpoint must be a finite number, not {celsius}")
-        self._asked = True
+        self._asked_c = celsius
         register = self._register
-        celsius = min(max(celsius, register.least), register.greatest)
-        counts = round(celsius / register.scale)
+        bounded = min(max(celsius, register.least), register.greatest)
+        counts = round(bounded / register.scale)
         if counts != self._wanted:
             self._wanted = counts
-            self.link.rewrite(self._setpoint_write, register.words(celsius, self.profile.word_order))
-        if self.ready and not self._setpoint_write.enabled:
-            self.link.enable(self._setpoint_write)
+            self.link.rewrite(self._setpoint_write, register.words(bounded, self.profile.word_order))
 
     def enable(self, on: bool) -> None:
         """Let the controller run (True) or stand by; standby goes before everything else on the line."""
@@ -102,7 +110,7 @@ class HeatingJacket(Device):
                 self.link.disable(self._setpoint_write)
             self._asked = False
         elif request is not self._run_write:
-            super().received(request, data, t)
+            Device.received(self, request, data, t)
         elif self._unconfirmed and not request.fresh:
             # The output is read at once: a wheel that stops must not be taken for one that is still heated.
             self._unconfirmed = False
@@ -111,24 +119,21 @@ class HeatingJacket(Device):
     def take(self, block: int, data: bytes, t: float) -> None:
         """Update the readings."""
         found = self._unpack[block](data)
-        profile = self.profile
         if block == self._status_block:
             self.status = status = found[self._status_place]
             self._status_s = t
-            self.sensor_break = bool(status & self._sensor_bits)
-            self.remote_failed = bool(status & self._remote_bits)
+            self.sensor_break = status & self._sensor_bits != 0
+            self.remote_failed = status & self._remote_bits != 0
         if block == 0:
             self.counts = found[self._pv]
             self.output_percent = found[self._output] * self._output_scale
             self.setpoint_c = found[self._working] * self._working_scale
             self.stamp_s = t
-        hub_c = self.counts * self._pv_signal.scale
-        plausible = self._pv_signal.least <= hub_c <= self._pv_signal.greatest
-        usable = plausible and not self.sensor_break and self.stamp_s > -inf
+        stamp_s = self.stamp_s
+        hub_c = self.counts * self._pv_scale
+        usable = self._pv_least <= hub_c <= self._pv_greatest and not self.sensor_break and stamp_s > -inf
         self.hub_c = hub_c if usable else nan
-        self.valid = (
-            usable and not self.status & profile.invalid_bits and self._status_s >= self.stamp_s - STATUS_AGE_S
-        )
+        self.valid = usable and not self.status & self._invalid_bits and self._status_s >= stamp_s - STATUS_AGE_S
 
     def suspend(self) -> None:
         """Distrust the last reading and stop commanding; the set-up begins with standby."""

@@ -33,7 +33,6 @@ class LoadCell(Device):
             raise ProfileError(f"profile {profile.name}: the first read must hold status and at least one force")
         present = [profile.signal(name) if name in names else None for name in CHANNELS]
         self._unpack = block.unpack
-        self._plain = tuple(names) == (*CHANNELS, "status")
         self._places = tuple(names.index(name) if name in names else -1 for name in CHANNELS)
         self._status_place = names.index("status")
         self._signs = tuple(
@@ -43,13 +42,20 @@ class LoadCell(Device):
         self._limits: Vector = _four([_limit(signal.greatest, signal.scale) if signal else inf for signal in present])
         self._invalid_bits = profile.invalid_bits
         self._poll = self._polls[0]
-        self.counts: tuple[int, int, int, int] = (0, 0, 0, 0)
+        self._usual = self._poll if tuple(names) == (*CHANNELS, "status") else None
+        self._found: tuple[int, ...] = (0, 0, 0, 0, 0)
         self.status = 0
         self.valid = False
         self.stamp_s = -inf
         self.fx_n = self.fy_n = self.fz_n = self.mz_nm = nan
         self.tare: Vector = (0.0, 0.0, 0.0, 0.0)
         self.begin()
+
+    @property
+    def counts(self) -> tuple[int, int, int, int]:
+        """The bare numbers of the registers."""
+        cx, cy, cz, cm, _ = self._found
+        return cx, cy, cz, cm
 
     @property
     def raw(self) -> Vector:
@@ -76,11 +82,10 @@ class LoadCell(Device):
 
     def received(self, request: Request, data: bytes, t: float) -> None:
         """Take a good reply; the way of the usual reading is short."""
-        if request is self._poll and self._plain and self.ready:
-            cx, cy, cz, cm, status = self._unpack(data)
-            self._store(cx, cy, cz, cm, status, t)
+        if request is self._usual and self.ready:
+            self._store(self._unpack(data), t)
         else:
-            super().received(request, data, t)
+            Device.received(self, request, data, t)
 
     def take(self, block: int, data: bytes, t: float) -> None:
         """Update the readings from registers in any order, with signs in the status."""
@@ -92,7 +97,7 @@ class LoadCell(Device):
             (-found[place] if status & sign else found[place]) if place >= 0 else 0
             for place, sign in zip(self._places, self._signs, strict=True)
         )
-        self._store(cx, cy, cz, cm, status, t)
+        self._store((cx, cy, cz, cm, status), t)
 
     def suspend(self) -> None:
         """Distrust the last reading."""
@@ -101,8 +106,10 @@ class LoadCell(Device):
     def resume(self) -> None:
         """Leave the last reading distrusted until the next comes."""
 
-    def _store(self, cx: int, cy: int, cz: int, cm: int, status: int, t: float) -> None:
-        self.counts = (cx, cy, cz, cm)
+    def _store(self, found: tuple[int, ...], t: float) -> None:
+        """Take the counts of the four channels and the status."""
+        cx, cy, cz, cm, status = found
+        self._found = found
         self.status = status
         self.stamp_s = t
         lx, ly, lz, lm = self._limits

@@ -67,7 +67,6 @@ class LinePort(Protocol):
 class ForeseeingPort(LinePort, Protocol):
     """A simulated line, which knows what a real one cannot: when bytes that are on their way will be there."""
 
-    @property
-    def arrives_s(self) -> float:
-        """Arrival of the next bytes not read yet, s; infinity when none are on their way."""
-        ...
+    arrives_s: float
+    """Arrival of the next bytes not read yet, s: before it there is nothing to read. Infinity when none are on their
+    way, -infinity when the line is gone."""

@@ -10,6 +10,8 @@ from __future__ import annotations
 
 import math
 import zlib
+from collections.abc import Iterator
+from copy import copy
 
 import numpy as np
 
@@ -17,7 +19,7 @@ from sim.parameters import SimParameters
 
 _SEED_MASK = 0xFFFF_FFFF_FFFF_FFFF
 BLOCKS = (128, 1024)
-"""Numbers drawn at a time, the first time and from then on (multiples of four): the hot path indexes a list."""
+"""Numbers drawn at a time, the first time and from then on (multiples of four): the hot path steps through a list."""
 
 
 def _generator(seed: int, stream: str, place: tuple[int, ...]) -> np.random.Generator:
@@ -42,7 +44,7 @@ class NormalStream:
     Each block has a key of its own, so the state is a block's number and a position: cheap to copy.
     """
 
-    __slots__ = ("_at", "_block", "_numbers", "_place", "_seed", "_stream")
+    __slots__ = ("_block", "_fours", "_numbers", "_place", "_seed", "_stream")
 
     def __init__(self, seed: int, stream: str, *place: int) -> None:
         """Start at the key's first number; nothing is drawn before the first is asked for."""
@@ -50,37 +52,37 @@ class NormalStream:
         self._stream = stream
         self._place = place
         self._block = 0
-        self._numbers: list[float] = []
-        self._at = 0
+        self._hold(iter(()))
 
     def next(self) -> float:
         """Return the next number."""
-        at = self._at
-        if at >= len(self._numbers):
-            self._draw()
-            at = 0
-        self._at = at + 1
-        return self._numbers[at]
+        for number in self._numbers:  # one step of the iterator: the shortest way to one number
+            return number
+        self._draw()
+        return next(self._numbers)
 
-    def next4(self) -> list[float]:
+    def next4(self) -> tuple[float, float, float, float]:
         """Return the next four numbers (of a stream that is only read by fours)."""
-        at = self._at
-        if at >= len(self._numbers):
-            self._draw()
-            at = 0
-        self._at = at + 4
-        return self._numbers[at : at + 4]
+        for four in self._fours:
+            return four
+        self._draw()
+        return next(self._fours)
+
+    def _hold(self, numbers: Iterator[float]) -> None:
+        self._numbers = numbers
+        self._fours = zip(numbers, numbers, numbers, numbers, strict=False)
 
     def _draw(self) -> None:
         """Draw the next block."""
         generator = _generator(self._seed, self._stream, (*self._place, self._block))
-        self._numbers = generator.standard_normal(BLOCKS[self._block > 0]).tolist()
+        self._hold(iter(generator.standard_normal(BLOCKS[self._block > 0]).tolist()))
         self._block += 1
 
     def __deepcopy__(self, memo: dict[int, object]) -> NormalStream:
         """Return an independent stream at the same position; a block is never changed, so it is shared."""
         twin = NormalStream(self._seed, self._stream, *self._place)
-        twin._block, twin._numbers, twin._at = self._block, self._numbers, self._at
+        twin._block = self._block
+        twin._hold(copy(self._numbers))
         return twin
 
 

@@ -18,14 +18,12 @@ class LoadCellSensor:
 
     __slots__ = (
         "_drift_n_k",
-        "_force_rms_n",
         "_matrix",
-        "_moment_rms_nm",
         "_noisy",
         "_offsets_n",
         "_ranges_n",
         "_reference_c",
-        "_slopes",
+        "_sizes",
         "_time_s",
         "_warming",
         "cell_c",
@@ -38,12 +36,12 @@ class LoadCellSensor:
         self._noisy = noise > 0.0
         self._ranges_n = (sensors.range_x, sensors.range_y, sensors.range_z)
         # A parabola through zero and the range's end, farthest off at half range, is a slope that falls with force.
-        self._slopes = tuple(4.0 * noise * sensors.linearity * u for u in draws[0:3])
+        slopes = [4.0 * noise * sensors.linearity * u for u in draws[0:3]]
+        bends = [slope / most for slope, most in zip(slopes, self._ranges_n, strict=True)]
+        self._sizes = (*slopes, *bends, noise * sensors.force_rms, noise * sensors.moment_rms)
         self._drift_n_k = tuple(math.copysign(noise * sensors.zero_drift, u) for u in draws[3:6])
         self._offsets_n = (0.0, 0.0, 0.0)
         self._matrix = _coupling(sensors, noise, draws[6:16])
-        self._force_rms_n = noise * sensors.force_rms
-        self._moment_rms_nm = noise * sensors.moment_rms
         self._reference_c = ambient_c
         self._time_s = sensors.cell_time
         self._warming = sensors.cell_warming
@@ -70,21 +68,16 @@ class LoadCellSensor:
         z = zx * fx + zy * fy + zz * fz
         rx, ry, rz = self._ranges_n
         if self._noisy:
-            sx, sy, sz = self._slopes
+            sx, sy, sz, bx, by, bz, rms, moment_rms = self._sizes
             ox, oy, oz = self._offsets_n
             n1, n2, n3, n4 = self.noise.next4()
-            rms = self._force_rms_n
-            x += sx * x * (1.0 - abs(x) / rx) + ox + rms * n1
-            y += sy * y * (1.0 - abs(y) / ry) + oy + rms * n2
-            z += sz * z * (1.0 - abs(z) / rz) + oz + rms * n3
-            mz += self._moment_rms_nm * n4
-        if not -rx < x < rx:
-            x = math.copysign(rx, x)
-        if not -ry < y < ry:
-            y = math.copysign(ry, y)
-        if not -rz < z < rz:
-            z = math.copysign(rz, z)
-        return x, y, z, mz
+            x += x * (sx - bx * x if x > 0.0 else sx + bx * x) + ox + rms * n1
+            y += y * (sy - by * y if y > 0.0 else sy + by * y) + oy + rms * n2
+            z += z * (sz - bz * z if z > 0.0 else sz + bz * z) + oz + rms * n3
+            mz += moment_rms * n4
+        if -rx < x < rx and -ry < y < ry and -rz < z < rz:
+            return x, y, z, mz
+        return min(max(x, -rx), rx), min(max(y, -ry), ry), min(max(z, -rz), rz), mz
 
 
 def _coupling(sensors: SensorParameters, noise: float, draws: list[float]) -> tuple[float, ...]:

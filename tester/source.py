@@ -17,12 +17,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias, cast
 
 import yaml.events as ev
-from yaml.error import MarkedYAMLError
-from yaml.parser import Parser
-from yaml.reader import Reader
-from yaml.scanner import Scanner, ScannerError
+from yaml.error import Mark, MarkedYAMLError
+from yaml.scanner import ScannerError
 
 from tester.units import shown
+from tester.yaml_events import Events
 
 if TYPE_CHECKING:
     from pydantic import BaseModel, ValidationError
@@ -181,31 +180,12 @@ def _refuse_characters(text: str, called: str) -> None:
         raise InvalidSource(problems)
 
 
-class _Events(Reader, Scanner, Parser):
-    """PyYAML's pure-Python reader, scanner and parser: a text to events, bounded in depth while scanning."""
-
-    def __init__(self, text: str) -> None:
-        Reader.__init__(self, text)
-        Scanner.__init__(self)
-        Parser.__init__(self)
-
-    def fetch_flow_collection_start(self, TokenClass: type) -> None:
-        """Refuse open brackets before the scanner looks ahead over thousands of them."""
-        if self.flow_level >= MAX_DEPTH:
-            raise ScannerError(None, None, f"nested deeper than {MAX_DEPTH} levels", self.get_mark())  # pyright: ignore
-        super().fetch_flow_collection_start(TokenClass)  # pyright: ignore[reportUnknownMemberType]
-
-    def following(self) -> ev.Event:
-        """Take the next event; raises MarkedYAMLError, and ValueError for an escape out of range."""
-        return cast("ev.Event", self.get_event())  # pyright: ignore[reportUnknownMemberType]
-
-
 class _Builder:
     """Events to a Tree. Collects every problem that leaves the structure readable."""
 
     def __init__(self, tree: Tree) -> None:
         self.tree = tree
-        self.events = _Events(tree.text)
+        self.events = Events(tree.text, MAX_DEPTH)
         self.problems: list[Problem] = []
 
     def build(self) -> None:
@@ -238,9 +218,9 @@ class _Builder:
             self._refuse(after, "a second document (---) is not accepted: one file is one document")
 
     def _node(self, event: ev.Event, at: Location, depth: int) -> Value:
-        mark = event.start_mark
-        self.tree.positions[at] = (mark.line + 1, mark.column + 1)
+        self.tree.positions[at] = self.events.place(event)
         if depth > MAX_DEPTH and not isinstance(event, ev.ScalarEvent):
+            mark = cast("Mark", event.start_mark)
             raise ScannerError(None, None, f"nested deeper than {MAX_DEPTH} levels", mark)
         if isinstance(event, ev.AliasEvent):
             self._refuse(event, "aliases (*name) are not accepted: write the value out")
@@ -274,7 +254,7 @@ class _Builder:
             if first is not None:
                 self._refuse(event, f"duplicate key {shown(key)}: it is in line {first[0]} already")
                 here = (*here, -1)  # read past the value without touching what the first one left
-            self.tree.keys[here] = (event.start_mark.line + 1, event.start_mark.column + 1)
+            self.tree.keys[here] = self.events.place(event)
             value = self._node(self.events.following(), here, depth + 1)
             items.setdefault(key, value)
         return items
@@ -321,8 +301,7 @@ class _Builder:
             self._refuse(event, f"the character U+{ord(found.group()):04X} is not accepted, even as an escape")
 
     def _refuse(self, event: ev.Event, message: str) -> None:
-        mark = event.start_mark
-        self.problems.append(Problem(self.tree.name, mark.line + 1, mark.column + 1, message))
+        self.problems.append(Problem(self.tree.name, *self.events.place(event), message))
 
 
 def _plainer(error: MarkedYAMLError) -> str:

@@ -16,6 +16,7 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cache, lru_cache
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -108,6 +109,8 @@ _QUANTITY = re.compile(rf"\s*(?P<number>{_NUMBER})\s*(?P<unit>.*?)\s*", re.DOTAL
 _DECIMAL_COMMA = re.compile(r"\s*[+\-−]?[0-9]+,[0-9]")
 _LONGEST = 80
 """Longest text that is looked at, in characters: any real quantity is a quarter of this."""
+_REMEMBERED = 32_768
+"""Texts whose value is remembered: a file's quantities are read by the schema and again against the rig's limits."""
 
 
 def shown(text: str) -> str:
@@ -121,6 +124,7 @@ def units_like(unit: str) -> tuple[str, ...]:
     return tuple(_KIND_OF[unit].units)
 
 
+@cache
 def expected(*units: str) -> str:
     """Say what is expected, e.g. ``a speed such as "0.8 m/s"; units accepted: m/s, mm/s``."""
     kinds = list(dict.fromkeys(_KIND_OF[unit].name for unit in units))
@@ -144,9 +148,15 @@ def parse_one_of(text: str, units: tuple[str, ...]) -> tuple[float, str]:
 
     The unit returned is the one of ``units`` whose kind fits; the value is in it. Raises as ``parse`` does.
     """
-    hint = expected(*units)
     if len(text) > _LONGEST:
-        raise UnitError(f"{shown(text)} is too long for a quantity (expected {hint})")
+        raise UnitError(f"{shown(text)} is too long for a quantity (expected {expected(*units)})")
+    return _parsed(text, units)
+
+
+@lru_cache(maxsize=_REMEMBERED)
+def _parsed(text: str, units: tuple[str, ...]) -> tuple[float, str]:
+    """Return (value, unit) as ``parse_one_of`` does, of a text that is not too long."""
+    hint = expected(*units)
     if _DECIMAL_COMMA.match(text):
         raise UnitError(f"{shown(text)} has a decimal comma, write a point (expected {hint})")
     match = _QUANTITY.fullmatch(text)
@@ -158,13 +168,16 @@ def parse_one_of(text: str, units: tuple[str, ...]) -> tuple[float, str]:
         kind = _KIND_OF[unit]
         factor = kind.units.get(name or "1")
         if factor is not None:
+            own = kind.units[unit]
+            exact = float(number) if factor is own else float(Fraction(number) * factor / own)
             # + 0.0 turns a negative zero into zero: -0 mm/s is the same condition as 0 mm/s.
-            return float(Fraction(number) * factor / kind.units[unit]) + 0.0, unit
+            return exact + 0.0, unit
     if not written:
         raise UnitError(f"{shown(text)} has no unit (expected {hint})")
     raise UnitError(f"{shown(text)} has {_unit_problem(written, name, units)} (expected {hint})")
 
 
+@lru_cache(maxsize=256)
 def _canonical(written: str) -> str:
     """Return the table's spelling of a unit; a unit that is not in the table comes back as it was written."""
     tidy = re.sub(r"\s*([/()])\s*", r"\1", written.translate(_TYPOGRAPHY))

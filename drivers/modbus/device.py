@@ -38,6 +38,8 @@ class Device(ABC):
             link.read(self.station, block.function, block.address, block.count, block.period_s)
             for block in profile.blocks
         ]
+        for number, poll in enumerate(self._polls):
+            poll.block = number
         self._steps: list[Step] = []
         self._step = 0
 
@@ -72,8 +74,8 @@ class Device(ABC):
         """Take a good reply that arrived at ``t`` s: go on with the set-up, or update the readings."""
         if not self.ready and request is self._steps[self._step].request:
             self._proceed(self._steps[self._step], data)
-        if request in self._polls:
-            self.take(self._polls.index(request), data, t)
+        if request.block >= 0:
+            self.take(request.block, data, t)
 
     def lost(self, t: float) -> None:
         """Stop reading and wait for the device to answer the first step of the set-up again."""

@@ -57,6 +57,8 @@ class LineType:
         request.frame = codec.write_request(self.framing, unit_id, request.function, request.address, values)
         request.values = values
         request.writes = True
+        if not self.socket:
+            request.confirmation = codec.write_reply(request.frame)
 
     def _timed(self, request: Request) -> Request:
         """Work out the times of a request."""

@@ -22,7 +22,7 @@ MISSES_TO_LOSE = 3
 BUSY_S = 0.02
 """Pause before a request is repeated that a device was too busy or failed to answer (exceptions 04 to 08)."""
 POLL_S = 0.002
-"""While others wait and a reply is overdue, how often the link asks to be served."""
+"""While others wait and a reply is overdue, the link asks to be served on a grid of this."""
 
 _TINY_S = 1e-9
 _CONFIGURATION = frozenset({1, 2, 3})
@@ -30,13 +30,15 @@ _DEVICE_GONE = frozenset({10, 11})
 
 
 class ModbusLink:
-    """Master of one Modbus line. ``deadline`` (s) is when it wants ``service`` at the latest."""
+    """Master of one Modbus line. ``deadline`` (s) is when it wants ``service`` at the latest.
+
+    Before ``wants_s`` a ``service`` would do nothing: whoever ticks may spare it.
+    """
 
     __slots__ = (
         "_active",
         "_backlog_s",
         "_buffer",
-        "_expected_s",
         "_gap_s",
         "_give_up_s",
         "_quiet_s",
@@ -48,6 +50,7 @@ class ModbusLink:
         "deadline",
         "garbage",
         "stations",
+        "wants_s",
     )
 
     def __init__(self, framing: codec.Framing = "rtu", baud: int = 115200, parity: Parity = "N") -> None:
@@ -60,12 +63,11 @@ class ModbusLink:
         self._active: Request | None = None
         self._buffer = b""
         self._transaction = 0
-        self._expected_s = 0.0
         self._give_up_s = inf
         self._backlog_s = inf
         self._quiet_s = -inf
         self._suspect: Station | None = None
-        self.deadline = -inf
+        self.deadline = self.wants_s = -inf
         self.garbage = 0
         """Pieces that arrived although no station had been asked."""
 
@@ -102,11 +104,12 @@ class ModbusLink:
     def enable(self, request: Request, due_s: float = -inf) -> None:
         """Send a request at ``due_s`` (s; at once by default), then in its period."""
         self._schedule.enable(request, due_s)
-        self._backlog_s = -inf
+        self._backlog_s = self.wants_s = -inf
 
     def disable(self, request: Request) -> None:
         """Send a request no more."""
         self._schedule.disable(request)
+        self.wants_s = -inf
 
     def rewrite(self, request: Request, values: tuple[int, ...], urgent: bool = False) -> None:
         """Let a write carry ``values`` from now on: the newest wins, what was waiting is dropped.
@@ -118,12 +121,12 @@ class ModbusLink:
             return
         self._type.load(request, values)
         self._schedule.renew(request, urgent)
-        self._backlog_s = -inf
+        self._backlog_s = self.wants_s = -inf
 
     def retime(self, request: Request, period_s: float) -> None:
         """Change the period (s) of a read; 0 = with every scan."""
         self._schedule.retime(request, period_s)
-        self._backlog_s = -inf
+        self._backlog_s = self.wants_s = -inf
 
     # what the tick does ----------------------------------------------------------------------------------------
 
@@ -136,7 +139,7 @@ class ModbusLink:
                 continue
             data = self._buffer + chunk if self._buffer else chunk
             # The usual cases by themselves, several times faster than the library, which takes everything else.
-            if len(data) == request.reply_length and data[:3] == request.head and crc16(data) == 0:
+            if len(data) == request.reply_length and data[:3] == request.head and not crc16(data):
                 self._succeed(request, data[3:-2], t)
             elif request.echo and data == request.echo:
                 self._succeed(request, b"", t)
@@ -155,16 +158,31 @@ class ModbusLink:
                 return
             self._time_out(active, now)
         schedule = self._schedule
-        if schedule.nothing_due(now, scan):
-            return
-        if now < self._quiet_s - _TINY_S:
+        if now < self._quiet_s - _TINY_S and now >= schedule.wants_s:
             self.deadline = max(self._quiet_s, schedule.latest())
+            self.wants_s = self._quiet_s - _TINY_S
             return
-        request = schedule.choose(now, scan)
+        request = schedule.choose(now, scan) if now >= schedule.wants_s else None
         if request is None:
-            self.deadline = schedule.latest()
+            self.deadline = schedule.latest_s
+            self.wants_s = schedule.wants_s
+            return
+        port.write(self._numbered(request) if self._socket else request.frame, now)
+        request.sent_s = now
+        if request.writes:
+            request.fresh = False
+            request.sent_values = request.values
+            request.echo = request.confirmation
+            request.due_s = request.wish_s = inf  # until its reply, or newer values
+        request.station.counters.requests += 1
+        self._active = request
+        self._give_up_s = give_up_s = now + request.timeout_s
+        self._backlog_s = schedule.latest_s
+        if schedule.latest_s < give_up_s:
+            self._wait(now)
         else:
-            self._send(port, request, now)
+            self.deadline = give_up_s
+            self.wants_s = give_up_s - _TINY_S
 
     @property
     def only_watches(self) -> bool:
@@ -175,38 +193,25 @@ class ModbusLink:
         """Forget the transaction under way: the port was opened anew."""
         self._active = None
         self._buffer = b""
-        self._quiet_s = -inf
+        self._quiet_s = self.wants_s = -inf
         self._schedule.look_again()
 
-    def _send(self, port: LinePort, request: Request, now: float) -> None:
-        frame = request.frame
-        if self._socket:
-            self._transaction = self._transaction % 0xFFFF + 1
-            frame = self._transaction.to_bytes(2, "big") + frame[2:]
-        port.write(frame, now)
-        request.sent_s = now
-        request.fresh = False
-        request.sent_values = request.values
-        if request.writes:
-            request.due_s = inf  # until its reply, or newer values
-            if not self._socket:
-                request.echo = codec.write_reply(frame)
-        request.station.counters.requests += 1
-        self._active = request
-        self._expected_s = now + request.expected_s
-        self._give_up_s = now + request.timeout_s
-        self._backlog_s = self._schedule.latest(request)
-        self.deadline = self._give_up_s
-        if self._backlog_s < self._give_up_s:
-            self._wait(now)
+    def _numbered(self, request: Request) -> bytes:
+        """Return the request with the next transaction number (TCP)."""
+        self._transaction = self._transaction % 0xFFFF + 1
+        return self._transaction.to_bytes(2, "big") + request.frame[2:]
 
     def _wait(self, now: float) -> None:
         """Set the deadline while a reply is awaited: others waiting, it is fetched when it should be there."""
         deadline = self._give_up_s
-        if self._backlog_s < deadline:
-            expected = self._expected_s if now < self._expected_s else now + POLL_S
+        active = self._active
+        if active is not None and self._backlog_s < deadline:
+            expected = active.sent_s + active.expected_s
+            if now >= expected:
+                expected += POLL_S * (1 + (now - expected) // POLL_S)
             deadline = min(deadline, max(self._backlog_s, expected))
         self.deadline = deadline
+        self.wants_s = deadline - _TINY_S
 
     # what becomes of a transaction -----------------------------------------------------------------------------
 
@@ -214,17 +219,26 @@ class ModbusLink:
         """End the transaction; nothing is sent before ``quiet_s``."""
         self._active = None
         self._buffer = b""
+        self.wants_s = -inf
         if quiet_s > self._quiet_s:
             self._quiet_s = quiet_s
 
     def _succeed(self, request: Request, data: bytes, t: float) -> None:
-        self._end(t + self._gap_s)
+        self._active = None
+        self._buffer = b""
         self._suspect = None
+        quiet_s = t + self._gap_s
+        if quiet_s > self._quiet_s:
+            self._quiet_s = quiet_s
         station = request.station
         station.counters.replies += 1
         station.misses = 0
         station.is_lost = False
-        self._schedule.succeeded(request, t)
+        schedule = self._schedule
+        schedule.succeeded(request, t)
+        self.wants_s = schedule.wants_s
+        latest_s = schedule.latest_s
+        self.deadline = latest_s if latest_s > quiet_s else quiet_s
         # A tick that came late cannot make a reading look newer than the time-out allows.
         station.owner.received(request, data, t if t < self._give_up_s else self._give_up_s)
 

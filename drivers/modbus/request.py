@@ -72,6 +72,10 @@ class Request:
     """First three bytes of a good reply to a read over RTU (address, function, byte count)."""
     echo: bytes = b""
     """Good reply over RTU to the write that was sent last."""
+    confirmation: bytes = b""
+    """Good reply over RTU to the write as it would be sent now."""
+    block: int = -1
+    """Number of the profile's block that it reads again and again; -1 = none of them."""
     reply_length: int = 0
     expected_s: float = 0.0
     """Usual time from sending to the complete reply."""
@@ -84,6 +88,8 @@ class Request:
     sent_values: tuple[int, ...] = ()
     """What was written last: new values may come while its reply is under way."""
     due_s: float = inf
+    wish_s: float = inf
+    """When it will have waited as long as it may."""
     sent_s: float = -inf
     attempts: int = 0
     enabled: bool = False

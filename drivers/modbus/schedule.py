@@ -18,14 +18,18 @@ _EARLY_S = 1e-3
 
 
 class Schedule:
-    """The requests of one line. Of those due, the one goes first that has waited longest, priority added."""
+    """The requests of one line. Of those due, the one goes first that has waited longest, priority added.
 
-    __slots__ = ("_requests", "_soonest_s", "_with_scans")
+    ``wants_s``: before it there is nothing to choose (s); ``latest_s``: when the first request will have waited as long
+    as it may, of those not under way.
+    """
+
+    __slots__ = ("_requests", "_soonest_s", "_with_scans", "latest_s", "wants_s")
 
     def __init__(self) -> None:
         """Nothing is due."""
         self._requests: list[Request] = []  # those enabled, in the order they were
-        self._soonest_s = -inf
+        self._soonest_s = self.latest_s = self.wants_s = -inf
         self._with_scans = False
 
     def enable(self, request: Request, due_s: float = -inf) -> None:
@@ -34,15 +38,14 @@ class Schedule:
             self._requests.append(request)
         request.enabled = True
         request.attempts = 0
-        request.due_s = due_s
-        self.look_again()
+        self._plan(request, due_s)
 
     def disable(self, request: Request) -> None:
         """Send a request no more."""
         if request.enabled:
             self._requests.remove(request)
         request.enabled = False
-        request.due_s = inf
+        self._plan(request, inf)
 
     def renew(self, request: Request, urgent: bool) -> None:
         """Let a write with new values go out as soon as its turn comes; ``urgent``: before everything else."""
@@ -50,74 +53,82 @@ class Schedule:
         request.attempts = 0
         if request.enabled:
             # Counted from the last one: a value that changes in every scan cannot starve the reads.
-            request.due_s = -inf if urgent else min(request.due_s, request.sent_s)
-            self.look_again()
+            self._plan(request, -inf if urgent else min(request.due_s, request.sent_s))
 
     def retime(self, request: Request, period_s: float) -> None:
         """Change the period (s) of a read; 0 = with every scan."""
         request.period_s = period_s
         request.slack_s = SLACK_S if period_s > 0.0 else inf
         if request.enabled and not request.attempts:
-            request.due_s = request.sent_s + period_s
+            self._plan(request, request.sent_s + period_s)
         self.look_again()
 
     def look_again(self) -> None:
         """Forget when the next request falls due: something has changed."""
-        self._soonest_s = -inf
-
-    def nothing_due(self, now: float, scan: bool) -> bool:
-        """Tell, cheaply, that ``choose`` would find nothing."""
-        return now < self._soonest_s - _EARLY_S and not (scan and self._with_scans)
+        self._soonest_s = self.wants_s = -inf
 
     def choose(self, now: float, scan: bool) -> Request | None:
-        """Return the request to send at ``now``; reads of period 0 go out with a ``scan`` only."""
+        """Return the request to send at ``now``; reads of period 0 go out with a ``scan`` only.
+
+        The same pass finds when the others fall due.
+        """
+        if self._soonest_s == -inf:
+            self._with_scans = any(each.period_s == 0.0 and not each.attempts for each in self._requests)
         chosen: Request | None = None
-        rank = soonest = inf
-        with_scans = False
+        rank = soonest = latest = inf
         limit = now + _EARLY_S
         for request in self._requests:
             due = request.due_s
-            if request.period_s == 0.0 and not request.attempts:
-                with_scans = True
-                if not scan:
+            if due <= limit:
+                if request.period_s == 0.0 and not scan and not request.attempts:
                     continue
-            elif due < soonest:
+                if due - request.priority_s < rank:
+                    # The one chosen so far is one of the others now.
+                    request, chosen, rank = chosen, request, due - request.priority_s
+                    if request is None:
+                        continue
+                    due = request.due_s
+            if due < soonest and (request.period_s > 0.0 or request.attempts):
                 soonest = due
-            if due <= limit and (chosen is None or due - request.priority_s < rank):
-                chosen, rank = request, due - request.priority_s
-        self._with_scans = with_scans
+            if request.wish_s < latest:
+                latest = request.wish_s
         self._soonest_s = soonest
+        self.latest_s = latest
+        self.wants_s = -inf if self._with_scans else soonest - _EARLY_S
         return chosen
 
-    def latest(self, without: Request | None = None) -> float:
-        """Return when the first of the requests (``without`` one) will have waited as long as it may."""
-        latest = inf
-        for request in self._requests:
-            wish = request.due_s if request.attempts else request.due_s + request.slack_s
-            if wish < latest and request is not without:
-                latest = wish
-        return latest
+    def latest(self) -> float:
+        """Return when the first of the requests will have waited as long as it may."""
+        return min((request.wish_s for request in self._requests), default=inf)
 
     def succeeded(self, request: Request, t: float) -> None:
         """Set when a request that was answered at ``t`` is due again: on its grid, unless it has fallen behind."""
-        request.attempts = 0
-        self._soonest_s = -inf
-        if not request.enabled or request.fresh:
-            return
+        if request.attempts or request.fresh or not request.enabled:
+            request.attempts = 0
+            self.look_again()
+            if request.fresh or not request.enabled:
+                return
         period = request.period_s
         due = request.due_s + period
-        on_grid = due > t and period > 0.0 and not request.writes
-        request.due_s = due if on_grid else request.sent_s + period
+        if request.writes or not due > t or period == 0.0:  # also of a read that was due at once, since -infinity
+            due = request.sent_s + period
+        request.due_s = due
+        request.wish_s = wish = due + request.slack_s
+        if wish < self.latest_s:
+            self.latest_s = wish
+        if due < self._soonest_s and period > 0.0:
+            self._soonest_s = due
+            if not self._with_scans:
+                self.wants_s = due - _EARLY_S
 
     def failed(self, request: Request, t: float) -> None:
         """Set when a request without a good reply is tried again."""
-        self._soonest_s = -inf
         station = request.station
         request.attempts += 1
         if not request.enabled:
-            request.due_s = inf
+            self._plan(request, inf)
         elif request.attempts <= station.timing.retries and not station.is_lost:
-            request.due_s = t
+            self._plan(request, t)
         else:
             self._postpone(request, t)
 
@@ -131,8 +142,17 @@ class Schedule:
         """Leave a request alone after its last attempt."""
         request.attempts = 0
         if request.station.is_lost:
-            request.due_s = t + PROBE_S
+            self._plan(request, t + PROBE_S)
         elif request.writes or request.period_s == inf:
-            request.due_s = t + RETRY_S
+            self._plan(request, t + RETRY_S)
         else:
-            request.due_s = t + request.period_s
+            self._plan(request, t + request.period_s)
+
+    def _plan(self, request: Request, due_s: float) -> None:
+        """Let a request fall due at ``due_s``; a repeated one does not wait for a regular scan."""
+        request.due_s = due_s
+        if request.attempts:
+            request.wish_s = due_s
+        else:
+            request.wish_s = due_s + request.slack_s if request.slack_s < inf else inf
+        self.look_again()

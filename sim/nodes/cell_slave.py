@@ -51,33 +51,40 @@ class CellSlave(ModbusSlave):
         self._data = window.data
         self._at = 2 * (block.address - window.start)
         self._end = self._at + 2 * block.count
+        self.blocks = {(block.address, block.count): 0}
 
     def refresh(self, t: float) -> None:
         """Sample at ``t`` s."""
+        self.sample(0, t)
+
+    def sample(self, block: int, t: float) -> bytes:
+        """Sample at ``t`` s and return all channels and the status."""
         if self.frozen:
-            return
+            return bytes(self._data[self._at : self._end])
         forces = self.source.forces_measured(t)
         self.dither = phase = (self.dither + 1) & 3
         if not self._plain:
-            self._sample(forces, phase)
-            return
-        step = PATTERN[phase]
-        x, y, z, m = forces
-        sx, sy, sz, sm, _ = self._scales
-        lx, ly, lz, lm, _ = self._limits
-        cx, cy, cz, cm = floor(x / sx + step), floor(y / sy + step), floor(z / sz + step), floor(m / sm + step)
-        status = self.status_bits
-        if not (-lx < cx < lx and -ly < cy < ly and -lz < cz < lz and -lm < cm < lm):
-            status |= self._overload
-            cx, cy, cz, cm = _bound(cx, lx), _bound(cy, ly), _bound(cz, lz), _bound(cm, lm)
-        self._data[self._at : self._end] = self._pack(cx, cy, cz, cm, status)
+            data = self._encode(forces, phase)
+        else:
+            step = PATTERN[phase]
+            x, y, z, m = forces
+            sx, sy, sz, sm, _ = self._scales
+            lx, ly, lz, lm, _ = self._limits
+            cx, cy, cz, cm = floor(x / sx + step), floor(y / sy + step), floor(z / sz + step), floor(m / sm + step)
+            status = self.status_bits
+            if not (-lx < cx < lx and -ly < cy < ly and -lz < cz < lz and -lm < cm < lm):
+                status |= self._overload
+                cx, cy, cz, cm = _bound(cx, lx), _bound(cy, ly), _bound(cz, lz), _bound(cm, lm)
+            data = self._pack(cx, cy, cz, cm, status)
+        self._data[self._at : self._end] = data
+        return data
 
     def written(self, address: int, value: int, t: float) -> int:
         """Refuse: nothing can be written; the tare is the computer's."""
         return ILLEGAL_ADDRESS
 
-    def _sample(self, forces: tuple[float, float, float, float], phase: int) -> None:
-        """Fill registers in any order, with signs in the status."""
+    def _encode(self, forces: tuple[float, float, float, float], phase: int) -> bytes:
+        """Return registers in any order, with signs in the status."""
         x, y, z, m = forces
         values: dict[str, float] = {"fx": x, "fy": y, "fz": z, "mz": m}
         status = self.status_bits
@@ -97,7 +104,7 @@ class CellSlave(ModbusSlave):
             else:
                 least, most = LIMITS[signal.type]
                 counts[place] = min(max(counts[place], least), most)
-        self._data[self._at : self._end] = self._pack(*counts)
+        return self._pack(*counts)
 
 
 def _most_counts(greatest: float, scale: float) -> int:

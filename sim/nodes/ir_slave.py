@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from math import isfinite
+from math import floor, isfinite
 from typing import Protocol
 
 from drivers.profiles.model import LIMITS, DeviceProfile
-from sim.nodes.dither import quantise
+from sim.nodes.dither import PATTERN
 from sim.nodes.modbus_slave import ILLEGAL_ADDRESS, ILLEGAL_VALUE, ModbusSlave
 
 
@@ -42,8 +42,10 @@ class IrSlave(ModbusSlave):
         self.dither = 0
         self.status_bits = 0
         self.frozen = False
-        self._profile = profile
         self._block = block
+        self._signals = tuple((signal.name, signal.scale, *LIMITS[signal.type]) for signal in block.signals)
+        self._shown = bytes(2 * block.count)
+        self.blocks = {(block.address, block.count): 0}
         self._read_only = set(range(block.address, block.address + block.count))
         if profile.identity is not None:
             self._read_only.add(profile.identity.address)
@@ -64,23 +66,29 @@ class IrSlave(ModbusSlave):
 
     def refresh(self, t: float) -> None:
         """Sample at ``t`` s."""
+        self.sample(0, t)
+
+    def sample(self, block: int, t: float) -> bytes:
+        """Sample at ``t`` s and return all that is read."""
         if self.frozen:
-            return
+            return self._shown
         surface_c = self.source.surface_measured_c(t)
         self.dither = phase = (self.dither + 1) & 3
         status = self.status_bits
         if not isfinite(surface_c):
             status |= self._error
             surface_c = 0.0
+        step = PATTERN[phase]
         counts: list[int] = []
-        for signal in self._block.signals:
-            if signal.name == "status":
+        for name, scale, least, most in self._signals:
+            if name == "status":
                 counts.append(status)
                 continue
-            value = self.sensor_c if signal.name == "sensor" else surface_c
-            least, most = LIMITS[signal.type]
-            counts.append(min(max(quantise(value, signal.scale, phase), least), most))
-        self.put(self._block.address, self._block.pack(*counts))
+            found = floor((self.sensor_c if name == "sensor" else surface_c) / scale + step)
+            counts.append(found if least <= found <= most else least if found < least else most)
+        self._shown = data = self._block.pack(*counts)
+        self.put(self._block.address, data)
+        return data
 
     def written(self, address: int, value: int, t: float) -> int:
         """Accept an emissivity inside the device's range; measured values cannot be written."""

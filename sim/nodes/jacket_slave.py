@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from math import inf, isfinite
+from math import floor, inf, isfinite
 from typing import Protocol
 
 from drivers.profiles.model import LIMITS, DeviceProfile, ProfileError
-from sim.nodes.dither import quantise
+from sim.nodes.dither import PATTERN
 from sim.nodes.modbus_slave import ILLEGAL_ADDRESS, ILLEGAL_VALUE, ModbusSlave
 from sim.nodes.pid import Pid
 
@@ -66,8 +66,9 @@ class JacketSlave(ModbusSlave):
             address for block in profile.blocks for address in range(block.address, block.address + block.count)
         )
         self._blocks = tuple(
-            (block, block.address, tuple(signal.name for signal in block.signals)) for block in profile.blocks
+            (block, tuple(_SHOWN.index(signal.name) for signal in block.signals)) for block in profile.blocks
         )
+        self.blocks = {(block.address, block.count): number for number, block in enumerate(profile.blocks)}
         self._scales = tuple(profile.signal(name).scale for name in ("pv", "output", "setpoint"))
         self._alarm_bits = profile.bit("alarm_1")
         self._break_bits = profile.bit("sensor_break") | profile.bit("over_range")
@@ -158,6 +159,18 @@ class JacketSlave(ModbusSlave):
 
     def refresh(self, t: float) -> None:
         """Show the state of the last cycle."""
+        shown = self._show()
+        for block, places in self._blocks:
+            self.put(block.address, block.pack(*[shown[place] for place in places]))
+
+    def sample(self, block: int, t: float) -> bytes:
+        """Return a block of the profile with the state of the last cycle."""
+        shown = self._show()
+        which, places = self._blocks[block]
+        return which.pack(*[shown[place] for place in places])
+
+    def _show(self) -> tuple[int, int, int, int]:
+        """Return the counts of _SHOWN for one more reading."""
         self.dither = phase = (self.dither + 1) & 3
         pv, output, setpoint = self._scales
         status = self._alarm_bits if self.limited else 0
@@ -165,14 +178,12 @@ class JacketSlave(ModbusSlave):
             status |= self._break_bits
         if self.lease_expired:
             status |= self._remote_bits
-        shown = {
-            "pv": _PV_MOST if self._broken else min(quantise(self.pv_c, pv, phase), _PV_MOST),
-            "output": round(self.output / output),
-            "setpoint": round(self.setpoint_c / setpoint),
-            "status": status,
-        }
-        for block, start, names in self._blocks:
-            self.put(start, block.pack(*[shown[name] for name in names]))
+        return (
+            _PV_MOST if self._broken else min(floor(self.pv_c / pv + PATTERN[phase]), _PV_MOST),
+            round(self.output / output),
+            round(self.setpoint_c / setpoint),
+            status,
+        )
 
     def written(self, address: int, value: int, t: float) -> int:
         """Take setpoint, run or standby, off-line time and the options of the set-up; nothing else can be written."""

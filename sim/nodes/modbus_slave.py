@@ -24,7 +24,7 @@ _MOST_READ = 125
 _MOST_WRITTEN = 123
 """Registers in one request (Modbus application protocol V1.1b3, 6.3 and 6.12)."""
 _REMEMBERED = 64
-"""Read requests kept taken apart."""
+"""Requests of each kind kept taken apart."""
 
 _WORD = Struct(">H")
 _REQUEST = Struct(">BBHH")
@@ -43,16 +43,17 @@ class Window:
 
 
 class _Read:
-    """A read request taken apart, with its last reply."""
+    """A read request taken apart, with its last reply; ``block`` is the device's number of just these registers."""
 
-    __slots__ = ("head", "last", "payload", "reply", "start", "window")
+    __slots__ = ("block", "head", "last", "payload", "reply", "start", "window")
 
-    def __init__(self, window: Window, address: int, count: int, head: bytes) -> None:
+    def __init__(self, window: Window, address: int, count: int, head: bytes, block: int) -> None:
         self.window = window
+        self.block = block
         self.start = 2 * (address - window.start)
         self.last = self.start + 2 * count
         self.head = head
-        self.payload = bytearray()
+        self.payload = b""
         self.reply = b""
 
 
@@ -69,11 +70,18 @@ class ModbusSlave:
         self.powered = True
         self.windows = _windows(registers)
         self._reads: dict[bytes, _Read] = {}
+        self._writes: dict[bytes, tuple[int, tuple[int, ...]]] = {}
+        self.blocks: dict[tuple[int, int], int] = {}
+        """Numbers by (address, count) of what is usually read in one request: ``sample`` is asked for these."""
 
     # what a device adds ----------------------------------------------------------------------------------------
 
     def refresh(self, t: float) -> None:
         """Bring the registers up to date: they are read at ``t`` s."""
+
+    def sample(self, block: int, t: float) -> bytes:
+        """Return the registers of one of ``blocks`` as they are at ``t`` s, without the detour over ``refresh``."""
+        raise KeyError(block)
 
     def written(self, address: int, value: int, t: float) -> int:
         """Take a write at ``t`` s; return 0, or the code of the exception to answer with."""
@@ -112,9 +120,17 @@ class ModbusSlave:
         """
         if not self.powered:
             return None
-        known = self._reads.get(frame)
-        if known is not None:
-            return self._read(known, t)
+        read = self._reads.get(frame)
+        if read is not None:
+            payload = self.sample(read.block, t) if read.block >= 0 else self._look_up(read, t)
+            if payload != read.payload:
+                read.payload = payload
+                reply = read.head + payload
+                read.reply = reply + crc16(reply).to_bytes(2, "little")
+            return read.reply
+        write = self._writes.get(frame)
+        if write is not None:
+            return self._write(frame[:6], *write, t)
         if len(frame) < 4 or frame[0] not in (self.unit_id, BROADCAST) or crc16(frame) != 0:
             return None
         reply = self._execute(frame[:-2], frame, t)
@@ -132,14 +148,14 @@ class ModbusSlave:
             return None
         _, _, address, count = _REQUEST.unpack_from(request)
         if function == WRITE_ONE:
-            return self._write(request[:6], address, (count,), t) if len(request) == 6 else None
+            return self._new_write(frame, address, (count,), t) if len(request) == 6 else None
         if function == WRITE_MANY:
             if len(request) < 7 or len(request) != 7 + request[6]:
                 return None
             values = tuple(_WORD.unpack_from(request, at)[0] for at in range(7, len(request) - 1, 2))
             if not 1 <= count <= _MOST_WRITTEN or request[6] != 2 * count:
                 return self.exception(function, ILLEGAL_VALUE)
-            return self._write(request[:6], address, values, t)
+            return self._new_write(frame, address, values, t)
         if len(request) != 6:
             return None
         return self._new_read(frame, function, address, count, t)
@@ -150,27 +166,33 @@ class ModbusSlave:
         window = self.window(address, count)
         if window is None:
             return self.exception(function, ILLEGAL_ADDRESS)
-        read = _Read(window, address, count, bytes((self.unit_id, function, 2 * count)))
+        head = bytes((self.unit_id, function, 2 * count))
+        read = _Read(window, address, count, head, self.blocks.get((address, count), -1))
         if frame[0] == self.unit_id and len(self._reads) < _REMEMBERED:
             self._reads[frame] = read
-        return self._read(read, t)
-
-    def _read(self, read: _Read, t: float) -> bytes:
-        self.refresh(t)
-        payload = read.window.data[read.start : read.last]
-        if payload != read.payload:
-            read.payload = payload
-            read.reply = with_crc(read.head + payload)
+        read.payload = self._look_up(read, t)
+        read.reply = with_crc(read.head + read.payload)
         return read.reply
 
-    def _write(self, echo: bytes, address: int, values: tuple[int, ...], t: float) -> bytes:
-        function = echo[1]
+    def _new_write(self, frame: bytes, address: int, values: tuple[int, ...], t: float) -> bytes:
         if self.window(address, len(values)) is None:
-            return self.exception(function, ILLEGAL_ADDRESS)
+            return self.exception(frame[1], ILLEGAL_ADDRESS)
+        if frame[0] == self.unit_id:
+            if len(self._writes) >= _REMEMBERED:
+                self._writes.clear()
+            self._writes[frame] = (address, values)
+        return self._write(frame[:6], address, values, t)
+
+    def _look_up(self, read: _Read, t: float) -> bytes:
+        """Return registers from the windows."""
+        self.refresh(t)
+        return bytes(read.window.data[read.start : read.last])
+
+    def _write(self, echo: bytes, address: int, values: tuple[int, ...], t: float) -> bytes:
         for place, value in enumerate(values, address):
             code = self.written(place, value, t)
             if code:
-                return self.exception(function, code)
+                return self.exception(echo[1], code)
             self.put(place, _WORD.pack(value))
         return with_crc(echo)
 

@@ -69,6 +69,7 @@ class Devices:
     _wanted: Goal = Goal.DISABLED
     _withheld: bool = False
     _last_angle_s: float = NEVER
+    _lines: tuple[tuple[LinePort, ModbusLink, ForeseeingPort | None], ...] = field(init=False)
     _foreseeing: ForeseeingPort | None = field(init=False)
     lost: str = ""
     """Why a wire is gone. It is never used again: what waits in its queues must not be sent later."""
@@ -78,16 +79,16 @@ class Devices:
     _inspector: Inspector = field(init=False)
 
     def __post_init__(self) -> None:
-        """Fix the drives' order, and see whether the load cell's line is a simulated one."""
+        """Fix the drives' order, and see which lines are simulated ones."""
         self.drives = self.axes.present()
         self._inspector = Inspector(self.cell, self.thermometer, self.jacket)
         self._foresee()
 
     def _foresee(self) -> None:
-        self._foreseeing = None
-        for port, link in self.lines:
-            if link is self.cell.link and isinstance(port, ForeseeingPort):
-                self._foreseeing = port
+        self._lines = tuple(
+            (port, link, port if isinstance(port, ForeseeingPort) else None) for port, link in self.lines
+        )
+        self._foreseeing = next((port for _, link, port in self._lines if link is self.cell.link), None)
 
     def rewire(self, can: CanPort, lines: Sequence[LinePort]) -> None:
         """Speak through other ports from now on; ``lines`` in the order of the ones in use."""
@@ -105,7 +106,9 @@ class Devices:
             else:
                 if frames:
                     self.master.feed(frames, now)
-        for port, link in self.lines:
+        for port, link, foreseen in self._lines:
+            if foreseen is not None and foreseen.arrives_s > now:
+                continue
             try:
                 chunks = port.read(now)
             except BusLost as error:
@@ -122,10 +125,9 @@ class Devices:
         """Go on without a line: what it carried is not valid any more."""
         self.lost = self.lost or f"line lost: {error}"
         self.lines = [entry for entry in self.lines if entry[1] is not link]
+        self._foresee()
         for station in link.stations:
             station.owner.lost(now)
-        if link is self.cell.link:
-            self._foreseeing = None
 
     def transmit(self, now: float, *, scan: bool, next_scan_s: float = NEVER) -> float:
         """Send what is due and return the next time a driver wants to be served; ``next_scan_s`` if it is known."""
@@ -144,14 +146,17 @@ class Devices:
         # Only the load cell's line may ask for a tick of its own (its retry has to fit into a scan); the slow
         # line's next request can wait for the next scan. A simulated line knows that the reply will be in time.
         watch = self.cell.link
-        wire = self._foreseeing
-        if wire is not None and watch.only_watches and wire.arrives_s <= watch.deadline:
+        wish = watch.deadline
+        if wish >= deadline or wish >= next_scan_s > now:
             return deadline
-        return min(deadline, watch.deadline)
+        wire = self._foreseeing
+        return deadline if wire is not None and watch.only_watches and wire.arrives_s <= wish else wish
 
     def transmit_lines(self, now: float, *, scan: bool = True) -> None:
         """Send what is due on the Modbus lines alone."""
-        for port, link in self.lines:
+        for port, link, _ in self._lines:
+            if now < link.wants_s:
+                continue
             try:
                 link.service(port, now, scan=scan)
             except BusLost as error:

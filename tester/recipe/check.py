@@ -6,6 +6,7 @@ from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from tester.recipe.cost import ConditionCosts
 from tester.recipe.estimate import Estimator
 from tester.recipe.limits import limit_problems
 from tester.recipe.loader import LoadedRecipe, validated
@@ -43,7 +44,7 @@ def load_checked(source: Path | str, rig: RigConfig, name: str | None = None) ->
 
 def wear_problems(recipe: Recipe, tree: Tree, rig: RigConfig) -> list[Problem]:
     """Return what would wear a wheel beyond ``wheel.replace_after`` in one go: grinding it and one condition."""
-    estimator = Estimator(rig)
+    costs = Estimator(rig).costs
     allowed = recipe.wheel.replace_after
     layer = rig.observer.wheel.rubber_layer
     at: Location = ("wheel", "replace_after")
@@ -53,11 +54,11 @@ def wear_problems(recipe: Recipe, tree: Tree, rig: RigConfig) -> list[Problem]:
     ground = 0.0
     if recipe.pre_grind is not None:
         one = recipe.pre_grind
-        ground = estimator.ground_mm(one.load, abs(one.wheel_speed - one.belt_speed) * one.duration)
+        ground = costs.ground_mm(one.load, abs(one.wheel_speed - one.belt_speed) * one.duration)
     problems: list[Problem] = []
     for index, grid in enumerate(recipe.grids):
         compound, worst = max(
-            ((one.compound, _worst_loss_mm(recipe, grid, one.compound, estimator)) for one in recipe.specimens),
+            ((one.compound, _worst_loss_mm(recipe, grid, one.compound, costs)) for one in recipe.specimens),
             key=lambda entry: entry[1],
         )
         if ground + worst > allowed:
@@ -67,7 +68,7 @@ def wear_problems(recipe: Recipe, tree: Tree, rig: RigConfig) -> list[Problem]:
     return problems
 
 
-def _worst_loss_mm(recipe: Recipe, grid: GridModel, compound: str, estimator: Estimator) -> float:
+def _worst_loss_mm(recipe: Recipe, grid: GridModel, compound: str, costs: ConditionCosts) -> float:
     """Return the greatest predicted wear of a grid's conditions, which is at its highest load and widest angles."""
     if recipe.measure is None:
         return 0.0
@@ -75,6 +76,6 @@ def _worst_loss_mm(recipe: Recipe, grid: GridModel, compound: str, estimator: Es
     settings = settings_of(recipe.measure, grid)
     angles = max(sideslips, key=abs), max(cambers, key=abs)
     return max(
-        estimator.cost(Setpoint(compound, slip, max(loads), *angles, temperature, speed), settings).loss_mm
+        costs.of(Setpoint(compound, slip, max(loads), *angles, temperature, speed), settings).loss_mm
         for slip, speed, temperature in product(slips, speeds, temperatures)
     )

@@ -1,12 +1,12 @@
-"""A plan in words, and as JSON: what is done, in which order, how long it takes and what it costs."""
+"""A plan in words: what is done, in which order, how long it takes and what it costs."""
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Iterator
 
-from tester.recipe.estimate import Estimate, StepEstimate
+from tester.recipe.cost import StepEstimate
+from tester.recipe.estimate import Estimate
 from tester.recipe.plan import (
     ConditionStep,
     Cool,
@@ -22,8 +22,6 @@ from tester.recipe.plan import (
 
 _WIDTH = 76
 """Columns of a line before its duration."""
-
-_encode = json.JSONEncoder(ensure_ascii=False, allow_nan=False).encode
 
 
 def duration(seconds: float) -> str:
@@ -101,94 +99,6 @@ def setpoint_words(step: ConditionStep) -> str:
 def window_words(window: Window) -> str:
     """Return a window as a recipe writes it: 30 rev, or 60 s."""
     return f"{window.revolutions:g} rev" if window.revolutions is not None else f"{window.seconds or 0.0:g} s"
-
-
-def json_chunks(plan: Plan, estimate: Estimate) -> Iterator[str]:
-    """Yield the plan as JSON text, piece by piece, a step a line: a plan may have hundreds of thousands."""
-    head: dict[str, object] = {
-        "recipe": plan.name,
-        "conditions": sum(1 for _ in plan.conditions()),
-        "rig_seconds": round(estimate.rig_seconds, 1),
-        "sliding_m": round(estimate.sliding_m, 2),
-        "loss_mm": round(estimate.loss_mm, 4),
-        "friction_j": round(estimate.friction_j, 1),
-        "peak_c": round(estimate.peak_c, 2) if math.isfinite(estimate.peak_c) else None,
-        "wheels": estimate.wheels,
-        "replace_after_mm": plan.replace_after_mm,
-        "not_held": list(estimate.not_held),
-        "specimens": [{"index": one.index, "compound": one.compound, "note": one.note} for one in plan.specimens],
-        "metadata": dict(plan.metadata),
-    }
-    yield _encode(head)[:-1] + ', "steps": ['
-    separator = "\n"
-    for step, one in zip(plan.steps, estimate.steps, strict=True):
-        yield separator + _encode(step_fields(step, one))
-        separator = ",\n"
-    yield "\n]}\n"
-
-
-def step_fields(step: Step, one: StepEstimate) -> dict[str, object]:
-    """Return a step with its estimate as plain data; units in the keys."""
-    fields: dict[str, object] = {"kind": step.kind, "index": step.index, "seconds": round(one.seconds, 1)}
-    match step:
-        case ConditionStep():
-            fields.update(_condition_fields(step, one))
-        case Install():
-            fields.update(
-                specimen=step.specimen,
-                replicate=step.replicate,
-                wheel=step.wheel,
-                compound=step.compound,
-                note=step.note,
-            )
-        case PreGrind():
-            fields.update(
-                wheel_speed_m_s=step.wheel_speed_m_s,
-                belt_speed_m_s=step.belt_speed_m_s,
-                load_n=step.load_n,
-                duration_s=step.duration_s,
-                sliding_m=round(one.sliding_m, 3),
-                loss_mm=round(one.loss_mm, 5),
-            )
-        case Rest():
-            fields.update(
-                at_least_s=step.at_least_s, until_c=step.until_c, within_k=step.within_k, at_most_s=step.at_most_s
-            )
-        case Heat():
-            fields.update(temperature_c=step.temperature_c)
-        case Cool():
-            fields.update(hub_below_c=step.hub_below_c)
-        case Prompt():
-            fields.update(text=step.text)
-    return fields
-
-
-def _condition_fields(step: ConditionStep, one: StepEstimate) -> dict[str, object]:
-    sp = step.setpoint
-    return {
-        "condition": step.condition,
-        "row": step.row,
-        "specimen": step.specimen,
-        "replicate": step.replicate,
-        "wheel": step.wheel,
-        "grid": step.grid,
-        "compound": sp.compound,
-        "slip_velocity_m_s": sp.slip_velocity_m_s,
-        "load_n": sp.load_n,
-        "sideslip_deg": sp.sideslip_deg,
-        "camber_deg": sp.camber_deg,
-        "temperature_c": sp.temperature_c,
-        "wheel_speed_m_s": sp.wheel_speed_m_s,
-        "belt_speed_m_s": sp.belt_speed_m_s,
-        "repeats": step.repeats,
-        "min_valid": step.min_valid,
-        "window": window_words(step.window),
-        "temperature_band_k": step.temperature_band_k,
-        "bursts": one.bursts,
-        "held": one.held,
-        "sliding_m": round(one.sliding_m, 3),
-        "loss_mm": round(one.loss_mm, 5),
-    }
 
 
 def _indent(step: Step) -> str:

@@ -12,9 +12,10 @@ from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import accumulate, count, product
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
-from tester.recipe.estimate import Estimator, StepEstimate
+from tester.recipe.cost import StepEstimate
+from tester.recipe.estimate import Estimator
 from tester.recipe.plan import (
     ConditionStep,
     Heat,
@@ -42,8 +43,7 @@ Key: TypeAlias = tuple[float, float, float, float, float, float]
 _TEMPERATURE = 5
 
 
-@dataclass(frozen=True, slots=True)
-class Condition:
+class Condition(NamedTuple):
     """One condition of a specimen: its setpoints, its row in the recipe's order (from 1) and its first grid."""
 
     key: Key
@@ -68,10 +68,10 @@ def conditions_of(recipe: Recipe) -> list[Condition]:
     found: dict[Key, tuple[str, Settings]] = {}
     for grid in recipe.grids:
         entry = (grid.name, settings_of(measure, grid))
-        for key in product(*axis_values(measure, grid)):
-            slip, load, sideslip, camber, wheel, temperature = key
-            found.setdefault((slip, load, sideslip, camber, wheel, temperature), entry)
-    return [Condition(key, row, *entry) for row, (key, entry) in enumerate(found.items(), start=1)]
+        slips, loads, sideslips, cambers, wheels, temperatures = axis_values(measure, grid)
+        for key in product(slips, loads, sideslips, cambers, wheels, temperatures):
+            found.setdefault(key, entry)
+    return [Condition(key, row, grid, settings) for row, (key, (grid, settings)) in enumerate(found.items(), start=1)]
 
 
 def ordered(conditions: Sequence[Condition], order: OrderModel, specimen: int, replicate: int) -> list[list[Condition]]:
@@ -186,10 +186,8 @@ class _Expansion:
         )
         for specimen in specimens:
             setpoints = [setpoint_of(specimen.compound, one.key) for one in self.conditions]
-            costs = [
-                self.estimator.cost(setpoint, one.settings)
-                for setpoint, one in zip(setpoints, self.conditions, strict=True)
-            ]
+            cost = self.estimator.costs.of
+            costs = [cost(setpoint, one.settings) for setpoint, one in zip(setpoints, self.conditions, strict=True)]
             for replicate in range(1, recipe.replicates + 1):
                 self._replicate(specimen, replicate, setpoints, costs)
         return Plan(
@@ -220,7 +218,8 @@ class _Expansion:
             for position, one in enumerate(block):
                 if position and position in points:
                     self._new_wheel(specimen, replicate, temperature)
-                self._prompts(self.every_condition)
+                if self.every_condition:
+                    self._prompts(self.every_condition)
                 self._measure(one, setpoints[one.row - 1], costs[one.row - 1])
 
     def _new_wheel(self, specimen: Specimen, replicate: int, heat_c: float | None) -> None:
@@ -239,28 +238,30 @@ class _Expansion:
         self.wheels.append(_Wheel(number, specimen.index, replicate, ground.loss_mm, ground.sliding_m))
 
     def _measure(self, one: Condition, setpoint: Setpoint, cost: StepEstimate) -> None:
-        settings, wheel = one.settings, self.wheels[-1]
+        _, row, grid, how = one
+        wheel, steps = self.wheels[-1], self.steps
         wheel.conditions += 1
         wheel.loss_mm += cost.loss_mm
         wheel.sliding_m += cost.sliding_m
         self.count += 1
-        self.steps.append(
+        # By position: with names the call costs twice as much, and there may be 250,000 of them.
+        steps.append(
             ConditionStep(
-                index=len(self.steps),
-                condition=self.count,
-                row=(wheel.specimen - 1) * len(self.conditions) + one.row,
-                specimen=wheel.specimen,
-                replicate=wheel.replicate,
-                wheel=wheel.number,
-                grid=one.grid,
-                setpoint=setpoint,
-                repeats=settings.repeats,
-                min_valid=settings.min_valid,
-                window=settings.window,
-                temperature_band_k=settings.temperature_band_k,
-                soak=settings.soak,
-                max_bursts=settings.max_bursts,
-                wear_check=settings.wear_check,
+                len(steps),
+                self.count,
+                (wheel.specimen - 1) * len(self.conditions) + row,
+                wheel.specimen,
+                wheel.replicate,
+                wheel.number,
+                grid,
+                setpoint,
+                how.repeats,
+                how.min_valid,
+                how.window,
+                how.temperature_band_k,
+                how.soak,
+                how.max_bursts,
+                how.wear_check,
             )
         )
 

@@ -39,6 +39,16 @@ class Motion(NamedTuple):
     slip: float
 
 
+class _Case(NamedTuple):
+    """A compound at the temperature at which it rubs most, at one slip speed."""
+
+    compound: str
+    model: FrictionModel
+    hottest: float
+    slip: float
+    cornering: float
+
+
 def limit_problems(tree: Tree, rig: RigConfig) -> list[Problem]:
     """Return what is beyond the rig's limits, as far as the tree's values can be read."""
     return sorted(set(_Limits(tree, rig).problems()))
@@ -86,11 +96,14 @@ class _Limits:
     def _given(self, at: Location, unit: str) -> list[Given]:
         """Return the readable quantities of an axis or a single value; an empty list where there is none."""
         node = self._node(at)
-        places = [(*at, index) for index in range(len(node))] if isinstance(node, list) else [at]
+        if node is None:
+            return []
+        quantity = Quantity(unit)
+        places = [((*at, index), one) for index, one in enumerate(node)] if isinstance(node, list) else [(at, node)]
         found: list[Given] = []
-        for place in places:
+        for place, value in places:
             try:
-                found.append(Given(Quantity(unit).read(self._node(place)), place))
+                found.append(Given(quantity.read(value), place))
             except UnitError:
                 continue
         return found
@@ -109,7 +122,7 @@ class _Limits:
         """Yield a problem for an angle on an axis that a person sets: every burst turns it in and out."""
         if given.value != 0.0 and not driven:
             message = f"{axis}: {show(given.value, 'deg')} needs a driven axis; this rig's is set by hand"
-            yield self.tree.problem(given.at, f"{message} (axes.{axis} of rig \"{self.rig.name}\")")
+            yield self.tree.problem(given.at, f'{message} (axes.{axis} of rig "{self.rig.name}")')
 
     # -- what may be wrong --------------------------------------------------------------------------------------
 
@@ -133,7 +146,7 @@ class _Limits:
             yield from self._above(belt, limits.belt_speed_m_s, "m/s", "limits.belt_speed")
             for wheel, load in product(self._given((*at, "wheel_speed"), "m/s"), self._given((*at, "load"), "N")):
                 motion = Motion(wheel.value, belt.value, 0.0, abs(wheel.value - belt.value))
-                yield from self._power(load, [motion], [self.ambient_c])
+                yield from self._powers([load], [motion], [self.ambient_c])
         for load in self._given((*at, "load"), "N"):
             yield from self._above(load, limits.load_n, "N", "limits.load")
 
@@ -162,8 +175,7 @@ class _Limits:
         yield from self._slips(at)
         motions = self._motions(at)
         temperatures = [one.value for one in self._given((*at, "temperature"), "degC")]
-        for load in loads:
-            yield from self._power(load, motions, temperatures)
+        yield from self._powers(loads, motions, temperatures)
 
     def _temperatures(self, at: Location) -> Iterator[Problem]:
         surface_c, jacket_c = self.rig.limits.surface_c, self.rig.limits.jacket_c
@@ -206,22 +218,32 @@ class _Limits:
             motions.append(Motion(wheel, belt, angle, slip_velocity(wheel, belt, angle)[2]))
         return motions
 
-    def _power(self, load: Given, motions: list[Motion], temperatures: list[float]) -> Iterator[Problem]:
-        """Yield a problem if a load makes too much friction heat somewhere, naming the worst place."""
-        if not motions or not temperatures or load.value <= 0.0:
+    def _powers(self, loads: list[Given], motions: list[Motion], temperatures: list[float]) -> Iterator[Problem]:
+        """Yield a problem for every load that makes too much friction heat somewhere, naming the worst place."""
+        pressing = [load for load in loads if load.value > 0.0]
+        if not motions or not temperatures or not pressing:
             return
-        limit = self.rig.limits.slip_power_w
-        worst, words = limit, ""
+        cases: list[_Case] = []
         for name, model in self.models.items():
             # Both friction models are a factor of temperature times one of load and slip: the worst temperature
             # is the same everywhere.
-            hottest = max(temperatures, key=lambda one: model.mu(one, load.value, motions[0].slip))
-            for motion in motions:
-                mu = model.mu(hottest, load.value, motion.slip) * cornering_factor(name, motion.sideslip_deg)
-                power = mu * load.value * motion.slip
-                if power > worst:
-                    worst = power
-                    words = f"{show(motion.slip, 'm/s')} of slip with {shown(name)} at {show(hottest, 'degC')}"
-        if words:
-            message = f"load: {show(load.value, 'N')} makes {worst:.0f} W of friction heat at {words}"
+            hottest = max(temperatures, key=lambda one: model.mu(one, pressing[0].value, motions[0].slip))
+            cases += [
+                _Case(name, model, hottest, motion.slip, cornering_factor(name, motion.sideslip_deg))
+                for motion in motions
+            ]
+        for load in pressing:
+            yield from self._power(load, cases)
+
+    def _power(self, load: Given, cases: list[_Case]) -> Iterator[Problem]:
+        limit = self.rig.limits.slip_power_w
+        newtons, most, worst = load.value, limit, None
+        for case in cases:
+            _, model, hottest, slip, cornering = case
+            power = model.mu(hottest, newtons, slip) * cornering * newtons * slip
+            if power > most:
+                most, worst = power, case
+        if worst is not None:
+            where = f"{show(worst.slip, 'm/s')} of slip with {shown(worst.compound)} at {show(worst.hottest, 'degC')}"
+            message = f"load: {show(newtons, 'N')} makes {most:.0f} W of friction heat at {where}"
             yield self.tree.problem(load.at, f"{message} {self._limit('limits.slip_power', limit, 'W')}")

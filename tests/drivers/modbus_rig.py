@@ -46,15 +46,19 @@ class Log:
 
 
 class Rig:
-    """Link and wire in scans of ``period_s``; the link's deadlines are kept in between."""
+    """Link and wire in scans of ``period_s``; the link's deadlines are kept in between.
 
-    def __init__(self, baud: int, *slaves: ModbusSlave, period_s: float = 0.01) -> None:
+    ``sparing``: the link is served, and the wire read, only when they say that there is something to do.
+    """
+
+    def __init__(self, baud: int, *slaves: ModbusSlave, period_s: float = 0.01, sparing: bool = False) -> None:
         self.link = ModbusLink("rtu", baud)
         self.wire = ModbusWire(baud, "N", slaves)
         self.slaves = slaves
         self.log = Log()
         self.wire.tap = self.log
         self.period_s = period_s
+        self.sparing = sparing
         self.now = 0.0
 
     def run(self, seconds: float, every_scan: object = None) -> None:
@@ -66,10 +70,12 @@ class Rig:
             for slave in self.slaves:
                 if isinstance(slave, JacketSlave):
                     slave.advance(self.now, self.now)
-            self.link.feed(self.wire.read(self.now), self.now)
+            if not self.sparing or self.wire.arrives_s <= self.now:
+                self.link.feed(self.wire.read(self.now), self.now)
             if scan:
                 scan_s += self.period_s
                 if callable(every_scan):
                     every_scan()
-            self.link.service(self.wire, self.now, scan=scan)
+            if not self.sparing or self.now >= self.link.wants_s:
+                self.link.service(self.wire, self.now, scan=scan)
             self.now = min(scan_s, max(self.link.deadline, self.now + 5e-4))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from pymodbus.framer import FramerRTU
@@ -31,8 +30,3 @@ def test_any_single_wrong_bit_is_found(frame: bytes, place: int) -> None:
     bit = place % (8 * len(whole))
     whole[bit // 8] ^= 1 << bit % 8
     assert crc16(bytes(whole)) != 0
-
-
-def test_more_than_a_frame_is_refused() -> None:
-    with pytest.raises(ValueError, match="at most 256"):
-        crc16(bytes(261))

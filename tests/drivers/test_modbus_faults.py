@@ -7,9 +7,17 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from drivers.crc16 import with_crc
+from drivers.ir_thermometer import IrThermometer
+from drivers.jacket import HeatingJacket
+from drivers.load_cell import LoadCell
 from drivers.modbus import Request
-from drivers.profiles import Timing
+from drivers.profiles import Timing, load_profile
+from sim.modbus_wire import Impairment
+from sim.nodes.cell_slave import CellSlave
+from sim.nodes.ir_slave import IrSlave
+from sim.nodes.jacket_slave import JacketSlave
 from tests.drivers.modbus_bench import Bench, refusal, reply
+from tests.drivers.modbus_rig import Quantities, Rig
 
 NINE = tuple(range(9))
 GOOD = reply(*NINE)
@@ -264,3 +272,38 @@ def test_an_echo_of_another_value_does_not_confirm_a_write() -> None:
     bench.serve(0.005, (0.004, with_crc(bytes.fromhex("0106001A01F5"))))
     assert bench.notes.replies == []
     assert write.station.counters.late == 1
+
+
+IMPAIRMENTS = (None, "late", "silence", "split", "corrupt", "noise", "lost", "wrong_id", "stale", "exception")
+
+
+def three_devices_in_trouble(sparing: bool, period_s: float) -> Rig:
+    """Return a line after 20 s with three devices, changing setpoints and every kind of impairment."""
+    source, profiles = Quantities(), [load_profile(n) for n in ("eurotherm_3200", "calex_pyrominibus")]
+    cell = load_profile("four_axis_transmitter")
+    slaves = (JacketSlave(profiles[0], 1, source), IrSlave(profiles[1], 2, source), CellSlave(cell, 3, source))
+    rig = Rig(38400, *slaves, period_s=period_s, sparing=sparing)
+    jacket = HeatingJacket(profiles[0], 1, rig.link)
+    IrThermometer(profiles[1], 2, rig.link)
+    LoadCell(cell, 3, rig.link)
+    for number, kind in enumerate(IMPAIRMENTS):
+        if kind is not None:
+            rig.wire.impair = Impairment(kind, count=4, skip=3, unit_id=number % 4)  # type: ignore[arg-type]
+
+        def command(number: int = number) -> None:
+            jacket.enable(number % 3 > 0)
+            jacket.set_setpoint(40.0 + number + rig.now // 0.7)
+
+        rig.run(2.0, command if number != 5 else None)
+    return rig
+
+
+@pytest.mark.parametrize("period_s", [0.01, 0.05])
+def test_whoever_serves_the_link_only_when_it_wants_to_sends_the_same_frames(period_s: float) -> None:
+    always, sparing = (three_devices_in_trouble(mode, period_s) for mode in (False, True))
+    assert len(always.log.frames) > 400
+    frames, expected = ([(round(t, 9), *what) for t, *what in rig.log.frames] for rig in (sparing, always))
+    assert frames == expected
+    for one, other in zip(sparing.link.stations, always.link.stations, strict=True):
+        assert one.counters == other.counters
+        assert one.counters.timeouts > 0

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import copy
-from math import nan
+from math import floor, nan
 
 import pytest
 
 from drivers.crc16 import with_crc
 from drivers.profiles import ProfileError, load_profile
 from sim.nodes.cell_slave import CellSlave
-from sim.nodes.dither import quantise
+from sim.nodes.dither import PATTERN
 from sim.nodes.ir_slave import IrSlave
 from sim.nodes.jacket_slave import CYCLE_S, JacketSlave
 from sim.nodes.modbus_slave import ModbusSlave
@@ -43,9 +43,31 @@ def write(slave: ModbusSlave, address: int, value: int, t: float = 0.0) -> bytes
 
 @pytest.mark.parametrize("value", [0.0, 0.25, -0.3, 7.5, 1e4 + 0.49])
 def test_a_value_at_rest_changes_by_exactly_one_count_and_keeps_its_mean(value: float) -> None:
-    counts = [quantise(value, 1.0, phase) for phase in range(8)]
+    counts = [floor(value + step) for step in PATTERN]
     assert max(counts) - min(counts) == 1
-    assert sum(counts) / 8 == pytest.approx(value, abs=0.2501)
+    assert sum(counts) / 4 == pytest.approx(value, abs=0.2501)
+
+
+@pytest.mark.parametrize("made", ["cell", "thermometer", "controller"])
+def test_a_block_asked_for_often_reads_as_the_registers_one_by_one(made: str) -> None:
+    source = Quantities()
+    source.forces = (123.4, -5678.9, 210.1, 0.377)
+    slave, profile = {
+        "cell": lambda: (CellSlave(CELL, 1, source), CELL),
+        "thermometer": lambda: (IrSlave(INFRARED, 1, source), INFRARED),
+        "controller": lambda: (JacketSlave(JACKET, 1, source), JACKET),
+    }[made]()
+    if isinstance(slave, JacketSlave):
+        slave.advance(0.0, 1.0)
+    for block in profile.blocks:
+        for _ in range(5):
+            slave.dither = 0
+            together = read(slave, block.address, block.count)
+            one_by_one = b""
+            for address in range(block.address, block.address + block.count):
+                slave.dither = 0
+                one_by_one += read(slave, address, 1)
+            assert together == one_by_one
 
 
 # load cell

@@ -130,6 +130,14 @@ def test_an_unchanged_answer_is_the_same_bytes_object() -> None:
     assert device.answer(frame, 3.0) == with_crc(bytes.fromhex("1103040000") + b"\x00\x05")
 
 
+def test_a_write_that_comes_again_is_executed_again() -> None:
+    device = Device()
+    frames = ["110600640003", "111000650001020009", "1106006C000B"]
+    first = [ask(device, frame, 1.0) for frame in frames]
+    assert [ask(device, frame, 2.0) for frame in frames] == first == ["110600640003", "111000650001", "118603"]
+    assert device.writes == [(100, 3), (101, 9), (108, 11)] * 2
+
+
 @given(st.binary(max_size=300))
 def test_any_bytes_are_answered_or_met_with_silence(frame: bytes) -> None:
     device = Device()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+from math import inf
 
 import pytest
 
@@ -126,6 +127,20 @@ def test_an_unplugged_adapter_raises_and_loses_what_was_under_way() -> None:
     line.reconnect()
     assert line.read(1.0) == []
     assert len(exchange(line, READ_NINE, 1.0)) == 1
+
+
+def test_it_tells_when_there_is_something_to_read() -> None:
+    line, _ = wire()
+    assert line.arrives_s == inf
+    line.write(READ_NINE, 0.0)
+    due = line.arrives_s
+    assert line.read(due - 1e-6) == []
+    assert [t for t, _ in line.read(due)] == [due]
+    assert line.arrives_s == inf
+    line.disconnect()
+    assert line.arrives_s == -inf
+    line.reconnect()
+    assert line.arrives_s == inf
 
 
 def spoilt(kind: str, **more: float) -> tuple[list[tuple[float, bytes]], tuple[float, bytes], ModbusSlave]:

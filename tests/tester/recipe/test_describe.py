@@ -6,9 +6,10 @@ import json
 
 import pytest
 
-from tester.recipe.describe import duration, json_chunks, lines
+from tester.recipe.describe import duration, lines
 from tester.recipe.estimate import estimate
 from tester.recipe.expand import expand
+from tester.recipe.plan_json import json_chunks
 from tests.tester.recipe.texts import PREPARED, SMALL, recipe, rig
 
 

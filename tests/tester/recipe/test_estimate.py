@@ -9,7 +9,8 @@ import pytest
 
 import recipes
 from tester.recipe.constants import CONSTANTS, EstimateConstants
-from tester.recipe.estimate import Estimate, Estimator, StepEstimate, estimate, predicted_loss_mm
+from tester.recipe.cost import StepEstimate
+from tester.recipe.estimate import Estimate, Estimator, estimate, predicted_loss_mm
 from tester.recipe.expand import expand
 from tester.recipe.loader import load_recipe
 from tester.recipe.plan import ConditionStep, Plan, Setpoint
@@ -27,7 +28,7 @@ def condition(
 ) -> StepEstimate:
     read = recipe(text)
     assert read.measure is not None
-    return Estimator(rig(*overrides), constants).cost(setpoint, settings_of(read.measure, read.grids[0]))
+    return Estimator(rig(*overrides), constants).costs.of(setpoint, settings_of(read.measure, read.grids[0]))
 
 
 MILD = Setpoint("1#", 0.3, 200.0, 0.0, 0.0, 40.0, 0.8)
@@ -66,9 +67,9 @@ def test_a_rest_lasts_as_long_as_it_must_cool() -> None:
 
 def test_friction_heats_the_surface_with_the_square_root_of_time() -> None:
     # physics.md 4: from equilibrium, 2 K take about 18 s with 1# at 200 N, 300 mm/s, 25 degC.
-    estimator = Estimator(rig())
-    power = estimator.mu("1#", 25.0, 200.0, 0.3, 0.0) * 200.0 * 0.3
-    assert (2.0 / (estimator.rise_k * power)) ** 2 == pytest.approx(18.0, rel=0.1)
+    costs = Estimator(rig()).costs
+    power = costs.mu("1#", 25.0, 200.0, 0.3, 0.0) * 200.0 * 0.3
+    assert (2.0 / (costs.rise_k * power)) ** 2 == pytest.approx(18.0, rel=0.1)
 
 
 def test_more_friction_needs_more_bursts() -> None:

@@ -1,0 +1,228 @@
+"""What measuring one condition takes: closed formulas, remembered by what is held and how it is measured.
+
+How long a slip pulse may last follows from the square root of time by which friction heats a half-space (H. S.
+Carslaw, J. C. Jaeger, Conduction of Heat in Solids, 2nd ed., 2.9: rise = 2 q sqrt(t / pi) / sqrt(k rho c)).
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, NamedTuple, Protocol
+
+from sim.friction import KNOWN, FrictionModel
+from sim.slip import cornering_factor, slip_velocity
+from tester.recipe.body import Body
+from tester.recipe.plan import Setpoint, Soak, Window
+
+if TYPE_CHECKING:
+    from tester.recipe.constants import EstimateConstants
+    from tester.rig import RigConfig
+
+ROLLING_M_S = 1e-9
+"""Slower slip than this is none: the wheel rolls, in one contact a repeat."""
+
+
+class StepEstimate(NamedTuple):
+    """What one step takes: rig time s, sliding m, loss of diameter mm, friction heat J, surface peak degC.
+
+    ``bursts`` a repeat; ``held`` is False where not one revolution fits into the temperature band.
+    """
+
+    seconds: float
+    sliding_m: float = 0.0
+    loss_mm: float = 0.0
+    friction_j: float = 0.0
+    peak_c: float = -math.inf
+    bursts: int = 0
+    held: bool = True
+
+
+class Procedure(Protocol):
+    """How a condition is measured, as far as its cost goes: a ConditionStep, or a grid's Settings."""
+
+    @property
+    def repeats(self) -> int:
+        """Repeats."""
+        ...
+
+    @property
+    def window(self) -> Window:
+        """What a repeat collects."""
+        ...
+
+    @property
+    def temperature_band_k(self) -> float:
+        """Half the width of the temperature gate, K."""
+        ...
+
+    @property
+    def soak(self) -> Soak:
+        """What comes before the first repeat."""
+        ...
+
+    @property
+    def max_bursts(self) -> int:
+        """Most pulses a repeat."""
+        ...
+
+
+class Motion(NamedTuple):
+    """What is settled before load and temperature are: a grid has few of them beside its conditions."""
+
+    model: FrictionModel | None
+    cornering: float
+    """Factor of the coefficient at the sideslip angle."""
+    slip_m_s: float
+    """Resultant."""
+    turn_s: float
+    soak_s: float
+    """Before the first repeat."""
+    window_s: float
+    """Collected a repeat, with what some of them go on."""
+    edge_s: float
+    """Sliding in a pulse that does not count."""
+    moves_s: float
+    """Moves around a pulse, beyond those around a repeat."""
+    swing_k: float
+    """Rise during a pulse that starts below the setpoint and ends as far above it."""
+
+
+class ConditionCosts:
+    """Costs of conditions on one rig; whole grids are measured alike, so they are looked up by setpoint."""
+
+    def __init__(self, rig: RigConfig, constants: EstimateConstants, body: Body) -> None:
+        """Work out what depends on the rig alone."""
+        believed = rig.observer
+        thermal = believed.thermal
+        diameter_m = 1e-3 * rig.geometry.wheel_diameter_mm
+        width_m = 1e-3 * rig.geometry.wheel_width_mm
+        effusivity = math.sqrt(thermal.conductivity * thermal.density * thermal.heat_capacity)
+        area_m2 = math.pi * diameter_m * width_m
+        self.constants = constants
+        self.body = body
+        self.ambient_c = rig.ambient_c
+        self.turn_m = math.pi * diameter_m
+        # K per W of friction and per sqrt(s): the heat spreads over the whole tread, which turns below it.
+        self.rise_k = 2.0 * believed.friction_heat_fraction / (area_m2 * effusivity * math.sqrt(math.pi))
+        # V = k F s; a ring of the tread's area, on both sides of the diameter.
+        self.loss_mm_per_nm = 2.0 * rig.wear.rate_mm3_per_n_m / (area_m2 * 1e6)
+        self.rubber_share = believed.friction_heat_fraction
+        self.offset_k = rig.loops.heat.rolling_offset_k
+        self.models = {name: FrictionModel(name, rig.sim.friction_model) for name in KNOWN}
+        self._procedure: tuple[object, ...] = ()
+        self._costs: dict[Setpoint, StepEstimate] = {}
+        self._motions: dict[tuple[object, ...], Motion] = {}
+        self._remembered: dict[
+            tuple[object, ...], tuple[dict[Setpoint, StepEstimate], dict[tuple[object, ...], Motion]]
+        ] = {}
+
+    def mu(self, compound: str, temperature_c: float, load_n: float, slip_m_s: float, sideslip_deg: float) -> float:
+        """Return the friction coefficient expected; a round figure for a compound without a model."""
+        model = self.models.get(compound)
+        if model is None:
+            return self.constants.unknown_mu
+        return model.mu(temperature_c, load_n, slip_m_s) * cornering_factor(compound, sideslip_deg)
+
+    def ground_mm(self, load_n: float, sliding_m: float) -> float:
+        """Return the loss of diameter, mm, of sliding a distance (m) under a load (N)."""
+        return self.loss_mm_per_nm * load_n * sliding_m
+
+    def of(self, setpoint: Setpoint, how: Procedure) -> StepEstimate:
+        """Return what holding a setpoint takes when it is measured like this."""
+        key = (how.repeats, how.window, how.temperature_band_k, how.soak, how.max_bursts)
+        if key != self._procedure:
+            self._procedure = key
+            self._costs, self._motions = self._remembered.setdefault(key, ({}, {}))
+        known = self._costs.get(setpoint)
+        if known is None:
+            known = self._costs[setpoint] = self._cost(setpoint, how)
+        return known
+
+    def _cost(self, sp: Setpoint, how: Procedure) -> StepEstimate:
+        """Return the cost of a condition; comparisons instead of min and max, which take a third of a microsecond."""
+        compound, slip_velocity_m_s, load_n, sideslip_deg, camber_deg, temperature_c, wheel_m_s = sp
+        key = (compound, slip_velocity_m_s, sideslip_deg, camber_deg, wheel_m_s)
+        motion = self._motions.get(key)
+        if motion is None:
+            motion = self._motions[key] = self._motion(sp, how)
+        model, cornering, slip_m_s, _, soak_s, window_s, edge_s, moves_s, _ = motion
+        c = self.constants
+        if slip_m_s < ROLLING_M_S:
+            seconds = soak_s + c.rolling_settle_s + how.repeats * (c.repeat_moves_s + window_s)
+            return StepEstimate(seconds, 0.0, 0.0, 0.0, temperature_c, 1)
+        mu = c.unknown_mu if model is None else model.mu(temperature_c, load_n, slip_m_s) * cornering
+        power_w = mu * load_n * slip_m_s
+        rise_k = self.rise_k * power_w
+        bursts, counted_s, held = self._bursts(motion, how, rise_k)
+        repeats = how.repeats if held else 1
+        slide_s = counted_s + bursts * edge_s
+        burst_s = slide_s / bursts
+        sliding_m = repeats * slip_m_s * slide_s
+        cooling_s = self._cooling_s(temperature_c, burst_s, power_w)
+        above_k, most_k = rise_k * math.sqrt(burst_s), how.temperature_band_k
+        if self.offset_k < most_k:
+            most_k = self.offset_k
+        return StepEstimate(
+            soak_s + repeats * (c.repeat_moves_s + slide_s + bursts * (moves_s + cooling_s)),
+            sliding_m,
+            self.loss_mm_per_nm * load_n * sliding_m,
+            repeats * power_w * slide_s,
+            temperature_c + (above_k if above_k < most_k else most_k),
+            bursts,
+            held,
+        )
+
+    def _motion(self, sp: Setpoint, how: Procedure) -> Motion:
+        c = self.constants
+        turn_s = self.turn_m / sp.wheel_speed_m_s
+        yawed = sp.sideslip_deg != 0.0 or sp.camber_deg != 0.0
+        model = self.models.get(sp.compound)
+        return Motion(
+            model=model,
+            cornering=1.0 if model is None else cornering_factor(sp.compound, sp.sideslip_deg),
+            slip_m_s=slip_velocity(sp.wheel_speed_m_s, sp.belt_speed_m_s, sp.sideslip_deg)[2],
+            turn_s=turn_s,
+            soak_s=how.soak.for_s + c.next_condition_s,
+            window_s=c.extension * how.window.duration_s(1.0 / turn_s),
+            edge_s=(c.yawed_slide_s if yawed else c.burst_edge_s) + c.split_turns * turn_s,
+            moves_s=c.yawed_moves_s + 2.0 * abs(sp.sideslip_deg) / c.yaw_deg_s if yawed else 0.0,
+            swing_k=self.offset_k + min(how.temperature_band_k, self.offset_k),
+        )
+
+    def _cooling_s(self, temperature_c: float, slide_s: float, power_w: float) -> float:
+        """Return the seconds between pulses in which the surface comes back below the setpoint."""
+        c = self.constants
+        above_k = temperature_c - self.offset_k - self.ambient_c
+        if above_k < c.cooling_floor_k:
+            above_k = c.cooling_floor_k
+        leaves_s = self.rubber_share * power_w * slide_s / (self.body.rolling_w_k * above_k)
+        least_s = c.cooling_ratio * slide_s
+        if least_s < c.cooling_least_s:
+            least_s = c.cooling_least_s
+        seconds = leaves_s if leaves_s > least_s else least_s
+        return seconds if seconds < c.cooling_most_s else c.cooling_most_s
+
+    def _bursts(self, motion: Motion, how: Procedure, rise_k: float) -> tuple[int, float, bool]:
+        """Return bursts a repeat, seconds counted a repeat, and whether the temperature holds for a revolution.
+
+        ``rise_k`` is the surface's rise in K per square root of a second.
+        """
+        _, _, _, turn_s, _, window_s, edge_s, _, swing_k = motion
+        if rise_k <= 0.0:
+            return 1, window_s, True
+        c = self.constants
+        # From below the setpoint to as far above it, so that the samples centre on it ...
+        each_s = (swing_k / rise_k) ** 2 - edge_s
+        few_s = c.few_turns * turn_s
+        if each_s < few_s:
+            # ... or, where that is over too soon, from below the band to its top.
+            whole_s = ((2.0 * how.temperature_band_k + c.below_band_k) / rise_k) ** 2
+            counted_s = whole_s - max(edge_s, (c.below_band_k / rise_k) ** 2)
+            each_s = max(each_s, min(counted_s, few_s))
+        if each_s < turn_s:
+            return c.bursts_tried, 0.0, False
+        bursts = math.ceil(window_s / each_s)
+        if bursts > how.max_bursts:
+            bursts = how.max_bursts
+        counted_s = bursts * each_s
+        return bursts, counted_s if counted_s < window_s else window_s, True
