@@ -12,9 +12,9 @@ from math import inf, isfinite, nan
 from tester.process import Readings
 from tester.rig import InterlocksConfig
 
-RATE_FAST_S = 2.0
-RATE_SLOW_S = 6.0
-"""Time constants of the two averages whose difference gives the hub's rate [A]: 3 mK/s of noise at 5 Hz."""
+RATE_FILTER_S = 1.0
+RATE_WINDOW_S = 2.0
+"""The hub's rate is that of its filtered readings over one to two of these windows: 10 mK/s of noise at 5 Hz [A]."""
 BLIND_S = 1.0
 """After a wheel was changed, readings still on their way are not compared with those before, s [A]."""
 RAMP_SHARE = 0.3
@@ -30,9 +30,10 @@ class JacketMonitor:
     """Last valid reading."""
     jump_k: float = 0.0
     """Distance of the last two valid readings."""
-    fast_c: float = nan
-    slow_c: float = nan
+    filtered_c: float = nan
     rate_k_s: float = 0.0
+    marks: tuple[float, float, float, float] = (nan, nan, nan, nan)
+    """(time, filtered hub) at the last two ends of a window, older first."""
     off_since_s: float = inf
     """Since when no heat has been commanded, or none has been put out."""
     weak_since_s: float = inf
@@ -43,7 +44,7 @@ class JacketMonitor:
 
     def forget(self, now: float) -> None:
         """Compare nothing with the readings before: a person was at the wheel and its hub."""
-        self.fast_c = nan
+        self.filtered_c = nan
         self.jump_k = 0.0
         self.blind_until_s = now + BLIND_S
 
@@ -61,14 +62,21 @@ class JacketMonitor:
         known = isfinite(self.hub_c) and stamp > self.blind_until_s
         self.jump_k = abs(hub - self.hub_c) if known else 0.0
         self.hub_c = hub
-        if isfinite(self.fast_c) and 0.0 < dt < 10.0:
-            self.fast_c += (hub - self.fast_c) * dt / (RATE_FAST_S + dt)
-            self.slow_c += (hub - self.slow_c) * dt / (RATE_SLOW_S + dt)
-            self.rate_k_s = (self.fast_c - self.slow_c) / (RATE_SLOW_S - RATE_FAST_S)
-        else:
-            self.fast_c = self.slow_c = hub
-            self.rate_k_s = 0.0
+        self._follow_rate(stamp, hub, dt)
         self._watch_line(r, heat, setpoint_c, bounds)
+
+    def _follow_rate(self, stamp: float, hub_c: float, dt: float) -> None:
+        if not isfinite(self.filtered_c) or not 0.0 < dt < 10.0:
+            self.filtered_c = hub_c
+            self.marks = (stamp, hub_c, stamp, hub_c)
+            self.rate_k_s = 0.0
+            return
+        self.filtered_c += (hub_c - self.filtered_c) * dt / (RATE_FILTER_S + dt)
+        old_s, old_c, new_s, new_c = self.marks
+        if stamp - new_s >= RATE_WINDOW_S:
+            self.marks = old_s, old_c, new_s, new_c = (new_s, new_c, stamp, self.filtered_c)
+        if stamp - old_s >= RATE_WINDOW_S:
+            self.rate_k_s = (self.filtered_c - old_c) / (stamp - old_s)
 
     def _watch_line(self, r: Readings, heat: bool, setpoint_c: float, bounds: InterlocksConfig) -> None:
         """Measure the rise while the output is high: a heater whose line is open makes none."""

@@ -24,6 +24,8 @@ from tester.rig import RigConfig
 
 CEILING_WINDOW_S = 600.0
 """The runaway limit looks back this long (rulings, interlocks)."""
+CEILING_STEP_S = 1.0
+"""How exactly it knows when a setpoint was left, s."""
 ACK_WAIT_S = 1.0
 """An acknowledged drive has reset its fault by then, s [A]; a cause that still holds refuses the acknowledgement."""
 HEAT_NOT_OFF = "heat not off"
@@ -328,7 +330,10 @@ class Control:
             ratio = self.loss_ratios[1 if state.load.in_contact else 0]
             hub_c = state.heat.update(now, target, readings.surface_c, self.rig.ambient_c, ratio, loop)
             out.hub_c = min(hub_c, self.bounds.hub_c)
-        self._note_ceiling(now, out.hub_c if out.heat else loop.hub_min_c)
+        setpoint_c = out.hub_c if out.heat else loop.hub_min_c
+        ceiling = state.hub_ceiling
+        if not ceiling or ceiling[-1][1] != setpoint_c or now - ceiling[-1][0] >= CEILING_STEP_S:
+            self._note_ceiling(now, setpoint_c)
 
     def _note_ceiling(self, now: float, setpoint_c: float) -> None:
         """Keep the highest hub setpoint of the last ten minutes at the front of a short monotonic list."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from math import inf, isfinite
 
-from tester.control.monitors import JacketMonitor, SpeedTracker, SurfaceMonitor
+from tester.control.monitors import RAMP_SHARE, JacketMonitor, SpeedTracker, SurfaceMonitor
 from tester.control.observer import ThermalObserver
 from tester.control.state import ControlState, Mode
 from tester.process import Demand, Press, Readings
@@ -69,8 +69,8 @@ class View:
         self.bounds = bounds = rig.interlocks
         self.observer = ThermalObserver(rig)
         radius_m = 0.5e-3 * rig.geometry.wheel_diameter_mm
-        self.wheel = SpeedTracker(rig.axes.wheel.acceleration * radius_m)
-        self.belt = SpeedTracker(rig.axes.belt.acceleration)
+        self.wheel = SpeedTracker(RAMP_SHARE * rig.axes.wheel.acceleration * radius_m)
+        self.belt = SpeedTracker(RAMP_SHARE * rig.axes.belt.acceleration)
         self.wheel_most_m_s = limits.wheel_speed_m_s * (1.0 + bounds.overspeed_share)
         self.belt_most_m_s = limits.belt_speed_m_s * (1.0 + bounds.overspeed_share)
 

@@ -98,14 +98,14 @@ class Devices:
 
     def receive(self, now: float) -> None:
         """Take in everything that arrived; a wire that is lost is left alone from then on (``lost`` says why)."""
-        if self._can_alive:
-            try:
-                frames = self.can.receive(now)
-            except BusLost as error:
-                self._lose_can(error)
-            else:
-                if frames:
-                    self.master.feed(frames, now)
+        try:
+            frames = self.can.receive(now)
+        except BusLost as error:
+            self._lose_can(error)
+        else:
+            # What comes over a wire that was lost and came back is taken off it, and not believed.
+            if frames and self._can_alive:
+                self.master.feed(frames, now)
         for port, link, foreseen in self._lines:
             if foreseen is not None and foreseen.arrives_s > now:
                 continue

@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from math import inf
 
 import pytest
 
 from tester.control.heat_loop import HeatLoop
 from tester.control.load_loop import LoadLoop
-from tester.control.state import ControlState
+from tester.control.state import ControlState, Event, Mode
 from tester.control.step import Control
 from tester.process import Demand, Press, Readings, Setpoints
 from tester.rig import RigConfig, load_rig
+
+STAMPS = ("wheel_at_s", "belt_at_s", "press_at_s", "sideslip_at_s", "camber_at_s", "cell_at_s", "surface_at_s",
+          "jacket_at_s", "cell_changed_s", "surface_changed_s")  # fmt: skip
+"""When each source last reported, and reported something new."""
 
 
 @pytest.fixture(scope="session")
@@ -26,34 +31,59 @@ class Bench:
     control: Control
     readings: Readings
     demand: Demand
+    stale: set[str] = field(default_factory=set[str])
+    """Stamps that stand still."""
+    journal: list[Event] = field(default_factory=list[Event])
+    """Every event so far."""
 
     @property
     def state(self) -> ControlState:
         return self.control.state
 
-    def scan(self, dt: float = 0.01, *, fresh: bool = True) -> Setpoints:
+    def scan(self, dt: float = 0.01) -> Setpoints:
         r = self.readings
         r.now_s += dt
-        if fresh:
-            r.wheel_at_s = r.belt_at_s = r.press_at_s = r.sideslip_at_s = r.camber_at_s = r.now_s
-            r.cell_at_s = r.surface_at_s = r.jacket_at_s = r.now_s
+        for stamp in STAMPS:
+            if stamp not in self.stale:
+                setattr(r, stamp, r.now_s)
+        out = self.control.step(self.demand, r, dt)
+        self.journal += self.state.events
         self.state.events.clear()
-        return self.control.step(self.demand, r, dt)
+        return out
+
+    def scans(self, seconds: float, dt: float = 0.01) -> Setpoints:
+        """Scan for a while; return the last setpoints."""
+        out = self.state.setpoints
+        for _ in range(round(seconds / dt)):
+            out = self.scan(dt)
+        return out
+
+    def until_trip(self, at_most_s: float, dt: float = 0.01) -> float:
+        """Scan until something trips; return the seconds it took (inf: nothing did)."""
+        began = self.readings.now_s
+        while self.readings.now_s - began < at_most_s:
+            self.scan(dt)
+            if self.state.trip is not None:
+                return self.readings.now_s - began
+        return inf
+
+    def texts(self, kind: str) -> list[str]:
+        """Return the texts of the journal's events of a kind."""
+        return [event.text for event in self.journal if event.kind == kind]
 
 
 def healthy_readings() -> Readings:
     return Readings(
         wheel_speed_m_s=0.8, wheel_rad_s=0.8 / 0.045, belt_speed_m_s=0.5, press_mm=11.8, slip_m_s=0.3,
         drive_torque_nm=6.0, drives_enabled=True, drives_disabled=False, yaw_reached=True, safety_chain=True,
-        guard_closed=True, contactor_closed=True, force_x_n=146.0, force_y_n=0.0, force_z_n=200.0, moment_z_nm=0.0,
-        cell_valid=True, surface_c=40.0, surface_valid=True, hub_c=60.0, heat_percent=20.0, jacket_valid=True,
+        guard_closed=True, contactor_closed=False, force_x_n=146.0, force_y_n=0.0, force_z_n=200.0, moment_z_nm=0.0,
+        cell_valid=True, surface_c=40.0, surface_valid=True, hub_c=50.0, heat_percent=20.0, jacket_valid=True,
         diameter_mm=90.0,
     )  # fmt: skip
 
 
-@pytest.fixture
-def bench(rig: RigConfig) -> Bench:
-    """The rig in RUN, sliding under load with the heat on, everything in order."""
+def make_bench(rig: RigConfig) -> Bench:
+    """Return the rig in RUN, sliding under load with the heat on, everything in order."""
     state = ControlState(Setpoints(), LoadLoop(), HeatLoop())
     control = Control(rig, state, (0.56, 0.81))
     readings = healthy_readings()
@@ -61,7 +91,23 @@ def bench(rig: RigConfig) -> Bench:
         enabled=True, wheel_speed_m_s=0.8, belt_speed_m_s=0.5, press=Press.LOAD, load_n=200.0, surface_c=40.0
     )
     made = Bench(control, readings, demand)
-    assert control.start(0.0) == ""
-    for _ in range(100):
-        made.scan()
+    readings.contactor_closed = False
+    readings.heat_percent = 0.0
+    readings.wheel_at_s = readings.belt_at_s = readings.jacket_at_s = readings.surface_at_s = readings.now_s
+    readings.surface_changed_s = readings.now_s
+    readings.wheel_speed_m_s = readings.belt_speed_m_s = readings.force_z_n = readings.force_x_n = 0.0
+    assert control.start(readings) == ""
+    # As the rig would be after a while in this step: rubber in balance with surface and hub.
+    readings.wheel_speed_m_s, readings.belt_speed_m_s, readings.force_z_n, readings.force_x_n = 0.8, 0.5, 200.0, 146.0
+    made.scans(2.0)
+    assert state.mode is Mode.RUN and state.trip is None, state.trip
+    readings.contactor_closed = True
+    readings.heat_percent = 20.0
+    made.scan()
+    made.journal.clear()
     return made
+
+
+@pytest.fixture
+def bench(rig: RigConfig) -> Bench:
+    return make_bench(rig)
