@@ -158,10 +158,10 @@ def _actuator_rows() -> Iterator[FaultKind]:
 
 def _computer_rows() -> Iterator[FaultKind]:
     yield FaultKind("scan stalled shortly", partial(p.Stall, 0.03), ALWAYS, RIDE, 0.0)
-    yield FaultKind("scan stalled", p.Stall, ENABLED, TRIP, 0.4 + SCAN_S, "ms", 0.4,
+    yield FaultKind("scan stalled", p.Stall, ENABLED, TRIP, 0.4 + SCAN_S, "ms", 0.4, lasts_s=0.5,
                     note="tripped by the first scan after it; a drive stops by itself after 0.2 s")
     yield FaultKind("process killed", p.Killed, ALWAYS, DEVICES, 0.25)
-    yield FaultKind("clock jump", p.ClockJump, ENABLED, TRIP, SCAN_S, "ms", 2.0)
+    yield FaultKind("clock jump", p.ClockJump, ENABLED, TRIP, SCAN_S, "ms", 2.0, lasts_s=0.5)
     yield FaultKind("operator hold", partial(p.Operator, "hold"), ALWAYS, HOLD, SCAN_S)
     yield FaultKind("operator release", partial(p.Operator, "release"), ALWAYS, RIDE, 0.0)
     yield FaultKind("operator abort", partial(p.Operator, "abort"), ALWAYS, STOP, SCAN_S)

@@ -134,7 +134,7 @@ def load_levels(v: View) -> int:
         if not (fz <= v.least_n + PRESSED_N):
             held |= _OVERSHOOT
     else:
-        if not load.in_contact and not (r.press_mm <= v.touch_most_mm):
+        if not (fz >= UNLOADED_N) and not (r.press_mm <= v.touch_most_mm):
             held |= _CELL_FROZEN
         wanted = v.demand.load_n
         highest = load.highest_n if load.highest_n > wanted else wanted

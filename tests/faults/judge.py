@@ -84,7 +84,6 @@ class Judge:
         self.safe_since_s = inf
         self.committed = stage.ledger.committed
         self._exposed_s = [inf] * len(self.kinds)
-        self._was_ended = stage.ended
         self._was_running = stage.running
         stage.inject(*(Injection(When(at_s=self.onset_s), kind, text=kind.phrase) for kind in self.kinds))
         slow = any(kind.slow for kind in self.kinds)
@@ -126,7 +125,7 @@ class Judge:
         self.committed = self.stage.ledger.committed
         normal = self.stage.run.engine.executor.finished
         rides = [kind.phrase for kind in self.kinds if kind.reaction is Reaction.RIDE]
-        if self.budgets and len(rides) == len(self.kinds) and not normal and not self._was_ended:
+        if self.budgets and len(rides) == len(self.kinds) and not normal and self._was_running:
             self.verdict.failures.append(f"ended by a fault it should ride through{self._why()}")
 
     def _late(self, now: float) -> str:
