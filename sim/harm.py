@@ -26,8 +26,10 @@ CREEP_M_S = 0.12
 """The creep of a cool-down is 0.1 m/s (rulings, 22)."""
 SAFE_S = 3.0
 """From the trip, or the loss of control, to physically safe (I5)."""
+PRESS_MM = 1.0
+"""A press that must stand has come this far at most, mm [A]: half of its clearance."""
 _NUDGE = 0.01
-"""A yaw or press axis slower than this (deg/s, mm/s) stands."""
+"""A yaw axis slower than this stands, deg/s."""
 
 
 @dataclass(slots=True)
@@ -88,6 +90,7 @@ class HarmObserver:
     _power_since_s: float = inf
     _heat_since_s: float = inf
     _standing_j: float = 0.0
+    _press_mm: float = inf
 
     def look(self, must_stand: bool) -> None:
         """Look at the rig as it is now; ``must_stand``: latched, idle or emergency stop, and time enough to rest."""
@@ -115,6 +118,8 @@ class HarmObserver:
             self._heat_since_s = inf
         if must_stand:
             self._stand(now, wheel, belt)
+        else:
+            self._press_mm = inf
 
     def _rubbing(self, now: float, dt: float, force_n: float, wheel: float, belt: float) -> None:
         plant = self.rig.plant
@@ -135,6 +140,8 @@ class HarmObserver:
             self._standing_j = 0.0
 
     def _stand(self, now: float, wheel: float, belt: float) -> None:
+        press = self.rig.axes["press"].axis.position
+        self._press_mm = min(self._press_mm, press)
         moving: list[str] = []
         if wheel >= STILL_M_S:
             moving.append(f"wheel {wheel:.3f} m/s")
@@ -142,7 +149,7 @@ class HarmObserver:
             moving.append(f"belt {belt:.3f} m/s")
         for name, drive in self.rig.axes.items():
             axis = drive.axis
-            towards = name == "press" and isinstance(axis, VelocityAxis) and axis.value > _NUDGE
+            towards = name == "press" and isinstance(axis, VelocityAxis) and axis.position > self._press_mm + PRESS_MM
             yaws = name in ("sideslip", "camber") and abs(axis.value) > _NUDGE
             if towards or yaws:
                 moving.append(f"{name} {axis.value:.2f}")

@@ -69,7 +69,7 @@ INTERLOCKS: tuple[Interlock, ...] = (
     Interlock("belt speed", "belt not at its speed: jammed, wrong scale",
               "off what its ramp allows by > speed_error", lambda c: c.speed_error_delay_s, FAST, ACK),
     Interlock("drive standing under load", "wheel on a stopped belt, or belt under a stopped wheel",
-              "load > 20 N, one stands", lambda c: c.standing_delay_s, FAST, ACK),
+              "load > 20 N, one stands, the other above 0.1 m/s", lambda c: c.standing_delay_s, FAST, ACK),
     Interlock("belt torn", "friction and drive torque collapsed while sliding under load",
               "both < torn_share of the load at slip > torn_slip", lambda c: c.torn_delay_s, FAST, REPAIR),
     # Load

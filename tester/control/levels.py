@@ -20,6 +20,8 @@ PRESSED_N = 50.0
 """A contact that nobody wants gets no firmer by more than this, N [A]: runout and noise are 10 N."""
 PUSHED_MM = 0.3
 """A press that was told to lift has gone on by this at most, mm [A]: its ramp from 10 mm/s takes less."""
+APART_M_S = 0.1
+"""One drive standing, the other faster than this, is no rounding of two equal ramps [A]."""
 CLEAR_MM = 0.5
 """The press stands this far off the known contact: open, whatever the cell shows [A] (runout 0.05 mm, wear)."""
 
@@ -108,7 +110,10 @@ def motion_levels(v: View) -> int:
             held |= _BELT
     if not (r.force_z_n < UNLOADED_N):
         belt_moves = belt > STANDING_M_S or belt < -STANDING_M_S
-        if v.turning is not belt_moves or (v.pressing and not (v.turning and belt_moves)):
+        # While they come down together one may stand a moment before the other: that is no wheel on a stopped belt.
+        slow = -APART_M_S <= wheel <= APART_M_S and -APART_M_S <= belt <= APART_M_S
+        apart = v.turning is not belt_moves and not slow
+        if apart or (v.pressing and not (v.turning and belt_moves)):
             held |= _STANDING
     return held
 

@@ -81,6 +81,7 @@ def after_stop(state: ControlState, view: View) -> None:
         state.stop.creeps = True
         return
     state.stop.began_s = float("inf")
+    state.stop.press_mm = r.press_mm if isfinite(r.press_mm) else float("inf")
     if trip is not None or state.mode is not Mode.STOPPING:
         state.enter(Mode.LATCHED, now, "standstill")
     else:

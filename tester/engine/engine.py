@@ -119,7 +119,9 @@ class Engine:
         """Set the period of the next scan: it follows the state (rulings, 10)."""
         ctx, state = self.ctx, self.control.state
         mode = state.mode
-        if ctx.moving or mode in _STOPS or (mode is _HOLD and now - state.mode_since_s < HOLD_MOVES_S):
+        # A level that has yet to stand for its delay is looked at often: the delay is not rounded up to slow scans.
+        pending = state.held & ~state.tripped
+        if pending or ctx.moving or mode in _STOPS or (mode is _HOLD and now - state.mode_since_s < HOLD_MOVES_S):
             self.period_s = self.sliding_s
         elif ctx.demand.enabled or not ctx.readings.drives_disabled:
             self.period_s = self.enabled_s

@@ -46,7 +46,7 @@ MUTANTS: tuple[Mutant, ...] = (
     Mutant("a comparison inverted: overload", _LEVELS,
            "if not (fz <= v.limits.load_n):", "if not (fz >= v.limits.load_n):"),
     Mutant("a comparison inverted: standing under load", _LEVELS,
-           "if v.turning is not belt_moves or", "if v.turning is belt_moves and"),
+           "apart = v.turning is not belt_moves and", "apart = v.turning is belt_moves and"),
     Mutant("a comparison inverted: overshoot", _LEVELS,
            "if not (fz <= b.overload_factor * highest + b.overload_margin_n):",
            "if fz <= -(b.overload_factor * highest + b.overload_margin_n):"),
