@@ -112,7 +112,9 @@ def motion_levels(v: View) -> int:
         belt_moves = belt > STANDING_M_S or belt < -STANDING_M_S
         # While they come down together one may stand a moment before the other: that is no wheel on a stopped belt.
         slow = -APART_M_S <= wheel <= APART_M_S and -APART_M_S <= belt <= APART_M_S
-        apart = v.turning is not belt_moves and not slow
+        # A quick stop takes both down at once, whatever their difference: it cannot be made any quicker.
+        quick = v.stopped_s >= 0.0 and v.state.stop.fast_s <= r.now_s
+        apart = v.turning is not belt_moves and not slow and not quick
         if apart or (v.pressing and not (v.turning and belt_moves)):
             held |= _STANDING
     return held

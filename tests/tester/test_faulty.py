@@ -56,7 +56,7 @@ def test_a_rig_that_can_be_faulty_runs_as_a_plain_one_while_it_is_not():
         ("guard opened", "guard open"),
         ("emergency stop pressed", "safety chain"),
         ("press drive in local mode", "drive fault"),
-        ("scan stalled 180 ms", "scan late"),
+        ("scan stalled 400 ms", "drive fault"),
         ("clock jump 2 s", "scan late"),
     ],
 )
