@@ -175,7 +175,7 @@ def heat_levels(v: View) -> int:
             held |= _STUCK
     if r.now_s - jacket.weak_since_s >= b.open_s and not (jacket.rise_k >= b.open_rise_k):
         held |= _OPEN
-    if heats and not v.turning:
+    if heats and r.contactor_closed and not v.turning:
         held |= _STANDSTILL
     if not (jacket.jump_k <= b.jump_k):
         held |= _HUB_JUMP
