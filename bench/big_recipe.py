@@ -1,14 +1,16 @@
-"""A recipe of 100,000 conditions: read, expanded and checked, planned; in an interpreter of its own for the memory."""
+"""A recipe of 100,000 conditions: read, checked, expanded, planned; in interpreters of their own for the memory."""
 
 from __future__ import annotations
 
 import json
 import sys
 from itertools import pairwise
+from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from bench.child import peak_memory_mb, run
 from bench.effort import Effort, TopicFailedError
-from bench.figures import Figure, at_most, unavailable
+from bench.figures import Figure, Limit, at_most, unavailable
 from bench.stopwatch import cpu_ns
 
 CONDITIONS = 100_000
@@ -16,34 +18,40 @@ CHECK_LIMIT_S = 1.0
 PLAN_LIMIT_S = 5.0
 MEMORY_LIMIT_MB = 300.0
 
+PLAN = """\
+import os, sys
+from contextlib import redirect_stdout
+from bench.child import peak_memory_mb
+from bench.stopwatch import cpu_ns
+from tester.cli.main import invoke
+with open(os.devnull, "w", encoding="utf-8") as sink, redirect_stdout(sink):
+    code = invoke(["plan", *sys.argv[1:]])
+print(cpu_ns() * 1e-9, peak_memory_mb() or 0.0)
+sys.exit(code)
+"""
+"""``tester plan`` that ends with its CPU seconds, the interpreter's start included, and its peak memory in MB."""
+
 
 def measure(effort: Effort) -> list[Figure]:
-    """Return the CPU time of the parts and the peak memory of the process."""
+    """Return the CPU time of the parts and of the whole command, and its peak memory."""
     size = effort.pick(CONDITIONS, CONDITIONS // 10)
     share = size / CONDITIONS
-    found: list[dict[str, float | None]] = []
-    for _ in range(effort.runs):
-        found.append(json.loads(run(["-m", "bench.big_recipe", str(size)])))
-        if found[-1]["conditions"] != size:
-            raise TopicFailedError(f"{found[-1]['conditions']} conditions instead of {size}")
-
-    def column(name: str) -> tuple[float, ...]:
-        return tuple(value for one in found if (value := one[name]) is not None)
-
-    parsed, checked, expanded, planned = (column(name) for name in ("parse", "check", "expand", "plan"))
-    both = tuple(a + b for a, b in zip(checked, expanded, strict=True))
-    memory = column("memory")
     name = f"{size:,} conditions"
-    figures = [
-        Figure(f"{name}: parsed", "s CPU", parsed),
-        Figure(f"{name}: checked against the rig", "s CPU", checked, note="parsing not included"),
-        Figure(f"{name}: expanded", "s CPU", expanded),
-        Figure(f"{name}: checked and expanded", "s CPU", both, at_most(CHECK_LIMIT_S * share)),
-        Figure(f"{name}: planned with estimate", "s CPU", planned, at_most(PLAN_LIMIT_S * share)),
-    ]
-    if memory:
-        return [*figures, Figure(f"{name}: peak memory", "MB", memory, at_most(MEMORY_LIMIT_MB))]
-    return [*figures, unavailable(f"{name}: peak memory", "MB", "this system does not tell")]
+    figures: list[Figure] = []
+    for kind, text in (("axes", recipe_text(size)), ("a long list", long_list_text(size))):
+        parts = _parts(kind, size, effort.runs)
+        both = tuple(a + b for a, b in zip(parts["check"], parts["conditions"], strict=True))
+        figures += [
+            Figure(f"{name}, {kind}: read and checked", "s CPU", parts["check"], note=f"{len(text) / 1000:.0f} kB"),
+            Figure(f"{name}, {kind}: expanded", "s CPU", parts["conditions"]),
+            Figure(f"{name}, {kind}: both", "s CPU", both, at_most(CHECK_LIMIT_S * share)),
+            Figure(f"{name}, {kind}: steps, with wear and wheels", "s CPU", parts["steps"]),
+        ]
+    # The start of the interpreter does not shrink with the recipe: a short measurement asks for nothing.
+    limit = None if effort.quick else at_most(PLAN_LIMIT_S)
+    for option in ("", "--json"):
+        figures += _command(option, size, effort.runs, limit)
+    return figures
 
 
 def recipe_text(conditions: int) -> str:
@@ -51,6 +59,17 @@ def recipe_text(conditions: int) -> str:
     slips = ", ".join(f"{50 + i} mm/s" for i in range(conditions // 2000))
     loads = ", ".join(f"{100 + i} N" for i in range(100))
     temperatures = ", ".join(f"{30 + 2 * i} degC" for i in range(20))
+    return _recipe(slips, loads, temperatures)
+
+
+def long_list_text(conditions: int) -> str:
+    """Return a recipe of that many conditions (a multiple of 5) most of which is one list of loads."""
+    slips = ", ".join(f"{50 + i} mm/s" for i in range(5))
+    loads = ", ".join(f"{100 + i / 100} N" for i in range(conditions // 5))
+    return _recipe(slips, loads, "40 degC")
+
+
+def _recipe(slips: str, loads: str, temperatures: str) -> str:
     return f"""\
 recipe: many conditions
 specimens:
@@ -68,36 +87,49 @@ grids:
 """
 
 
-def work(conditions: int) -> dict[str, float | None]:
-    """Read, check, expand and plan; return CPU seconds of each, the conditions found and the peak memory in MB."""
+def work(text: str) -> dict[str, float]:
+    """Read, check and expand a recipe; return CPU seconds of each, and the conditions found."""
     from tester.recipe.check import load_checked
-    from tester.recipe.estimate import Estimator, estimate
     from tester.recipe.expand import conditions_of, expand
-    from tester.recipe.loader import load_recipe
     from tester.rig import load_rig
 
-    text = recipe_text(conditions)
     rig = load_rig("sim")
+    load_checked(recipe_text(2000), rig, "few.yaml")  # the validator is made with the first recipe
     marks = [cpu_ns()]
-    load_recipe(text, "many.yaml")
-    marks.append(cpu_ns())
     loaded = load_checked(text, rig, "many.yaml")
     marks.append(cpu_ns())
     found = len(conditions_of(loaded.recipe))
     marks.append(cpu_ns())
-    estimator = Estimator(rig)
-    estimate(expand(loaded.recipe, rig, estimator), rig, estimator)
+    expand(loaded.recipe, rig)
     marks.append(cpu_ns())
-    parse, both, expanding, planning = ((b - a) * 1e-9 for a, b in pairwise(marks))
-    return {
-        "conditions": found,
-        "parse": parse,
-        "check": max(0.0, both - parse),
-        "expand": expanding,
-        "plan": planning,
-        "memory": peak_memory_mb(),
-    }
+    checking, expanding, steps = ((b - a) * 1e-9 for a, b in pairwise(marks))
+    return {"found": found, "check": checking, "conditions": expanding, "steps": steps}
+
+
+def _parts(kind: str, size: int, runs: int) -> dict[str, tuple[float, ...]]:
+    """Return what ``work`` measures, a value for each run."""
+    found: list[dict[str, float]] = []
+    for _ in range(runs):
+        found.append(json.loads(run(["-m", "bench.big_recipe", kind, str(size)])))
+        if found[-1]["found"] != size:
+            raise TopicFailedError(f"{found[-1]['found']} conditions instead of {size}")
+    return {name: tuple(one[name] for one in found) for name in found[0]}
+
+
+def _command(option: str, size: int, runs: int, limit: Limit | None) -> list[Figure]:
+    """Return CPU seconds and peak memory of ``tester plan``."""
+    with TemporaryDirectory(prefix="bench-", ignore_cleanup_errors=True) as folder:
+        path = Path(folder) / "many.yaml"
+        path.write_text(recipe_text(size), encoding="utf-8")
+        call = ["-c", PLAN, str(path), *([option] if option else [])]
+        found = [[float(word) for word in run(call).split()] for _ in range(runs)]
+    name = f"{size:,} conditions: {' '.join(['tester plan', option]).strip()}"
+    figures = [Figure(name, "s CPU", tuple(seconds for seconds, _ in found), limit, "from the interpreter's start")]
+    if peak_memory_mb() is None:
+        return [*figures, unavailable(f"{name}, peak memory", "MB", "this system does not tell")]
+    return [*figures, Figure(f"{name}, peak memory", "MB", tuple(mb for _, mb in found), at_most(MEMORY_LIMIT_MB))]
 
 
 if __name__ == "__main__":
-    print(json.dumps(work(int(sys.argv[1]))))
+    make = long_list_text if sys.argv[1] == "a long list" else recipe_text
+    print(json.dumps(work(make(int(sys.argv[2])))))

@@ -10,7 +10,7 @@ from bench.effort import Effort, TopicFailedError
 from bench.figures import Figure
 from bench.machine import machine
 from bench.registry import TOPICS, chosen
-from bench.report import as_json, missed, table
+from bench.report import as_json, as_markdown, missed, table
 
 EXIT_MISSED = 1
 EXIT_USAGE = 2
@@ -31,7 +31,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return EXIT_USAGE
     effort = Effort(given.runs, given.quick)
     results = measure_all(names, effort, lambda name: print(f"measuring: {name}", file=sys.stderr, flush=True))
-    print(as_json(results, machine()) if given.json else table(results, machine()))
+    show = as_json if given.json else as_markdown if given.markdown else table
+    print(show(results, machine()))
     return EXIT_MISSED if missed(results) else 0
 
 
@@ -57,7 +58,9 @@ def _parser() -> argparse.ArgumentParser:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("names", nargs="*", metavar="NAME", help="topics to measure (default: all)")
-    parser.add_argument("--json", action="store_true", help="one JSON object instead of the table")
+    shown = parser.add_mutually_exclusive_group()
+    shown.add_argument("--json", action="store_true", help="one JSON object instead of the table")
+    shown.add_argument("--markdown", action="store_true", help="the table in Markdown, as in docs/performance.md")
     parser.add_argument("--quick", action="store_true", help="short measurements, for a look")
     parser.add_argument("--runs", type=int, default=3, metavar="N", help="runs of every figure (default 3)")
     return parser

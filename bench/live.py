@@ -10,16 +10,13 @@ from tempfile import TemporaryDirectory
 
 from bench.effort import TopicFailedError
 from tester import clock
+from tester.campaign.folder import Job, beginning_of, work_of
 from tester.engine.build import build_run
 from tester.engine.prompts import Prompts
-from tester.engine.results import condition_records
 from tester.engine.tickers import next_tick
 from tester.recipe.check import load_checked
-from tester.recipe.expand import expand
 from tester.rig import load_rig
-from tester.session import SessionOptions, run_info
 from tester.simulated import simulated_ports
-from tester.store.records import SpecimenInfo
 from tester.store.writer import RunWriter
 
 SLIDING_RECIPE = """\
@@ -58,13 +55,10 @@ class LiveRun:
         """Build everything; nothing is ticked yet."""
         rig = load_rig("sim")
         loaded = load_checked(text, rig, "bench.yaml")
-        plan = expand(loaded.recipe, rig)
+        work = work_of(loaded.recipe, rig)
+        plan = work.plan
         self.writer = RunWriter(folder / "run.db", clock=clock.monotonic, utc=clock.utc_now, lossless=True)
-        self.writer.begin_run(
-            run_info(folder.name, plan, loaded, rig, SessionOptions(recipe=plan.name, seed=seed)),
-            [SpecimenInfo(one.index, one.compound, one.note) for one in plan.specimens],
-            condition_records(plan),
-        )
+        beginning_of(work.parts[0], Job(folder, seed), work)(self.writer)
         ports, self.world, attendant = simulated_ports(rig, seed, None)
         self.run = build_run(rig, plan, ports, attendant, self.writer, Prompts(automatic=True))
         self.engine = self.run.engine

@@ -1,4 +1,4 @@
-"""The figures as one table for people, and as JSON for programs."""
+"""The figures as one table for people, in a terminal or in Markdown, and as JSON for programs."""
 
 from __future__ import annotations
 
@@ -21,6 +21,17 @@ def table(results: Results, machine: Mapping[str, str | int]) -> str:
     lines = [", ".join(f"{key}: {value}" for key, value in machine.items()), ""]
     lines += [_line(row, widths) for row in (HEADER, tuple("-" * width for width in widths), *rows)]
     lines += ["", *_summary(results)]
+    return "\n".join(lines)
+
+
+def as_markdown(results: Results, machine: Mapping[str, str | int]) -> str:
+    """Return machine and figures as Markdown, for docs/performance.md."""
+    rows = [_row(topic, figure) for topic, figures in results.items() for figure in figures]
+    lines = [", ".join(f"{key}: {value}" for key, value in machine.items()), ""]
+    lines.append(_cells(HEADER))
+    lines.append("|" + "".join("---|" if left else "---:|" for left in _LEFT))
+    lines += [_cells(row) for row in rows]
+    lines += ["", *(line.replace("  ", "- ", 1) for line in _summary(results))]
     return "\n".join(lines)
 
 
@@ -53,6 +64,10 @@ def _line(row: Sequence[str], widths: Sequence[int]) -> str:
         for cell, width, left in zip(row, widths, _LEFT, strict=True)
     )  # fmt: skip
     return "  ".join(cells).rstrip()
+
+
+def _cells(row: Sequence[str]) -> str:
+    return "| " + " | ".join(cell.replace("|", "\\|") for cell in row) + " |"
 
 
 def _summary(results: Results) -> list[str]:

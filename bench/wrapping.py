@@ -15,7 +15,7 @@ ENTRY_POINTS: tuple[tuple[str, str, str, tuple[str, ...]], ...] = (
     ("nodes: drives", "sim.nodes.cia402_slave", "Cia402Slave", ("advance",)),
     ("nodes: Modbus slaves", "sim.nodes.jacket_slave", "JacketSlave", ("advance",)),
     ("nodes: Modbus slaves", "sim.nodes.modbus_slave", "ModbusSlave", ("answer",)),
-    ("bus: CAN", "sim.can_wire", "CanWire", ("send", "receive", "transmit")),
+    ("bus: CAN", "sim.can_wire", "CanWire", ("send", "send_cycle", "receive", "transmit")),
     ("bus: Modbus", "sim.modbus_wire", "ModbusWire", ("write", "read")),
     ("drivers: receive", "tester.engine.devices", "Devices", ("receive",)),
     ("drivers: image", "tester.engine.devices", "Devices", ("fill",)),
@@ -67,10 +67,10 @@ def _subscribing(
 ) -> Callable[..., None]:
     """Return a ``CanWire.listen`` that subscribes the measured listener in place of the bare one."""
 
-    def subscribe(wire: object, can_id: int, listener: Callable[..., Any], rank: int = 0) -> None:
+    def subscribe(wire: object, can_id: int, listener: Callable[..., Any], *rest: Any, **named: Any) -> None:
         if listener not in known:
             known[listener] = ledger.wrap("nodes: drives, on a frame", listener)
-        listen(wire, can_id, known[listener], rank)
+        listen(wire, can_id, known[listener], *rest, **named)
 
     return subscribe
 

@@ -44,22 +44,25 @@ class CanNode(Protocol):
         ...
 
 
-class SyncFollower(Protocol):
-    """A device that answers SYNC."""
+class SyncFollower:
+    """A device that answers SYNC.
 
-    plain: bool
-    """Nothing but one TPDO goes with the next SYNC: ``sample`` under ``sample_id``, taken anew where ``stale``."""
-    stale: bool
-    sample: bytes
-    sample_id: int
+    ``plain``: nothing but one TPDO goes with the next SYNC: ``sample`` under ``sample_id``, or what ``take_sample``
+    returns where it is ``stale``.
+    """
 
-    def take_sample(self) -> bytes:
-        """Return what the TPDO shows now."""
-        ...
+    __slots__ = ("plain", "sample", "sample_id", "stale", "take_sample")
+
+    def __init__(self, take_sample: Callable[[], bytes]) -> None:
+        """Answer by ``on_sync`` until something else is said."""
+        self.plain = False
+        self.stale = True
+        self.sample = b""
+        self.sample_id = 0
+        self.take_sample = take_sample
 
     def on_sync(self, t: float) -> None:
         """Act on a SYNC that arrived at ``t`` s and answer it."""
-        ...
 
 
 class Beat:
@@ -335,6 +338,14 @@ class CanWire:
         self.send(can_id, data, now)
 
     # measures ------------------------------------------------------------------------------------------------
+
+    @property
+    def arrives_s(self) -> float:
+        """Arrival of the next frame not received yet, s: the earliest it can have; infinity when none is under way."""
+        arrival = self.ready_s + self._frame_s[0]
+        if self._inbox and self._inbox[0][0] < arrival:
+            arrival = self._inbox[0][0]
+        return arrival
 
     @property
     def load(self) -> float:

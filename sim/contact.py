@@ -11,29 +11,29 @@ from sim.parameters import ContactParameters
 
 
 class ContactModel:
-    """Load of one wheel on the belt's support plate."""
+    """Load of one wheel on the belt's support plate: ``factor`` k in N/mm^n, ``exponent`` n, ``damping_n_s_mm`` c."""
 
-    __slots__ = ("_damping_n_s_mm", "_exponent", "_factor")
+    __slots__ = ("damping_n_s_mm", "exponent", "factor")
 
     def __init__(self, parameters: ContactParameters) -> None:
         """Find the factor k that gives the stiffness asked for at the reference load."""
         n = parameters.exponent
         slope = parameters.reference_stiffness / (n * parameters.reference_load ** (1.0 - 1.0 / n))
-        self._factor = slope**n  # N/mm^n
-        self._exponent = n
-        self._damping_n_s_mm = 1e-3 * parameters.damping
+        self.factor = slope**n  # N/mm^n
+        self.exponent = n
+        self.damping_n_s_mm = 1e-3 * parameters.damping
 
     def load_n(self, depth_mm: float, rate_mm_s: float) -> float:
         """Return the load in N at a depth of engagement in mm that changes by ``rate_mm_s`` (positive = deeper)."""
         if depth_mm <= 0.0:
             return 0.0
-        load = self._factor * depth_mm**self._exponent + self._damping_n_s_mm * rate_mm_s
+        load = self.factor * depth_mm**self.exponent + self.damping_n_s_mm * rate_mm_s
         return load if load > 0.0 else 0.0
 
     def depth_mm(self, load_n: float) -> float:
         """Return the depth in mm at which a load of at least 0 N rests."""
-        return (load_n / self._factor) ** (1.0 / self._exponent)
+        return (load_n / self.factor) ** (1.0 / self.exponent)
 
     def stiffness_n_mm(self, load_n: float) -> float:
         """Return dF/dd in N/mm at a load above 0 N."""
-        return self._exponent * load_n / self.depth_mm(load_n)
+        return self.exponent * load_n / self.depth_mm(load_n)

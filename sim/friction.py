@@ -93,7 +93,8 @@ class FrictionModel:
     """One compound's coefficient as a fast scalar function.
 
     Both forms reduce to ``(heat exp(-beta (t - tm)^2) + base) (speed p^b1 v^b2 + a2)``, the v2 form with an
-    exponential of load in place of p^b1, applied to both terms.
+    exponential of load in place of p^b1, applied to both terms: ``exp(load (p - 200))``, with ``load`` 0 in the
+    paper's. ``terms`` are (heat, beta, tm, base, speed, b1, b2, a2, load), for who has to spare the call.
     """
 
     __slots__ = ("_a2", "_b1", "_b2", "_base", "_beta", "_heat", "_is_paper", "_load", "_speed", "_tm")
@@ -112,6 +113,13 @@ class FrictionModel:
             self._heat, self._beta, self._tm, self._base = q.alpha_n, q.beta, q.tm, 1.0 - q.alpha_n * at_25
             self._speed, self._b1, self._b2, self._a2 = q.c * V2_SLIP_M_S**-q.b2, 0.0, q.b2, q.a2
             self._load = q.k / V2_LOAD_N
+
+    @property
+    def terms(self) -> tuple[float, float, float, float, float, float, float, float, float]:
+        """The numbers of the reduced form."""
+        return (
+            self._heat, self._beta, self._tm, self._base, self._speed, self._b1, self._b2, self._a2, self._load,
+        )  # fmt: skip
 
     def mu(self, temperature_c: float, load_n: float, slip_m_s: float) -> float:
         """Return the coefficient at a surface temperature, a load above 0 and a slip speed of at least 0."""

@@ -41,10 +41,12 @@ def uniforms(count: int, seed: int, stream: str, *place: int) -> list[float]:
 class NormalStream:
     """Standard normal numbers of one key, without end.
 
-    Each block has a key of its own, so the state is a block's number and a position: cheap to copy.
+    Each block has a key of its own, so the state is a block's number and a position: cheap to copy. ``numbers`` and
+    ``fours`` are what is left of the present block: one step of a loop over them is the shortest way to the next, and
+    when they are at their end ``next`` or ``next4`` gives it.
     """
 
-    __slots__ = ("_block", "_fours", "_numbers", "_place", "_seed", "_stream")
+    __slots__ = ("_block", "_place", "_seed", "_stream", "fours", "numbers")
 
     def __init__(self, seed: int, stream: str, *place: int) -> None:
         """Start at the key's first number; nothing is drawn before the first is asked for."""
@@ -56,21 +58,21 @@ class NormalStream:
 
     def next(self) -> float:
         """Return the next number."""
-        for number in self._numbers:  # one step of the iterator: the shortest way to one number
+        for number in self.numbers:
             return number
         self._draw()
-        return next(self._numbers)
+        return next(self.numbers)
 
     def next4(self) -> tuple[float, float, float, float]:
         """Return the next four numbers (of a stream that is only read by fours)."""
-        for four in self._fours:
+        for four in self.fours:
             return four
         self._draw()
-        return next(self._fours)
+        return next(self.fours)
 
     def _hold(self, numbers: Iterator[float]) -> None:
-        self._numbers = numbers
-        self._fours = zip(numbers, numbers, numbers, numbers, strict=False)
+        self.numbers = numbers
+        self.fours = zip(numbers, numbers, numbers, numbers, strict=False)
 
     def _draw(self) -> None:
         """Draw the next block."""
@@ -82,27 +84,30 @@ class NormalStream:
         """Return an independent stream at the same position; a block is never changed, so it is shared."""
         twin = NormalStream(self._seed, self._stream, *self._place)
         twin._block = self._block
-        twin._hold(copy(self._numbers))
+        twin._hold(copy(self.numbers))
         return twin
 
 
 class Autoregressive:
-    """First-order autoregressive fluctuation with a standard deviation and a correlation time, exact for any step."""
+    """First-order autoregressive fluctuation with a standard deviation and a correlation time, exact for any step.
 
-    __slots__ = ("_keep", "_kick", "_sigma", "_time_s", "value")
+    A step makes of ``value``: ``keep`` times itself and ``kick`` times a standard normal number.
+    """
+
+    __slots__ = ("_sigma", "_time_s", "keep", "kick", "value")
 
     def __init__(self, sigma: float, time_s: float) -> None:
         """Start at zero with no step set; ``retime`` must come before ``step``."""
         self._sigma = sigma
         self._time_s = time_s
-        self._keep = 1.0
-        self._kick = 0.0
+        self.keep = 1.0
+        self.kick = 0.0
         self.value = 0.0
 
     def retime(self, dt_s: float) -> None:
         """Set the length of a step in s."""
-        self._keep = math.exp(-dt_s / self._time_s)
-        self._kick = self._sigma * math.sqrt(1.0 - self._keep * self._keep)
+        self.keep = math.exp(-dt_s / self._time_s)
+        self.kick = self._sigma * math.sqrt(1.0 - self.keep * self.keep)
 
     def restart(self, number: float) -> None:
         """Start anew from a standard normal number, as stationary as it goes on."""
@@ -110,7 +115,7 @@ class Autoregressive:
 
     def step(self, number: float) -> float:
         """Move on by one step with a standard normal number and return the value."""
-        self.value = value = self._keep * self.value + self._kick * number
+        self.value = value = self.keep * self.value + self.kick * number
         return value
 
 

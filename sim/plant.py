@@ -8,53 +8,47 @@ methods are what instruments make of it.
 
 from __future__ import annotations
 
-import math
+from math import cos, exp, inf, pi, radians, sin, sqrt
 
 from sim.contact import ContactModel
-from sim.friction import FrictionModel
+from sim.friction import V2_LOAD_N, FrictionModel
+from sim.heat_flow import SAME_STEP_S, HeatFlow
 from sim.noise import Autoregressive, NormalStream, condition_factor, run_factor, uniforms, wheel_factor
 from sim.parameters import SimParameters
 from sim.sensors import LoadCellSensor, SpeedSensor, TemperatureSensor
 from sim.slip import cornering_factor, traction_direction
-from sim.thermal import ThermalModel
-from sim.wear import radius_loss_mm, running_in_factor
+from sim.thermal import ThermalModel, ThermalState
 
-_TURN = 2.0 * math.pi
-
-_SAME_STEP_S = 1e-9
-"""Ticks whose lengths differ by less share their step constants: a float clock's differences are never quite equal."""
+_TURN = 2.0 * pi
+_RUNNING_IN_LASTS = 37.0
+"""Running-in distances after which its factor is 1 to the last bit: exp(-37) is less than 2^-53."""
 
 
 class Plant:
     """The physics of one rig, with a wheel on it after ``install``. Deep-copyable; all randomness from one seed."""
 
     __slots__ = (
+        "_arm_m",
         "_compound",
-        "_contact",
         "_cornering",
         "_cos",
         "_deficit",
         "_deficit_keep",
         "_dt",
-        "_friction",
-        "_friction_j",
-        "_heater_j",
+        "_flow",
         "_noise",
         "_place",
         "_rotating_above",
-        "_running_in",
+        "_rubbing",
+        "_run_in_m",
         "_scatter",
         "_seed",
         "_sideslip_deg",
         "_sin",
+        "_stiffness",
         "_swing_mm",
-        "_thermal",
-        "_thermal_s",
         "_touch_mm",
-        "_touch_s",
-        "_wear_rate",
         "_within",
-        "belt_force_n",
         "belt_speed",
         "camber_deg",
         "condition_factor",
@@ -63,11 +57,9 @@ class Plant:
         "force_x_n",
         "force_y_n",
         "force_z_n",
-        "heat",
         "hub_sensor",
         "ir",
         "load_cell",
-        "moment_z_nm",
         "mu",
         "parameters",
         "run_factor",
@@ -84,25 +76,36 @@ class Plant:
         p = parameters
         self.parameters = p
         self._seed = seed
-        self._contact = ContactModel(p.contact)
+        contact = ContactModel(p.contact)
+        self._stiffness = (contact.factor, contact.exponent, contact.damping_n_s_mm)
         self._swing_mm = 0.5 * p.contact.runout
-        self._thermal = ThermalModel(p.wheel, p.thermal, p.friction_heat_fraction, p.belt_conductance)
+        self._arm_m = 0.001 * p.friction.aligning_arm
         self._rotating_above = p.thermal.rotating_above
-        self._running_in = p.running_in * p.abrasion.running_in_excess
-        self._wear_rate = p.wear * p.abrasion.wear_rate
         self._within = Autoregressive(p.scatter * p.variability.within, p.variability.within_time)
         self._dt, self._deficit_keep = 0.0, 1.0
         self._sideslip_deg, self._cos, self._sin, self._cornering = 0.0, 1.0, 0.0, 1.0
         self.camber_deg = 0.0
         self._build_sensors()
-        self.heat = self._thermal.state(p.ambient)
+        model = ThermalModel(p.wheel, p.thermal, p.friction_heat_fraction, p.belt_conductance)
+        self._flow = HeatFlow(model, p.ambient, self.hub_sensor, self.load_cell)
         self._compound = ""
-        self._friction = FrictionModel("1#", p.friction_model)
+        self._take(FrictionModel("1#", p.friction_model))
         self._place: tuple[int, ...] = ()
         self.wheel_factor = self.condition_factor = self.run_factor = self._scatter = 1.0
         self._mount(p.wheel.outer_diameter, 0.0)
-        self._touch_mm = math.inf  # nothing to touch before a wheel is installed
+        self._touch_mm = inf  # nothing to touch before a wheel is installed
         self._key_streams()
+
+    def _take(self, friction: FrictionModel) -> None:
+        """Prepare what rubbing needs of a compound and of the parameters."""
+        p = self.parameters
+        f, a = p.friction, p.abrasion
+        excess = p.running_in * a.running_in_excess
+        self._run_in_m = _RUNNING_IN_LASTS * a.running_in_distance if excess > 0.0 else 0.0
+        per_width = p.wear * a.wear_rate / (pi * p.wheel.width)
+        self._rubbing = (
+            *friction.terms, f.load_floor, f.creep, f.reversal_width, excess, a.running_in_distance, per_width,
+        )  # fmt: skip
 
     def _build_sensors(self) -> None:
         """Make the sensors with the imperfections of this session."""
@@ -112,7 +115,6 @@ class Plant:
         self.load_cell = LoadCellSensor(s, noise, seed, self.parameters.ambient)
         self.ir = TemperatureSensor(s.ir_time, noise * s.ir_rms, noise * s.ir_bias * bias, unused)
         self.hub_sensor = TemperatureSensor(s.hub_time, noise * s.hub_rms, 0.0, unused)
-        self.hub_sensor.retime(self._thermal.step_s)
         self.wheel_speed = SpeedSensor(1.0 + noise * s.speed_scale * wheel, noise * s.speed_rms, unused)
         self.belt_speed = SpeedSensor(1.0 + noise * s.speed_scale * belt, noise * s.speed_rms, unused)
 
@@ -130,23 +132,22 @@ class Plant:
     def _mount(self, diameter_mm: float, sliding_m: float) -> None:
         """Put a wheel of ambient temperature on, out of contact."""
         wheel = self.parameters.wheel
-        self.heat.set_rubber(self.parameters.ambient)
+        self._flow.state.set_rubber(self.parameters.ambient)
+        self._flow.restart()
         self.surface_c = self.parameters.ambient
         self.diameter_mm = diameter_mm
         self._touch_mm = self.parameters.contact.gap + 0.5 * (wheel.outer_diameter - diameter_mm)
         self.sliding_m = sliding_m
         self.wheel_angle_rev = 0.0
         self.slip_m_s = 0.0
-        self._thermal_s = self._touch_s = self._heater_j = self._friction_j = 0.0
         self.ir.reset(self.surface_c)
-        self.hub_sensor.reset(self.heat.hub_c)
         self._release()
 
     def _release(self) -> None:
         """Take all force off; the next touch builds friction up anew."""
         self.mu = 0.0
         self.force_x_n = self.force_y_n = self.force_z_n = 0.0
-        self.moment_z_nm = self.drive_torque_nm = self.belt_force_n = 0.0
+        self.drive_torque_nm = 0.0
         self._deficit = self.parameters.friction.touch_deficit
 
     def install(
@@ -166,11 +167,11 @@ class Plant:
         UnknownCompoundError.
         """
         p = self.parameters
-        self._friction = FrictionModel(compound, p.friction_model)
+        self._take(FrictionModel(compound, p.friction_model))
         self._compound = compound
         self._yaw(self._sideslip_deg)
         if new_specimen:
-            self.heat = self._thermal.state(p.ambient)
+            self.heat.set_all(p.ambient)
             self.load_cell.set_temperature(p.ambient)
         self._mount(p.wheel.outer_diameter if diameter_mm is None else diameter_mm, sliding_m)
         self.wheel_factor = self._scatter = wheel_factor(p, self._seed, specimen, wheel)
@@ -209,7 +210,7 @@ class Plant:
         ``press_mm`` is 0 when fully lifted and grows towards the wheel; camber has no effect (the paper has
         no data).
         """
-        if abs(dt - self._dt) > _SAME_STEP_S:
+        if not -SAME_STEP_S < dt - self._dt < SAME_STEP_S:
             self._retime(dt)
         if sideslip_deg != self._sideslip_deg:
             self._yaw(sideslip_deg)
@@ -218,91 +219,98 @@ class Plant:
         wheel_m_s = 0.0005 * self.diameter_mm * wheel_rad_s
         vx = wheel_m_s - belt_m_s * self._cos
         vy = belt_m_s * self._sin
-        self.slip_m_s = math.sqrt(vx * vx + vy * vy)
+        self.slip_m_s = sqrt(vx * vx + vy * vy)
 
-        power_w = 0.0
-        depth_mm = press_mm - self._touch_mm
-        if depth_mm > -self._swing_mm:
-            swing, angle = self._swing_mm, _TURN * turns
-            rate_mm_s = press_mm_s + swing * wheel_rad_s * math.cos(angle)
-            load_n = self._contact.load_n(depth_mm + swing * math.sin(angle), rate_mm_s)
-            if load_n > 0.0:
-                power_w = self._rub(dt, load_n, vx, vy)
-            elif self.force_z_n > 0.0:
-                self._release()
+        power_w = load_n = 0.0
+        depth_mm, swing = press_mm - self._touch_mm, self._swing_mm
+        if depth_mm > -swing:
+            angle = _TURN * turns
+            depth_mm += swing * sin(angle)
+            if depth_mm > 0.0:
+                factor, exponent, damping = self._stiffness
+                load_n = factor * depth_mm**exponent + damping * (press_mm_s + swing * wheel_rad_s * cos(angle))
+        if load_n > 0.0:
+            power_w = self._rub(dt, load_n, vx, vy)
         elif self.force_z_n > 0.0:
             self._release()
 
-        thermal = self._thermal
-        self._heater_j += heater_w * dt
-        self._thermal_s = thermal_s = self._thermal_s + dt
-        rotating = abs(wheel_m_s) > self._rotating_above
-        if thermal_s >= thermal.step_s - _SAME_STEP_S:
-            self._conduct(rotating)
-        touching = 1.0 if self.force_z_n > 0.0 else 0.0
-        self.surface_c = surface_c = thermal.surface_temperature(
-            self.heat, power_w, self.parameters.ambient, touching, rotating
+        above = self._rotating_above
+        self.surface_c = surface_c = self._flow.advance(
+            dt, heater_w, power_w, load_n > 0.0, wheel_m_s > above or wheel_m_s < -above
         )
-        self.ir.follow(surface_c)
+        ir = self.ir
+        ir.lagged_c += (surface_c - ir.lagged_c) * ir.gain  # as ``follow`` does
 
     def _retime(self, dt: float) -> None:
         """Prepare what depends on the length of a tick alone."""
         self._dt = dt
         self._within.retime(dt)
         self.ir.retime(dt)
-        self._deficit_keep = math.exp(-dt / self.parameters.friction.touch_time)
+        self._deficit_keep = exp(-dt / self.parameters.friction.touch_time)
 
     def _yaw(self, sideslip_deg: float) -> None:
         """Prepare what depends on the sideslip angle alone."""
         self._sideslip_deg = sideslip_deg
-        angle = math.radians(sideslip_deg)
-        self._cos, self._sin = math.cos(angle), math.sin(angle)
+        angle = radians(sideslip_deg)
+        self._cos, self._sin = cos(angle), sin(angle)
         self._cornering = cornering_factor(self._compound, sideslip_deg) if self._compound else 1.0
 
     def _rub(self, dt: float, load_n: float, vx: float, vy: float) -> float:
-        """Set the forces of a loaded contact, wear the tread and return the friction power in W."""
-        p = self.parameters
-        f, a = p.friction, p.abrasion
+        """Set the forces of a loaded contact, wear the tread and return the friction power in W.
+
+        What ``sim.friction``, ``sim.wear`` and ``sim.slip`` say, at one go: it is done in every tick of sliding.
+        """
+        (
+            heat, beta, tm, base, speed, b1, b2, a2, load_factor, floor, creep, reversal, excess, lasts_m, wear,
+        ) = self._rubbing  # fmt: skip
         slip_m_s = self.slip_m_s
-        mu = self._friction.mu(self.surface_c, load_n if load_n > f.load_floor else f.load_floor, slip_m_s)
-        mu *= self._cornering * self._scatter * (1.0 + self._within.step(self._noise.next()))
-        mu *= running_in_factor(self._running_in, a.running_in_distance, self.sliding_m)
+        counted_n = load_n if load_n > floor else floor
+        off = self.surface_c - tm
+        mu = (heat * exp(-beta * off * off) + base) * (speed * slip_m_s**b2 * counted_n**b1 + a2)
+        if load_factor:
+            mu *= exp(load_factor * (counted_n - V2_LOAD_N))
+        within = self._within
+        if within.kick:
+            within.value = within.keep * within.value + within.kick * self._noise.next()
+        mu *= self._cornering * self._scatter * (1.0 + within.value)
+        sliding_m = self.sliding_m
+        if sliding_m < self._run_in_m:
+            mu *= 1.0 + excess * exp(-sliding_m / lasts_m)
         mu *= 1.0 - self._deficit
         self._deficit *= self._deficit_keep
 
-        cx, cy = traction_direction(vx, vy, f.creep, f.reversal_width)
-        friction_n = mu * load_n
-        fx, fy = friction_n * cx, friction_n * cy
         self.mu = mu
-        self.force_x_n, self.force_y_n, self.force_z_n = fx, fy, load_n
-        self.moment_z_nm = 0.001 * f.aligning_arm * fy
-        self.drive_torque_nm = 0.0005 * self.diameter_mm * fx
-        self.belt_force_n = fx * self._cos - fy * self._sin
+        friction_n = mu * load_n
+        if vy == 0.0:
+            along = vx + creep / (1.0 + slip_m_s * slip_m_s / (creep * creep))
+            cx, cy = 1.0 if along >= reversal else -1.0 if along <= -reversal else along / reversal, 0.0
+        else:
+            cx, cy = traction_direction(vx, vy, creep, reversal)
+        self.force_x_n, self.force_y_n, self.force_z_n = friction_n * cx, friction_n * cy, load_n
+        diameter_mm = self.diameter_mm
+        self.drive_torque_nm = 0.0005 * diameter_mm * friction_n * cx
 
-        sliding_m = slip_m_s * dt
-        self.sliding_m += sliding_m
-        worn_mm = radius_loss_mm(self._wear_rate, load_n, sliding_m, self.diameter_mm, p.wheel.width)
-        self.diameter_mm -= 2.0 * worn_mm
+        slid_m = slip_m_s * dt
+        self.sliding_m = sliding_m + slid_m
+        worn_mm = wear * load_n * slid_m / diameter_mm
+        self.diameter_mm = diameter_mm - 2.0 * worn_mm
         self._touch_mm += worn_mm
-        power_w = friction_n * slip_m_s
-        self._friction_j += power_w * dt
-        self._touch_s += dt
-        return power_w
+        return friction_n * slip_m_s
 
-    def _conduct(self, rotating: bool) -> None:
-        """Let heat flow for the whole thermal steps that are due, with the mean powers since the last."""
-        model, ambient_c, step_s = self._thermal, self.parameters.ambient, self._thermal.step_s
-        heater_w = self._heater_j / self._thermal_s
-        friction_w = self._friction_j / self._thermal_s
-        contact = self._touch_s / self._thermal_s
-        while self._thermal_s >= step_s - _SAME_STEP_S:
-            model.step(self.heat, step_s, heater_w, friction_w, ambient_c, contact, rotating)
-            self.hub_sensor.follow(self.heat.hub_c)
-            self.load_cell.warm(step_s, self.heat.belt_c)
-            self._thermal_s -= step_s
-        self._heater_j = heater_w * self._thermal_s
-        self._friction_j = friction_w * self._thermal_s
-        self._touch_s = contact * self._thermal_s
+    @property
+    def heat(self) -> ThermalState:
+        """True temperatures."""
+        return self._flow.state
+
+    @property
+    def moment_z_nm(self) -> float:
+        """True aligning moment in N m."""
+        return self._arm_m * self.force_y_n
+
+    @property
+    def belt_force_n(self) -> float:
+        """True force on the belt along its travel, in N."""
+        return self.force_x_n * self._cos - self.force_y_n * self._sin
 
     @property
     def hub_c(self) -> float:
@@ -316,7 +324,8 @@ class Plant:
 
     def forces_measured(self, t: float) -> tuple[float, float, float, float]:
         """Return what the load cell reads now (Fx, Fy, Fz in N, moment in N m); ``t`` is the time of asking."""
-        return self.load_cell.measure(self.force_x_n, self.force_y_n, self.force_z_n, self.moment_z_nm)
+        fy = self.force_y_n
+        return self.load_cell.measure(self.force_x_n, fy, self.force_z_n, self._arm_m * fy)
 
     def surface_measured_c(self, t: float) -> float:
         """Return what the infrared thermometer reads now, in degC; ``t`` is the time of asking."""

@@ -168,6 +168,10 @@ class SimRig:
         self._plant_s = self.now_s
         self.plant.install(specimen, wheel, compound, new_specimen)
 
+    def remount(self, specimen: int, wheel: int, compound: str, diameter_mm: float, sliding_m: float) -> None:
+        """Put a worn wheel on: diameter in mm, sliding distance in m; the rig is at ambient temperature."""
+        self.plant.install(specimen, wheel, compound, True, diameter_mm, sliding_m)
+
     def begin_repeat(self, condition: int, repeat: int, attempt: int) -> None:
         """Begin a repeat: the random streams, and the sensors' dither, start anew with it."""
         self.plant.begin_repeat(condition, repeat, attempt)

@@ -94,16 +94,16 @@ def _coupling(sensors: SensorParameters, noise: float, draws: list[float]) -> tu
 
 
 class TemperatureSensor:
-    """A thermometer with a first-order lag, a constant bias and white noise."""
+    """A thermometer with a first-order lag, a constant bias and white noise; ``gain`` is its share of a step."""
 
-    __slots__ = ("_bias_k", "_gain", "_rms_k", "_time_s", "lagged_c", "noise")
+    __slots__ = ("_bias_k", "_rms_k", "_time_s", "gain", "lagged_c", "noise")
 
     def __init__(self, time_s: float, rms_k: float, bias_k: float, noise: NormalStream) -> None:
         """Take the sizes as they are to apply (already scaled); reads 0 degC until ``reset``."""
         self._time_s = time_s
         self._rms_k = rms_k
         self._bias_k = bias_k
-        self._gain = 0.0
+        self.gain = 0.0
         self.lagged_c = 0.0
         self.noise = noise
 
@@ -113,11 +113,11 @@ class TemperatureSensor:
 
     def retime(self, dt_s: float) -> None:
         """Set the length of a step in s."""
-        self._gain = -math.expm1(-dt_s / self._time_s)
+        self.gain = -math.expm1(-dt_s / self._time_s)
 
     def follow(self, true_c: float) -> None:
         """Move on by one step at a true temperature."""
-        self.lagged_c += (true_c - self.lagged_c) * self._gain
+        self.lagged_c += (true_c - self.lagged_c) * self.gain
 
     def measure(self) -> float:
         """Return a reading in degC."""
@@ -139,7 +139,12 @@ class SpeedSensor:
 
     def error(self) -> float:
         """Return a number of white noise in m/s."""
-        return self._rms_m_s * self.noise.next() if self._rms_m_s > 0.0 else 0.0
+        rms_m_s = self._rms_m_s
+        if rms_m_s > 0.0:
+            for number in self.noise.numbers:
+                return rms_m_s * number
+            return rms_m_s * self.noise.next()
+        return 0.0
 
     def measure(self, true_m_s: float) -> float:
         """Return a reading in m/s."""

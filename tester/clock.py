@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from datetime import UTC, datetime
+from datetime import UTC, datetime, timedelta
 
 
 def monotonic() -> float:
@@ -35,3 +35,8 @@ def utc_now() -> str:
 def local_stamp() -> str:
     """Return the local wall clock as a folder-safe text, ``2024-02-21T14-05-09``."""
     return datetime.now().strftime("%Y-%m-%dT%H-%M-%S")
+
+
+def utc_in(seconds: float) -> str:
+    """Return the wall clock in so many seconds from now as ISO 8601 text in UTC, for people only."""
+    return (datetime.now(UTC) + timedelta(seconds=seconds)).isoformat(timespec="seconds").replace("+00:00", "Z")

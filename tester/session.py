@@ -1,54 +1,41 @@
-"""One recipe on one rig from the outside: files, folder, rig, run, results, exit code."""
+"""One recipe on one rig from the outside: files, folder, rig, parts, results, exit code."""
 
 from __future__ import annotations
 
-import os
-import re
 import signal
+from collections.abc import Generator
+from contextlib import contextmanager
 from dataclasses import dataclass
-from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
+from threading import current_thread, main_thread
 from types import FrameType
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol, runtime_checkable
 
-from drivers.ports import BusLost
 from recipes import find
-from tester import clock
-from tester.bus_log import BusLog
-from tester.engine.build import Ports, build_run
-from tester.engine.context import Attendant, Nobody
+from tester.campaign.claims import enough_room, hold_rig, hold_run
+from tester.campaign.crew import Sight, side_by_side
+from tester.campaign.endings import EXIT_REFUSED, EXIT_USAGE, CannotStartError, Ending, PartEnd, Stop, ending_of
+from tester.campaign.folder import Begin, Job, Work, beginning_of, make_folder, specimens_of, work_of, write_sources
+from tester.campaign.part_run import run_part
+from tester.campaign.pool import Pool
+from tester.campaign.split import Part
+from tester.campaign.together import put_together, recover
 from tester.engine.context import Progress as RunProgress
 from tester.engine.prompts import Prompts
 from tester.engine.results import condition_records
 from tester.engine.run import Outcome, Run
-from tester.engine.tickers import TickStatistics, run_real_time, run_simulated
+from tester.engine.tickers import TickStatistics
 from tester.export import write_all
+from tester.lock import ExclusiveUse
+from tester.provenance import recipe_source, rig_source, run_info, session_info
 from tester.recipe.check import load_checked
-from tester.recipe.estimate import estimate
-from tester.recipe.expand import expand
 from tester.recipe.loader import LoadedRecipe
-from tester.recipe.plan import Plan
+from tester.resume import prepare
 from tester.rig import RigConfig, load_rig
-from tester.store.records import RunInfo, SpecimenInfo
+from tester.store.catalogue import cut_off
+from tester.store.reader import RunReader
+from tester.store.resume import FINISHED
 from tester.store.writer import RunWriter
-
-if TYPE_CHECKING:
-    from sim.faults import FaultScript
-    from sim.rig import SimRig
-
-EXIT_CODES: dict[Outcome, int] = {
-    Outcome.DONE: 0,
-    Outcome.FAILED: 1,
-    Outcome.UNREACHABLE: 4,
-    Outcome.TRIPPED: 5,
-    Outcome.STOPPED: 5,
-}
-EXIT_INCOMPLETE = 6
-EXIT_INTERRUPTED = 130
-KILLED = 137
-"""Exit status of a process that a fault script kills: what a shell shows for SIGKILL."""
-SHOWN_VERSIONS = ("friction-tester", "numpy", "pymodbus", "python-can", "pydantic")
-"""Distributions whose versions are stored with a run."""
 
 
 class Screen(Protocol):
@@ -66,7 +53,7 @@ class Screen(Protocol):
         ...
 
     def show(self, now_s: float, run: RunProgress, share: float) -> None:
-        """Show where the run is."""
+        """Show where the run is, or one of its parts (``run.part`` of ``run.parts``)."""
         ...
 
     def attend(self, prompts: Prompts) -> None:
@@ -90,11 +77,20 @@ class Screen(Protocol):
         ...
 
 
+@runtime_checkable
+class Commanding(Protocol):
+    """A screen at which a person can give commands to the run."""
+
+    def commands(self) -> list[str]:
+        """Return the commands given since the last call: hold, release, abort or stop."""
+        ...
+
+
 @dataclass(frozen=True, slots=True)
 class SessionOptions:
     """What the command line said."""
 
-    recipe: str
+    recipe: str = ""
     rig: str = "sim"
     overrides: tuple[str, ...] = ()
     out: Path = Path("runs")
@@ -102,12 +98,12 @@ class SessionOptions:
     lapse: float | None = None
     bus_log: Path | None = None
     operator: str = ""
+    jobs: int = 1
+    """Processes in which independent parts run side by side (simulated rig only)."""
+    samples: bool = True
+    """Whether samples are kept."""
     faults: tuple[str, ...] = ()
     """Lines of a fault script (sim.faults.language), beside those of the rig file."""
-
-
-class CannotStartError(Exception):
-    """The run cannot begin; the message says why."""
 
 
 class Session:
@@ -119,198 +115,231 @@ class Session:
         self.screen = screen
         self.interrupts = 0
         self.run_: Run | None = None
+        """The part that runs in this process, or ran in it last."""
+        self.folder: Path | None = None
+        self.ending: Ending | None = None
+        self.prompts = Prompts(automatic=screen.answer_yes)
+        """Of all parts that run in this process: each has a number of its own."""
+        self.statistics = TickStatistics()
+        self._level = Stop.NONE
+        self._pool: Pool | None = None
 
     def run(self) -> int:
-        """Run to the end; return the exit code. Raises InvalidSource for an invalid recipe or
-        rig file, FileNotFoundError where there is no such recipe."""
+        """Run to the end; return the exit code. Raises InvalidSource for an invalid recipe or rig file,
+        FileNotFoundError where there is no such recipe, CannotStartError."""
         options = self.options
         rig = load_rig(options.rig, options.overrides)
-        self._script(rig)  # a line that cannot be read ends the run before it begins
-        recipe = load_checked(find(options.recipe), rig)
-        plan = expand(recipe.recipe, rig)
-        if not self.screen.answer_yes and not self.screen.can_ask:
-            self.screen.message("the recipe asks a person, and nobody is at this terminal: use --yes")
-            return 2
-        folder = make_folder(options.out, plan.name)
-        return self._record(rig, recipe, plan, folder)
+        faults = rig.sim.faults + options.faults
+        if faults:
+            _check_faults(faults, rig)
+        path = find(options.recipe)
+        recipe = load_checked(path, rig)
+        work = work_of(recipe.recipe, rig)
+        refusal = self._refusal(work.rig)
+        if refusal:
+            self.screen.message(refusal)
+            return EXIT_USAGE
+        options.out.mkdir(parents=True, exist_ok=True)
+        for left in cut_off(options.out):
+            self.screen.message(f"{left.name} was cut off: tester resume {left} goes on with it")
+        enough_room(options.out, work.plan, rig)
+        with ExclusiveUse() as use:
+            hold_rig(use, rig, work.plan.name)
+            folder = make_folder(options.out, work.plan.name)
+            hold_run(use, folder)
+            write_sources(folder, recipe.tree.text, rig)
+            return self._record(self._job(folder, options.seed), work, self._beginning(folder, path, recipe, work))
+
+    def resume(self, folder: Path, reason: str = "") -> int:
+        """Go on with an interrupted run; return the exit code. ``reason``: why it may although something changed.
+
+        Raises CannotStartError, StoreError, InvalidSource.
+        """
+        with RunReader(folder) as reader:
+            finished = reader.run().status == FINISHED
+        if finished:
+            self.screen.message(f"{folder.name} is complete: nothing is left to do")
+            self.screen.result(str(folder))
+            return 0
+        with ExclusiveUse() as use:
+            hold_run(use, folder)
+            recover(folder)
+            resumed = prepare(folder, reason, self.options.operator)
+            if isinstance(resumed, str):
+                raise CannotStartError(resumed, EXIT_REFUSED)
+            refusal = self._refusal(resumed.rig)
+            if refusal:
+                self.screen.message(refusal)
+                return EXIT_USAGE
+            enough_room(folder, resumed.plan, resumed.rig)
+            hold_rig(use, resumed.rig, folder.name)
+            self.screen.message(resumed.summary)
+            # What is left goes on in the run's own record, one specimen after the other.
+            work = Work(resumed.rig, resumed.plan, (Part(1, resumed.plan, last_wheel=0),), resumed.point)
+            return self._record(self._job(folder, resumed.seed), work, resumed.begin)
+
+    def stop(self, level: Stop) -> None:
+        """Stop the run, from a signal handler or another thread too: what is begun ends, and nothing more is begun."""
+        self._level = max(self._level, level)
+        if self._pool is not None:
+            self._pool.stop(self._level)
+        if self.run_ is not None:
+            self._level.tell(self.run_)
+
+    # -- a watch over the part in this process (tester.campaign.part_run.Watch) -----------------------------------
+
+    def begun(self, run: Run) -> None:
+        """Take notice of a part's run; a stop that came between two parts is for it."""
+        self.run_ = run
+        if self._level is not Stop.NONE:
+            self.stop(self._level)
+
+    def poll(self, now_s: float, run: Run, share: float) -> None:
+        """Show the part that runs in this process and attend to its prompts."""
+        ctx = run.engine.ctx
+        self.screen.show(now_s, ctx.progress, share)
+        self.screen.attend(ctx.prompts)
+        if isinstance(self.screen, Commanding):
+            for command in self.screen.commands():
+                self._command(run, command)
+
+    def _command(self, run: Run, command: str) -> None:
+        """Carry out what was asked for at the screen; what has no effect is said."""
+        refused = ""
+        if command == "hold":
+            refused = run.request_hold()
+        elif command == "release":
+            refused = run.request_release()
+        elif command == "abort":
+            run.request_abort()
+        elif command == "stop":
+            run.request_stop("stopped by the operator", fast=True)
+        self.screen.message(refused or command)
 
     # -- parts ------------------------------------------------------------------------------------------------
 
-    def _record(self, rig: RigConfig, recipe: LoadedRecipe, plan: Plan, folder: Path) -> int:
-        (folder / "recipe.yaml").write_text(recipe.tree.text, encoding="utf-8", newline="\n")
-        (folder / "rig.yaml").write_text(rig.text, encoding="utf-8", newline="\n")
-        writer = RunWriter(
-            folder / "run.db", clock=clock.monotonic, utc=clock.utc_now, lossless=rig.can.interface == "sim"
+    def _refusal(self, rig: RigConfig) -> str:
+        """Return why the options do not go with the rig or the recipe, "" where they do."""
+        jobs = self.options.jobs
+        if jobs > 1 and not rig.simulated:
+            return f"--jobs {jobs}: only a simulated rig can be there several times, and this one is real"
+        if self.screen.answer_yes:
+            return ""
+        if jobs > 1:
+            return f"--jobs {jobs}: nobody can answer the prompts of several parts; use --yes, or one job"
+        if not self.screen.can_ask:
+            return "the recipe asks a person, and nobody is at this terminal: use --yes"
+        return ""
+
+    def _job(self, folder: Path, seed: int) -> Job:
+        o = self.options
+        return Job(folder, seed, o.lapse, o.bus_log, o.samples, o.faults)
+
+    def _beginning(self, folder: Path, path: Path, recipe: LoadedRecipe, work: Work) -> Begin:
+        """Return what begins the run's record: the whole plan, and where everything comes from."""
+        o = self.options
+        info = run_info(
+            folder.name,
+            work.plan,
+            recipe,
+            work.rig,
+            seed=o.seed,
+            operator=o.operator,
+            recipe_source=recipe_source(path),
+            rig_source=rig_source(o.rig, o.overrides),
         )
+
+        def begin(writer: RunWriter) -> None:
+            writer.begin_run(info, specimens_of(work.plan), condition_records(work.plan))
+            writer.begin_session(session_info(1, 0.0, o.operator))
+
+        return begin
+
+    def _record(self, job: Job, work: Work, begin: Begin) -> int:
+        """Carry out the work into the folder; write the tables and return the exit code."""
+        self.folder = job.folder
+        self.screen.begin(work.plan.name)
         try:
-            writer.begin_run(
-                run_info(folder.name, plan, recipe, rig, self.options),
-                [SpecimenInfo(s.index, s.compound, s.note) for s in plan.specimens],
-                condition_records(plan),
-            )
-            outcome, reason, seconds = self._execute(rig, plan, writer)
-            writer.finish(outcome.value, reason, seconds)
+            with self._signals():
+                if len(work.parts) == 1:
+                    end = run_part(job, work, work.parts[0], begin, self, self.prompts)
+                    self.ending = ending_of([end], 1)
+                else:
+                    ends = self._ends(job, work)
+                    self.ending = put_together(job, work, begin, ends, lambda: self._level, self._tell)
         finally:
-            writer.close()
-        return self._report(folder, outcome, reason, writer.failed)
+            self.screen.end()
+        return self._report(job.folder, self.ending)
 
-    def _execute(self, rig: RigConfig, plan: Plan, writer: RunWriter) -> tuple[Outcome, str, float]:
-        log = BusLog(self.options.bus_log, rig) if self.options.bus_log is not None else None
-        try:
-            script = self._script(rig)
-            ports, world, attendant = connect_ports(rig, self.options.seed, log, faulty=script is not None)
-            prompts = Prompts(automatic=self.screen.answer_yes)
-            run = build_run(rig, plan, ports, attendant, writer, prompts)
-            self.run_ = run
-            expected_s = max(estimate(plan, rig).rig_seconds, 1.0)
-            self.screen.begin(plan.name)
-            seconds = self._tick(run, world, script, expected_s, prompts, writer)
-            record_parameters(run, writer, seconds)
-            return run.outcome, run.reason, seconds
-        except BusLost as lost:
-            return Outcome.UNREACHABLE, str(lost), 0.0
-        finally:
-            if log is not None:
-                log.close()
+    def _ends(self, job: Job, work: Work) -> Generator[PartEnd]:
+        """Yield how the parts ended: one after the other in this process, or side by side in others."""
+        if self.options.jobs > 1:
+            yield from side_by_side(job, work, self.options.jobs, self._show, self._take)
+            return
+        for part in work.parts:
+            end = run_part(job, work, part, beginning_of(part, job, work), self, self.prompts)
+            yield end
+            if end.outcome is not Outcome.DONE:
+                return
 
-    def _script(self, rig: RigConfig) -> FaultScript | None:
-        """Return the fault script of rig file and command line, if there is one."""
-        texts = (*rig.sim.faults, *self.options.faults)
-        if not texts:
-            return None
-        if rig.can.interface != "sim":
-            raise CannotStartError("faults happen on the simulated rig only")
-        from sim.faults import FaultScript, FaultTextError, parse_script
+    def _tell(self, end: PartEnd) -> None:
+        self.screen.emit({"event": "part end", "part": end.part, "outcome": end.outcome.value, "reason": end.reason})
 
-        try:
-            return FaultScript().add(parse_script(texts))
-        except FaultTextError as error:
-            raise CannotStartError(str(error)) from error
+    def _show(self, sight: Sight) -> None:
+        self.screen.show(sight.now_s, sight.progress, sight.share)
 
-    def _tick(
-        self,
-        run: Run,
-        world: SimRig | None,
-        script: FaultScript | None,
-        expected_s: float,
-        prompts: Prompts,
-        recorder: RunWriter,
-    ) -> float:
-        def poll(now_s: float) -> None:
-            self.screen.show(now_s, run.engine.ctx.progress, now_s / expected_s)
-            self.screen.attend(prompts)
-            if recorder.failed:
-                run.request_stop(f"the run can no longer be recorded: {recorder.failed}")
+    def _take(self, pool: Pool) -> None:
+        self._pool = pool
+        if self._level is not Stop.NONE:
+            pool.stop(self._level)
 
+    # -- signals ----------------------------------------------------------------------------------------------
+
+    @contextmanager
+    def _signals(self) -> Generator[None]:
+        """Stop on INT and TERM while the block lasts; only the main thread can be told."""
+        if current_thread() is not main_thread():
+            yield
+            return
         previous = {s: signal.signal(s, self._on_signal) for s in (signal.SIGINT, signal.SIGTERM)}
         try:
-            if world is not None and script is not None:
-                from tester.faulty import FaultyRun
-
-                faulty = FaultyRun(run, world, script, on_kill=die)
-                return run_simulated(faulty, faulty, lapse=self.options.lapse, poll=poll)
-            if world is not None:
-                # Also at --speed 1: counted ticks, not measured ones, so that no speed changes a result.
-                return run_simulated(run, world, lapse=self.options.lapse, poll=poll)
-            return run_real_time(run, world, poll=poll, statistics=TickStatistics())
+            yield
         finally:
             for number, handler in previous.items():
                 signal.signal(number, handler)
-            self.screen.end()
 
     def _on_signal(self, number: int, _frame: FrameType | None) -> None:
         """Stop: TERM and a first INT in a controlled way, a second INT fast."""
-        if self.run_ is None:
-            raise KeyboardInterrupt
-        if number == signal.SIGINT:
-            self.interrupts += 1
-            self.run_.request_stop("interrupted by the operator", fast=self.interrupts > 1)
-        else:
-            self.run_.request_stop("terminated")
+        if number == signal.SIGTERM:
+            self.stop(Stop.TERMINATED)
+            return
+        self.interrupts += 1
+        self.stop(Stop.FAST if self.interrupts > 1 else Stop.INTERRUPTED)
 
-    def _report(self, folder: Path, outcome: Outcome, reason: str, failed: str | None) -> int:
+    # -- results ----------------------------------------------------------------------------------------------
+
+    def _report(self, folder: Path, ending: Ending) -> int:
         """Write the tables, name what is missing in them, and return the exit code."""
         missing = [row.describe() for row in write_all(folder)]
         for line in missing:
             self.screen.message(line)
-        if reason:
-            self.screen.message(f"{outcome.value}: {reason}")
-        code = EXIT_CODES[outcome]
-        if outcome is Outcome.STOPPED and self.interrupts == 1:
-            code = EXIT_INTERRUPTED
-        elif failed:
-            self.screen.message(f"not everything could be recorded: {failed}")
-            code = EXIT_CODES[Outcome.FAILED]
-        elif outcome is Outcome.DONE and missing:
-            code = EXIT_INCOMPLETE
-        self.screen.emit({"event": "end", "outcome": outcome.value, "exit": code, "missing": missing})
+        if ending.reason:
+            self.screen.message(f"{ending.outcome.value}: {ending.reason}")
+        code = ending.exit_code(interrupted_once=self.interrupts == 1, missing=bool(missing))
+        if ending.failed:
+            self.screen.message(f"not everything could be recorded: {ending.failed}")
+        self.screen.emit({"event": "end", "outcome": ending.outcome.value, "exit": code, "missing": missing})
         self.screen.result(str(folder))
         return code
 
 
-def die() -> None:
-    """End this process as a kill does: at once, nothing closed, nothing flushed."""
-    os._exit(KILLED)
+def _check_faults(texts: tuple[str, ...], rig: RigConfig) -> None:
+    """Raise CannotStartError for a fault script that cannot be read, or a rig that is real."""
+    if rig.can.interface != "sim":
+        raise CannotStartError("faults happen only on a rig that is simulated in this process", EXIT_USAGE)
+    from sim.faults import FaultTextError, parse_script
 
-
-def connect_ports(
-    rig: RigConfig, seed: int, log: BusLog | None, *, faulty: bool = False
-) -> tuple[Ports, SimRig | None, Attendant]:
-    """Open the wires to the rig: simulated in this process (its bus spoilable where ``faulty``), or real."""
-    if rig.can.interface == "sim":
-        from tester.simulated import simulated_ports
-
-        if faulty:
-            from sim.faults.can import FaultyCanWire
-
-            return simulated_ports(rig, seed, log, FaultyCanWire)
-        return simulated_ports(rig, seed, log)
-    from tester.hardware import hardware_ports
-
-    return hardware_ports(rig, log), None, Nobody()
-
-
-def make_folder(out: Path, name: str) -> Path:
-    """Create the run's folder, ``<date>T<time>-<slug>``; a second run within the second gets a number."""
-    slug = re.sub(r"[^a-z0-9]+", "-", name.lower()).strip("-")[:40] or "run"
-    base = f"{clock.local_stamp()}-{slug}"
-    out.mkdir(parents=True, exist_ok=True)
-    for number in range(1, 1000):
-        folder = out / (base if number == 1 else f"{base}-{number}")
-        try:
-            folder.mkdir()
-        except FileExistsError:
-            continue
-        return folder
-    raise CannotStartError(f"{out} holds a thousand runs of this second")
-
-
-def run_info(name: str, plan: Plan, recipe: LoadedRecipe, rig: RigConfig, options: SessionOptions) -> RunInfo:
-    """Return what the store keeps of a run's beginning."""
-    return RunInfo(
-        name=name,
-        recipe_name=plan.name,
-        recipe_text=recipe.tree.text,
-        rig_text=rig.text,
-        started_utc=clock.utc_now(),
-        simulated=rig.simulated,
-        seed=options.seed if rig.simulated else None,
-        software_version=_version("friction-tester"),
-        operator=options.operator,
-        metadata=dict(plan.metadata),
-        versions={package: _version(package) for package in SHOWN_VERSIONS},
-    )
-
-
-def record_parameters(run: Run, writer: RunWriter, now_s: float) -> None:
-    """Store every parameter read back from the drives, and the counters of the lines."""
-    for drive in run.engine.devices.drives:
-        for (index, sub), value in drive.parameters.items():
-            writer.device_parameter(now_s, drive.config.name, f"0x{index:04X}:{sub:02X}", str(value))
-
-
-def _version(package: str) -> str:
     try:
-        return version(package)
-    except PackageNotFoundError:
-        return "unknown"
+        parse_script(texts)
+    except FaultTextError as error:
+        raise CannotStartError(str(error), EXIT_USAGE) from error

@@ -87,7 +87,7 @@ class Events(Reader, Scanner, Parser):
         """Tell whether the next token is not there yet, or may turn out to be a key."""
         if self.done or (self.tokens and not self.possible_simple_keys):
             return False
-        return bool(super().need_more_tokens())  # pyright: ignore[reportUnknownMemberType]
+        return bool(super().need_more_tokens())  # pyright: ignore[reportUnknownMemberType, reportUnknownArgumentType]
 
     def check_token(self, *choices: type[Token]) -> bool:  # pyright: ignore[reportIncompatibleMethodOverride]
         """Tell whether the next token is one of some types (of any type if none is named)."""
@@ -135,8 +135,7 @@ class Events(Reader, Scanner, Parser):
         """Scan a plain scalar."""
         plain = (_IN_FLOW if self.flow_level else _IN_BLOCK).match(self.buffer, self.pointer)
         if plain is None:
-            token: ScalarToken = super().scan_plain()  # pyright: ignore[reportUnknownMemberType]
-            return token
+            return super().scan_plain()  # pyright: ignore[reportUnknownMemberType, reportUnknownVariableType]
         begin = self.get_mark()
         self.forward(plain.end() - self.pointer)
         self.allow_simple_key = False

@@ -13,6 +13,8 @@ from collections.abc import Callable
 from threading import Thread
 from typing import TYPE_CHECKING, Any
 
+from drivers.canopen import objects as o
+from drivers.edges import socketcand
 from drivers.ports import BusLost, CanFrame, FrameByFrame
 
 if TYPE_CHECKING:
@@ -24,21 +26,35 @@ MAX_WAITING = 20_000
 """Frames kept until the caller takes them: over 2 s of a full bus at 1 Mbit/s. More means that nobody reads."""
 _BUS_OFF = 0x40
 """Class bit of a SocketCAN error frame (linux/can/error.h, CAN_ERR_BUSOFF)."""
+_FUNCTION = 0x780
+_EVENTS = (o.EMERGENCY_BASE, o.TPDO2_BASE)
+_BOOT_UP = bytes((o.NmtState.BOOT_UP,))
+_STATE_LOW, _STATE_HIGH = 0x7F, 0x22
+"""Statusword bits of a drive's state, voltage, remote control and deviation, by bytes (CiA 402-2)."""
 
 
 class PythonCanPort(FrameByFrame):
     """A CanPort over an open python-can bus.
 
     ``clock`` gives the arrival times, in seconds of the caller's clock; it is called in the receive thread.
-    Without one a frame's arrival is the ``now`` of the ``receive`` that returns it. ``ignored`` counts frames
-    that are none of ours: remote, error, 29-bit and FD frames.
+    Without one a frame's arrival is the ``now`` of the ``receive`` that returns it. ``on_urgent`` is called in
+    that thread, too, when something arrived that a scan should not wait for: an emergency, a boot-up, changed
+    inputs (TPDO2), or a TPDO1 whose first word, the statusword, shows another state than before. ``ignored``
+    counts frames that are none of ours: remote, error, 29-bit and FD frames.
     """
 
-    def __init__(self, bus: can.BusABC, clock: Callable[[], float] | None = None) -> None:
+    def __init__(
+        self,
+        bus: can.BusABC,
+        clock: Callable[[], float] | None = None,
+        on_urgent: Callable[[], None] | None = None,
+    ) -> None:
         import can
 
         self._bus = bus
         self._clock = clock
+        self._on_urgent = on_urgent
+        self._states: dict[int, tuple[int, int]] = {}
         self._message = can.Message
         self._errors = (can.CanError, OSError, ValueError)
         self._frames: deque[CanFrame] = deque()
@@ -91,7 +107,11 @@ class PythonCanPort(FrameByFrame):
         try:
             while not self._closing:
                 message = self._bus.recv(POLL_S)
-                if message is not None and not self._accept(message):
+                if message is None:
+                    if socketcand.ended(self._bus):
+                        reason = "the other side closed the connection"
+                        return
+                elif not self._accept(message):
                     reason = "bus-off" if message.is_error_frame else "received frames are not collected"
                     return
             reason = "closed"
@@ -99,6 +119,8 @@ class PythonCanPort(FrameByFrame):
             reason = f"receiving failed: {error}"
         finally:
             self._lose(reason)
+            if self._on_urgent is not None:
+                self._on_urgent()
 
     def _accept(self, message: can.Message) -> bool:
         """Queue a data frame; False where the bus is of no use any more."""
@@ -109,21 +131,38 @@ class PythonCanPort(FrameByFrame):
             self.ignored += 1
             return True
         t = self._clock() if self._clock is not None else 0.0
-        self._frames.append((t, message.arbitration_id, bytes(message.data)))
+        can_id, data = message.arbitration_id, bytes(message.data)
+        self._frames.append((t, can_id, data))
+        if self._on_urgent is not None and self._is_urgent(can_id, data):
+            self._on_urgent()
         return len(self._frames) <= MAX_WAITING
+
+    def _is_urgent(self, can_id: int, data: bytes) -> bool:
+        function = can_id & _FUNCTION
+        if function == o.TPDO1_BASE and len(data) >= 2:
+            state = (data[0] & _STATE_LOW, data[1] & _STATE_HIGH)
+            changed = self._states.get(can_id) != state
+            self._states[can_id] = state
+            return changed
+        if function == o.HEARTBEAT_BASE:
+            return data == _BOOT_UP
+        return function in _EVENTS and can_id != o.SYNC_ID
 
 
 def open_can(interface: str, channel: str, bitrate: int, clock: Callable[[], float] | None = None,
-             **options: str | float | bool) -> PythonCanPort:
+             on_urgent: Callable[[], None] | None = None) -> PythonCanPort:
     """Open an adapter by python-can's interface and channel names, ``bitrate`` in bit/s; raises BusLost.
 
-    ``options`` go to python-can as they are (``host`` and ``port`` of socketcand, for example).
+    The channel of a socketcand server is ``bus@host:port``. ``clock`` and ``on_urgent``: see PythonCanPort.
     """
     import can
 
-    settings: dict[str, Any] = {**options, "bitrate": bitrate}
+    settings: dict[str, Any] = {"channel": channel, "bitrate": bitrate}
     try:
-        bus = can.Bus(interface=interface, channel=channel, ignore_config=True, **settings)
+        if interface == socketcand.INTERFACE:
+            settings |= socketcand.settings_of(channel)
+        bus = can.Bus(interface=interface, ignore_config=True, **settings)
     except (can.CanError, OSError, ValueError, ImportError, NotImplementedError) as error:
         raise BusLost(f"cannot open {interface} {channel}: {error}") from error
-    return PythonCanPort(bus, clock)
+    socketcand.tune(bus)
+    return PythonCanPort(bus, clock, on_urgent)

@@ -84,9 +84,10 @@ class Schedule:
                     continue
                 if due - request.priority_s < rank:
                     # The one chosen so far is one of the others now.
-                    request, chosen, rank = chosen, request, due - request.priority_s
-                    if request is None:
+                    before, chosen, rank = chosen, request, due - request.priority_s
+                    if before is None:
                         continue
+                    request = before
                     due = request.due_s
             if due < soonest and (request.period_s > 0.0 or request.attempts):
                 soonest = due

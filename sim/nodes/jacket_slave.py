@@ -221,5 +221,6 @@ def _check(profile: DeviceProfile) -> None:
 def _registers(profile: DeviceProfile) -> list[tuple[int, int]]:
     """Return (address, count) of every register in use."""
     registers = [(block.address, block.count) for block in profile.blocks]
-    registers += [(write.address, 1) for write in (*profile.writes.values(), *profile.setup)]
+    registers += [(write.address, 1) for write in profile.writes.values()]
+    registers += [(write.address, 1) for write in profile.setup]
     return [*registers, (profile.switches["run"].address, 1)]

@@ -70,7 +70,7 @@ class ModbusSlave:
         self.powered = True
         self.windows = _windows(registers)
         self._reads: dict[bytes, _Read] = {}
-        self._writes: dict[bytes, tuple[int, tuple[int, ...]]] = {}
+        self._writes: dict[bytes, tuple[bytes, int, tuple[int, ...]]] = {}
         self.blocks: dict[tuple[int, int], int] = {}
         """Numbers by (address, count) of what is usually read in one request: ``sample`` is asked for these."""
 
@@ -130,11 +130,11 @@ class ModbusSlave:
             return read.reply
         write = self._writes.get(frame)
         if write is not None:
-            return self._write(frame[:6], *write, t)
+            return self._write(*write, t)
         if len(frame) < 4 or frame[0] not in (self.unit_id, BROADCAST) or crc16(frame) != 0:
             return None
-        reply = self._execute(frame[:-2], frame, t)
-        return None if frame[0] == BROADCAST else reply
+        executed = self._execute(frame[:-2], frame, t)
+        return None if frame[0] == BROADCAST else executed
 
     def exception(self, function: int, code: int) -> bytes:
         """Return the reply that refuses ``function``."""
@@ -177,24 +177,25 @@ class ModbusSlave:
     def _new_write(self, frame: bytes, address: int, values: tuple[int, ...], t: float) -> bytes:
         if self.window(address, len(values)) is None:
             return self.exception(frame[1], ILLEGAL_ADDRESS)
+        reply = with_crc(frame[:6])
         if frame[0] == self.unit_id:
             if len(self._writes) >= _REMEMBERED:
                 self._writes.clear()
-            self._writes[frame] = (address, values)
-        return self._write(frame[:6], address, values, t)
+            self._writes[frame] = (reply, address, values)
+        return self._write(reply, address, values, t)
 
     def _look_up(self, read: _Read, t: float) -> bytes:
         """Return registers from the windows."""
         self.refresh(t)
         return bytes(read.window.data[read.start : read.last])
 
-    def _write(self, echo: bytes, address: int, values: tuple[int, ...], t: float) -> bytes:
+    def _write(self, reply: bytes, address: int, values: tuple[int, ...], t: float) -> bytes:
         for place, value in enumerate(values, address):
             code = self.written(place, value, t)
             if code:
-                return self.exception(echo[1], code)
-            self.put(place, _WORD.pack(value))
-        return with_crc(echo)
+                return self.exception(reply[1], code)
+            self.put(place, value.to_bytes(2, "big"))
+        return reply
 
 
 def _windows(registers: Iterable[tuple[int, int]]) -> list[Window]:

@@ -7,7 +7,7 @@ from math import inf
 from typing import Protocol
 
 from drivers.canopen import objects as o
-from sim.can_wire import CanWire, Listener
+from sim.can_wire import CanWire, Listener, SyncFollower
 from sim.nodes.object_store import ObjectStore
 from sim.nodes.pdo_channels import ReceivePdo, TransmitPdo
 
@@ -53,7 +53,7 @@ class PdoOwner(Protocol):
         ...
 
 
-class PdoExchange:
+class PdoExchange(SyncFollower):
     """All PDOs of one device; running while the device is OPERATIONAL.
 
     ``due_s`` is the next deadline or event timer; ``urgent`` marks the next synchronous TPDO as urgent for the wire.
@@ -74,18 +74,14 @@ class PdoExchange:
         "due_s",
         "fresh",
         "owner",
-        "plain",
         "rpdos",
-        "sample",
-        "sample_id",
-        "stale",
-        "take_sample",
         "tpdos",
         "urgent",
     )
 
     def __init__(self, owner: PdoOwner, wire: CanWire, store: ObjectStore) -> None:
         """Create the two receive and two transmit PDOs of a device, not running."""
+        super().__init__(_nothing)
         self.owner = owner
         self._wire = wire
         self._store = store
@@ -100,11 +96,6 @@ class PdoExchange:
         self._event_tpdos: tuple[TransmitPdo, ...] = ()
         self._status_on_event = False
         self._single = False
-        self.take_sample = _nothing
-        self.sample_id = 0
-        self.sample = b""
-        self.stale = True
-        self.plain = False
         self.urgent = False
         self.due_s = inf
 
@@ -126,8 +117,10 @@ class PdoExchange:
         self._wire.unfollow(self)
         self._routes.clear()
         self.fresh.clear()
-        for pdo in (*self.rpdos, *self.tpdos):
-            pdo.load()
+        for received in self.rpdos:
+            received.load()
+        for sent in self.tpdos:
+            sent.load()
         sending = [pdo for pdo in self.tpdos if pdo.cob_id is not None] if self._running else []
         for pdo in sending:
             self.owner.prepare_source(pdo)
@@ -136,10 +129,11 @@ class PdoExchange:
         self._event_tpdos = tuple(pdo for pdo in sending if not pdo.synchronous)
         self._status_on_event = any(pdo.kind != 1 and _STATUSWORD in pdo.keys for pdo in sending)
         if self._running:
-            for pdo in self.rpdos:
-                if pdo.cob_id is not None:
-                    self.owner.prepare_sink(pdo)
-                    self._listen(pdo.cob_id, pdo.on_frame, repeatable=pdo.synchronous and pdo.deadline_s == 0.0)
+            for received in self.rpdos:
+                if received.cob_id is not None:
+                    self.owner.prepare_sink(received)
+                    repeatable = received.synchronous and received.deadline_s == 0.0
+                    self._listen(received.cob_id, received.on_frame, repeatable=repeatable)
             self._single = len(self._each_sync) == 1 and not self._counted_tpdos
             if self._single:
                 self.sample_id, self.take_sample = self._each_sync[0]

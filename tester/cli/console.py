@@ -13,6 +13,7 @@ from rich.console import Console as RichConsole
 from rich.progress import BarColumn, Progress, TaskID, TextColumn
 from rich.text import Text
 
+from tester.cli.keys import HELP, commands_of, keys_of
 from tester.engine.context import Progress as RunProgress
 from tester.engine.prompts import Prompts
 
@@ -26,10 +27,12 @@ class Console:
         self.answer_yes = answer_yes
         self._terminal = RichConsole(file=sys.stderr)
         self._progress: Progress | None = None
-        self._task: TaskID | None = None
+        self._tasks: dict[int, TaskID] = {}
+        """The progress lines by part."""
         self._answers: SimpleQueue[str] = SimpleQueue()
         self._asked = 0
-        self._title = ""
+        self._titles: dict[int, str] = {}
+        self._keys = keys_of(sys.stdin)
 
     @property
     def can_ask(self) -> bool:
@@ -41,6 +44,9 @@ class Console:
     def begin(self, name: str) -> None:
         """Show that a run has begun."""
         self.emit({"event": "begin", "run": name})
+        self._keys.begin()
+        if sys.stdin.isatty():
+            self.message(HELP)
         if self._terminal.is_terminal:
             self._progress = Progress(
                 BarColumn(bar_width=12),
@@ -49,24 +55,37 @@ class Console:
                 console=self._terminal,
                 transient=True,
             )
-            self._task = self._progress.add_task(name, total=1.0)
+            self._tasks[1] = self._progress.add_task(name, total=1.0)
             self._progress.start()
 
     def show(self, now_s: float, run: RunProgress, share: float) -> None:
-        """Show where the run is: ``share`` of the estimated rig time, 0..1."""
-        if run.title != self._title:
-            self._title = run.title
-            self.emit({"event": "step", "t_s": round(now_s, 3), "step": run.step, "title": run.title})
+        """Show where the run is, or one of its parts: ``share`` of the estimated rig time, 0..1."""
+        of_part = {"part": run.part} if run.parts > 1 else {}
+        label = f"part {run.part} of {run.parts}  " if run.parts > 1 else ""
+        if run.title != self._titles.get(run.part):
+            self._titles[run.part] = run.title
+            self.emit({"event": "step", **of_part, "t_s": round(now_s, 3), "step": run.step, "title": run.title})
             if self._progress is None:
-                self.message(f"{_hours(now_s)}  {run.title}")
-        if self._progress is not None and self._task is not None:
-            text = f"{_hours(now_s)}  "
+                self.message(f"{label}{_hours(now_s)}  {run.title}")
+        if self._progress is not None:
+            text = f"{label}{_hours(now_s)}  "
             if run.repeats:
                 text += f"{run.condition}/{run.conditions} repeat {run.repeat}/{run.repeats}  "
-            self._progress.update(self._task, completed=min(share, 1.0), description=text + run.title)
+            self._show_line(self._progress, run.part, min(share, 1.0), text + run.title)
+
+    def _show_line(self, progress: Progress, part: int, share: float, text: str) -> None:
+        """Bring a part's line up to date; it gets one when it is first heard of."""
+        if part not in self._tasks:
+            self._tasks[part] = progress.add_task("", total=1.0)
+        progress.update(self._tasks[part], completed=share, description=text)
+
+    def commands(self) -> list[str]:
+        """Return what a person asked for by a key; none while a prompt takes a line."""
+        return commands_of(self._keys.pressed())
 
     def end(self) -> None:
-        """Take the progress line away."""
+        """Take the progress line away, and give the keyboard back."""
+        self._keys.end()
         if self._progress is not None:
             self._progress.stop()
             self._progress = None
@@ -101,6 +120,7 @@ class Console:
             self._asked = waiting.number
             self.emit({"event": "prompt", "number": waiting.number, "text": waiting.text})
             self.message(f"{waiting.text} - done? [Enter] ")
+            self._keys.end()  # a line is typed, with echo
             Thread(target=_read_line, args=(sys.stdin, self._answers.put), daemon=True).start()
             return
         try:
@@ -114,6 +134,7 @@ class Console:
             self._asked = 0
         else:
             waiting.answer = answer.strip() or "yes"
+            self._keys.begin()
 
 
 def _read_line(stream: TextIO, put: Callable[[str], None]) -> None:

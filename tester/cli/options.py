@@ -34,8 +34,12 @@ class QuantityType(click.ParamType[float]):
 def rig_option(command: Decorated) -> Decorated:
     """Add --rig: the rig's file, or sim."""
     return click.option(
-        "--rig", "rig_name", default="sim", show_default=True, metavar="RIG",
-        help="Rig file, or sim for the simulated rig."
+        "--rig",
+        "rig_name",
+        default="sim",
+        show_default=True,
+        metavar="RIG",
+        help="Rig file, or sim for the simulated rig.",
     )(command)
 
 

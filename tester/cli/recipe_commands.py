@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import gc
 import sys
-from collections.abc import Iterator
+from collections.abc import Generator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -91,7 +91,7 @@ def plan(recipe: str, rig_name: str, overrides: tuple[str, ...], as_json: bool) 
 
 
 @contextmanager
-def _nothing_collected() -> Iterator[None]:
+def _nothing_collected() -> Generator[None, None, None]:
     """Keep the garbage collector from looking through a plan, all of which lives on: a third of the time."""
     enabled = gc.isenabled()
     gc.disable()

@@ -1,8 +1,7 @@
-"""``tester runs``, ``tester show`` and ``tester export``: what is stored, and how it leaves."""
+"""``tester show`` and ``tester export``: what a run holds, and how it leaves."""
 
 from __future__ import annotations
 
-import json
 import sys
 from collections.abc import Iterable, Iterator
 from math import isfinite
@@ -11,92 +10,15 @@ from typing import TYPE_CHECKING
 
 import click
 
+from tester.cli.finding import run_folder
+from tester.cli.showing import Json, dump, duration, number, shown
+
 if TYPE_CHECKING:
     from tester.export.results import Measured, RunResults, TableRow
-    from tester.store.catalogue import Listing
     from tester.store.reader import RunReader
-    from tester.store.records import StoredRun
-
-Json = str | int | float | bool | None | list["Json"] | dict[str, "Json"]
+    from tester.store.records import Change, SessionInfo
 
 FORMATS = ("appendix", "conditions", "repeats", "samples", "parquet")
-
-
-def _folder(name: str) -> Path:
-    """Return the folder of a run; a name that is none is a usage error."""
-    from tester.store.catalogue import find_run
-    from tester.store.schema import StoreError
-
-    try:
-        return find_run(name)
-    except StoreError as error:
-        raise click.UsageError(str(error)) from error
-
-
-def _number(value: float) -> float | None:
-    return value if isfinite(value) else None
-
-
-def _shown(text: str) -> str:
-    """Return text that a person or a device wrote, harmless for a terminal."""
-    return "".join(c if c.isprintable() else "�" for c in text)
-
-
-def _dump(value: Json) -> None:
-    click.echo(json.dumps(value, ensure_ascii=False, allow_nan=False, indent=1))
-
-
-def _duration(seconds: float) -> str:
-    minutes, s = divmod(round(seconds), 60)
-    return f"{minutes // 60}:{minutes % 60:02d}:{s:02d}"
-
-
-def _status(run: StoredRun) -> str:
-    return "open (running, or cut off)" if run.status == "running" else run.status
-
-
-# tester runs
-
-
-@click.command()
-@click.option(
-    "--out", type=click.Path(file_okay=False, path_type=Path), default=None, help="Folder of the runs (runs)."
-)
-@click.option("--json", "as_json", is_flag=True, help="As JSON.")
-def runs(out: Path | None, as_json: bool) -> None:
-    """List the runs that are stored."""
-    from tester.store.catalogue import RUNS, list_runs
-
-    listings = list_runs(out or RUNS)
-    if as_json:
-        _dump([_listing(listing) for listing in listings])
-        return
-    for listing in listings:
-        if listing.run is None:
-            click.echo(f"{listing.name}: {_shown(listing.problem)}", err=True)
-            continue
-        run = listing.run
-        click.echo(
-            f"{listing.name}  {_status(run)}  {_duration(run.rig_seconds)}  "
-            f"{listing.conditions} conditions, {listing.repeats} repeats  {_shown(run.info.recipe_name)}"
-        )
-
-
-def _listing(listing: Listing) -> Json:
-    found: dict[str, Json] = {"run": listing.name}
-    if listing.run is None:
-        return found | {"problem": listing.problem}
-    return found | {
-        "status": listing.run.status,
-        "recipe": listing.run.info.recipe_name,
-        "started_utc": listing.run.info.started_utc,
-        "ended_utc": listing.run.ended_utc or None,
-        "rig_seconds": _number(listing.run.rig_seconds),
-        "simulated": listing.run.info.simulated,
-        "seed": listing.run.info.seed,
-        "conditions": listing.conditions,
-        "repeats": listing.repeats,
-    }
 
 
 # tester show
@@ -111,20 +33,49 @@ def show(run: str, as_json: bool) -> None:
     from tester.store.reader import RunReader
     from tester.store.schema import StoreError
 
-    folder = _folder(run)
+    folder = run_folder(run)
     try:
         with RunReader(folder) as reader:
-            results = results_of(reader)
+            results, sessions, changes = results_of(reader), reader.sessions(), reader.changes()
     except StoreError as error:
         raise click.ClickException(str(error)) from error
     if as_json:
-        _dump(_summary(folder.name, results))
+        history: dict[str, Json] = {"sessions": [*map(_session, sessions)], "changes": [*map(_change, changes)]}
+        dump(_summary(folder.name, results) | history)
         return
     for text in _lines(folder.name, results):
         click.echo(text)
+    for session in sessions[1:]:
+        where = f"{duration(session.origin_s)} of rig time, {session.started_utc}"
+        click.echo(f"went on at {where}, version {session.software_version}")
+    for change in changes:
+        click.echo(f"{change.subject} changed before stretch {change.session}: {shown(change.reason)}")
 
 
-def _summary(name: str, results: RunResults) -> Json:
+def _session(session: SessionInfo) -> Json:
+    return {
+        "session": session.session,
+        "origin_s": session.origin_s,
+        "started_utc": session.started_utc,
+        "host": session.host,
+        "operator": session.operator,
+        "software_version": session.software_version,
+        "git_revision": session.git_revision,
+    }
+
+
+def _change(change: Change) -> Json:
+    return {
+        "session": change.session,
+        "utc": change.utc,
+        "subject": change.subject,
+        "before_sha256": change.before_sha256,
+        "after_sha256": change.after_sha256,
+        "reason": change.reason,
+    }
+
+
+def _summary(name: str, results: RunResults) -> dict[str, Json]:
     run = results.run
     return {
         "run": name,
@@ -136,9 +87,12 @@ def _summary(name: str, results: RunResults) -> Json:
         "simulated": run.info.simulated,
         "operator": run.info.operator,
         "software_version": run.info.software_version,
+        "git_revision": run.info.git_revision,
+        "versions": dict(run.info.versions),
+        "calibration_sha256": run.calibration_sha256,
         "started_utc": run.info.started_utc,
         "ended_utc": run.ended_utc or None,
-        "rig_seconds": _number(run.rig_seconds),
+        "rig_seconds": number(run.rig_seconds),
         "overruns": run.overruns,
         "metadata": dict(run.info.metadata),
         "rows": len(results.rows) - len(results.missing()),
@@ -162,19 +116,19 @@ def _condition(measured: Measured) -> Json:
         "wheel_speed_m_s": i.wheel_speed_m_s,
         "status": r.status.value,
         "reason": r.reason,
-        "mu": _number(r.mu_resultant),
-        "s": _number(r.s),
-        "u_expanded": _number(r.expanded),
+        "mu": number(r.mu_resultant),
+        "s": number(r.s),
+        "u_expanded": number(r.expanded),
         "n_valid": r.n_valid,
         "n": r.n,
-        "measured": {name: _number(value) for name, value in r.measured.items()},
+        "measured": {name: number(value) for name, value in r.measured.items()},
         "repeats": [
             {
                 "repeat": repeat.repeat,
                 "attempt": repeat.attempt,
                 "status": repeat.result.status.value,
                 "reason": repeat.result.reason,
-                "mu": _number(repeat.result.mu_resultant),
+                "mu": number(repeat.result.mu_resultant),
             }
             for repeat in measured.repeats
         ],
@@ -183,15 +137,15 @@ def _condition(measured: Measured) -> Json:
 
 def _lines(name: str, results: RunResults) -> Iterator[str]:
     run = results.run
-    yield f"{name}: {_shown(run.info.recipe_name)}"
-    yield f"status   {_status(run)}{': ' + _shown(run.reason) if run.reason else ''}"
+    yield f"{name}: {shown(run.info.recipe_name)}"
+    yield f"status   {run.status}{': ' + shown(run.reason) if run.reason else ''}"
     ended = f", ended {run.ended_utc}" if run.ended_utc else ""
-    yield f"rig time {_duration(run.rig_seconds)}, started {run.info.started_utc}{ended}"
+    yield f"rig time {duration(run.rig_seconds)}, started {run.info.started_utc}{ended}"
     if run.overruns:
         yield f"overruns {run.overruns} samples dropped"
     yield f"values   {len(results.rows) - len(results.missing())} of {len(results.rows)} conditions"
     for row in results.rows:
-        yield _shown(_row(row))
+        yield shown(_row(row))
 
 
 def _row(row: TableRow) -> str:
@@ -223,7 +177,7 @@ def export(run: str, kind: str, out: Path | None, decimals: int) -> None:
 
     if kind == "parquet" and out is None:
         raise click.UsageError("parquet is not text: name a file with --out")
-    folder = _folder(run)
+    folder = run_folder(run)
     try:
         with RunReader(folder) as reader:
             _export(reader, kind, out, decimals)
@@ -250,7 +204,7 @@ def _export(reader: RunReader, kind: str, out: Path | None, decimals: int) -> No
     else:
         _deliver(tables.appendix(results, decimals), out)
         for row in results.missing():
-            click.echo(f"not in the appendix: {_shown(row.describe())}", err=True)
+            click.echo(f"not in the appendix: {shown(row.describe())}", err=True)
 
 
 def _deliver(chunks: Iterable[bytes], out: Path | None) -> None:

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import click
+from click.core import ParameterSource
 
 from tester.cli.options import json_option, rig_option, set_option
 
@@ -22,6 +25,14 @@ from tester.cli.options import json_option, rig_option, set_option
     help="Seed of the simulated rig.",
 )
 @click.option("--speed", default=None, metavar="max|X", help="Simulated rig: as fast as it goes, or X times real time.")
+@click.option(
+    "--jobs",
+    default=1,
+    show_default=True,
+    metavar="N",
+    type=click.IntRange(1, 256),
+    help="Simulated rig: processes in which specimens run side by side; the results are the same.",
+)
 @click.option("--bus-log", default=None, metavar="DIR", help="Write every CAN and Modbus frame into this folder.")
 @click.option(
     "--fault",
@@ -31,8 +42,11 @@ from tester.cli.options import json_option, rig_option, set_option
     help='Simulated rig: let something fail, e.g. "t=130 s: belt drive heartbeat lost for 3 s". May be given again.',
 )
 @click.option("--operator", default="", metavar="NAME", help="Who runs the test; stored with the run.")
+@click.option("--detach", is_flag=True, help="Have the service run it (`tester serve`), and return.")
 @json_option
+@click.pass_context
 def run(
+    context: click.Context,
     recipe: str,
     rig_name: str,
     overrides: tuple[str, ...],
@@ -40,50 +54,89 @@ def run(
     yes: bool,
     seed: int,
     speed: str | None,
+    jobs: int,
     bus_log: str | None,
     faults: tuple[str, ...],
     operator: str,
+    detach: bool,
     as_json: bool,
 ) -> int:
     """Run RECIPE (a file, or the name of a shipped recipe) and print the run's folder as the last line.
 
-    Ctrl+C stops in a controlled way; a second one stops fast.
+    Ctrl+C stops in a controlled way; a second one stops fast. On a terminal: h holds (lifts, keeps the heat), r
+    releases, a aborts, s or Ctrl+X stops fast.
     """
+    if detach:
+        given = {name for name in context.params if context.get_parameter_source(name) is ParameterSource.COMMANDLINE}
+        if given & {"out", "bus_log"}:
+            raise click.UsageError("--out and --bus-log are the service's to choose: not with --detach")
+        rig = rig_name if "rig_name" in given else ""
+        return _detached(recipe, rig, overrides, seed, time_lapse(speed), yes, operator)
+
     from pathlib import Path
 
     from tester.cli.console import Console
-    from tester.session import CannotStartError, Session, SessionOptions
+    from tester.session import Session, SessionOptions
 
-    lapse, refused = _lapse(speed)
-    if refused:
-        raise click.UsageError(refused)
     options = SessionOptions(
         recipe=recipe,
         rig=rig_name,
         overrides=overrides,
         out=Path(out),
         seed=seed,
-        lapse=lapse,
+        lapse=time_lapse(speed),
         bus_log=Path(bus_log) if bus_log else None,
         operator=operator,
         faults=faults,
+        jobs=jobs,
     )
-    console = Console(as_json=as_json, answer_yes=yes)
+    session = Session(options, Console(as_json=as_json, answer_yes=yes))
+    return carried_out(session.run)
+
+
+def _detached(
+    recipe: str, rig: str, overrides: tuple[str, ...], seed: int, lapse: float | None, yes: bool, operator: str
+) -> int:
+    """Have the service run a recipe; its files are named so that the service finds them from its own folder."""
+    from pathlib import Path
+
+    from tester.cli.service_commands import run_detached
+    from tester.service.commands import RunRecipe
+
+    def found(name: str) -> str:
+        return str(Path(name).resolve()) if Path(name).is_file() else name
+
+    action = RunRecipe(
+        found(recipe), rig=found(rig), overrides=overrides, seed=seed, speed=lapse, yes=yes, operator=operator
+    )
+    return run_detached("", action)
+
+
+def carried_out(work: Callable[[], int]) -> int:
+    """Do the work and return its exit code; what keeps it from beginning goes to stderr."""
+    from tester.session import CannotStartError
+    from tester.store.schema import StoreError
+
     try:
-        return Session(options, console).run()
-    except (FileNotFoundError, CannotStartError) as error:
+        return work()
+    except CannotStartError as error:
+        click.echo(str(error), err=True)
+        return error.code
+    except FileNotFoundError as error:
         raise click.UsageError(str(error)) from error
+    except (StoreError, OSError) as error:
+        raise click.ClickException(str(error)) from error
 
 
-def _lapse(speed: str | None) -> tuple[float | None, str]:
-    """Return the time lapse (None = as fast as it goes) and why a text is none."""
+def time_lapse(speed: str | None) -> float | None:
+    """Return the time lapse, None = as fast as it goes; a text that is none is a usage error."""
     if speed in (None, "max"):
-        return None, ""
+        return None
     assert speed is not None
     try:
         lapse = float(speed)
     except ValueError:
         lapse = float("nan")
     if not 0.0 < lapse < 1e6:
-        return None, f"--speed: expected max or a number above 0, not {speed!r}"
-    return lapse, ""
+        raise click.UsageError(f"--speed: expected max or a number above 0, not {speed!r}")
+    return lapse

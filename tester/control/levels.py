@@ -84,9 +84,8 @@ def motion_levels(v: View) -> int:
         if not r.guard_closed:
             held |= _GUARD
         if r.drives_enabled:
-            # After a scan that came late the drives' data cannot be younger than the scan before it.
-            gap_s = r.now_s - v.state.last_s
-            allowed = b.stale_can_scans * (gap_s if gap_s > v.scan_s else v.scan_s)
+            # Drives answer a scan's SYNC: after a late one their data is as old as that scan was ("scan late" judges).
+            allowed = b.stale_can_scans * max(v.scan_s, r.now_s - v.state.last_s)
             since = r.now_s - (allowed if allowed < b.stale_can_s else b.stale_can_s)
             if not (
                 r.wheel_at_s >= since

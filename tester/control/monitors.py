@@ -13,8 +13,10 @@ from tester.process import Readings
 from tester.rig import InterlocksConfig
 
 RATE_FILTER_S = 1.0
-RATE_WINDOW_S = 2.0
-"""The hub's rate is that of its filtered readings over one to two of these windows: 10 mK/s of noise at 5 Hz [A]."""
+RATE_WINDOW_S = 4.0
+"""The hub's rate is that of its filtered readings over one to two of these windows: 5 mK/s of noise at 5 Hz [A]."""
+RATE_SETTLE_S = 3.0
+"""After the heat went off the sensor and the filter still catch up for this long [A]: no window begins before."""
 BLIND_S = 1.0
 """After a wheel was changed, readings still on their way are not compared with those before, s [A]."""
 RAMP_SHARE = 0.3
@@ -66,12 +68,15 @@ class JacketMonitor:
         self._watch_line(r, heat, setpoint_c, bounds)
 
     def _follow_rate(self, stamp: float, hub_c: float, dt: float) -> None:
-        if not isfinite(self.filtered_c) or not 0.0 < dt < 10.0:
+        if isfinite(self.filtered_c) and 0.0 < dt < 10.0:
+            self.filtered_c += (hub_c - self.filtered_c) * dt / (RATE_FILTER_S + dt)
+        else:
             self.filtered_c = hub_c
             self.marks = (stamp, hub_c, stamp, hub_c)
+        if not stamp - self.off_since_s >= RATE_SETTLE_S:
+            self.marks = (stamp, self.filtered_c, stamp, self.filtered_c)
             self.rate_k_s = 0.0
             return
-        self.filtered_c += (hub_c - self.filtered_c) * dt / (RATE_FILTER_S + dt)
         old_s, old_c, new_s, new_c = self.marks
         if stamp - new_s >= RATE_WINDOW_S:
             self.marks = old_s, old_c, new_s, new_c = (new_s, new_c, stamp, self.filtered_c)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import ExitStack
 from dataclasses import dataclass
 from math import log, pi
 
@@ -26,20 +27,33 @@ from tester.engine.gates import Gates
 from tester.engine.plan_bounds import plan_bounds
 from tester.engine.prompts import Prompts
 from tester.engine.results import StoredResults
+from tester.engine.resume import take_up
 from tester.engine.run import Run
 from tester.engine.sampler import Sampler
+from tester.pace import Pace
 from tester.process import Demand, Readings, Setpoints
 from tester.recipe.plan import Plan
 from tester.rig import LineConfig, RigConfig
 from tester.store.recorder import Recorder
+from tester.store.resume import ResumePoint
 
 
 @dataclass(frozen=True, slots=True)
 class Ports:
-    """The wires to a rig: one CAN bus, and the Modbus lines by their names in the rig file."""
+    """The wires to a rig: one CAN bus, and the Modbus lines by their names in the rig file.
+
+    Real ones come with the clock that stamps what arrives on them (``pace``) and are closed by ``opened``.
+    """
 
     can: CanPort
     lines: dict[str, LinePort]
+    pace: Pace | None = None
+    opened: ExitStack | None = None
+
+    def close(self) -> None:
+        """Give the wires back."""
+        if self.opened is not None:
+            self.opened.close()
 
 
 def build_devices(rig: RigConfig, ports: Ports) -> Devices:
@@ -94,9 +108,15 @@ def loss_ratios(rig: RigConfig) -> tuple[float, float]:
 
 
 def build_run(
-    rig: RigConfig, plan: Plan, ports: Ports, attendant: Attendant, recorder: Recorder, prompts: Prompts
+    rig: RigConfig,
+    plan: Plan,
+    ports: Ports,
+    attendant: Attendant,
+    recorder: Recorder,
+    prompts: Prompts,
+    point: ResumePoint | None = None,
 ) -> Run:
-    """Return a run that is ready to be ticked."""
+    """Return a run that is ready to be ticked; ``point``: where it goes on, with the remaining plan."""
     devices = build_devices(rig, ports)
     load = LoadLoop()
     state = ControlState(Setpoints(), load, HeatLoop(rig.loops.heat.hub_min_c))
@@ -116,6 +136,9 @@ def build_run(
         ambient_c=rig.ambient_c,
         wheel_changed=control.view.wheel_changed,
     )
-    executor = Executor(plan, StoredResults(recorder), hardware=not rig.simulated)
+    results = StoredResults(recorder)
+    executor = Executor(plan, results, hardware=not rig.simulated)
+    if point is not None:
+        take_up(executor, results, point)
     engine = Engine(devices, control, executor, ctx, Sampler(recorder))
     return Run(Connector(devices, rig), engine)

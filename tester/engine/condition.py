@@ -51,6 +51,18 @@ class ConditionEnd:
 class Results(Protocol):
     """Where repeats and conditions go: reduction and store behind one door."""
 
+    def repeats_done(self, step: ConditionStep) -> int:
+        """Return how many repeats of a condition an earlier stretch of the run committed."""
+        ...
+
+    def over(self, step: ConditionStep) -> ConditionEnd | None:
+        """Return how the last of these ended the condition; None where it goes on."""
+        ...
+
+    def attempt(self, step: ConditionStep, repeat: int) -> int:
+        """Return the number of the next attempt at a repeat, from 1."""
+        ...
+
     def begin_repeat(self, ctx: Context, step: ConditionStep, repeat: int, attempt: int) -> int:
         """Open a repeat; return the key that its samples carry."""
         ...
@@ -85,8 +97,10 @@ class MeasureCondition:
         self.before: Sequence | None = None
         self.soak: SoakTo | None = None
         self.soaked = False
-        self.repeat = 0
-        self.attempt = 1
+        self.done_before = results.repeats_done(step)
+        self.repeat = self.done_before
+        self.voided = 0
+        """Attempts at the present repeat that a hold cut off."""
         self.key = 0
         self.measuring: MeasureRepeat | None = None
         self.outcome: RepeatOutcome | None = None
@@ -102,7 +116,7 @@ class MeasureCondition:
             ctx.journal.event(ctx.now, "repeat", f"repeat {self.repeat}: void, held by the operator")
             self.measuring = None
             self.repeat -= 1
-            self.attempt += 1
+            self.voided += 1
         self.before = self.soak = None
         self.soaked = False
 
@@ -127,6 +141,9 @@ class MeasureCondition:
     def _soak(self, ctx: Context) -> bool:
         step, sp = self.condition, self.condition.setpoint
         if self.before is None or self.soak is None:
+            over = self.results.over(step)
+            if over is not None:
+                return self._close(ctx, over)
             pulsed = abs(sp.slip_velocity_m_s) > 1e-9 or sp.sideslip_deg != 0.0 or sp.camber_deg != 0.0
             if not isfinite(self.offset_k):
                 self.offset_k = ctx.rig.loops.heat.rolling_offset_k
@@ -134,7 +151,7 @@ class MeasureCondition:
             within = soak_within_k(step.soak, sp.temperature_c, ctx.ambient_c, step.temperature_band_k)
             self.soak = SoakTo(target, within, step.soak.for_s, step.soak.at_most_s)
             # A condition that goes on after a hold has had its check.
-            check = wear_check(step, sp.wheel_speed_m_s) if not self.repeat and self.attempt == 1 else ()
+            check = wear_check(step, sp.wheel_speed_m_s) if self.repeat == self.done_before and not self.voided else ()
             self.before = Sequence(*check, roll(sp.wheel_speed_m_s, sp.load_n))
         ctx.demand.surface_c = self.soak.target_c
         ctx.demand.freeze_heat = False
@@ -153,8 +170,9 @@ class MeasureCondition:
 
     def _begin(self, ctx: Context) -> None:
         self.repeat += 1
-        ctx.attendant.begin_repeat(self.condition.row, self.repeat, self.attempt)
-        self.key = self.results.begin_repeat(ctx, self.condition, self.repeat, self.attempt)
+        attempt = self.results.attempt(self.condition, self.repeat) + self.voided
+        ctx.attendant.begin_repeat(self.condition.row, self.repeat, attempt)
+        self.key = self.results.begin_repeat(ctx, self.condition, self.repeat, attempt)
         ctx.repeat_key = self.key
         self.measuring = MeasureRepeat(self.condition, self.reference_tare, self.offset_k)
         ctx.progress.revolutions_wanted = self.condition.window.revolutions or 0.0
@@ -172,7 +190,7 @@ class MeasureCondition:
         if not self.outcome.ticket.done:
             return False
         measured, self.measuring, self.outcome = self.measuring, None, None
-        self.attempt = 1
+        self.voided = 0
         if measured.ending is Ending.ZERO_DRIFT:
             self.failed = measured.detail
         if measured.ending in (Ending.ZERO_DRIFT, Ending.CANNOT_HOLD, Ending.NOT_REACHED):

@@ -22,6 +22,10 @@ class Attendant(Protocol):
         """Mount a new wheel of ``compound``."""
         ...
 
+    def remount(self, specimen: int, wheel: int, compound: str, diameter_mm: float, sliding_m: float) -> None:
+        """Put the wheel of an interrupted run back, as worn as it was (mm, m)."""
+        ...
+
     def begin_repeat(self, condition: int, repeat: int, attempt: int) -> None:
         """Mark the start of a repeat (keys of the simulator's random streams)."""
         ...
@@ -32,6 +36,9 @@ class Nobody:
 
     def install(self, specimen: int, wheel: int, compound: str, *, new_specimen: bool) -> None:
         """Do nothing: the prompt has been answered."""
+
+    def remount(self, specimen: int, wheel: int, compound: str, diameter_mm: float, sliding_m: float) -> None:
+        """Do nothing: the wheel is still on."""
 
     def begin_repeat(self, condition: int, repeat: int, attempt: int) -> None:
         """Do nothing."""
@@ -99,6 +106,9 @@ class Progress:
     revolutions: float = 0.0
     revolutions_wanted: float = 0.0
     burst: int = 0
+    part: int = 1
+    """Which of the run's parts this is, and how many there are (tester.campaign)."""
+    parts: int = 1
 
 
 def nothing_to_tell(now: float) -> None:

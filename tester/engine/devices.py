@@ -65,18 +65,18 @@ class Devices:
     manual_camber_deg: float = 0.0
     news: bool = True
     """A drive's state, an input or an emergency is new in this scan."""
-    _goal: Goal = Goal.DISABLED
-    _wanted: Goal = Goal.DISABLED
     _withheld: bool = False
-    _last_angle_s: float = NEVER
-    _lines: tuple[tuple[LinePort, ModbusLink, ForeseeingPort | None], ...] = field(init=False)
-    _foreseeing: ForeseeingPort | None = field(init=False)
     lost: str = ""
     """Why a wire is gone. It is never used again: what waits in its queues must not be sent later."""
     _can_alive: bool = True
     _cell_counts: tuple[int, int, int, int] = (0, 0, 0, 0)
     _surface_counts: int = 0
     _inspector: Inspector = field(init=False)
+    _goal: Goal = Goal.DISABLED
+    _press_goal: Goal = Goal.DISABLED
+    _last_angle_s: float = NEVER
+    _lines: tuple[tuple[LinePort, ModbusLink, ForeseeingPort | None], ...] = field(init=False)
+    _foreseeing: ForeseeingPort | None = field(init=False)
 
     def __post_init__(self) -> None:
         """Fix the drives' order, and see which lines are simulated ones."""
@@ -107,15 +107,14 @@ class Devices:
             if frames and self._can_alive:
                 self.master.feed(frames, now)
         for port, link, foreseen in self._lines:
-            if foreseen is not None and foreseen.arrives_s > now:
-                continue
-            try:
-                chunks = port.read(now)
-            except BusLost as error:
-                self._lose_line(link, error, now)
-                break
-            if chunks:
-                link.feed(chunks, now)
+            if foreseen is None or foreseen.arrives_s <= now:
+                try:
+                    chunks = port.read(now)
+                except BusLost as error:
+                    self._lose_line(link, error, now)
+                    continue
+                if chunks:
+                    link.feed(chunks, now)
 
     def _lose_can(self, error: BusLost) -> None:
         self.lost = self.lost or f"bus lost: {error}"
@@ -124,8 +123,9 @@ class Devices:
     def _lose_line(self, link: ModbusLink, error: BusLost, now: float) -> None:
         """Go on without a line: what it carried is not valid any more."""
         self.lost = self.lost or f"line lost: {error}"
-        self.lines = [entry for entry in self.lines if entry[1] is not link]
-        self._foresee()
+        self._lines = tuple(entry for entry in self._lines if entry[1] is not link)
+        if link is self.cell.link:
+            self._foreseeing = None
         for station in link.stations:
             station.owner.lost(now)
 
@@ -155,13 +155,11 @@ class Devices:
     def transmit_lines(self, now: float, *, scan: bool = True) -> None:
         """Send what is due on the Modbus lines alone."""
         for port, link, _ in self._lines:
-            if now < link.wants_s:
-                continue
-            try:
-                link.service(port, now, scan=scan)
-            except BusLost as error:
-                self._lose_line(link, error, now)
-                break
+            if now >= link.wants_s:
+                try:
+                    link.service(port, now, scan=scan)
+                except BusLost as error:
+                    self._lose_line(link, error, now)
 
     def fill(self, r: Readings, now: float, diameter_mm: float) -> None:
         """Bring the process image up to date."""
@@ -253,12 +251,13 @@ class Devices:
         axes = self.axes
         wanted = _ENABLED if out.enable else _DISABLED
         goal = _FREE if out.power_off else _QUICK_STOP if out.quick_stop else wanted
+        # A quick-stopped press would stay in contact: it keeps its own retraction, as long as it is to have power.
+        press_goal = wanted if goal is _QUICK_STOP else goal
         wheel, belt, press, sideslip, camber = axes.wheel, axes.belt, axes.press, axes.sideslip, axes.camber
-        if goal is not self._goal or wanted is not self._wanted or self.news:
-            self._goal, self._wanted = goal, wanted
+        if goal is not self._goal or press_goal is not self._press_goal or self.news:
+            self._goal, self._press_goal = goal, press_goal
             for drive in self.drives:
-                # A quick-stopped press would stay in contact: it keeps its own retraction.
-                drive.goal = wanted if goal is _QUICK_STOP and drive is press else goal
+                drive.goal = press_goal if drive is press else goal
         if out.wheel_rad_s != wheel.aimed:
             wheel.aim(out.wheel_rad_s)
         if out.belt_m_s != belt.aimed:

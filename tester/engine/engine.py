@@ -76,7 +76,8 @@ class Engine:
         events = control.state.events
         if events:
             self._journal()  # commands given since the last scan: before what the executor says in this one
-        self._journal_emergencies()
+        if devices.news:
+            self._journal_emergencies()
         if control.state.mode is _RUN:
             ctx.gate = ctx.gates.update(readings, ctx.dt)
             self.executor.step(ctx)
@@ -107,8 +108,6 @@ class Engine:
 
     def _journal_emergencies(self) -> None:
         """Queue what the drives reported by themselves, before the trip that it leads to."""
-        if not self.devices.news:
-            return
         for drive in self.devices.drives:
             if drive.emergency_log:
                 for emergency in drive.take_emergencies():

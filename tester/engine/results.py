@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from math import isfinite
 
 from tester.analysis.reduce import bursts_of, reduce_repeat, without_value
 from tester.analysis.repeats import combine_repeats
@@ -15,6 +16,7 @@ from tester.recipe.plan import ConditionStep, Plan
 from tester.rig import RigConfig
 from tester.store.recorder import Recorder
 from tester.store.records import ConditionInfo
+from tester.store.resume import ConditionSoFar
 
 REPEAT_STATUS: dict[Ending, RepeatStatus] = {
     Ending.CANNOT_HOLD: RepeatStatus.CANNOT_HOLD,
@@ -37,11 +39,36 @@ class StoredResults:
         """``recorder``: the run's store."""
         self.recorder = recorder
         self.repeats: list[RepeatResult] = []
+        self.earlier: dict[int, ConditionSoFar] = {}
+        """What earlier stretches of an interrupted run committed of conditions that were not over."""
+
+    def repeats_done(self, step: ConditionStep) -> int:
+        """Return how many repeats of a condition an earlier stretch of the run committed."""
+        earlier = self.earlier.get(step.condition)
+        return len(earlier.results) if earlier is not None else 0
+
+    def over(self, step: ConditionStep) -> ConditionEnd | None:
+        """Return how the last of these ended the condition; None where it goes on."""
+        earlier = self.earlier.get(step.condition)
+        if earlier is None:
+            return None
+        ending = next((e for e, status in REPEAT_STATUS.items() if status is earlier.over), None)
+        if ending is None and len(earlier.results) < step.repeats:
+            return None
+        self.repeats = list(earlier.results)
+        detail = earlier.results[-1].reason if ending is not None else ""
+        return ConditionEnd(ending, detail, earlier.warming_k_s, earlier.holdable_band_k)
+
+    def attempt(self, step: ConditionStep, repeat: int) -> int:
+        """Return the number of the next attempt at a repeat, from 1."""
+        earlier = self.earlier.get(step.condition)
+        return 1 + (earlier.attempts.get(repeat, 0) if earlier is not None else 0)
 
     def begin_repeat(self, ctx: Context, step: ConditionStep, repeat: int, attempt: int) -> int:
         """Open a repeat; return the key that its samples carry."""
-        if repeat == 1 and attempt == 1:
-            self.repeats = []
+        committed = self.repeats_done(step)
+        if repeat == committed + 1:
+            self.repeats = list(self.earlier[step.condition].results) if committed else []
             self.recorder.begin_condition(step.condition, ctx.now)
         return self.recorder.begin_repeat(step.condition, repeat, attempt, ctx.now, ctx.wheel.wheel)
 
@@ -60,6 +87,8 @@ class StoredResults:
         self.repeats.append(result)
         wheel = ctx.wheel
         self.recorder.wheel_state(wheel.wheel, wheel.diameter_mm, wheel.sliding_m, ctx.now)
+        if isfinite(measured.warming_k_s):
+            self.recorder.condition_rate(step.condition, measured.warming_k_s, measured.holdable_band_k)
         ticket = self.recorder.commit_repeat(key, result, bursts_of(blocks))
         return RepeatOutcome(result.status, _line(result), ticket)
 

@@ -45,6 +45,11 @@ class Run:
         self._releasing = False
 
     @property
+    def connected(self) -> bool:
+        """Every device has answered and was read back; the recipe is under way, or over."""
+        return self._started
+
+    @property
     def waiting(self) -> bool:
         """A prompt waits for its answer."""
         return self.engine.ctx.prompts.waiting is not None and not self.engine.control.state.stop_requested

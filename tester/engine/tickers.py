@@ -3,12 +3,20 @@
 from __future__ import annotations
 
 import gc
-from collections.abc import Callable
+import sys
+from collections.abc import Callable, Generator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from math import ceil
 from typing import Protocol
 
 from tester import clock
+from tester.pace import Pace
+
+POLL_S = 0.02
+"""Period of ``poll``, s of wall time: a STOP from a screen is heard within it."""
+LEAVE_S = 0.002
+"""No poll begins this shortly before a tick is due, s."""
 
 
 class Ticked(Protocol):
@@ -51,6 +59,12 @@ class TickStatistics:
     overruns: int = 0
     """Ticks that came later than their successor was due."""
 
+    def note(self, late_s: float) -> None:
+        """Count a tick that came this late; one that something urgent brought forward is not late."""
+        self.ticks += 1
+        if late_s > self.late_max_s:
+            self.late_max_s = late_s
+
 
 def next_tick(now: float, wanted: float, urgent: float) -> float:
     """Return the next tick's time: the earlier of both, on a grid of microseconds, and always after ``now``.
@@ -65,8 +79,8 @@ def next_tick(now: float, wanted: float, urgent: float) -> float:
 def run_simulated(engine: Ticked, world: World, *, lapse: float | None, poll: Callable[[float], None]) -> float:
     """Run to the end in simulated time; return the rig seconds.
 
-    ``lapse``: rig seconds per second of wall time, or None for as fast as it goes. ``poll`` is called about ten times
-    a second of wall time (display, keys); it must not block for long.
+    ``lapse``: rig seconds per second of wall time, or None for as fast as it goes. ``poll`` is called about every
+    ``POLL_S`` of wall time (display, commands), between two ticks as well; it must not block for long.
     """
     now = 0.0
     origin = clock.monotonic()
@@ -77,45 +91,93 @@ def run_simulated(engine: Ticked, world: World, *, lapse: float | None, poll: Ca
             wanted = engine.tick(now)
             later = next_tick(now, wanted, world.urgent_s)
             if lapse is not None:
-                clock.sleep_until(origin + later / lapse)
+                poll_due = _wait(origin + later / lapse, now, poll, poll_due)
             wall = clock.monotonic()
             if wall >= poll_due:
                 poll(now)
-                poll_due = wall + 0.1
-            while engine.waiting:
-                poll(now)
-                clock.sleep_until(clock.monotonic() + 0.02)
+                poll_due = wall + POLL_S
+            if engine.waiting:
+                asked = clock.monotonic()
+                while engine.waiting:
+                    poll(now)
+                    clock.sleep_until(clock.monotonic() + POLL_S)
+                origin += clock.monotonic() - asked  # a person's time is not made up for
             now = later
     return now
 
 
 def run_real_time(
-    engine: Ticked, world: World | None, *, poll: Callable[[float], None], statistics: TickStatistics
+    engine: Ticked,
+    world: World | None,
+    *,
+    poll: Callable[[float], None],
+    statistics: TickStatistics,
+    pace: Pace | None = None,
 ) -> float:
     """Run to the end in real time on absolute deadlines; return the seconds it took.
 
-    ``world``: a simulated rig in the same process, or None when hardware is on the wire.
+    ``world``: a simulated rig in the same process, or None when hardware is on the wire. ``pace``: the clock that
+    stamps what arrives, and what ends a wait early; by default one that starts now.
     """
-    origin = clock.monotonic()
-    due = 0.0
-    poll_due = 0.0
-    with collector_at_rest():
+    pace = pace or Pace()
+    now = due = poll_due = pace.now()
+    with collector_at_rest(), scan_first():
         while not engine.finished:
-            clock.sleep_until(origin + due)
-            now = clock.monotonic() - origin
-            statistics.ticks += 1
-            statistics.late_max_s = max(statistics.late_max_s, now - due)
+            poll_due = _wait_paced(pace, due, now, poll, poll_due)
+            now = pace.now()
+            statistics.note(now - due)
             if world is not None:
                 world.advance(now)
             due = engine.tick(now)
             if world is not None:
                 due = min(due, world.urgent_s)
-            if due < clock.monotonic() - origin:
+            wall = pace.now()
+            if due < wall:
                 statistics.overruns += 1
-            if now >= poll_due:
+            if wall >= poll_due:
                 poll(now)
-                poll_due = now + 0.1
-    return clock.monotonic() - origin
+                poll_due = wall + POLL_S
+    return pace.now()
+
+
+SWITCH_S = 0.0005
+"""How long another thread (recorder, reception) may keep the interpreter from a scan that is due, s (Python: 5 ms)."""
+
+
+@contextmanager
+def scan_first() -> Generator[None, None, None]:
+    """Let the scan have the interpreter soon after it asks for it."""
+    before = sys.getswitchinterval()
+    sys.setswitchinterval(SWITCH_S)
+    try:
+        yield
+    finally:
+        sys.setswitchinterval(before)
+
+
+def _wait(deadline: float, now: float, poll: Callable[[float], None], poll_due: float) -> float:
+    """Wait until a deadline of the wall clock, polling meanwhile; return when the next poll is due."""
+    while True:
+        wall = clock.monotonic()
+        if wall >= poll_due and deadline - wall > LEAVE_S:
+            poll(now)
+            poll_due = wall + POLL_S
+        if max(poll_due, wall) + LEAVE_S >= deadline:
+            clock.sleep_until(deadline)
+            return poll_due
+        clock.sleep_until(poll_due)
+
+
+def _wait_paced(pace: Pace, due: float, now: float, poll: Callable[[float], None], poll_due: float) -> float:
+    """Wait until ``due`` or something urgent, polling meanwhile; return when the next poll is due."""
+    while True:
+        at = pace.now()
+        if at >= poll_due and due - at > LEAVE_S:
+            poll(now)
+            poll_due = at + POLL_S
+        last = max(poll_due, at) + LEAVE_S >= due
+        if pace.wait_until(due if last else poll_due) or last:
+            return poll_due
 
 
 class collector_at_rest:  # noqa: N801 - reads as a statement

@@ -5,7 +5,7 @@ from __future__ import annotations
 from tester.engine.context import Context, WheelLife
 from tester.engine.moves import Ask, Lift, Load, Power, Sequence, TakeTare, Turn, speeds_reached
 from tester.engine.thermal_steps import Straighten
-from tester.recipe.plan import Install, PreGrind
+from tester.recipe.plan import Install, PreGrind, WornState
 from tester.store.records import WheelInfo
 
 REFERENCE_TARE_S = 2.0
@@ -21,7 +21,10 @@ class InstallWheel:
         self.reference = reference_tare
         self.before = Sequence(Lift(), Turn(0.0, 0.0), Power(False))
         note = f" ({step.note})" if step.note else ""
-        self.ask = Ask(f"install wheel {step.wheel}: {step.compound}{note}")
+        text = f"install wheel {step.wheel}: {step.compound}{note}"
+        if step.worn is not None:
+            text = f"the run goes on with wheel {step.wheel}: {step.compound}{note}, mounted as it was"
+        self.ask = Ask(text)
         self.standing = False
         self.mounted = False
         self.tare: TakeTare | None = None
@@ -48,7 +51,8 @@ class InstallWheel:
         return self.after.step(ctx)
 
     def _begin_tare(self, ctx: Context) -> None:
-        self.reference.clear()
+        if self.install.worn is None:
+            self.reference.clear()
         limits = ctx.rig.interlocks
         self.tare = TakeTare(REFERENCE_TARE_S, self.reference, limits.zero_warn_n, limits.zero_stop_n)
         self.after = Sequence(Power(True), Straighten(), self.tare)
@@ -60,6 +64,9 @@ class InstallWheel:
 
     def _mount(self, ctx: Context) -> None:
         step, old = self.install, ctx.wheel
+        if step.worn is not None:
+            self._remount(ctx, step.worn)
+            return
         new_specimen = (old.specimen, old.replicate) != (step.specimen, step.replicate)
         ctx.attendant.install(step.specimen, step.wheel, step.compound, new_specimen=new_specimen)
         geometry = ctx.rig.geometry
@@ -86,6 +93,23 @@ class InstallWheel:
             updated_s=ctx.now,
         )
         ctx.journal.wheel_installed(record)
+
+    def _remount(self, ctx: Context, worn: WornState) -> None:
+        """Go on with a wheel as the store knows it: its record, its first tare and its number stay."""
+        step, geometry = self.install, ctx.rig.geometry
+        ctx.attendant.remount(step.specimen, step.wheel, step.compound, worn.diameter_mm, worn.sliding_m)
+        ctx.wheel = WheelLife(
+            specimen=step.specimen,
+            replicate=step.replicate,
+            wheel=step.wheel,
+            compound=step.compound,
+            installed_mm=geometry.wheel_diameter_mm,
+            width_mm=geometry.wheel_width_mm,
+            loss_mm=geometry.wheel_diameter_mm - worn.diameter_mm,
+            sliding_m=worn.sliding_m,
+        )
+        ctx.contact.forget_contact()
+        ctx.readings.wheel_angle_rev = 0.0
 
 
 class Grind:
@@ -140,4 +164,8 @@ class PreGrindStep:
     def step(self, ctx: Context) -> bool:
         """Done when ground and lifted."""
         ctx.demand.surface_c = float("nan")
-        return self.moves.step(ctx)
+        if not self.moves.step(ctx):
+            return False
+        wheel = ctx.wheel
+        ctx.journal.wheel_ground(wheel.wheel, wheel.diameter_mm, wheel.sliding_m, ctx.now)
+        return True

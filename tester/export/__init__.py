@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from tester.export.cells import encode
 from tester.export.manifest import MANIFEST, manifest_text
 from tester.export.results import RunResults, TableRow, results_of
 from tester.export.tables import appendix_rows, condition_rows, repeat_rows, sample_rows
+from tester.store.files import write_whole
 from tester.store.reader import RunReader
 
 __all__ = [
@@ -45,16 +46,6 @@ def samples(reader: RunReader) -> Iterator[bytes]:
     return encode(sample_rows(reader))
 
 
-def _write(path: Path, fill: Callable[[Path], None]) -> None:
-    """Let ``fill`` write a file beside ``path``, then put it in its place: no half file under the final name."""
-    part = path.with_name(f"{path.name}.part")
-    try:
-        fill(part)
-        part.replace(path)
-    finally:
-        part.unlink(missing_ok=True)
-
-
 def write_file(path: Path, chunks: Iterable[bytes]) -> None:
     """Write ``chunks`` to ``path``, whole or not at all; raises OSError."""
 
@@ -62,7 +53,7 @@ def write_file(path: Path, chunks: Iterable[bytes]) -> None:
         with part.open("wb") as file:
             file.writelines(chunks)
 
-    _write(path, fill)
+    write_whole(path, fill)
 
 
 def write_parquet_file(path: Path, reader: RunReader) -> None:
@@ -72,7 +63,7 @@ def write_parquet_file(path: Path, reader: RunReader) -> None:
     def fill(part: Path) -> None:
         write_parquet(reader, part)
 
-    _write(path, fill)
+    write_whole(path, fill)
 
 
 def write_all(run_dir: Path) -> list[TableRow]:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 MANIFEST = "manifest.json"
 
-_LEFT_OUT = (".part", "-wal", "-shm", "-journal")
+_LEFT_OUT = (".part", "-wal", "-shm", "-journal", ".lock")
 """Ends of the names of files that do not last."""
 
 

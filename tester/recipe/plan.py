@@ -77,8 +77,19 @@ class Soak:
 
 
 @dataclass(frozen=True, slots=True)
+class WornState:
+    """What a wheel that goes on after an interruption was like: diameter in mm, sliding distance in m."""
+
+    diameter_mm: float
+    sliding_m: float
+
+
+@dataclass(frozen=True, slots=True)
 class Install:
-    """A person mounts a wheel. ``wheel`` counts from 1 in the plan, ``replicate`` from 1 in a specimen."""
+    """A person mounts a wheel. ``wheel`` counts from 1 in the plan, ``replicate`` from 1 in a specimen.
+
+    ``worn``: the wheel is still on, as an interruption left it; None for a new one.
+    """
 
     kind: ClassVar[Literal["install"]] = "install"
     index: int
@@ -87,6 +98,7 @@ class Install:
     compound: str
     note: str = ""
     replicate: int = 1
+    worn: WornState | None = None
 
 
 @dataclass(frozen=True, slots=True)

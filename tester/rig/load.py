@@ -39,6 +39,11 @@ def load_rig(name_or_path: str | Path = SIMULATED, overrides: Sequence[str] = ()
         raise InvalidSource([_attributed(problem, texts) for problem in error.problems]) from error
 
 
+def load_rig_text(text: str, name: str = "rig.yaml") -> RigConfig:
+    """Return the rig of a file's text, such as a run has stored; raises InvalidSource with every problem."""
+    return _checked(load_tree(text, name))
+
+
 def _checked(tree: Tree) -> RigConfig:
     """Return a tree as a rig whose sections fit together; changes the tree."""
     _complete(tree)

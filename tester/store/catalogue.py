@@ -1,28 +1,19 @@
-"""The runs in a folder: finding one by its name, listing all."""
+"""The runs in a folder: finding one by its name, naming all, telling those that were cut off."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
 
-from tester.store.reader import DATABASE, RunReader
-from tester.store.records import StoredRun
+from tester.lock import RUN_LOCK, Holder, user_of
+from tester.store.reader import DATABASE
 from tester.store.schema import StoreError
 
 RUNS = Path("runs")
 """Where runs are kept unless told: under the working directory."""
 
-
-@dataclass(frozen=True, slots=True)
-class Listing:
-    """One run folder: its name, the run as far as it can be read, repeats committed, conditions planned."""
-
-    name: str
-    run: StoredRun | None
-    repeats: int
-    conditions: int
-    problem: str = ""
+MANIFEST = "manifest.json"
+"""Written at a run's end, whatever the end: a run without one was cut off, or is under way."""
 
 
 def find_run(name: str, under: Path = RUNS) -> Path:
@@ -38,13 +29,18 @@ def find_run(name: str, under: Path = RUNS) -> Path:
     raise StoreError(f"no run {name}: neither a run folder nor a name under {under}")
 
 
-def list_runs(under: Path = RUNS) -> Iterator[Listing]:
-    """Yield the runs under a folder, by name (which begins with the date); none where there is no folder."""
+def run_folders(under: Path = RUNS) -> Iterator[Path]:
+    """Yield the folders of runs under a folder, by name (which begins with the date); none where there is no folder."""
     for folder in sorted(under.iterdir()) if under.is_dir() else ():
-        if not (folder / DATABASE).is_file():
-            continue
-        try:
-            with RunReader(folder) as reader:
-                yield Listing(folder.name, reader.run(), len(reader.repeats()), len(reader.conditions()))
-        except StoreError as error:
-            yield Listing(folder.name, None, 0, 0, str(error))
+        if (folder / DATABASE).is_file():
+            yield folder
+
+
+def under_way(folder: Path) -> Holder | None:
+    """Return who works on a run at present, None where nobody does."""
+    return user_of(folder / RUN_LOCK)
+
+
+def cut_off(under: Path) -> list[Path]:
+    """Return the runs under a folder that ended without an end: the process died, or the power failed."""
+    return [f for f in run_folders(under) if not (f / MANIFEST).is_file() and under_way(f) is None]

@@ -7,25 +7,35 @@ from __future__ import annotations
 
 import sqlite3
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import closing
 from dataclasses import dataclass, fields
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from types import TracebackType
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Literal, TypeVar
 
 from tester.analysis.results import Burst, ConditionStatus, RepeatResult, RepeatStatus
 from tester.store.records import (
     NAN,
+    BusStatistic,
+    Calibration,
+    Change,
     ConditionInfo,
     Event,
+    Parameter,
     RunInfo,
+    SessionInfo,
     SpecimenInfo,
     StoredCondition,
+    StoredPrompt,
     StoredRepeat,
     StoredRun,
+    StoredTare,
+    StoredTrip,
     WheelInfo,
 )
 from tester.store.sample_blocks import unpack, unpack_array
-from tester.store.schema import VERSION, StoreError, version_of
+from tester.store.schema import VERSION, StoreError, migrate, version_of
 
 if TYPE_CHECKING:
     from array import array
@@ -83,6 +93,22 @@ def _record(record: type[T], row: Row, **given: object) -> T:
     return build(**values, **given)
 
 
+def _read_only(path: Path) -> sqlite3.Connection:
+    """Return a connection that reads; raises sqlite3.Error."""
+    uri = f"{path.absolute().as_uri()}?mode=ro"
+    connection = sqlite3.connect(uri, uri=True)
+    try:
+        connection.execute("SELECT count(*) FROM sqlite_master")
+    except sqlite3.OperationalError:
+        # A power cut at the very beginning or end of a run leaves a rollback journal, which a reader may not play back.
+        connection.close()
+        with closing(sqlite3.connect(path)) as repairing:
+            repairing.execute("SELECT count(*) FROM sqlite_master")
+        connection = sqlite3.connect(uri, uri=True)
+    connection.row_factory = sqlite3.Row
+    return connection
+
+
 class RunReader:
     """A run's record, from its folder or its ``run.db``; use in a ``with`` block or close it.
 
@@ -92,20 +118,32 @@ class RunReader:
     def __init__(self, path: Path) -> None:
         """Open the record for reading."""
         self.path = path / DATABASE if path.is_dir() else path
+        self._copy: TemporaryDirectory[str] | None = None
         if not self.path.is_file():
             raise StoreError(f"no run in {path}")
         try:
-            self._connection = sqlite3.connect(f"{self.path.absolute().as_uri()}?mode=ro", uri=True)
-            self._connection.row_factory = sqlite3.Row
-            version = version_of(self._connection)
+            self._connection = self._opened()
         except sqlite3.Error as error:
             raise StoreError(f"{self.path} cannot be read: {error}") from error
+
+    def _opened(self) -> sqlite3.Connection:
+        connection = _read_only(self.path)
+        try:
+            version = version_of(connection)
         except StoreError as error:
-            self._connection.close()
+            connection.close()
             raise StoreError(f"{self.path}: {error}") from error
-        if version != VERSION:
-            self._connection.close()
-            raise StoreError(f"{self.path} has schema {version}, this version reads {VERSION}")
+        if version == VERSION:
+            return connection
+        if version == 0:
+            connection.close()
+            raise StoreError(f"{self.path}: the run was not begun")
+        # An older record stays as it is (its manifest holds); a copy is brought to the present schema.
+        self._copy = TemporaryDirectory(prefix="tester-", ignore_cleanup_errors=True)
+        with closing(connection), closing(sqlite3.connect(Path(self._copy.name) / DATABASE)) as present:
+            connection.backup(present)
+            migrate(present)
+        return _read_only(Path(self._copy.name) / DATABASE)
 
     def __enter__(self) -> RunReader:
         """Return the reader."""
@@ -120,6 +158,8 @@ class RunReader:
     def close(self) -> None:
         """Let go of the file."""
         self._connection.close()
+        if self._copy is not None:
+            self._copy.cleanup()
 
     def _rows(self, sql: str, values: tuple[Cell, ...] = ()) -> Iterator[Row]:
         try:
@@ -137,6 +177,7 @@ class RunReader:
                 row,
                 simulated=bool(row["simulated"]),
                 seed=seed if isinstance(seed, int) else None,
+                calibration=tuple(self.calibration()),
                 metadata=self._texts("metadata", "key", "value"),
                 versions=self._texts("version", "component", "version"),
             )
@@ -195,6 +236,55 @@ class RunReader:
         """Yield the journal in order."""
         for row in self._rows("SELECT * FROM event ORDER BY sequence"):
             yield _record(Event, row)
+
+    def sessions(self) -> list[SessionInfo]:
+        """Return the stretches in which the run was worked on, a process each."""
+        return [_record(SessionInfo, row) for row in self._rows("SELECT * FROM session ORDER BY session")]
+
+    def changes(self) -> list[Change]:
+        """Return what was changed between the stretches, and why."""
+        return [_record(Change, row) for row in self._rows("SELECT * FROM change ORDER BY id")]
+
+    def calibration(self, session: int | None = None) -> list[Calibration]:
+        """Return the calibration in use at the end, or from a stretch on in which it was changed."""
+        which = "(SELECT max(session) FROM calibration)" if session is None else "?"
+        values = () if session is None else (session,)
+        rows = self._rows(f"SELECT * FROM calibration WHERE session = {which} ORDER BY id", values)
+        return [_record(Calibration, row) for row in rows]
+
+    def tares(self) -> Iterator[StoredTare]:
+        """Yield the zeros of the load cell in order."""
+        for row in self._rows("SELECT * FROM tare ORDER BY id"):
+            yield _record(StoredTare, row)
+
+    def prompts(self) -> Iterator[StoredPrompt]:
+        """Yield the questions to people with their answers, in order."""
+        for row in self._rows("SELECT * FROM prompt ORDER BY id"):
+            yield _record(StoredPrompt, row)
+
+    def trips(self) -> Iterator[StoredTrip]:
+        """Yield the trips in order."""
+        for row in self._rows("SELECT * FROM trip ORDER BY id"):
+            yield _record(StoredTrip, row)
+
+    def parameters(self) -> Iterator[Parameter]:
+        """Yield what was read back from the devices, in order."""
+        for row in self._rows("SELECT * FROM device_parameter ORDER BY id"):
+            yield _record(Parameter, row)
+
+    def bus_statistics(self) -> Iterator[BusStatistic]:
+        """Yield the counters of the buses in order."""
+        for row in self._rows("SELECT * FROM bus_statistic ORDER BY id"):
+            yield _record(BusStatistic, row)
+
+    def integrity_problems(self) -> list[str]:
+        """Return what SQLite's own check finds wrong in the file; none in a sound one."""
+        found = [_text(row, "integrity_check") for row in self._rows("PRAGMA integrity_check")]
+        return [] if found == ["ok"] else found
+
+    def count(self, table: Literal["repeat", "condition", "sample_block", "event"], where: str = "1") -> int:
+        """Return how many rows a table has."""
+        return next(_whole(row, "n") for row in self._rows(f"SELECT count(*) AS n FROM {table} WHERE {where}"))
 
     def sample_columns(self) -> tuple[str, ...]:
         """Return the names of the samples' columns."""

@@ -7,11 +7,20 @@ are for one thread, the scan's.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from hashlib import sha256
 
 from tester.analysis.results import Burst, ConditionStatus, RepeatResult, RepeatStatus
-from tester.store.records import NAN, ConditionInfo, RunInfo, SpecimenInfo, WheelInfo
+from tester.store.records import (
+    NAN,
+    Calibration,
+    Change,
+    ConditionInfo,
+    RunInfo,
+    SessionInfo,
+    SpecimenInfo,
+    WheelInfo,
+)
 
 Value = str | int | float | None
 Statement = tuple[str, tuple[Value, ...]]
@@ -23,6 +32,8 @@ _RESULT_FIELDS = tuple(field.name for field in fields(RepeatResult))
 _BURST_FIELDS = tuple(field.name for field in fields(Burst))
 _CONDITION_FIELDS = tuple(field.name for field in fields(ConditionInfo))
 _WHEEL_FIELDS = tuple(field.name for field in fields(WheelInfo))
+_SESSION_FIELDS = tuple(field.name for field in fields(SessionInfo))
+_CHANGE_FIELDS = tuple(field.name for field in fields(Change))
 
 
 class Ticket:
@@ -56,8 +67,28 @@ def insert(table: str, values: Mapping[str, Value], verb: str = "INSERT") -> Sta
     return f"{verb} INTO {table} ({', '.join(values)}) VALUES ({marks})", tuple(values.values())
 
 
+def text_sha256(text: str) -> str:
+    """Return the SHA-256 of a text's UTF-8 bytes, hexadecimal."""
+    return sha256(text.encode()).hexdigest()
+
+
+def calibration_sha256(calibration: Iterable[Calibration]) -> str:
+    """Return the SHA-256 by which two calibrations are compared."""
+    return text_sha256("".join(f"{c.device}\t{c.quantity}\t{c.value}\t{c.unit}\n" for c in calibration))
+
+
 def _columns(record: object, names: Iterable[str]) -> dict[str, Value]:
     return {name: getattr(record, name) for name in names}
+
+
+def _calibration(figures: Iterable[Calibration], session: int) -> list[Statement]:
+    return [
+        insert(
+            "calibration",
+            {"session": session, "device": c.device, "quantity": c.quantity, "value": c.value, "unit": c.unit},
+        )
+        for c in figures
+    ]
 
 
 class Recorder:
@@ -71,10 +102,15 @@ class Recorder:
         self._prompts = 0
         self._trips = 0
 
+    origin_s: float = 0.0
+    """Added to every rig time that is recorded: a run that goes on counts from where it was interrupted. Changed only
+    while nothing is queued."""
     failed: str | None = None
     """Why nothing more can be written; the run is to end in a controlled stop."""
     overruns: int = 0
     """Samples that were dropped because the queue was full."""
+    heard: Callable[[float, str, str, str], None] | None = None
+    """Is told of every event as it is recorded: rig time in s, kind, text, severity."""
 
     def sample(self, row: tuple[float, ...]) -> None:
         """Record one sample: a value for each of SAMPLE_COLUMNS, as an exact tuple. For every scan: < 1 us."""
@@ -99,9 +135,12 @@ class Recorder:
             "name": info.name,
             "recipe_name": info.recipe_name,
             "recipe_text": info.recipe_text,
-            "recipe_sha256": sha256(info.recipe_text.encode()).hexdigest(),
+            "recipe_sha256": text_sha256(info.recipe_text),
+            "recipe_source": info.recipe_source,
             "rig_text": info.rig_text,
-            "rig_sha256": sha256(info.rig_text.encode()).hexdigest(),
+            "rig_sha256": text_sha256(info.rig_text),
+            "rig_source": info.rig_source,
+            "calibration_sha256": calibration_sha256(info.calibration),
             "simulated": int(info.simulated),
             "seed": info.seed,
             "operator": info.operator,
@@ -119,49 +158,88 @@ class Recorder:
         for condition in conditions:
             columns = _columns(condition, _CONDITION_FIELDS) | {"status": ConditionStatus.PENDING.value}
             statements.append(insert("condition", columns))
+        statements += _calibration(info.calibration, 1)
         return self._write(*statements, urgent=True)
 
-    def resume_run(self) -> Ticket:
+    def begin_session(self, session: SessionInfo) -> None:
+        """Record which process works on the run from now on; rig times count from its ``origin_s``."""
+        self.origin_s = session.origin_s
+        self._write(insert("session", _columns(session, _SESSION_FIELDS)), urgent=True)
+
+    def resume_run(self, changes: Iterable[Change] = ()) -> Ticket:
         """Record that an interrupted run goes on: attempts that were cut off become void."""
         cut_off = (RepeatStatus.VOID.value, "cut off", RepeatStatus.OPEN.value)
         return self._write(
             ("UPDATE repeat SET status = ?, reason = ? WHERE status = ?", cut_off),
             ("UPDATE run SET status = 'running', reason = '', ended_utc = NULL, rig_seconds = NULL", ()),
+            *(insert("change", _columns(change, _CHANGE_FIELDS)) for change in changes),
             urgent=True,
         )
+
+    def replace_recipe(self, text: str, to_come: Iterable[ConditionInfo], source: str) -> None:
+        """Record the recipe that a resumed run goes on with; ``to_come``: its conditions not begun yet."""
+        replaced: tuple[Value, ...] = (text, text_sha256(text), source)
+        statements: list[Statement] = [
+            ("UPDATE run SET recipe_text = ?, recipe_sha256 = ?, recipe_source = ?", replaced),
+            ("DELETE FROM condition WHERE started_s IS NULL", ()),
+        ]
+        for condition in to_come:
+            columns = _columns(condition, _CONDITION_FIELDS) | {"status": ConditionStatus.PENDING.value}
+            statements.append(insert("condition", columns))
+        self._write(*statements, urgent=True)
+
+    def replace_rig(self, text: str, calibration: Iterable[Calibration], session: int, source: str) -> None:
+        """Record the rig file and the calibration that a resumed run goes on with."""
+        figures = tuple(calibration)
+        sql = "UPDATE run SET rig_text = ?, rig_sha256 = ?, calibration_sha256 = ?, rig_source = ?"
+        replaced: Statement = (sql, (text, text_sha256(text), calibration_sha256(figures), source))
+        self._write(replaced, *_calibration(figures, session), urgent=True)
 
     def finish(self, status: str, reason: str = "", rig_seconds: float = NAN, ended_utc: str = "") -> Ticket:
         """Record the end: ``status`` such as finished, incomplete, tripped, stopped, failed; rig time in s."""
         sql = "UPDATE run SET status = ?, reason = ?, rig_seconds = ?, ended_utc = ?"
-        return self._write((sql, (status, reason, rig_seconds, ended_utc or self._utc())), urgent=True)
+        at_s = rig_seconds + self.origin_s
+        return self._write((sql, (status, reason, at_s, ended_utc or self._utc())), urgent=True)
 
     def device_parameter(self, t_s: float, device: str, parameter: str, value: str, name: str = "") -> None:
         """Record what was read back from a device, e.g. wheel, 0x6083:00, '2000', profile acceleration."""
-        columns: dict[str, Value] = {"t_s": t_s, "device": device, "parameter": parameter}
+        columns: dict[str, Value] = {"t_s": t_s + self.origin_s, "device": device, "parameter": parameter}
         self._write(insert("device_parameter", columns | {"value": value, "name": name}))
 
     def bus_statistic(self, t_s: float, bus: str, device: str, counter: str, value: float) -> None:
         """Record a counter of a bus, or of one device on it (else an empty text)."""
-        columns: dict[str, Value] = {"t_s": t_s, "bus": bus, "device": device}
+        columns: dict[str, Value] = {"t_s": t_s + self.origin_s, "bus": bus, "device": device}
         self._write(insert("bus_statistic", columns | {"counter": counter, "value": value}))
 
     # Wheels
 
     def wheel_installed(self, wheel: WheelInfo) -> None:
         """Record that a wheel was mounted."""
-        self._write(insert("wheel", _columns(wheel, _WHEEL_FIELDS), "INSERT OR REPLACE"), urgent=True)
+        times = {name: getattr(wheel, name) + self.origin_s for name in ("installed_s", "updated_s", "ground_s")}
+        self._write(insert("wheel", _columns(wheel, _WHEEL_FIELDS) | times, "INSERT OR REPLACE"), urgent=True)
 
     def wheel_state(self, wheel: int, diameter_mm: float, sliding_m: float, t_s: float) -> None:
         """Record a wheel's present diameter and the distance it has slid since it was new, for a resumed run."""
         sql = "UPDATE wheel SET diameter_mm = ?, sliding_m = ?, updated_s = ? WHERE wheel = ?"
-        self._write((sql, (diameter_mm, sliding_m, t_s, wheel)))
+        self._write((sql, (diameter_mm, sliding_m, t_s + self.origin_s, wheel)))
+
+    def wheel_ground(self, wheel: int, diameter_mm: float, sliding_m: float, t_s: float) -> None:
+        """Record that a wheel has been ground in: a resumed run does not do it again."""
+        at_s = t_s + self.origin_s
+        sql = "UPDATE wheel SET diameter_mm = ?, sliding_m = ?, updated_s = ?, ground_s = ? WHERE wheel = ?"
+        self._write((sql, (diameter_mm, sliding_m, at_s, at_s, wheel)), urgent=True)
 
     # Conditions and repeats
 
     def begin_condition(self, condition: int, t_s: float) -> None:
         """Record the start of a condition (its number in the plan)."""
         sql = "UPDATE condition SET started_s = ? WHERE condition = ? AND started_s IS NULL"
-        self._write((sql, (t_s, condition)))
+        self._write((sql, (t_s + self.origin_s, condition)))
+
+    def condition_rate(self, condition: int, warming_k_s: float, holdable_band_k: float) -> None:
+        """Record, with the repeat that shows it, how fast a temperature ran away and which band would have held it."""
+        sql = "UPDATE condition SET warming_k_s = ?, holdable_band_k = ? WHERE condition = ?"
+        self._write((sql, (warming_k_s, holdable_band_k, condition)))
 
     def end_condition(
         self,
@@ -178,7 +256,8 @@ class Recorder:
             "UPDATE condition SET status = ?, reason = ?, ended_s = ?, warming_k_s = ?, holdable_band_k = ?"
             " WHERE condition = ?"
         )
-        self._write((sql, (status.value, reason, t_s, warming_k_s, holdable_band_k, condition)), urgent=True)
+        at_s = t_s + self.origin_s
+        self._write((sql, (status.value, reason, at_s, warming_k_s, holdable_band_k, condition)), urgent=True)
 
     def begin_repeat(self, condition: int, repeat: int, attempt: int, t_s: float = NAN, wheel: int = 0) -> int:
         """Record the start of an attempt at a repeat and return its key, the ``repeat_key`` of its samples."""
@@ -189,7 +268,7 @@ class Recorder:
             "repeat": repeat,
             "attempt": attempt,
             "wheel": wheel,
-            "begun_s": t_s,
+            "begun_s": t_s + self.origin_s,
             "status": RepeatStatus.OPEN.value,
         }
         self._write(insert("repeat", columns))
@@ -200,11 +279,14 @@ class Recorder:
 
         The repeat counts only once the ticket is done.
         """
-        columns = _columns(result, _RESULT_FIELDS) | {"status": result.status.value}
+        origin = self.origin_s
+        times = {"started_s": result.started_s + origin, "ended_s": result.ended_s + origin}
+        columns = _columns(result, _RESULT_FIELDS) | {"status": result.status.value} | times
         assignments = ", ".join(f"{name} = ?" for name in columns)
         statements: list[Statement] = [(f"UPDATE repeat SET {assignments} WHERE id = ?", (*columns.values(), key))]
         for burst in bursts:
-            statements.append(insert("burst", {"repeat_id": key} | _columns(burst, _BURST_FIELDS)))
+            at = replace(burst, started_s=burst.started_s + origin, ended_s=burst.ended_s + origin)
+            statements.append(insert("burst", {"repeat_id": key} | _columns(at, _BURST_FIELDS)))
         return self._write(*statements, urgent=True)
 
     def void_repeat(self, key: int, reason: str, t_s: float = NAN) -> Ticket:
@@ -216,10 +298,12 @@ class Recorder:
 
     def event(self, t_s: float, kind: str, text: str, severity: str = "info", data: str = "") -> None:
         """Record an event, in order. Severities: debug, info, warning, alarm, trip; the last two at once."""
+        if self.heard is not None:
+            self.heard(t_s, kind, text, severity)
         self._events += 1
         columns: dict[str, Value] = {
             "sequence": self._events,
-            "t_s": t_s,
+            "t_s": t_s + self.origin_s,
             "utc": self._utc(),
             "kind": kind,
             "severity": severity,
@@ -231,18 +315,18 @@ class Recorder:
     def prompt(self, t_s: float, text: str) -> int:
         """Record a prompt and return its number."""
         self._prompts += 1
-        columns: dict[str, Value] = {"id": self._prompts, "asked_s": t_s, "asked_utc": self._utc()}
+        columns: dict[str, Value] = {"id": self._prompts, "asked_s": t_s + self.origin_s, "asked_utc": self._utc()}
         self._write(insert("prompt", columns | {"text": text}))
         return self._prompts
 
     def prompt_answered(self, prompt: int, t_s: float, answer: str, by: str = "") -> None:
         """Record the answer to a prompt and who gave it."""
         sql = "UPDATE prompt SET answered_s = ?, answered_utc = ?, answer = ?, answered_by = ? WHERE id = ?"
-        self._write((sql, (t_s, self._utc(), answer, by, prompt)))
+        self._write((sql, (t_s + self.origin_s, self._utc(), answer, by, prompt)))
 
     def tare(self, t_s: float, kind: str, values: tuple[float, float, float, float], repeat_key: int = 0) -> None:
         """Record a tare (Fx, Fy, Fz in N, Mz in N m); kind: reference, repeat or check."""
-        columns: dict[str, Value] = {"t_s": t_s, "kind": kind, "repeat_id": repeat_key}
+        columns: dict[str, Value] = {"t_s": t_s + self.origin_s, "kind": kind, "repeat_id": repeat_key}
         names = ("force_x_n", "force_y_n", "force_z_n", "moment_z_nm")
         self._write(insert("tare", columns | dict(zip(names, values, strict=True))))
 
@@ -251,7 +335,7 @@ class Recorder:
         self._trips += 1
         columns: dict[str, Value] = {
             "id": self._trips,
-            "t_s": t_s,
+            "t_s": t_s + self.origin_s,
             "utc": self._utc(),
             "interlock": interlock,
             "text": text,
@@ -264,7 +348,7 @@ class Recorder:
     def trip_acknowledged(self, trip: int, t_s: float, by: str = "") -> None:
         """Record that a trip was acknowledged, and by whom."""
         sql = "UPDATE trip SET acknowledged_s = ?, acknowledged_by = ? WHERE id = ?"
-        self._write((sql, (t_s, by, trip)), urgent=True)
+        self._write((sql, (t_s + self.origin_s, by, trip)), urgent=True)
 
     # The file
 

@@ -11,6 +11,108 @@ NAN = float("nan")
 
 
 @dataclass(frozen=True, slots=True)
+class Calibration:
+    """One figure that turns what a device says into a quantity, e.g. load cell, scale fz, 0.1, N."""
+
+    device: str
+    quantity: str
+    value: str
+    unit: str
+
+
+@dataclass(frozen=True, slots=True)
+class SessionInfo:
+    """One process's stretch of a run, counted from 1. ``origin_s``: rig seconds of the run at its beginning."""
+
+    session: int
+    origin_s: float
+    started_utc: str
+    host: str
+    pid: int
+    operator: str
+    software_version: str
+    git_revision: str
+    versions: str
+    """Of libraries, as JSON."""
+
+
+@dataclass(frozen=True, slots=True)
+class Change:
+    """What differed when a run was resumed (``subject``: recipe, rig or calibration), and why it went on.
+
+    ``before`` is the earlier text; the run itself holds the present one.
+    """
+
+    session: int
+    utc: str
+    subject: str
+    before_sha256: str
+    after_sha256: str
+    before: str
+    reason: str
+
+
+@dataclass(frozen=True, slots=True)
+class StoredTare:
+    """A zero of the load cell: Fx, Fy, Fz in N, Mz in N m. ``kind``: reference, repeat or check."""
+
+    t_s: float
+    kind: str
+    repeat_id: int
+    force_x_n: float
+    force_y_n: float
+    force_z_n: float
+    moment_z_nm: float
+
+
+@dataclass(frozen=True, slots=True)
+class StoredPrompt:
+    """A question to a person, and its answer (empty: none)."""
+
+    asked_s: float
+    asked_utc: str
+    text: str
+    answered_s: float
+    answered_utc: str
+    answer: str
+    answered_by: str
+
+
+@dataclass(frozen=True, slots=True)
+class StoredTrip:
+    """A trip: the interlock, the value that caused it and its limit."""
+
+    t_s: float
+    utc: str
+    interlock: str
+    text: str
+    value: float
+    limit_value: float
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """What was read back from a device."""
+
+    t_s: float
+    device: str
+    parameter: str
+    name: str
+    value: str
+
+
+@dataclass(frozen=True, slots=True)
+class BusStatistic:
+    """A counter of a bus, or of one device on it."""
+
+    t_s: float
+    bus: str
+    device: str
+    counter: str
+    value: float
+
+
+@dataclass(frozen=True, slots=True)
 class RunInfo:
     """A run as it begins. Texts of recipe and rig file as they were used; times as ISO 8601 UTC text.
 
@@ -27,6 +129,10 @@ class RunInfo:
     software_version: str = ""
     git_revision: str = ""
     operator: str = ""
+    recipe_source: str = ""
+    rig_source: str = ""
+    """Where recipe and rig file were read from: a path, the name of a packaged file, or empty."""
+    calibration: tuple[Calibration, ...] = ()
     metadata: Mapping[str, str] = field(default_factory=dict[str, str])
     versions: Mapping[str, str] = field(default_factory=dict[str, str])
 
@@ -38,6 +144,7 @@ class StoredRun:
     info: RunInfo
     recipe_sha256: str
     rig_sha256: str
+    calibration_sha256: str
     status: str
     reason: str
     ended_utc: str
@@ -69,6 +176,8 @@ class WheelInfo:
     diameter_mm: float
     sliding_m: float = 0.0
     updated_s: float = 0.0
+    ground_s: float = NAN
+    """When pre-grinding was complete; NaN before."""
 
 
 @dataclass(frozen=True, slots=True)

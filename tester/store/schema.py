@@ -198,7 +198,45 @@ CREATE TABLE device_parameter (
 );
 """
 
-MIGRATIONS: tuple[str, ...] = (_VERSION_1,)
+_VERSION_2 = """
+ALTER TABLE wheel ADD COLUMN ground_s REAL;
+ALTER TABLE run ADD COLUMN recipe_source TEXT NOT NULL DEFAULT '';
+ALTER TABLE run ADD COLUMN rig_source TEXT NOT NULL DEFAULT '';
+ALTER TABLE run ADD COLUMN calibration_sha256 TEXT NOT NULL DEFAULT '';
+CREATE TABLE session (
+    session INTEGER PRIMARY KEY,
+    origin_s REAL NOT NULL,
+    started_utc TEXT NOT NULL,
+    host TEXT NOT NULL,
+    pid INTEGER NOT NULL,
+    operator TEXT NOT NULL,
+    software_version TEXT NOT NULL,
+    git_revision TEXT NOT NULL,
+    versions TEXT NOT NULL
+);
+CREATE TABLE change (
+    id INTEGER PRIMARY KEY,
+    session INTEGER NOT NULL,
+    utc TEXT NOT NULL,
+    subject TEXT NOT NULL,
+    before_sha256 TEXT NOT NULL,
+    after_sha256 TEXT NOT NULL,
+    before TEXT NOT NULL,
+    reason TEXT NOT NULL
+);
+CREATE TABLE calibration (
+    id INTEGER PRIMARY KEY,
+    session INTEGER NOT NULL,
+    device TEXT NOT NULL,
+    quantity TEXT NOT NULL,
+    value TEXT NOT NULL,
+    unit TEXT NOT NULL
+);
+"""
+"""What a resumed run needs: its stretches (``session``, one for each process that worked on it), what was changed
+between them and why, when a wheel was ground in, and the calibration as a history."""
+
+MIGRATIONS: tuple[str, ...] = (_VERSION_1, _VERSION_2)
 """Migration n leads from schema n to n + 1."""
 
 VERSION = len(MIGRATIONS)

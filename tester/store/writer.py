@@ -3,8 +3,9 @@
 The scan's thread only appends: to one deque that carries samples (tuples) and batches of statements in the
 order in which they came. Appending to and popping from a deque is atomic, so no lock is held in a scan. The
 logger's thread takes what has come and commits it in one transaction: every second of wall time, and at
-once for an urgent batch (a repeat, an alarm). What is taken stays in memory until COMMIT has returned;
-after an error nothing more is written, ``failed`` says why, and ``close`` tries once more.
+once for an urgent batch (a repeat, an alarm). What is taken stays in memory until COMMIT has returned. After
+an error ``failed`` says why for good: the run is to stop. What is in memory stays there, no more than the queue's
+limit, and is tried again every second while the rig comes to rest, and by ``close``.
 
 A full queue drops the sample and counts it, for a real rig waits for nobody. ``lossless`` (simulated time)
 waits instead, and waits for the COMMIT of a repeat, so that results do not depend on the disk's speed.
@@ -22,15 +23,20 @@ from threading import Thread
 
 from tester.analysis.results import Burst, RepeatResult
 from tester.process import SAMPLE_COLUMNS
+from tester.store.files import sync_folder
 from tester.store.recorder import Batch, NullRecorder, Recorder, Ticket, no_utc
 from tester.store.sample_blocks import BLOCK_ROWS, pack
 from tester.store.schema import StoreError, migrate, version_of
 
-COMMIT_EVERY_S = 1.0
-"""Longest time, of the wall clock, for which a sample waits for its commit."""
+COMMIT_EVERY_S = 0.7
+"""Longest time, of the wall clock, for which a sample waits for its commit to begin: a second with what a slow disk
+and a busy machine take."""
 
 QUEUE_LIMIT = 65536
 """Items the queue holds before samples are dropped: ten minutes at 100 Hz, a minute at 1 kHz."""
+
+RETRY_S = 1.0
+"""After a write error the next attempt is made this much later."""
 
 LOSSLESS_LIMIT = 8192
 """Items the queue holds before the simulation waits; also the most samples in one transaction."""
@@ -46,6 +52,9 @@ def _open(path: Path) -> sqlite3.Connection:
     connection = sqlite3.connect(path, isolation_level=None, check_same_thread=False)
     try:
         version_of(connection)  # before anything is changed in a file that may be somebody else's
+        # EXTRA until the log is in use: the deletion of a rollback journal is synced too. One that came back after a
+        # power cut would take back everything since.
+        connection.execute("PRAGMA synchronous = EXTRA")
         connection.execute("PRAGMA journal_mode = WAL")
         connection.execute("PRAGMA synchronous = FULL")
         migrate(connection)
@@ -55,6 +64,7 @@ def _open(path: Path) -> sqlite3.Connection:
         columns = connection.execute("SELECT name FROM sample_column ORDER BY position").fetchall()
         if tuple(name for (name,) in columns) != SAMPLE_COLUMNS:
             raise StoreError(f"{path.name} was recorded with other sample columns and cannot be continued")
+        sync_folder(path.parent)
     except (sqlite3.Error, StoreError):
         connection.close()
         raise
@@ -129,7 +139,7 @@ class RunWriter(Recorder):
 
     def _full(self, row: tuple[float, ...]) -> None:
         if self._synchronous and self.failed is None:
-            self._service()
+            self.service()
         elif self._lossless:
             while len(self._queue) >= self._limit and self.failed is None:
                 self._room.clear()
@@ -144,7 +154,7 @@ class RunWriter(Recorder):
         self._queue.append(batch)
         if self._synchronous:
             if self.failed is None:
-                self._service()
+                self.service()
         elif batch.urgent:
             self._wake.set()
 
@@ -174,6 +184,7 @@ class RunWriter(Recorder):
             # Not WAL any more: a finished run is one file that reading does not touch. Somebody who reads it just now
             # prevents that; then the log is folded in when the last of them leaves, and the file stays WAL.
             self._connection.execute("PRAGMA busy_timeout = 0")
+            self._connection.execute("PRAGMA synchronous = EXTRA")
             with suppress(sqlite3.OperationalError):
                 self._connection.execute("PRAGMA journal_mode = DELETE")
         self._connection.close()
@@ -182,19 +193,30 @@ class RunWriter(Recorder):
 
     def _run(self) -> None:
         try:
-            while not self._stopping and self.failed is None:
+            while not self._stopping:
                 self._wake.wait(self._poll_s)
                 self._wake.clear()
-                self._service()
+                self.service()
         finally:
             # Whoever waits for this thread must not wait for ever, whatever ended it.
             if not self._stopping and self.failed is None:
                 self.failed = "the recorder has ended unexpectedly"
 
-    def _service(self) -> None:
-        self._drain()
+    def service(self) -> None:
+        """Take what has come and commit what is due: what the logger's thread does ten times a second."""
         waited = self._clock() - self._committed_at
+        if self.failed is not None:
+            self._try_again(waited)
+            return
+        self._drain()
         if self._urgent or waited >= self._commit_after_s or len(self._rows) >= LOSSLESS_LIMIT:
+            self._commit()
+
+    def _try_again(self, waited_s: float) -> None:
+        """Write what an error has kept in memory, a second after the last attempt."""
+        if waited_s >= RETRY_S:
+            if len(self._rows) < QUEUE_LIMIT:  # else the queue fills, and what comes is dropped and counted
+                self._drain()
             self._commit()
 
     def _drain(self) -> None:
@@ -204,6 +226,8 @@ class RunWriter(Recorder):
             if isinstance(item, Batch):
                 self._batches.append(item)
                 self._urgent |= item.urgent
+            elif origin := self.origin_s:
+                self._rows.append((item[0] + origin, *item[1:]))
             else:
                 self._rows.append(item)
         self._room.set()
@@ -218,6 +242,7 @@ class RunWriter(Recorder):
             self._rows.clear()
             for batch in self._batches:
                 batch.ticket.done = True
+                batch.ticket.error = None
             self._batches.clear()
         self._urgent = False
         self._committed_at = self._clock()
@@ -254,7 +279,8 @@ class RunWriter(Recorder):
                 first = end
 
     def _fail(self, error: Exception) -> None:
-        self.failed = f"{type(error).__name__}: {error}"
+        self.failed = self.failed or f"{type(error).__name__}: {error}"
+        self._committed_at = self._clock()
         for batch in self._batches:
             batch.ticket.error = self.failed
         self._urgent = False

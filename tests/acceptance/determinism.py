@@ -27,6 +27,7 @@ class Trials:
     def __init__(self) -> None:
         """Have written no recipe."""
         self._recipes: dict[Bench, str] = {}
+        self._pairs: dict[Bench, str] = {}
 
     def specs(self, bench: Bench) -> dict[str, RunSpec]:
         """Return the runs by what is said of them; the first is what the others are compared with."""
@@ -39,9 +40,19 @@ class Trials:
         }
         return found | ({"no option": RunSpec(recipe, SEED, overrides)} if bench.full else {})
 
+    def pair(self, bench: Bench) -> list[RunSpec]:
+        """Return a run of two specimens with one job and with two; only the long form has them (2 x 45 min of rig)."""
+        if not bench.full:
+            return []
+        if bench not in self._pairs:
+            one = '  - compound: "1#"\n'
+            text = (recipes.FOLDER / "quickstart.yaml").read_text(encoding="utf-8")
+            self._pairs[bench] = str(bench.write("two-specimens.yaml", text.replace(one, f'{one}  - compound: "2#"\n')))
+        return [RunSpec(self._pairs[bench], SEED, options=("--jobs", jobs)) for jobs in ("1", "2")]
+
     def runs(self, bench: Bench) -> list[RunSpec]:
         """Name the runs."""
-        return list(self.specs(bench).values())
+        return [*self.specs(bench).values(), *self.pair(bench)]
 
     def figures(self, bench: Bench) -> Iterator[Figure]:
         """Measure."""
@@ -51,6 +62,10 @@ class Trials:
             for name in TABLES:
                 value = _digest(second.bytes_of(name))
                 yield equal(f"same seed, {words} against --bus-log: {name}", value, _digest(first.bytes_of(name)))
+        if pair := [bench.run(spec) for spec in self.pair(bench)]:
+            for name in TABLES:
+                one, two = (_digest(run.bytes_of(name)) for run in pair)
+                yield equal(f"two specimens, --jobs 2 against --jobs 1: {name}", two, one)
         ours, theirs = (_digest(run.bytes_of("repeats.csv")) for run in (first, other))
         yield holds("another seed: repeats.csv", ours != theirs, theirs, f"not {ours}")
         ours_mu, theirs_mu = ([row["mu_resultant"] for row in run.rows("repeats.csv")] for run in (first, other))

@@ -8,13 +8,13 @@ import math
 import pytest
 
 from bench import cli, lateness, model, registry, scan_cost
-from bench.big_recipe import recipe_text, work
+from bench.big_recipe import long_list_text, recipe_text, work
 from bench.effort import Effort, TopicFailedError
 from bench.figures import Figure, Limit, Verdict, at_least, at_most, number, ratio, unavailable
 from bench.ledger import PARTS, Ledger
-from bench.live import SLIDING_RECIPE
+from bench.live import SLIDING_RECIPE, live_run
 from bench.machine import machine
-from bench.report import as_json, missed, table
+from bench.report import as_json, as_markdown, missed, table
 from bench.speed import one_compound
 from bench.wrapping import ENTRY_POINTS, wrapped
 from sim.plant import Plant
@@ -103,6 +103,21 @@ def test_what_a_machine_cannot_measure_is_a_line_of_its_own() -> None:
     assert line.endswith("not available here: this system has no pseudo-terminals")
 
 
+def test_the_table_in_markdown_has_the_same_cells() -> None:
+    lines = as_markdown({"scan": [FAST, SLOW]}, MACHINE).splitlines()
+    assert lines[0] == "interpreter: CPython 3.11, pgo: no, cpus: 2"
+    assert lines[2:4] == [
+        "| topic | figure | median | min | max | unit | limit |  |",
+        "|---|---|---:|---:|---:|---|---|---|",
+    ]
+    assert lines[4] == "| scan | drivers | 10 | 9 | 11 | us | <= 12 | ok |"
+    assert lines[-2:] == ["missed, 1 of 2:", "- scan: control"]
+
+
+def test_a_bar_in_a_note_does_not_end_its_cell() -> None:
+    assert as_markdown({"a": [Figure("b", "us", (1.0,), note="c | d")]}, MACHINE).splitlines()[4].endswith("c \\| d |")
+
+
 def test_json_holds_the_machine_every_run_and_what_was_missed() -> None:
     record = json.loads(as_json({"scan": [SLOW, ABSENT]}, MACHINE))
     assert record["machine"] == MACHINE
@@ -163,6 +178,14 @@ def test_exit_code_is_1_where_a_figure_misses_and_the_figures_are_printed(
     assert [one["name"] for one in json.loads(capsys.readouterr().out)["figures"]] == ["drivers", "control"]
 
 
+def test_figures_come_in_markdown_where_that_is_asked(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    stand_in(monkeypatch, FAST)
+    assert cli.main(["model", "--markdown"]) == 0
+    assert "| model | drivers | 10 | 9 | 11 | us | <= 12 | ok |" in capsys.readouterr().out
+
+
 def test_a_topic_that_fails_leaves_a_line_and_the_others_go_on(monkeypatch: pytest.MonkeyPatch) -> None:
     def fail(effort: Effort) -> list[Figure]:
         raise TopicFailedError("the run tripped")
@@ -194,7 +217,7 @@ def test_the_shortened_compound_and_the_sliding_recipe_are_valid() -> None:
 
 
 def test_the_big_recipe_has_as_many_conditions_as_asked() -> None:
-    assert work(2000)["conditions"] == 2000
+    assert [work(text)["found"] for text in (recipe_text(2000), long_list_text(2000))] == [2000, 2000]
     assert recipe_text(100_000).count("mm/s") == 50
 
 
@@ -205,6 +228,14 @@ def test_every_entry_point_is_found_wrapped_and_given_back() -> None:
         assert Plant.advance is not bare
     assert Plant.advance is bare
     assert {part for part, *_ in ENTRY_POINTS} | {"nodes: drives, on a frame"} == set(PARTS)
+
+
+def test_a_run_connects_its_devices_with_every_entry_point_wrapped() -> None:
+    ledger = Ledger()
+    with wrapped(ledger), live_run(SLIDING_RECIPE) as live:
+        live.until(lambda: live.engine.scans > 3)
+        charged = dict(zip(PARTS, ledger.take(), strict=True))
+    assert all(us > 0.0 for part, us in charged.items() if part != "recorder")  # it has nothing to record yet
 
 
 def test_the_ledger_charges_each_call_to_its_own_part() -> None:

@@ -179,3 +179,26 @@ def test_a_closed_port_is_lost(channel: str) -> None:
 def test_an_adapter_that_does_not_open_is_a_lost_bus() -> None:
     with pytest.raises(BusLost, match="cannot open no-such-interface"):
         open_can("no-such-interface", "x", 500_000)
+
+
+@pytest.mark.parametrize(
+    ("frames", "calls"),
+    [
+        ([(0x080, ""), (0x701, "05"), (0x581, "60000000")], 0),
+        ([(0x081, "3081200000000000")], 1),
+        ([(0x701, "00")], 1),
+        ([(0x283, "00000100")], 1),
+        ([(0x181, "2706000000000000"), (0x181, "0F02000000000000"), (0x182, "2702000000000000")], 3),
+        ([(0x181, "2706000000000000"), (0x181, "2706FF0000000000"), (0x181, "A716000000000000")], 1),
+    ],
+    ids=["SYNC, heartbeat, SDO", "emergency", "boot-up", "inputs", "states", "speed, warning, target reached"],
+)
+def test_what_a_scan_should_not_wait_for_is_told_at_once(frames: list[tuple[int, str]], calls: int) -> None:
+    told: list[int] = []
+    script: list[object] = [
+        can.Message(arbitration_id=can_id, data=bytes.fromhex(data), is_extended_id=False) for can_id, data in frames
+    ]
+    port = PythonCanPort(StubBus(script), on_urgent=lambda: told.append(1))
+    assert len(collect(port, len(frames))) == len(frames)
+    port.close()
+    assert len(told) == calls + 1  # the end of reception is the last thing told

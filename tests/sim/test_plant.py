@@ -10,10 +10,11 @@ from itertools import pairwise
 import pytest
 
 from sim.contact import ContactModel
-from sim.friction import KNOWN, UnknownCompoundError
+from sim.friction import KNOWN, FrictionModel, UnknownCompoundError
 from sim.parameters import ContactParameters, FrictionModelName, SimParameters
 from sim.plant import Plant
-from sim.slip import predict, predict_forces
+from sim.slip import cornering_factor, predict, predict_forces, slip_velocity, traction_direction
+from sim.wear import radius_loss_mm, running_in_factor
 
 EXACT = SimParameters(noise=0.0, scatter=0.0, running_in=0.0, ambient=25.0)
 ROUND = replace(EXACT, contact=ContactParameters(runout=0.0))
@@ -82,6 +83,43 @@ def test_friction_model_is_the_one_asked_for(model: FrictionModelName) -> None:
     plant = mounted(replace(ROUND, friction_model=model))
     run(plant, 1.5, 400.0)
     assert plant.mu == pytest.approx(predict("1#", 0.3, 400.0, 25.0, model=model), rel=0.01)
+
+
+@pytest.mark.parametrize("model", ["paper", "v2"])
+@pytest.mark.parametrize("belt_m_s", [0.3, 0.8001, 0.7998, 1.1])
+@pytest.mark.parametrize("sideslip_deg", [0.0, 12.0])
+@pytest.mark.parametrize("load_n", [5.0, 200.0])
+def test_rubbing_is_what_the_formulas_say(
+    model: FrictionModelName, belt_m_s: float, sideslip_deg: float, load_n: float
+) -> None:
+    plant = mounted(replace(SimParameters(noise=0.0, friction_model=model), contact=ROUND.contact))
+    plant.begin_repeat(1, 1, 1)
+    run(plant, 0.02, load_n, belt_m_s, sideslip_deg)
+    for _ in range(3):
+        surface_c, diameter_mm, sliding_m, touched_s = plant.surface_c, plant.diameter_mm, plant.sliding_m, 0.02
+        run(plant, 0.01, load_n, belt_m_s, sideslip_deg)
+        wheel_m_s = 0.0005 * diameter_mm * WHEEL_RAD_S
+        vx, vy, slip_m_s = slip_velocity(wheel_m_s, belt_m_s, sideslip_deg)
+        mu = FrictionModel("1#", model).mu(surface_c, max(plant.force_z_n, 20.0), slip_m_s)
+        mu *= cornering_factor("1#", sideslip_deg) * running_in_factor(0.15, 10.0, sliding_m)
+        mu *= plant.wheel_factor * plant.condition_factor * plant.run_factor
+        within = plant.mu / mu / (1.0 - 0.1 * math.exp(-touched_s / 0.25))
+        assert within == pytest.approx(1.0, abs=0.06)
+        cx, cy = traction_direction(vx, vy)
+        forces = (plant.force_x_n, plant.force_y_n)
+        assert forces == pytest.approx((plant.mu * plant.force_z_n * cx, plant.mu * plant.force_z_n * cy), rel=1e-12)
+        assert plant.sliding_m == pytest.approx(sliding_m + 0.01 * slip_m_s, rel=1e-12)
+        worn_mm = radius_loss_mm(0.08, plant.force_z_n, 0.01 * slip_m_s, diameter_mm, 30.0)
+        assert diameter_mm - plant.diameter_mm == pytest.approx(2.0 * worn_mm, rel=1e-6, abs=1e-13)
+
+
+@pytest.mark.parametrize("sliding_m", [0.0, 25.0, 369.0, 371.0, 5000.0])
+def test_running_in_is_that_of_the_formula_at_any_distance(sliding_m: float) -> None:
+    worn, never = Plant(replace(ROUND, running_in=1.0), 1), Plant(ROUND, 1)
+    for plant in (worn, never):
+        plant.install(1, 1, "1#", True, sliding_m=sliding_m)
+        run(plant, 0.01, 200.0)
+    assert worn.mu / never.mu == pytest.approx(running_in_factor(0.15, 10.0, sliding_m), rel=1e-12)
 
 
 def test_force_has_the_direction_of_the_slip() -> None:

@@ -12,7 +12,7 @@ import pytest
 
 from sim.friction import FrictionModel
 from sim.parameters import ThermalParameters, WheelParameters
-from sim.thermal import MAX_STEP_S, ThermalModel, ThermalState, cell_thicknesses
+from sim.thermal import CALM_STEP_S, MAX_STEP_S, ThermalModel, ThermalState, cell_thicknesses
 
 AMBIENT_C = 25.0
 STEP_S = 0.05
@@ -148,6 +148,32 @@ def test_without_losses_all_heat_put_in_is_stored() -> None:
     model.step(state, 77.77, 0.0, 60.0, AMBIENT_C, 0.4, False)
     given_j = 300.0 * 200.0 + 120.0 * 190.0 + 77.77 * 60.0
     assert stored_j(model, state) == pytest.approx(given_j, rel=1e-9)
+
+
+@pytest.mark.parametrize("touching", [False, True])
+def test_without_losses_all_heat_put_in_is_stored_by_implicit_steps_too(touching: bool) -> None:
+    model = build(0.3, 0.2, LOSSLESS)
+    state = model.state(AMBIENT_C)
+    for _ in range(1000):
+        model.calm_step(state, 150.0, 40.0 if touching else 0.0, AMBIENT_C, touching, False)
+    given_j = 1000 * CALM_STEP_S * (190.0 if touching else 150.0)
+    assert stored_j(model, state) == pytest.approx(given_j, rel=1e-9)
+
+
+@pytest.mark.parametrize("rotating", [False, True])
+@pytest.mark.parametrize("touching", [False, True])
+def test_implicit_steps_agree_with_explicit_ones_where_nothing_is_sudden(touching: bool, rotating: bool) -> None:
+    model = build(0.5, 0.3)
+    one, other = model.state(AMBIENT_C), model.state(AMBIENT_C)
+    for _ in range(1500):
+        friction_w = 0.5 if touching else 0.0
+        model.step(one, CALM_STEP_S, 200.0, friction_w, AMBIENT_C, float(touching), rotating)
+        model.calm_step(other, 200.0, friction_w, AMBIENT_C, touching, rotating)
+        surface_c = model.surface_temperature(one, friction_w, AMBIENT_C, float(touching), rotating)
+        assert other.surface_c == pytest.approx(surface_c, abs=0.02)
+        assert other.hub_c == pytest.approx(one.hub_c, abs=0.02)
+        assert other.belt_c == pytest.approx(one.belt_c, abs=0.01)
+    assert one.surface_c > AMBIENT_C + 10.0
 
 
 def test_at_ambient_temperature_nothing_changes() -> None:

@@ -10,14 +10,16 @@ from pathlib import Path
 
 import pytest
 
-from tester import session as module
 from tester.bus_log import BusLog
+from tester.campaign import folder as folder_module
+from tester.campaign import part_run
+from tester.campaign.folder import make_folder
 from tester.engine.build import Ports
 from tester.engine.context import Attendant, Progress
 from tester.engine.prompts import Prompts
 from tester.engine.tickers import World
 from tester.rig import RigConfig
-from tester.session import Session, SessionOptions, make_folder
+from tester.session import Session, SessionOptions
 from tester.simulated import simulated_ports
 from tester.source import InvalidSource
 from tester.store.reader import RunReader
@@ -109,7 +111,7 @@ def at_the_rig(monkeypatch: pytest.MonkeyPatch) -> Callable[[Prepare], None]:
             ports, world, attendant = simulated_ports(rig, seed, log)
             return ports, world, prepare(world, attendant)
 
-        monkeypatch.setattr(module, "connect_ports", connect)
+        monkeypatch.setattr(part_run, "connect_ports", connect)
 
     return arrange
 
@@ -173,7 +175,7 @@ def test_no_recipe_name_leads_out_of_the_folder(tmp_path: Path, name: str, slug:
 
 
 def test_two_runs_of_one_second_have_two_folders(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(module.clock, "local_stamp", lambda: "2024-02-21T14-05-09")
+    monkeypatch.setattr(folder_module.clock, "local_stamp", lambda: "2024-02-21T14-05-09")
     assert [make_folder(tmp_path, "x").name for _ in range(3)] == [
         "2024-02-21T14-05-09-x",
         "2024-02-21T14-05-09-x-2",

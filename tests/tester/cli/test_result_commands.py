@@ -1,4 +1,4 @@
-"""``tester runs``, ``show`` and ``export``."""
+"""``tester show`` and ``tester export``."""
 
 from __future__ import annotations
 
@@ -8,7 +8,8 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner, Result
 
-from tester.cli.result_commands import export, runs, show
+from tester.cli.result_commands import export, show
+from tester.cli.runs_command import runs
 from tests.tester.store.build import CONDITIONS, RUN, SPECIMENS, open_writer, small_run
 
 
@@ -22,45 +23,6 @@ def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 def invoke(command: object, *arguments: str) -> Result:
     return CliRunner().invoke(command, list(arguments), prog_name="tester")  # type: ignore[arg-type]
-
-
-def test_runs_lists_name_status_and_what_is_committed(home: Path) -> None:
-    result = invoke(runs)
-    assert result.exit_code == 0
-    assert result.stdout == "one  finished  0:45:00  2 conditions, 6 repeats  Small, two loads\n"
-
-
-def test_runs_as_json(home: Path) -> None:
-    (listed,) = json.loads(invoke(runs, "--json").stdout)
-    assert (listed["run"], listed["status"], listed["rig_seconds"]) == ("one", "finished", 2700.5)
-    assert (listed["conditions"], listed["repeats"], listed["seed"]) == (2, 6, 1)
-
-
-def test_runs_of_another_folder(home: Path) -> None:
-    small_run(home / "elsewhere" / "two")
-    assert invoke(runs, "--out", "elsewhere").stdout.startswith("two ")
-
-
-def test_no_runs_are_an_empty_list(home: Path) -> None:
-    assert invoke(runs, "--out", "nowhere").stdout == ""
-    assert json.loads(invoke(runs, "--out", "nowhere", "--json").stdout) == []
-
-
-def test_a_run_that_was_left_open_says_so(home: Path) -> None:
-    (home / "runs" / "two").mkdir()
-    writer = open_writer(home / "runs" / "two")
-    writer.begin_run(RUN, SPECIMENS, CONDITIONS)
-    writer.close()
-    assert "two  open (running, or cut off)" in invoke(runs).stdout
-
-
-def test_a_run_that_cannot_be_read_is_named_on_stderr(home: Path) -> None:
-    (home / "runs" / "bad").mkdir()
-    (home / "runs" / "bad" / "run.db").touch()
-    result = invoke(runs)
-    assert result.exit_code == 0
-    assert result.stderr.startswith("bad: ")
-    assert "bad" not in result.stdout
 
 
 def test_show_tells_status_rig_time_and_values(home: Path) -> None:

@@ -69,9 +69,9 @@ def _stuck(bench: Bench) -> None:
     bench.demand.surface_c = NAN
     bench.readings.heat_percent = 0.0
     bench.readings.contactor_closed = False
-    bench.scans(5.5)
+    bench.scans(7.5)
     old_s, old_c, new_s, new_c = bench.control.view.jacket.marks
-    bench.control.view.jacket.marks = (old_s, old_c - 1.0, new_s, new_c - 1.0)
+    bench.control.view.jacket.marks = (old_s, old_c - 2.0, new_s, new_c - 2.0)
 
 
 def _line_open(bench: Bench) -> None:
@@ -286,6 +286,15 @@ def test_a_clock_that_goes_back_trips(bench: Bench) -> None:
 # -- what must not trip -------------------------------------------------------------------------------------------
 
 
+def test_drive_data_as_old_as_a_late_scan_was_long_does_not_trip(bench: Bench) -> None:
+    r = bench.readings
+    r.now_s += 0.045
+    r.wheel_at_s = r.belt_at_s = r.press_at_s = r.sideslip_at_s = r.camber_at_s = r.now_s - 0.044
+    r.cell_at_s = r.now_s - 0.044
+    bench.control.step(bench.demand, r, 0.01)
+    assert bench.state.trip is None
+
+
 def test_a_stale_load_cell_does_not_matter_while_lifted(bench: Bench) -> None:
     bench.demand.press = Press.LIFT
     bench.readings.force_z_n = bench.readings.slip_m_s = 0.0
@@ -327,6 +336,28 @@ def test_a_speed_on_its_ramp_is_not_a_speed_error(bench: Bench, dt: float) -> No
         delayed.append(min(0.8, delayed[-1] + 2.0 * dt))
         bench.scan(dt)
     assert bench.state.trip is None
+
+
+def test_a_hub_that_was_heated_at_full_power_until_now_is_no_stuck_heater(bench: Bench) -> None:
+    bench.readings.heat_percent = 100.0
+    for i in range(150):
+        bench.readings.hub_c = 50.0 + 0.47 * 0.2 * min(i, 25)
+        if i == 25:
+            bench.demand.surface_c = NAN
+            bench.readings.heat_percent, bench.readings.contactor_closed = 0.0, False
+        bench.scan(0.2)
+        assert not bench.state.held & bit("heater stuck")
+
+
+def test_a_heater_that_is_stuck_on_is_found_within_10_s_of_the_command(bench: Bench) -> None:
+    bench.demand.surface_c = NAN
+    bench.readings.heat_percent, bench.readings.contactor_closed = 0.0, False
+    began = bench.readings.now_s
+    while bench.state.trip is None and bench.readings.now_s < began + 20.0:
+        bench.readings.hub_c += 0.47 * 0.1
+        bench.scan(0.1)
+    assert bench.state.trip is not None and bench.state.trip.name == "heater stuck"
+    assert bench.readings.now_s - began < 10.0
 
 
 def test_a_transient_shorter_than_its_delay_does_not_trip(bench: Bench) -> None:

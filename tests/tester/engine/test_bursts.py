@@ -239,10 +239,10 @@ def test_the_surface_s_mean_over_a_window_is_near_the_setpoint(pulsed_run: Simul
 def test_the_hot_rig_counts_nothing_warm_as_cold(warm_run: Simulation) -> None:
     rows, truth = counted(warm_run), dict(warm_run.truth)
     surface = [truth[row["time_s"]] for row in rows]
-    # The band is 2 K; the thermometer is read five times a second.
+    # The band is 2 K; the thermometer lags by 0.15 s and is read five times a second, and the surface warms by 3 to 4
+    # K/s: what is read is old by 0.1 s in the mean, and up to 0.2 s with the few readings that a pulse has.
     assert rows and max(surface) < 25.0 + 2.0 + 0.5
-    # How old its readings are depends on where in its period a burst begins: up to 0.35 s at 3 K/s.
-    assert fmean(surface) - fmean(row["surface_c"] for row in rows) < 1.1
+    assert fmean(surface) - fmean(row["surface_c"] for row in rows) < 1.2
 
 
 def test_what_is_counted_live_is_what_the_samples_say(noisy_run: Simulation) -> None:

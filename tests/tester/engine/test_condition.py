@@ -36,6 +36,15 @@ class Results:
     finished: list[MeasureRepeat] = field(default_factory=list[MeasureRepeat])
     ends: list[ConditionEnd] = field(default_factory=list[ConditionEnd])
 
+    def repeats_done(self, step: ConditionStep) -> int:
+        return 0
+
+    def over(self, step: ConditionStep) -> ConditionEnd | None:
+        return None
+
+    def attempt(self, step: ConditionStep, repeat: int) -> int:
+        return 1
+
     def begin_repeat(self, ctx: Context, step: ConditionStep, repeat: int, attempt: int) -> int:
         self.begun.append((repeat, ctx.now))
         return 100 + repeat

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import product
+
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -92,6 +94,81 @@ def test_rows_number_the_recipes_order_not_the_measured_one() -> None:
 def test_rows_go_on_through_the_specimens() -> None:
     plan = plan_of(with_line('- compound: "1#"', '- compound: "1#"\n  - compound: "2#"'))
     assert sorted(step.row for step in plan.conditions()) == list(range(1, 9))
+
+
+def axis(values: st.SearchStrategy[int], unit: str, most: int = 4) -> st.SearchStrategy[list[str]]:
+    return st.lists(values.map(lambda value: f"{value} {unit}"), min_size=1, max_size=most, unique=True)
+
+
+GRID = st.fixed_dictionaries(
+    {
+        "slip_velocity": axis(st.integers(100, 104), "mm/s"),
+        "load": axis(st.integers(100, 104), "N"),
+        "sideslip": axis(st.integers(-1, 1), "deg", 2),
+        "camber": axis(st.integers(0, 1), "deg", 2),
+        "wheel_speed": axis(st.integers(700, 701), "mm/s", 2),
+        "temperature": axis(st.integers(25, 28), "degC"),
+    }
+)
+GRIDS = st.lists(GRID, min_size=1, max_size=3)
+ORDERS = st.sampled_from(["listed", "snake", "shuffled, seed: 5"])
+
+
+def with_grids(grids: list[dict[str, list[str]]], within: str, replicates: int) -> str:
+    listed = "".join(
+        "  - {" + f"name: g{number}" + "".join(f", {name}: [{', '.join(grid[name])}]" for name in grid) + "}\n"
+        for number, grid in enumerate(grids)
+    )
+    top = SMALL[: SMALL.index("grids:")].replace('- compound: "1#"', '- compound: "1#"\n  - compound: "2#"')
+    return f"{top}replicates: {replicates}\norder: {{within: {within}}}\ngrids:\n{listed}"
+
+
+def keys_of(grid: dict[str, list[str]]) -> set[tuple[str, ...]]:
+    return set(product(*(grid[name] for name in sorted(grid))))
+
+
+@given(GRIDS, ORDERS, st.integers(1, 2))
+@settings(max_examples=25, deadline=None)
+def test_every_combination_of_every_grid_is_measured_exactly_once_in_every_replicate(
+    grids: list[dict[str, list[str]]], within: str, replicates: int
+) -> None:
+    plan = plan_of(with_grids(grids, within, replicates))
+    wanted = len(set[tuple[str, ...]]().union(*map(keys_of, grids)))
+    found = [(step.specimen, step.replicate, step.setpoint) for step in plan.conditions()]
+    assert len(found) == len(set(found)) == 2 * replicates * wanted
+    rows = [(step.row, step.replicate) for step in plan.conditions()]
+    assert sorted(rows) == [(row, n) for row in range(1, 2 * wanted + 1) for n in range(1, replicates + 1)]
+
+
+@given(GRIDS, ORDERS)
+@settings(max_examples=25, deadline=None)
+def test_a_plan_counts_through_and_heats_a_specimen_upwards(grids: list[dict[str, list[str]]], within: str) -> None:
+    plan = plan_of(with_grids(grids, within, 1))
+    assert [step.index for step in plan.steps] == list(range(len(plan.steps)))
+    assert [step.condition for step in plan.conditions()] == list(range(1, 1 + sum(1 for _ in plan.conditions())))
+    heated = [(step.specimen, step.setpoint.temperature_c) for step in plan.conditions()]
+    assert heated == sorted(heated)
+
+
+@given(GRIDS)
+@settings(max_examples=25, deadline=None)
+def test_listed_conditions_of_a_temperature_come_in_the_order_of_their_rows(grids: list[dict[str, list[str]]]) -> None:
+    found = [
+        (s.specimen, s.setpoint.temperature_c, s.row) for s in plan_of(with_grids(grids, "listed", 1)).conditions()
+    ]
+    assert found == sorted(found)
+
+
+@given(GRIDS)
+@settings(max_examples=25, deadline=None)
+def test_a_condition_belongs_to_the_first_grid_that_has_it(grids: list[dict[str, list[str]]]) -> None:
+    seen: set[tuple[str, ...]] = set()
+    wanted: list[str] = []
+    for number, grid in enumerate(grids):
+        new = keys_of(grid) - seen
+        wanted += [f"g{number}"] * len(new)
+        seen |= new
+    assert [one.grid for one in conditions_of(recipe(with_grids(grids, "listed", 1)))] == wanted
 
 
 # -- order ---------------------------------------------------------------------------------------------------------

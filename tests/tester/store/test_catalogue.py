@@ -6,7 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from tester.store.catalogue import find_run, list_runs
+from tester.lock import RUN_LOCK, ExclusiveUse
+from tester.store.catalogue import cut_off, find_run, run_folders, under_way
 from tester.store.schema import StoreError
 from tests.tester.store.build import small_run
 
@@ -24,23 +25,29 @@ def test_what_is_no_run_is_refused(tmp_path: Path) -> None:
         find_run("empty", tmp_path)
 
 
-def test_runs_are_listed_by_name_with_what_is_committed(tmp_path: Path) -> None:
+def test_run_folders_are_those_with_a_record_by_name(tmp_path: Path) -> None:
     small_run(tmp_path / "2024-02-22")
     small_run(tmp_path / "2024-02-21", ([0.9],))
     (tmp_path / "notes.txt").touch()
     (tmp_path / "other").mkdir()
-    found = list(list_runs(tmp_path))
-    assert [item.name for item in found] == ["2024-02-21", "2024-02-22"]
-    assert [(item.conditions, item.repeats) for item in found] == [(1, 1), (2, 6)]
-
-
-def test_a_run_that_cannot_be_read_is_listed_with_its_problem(tmp_path: Path) -> None:
-    (tmp_path / "broken").mkdir()
-    (tmp_path / "broken" / "run.db").touch()
-    (found,) = list_runs(tmp_path)
-    assert found.run is None
-    assert "schema 0" in found.problem
+    assert [folder.name for folder in run_folders(tmp_path)] == ["2024-02-21", "2024-02-22"]
 
 
 def test_no_folder_holds_no_runs(tmp_path: Path) -> None:
-    assert list(list_runs(tmp_path / "nowhere")) == []
+    assert list(run_folders(tmp_path / "nowhere")) == []
+
+
+def test_a_run_without_a_manifest_was_cut_off(tmp_path: Path) -> None:
+    small_run(tmp_path / "whole")
+    (tmp_path / "whole" / "manifest.json").touch()
+    small_run(tmp_path / "cut")
+    assert [folder.name for folder in cut_off(tmp_path)] == ["cut"]
+
+
+def test_a_run_that_is_under_way_was_not_cut_off(tmp_path: Path) -> None:
+    folder = small_run(tmp_path / "busy")
+    with ExclusiveUse() as use:
+        use.lock_file("busy", folder / RUN_LOCK, "busy", lasting=False)
+        holder = under_way(folder)
+        assert holder is not None and holder.run == "busy" and cut_off(tmp_path) == []
+    assert under_way(folder) is None and [f.name for f in cut_off(tmp_path)] == ["busy"]

@@ -192,7 +192,7 @@ def test_a_file_that_is_no_database_is_refused(tmp_path: Path) -> None:
 
 def test_an_empty_file_is_refused(tmp_path: Path) -> None:
     (tmp_path / "run.db").touch()
-    with pytest.raises(StoreError, match="schema 0"):
+    with pytest.raises(StoreError, match="not begun"):
         RunReader(tmp_path)
 
 
@@ -225,3 +225,31 @@ def test_reading_does_not_change_the_file(folder: Path) -> None:
 def test_a_name_with_spaces_and_marks_is_just_a_name(tmp_path: Path) -> None:
     with RunReader(small_run(tmp_path / "a run? 100% #1")) as reader:
         assert reader.run().status == "finished"
+
+
+def test_a_record_of_an_older_schema_is_read_and_left_as_it_is(tmp_path: Path) -> None:
+    folder = small_run(tmp_path / "run")
+    with sqlite3.connect(folder / "run.db") as database:
+        for table in ("session", "change", "calibration"):
+            database.execute(f"DROP TABLE {table}")
+        for table, column in (
+            ("wheel", "ground_s"),
+            ("run", "recipe_source"),
+            ("run", "rig_source"),
+            ("run", "calibration_sha256"),
+        ):
+            database.execute(f"ALTER TABLE {table} DROP COLUMN {column}")
+        database.execute("PRAGMA user_version = 1")
+    database.close()
+    before = (folder / "run.db").read_bytes()
+    with RunReader(folder) as reader:
+        assert len(reader.repeats()) == 6 and reader.sessions() == [] and reader.run().status == "finished"
+    assert (folder / "run.db").read_bytes() == before
+
+
+def test_samples_come_as_an_arrow_table(tmp_path: Path) -> None:
+    from tester.store.arrow import sample_table
+
+    with RunReader(small_run(tmp_path / "run")) as reader:
+        table = sample_table(reader, 1, 2)
+        assert table.num_rows == 5 and table.column_names == list(SAMPLE_COLUMNS)

@@ -16,7 +16,7 @@ import pytest
 from tester.analysis.results import ConditionStatus, RepeatStatus
 from tester.store.reader import RunReader
 from tester.store.recorder import NullRecorder, Recorder
-from tester.store.records import WheelInfo
+from tester.store.records import SessionInfo, WheelInfo
 from tester.store.sample_blocks import BLOCK_ROWS
 from tester.store.schema import StoreError
 from tester.store.writer import LOSSLESS_LIMIT, RunWriter
@@ -378,3 +378,41 @@ def test_a_committed_repeat_survives_a_kill(tmp_path: Path) -> None:
         for repeat in committed:
             assert len(reader.samples(1, repeat.repeat)["time_s"]) == 20
             assert repeat.result == replace(result(), status=RepeatStatus.VALID)
+
+
+def test_what_a_full_disk_refused_is_written_a_second_later_when_there_is_room(tmp_path: Path) -> None:
+    clock = Clock()
+    writer = begun(tmp_path, clock)
+    limit_pages(writer, setting(writer, "page_count"))
+    for i in range(2000):
+        writer.sample(row(float(i) ** 1.1))
+    ticket = writer.commit_repeat(writer.begin_repeat(1, 1, 1), result())
+    assert not ticket.done and writer.failed is not None
+    limit_pages(writer, 1_000_000)
+    writer.service()
+    assert not ticket.done  # not at once: a disk that is full is not asked ten times a second
+    clock.now += 1.0
+    writer.service()
+    assert ticket.done and ticket.error is None
+    assert rows_on_disk(tmp_path) == 2000
+    assert writer.failed is not None  # the run ends all the same
+    writer.close()
+
+
+def test_rig_times_of_a_run_that_goes_on_count_from_its_origin(tmp_path: Path) -> None:
+    writer = begun(tmp_path)
+    writer.begin_session(SessionInfo(2, 1000.0, "", "", 0, "", "", "", ""))
+    key = writer.begin_repeat(1, 1, 2, 5.0)
+    writer.sample(row(6.0, float(key)))
+    writer.commit_repeat(key, result(), BURSTS)
+    writer.event(7.0, "step", "heating")
+    writer.finish("done", rig_seconds=8.0)
+    writer.close()
+    with RunReader(tmp_path) as reader:
+        (repeat,) = reader.repeats()
+        (block,) = reader.sample_blocks()
+        assert (repeat.begun_s, repeat.result.started_s, repeat.result.ended_s) == (1005.0, 1010.0, 1043.5)
+        assert [burst.started_s for burst in reader.bursts(repeat.key)] == [1010.0, 1040.0]
+        assert list(block.columns["time_s"]) == [1006.0]
+        assert [event.t_s for event in reader.events()] == [1007.0]
+        assert reader.run().rig_seconds == 1008.0

@@ -1,0 +1,103 @@
+"""How parts end, what that makes of the run, and the exit code."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import IntEnum
+
+from tester.engine.run import Outcome, Run
+
+EXIT_CODES: dict[Outcome, int] = {
+    Outcome.DONE: 0,
+    Outcome.FAILED: 1,
+    Outcome.UNREACHABLE: 4,
+    Outcome.TRIPPED: 5,
+    Outcome.STOPPED: 5,
+}
+EXIT_USAGE = 2
+EXIT_REFUSED = 3
+"""Recipe, rig or calibration are not those of the run that is to go on."""
+EXIT_INCOMPLETE = 6
+EXIT_INTERRUPTED = 130
+
+_BY_SEVERITY = (Outcome.DONE, Outcome.STOPPED, Outcome.UNREACHABLE, Outcome.FAILED, Outcome.TRIPPED)
+
+
+class CannotStartError(Exception):
+    """The run cannot begin; the message says why, ``code`` is the exit code."""
+
+    def __init__(self, message: str, code: int = 1) -> None:
+        """``code``: 1 unless told."""
+        super().__init__(message)
+        self.code = code
+
+
+class Stop(IntEnum):
+    """Who wants a run to stop; the higher one prevails."""
+
+    NONE = 0
+    OTHER_PART = 1
+    TERMINATED = 2
+    INTERRUPTED = 3
+    FAST = 4
+
+    @property
+    def text(self) -> str:
+        """The reason that is recorded."""
+        return _STOP_TEXTS[self]
+
+    def tell(self, run: Run) -> None:
+        """Have a run stop. Whoever sends TERM waits for the end: it comes at standstill, without the cool-down."""
+        run.request_stop(self.text, fast=self is Stop.FAST, cool=self is not Stop.TERMINATED)
+
+
+_STOP_TEXTS = {
+    Stop.NONE: "",
+    Stop.OTHER_PART: "another part has ended early",
+    Stop.TERMINATED: "terminated",
+    Stop.INTERRUPTED: "interrupted by the operator",
+    Stop.FAST: "interrupted by the operator",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class PartEnd:
+    """How one part ended. ``failed``: why not everything could be recorded, None where it could."""
+
+    part: int
+    outcome: Outcome
+    reason: str = ""
+    failed: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Ending:
+    """How the whole run ended: the worst of its parts."""
+
+    outcome: Outcome
+    reason: str
+    failed: str | None
+
+    def exit_code(self, *, interrupted_once: bool, missing: bool) -> int:
+        """Return the exit code; ``missing``: a condition has no value to be trusted."""
+        if self.outcome is Outcome.STOPPED and interrupted_once:
+            return EXIT_INTERRUPTED
+        if self.failed:
+            return EXIT_CODES[Outcome.FAILED]
+        if self.outcome is Outcome.DONE and missing:
+            return EXIT_INCOMPLETE
+        return EXIT_CODES[self.outcome]
+
+
+def ending_of(ends: Sequence[PartEnd], parts: int, stop: Stop = Stop.NONE) -> Ending:
+    """Return the ending of a run of ``parts`` parts, of which those in ``ends`` were begun; ``stop``: who wanted one.
+
+    The first of the worst gives the reason. A run with a part that was not begun has been stopped, if nothing worse.
+    """
+    failed = next((end.failed for end in ends if end.failed), None)
+    worst = max(ends, key=lambda end: (_BY_SEVERITY.index(end.outcome), -end.part), default=None)
+    if worst is None or (worst.outcome is Outcome.DONE and len(ends) < parts):
+        return Ending(Outcome.STOPPED, stop.text, failed)
+    reason = f"part {worst.part}: {worst.reason}" if parts > 1 and worst.reason else worst.reason
+    return Ending(worst.outcome, reason, failed)

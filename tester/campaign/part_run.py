@@ -1,0 +1,188 @@
+"""One part from its connection to its standstill, recorded in a file of its own."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Protocol
+
+from drivers.ports import BusLost
+from tester import clock
+from tester.bus_log import BusLog
+from tester.campaign.endings import PartEnd
+from tester.campaign.folder import Begin, Job, Work
+from tester.campaign.split import Part
+from tester.engine.build import Ports, build_run
+from tester.engine.context import Attendant, Nobody
+from tester.engine.prompts import Prompts
+from tester.engine.run import Outcome, Run
+from tester.engine.tickers import Ticked, TickStatistics, World, run_real_time, run_simulated
+from tester.pace import Pace
+from tester.provenance import record_parameters, record_statistics
+from tester.recipe.estimate import estimate
+from tester.rig import RigConfig
+from tester.store.reader import DATABASE
+from tester.store.writer import RunWriter
+
+if TYPE_CHECKING:
+    from sim.rig import SimRig
+
+KILLED = 137
+"""Exit status of a process that a fault script kills: what a shell shows for SIGKILL."""
+WHEEL_EVERY_S = 1.0
+"""The wheel's wear is stored this often of wall time: what an interruption loses of it."""
+
+
+class Watch(Protocol):
+    """Who looks after a part while it runs."""
+
+    statistics: TickStatistics
+    """Is told how punctual the ticks are, in real time."""
+
+    def begun(self, run: Run) -> None:
+        """Take notice of the run: from now on it can be stopped."""
+        ...
+
+    def poll(self, now_s: float, run: Run, share: float) -> None:
+        """Look at the run, about ten times a second of wall time; ``share`` of the expected rig time, from 0."""
+        ...
+
+
+class Unsampled(RunWriter):
+    """A record without samples: repeats and conditions are all that is wanted of it."""
+
+    def sample(self, row: tuple[float, ...]) -> None:
+        """Forget the sample."""
+
+
+class RunNotes:
+    """What is stored beside the scan, a few times a second: parameters once they were read back, the wheel's wear."""
+
+    def __init__(self, run: Run, recorder: RunWriter) -> None:
+        """Nothing is stored before the rig is connected."""
+        self.run = run
+        self.recorder = recorder
+        self.connected = False
+        self.wheel_due_s = 0.0
+
+    def poll(self, now_s: float) -> None:
+        """Store what is due; ``now_s`` is rig time."""
+        if not self.run.connected:
+            return
+        if not self.connected:
+            self.connected = True
+            record_parameters(self.run.engine.devices, self.recorder, now_s)
+        wall_s, wheel = clock.monotonic(), self.run.engine.ctx.wheel
+        if wheel.wheel and wall_s >= self.wheel_due_s:
+            self.wheel_due_s = wall_s + WHEEL_EVERY_S
+            self.recorder.wheel_state(wheel.wheel, wheel.diameter_mm, wheel.sliding_m, now_s)
+
+
+def run_part(job: Job, work: Work, part: Part, begin: Begin, watch: Watch, prompts: Prompts) -> PartEnd:
+    """Carry out a part; its record is closed when this returns. Raises OSError, sqlite3.Error, StoreError."""
+    folder = work.folder_of(part, job.folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    open_record = RunWriter if job.samples else Unsampled
+    lossless = work.rig.can.interface == "sim"
+    writer = open_record(folder / DATABASE, clock=clock.monotonic, utc=clock.utc_now, lossless=lossless)
+    try:
+        begin(writer)
+        outcome, reason, seconds = _execute(job, work, part, writer, watch, prompts)
+        writer.finish(outcome.value, reason, seconds)
+    finally:
+        writer.close()
+    return PartEnd(part.number, outcome, reason, writer.failed)
+
+
+def _execute(
+    job: Job, work: Work, part: Part, writer: RunWriter, watch: Watch, prompts: Prompts
+) -> tuple[Outcome, str, float]:
+    rig = work.rig
+    log = BusLog(_log_folder(job.bus_log, work, part), rig) if job.bus_log is not None else None
+    ports: Ports | None = None
+    try:
+        faults = rig.sim.faults + job.faults
+        ports, world, attendant = connect_ports(rig, job.seed, log, faulty=bool(faults))
+        run = build_run(rig, part.plan, ports, attendant, writer, prompts, work.point)
+        _place(run, work, part)
+        watch.begun(run)
+        expected_s = max(estimate(part.plan, rig).rig_seconds, 1.0)
+        ticked, lives = _with_faults(run, world, faults) if world is not None and faults else (run, world)
+        seconds = _tick(run, ticked, lives, ports.pace, job.lapse, expected_s, writer, watch)
+        record_statistics(run.engine.devices, writer, seconds)
+        return run.outcome, run.reason, seconds
+    except BusLost as lost:
+        return Outcome.UNREACHABLE, str(lost), 0.0
+    finally:
+        if ports is not None:
+            ports.close()
+        if log is not None:
+            log.close()
+
+
+def _log_folder(folder: Path, work: Work, part: Part) -> Path:
+    return folder if len(work.parts) == 1 else folder / f"part-{part.number}"
+
+
+def _place(run: Run, work: Work, part: Part) -> None:
+    """Tell a run which part of the whole it is: numbers of unforeseen wheels, what people are shown."""
+    executor, progress = run.engine.executor, run.engine.ctx.progress
+    executor.wheels = max(executor.wheels, part.last_wheel)
+    executor.conditions = sum(1 for _ in work.plan.conditions())
+    progress.part, progress.parts = part.number, len(work.parts)
+
+
+def _tick(
+    run: Run,
+    ticked: Ticked,
+    world: World | None,
+    pace: Pace | None,
+    lapse: float | None,
+    expected_s: float,
+    recorder: RunWriter,
+    watch: Watch,
+) -> float:
+    notes = RunNotes(run, recorder)
+
+    def poll(now_s: float) -> None:
+        notes.poll(now_s)
+        watch.poll(now_s, run, now_s / expected_s)
+        if recorder.failed:
+            run.request_stop(f"the run can no longer be recorded: {recorder.failed}")
+
+    if world is not None:
+        # Also at --speed 1: counted ticks, not measured ones, so that no speed changes a result.
+        return run_simulated(ticked, world, lapse=lapse, poll=poll)
+    return run_real_time(run, world, poll=poll, statistics=watch.statistics, pace=pace)
+
+
+def _with_faults(run: Run, world: SimRig, texts: Sequence[str]) -> tuple[Ticked, World]:
+    """Return what a ticker drives in place of run and rig while faults happen to them."""
+    from sim.faults import FaultScript, parse_script
+    from tester.faulty import FaultyRun
+
+    faulty = FaultyRun(run, world, FaultScript().add(parse_script(texts)), on_kill=_die)
+    return faulty, faulty
+
+
+def _die() -> None:
+    """End this process as a kill does: at once, nothing closed, nothing flushed."""
+    os._exit(KILLED)
+
+
+def connect_ports(
+    rig: RigConfig, seed: int, log: BusLog | None, *, faulty: bool = False
+) -> tuple[Ports, SimRig | None, Attendant]:
+    """Open the wires to the rig: simulated in this process (its bus spoilable where ``faulty``), or real."""
+    if rig.can.interface == "sim":
+        from tester.simulated import simulated_ports
+
+        if faulty:
+            from sim.faults.can import FaultyCanWire
+
+            return simulated_ports(rig, seed, log, FaultyCanWire)
+        return simulated_ports(rig, seed, log)
+    from tester.hardware import hardware_ports
+
+    return hardware_ports(rig, log), None, Nobody()

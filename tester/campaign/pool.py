@@ -1,0 +1,118 @@
+"""Worker processes that can be told to stop, and that tell how far they are.
+
+A pool of ``concurrent.futures`` with two things more: a level that every worker can read (who wants a stop, Stop), and
+a queue in which workers put what they have to say. Processes are spawned, not forked: the same on every system.
+"""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import signal
+from collections.abc import Callable, Iterator
+from concurrent.futures import Future, ProcessPoolExecutor
+from dataclasses import dataclass
+from multiprocessing.queues import SimpleQueue
+from multiprocessing.sharedctypes import Synchronized
+from threading import Thread, current_thread, main_thread
+from types import TracebackType
+from typing import ParamSpec, TypeVar
+
+from tester.campaign.endings import EXIT_CODES, Stop
+from tester.engine.run import Outcome
+
+P = ParamSpec("P")
+R = TypeVar("R")
+
+
+class Pool:
+    """Up to ``jobs`` processes; use in a ``with`` block, whose end stops what runs."""
+
+    def __init__(self, jobs: int) -> None:
+        """Start nothing yet: a process starts with the first call that needs it."""
+        context = multiprocessing.get_context("spawn")
+        self._level: Synchronized[int] = context.Value("i", Stop.NONE)
+        self._reports: SimpleQueue[object] = context.SimpleQueue()
+        self._executor = ProcessPoolExecutor(jobs, context, _enlist, (self._level, self._reports))
+
+    def __enter__(self) -> Pool:
+        """Return the pool."""
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, value: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Drop what waits; what still runs is told to stop, and waited for."""
+        self.stop(Stop.FAST)
+        self._executor.shutdown(cancel_futures=True)
+
+    @property
+    def executor(self) -> ProcessPoolExecutor:
+        """The pool as ``concurrent.futures`` knows it."""
+        return self._executor
+
+    def submit(self, work: Callable[P, R], *args: P.args, **kwargs: P.kwargs) -> Future[R]:
+        """Have a call made in a worker: a function of a module, arguments that are plain data."""
+        # A worker that is just starting has no handlers yet; it inherits that interrupts are not for it.
+        previous = signal.signal(signal.SIGINT, signal.SIG_IGN) if current_thread() is main_thread() else None
+        try:
+            return self._executor.submit(work, *args, **kwargs)
+        finally:
+            if previous is not None:
+                signal.signal(signal.SIGINT, previous)
+
+    def stop(self, level: Stop) -> None:
+        """Tell every worker that somebody wants a stop."""
+        self._level.value = max(self._level.value, level)
+
+    def reports(self) -> Iterator[object]:
+        """Yield what workers have said since the last call."""
+        while not self._reports.empty():
+            yield self._reports.get()
+
+
+@dataclass(slots=True)
+class _Worker:
+    """The worker's end of a pool's lines."""
+
+    level: Synchronized[int]
+    reports: SimpleQueue[object]
+    own: Stop = Stop.NONE
+
+
+_worker: _Worker | None = None
+
+
+def stop_level() -> Stop:
+    """Return who wants this worker to stop; NONE where there is no pool."""
+    if _worker is None:
+        return Stop.NONE
+    return max(_worker.own, Stop(_worker.level.value))
+
+
+def say(report: object) -> None:
+    """Put a report (plain data) into the pool's queue; without a pool it is not heard."""
+    if _worker is not None:
+        _worker.reports.put(report)
+
+
+def _enlist(level: Synchronized[int], reports: SimpleQueue[object]) -> None:
+    """Make this process a worker: interrupts are the parent's business, TERM stops it in a controlled way."""
+    global _worker
+    _worker = _Worker(level, reports)
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.signal(signal.SIGTERM, _on_term)
+    Thread(target=_leave_with_parent, daemon=True).start()
+
+
+def _on_term(_number: int, _frame: object) -> None:
+    if _worker is not None:
+        _worker.own = Stop.TERMINATED
+
+
+def _leave_with_parent() -> None:
+    """End with a parent that was killed: a worker without one would wait for ever. What is committed stays."""
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        parent.join()
+        os._exit(EXIT_CODES[Outcome.STOPPED])

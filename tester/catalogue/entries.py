@@ -1,0 +1,199 @@
+"""What a catalogue holds of a run, how it is read from the run's folder, and what a catalogue can do."""
+
+from __future__ import annotations
+
+import platform
+from collections.abc import Iterable
+from dataclasses import dataclass
+from math import isfinite
+from pathlib import Path
+from typing import Protocol
+
+from tester.export.results import Measured, results_of
+from tester.store.catalogue import run_folders
+from tester.store.reader import DATABASE, RunReader
+from tester.store.schema import StoreError
+
+
+class CatalogueError(Exception):
+    """A catalogue cannot be used; the message says why."""
+
+
+@dataclass(frozen=True, slots=True)
+class RunEntry:
+    """One run. ``origin`` is the computer and the folder of the runs it lies in; with the name it is the key."""
+
+    origin: str
+    name: str
+    fingerprint: str
+    """Changes when the run's files change."""
+    status: str
+    recipe: str
+    recipe_sha256: str
+    compounds: str
+    """Separated by line feeds, which no compound holds."""
+    operator: str
+    simulated: bool
+    seed: int | None
+    started_utc: str
+    ended_utc: str
+    rig_seconds: float | None
+    software_version: str
+    conditions: int
+    repeats: int
+    repeats_planned: int
+    trusted: int
+    """Conditions that have a coefficient to be trusted."""
+    problem: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class ConditionEntry:
+    """One condition of a run: setpoints, coefficient, uncertainty (standard and expanded), repeats."""
+
+    condition: int
+    replicate: int
+    compound: str
+    slip_velocity_mm_s: float
+    load_n: float
+    sideslip_deg: float
+    camber_deg: float
+    temperature_c: float
+    wheel_speed_m_s: float
+    status: str
+    mu: float | None
+    s: float | None
+    u_standard: float | None
+    u_expanded: float | None
+    n_valid: int
+    n: int
+
+
+@dataclass(frozen=True, slots=True)
+class Wanted:
+    """Which runs: every field that is not empty narrows. ``since`` and ``until`` are the beginnings of ISO dates."""
+
+    compound: str = ""
+    since: str = ""
+    until: str = ""
+    recipe: str = ""
+
+
+class Catalogue(Protocol):
+    """Runs and conditions, by origin and name."""
+
+    def fingerprints(self, origin: str) -> dict[str, str]:
+        """Return the fingerprint of every run of an origin, by name."""
+        ...
+
+    def put(self, run: RunEntry, conditions: Iterable[ConditionEntry]) -> None:
+        """Store a run, in place of what was stored of it."""
+        ...
+
+    def remove(self, origin: str, name: str) -> None:
+        """Forget a run."""
+        ...
+
+    def runs(self, wanted: Wanted) -> list[RunEntry]:
+        """Return the runs that are wanted, by start."""
+        ...
+
+    def conditions(self, run: RunEntry) -> list[ConditionEntry]:
+        """Return a run's conditions in order."""
+        ...
+
+    def close(self) -> None:
+        """Let go of it."""
+        ...
+
+
+def origin_of(under: Path) -> str:
+    """Return the origin of the runs under a folder."""
+    return f"{platform.node()}:{under.absolute()}"
+
+
+def refresh(catalogue: Catalogue, under: Path) -> None:
+    """Bring a catalogue up to date with the runs under a folder; what has not changed is not read again."""
+    origin = origin_of(under)
+    known = catalogue.fingerprints(origin)
+    for folder in run_folders(under):
+        print_ = fingerprint(folder)
+        if known.pop(folder.name, None) != print_:
+            catalogue.put(*read_entries(folder, origin, print_))
+    for name in known:
+        catalogue.remove(origin, name)
+
+
+def fingerprint(folder: Path) -> str:
+    """Return what changes when a run's record changes: size and time of the database and its log."""
+    parts: list[str] = []
+    for name in (DATABASE, f"{DATABASE}-wal"):
+        path = folder / name
+        if path.is_file():
+            stat = path.stat()
+            parts.append(f"{stat.st_size}.{stat.st_mtime_ns}")
+    return "/".join(parts)
+
+
+def read_entries(folder: Path, origin: str, print_: str) -> tuple[RunEntry, list[ConditionEntry]]:
+    """Return a run's entries; of one that cannot be read an entry that says so."""
+    try:
+        with RunReader(folder) as reader:
+            results = results_of(reader)
+    except StoreError as error:
+        return _unreadable(folder, origin, print_, str(error)), []
+    run, conditions = results.run, list(results.conditions())
+    compounds = dict.fromkeys(measured.info.compound for measured in conditions)
+    entry = RunEntry(
+        origin=origin,
+        name=folder.name,
+        fingerprint=print_,
+        status=run.status,
+        recipe=run.info.recipe_name,
+        recipe_sha256=run.recipe_sha256,
+        compounds="\n".join(compounds),
+        operator=run.info.operator,
+        simulated=run.info.simulated,
+        seed=run.info.seed,
+        started_utc=run.info.started_utc,
+        ended_utc=run.ended_utc,
+        rig_seconds=_number(run.rig_seconds),
+        software_version=run.info.software_version,
+        conditions=len(conditions),
+        repeats=sum(len(measured.repeats) for measured in conditions),
+        repeats_planned=sum(measured.info.repeats for measured in conditions),
+        trusted=sum(measured.result.ok for measured in conditions),
+    )
+    return entry, [_condition(measured) for measured in conditions]
+
+
+def _condition(measured: Measured) -> ConditionEntry:
+    i, r = measured.info, measured.result
+    return ConditionEntry(
+        condition=i.condition,
+        replicate=i.replicate,
+        compound=i.compound,
+        slip_velocity_mm_s=round(1e3 * i.slip_velocity_m_s, 6),
+        load_n=i.load_n,
+        sideslip_deg=i.sideslip_deg,
+        camber_deg=i.camber_deg,
+        temperature_c=i.temperature_c,
+        wheel_speed_m_s=i.wheel_speed_m_s,
+        status=r.status.value,
+        mu=_number(r.mu_resultant),
+        s=_number(r.s),
+        u_standard=_number(r.standard),
+        u_expanded=_number(r.expanded),
+        n_valid=r.n_valid,
+        n=r.n,
+    )
+
+
+def _unreadable(folder: Path, origin: str, print_: str, problem: str) -> RunEntry:
+    return RunEntry(
+        origin, folder.name, print_, "unreadable", "", "", "", "", False, None, "", "", None, "", 0, 0, 0, 0, problem
+    )
+
+
+def _number(value: float) -> float | None:
+    return value if isfinite(value) else None

@@ -1,0 +1,108 @@
+"""Single keys from a terminal, without waiting for them: POSIX terminals and the Windows console behind one door.
+
+Tried on Linux; the Windows side follows its documentation and was not tried.
+"""
+
+from __future__ import annotations
+
+import sys
+from typing import Protocol, TextIO
+
+
+class Keys(Protocol):
+    """A keyboard that can be asked, and left alone while a person types a line."""
+
+    def begin(self) -> None:
+        """Take single keys from now on; pressing one shows nothing."""
+        ...
+
+    def end(self) -> None:
+        """Give the terminal back as it was."""
+        ...
+
+    def pressed(self) -> str:
+        """Return what was pressed since the last call, "" for nothing; never waits."""
+        ...
+
+
+class NoKeys:
+    """No terminal: nobody presses anything."""
+
+    def begin(self) -> None:
+        """Do nothing."""
+
+    def end(self) -> None:
+        """Do nothing."""
+
+    def pressed(self) -> str:
+        """Return nothing."""
+        return ""
+
+
+def keys_of(stream: TextIO) -> Keys:
+    """Return the keys of a stream: none unless it is a terminal."""
+    if not stream.isatty():
+        return NoKeys()
+    if sys.platform == "win32":
+        return _console_keys()
+    return _terminal_keys(stream.fileno())
+
+
+if sys.platform == "win32":
+
+    def _console_keys() -> Keys:
+        import msvcrt
+
+        class ConsoleKeys(NoKeys):
+            """The Windows console gives single keys as they are."""
+
+            def pressed(self) -> str:
+                found = ""
+                while msvcrt.kbhit():
+                    found += msvcrt.getwch()
+                return found
+
+        return ConsoleKeys()
+
+else:
+
+    def _terminal_keys(descriptor: int) -> Keys:
+        import os
+        import select
+        import termios
+
+        class TerminalKeys:
+            """A POSIX terminal without line mode and echo; Ctrl+C stays a signal."""
+
+            def __init__(self) -> None:
+                self.before: list[int | list[bytes | int]] | None = None
+
+            def begin(self) -> None:
+                if self.before is not None:
+                    return
+                self.before = termios.tcgetattr(descriptor)
+                changed = termios.tcgetattr(descriptor)
+                changed[3] = int(changed[3]) & ~(termios.ICANON | termios.ECHO)  # pyright: ignore[reportArgumentType]
+                termios.tcsetattr(descriptor, termios.TCSADRAIN, changed)
+
+            def end(self) -> None:
+                if self.before is not None:
+                    termios.tcsetattr(descriptor, termios.TCSADRAIN, self.before)
+                    self.before = None
+
+            def pressed(self) -> str:
+                if self.before is None or not select.select([descriptor], [], [], 0.0)[0]:
+                    return ""
+                return os.read(descriptor, 64).decode("utf-8", "replace")
+
+        return TerminalKeys()
+
+
+COMMANDS = {"h": "hold", "r": "release", "a": "abort", "s": "stop", "\x18": "stop"}
+"""What a key means while a recipe runs; Ctrl+X is the second key of STOP (rulings, 34)."""
+HELP = "h hold   r release   a abort   s or Ctrl+X stop fast"
+
+
+def commands_of(pressed: str) -> list[str]:
+    """Return the commands among keys pressed; others mean nothing."""
+    return [COMMANDS[key] for key in pressed.lower() if key in COMMANDS]

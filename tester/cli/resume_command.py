@@ -1,0 +1,37 @@
+"""`tester resume`: go on with an interrupted run."""
+
+from __future__ import annotations
+
+import click
+
+from tester.cli.options import json_option
+
+
+@click.command("resume", short_help="Go on with an interrupted run.")
+@click.argument("run")
+@click.option("--yes", is_flag=True, help="Answer every prompt with yes.")
+@click.option(
+    "--reason", default="", metavar="TEXT", help="Go on although recipe, rig or calibration changed; stored with it."
+)
+@click.option("--speed", default=None, metavar="max|X", help="Simulated rig: as fast as it goes, or X times real time.")
+@click.option("--bus-log", default=None, metavar="DIR", help="Write every CAN and Modbus frame into this folder.")
+@click.option("--operator", default="", metavar="NAME", help="Who runs the test; stored with the run.")
+@json_option
+def resume(
+    run: str, yes: bool, reason: str, speed: str | None, bus_log: str | None, operator: str, as_json: bool
+) -> int:
+    """Go on with RUN (its folder, or its name under runs) at the first repeat that is not committed.
+
+    The wheel is heated again first. Prints the run's folder as the last line; a run that is complete stays as it is.
+    """
+    from pathlib import Path
+
+    from tester.cli.console import Console
+    from tester.cli.finding import run_folder
+    from tester.cli.run_command import carried_out, time_lapse
+    from tester.session import Session, SessionOptions
+
+    options = SessionOptions(lapse=time_lapse(speed), bus_log=Path(bus_log) if bus_log else None, operator=operator)
+    folder = run_folder(run)
+    session = Session(options, Console(as_json=as_json, answer_yes=yes))
+    return carried_out(lambda: session.resume(folder, reason))

@@ -1,0 +1,196 @@
+"""``tester serve`` and its controls: ``status``, ``hold``, ``release``, ``ack``, ``stop``."""
+
+from __future__ import annotations
+
+from collections.abc import Awaitable, Callable
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import click
+
+from tester.cli.options import json_option, print_json, rig_option, set_option
+
+if TYPE_CHECKING:
+    from tester.service.client import Client
+    from tester.service.commands import Action
+    from tester.service.state import StateView
+
+EXIT_REFUSED = 1
+EXIT_UNREACHABLE = 4
+Decorated = TypeVar("Decorated", bound=Callable[..., Any])
+
+
+def connect_option(command: Decorated) -> Decorated:
+    """Add --connect: where the service listens."""
+    return click.option(
+        "--connect", "address", default="", metavar="URL", help="The service: unix:PATH or ws://127.0.0.1:PORT."
+    )(command)
+
+
+def take_option(command: Decorated) -> Decorated:
+    """Add --take: take control from the client that has it."""
+    return click.option("--take", is_flag=True, help="Take control from the client that has it.")(command)
+
+
+@click.command(short_help="Own the rig and serve its screens and commands.")
+@rig_option
+@set_option
+@click.option("--out", default="runs", show_default=True, metavar="DIR", help="Folder that gets the runs' folders.")
+@click.option("--connect", "address", default="", metavar="URL", help="Listen at unix:PATH instead of the user's own.")
+@click.option("--tcp", "port", default=None, metavar="PORT", type=click.IntRange(0, 65535),
+              help="Listen on loopback TCP with a token instead of a Unix socket; 0 = any port.")  # fmt: skip
+@click.option("--notify", default="", metavar="COMMAND",
+              help="Command to run on a trip, hold, prompt, end or full disk; JSON on its standard input.")  # fmt: skip
+def serve(rig_name: str, overrides: tuple[str, ...], out: str, address: str, port: int | None, notify: str) -> int:
+    """Own the rig, run what clients ask for, and go on when they disconnect.
+
+    Nothing moves by starting it. TERM or Ctrl+C stops a run in a controlled way and leaves at standstill.
+    """
+    from tester.service.host import host
+
+    return host(rig_name, overrides, out, address, port, notify)
+
+
+@click.command(short_help="Say what the rig is doing.")
+@connect_option
+@json_option
+def status(address: str, as_json: bool) -> int:
+    """Say what the rig is doing; "no service is running" where there is none."""
+
+    async def ask(client: Client) -> None:
+        _show(client.state, as_json)
+
+    from tester.service.client import NoServiceError
+
+    try:
+        _with_client(address, ask, control=False)
+    except NoServiceError as error:
+        if as_json:
+            print_json({"service": False, "mode": None, "reason": str(error)})
+        else:
+            click.echo("no service is running")
+    return 0
+
+
+@click.command(short_help="HOLD: lift and wait, keep the temperature.")
+@connect_option
+@take_option
+def hold(address: str, take: bool) -> int:
+    """Lift, take the slip out and keep the temperature; the repeat under way is done again after `tester release`."""
+    from tester.service.commands import Hold
+
+    return _command(address, Hold(), take)
+
+
+@click.command(short_help="End a HOLD.")
+@connect_option
+@take_option
+def release(address: str, take: bool) -> int:
+    """Go on after `tester hold`."""
+    from tester.service.commands import Release
+
+    return _command(address, Release(), take)
+
+
+@click.command(short_help="Acknowledge alarms; nothing moves by it.")
+@connect_option
+@take_option
+def ack(address: str, take: bool) -> int:
+    """Acknowledge every alarm and a latched trip. Nothing moves by it."""
+    from tester.service.commands import Acknowledge
+
+    return _command(address, Acknowledge(), take)
+
+
+@click.command(short_help="STOP the rig.")
+@connect_option
+@click.option("--fast", is_flag=True, help="Quick stop of both drives instead of a controlled stop.")
+def stop(address: str, fast: bool) -> int:
+    """STOP: heat off, lift, both drives to standstill. From any shell, whoever has control. No emergency stop."""
+    from tester.service.commands import Stop
+
+    return _command(address, Stop(fast=fast), take=False, control=False)
+
+
+def run_detached(address: str, action: Action) -> int:
+    """Have the service run a recipe, print the run's folder and leave it to the service; return the exit code."""
+    return _command(address, action, take=False, show_folder=True)
+
+
+def _command(address: str, action: Action, take: bool, *, control: bool = True, show_folder: bool = False) -> int:
+    """Give one command; return the exit code."""
+    from tester.service.client import LostError, NoServiceError, RefusedError
+    from tester.service.commands import Control
+
+    async def give(client: Client) -> None:
+        if control and take:
+            await client.command(Control(force=True))
+        result = await client.command(action)
+        if show_folder and isinstance(result, dict):
+            click.echo(str(result["folder"]))
+
+    try:
+        _with_client(address, give, control=control)
+    except NoServiceError:
+        click.echo("no service is running: start one with `tester serve`", err=True)
+        return EXIT_UNREACHABLE
+    except (RefusedError, LostError, TimeoutError) as error:
+        click.echo(f"refused: {error}" if isinstance(error, RefusedError) else f"no answer: {error}", err=True)
+        return EXIT_REFUSED
+    return 0
+
+
+def _with_client(address: str, work: Callable[[Client], Awaitable[None]], *, control: bool) -> None:
+    """Connect, do something, hang up. Raises NoServiceError and what the work raises."""
+    import asyncio
+    import os
+
+    from tester.service.address import AddressError, address_of
+    from tester.service.client import Client
+
+    async def session() -> None:
+        try:
+            where = address_of(address) if address else None
+        except AddressError as error:
+            raise click.UsageError(str(error)) from error
+        name = f"command of process {os.getpid()}"
+        async with await Client.connect(where, name=name, control=control) as client:
+            await work(client)
+
+    asyncio.run(session())
+
+
+def _show(state: StateView, as_json: bool) -> None:
+    """Print a state for people, or whole."""
+    if as_json:
+        from pydantic_core import to_json
+
+        click.echo(to_json(state, inf_nan_mode="null"))
+        return
+    for line in _lines(state):
+        click.echo("".join(c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in line))
+
+
+def _lines(state: StateView) -> list[str]:
+    """Return a state in some lines."""
+    run, progress = state.run, state.progress
+    lines = [f"{state.mode}  {state.mode_text}".rstrip()]
+    if run is not None:
+        lines.append(f"run      {run.name} ({run.recipe}): {run.outcome}" + (f": {run.reason}" if run.reason else ""))
+    if progress.steps:
+        where = f"step     {progress.step}/{progress.steps}  {progress.title}"
+        lines.append(where + (f"  repeat {progress.repeat}/{progress.repeats}" if progress.repeats else ""))
+        lines.append(f"done     {100 * progress.share:.0f} %, {_hours(progress.left_s)} of rig time left")
+    if state.prompt is not None:
+        lines.append(f"prompt   {state.prompt.number}: {state.prompt.text}")
+    lines += [f"alarm    {alarm.state}: {alarm.name}: {alarm.text}" for alarm in state.alarms]
+    lines += [f"value    {value.label} {value.value:.{value.decimals}f} {value.unit}".rstrip()
+              for value in state.values[:5] if value.value is not None]  # fmt: skip
+    control = state.clients.controller or "nobody"
+    lines.append(f"control  {control}; {state.clients.viewers} watching")
+    return lines
+
+
+def _hours(seconds: float | None) -> str:
+    if seconds is None:
+        return "?"
+    return f"{int(seconds) // 3600}:{int(seconds) // 60 % 60:02d}:{int(seconds) % 60:02d}"

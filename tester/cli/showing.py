@@ -1,0 +1,31 @@
+"""How commands show what is stored: numbers, durations, text that somebody else wrote."""
+
+from __future__ import annotations
+
+import json
+from math import isfinite
+
+import click
+
+Json = str | int | float | bool | None | list["Json"] | dict[str, "Json"]
+
+
+def number(value: float) -> float | None:
+    """Return a number, None (JSON's null) for what is not finite."""
+    return value if isfinite(value) else None
+
+
+def shown(text: str) -> str:
+    """Return text that a person or a device wrote, harmless for a terminal."""
+    return "".join(c if c.isprintable() else "�" for c in text)
+
+
+def dump(value: Json) -> None:
+    """Print JSON, indented."""
+    click.echo(json.dumps(value, ensure_ascii=False, allow_nan=False, indent=1))
+
+
+def duration(seconds: float) -> str:
+    """Return h:mm:ss."""
+    minutes, s = divmod(round(seconds), 60)
+    return f"{minutes // 60}:{minutes % 60:02d}:{s:02d}"

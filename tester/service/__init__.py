@@ -1,0 +1,1 @@
+"""The process that owns the rig, and what talks to it."""

@@ -1,0 +1,134 @@
+"""Where the service listens: a Unix socket of one user, or loopback TCP with a token where there are none.
+
+Both lie in one folder that only the user may enter. A TCP service leaves its address and token in ``service.json``
+there (mode 0600), so that a client finds either the same way.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import secrets
+import socket
+import struct
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+from typing import cast
+
+HAS_UNIX = hasattr(socket, "AF_UNIX") and os.name == "posix"
+SOCKET = "service.sock"
+CARD = "service.json"
+CREDENTIALS = struct.Struct("iII")
+"""struct ucred of Linux: pid, uid, gid."""
+
+
+class AddressError(Exception):
+    """No service can be addressed that way; the message says why."""
+
+
+@dataclass(frozen=True, slots=True)
+class UnixAddress:
+    """A socket in the file system."""
+
+    path: Path
+
+    def __str__(self) -> str:
+        """Return it as ``--connect`` takes it."""
+        return f"unix:{self.path}"
+
+
+@dataclass(frozen=True, slots=True)
+class TcpAddress:
+    """A loopback port and the token that opens it."""
+
+    host: str
+    port: int
+    token: str
+
+    def __str__(self) -> str:
+        """Return it without its token."""
+        return f"ws://{self.host}:{self.port}"
+
+
+Address = UnixAddress | TcpAddress
+
+
+def folder() -> Path:
+    """Return the folder of the user's service, and create it (0700) if it is not there.
+
+    ``TESTER_RUNTIME_DIR``, else ``XDG_RUNTIME_DIR/friction-tester``, else a folder of the user's in the temporary one.
+    Raises AddressError if it belongs to somebody else or others may enter it.
+    """
+    own = os.environ.get("TESTER_RUNTIME_DIR")
+    base = os.environ.get("XDG_RUNTIME_DIR")
+    if own:
+        path = Path(own)
+    elif base:
+        path = Path(base) / "friction-tester"
+    else:
+        path = Path(tempfile.gettempdir()) / f"friction-tester-{os.getuid() if HAS_UNIX else os.getlogin()}"
+    path.mkdir(mode=0o700, parents=True, exist_ok=True)
+    if HAS_UNIX:
+        found = path.stat()
+        if found.st_uid != os.getuid() or found.st_mode & 0o077:
+            raise AddressError(f"{path} belongs to somebody else, or others may enter it (expected mode 0700)")
+    return path
+
+
+def default_address(where: Path | None = None) -> Address:
+    """Return where the user's service is, or would be."""
+    where = where or folder()
+    if HAS_UNIX and not (where / CARD).exists():
+        return UnixAddress(where / SOCKET)
+    return read_card(where / CARD)
+
+
+def address_of(text: str) -> Address:
+    """Return the address that a person wrote: ``unix:PATH``, a path, or ``ws://HOST:PORT`` (token from the card)."""
+    if text.startswith("ws://"):
+        card = read_card(folder() / CARD)
+        host, _, port = text.removeprefix("ws://").rstrip("/").rpartition(":")
+        if not port.isdigit():
+            raise AddressError(f"{text}: expected ws://HOST:PORT")
+        return TcpAddress(host, int(port), card.token)
+    return UnixAddress(Path(text.removeprefix("unix:")))
+
+
+def new_tcp_address(port: int = 0) -> TcpAddress:
+    """Return a loopback address with a fresh token; port 0 = any that is free."""
+    return TcpAddress("127.0.0.1", port, secrets.token_urlsafe(32))
+
+
+def write_card(address: TcpAddress, path: Path) -> None:
+    """Write address and token for the user's clients (mode 0600)."""
+    path.unlink(missing_ok=True)
+    descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
+    with os.fdopen(descriptor, "w", encoding="utf-8") as file:
+        json.dump({"host": address.host, "port": address.port, "token": address.token}, file)
+
+
+def read_card(path: Path) -> TcpAddress:
+    """Read address and token. Raises AddressError."""
+    try:
+        card: object = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise AddressError(f"no service has left its address here: {path}") from error
+    match card:
+        case {"host": str(host), "port": int(port), "token": str(token)}:
+            return TcpAddress(host, port, token)
+        case _:
+            raise AddressError(f"{path} is not the card of a service")
+
+
+def peer_uid(connection: socket.socket) -> int | None:
+    """Return the user id of the process at the other end of a Unix socket; None where the system does not tell.
+
+    Linux: SO_PEERCRED (unix(7)), three ints pid, uid, gid. Elsewhere the folder's and the socket's modes protect.
+    """
+    option = cast("int | None", getattr(socket, "SO_PEERCRED", None))
+    if option is None:
+        return None
+    raw = connection.getsockopt(socket.SOL_SOCKET, option, CREDENTIALS.size)
+    _, uid, _ = CREDENTIALS.unpack(raw)
+    return int(uid)

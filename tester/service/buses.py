@@ -1,0 +1,94 @@
+"""Devices and buses of a run, for people: states, ages, errors."""
+
+from __future__ import annotations
+
+from math import inf
+from typing import Protocol, runtime_checkable
+
+from drivers.ir_thermometer import IrThermometer
+from drivers.jacket import HeatingJacket
+from drivers.load_cell import LoadCell
+from drivers.servo import ServoDrive
+from tester.engine.devices import Devices
+from tester.rig import RigConfig
+from tester.service.state import BusView, DeviceView
+
+Reader = LoadCell | HeatingJacket | IrThermometer
+
+
+@runtime_checkable
+class LoadedWire(Protocol):
+    """A simulated bus, which knows its load."""
+
+    @property
+    def load(self) -> float:
+        """Return the share of the last second in which the bus was taken, 0..1."""
+        ...
+
+
+class BusWatch:
+    """Looks at the devices of one run."""
+
+    def __init__(self, devices: Devices, rig: RigConfig) -> None:
+        """Look only: nothing is sent by it."""
+        self.devices = devices
+        self.rig = rig
+        self._emergencies: dict[str, int] = {}
+        named = rig.devices
+        self._readers: tuple[tuple[str, str, Reader], ...] = (
+            ("load cell", named.load_cell.line, devices.cell),
+            ("jacket", named.jacket.line, devices.jacket),
+            ("thermometer", named.ir_thermometer.line, devices.thermometer),
+        )
+
+    def count_emergency(self, text: str) -> None:
+        """Count an emergency by the drive's name, with which its text begins."""
+        name = text.partition(" drive")[0]
+        self._emergencies[name] = self._emergencies.get(name, 0) + 1
+
+    def device_views(self, now: float) -> tuple[DeviceView, ...]:
+        """Return every device at ``now`` s of the run."""
+        hours = max(now, 60.0) / 3600.0
+        drives = [self._drive(drive, now, hours) for drive in self.devices.drives]
+        return (*drives, *(self._reader(*one, now, hours) for one in self._readers))
+
+    def _drive(self, drive: ServoDrive, now: float, hours: float) -> DeviceView:
+        name = drive.config.name
+        errors = drive.malformed + self._emergencies.get(name, 0)
+        detail = drive.refused or ("heartbeat lost" if drive.lost else "")
+        if not detail and drive.emergency is not None:
+            detail = f"{drive.emergency.text} (0x{drive.emergency.code:04X})"
+        state = drive.state.name.lower().replace("_", " ")
+        return DeviceView(name, "drive", "can", drive.config.node_id, state, drive.online,
+                          _age(now, drive.stamp_s), 0, errors, errors / hours, detail)  # fmt: skip
+
+    def _reader(self, label: str, line: str, device: Reader, now: float, hours: float) -> DeviceView:
+        counters = device.station.counters
+        exceptions = sum(counters.exceptions.values())
+        errors = counters.timeouts + counters.crc_errors + counters.garbage + counters.late + exceptions
+        state = "refused" if device.refused else "lost" if device.is_lost else "ready" if device.ready else "set up"
+        detail = device.refused or ""
+        if errors and not detail:
+            detail = f"time-outs {counters.timeouts}, CRC {counters.crc_errors}, late {counters.late}"
+            detail += f", garbage {counters.garbage}, exceptions {exceptions}"
+        return DeviceView(label, label, line, device.station.unit_id, state, device.ready and not device.is_lost,
+                          _age(now, device.stamp_s), counters.requests, errors, errors / hours, detail)  # fmt: skip
+
+    def bus_views(self) -> tuple[BusView, ...]:
+        """Return the buses."""
+        can = self.devices.can
+        load = 100.0 * can.load if isinstance(can, LoadedWire) else None
+        errors = sum(drive.malformed for drive in self.devices.drives) + sum(self._emergencies.values())
+        found = [BusView("can", "can", load, errors, f"{self.rig.can.bitrate // 1000} kbit/s")]
+        for (name, config), (_, link) in zip(self.rig.lines.items(), self.devices.lines, strict=True):
+            failed = sum(
+                s.counters.timeouts + s.counters.crc_errors + s.counters.garbage + s.counters.late
+                for s in link.stations
+            )
+            found.append(BusView(name, "modbus", None, failed + link.garbage, f"{config.baud} baud, {config.framing}"))
+        return tuple(found)
+
+
+def _age(now: float, at_s: float) -> float | None:
+    """Return the age of data in s, None for none."""
+    return None if at_s == -inf else max(now - at_s, 0.0)

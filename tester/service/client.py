@@ -1,0 +1,299 @@
+"""A client of the service, for screens and scripts.
+
+    async with await Client.connect(control=True) as client:
+        await client.command(RunRecipe("quickstart", speed=60.0, yes=True))
+        async for message in client:
+            if isinstance(message, Snapshot):
+                print(message.state.mode, message.state.progress.title)
+
+``Client`` is one connection. ``Link`` keeps one up: it comes back after a loss and misses no event.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections import deque
+from collections.abc import AsyncIterator
+from contextlib import suppress
+from dataclasses import dataclass
+from types import TracebackType
+
+from pydantic import JsonValue
+from websockets.asyncio.client import ClientConnection, connect, unix_connect
+from websockets.exceptions import ConnectionClosed, InvalidHandshake
+
+from tester import clock
+from tester.service.address import Address, AddressError, UnixAddress, default_address
+from tester.service.commands import Action, Command, Join, Stop
+from tester.service.protocol import (
+    EVENTS_KEPT,
+    TREND_ROWS,
+    Accepted,
+    BadMessageError,
+    Event,
+    Frames,
+    Goodbye,
+    Hello,
+    PlanMessage,
+    Refused,
+    ServerMessage,
+    Snapshot,
+    encode,
+    from_server,
+)
+from tester.service.state import PlanView, StateView
+
+MAX_INCOMING = 64 * 1024 * 1024
+"""Longest message taken from the service, bytes: a hello holds ten minutes and two thousand events."""
+CONNECT_S = 10.0
+ANSWER_S = 30.0
+"""A command that has no answer by then has failed, s; checking and planning take seconds."""
+AGAIN_S = 0.5
+"""A lost connection is tried again this often."""
+
+
+class NoServiceError(Exception):
+    """Nobody listens there, or not for us; the message says why."""
+
+
+class RefusedError(Exception):
+    """The service has refused a command; the message is its reason."""
+
+
+class LostError(Exception):
+    """The connection has ended; the message says why, as far as anybody said."""
+
+
+@dataclass(frozen=True, slots=True)
+class Lost:
+    """Given by a ``Link`` in the place of a message: the connection is gone, and is tried again."""
+
+    reason: str
+
+
+class Client:
+    """One connection. ``state``, ``plan``, ``events`` and ``trend`` are always the newest known."""
+
+    def __init__(self, connection: ClientConnection, hello: Hello) -> None:
+        """Use ``Client.connect``."""
+        self._connection = connection
+        self.service = hello.service
+        self.number = hello.client
+        self.state: StateView = hello.state
+        self.plan: PlanView | None = hello.plan
+        self.events: deque[Event] = deque(hello.events, maxlen=EVENTS_KEPT)
+        self.complete = hello.complete
+        """No event is missing between those seen before and ``events``."""
+        self.trend: deque[tuple[float | None, ...]] = deque(hello.trend.rows, maxlen=TREND_ROWS)
+        self.trend_columns = hello.trend.columns
+        self.received_s = clock.monotonic()
+        """When the newest state came (tester.clock.monotonic)."""
+        self.lost = ""
+        """Why the connection has ended, "" while it stands."""
+        self._goodbye = ""
+        self._ids = 0
+        self._answers: dict[int, asyncio.Future[Accepted]] = {}
+        self._events_due: deque[Event] = deque()
+        self._newest: dict[type, Hello | Snapshot | PlanMessage | Frames] = {Hello: hello}
+        self._something = asyncio.Event()
+        self._something.set()
+        self._reading = asyncio.create_task(self._read())
+
+    @classmethod
+    async def connect(
+        cls,
+        address: Address | None = None,
+        *,
+        name: str = "client",
+        control: bool = False,
+        service: str = "",
+        since: int = 0,
+    ) -> Client:
+        """Connect and say who we are. Raises NoServiceError.
+
+        ``control``: ask to be the one that commands. ``service``, ``since``: what was seen last (``Client.service``
+        and ``last_seq``), to be given every event after it.
+        """
+        try:
+            connection = await _open(address or default_address())
+            await connection.send(encode(Join(name, control=control, service=service, since=since)), text=True)
+            async with asyncio.timeout(CONNECT_S):
+                first = from_server(await connection.recv())
+        except (OSError, AddressError, InvalidHandshake, TimeoutError, BadMessageError) as error:
+            raise NoServiceError(f"no service there: {error}") from error
+        except ConnectionClosed as error:
+            raise NoServiceError(f"the service hung up: {error}") from error
+        if not isinstance(first, Hello):
+            raise NoServiceError(first.reason if isinstance(first, Goodbye) else "no hello")
+        return cls(connection, first)
+
+    @property
+    def controls(self) -> bool:
+        """This client is the one that commands."""
+        return self.state.clients.controller_id == self.number
+
+    @property
+    def age_s(self) -> float:
+        """Seconds since the newest state came: above 2 no value is to be believed."""
+        return clock.monotonic() - self.received_s
+
+    @property
+    def last_seq(self) -> int:
+        """The newest event's number, 0 before the first."""
+        return self.events[-1].seq if self.events else 0
+
+    async def command(self, action: Action, *, within_s: float = ANSWER_S) -> JsonValue:
+        """Have something done; return the answer's result. Raises RefusedError, LostError, TimeoutError."""
+        self._ids += 1
+        answer: asyncio.Future[Accepted] = asyncio.get_running_loop().create_future()
+        self._answers[self._ids] = answer
+        try:
+            if self.lost:
+                raise LostError(self.lost)
+            async with asyncio.timeout(within_s):
+                await self._connection.send(encode(Command(self._ids, action)), text=True)
+                return (await answer).result
+        except ConnectionClosed as error:
+            raise LostError(str(error)) from error
+        finally:
+            del self._answers[self._ids]
+
+    async def stop(self, *, fast: bool = False) -> None:
+        """STOP: works for every client, whoever has control."""
+        await self.command(Stop(fast))
+
+    def __aiter__(self) -> AsyncIterator[ServerMessage]:
+        """Give messages as they come: ``hello`` first, every event, of the others only the newest."""
+        return self._messages()
+
+    async def close(self) -> None:
+        """Hang up. The run goes on."""
+        await self._connection.close()
+        await self._reading
+
+    async def __aenter__(self) -> Client:
+        """Return itself."""
+        return self
+
+    async def __aexit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Hang up."""
+        await self.close()
+
+    # -- reading ----------------------------------------------------------------------------------------------
+
+    async def _read(self) -> None:
+        try:
+            async for text in self._connection:
+                with suppress(BadMessageError):  # a message of a newer service: not ours to understand
+                    self._take(from_server(text))
+            self._end(self._goodbye or "the service has closed the connection")
+        except ConnectionClosed as error:
+            self._end(self._goodbye or (error.rcvd.reason if error.rcvd is not None else "connection lost"))
+
+    def _take(self, message: ServerMessage) -> None:
+        if isinstance(message, Accepted | Refused):
+            waiting = self._answers.get(message.id)
+            if waiting is None or waiting.done():
+                return
+            if isinstance(message, Accepted):
+                waiting.set_result(message)
+            else:
+                waiting.set_exception(RefusedError(message.reason))
+            return
+        if isinstance(message, Goodbye):
+            self._goodbye = message.reason
+            return
+        if isinstance(message, Event):
+            self.events.append(message)
+            self._events_due.append(message)
+        else:
+            if isinstance(message, Snapshot):
+                self.state, self.received_s = message.state, clock.monotonic()
+                self.trend.append(message.row)
+            elif isinstance(message, PlanMessage):
+                self.plan = message.plan
+            self._newest[type(message)] = message
+        self._something.set()
+
+    def _end(self, reason: str) -> None:
+        self.lost = reason
+        for waiting in self._answers.values():
+            if not waiting.done():
+                waiting.set_exception(LostError(reason))
+        self._something.set()
+
+    async def _messages(self) -> AsyncIterator[ServerMessage]:
+        while True:
+            if Hello in self._newest:
+                yield self._newest.pop(Hello)
+            elif self._events_due:
+                yield self._events_due.popleft()
+            elif self._newest:
+                yield self._newest.pop(next(iter(self._newest)))
+            elif self.lost:
+                return
+            else:
+                self._something.clear()
+                await self._something.wait()
+
+
+class Link:
+    """A connection that comes back: ``client`` is the present one, None while there is none."""
+
+    def __init__(self, address: Address | None = None, *, name: str = "client", control: bool = False) -> None:
+        """Nothing is opened before ``messages``. ``control`` as of ``Client.connect``."""
+        self.address = address
+        self.name = name
+        self.control = control
+        self.client: Client | None = None
+
+    async def messages(self) -> AsyncIterator[ServerMessage | Lost]:
+        """Give messages for ever, a ``Lost`` where the connection breaks; no event twice, none left out.
+
+        Each new connection begins with a ``Hello``; where its ``complete`` is False, or its ``service`` another, events
+        in between are not to be had.
+        """
+        service, since, reason = "", 0, ""
+        while True:
+            try:
+                self.client = await Client.connect(
+                    self.address, name=self.name, control=self.control, service=service, since=since
+                )
+            except NoServiceError as error:
+                if str(error) != reason:
+                    reason = str(error)
+                    yield Lost(reason)
+                await asyncio.sleep(AGAIN_S)
+                continue
+            client = self.client
+            service = client.service
+            try:
+                async for message in client:
+                    yield message
+                since, reason = client.last_seq or since, client.lost
+            finally:
+                self.client = None
+                await client.close()
+            yield Lost(reason)
+            await asyncio.sleep(AGAIN_S)
+
+    async def command(self, action: Action) -> JsonValue:
+        """As of ``Client.command``; raises LostError while there is no connection."""
+        if self.client is None:
+            raise LostError("not connected to the service")
+        return await self.client.command(action)
+
+
+async def _open(address: Address) -> ClientConnection:
+    """Open the WebSocket; no compression and no proxy on a local socket."""
+    if isinstance(address, UnixAddress):
+        return await unix_connect(
+            str(address.path), uri="ws://localhost/", compression=None, max_size=MAX_INCOMING, open_timeout=CONNECT_S,
+            proxy=None,
+        )  # fmt: skip
+    return await connect(
+        f"ws://{address.host}:{address.port}/", compression=None, max_size=MAX_INCOMING, open_timeout=CONNECT_S,
+        proxy=None, additional_headers={"Authorization": f"Bearer {address.token}"},
+    )  # fmt: skip

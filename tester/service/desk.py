@@ -1,0 +1,305 @@
+"""The desk between rig and clients: what is known goes out, what clients want comes in, between two ticks."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+from tester import clock
+from tester.engine.run import Outcome, Run
+from tester.rig import RigConfig
+from tester.service.alarms import AlarmList, Cause
+from tester.service.hub import Hub
+from tester.service.link import Order
+from tester.service.manual import ManualExecutor
+from tester.service.progress import PlanTrack
+from tester.service.protocol import SNAPSHOT_S
+from tester.service.state import Check, DiskView, ManualView, ProgressView, RunView, StateView, TickView, Value
+from tester.service.values import unknown_values
+from tester.service.watch import RunWatch
+from tester.store.space import MARGIN
+
+UNWATCHED_S = 1.0
+"""Period of states while nobody is connected, s: the gateway's trend goes on, at a rate that costs nothing."""
+DISK_EVERY_S = 10.0
+LOW_BYTES = 500_000_000
+"""Less than this is low whatever the run needs [A]: one compound of Table 2 takes some tens of MB."""
+TREND = (
+    "friction", "load", "load=", "surface", "surface=", "hub", "hub=", "slip", "slip=", "wheel_speed", "belt_speed",
+    "sideslip", "heat",
+)  # fmt: skip
+"""Where a row of the trend (after its two times) comes from; ``=``: the setpoint. In the order of TREND_COLUMNS."""
+NOTIFIED = frozenset({"trip"})
+"""Kinds of events of which the notify hook is told; hold, prompt, finished, disk come from elsewhere."""
+
+
+def nobody_obeys(order: Order) -> None:
+    """Leave an order undone: nobody has taken the desk yet."""
+
+
+def nobody_minds() -> None:
+    """Do nothing about a change of control."""
+
+
+def nothing_rests(fast: bool) -> None:
+    """Do nothing: the run is all there is."""
+
+
+@dataclass(slots=True)
+class Desk:
+    """What is known now. ``obey`` is called with every order, ``lost_control`` when another client controls; ``watch``
+    is the run under way."""
+
+    hub: Hub
+    rig: RigConfig
+    runs: Path
+    obey: Callable[[Order], None] = field(default=nobody_obeys)
+    lost_control: Callable[[], None] = field(default=nobody_minds)
+    stop_rest: Callable[[bool], None] = field(default=nothing_rests)
+    """Called with STOP (fast or not) for what the run under way has not begun yet."""
+    watch: RunWatch | None = None
+    hand: ManualExecutor | None = None
+    run: RunView | None = None
+    tick: TickView = field(default_factory=lambda: TickView(0.0, 0.0, 0))
+    latched: str = ""
+    """Why nothing may start before somebody has acknowledged."""
+    tripped: str = ""
+    """Name of the alarm of that trip."""
+    interrupted: tuple[str, ...] = ()
+    needed: int = 0
+    """Bytes that the run is expected to take."""
+    now_s: float = 0.0
+    """Rig time of the run."""
+    _due_s: float = float("-inf")
+    _mode: str = ""
+    _mode_since_s: float = 0.0
+    _asked: int = 0
+    _controller: int = 0
+    _disk: DiskView = field(default_factory=lambda: DiskView(0, 0, False))
+    _disk_due_s: float = float("-inf")
+    _unknown: tuple[Value, ...] = ()
+    alarms: AlarmList = field(init=False)
+
+    def __post_init__(self) -> None:
+        """Begin with no alarm."""
+        self.alarms = AlarmList(clock.utc_now, self._alarm_changed)
+        self._unknown = unknown_values(self.rig)
+
+    # -- runs -------------------------------------------------------------------------------------------------
+
+    def attach(self, run: Run, track: PlanTrack, view: RunView, hand: ManualExecutor | None = None) -> None:
+        """Look after a run from now on."""
+        self.watch, self.hand, self.run = RunWatch(run, track), hand, view
+        run.engine.ctx.journal.heard = self.heard
+        self.now_s = 0.0
+        self._asked = 0
+        self.hub.plan(None if hand is not None else self.watch.track.view())
+
+    def specimen(self, run: Run) -> None:
+        """Note which compound is on the rig."""
+        wheel, view = run.engine.ctx.wheel, self.run
+        if view is not None and wheel.specimen and view.compound != wheel.compound:
+            note = run.engine.executor.plan.specimen(wheel.specimen).note
+            self.run = replace(view, compound=wheel.compound, note=note)
+
+    def detach(self, view: RunView | None) -> None:
+        """The run is over."""
+        if self.watch is not None:
+            self.watch.run.engine.ctx.journal.heard = None
+            for name in self.watch.watched:
+                self.alarms.clear(name)
+        self.watch = self.hand = None
+        self.stop_rest = nothing_rests
+        self.run = view
+        self._due_s = float("-inf")
+
+    def ended(self, view: RunView, outcome: Outcome) -> None:
+        """The run is over: tell how, and latch after a trip."""
+        text = f"{view.name}: {view.outcome}" + (f": {view.reason}" if view.reason else "")
+        self.run = view
+        self.tell("run", text, "info" if outcome is Outcome.DONE else "warning")
+        self.notify("finished", text)
+        if outcome is Outcome.TRIPPED and self.watch is not None and not self.watch.acknowledged:
+            self._latch(view.reason or view.outcome, self.watch)
+        self.detach(view)
+
+    def _latch(self, reason: str, watch: RunWatch) -> None:
+        """Let nothing begin before somebody has acknowledged."""
+        watch.watch_trip(self.alarms, self.now_s)
+        if not watch.tripped:  # the wire is gone: control has had nothing to decide
+            watch.tripped = "rig lost"
+            self.alarms.raise_(Cause(watch.tripped, 1, reason, "the drives stop by their own watchdogs"), self.now_s)
+        self.latched, self.tripped = reason, watch.tripped
+
+    def unlatch(self, by: str) -> None:
+        """Take an acknowledgement: the next run may begin."""
+        if self.latched:
+            self.tell("mode", f"acknowledged by {by}")
+            self.alarms.clear(self.tripped)
+        self.latched, self.tripped, self.interrupted = "", "", ()
+
+    def heard(self, t_s: float, kind: str, text: str, severity: str) -> None:
+        """Pass on what the run records."""
+        if kind == "emergency" and self.watch is not None:
+            self.watch.buses.count_emergency(text)
+        self.tell(kind, text, severity, t_s)
+        if kind in NOTIFIED:
+            self.notify(kind, text)
+
+    def tell(self, kind: str, text: str, severity: str = "info", t_s: float | None = None) -> None:
+        """Tell every client."""
+        self.hub.event(kind, text, severity, self.now_s if t_s is None else t_s, self.run.name if self.run else "")
+
+    def notify(self, event: str, text: str) -> None:
+        """Have the user's hook run."""
+        run = self.run
+        self.hub.notify(event, text, run.name if run else "", run.folder if run else "")
+
+    def _alarm_changed(self, kind: str, text: str, severity: str) -> None:
+        self.tell(kind, text, severity)
+
+    # -- between two ticks ------------------------------------------------------------------------------------
+
+    def poll(self, now_s: float) -> None:
+        """Hear what clients want, and show the state when its time has come. ``now_s``: rig time."""
+        self.now_s = now_s
+        for heard in self.hub.hear():
+            if isinstance(heard, Order):
+                self.obey(heard)
+            self._due_s = float("-inf")  # what has changed is seen at once
+        self._notice_control()
+        wall_s = clock.monotonic()
+        if wall_s >= self._due_s:
+            period_s = SNAPSHOT_S if self.hub.watched else UNWATCHED_S
+            late_s = wall_s - self._due_s
+            self._due_s = wall_s + (period_s - late_s if late_s < period_s else period_s)
+            self.show()
+
+    def wait(self) -> None:
+        """Wait, while no run ticks, until there is something to do."""
+        self.hub.wait(max(self._due_s - clock.monotonic(), 0.0))
+
+    def _notice_control(self) -> None:
+        number = self.hub.presence.controller_id
+        if number == self._controller:
+            return
+        self._controller = number
+        who = self.hub.presence.controller
+        self.tell("control", f"{who} has control" if number else "nobody has control")
+        self.lost_control()
+
+    def show(self) -> None:
+        """Tell the state."""
+        watch, now = self.watch, self.now_s
+        if watch is not None:
+            self._watch_frames(watch)
+            if watch.track.update(now, watch.run.engine.ctx.progress, watch.run.engine.executor.steps):
+                self.hub.plan(watch.track.view())
+            watch.watch_trip(self.alarms, now)
+        view = self.view()
+        if watch is not None:
+            watch.watch_values(self.alarms, now, view.values)
+        self.hub.state(view, self._row(view))
+        self._notice_prompt(view)
+
+    def _watch_frames(self, watch: RunWatch) -> None:
+        watch.frames.watch(self.hub.presence.frames)
+        if watch.frames.watching and (frames := watch.frames.take()) is not None:
+            self.hub.frames(frames)
+
+    def _notice_prompt(self, view: StateView) -> None:
+        number = view.prompt.number if view.prompt is not None else 0
+        if number and number != self._asked and view.prompt is not None:
+            self.tell("prompt", view.prompt.text, "warning")
+            self.notify("prompt", view.prompt.text)
+        self._asked = number
+
+    # -- the view ---------------------------------------------------------------------------------------------
+
+    def view(self) -> StateView:
+        """Return the whole state."""
+        watch, hub, now = self.watch, self.hub, self.now_s
+        mode, text, since_s = self._situation()
+        disk = self._disk_view()
+        rig = watch.rig if watch is not None else self.rig
+        lapse = (self.run.speed if self.run.simulated else 1.0) if self.run is not None else None
+        preflight = (Check("disk space", not disk.low, f"{disk.free / 1e9:.1f} GB free"),)
+        return StateView(
+            mode=mode,
+            mode_text=text,
+            mode_since_s=since_s,
+            t_s=now,
+            wall_s=hub.wall_s,
+            utc=clock.utc_now(),
+            rig=rig.name,
+            simulated=rig.simulated,
+            run=self.run,
+            progress=watch.progress(now, lapse) if watch is not None else ProgressView(),
+            values=watch.values.values() if watch is not None else self._unknown,
+            gates=watch.gates() if watch is not None else (),
+            soak=watch.soak(now) if watch is not None else None,
+            alarms=self.alarms.listed(),
+            prompt=watch.prompt() if watch is not None else None,
+            manual=self._manual_view(),
+            devices=watch.buses.device_views(now) if watch is not None else (),
+            buses=watch.buses.bus_views() if watch is not None else (),
+            disk=disk,
+            tick=self._tick_view(),
+            clients=hub.clients,
+            interrupted=self.interrupted,
+            preflight=preflight + (watch.preflight() if watch is not None else ()),
+        )
+
+    def _situation(self) -> tuple[str, str, float]:
+        """Return mode, why, and for how long; tell the hook of a hold."""
+        if self.watch is not None:
+            mode, text, since_s = self.watch.mode
+            if self.hand is not None and mode == "RUN":
+                mode = "MANUAL"
+            if mode == "HOLD" and self._mode != "HOLD":
+                self.notify("hold", text or "held")
+            self._mode = mode
+            return mode, text, since_s
+        mode, text = "OFFLINE", "the rig is connected when a run begins"
+        if self.latched:
+            mode, text = "LATCHED", self.latched
+        elif self.interrupted:
+            mode, text = "INTERRUPTED", f"{self.interrupted[-1]} was cut off"
+        if mode != self._mode:
+            self._mode, self._mode_since_s = mode, self.hub.wall_s
+        return mode, text, self.hub.wall_s - self._mode_since_s
+
+    def _manual_view(self) -> ManualView:
+        hand = self.hand
+        return ManualView(None, "") if hand is None else ManualView(hand.left_s(self.now_s), hand.tare_text)
+
+    def _tick_view(self) -> TickView:
+        if self.watch is None:
+            return TickView(0.0, 0.0, 0)
+        return replace(self.tick, rate_hz=round(1.0 / self.watch.run.engine.period_s, 1))
+
+    def _disk_view(self) -> DiskView:
+        wall_s = clock.monotonic()
+        if wall_s >= self._disk_due_s:
+            self._disk_due_s = wall_s + DISK_EVERY_S
+            where = self.runs if self.runs.is_dir() else Path()
+            free = shutil.disk_usage(where).free
+            was_low, low = self._disk.low, free < max(LOW_BYTES, MARGIN * self.needed)
+            self._disk = DiskView(free, self.needed, low)
+            text = f"{free / 1e6:.0f} MB free"
+            cause = Cause("disk nearly full", 2, text, "a run that cannot be recorded is stopped", "ack", free / 1e6,
+                          max(LOW_BYTES, MARGIN * self.needed) / 1e6, "MB")  # fmt: skip
+            self.alarms.set(low, cause, self.now_s)
+            if low and not was_low:
+                self.notify("disk", text)
+        return self._disk
+
+    def _row(self, view: StateView) -> tuple[float | None, ...]:
+        found = {value.key: value for value in view.values}
+        row: list[float | None] = [round(view.wall_s, 3), round(view.t_s, 3)]
+        for name in TREND:
+            value = found[name.rstrip("=")]
+            row.append(value.setpoint if name.endswith("=") else value.value)
+        return tuple(None if x is None else round(x, 4) for x in row)

@@ -1,0 +1,291 @@
+"""The gateway: the WebSocket side of the service. It owns no rig: it passes on, and says who may command.
+
+One process beside the one that ticks (docs/decisions/0015), so that a slow, stalled or hostile client costs the scan
+nothing. It keeps what a new client must be told: newest state, plan, events, ten minutes of trend, all as JSON that it
+never reads.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections import deque
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+from pydantic_core import from_json, to_json
+from websockets.asyncio.server import ServerConnection
+from websockets.exceptions import ConnectionClosed
+
+from tester.service.commands import (
+    VERSION,
+    CheckRecipe,
+    Control,
+    Join,
+    ListRecipes,
+    ListRuns,
+    Query,
+    RigAction,
+    ShowPlan,
+    Stop,
+    WatchFrames,
+)
+from tester.service.hook import Hook
+from tester.service.link import FROM_GATEWAY, Order, Presence
+from tester.service.outbox import Outbox
+from tester.service.protocol import (
+    EVENTS_KEPT,
+    TREND_ROWS,
+    Accepted,
+    BadMessageError,
+    Goodbye,
+    Refused,
+    encode,
+    to_server,
+)
+from tester.service.queries import Queries, QueryError
+from tester.service.state import TREND_COLUMNS
+
+EVENTS_AT_FIRST = 200
+"""Events that a client which has seen none is told."""
+FELL_BEHIND = 4001
+"""Close code for a client that does not read its events."""
+JOIN_WITHIN_S = 10.0
+"""A connection that has not said ``join`` by then is closed."""
+GREETED_WITHIN_S = 30.0
+"""The owner's first state is there by then, s."""
+
+
+@dataclass(slots=True, eq=False)
+class Guest:
+    """One client: its connection, its number, and what is on its way to it."""
+
+    connection: ServerConnection
+    number: int
+    name: str
+    outbox: Outbox = field(default_factory=Outbox)
+    frames: bool = False
+    leaving: asyncio.Task[None] | None = None
+    """It fell behind and is being sent away."""
+
+
+class Gateway:
+    """What all connections share."""
+
+    def __init__(
+        self, tell: Callable[[bytes], None], service: str, software: str, queries: Queries, hook: Hook
+    ) -> None:
+        """``tell`` takes a line for the owner; ``service`` identifies this life of the service."""
+        self.tell = tell
+        self.service = service
+        self.software = software
+        self.queries = queries
+        self.hook = hook
+        self.guests: dict[int, Guest] = {}
+        self.controller = 0
+        self._next = 1
+        self._state = b""
+        self._plan = b"null"
+        self._events: deque[tuple[int, bytes]] = deque(maxlen=EVENTS_KEPT)
+        self._rows: deque[bytes] = deque(maxlen=TREND_ROWS)
+        self._greeted = asyncio.Event()
+
+    # -- from the owner ---------------------------------------------------------------------------------------
+
+    def take(self, line: bytes) -> None:
+        """Take one line of the owner and hand it to those it is for."""
+        kind, rest = line[:1], line[1:]
+        if kind == b"s":
+            self._state, _, row = rest.partition(b"\t")
+            self._rows.append(row)
+            self._greeted.set()
+            message = b'{"state":' + self._state + b',"row":' + row + b',"type":"snapshot"}'
+            for guest in self.guests.values():
+                guest.outbox.newest("snapshot", message)
+        elif kind == b"e":
+            number, _, event = rest.partition(b" ")
+            self._events.append((int(number), event))
+            for guest in self.guests.values():
+                guest.outbox.event(event)
+                if guest.outbox.behind and not guest.leaving:
+                    guest.leaving = asyncio.create_task(self._drop(guest))
+        elif kind == b"p":
+            self._plan = rest
+            for guest in self.guests.values():
+                guest.outbox.newest("plan", b'{"plan":' + rest + b',"type":"plan"}')
+        elif kind == b"a":
+            number, _, reply = rest.partition(b" ")
+            if (asker := self.guests.get(int(number))) is not None:
+                asker.outbox.reply(reply)
+        elif kind == b"t":
+            self._rows.append(rest)
+        elif kind == b"n":
+            self.queries.start(self.hook.notify(rest))
+        elif kind == b"f":
+            for guest in self.guests.values():
+                if guest.frames:
+                    guest.outbox.newest("frames", rest)
+
+    def farewell(self, reason: str) -> None:
+        """Tell everybody that the service ends."""
+        for guest in self.guests.values():
+            guest.outbox.reply(encode(Goodbye(reason)))
+
+    async def all_told(self) -> None:
+        """Wait until every client has been sent what is due to it."""
+        while any(len(guest.outbox) for guest in self.guests.values()):
+            await asyncio.sleep(0.01)
+
+    # -- a connection -----------------------------------------------------------------------------------------
+
+    async def serve(self, connection: ServerConnection) -> None:
+        """Serve one client until it or the service ends."""
+        try:
+            joined = await self._joined(connection)
+        except (ConnectionClosed, TimeoutError, BadMessageError) as error:
+            await self._turn_away(connection, str(error) or "no join")
+            return
+        guest = Guest(connection, self._next, joined.name)
+        self._next += 1
+        guest.outbox.reply(self._hello(joined, guest))
+        self.guests[guest.number] = guest
+        self._tell_presence()
+        sending = asyncio.create_task(self._send(guest))
+        try:
+            async for text in connection:
+                await self._obey(guest, text)
+        except ConnectionClosed:
+            pass  # a client that just disappears is no error of the service's
+        finally:
+            del self.guests[guest.number]
+            sending.cancel()
+            if self.controller == guest.number:
+                self.controller = 0
+            self._tell_presence()
+
+    async def _joined(self, connection: ServerConnection) -> Join:
+        async with asyncio.timeout(JOIN_WITHIN_S):
+            message = to_server(await connection.recv())
+        if not isinstance(message, Join):
+            raise BadMessageError("the first message is a join")
+        if message.version != VERSION:
+            raise BadMessageError(f"this service speaks version {VERSION}, not {message.version}")
+        async with asyncio.timeout(GREETED_WITHIN_S):
+            await self._greeted.wait()
+        return message
+
+    async def _turn_away(self, connection: ServerConnection, reason: str) -> None:
+        try:
+            await connection.send(encode(Goodbye(reason)), text=True)
+            await connection.close(1008, reason[:100])
+        except ConnectionClosed:
+            return
+
+    def _hello(self, joined: Join, guest: Guest) -> bytes:
+        if joined.control and not self.controller:
+            self.controller = guest.number
+        known = joined.service == self.service
+        events = list(self._events)
+        first = events[0][0] if events else 1
+        if known:
+            told = [event for number, event in events if number > joined.since]
+        else:
+            told = [event for _, event in events[-EVENTS_AT_FIRST:]]
+        complete = (first <= joined.since + 1) if known else len(told) == len(events) and first == 1
+        columns = ",".join(f'"{name}"' for name in TREND_COLUMNS).encode()
+        return b"".join(
+            (
+                b'{"version":%d,' % VERSION,
+                b'"service":' + to_json(self.service) + b',"software":' + to_json(self.software),
+                b',"client":%d,' % guest.number,
+                b'"control":' + (b"true" if self.controller == guest.number else b"false"),
+                b',"state":' + self._state + b',"plan":' + self._plan,
+                b',"events":[' + b",".join(told) + b'],"complete":' + (b"true" if complete else b"false"),
+                b',"trend":{"columns":[' + columns + b'],"rows":[' + b",".join(self._rows) + b"]}",
+                b',"type":"hello"}',
+            )
+        )
+
+    async def _send(self, guest: Guest) -> None:
+        """Send what is due, in order of urgency; waits while the client does not read."""
+        try:
+            while True:
+                await guest.connection.send(await guest.outbox.next(), text=True)
+        except ConnectionClosed:
+            return
+
+    async def _drop(self, guest: Guest) -> None:
+        """Send away a client that does not keep up: an event is never left out, so there is nothing else to do."""
+        await guest.connection.close(FELL_BEHIND, f"{guest.outbox.behind} events behind: come back with since")
+
+    # -- commands ---------------------------------------------------------------------------------------------
+
+    async def _obey(self, guest: Guest, text: str | bytes) -> None:
+        try:
+            message = to_server(text)
+        except BadMessageError as error:
+            guest.outbox.reply(encode(Refused(_id_of(text), str(error))))
+            return
+        if isinstance(message, Join):
+            guest.outbox.reply(encode(Goodbye("joined already")))
+            return
+        action = message.action
+        if isinstance(action, Control):
+            self._control(guest, message.id, action)
+        elif isinstance(action, WatchFrames):
+            guest.frames = action.on
+            self._tell_presence()
+            guest.outbox.reply(encode(Accepted(message.id)))
+        elif isinstance(action, CheckRecipe | ShowPlan | ListRecipes | ListRuns):
+            self.queries.start(self._query(guest, message.id, action))
+        else:
+            self._order(guest, message.id, action)
+
+    def _order(self, guest: Guest, number: int, action: RigAction) -> None:
+        """Pass a command on to the rig's owner, if this client may give it: STOP from anybody."""
+        if not isinstance(action, Stop) and self.controller != guest.number:
+            holder = self.guests.get(self.controller)
+            who = f"{holder.name} has control" if holder is not None else "nobody has control: take it first"
+            guest.outbox.reply(encode(Refused(number, who)))
+            return
+        order = Order(guest.number, guest.name, number, action)
+        self.tell(FROM_GATEWAY.dump_json(order))
+
+    def _control(self, guest: Guest, number: int, action: Control) -> None:
+        holder = self.guests.get(self.controller)
+        if not action.take:
+            if self.controller == guest.number:
+                self.controller = 0
+        elif holder is not None and holder is not guest and not action.force:
+            guest.outbox.reply(encode(Refused(number, f"{holder.name} has control")))
+            return
+        else:
+            self.controller = guest.number
+        self._tell_presence()
+        guest.outbox.reply(encode(Accepted(number)))
+
+    async def _query(self, guest: Guest, number: int, question: Query) -> None:
+        try:
+            result = await self.queries.answer(question)
+        except QueryError as error:
+            guest.outbox.reply(encode(Refused(number, str(error))))
+        else:
+            guest.outbox.reply(encode(Accepted(number, result)))
+
+    def _tell_presence(self) -> None:
+        holder = self.guests.get(self.controller)
+        frames = any(guest.frames for guest in self.guests.values())
+        viewers = len(self.guests) - (holder is not None)
+        name = holder.name if holder is not None else ""
+        self.tell(FROM_GATEWAY.dump_json(Presence(name, self.controller, viewers, frames)))
+
+
+def _id_of(text: str | bytes) -> int:
+    """Return the id of a command that is wrong otherwise, so that its refusal finds back; 0 where it has none."""
+    try:
+        match from_json(text):
+            case {"id": int(number)}:
+                return number
+            case _:
+                return 0
+    except ValueError:
+        return 0

@@ -1,0 +1,76 @@
+"""The gateway's process, `python -m tester.service.gateway_process LINK`: the link's first line is its settings."""
+
+from __future__ import annotations
+
+import asyncio
+import signal
+import socket
+import sys
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+
+from pydantic import TypeAdapter
+
+from tester.service.address import TcpAddress, UnixAddress, write_card
+from tester.service.gateway import Gateway
+from tester.service.hook import Hook
+from tester.service.link import MOST_QUEUED
+from tester.service.listening import CLOSE_S, listening
+from tester.service.pair import link_of
+from tester.service.queries import Queries
+
+
+@dataclass(frozen=True, slots=True)
+class Settings:
+    """What the owner tells its gateway. ``path`` is a Unix socket, or with ``token`` the card of a TCP service."""
+
+    service: str
+    software: str
+    path: str
+    runs: str
+    rig: str
+    notify: str
+    token: str = ""
+    port: int = 0
+
+
+SETTINGS: TypeAdapter[Settings] = TypeAdapter(Settings)
+
+
+async def _serve(reader: asyncio.StreamReader, writer: asyncio.StreamWriter, settings: Settings) -> None:
+    queries = Queries(Path(settings.runs), settings.rig)
+
+    def tell(line: bytes) -> None:
+        if not writer.is_closing():
+            writer.write(line + b"\n")
+
+    gateway = Gateway(tell, settings.service, settings.software, queries, Hook(settings.notify))
+    path = Path(settings.path)
+    address = TcpAddress("127.0.0.1", settings.port, settings.token) if settings.token else UnixAddress(path)
+    async with listening(gateway, address) as listens:
+        if isinstance(listens, TcpAddress):
+            write_card(listens, path)
+        while line := await reader.readline():
+            gateway.take(line[:-1])
+        gateway.farewell("the service has ended")
+        with suppress(TimeoutError):
+            async with asyncio.timeout(CLOSE_S):
+                await gateway.all_told()
+
+
+async def serve_link(link: socket.socket) -> None:
+    """Serve clients for the owner at the other end of ``link``, until it ends."""
+    reader, writer = await asyncio.open_connection(sock=link, limit=2 * MOST_QUEUED)
+    settings = SETTINGS.validate_json(await reader.readline())
+    with suppress(ConnectionError):
+        await _serve(reader, writer, settings)
+    writer.close()
+
+
+if __name__ == "__main__":
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, signal.SIG_IGN)  # it ends with its owner, who comes to a standstill first
+    if hasattr(signal, "SIGHUP"):
+        signal.signal(signal.SIGHUP, signal.SIG_IGN)
+    asyncio.run(serve_link(link_of(sys.argv[1])))

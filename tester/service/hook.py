@@ -1,0 +1,64 @@
+"""The notify hook: a command of the user's, run when a person should look at the rig. It never holds anything up.
+
+It gets one JSON object on its standard input, and the same as ``TESTER_EVENT``, ``TESTER_TEXT``, ``TESTER_RUN``,
+``TESTER_FOLDER`` in its environment. Events: trip, hold, prompt, finished, disk.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import shlex
+import subprocess
+import sys
+
+from pydantic import JsonValue
+from pydantic_core import from_json
+
+WITHIN_S = 30.0
+"""A command that takes longer is ended [A]."""
+AT_ONCE = 4
+"""More of them are left out: a hook that hangs must not pile up processes [A]."""
+SHOWN = {"event", "text", "run", "folder"}
+
+
+class Hook:
+    """Runs the command. ``command``: as in a shell's line, but no shell reads it; "" = none."""
+
+    def __init__(self, command: str) -> None:
+        """Nothing runs yet."""
+        self.arguments = shlex.split(command)
+        self.running = 0
+
+    async def notify(self, note: bytes) -> None:
+        """Run the command with a note (a JSON object), if there is one; its failure is told on standard error."""
+        if not self.arguments or self.running >= AT_ONCE:
+            return
+        self.running += 1
+        try:
+            await self._run(note)
+        except OSError as error:
+            _complain(f"notify: {error}")
+        finally:
+            self.running -= 1
+
+    async def _run(self, note: bytes) -> None:
+        fields: JsonValue = from_json(note)
+        assert isinstance(fields, dict)
+        told = {f"TESTER_{key.upper()}": str(value).replace("\0", "") for key, value in fields.items() if key in SHOWN}
+        process = await asyncio.create_subprocess_exec(
+            *self.arguments, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, env=os.environ | told
+        )
+        try:
+            async with asyncio.timeout(WITHIN_S):
+                await process.communicate(note)
+        except TimeoutError:
+            process.kill()
+            await process.wait()
+            _complain(f"notify: ended after {WITHIN_S:g} s")
+        if process.returncode:
+            _complain(f"notify: exit code {process.returncode}")
+
+
+def _complain(text: str) -> None:
+    sys.stderr.write(text + "\n")

@@ -1,0 +1,62 @@
+"""Put a service together and let it live: lock, address, gateway, loop."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+from tester.lock import ExclusiveUse, RigInUseError
+from tester.service.address import (
+    CARD,
+    HAS_UNIX,
+    Address,
+    AddressError,
+    UnixAddress,
+    address_of,
+    default_address,
+    folder,
+    new_tcp_address,
+)
+from tester.service.hub import Hub, HubConfig
+from tester.service.service import Service, ServiceOptions
+
+EXIT_FAILED = 1
+EXIT_USAGE = 2
+
+
+def host(rig: str, overrides: tuple[str, ...], runs: str, url: str, port: int | None, notify: str) -> int:
+    """Serve until told to end; return the exit code. Raises InvalidSource for the rig file."""
+    try:
+        where, address = _place(url, port)
+    except AddressError as error:
+        sys.stderr.write(f"{error}\n")
+        return EXIT_USAGE
+    with ExclusiveUse() as use:
+        try:
+            use.lock_file("the service here", where / "service.lock", "", lasting=False)
+        except RigInUseError as error:
+            sys.stderr.write(f"{error}\n")
+            return EXIT_FAILED
+        hub = Hub(HubConfig(address, where / CARD, Path(runs), rig, notify))
+        service = Service(ServiceOptions(rig, overrides, Path(runs)), hub)
+        hub.open()
+        sys.stderr.write(f'rig "{service.rig.name}" is served at {address}\n')
+        sys.stderr.flush()
+        try:
+            service.serve()
+        finally:
+            hub.close()
+    return 0
+
+
+def _place(url: str, port: int | None) -> tuple[Path, Address]:
+    """Return the service's folder and where it listens."""
+    if url:
+        address = address_of(url)
+        if not isinstance(address, UnixAddress):
+            raise AddressError(f"{url}: listen on TCP with --tcp PORT")
+        return address.path.parent, address
+    where = folder()
+    if port is not None or not HAS_UNIX:
+        return where, new_tcp_address(port or 0)
+    return where, default_address(where)

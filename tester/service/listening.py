@@ -1,0 +1,79 @@
+"""Open the door: a Unix socket for one user, or loopback TCP for whoever has the token."""
+
+from __future__ import annotations
+
+import hmac
+import os
+import socket
+from collections.abc import AsyncGenerator
+from contextlib import asynccontextmanager
+from http import HTTPStatus
+from typing import cast
+
+from websockets.asyncio.server import Server, ServerConnection, serve, unix_serve
+from websockets.http11 import Request, Response
+
+from tester.service.address import Address, TcpAddress, UnixAddress, peer_uid
+from tester.service.commands import MAX_MESSAGE
+from tester.service.gateway import Gateway
+
+BACKLOG_BYTES = 65_536
+"""A client that leaves more than this unread waits for its next message."""
+CLOSE_S = 2.0
+"""A client has this long to say goodbye."""
+
+
+class Door:
+    """Decides who may come in, before any message is read."""
+
+    def __init__(self, uid: int | None, token: str) -> None:
+        """``uid``: the only user on a Unix socket; ``token``: what a TCP client must show."""
+        self.uid = uid
+        self.token = token
+
+    def __call__(self, connection: ServerConnection, request: Request) -> Response | None:
+        """Return None to let the client in."""
+        if self.token:
+            shown = request.headers.get("Authorization", "")
+            if not hmac.compare_digest(shown.encode(), f"Bearer {self.token}".encode()):
+                return connection.respond(HTTPStatus.UNAUTHORIZED, "a token is needed\n")
+            return None
+        found = cast("socket.socket | None", connection.transport.get_extra_info("socket"))
+        uid = peer_uid(found) if found is not None else None
+        if uid is not None and uid != self.uid:
+            return connection.respond(HTTPStatus.FORBIDDEN, "this service belongs to another user\n")
+        return None
+
+
+@asynccontextmanager
+async def listening(gateway: Gateway, address: Address, uid: int | None = None) -> AsyncGenerator[Address]:
+    """Serve clients at an address until the block ends; gives the address with its port.
+
+    ``uid``: who may come in through a Unix socket, by default the user of this process.
+    """
+    if isinstance(address, UnixAddress):
+        address.path.unlink(missing_ok=True)
+        before = os.umask(0o177)
+        try:
+            door = Door(os.getuid() if uid is None else uid, "")
+            server = await unix_serve(
+                gateway.serve, str(address.path), process_request=door, origins=[None], compression=None,
+                max_size=MAX_MESSAGE, write_limit=BACKLOG_BYTES, close_timeout=CLOSE_S, server_header=None,
+            )  # fmt: skip
+        finally:
+            os.umask(before)
+        async with server:
+            yield address
+        address.path.unlink(missing_ok=True)
+        return
+    server = await serve(
+        gateway.serve, address.host, address.port, process_request=Door(None, address.token), origins=[None],
+        compression=None, max_size=MAX_MESSAGE, write_limit=BACKLOG_BYTES, close_timeout=CLOSE_S, server_header=None,
+    )  # fmt: skip
+    async with server:
+        yield TcpAddress(address.host, _port(server), address.token)
+
+
+def _port(server: Server) -> int:
+    """Return the port that the system gave."""
+    return int(next(iter(server.sockets)).getsockname()[1])

@@ -1,0 +1,205 @@
+"""Manual mode: a person moves the rig in bounded steps. Control's limits and interlocks stand as in a run.
+
+A terminal cannot see a key being released, so a key press is one step and nothing moves on by itself. The mode ends by
+itself when nobody has pressed a key for a minute, and when the client that armed it is gone.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import isfinite
+
+from tester.engine.context import Context
+from tester.engine.executor import Executor
+from tester.engine.moves import TakeTare
+from tester.engine.results import StoredResults
+from tester.engine.run import Run
+from tester.process import Press
+from tester.recipe.plan import Plan
+from tester.service.commands import JogAxis
+from tester.store.recorder import Recorder
+from tester.store.writer import NullRecorder
+
+ARMED_S = 60.0
+"""Manual mode disarms after this long without a step."""
+STEPS_PER_S = 5.0
+"""More key presses a second are refused [A]: an auto-repeating key makes 30."""
+SPEED_STEP_M_S = 0.05
+LOAD_STEP_N = 10.0
+ANGLE_STEP_DEG = 1.0
+HEAT_STEP_K = 1.0
+UNLOADED_N = 5.0
+STANDING_M_S = 0.02
+TARE_S = 2.0
+MOVING_S = 2.0
+"""After a step scans come at the sliding rate for this long, s [A]."""
+
+
+@dataclass(slots=True)
+class Wanted:
+    """What the person has asked for so far."""
+
+    wheel_m_s: float = 0.0
+    belt_m_s: float = 0.0
+    load_n: float = 0.0
+    sideslip_deg: float = 0.0
+    camber_deg: float = 0.0
+    surface_c: float = float("nan")
+
+
+class ManualExecutor(Executor):
+    """Stands in the executor's place: what it demands is what a person asked for."""
+
+    def __init__(self, recorder: Recorder) -> None:
+        """Nothing is wanted: drives enabled, standing, lifted."""
+        super().__init__(Plan("manual mode", (), (), (), 0.0, 1), StoredResults(recorder), hardware=False)
+        self.wanted = Wanted()
+        self.taring: TakeTare | None = None
+        self.tare_text = ""
+        self.used_s = float("nan")
+        self.pressed_s = float("-inf")
+        self.moved_s = float("-inf")
+        self.old = (0.0, 0.0, 0.0, 0.0)
+
+    def left_s(self, now: float) -> float:
+        """Return for how many more seconds the mode stays armed."""
+        return ARMED_S if not isfinite(self.used_s) else max(ARMED_S - (now - self.used_s), 0.0)
+
+    def step(self, ctx: Context) -> None:
+        """Demand what is wanted; the run ends when nobody has asked for anything for a minute."""
+        if not isfinite(self.used_s):
+            self.used_s = ctx.now
+            ctx.progress.title = "manual mode"
+        if ctx.now - self.used_s >= ARMED_S:
+            self.finished = True
+            return
+        demand, wanted = ctx.demand, self.wanted
+        demand.enabled = True
+        demand.wheel_speed_m_s, demand.belt_speed_m_s = wanted.wheel_m_s, wanted.belt_m_s
+        demand.press = Press.LOAD if wanted.load_n > 0.0 else Press.LIFT
+        demand.load_n = wanted.load_n
+        demand.sideslip_deg, demand.camber_deg = wanted.sideslip_deg, wanted.camber_deg
+        demand.surface_c = wanted.surface_c
+        ctx.moving = ctx.now - self.moved_s < MOVING_S
+        if self.taring is not None and self.taring.step(ctx):
+            self._tared(ctx, self.taring)
+
+    def disarm(self) -> None:
+        """End the mode: a controlled stop follows."""
+        self.finished = True
+
+    # -- what a person may do ---------------------------------------------------------------------------------
+
+    def jog(self, ctx: Context, axis: JogAxis, direction: int) -> str:
+        """Take one step; return "" or why not."""
+        refusal = self._busy(ctx)
+        if refusal:
+            return refusal
+        if ctx.now - self.pressed_s < 1.0 / STEPS_PER_S:
+            return f"no more than {STEPS_PER_S:g} steps a second"
+        refusal = self._step(ctx, axis, float(direction))
+        if not refusal:
+            self.used_s = self.pressed_s = self.moved_s = ctx.now
+        return refusal
+
+    def tare(self, ctx: Context) -> str:
+        """Begin a tare; return "" or why not."""
+        refusal = self._busy(ctx)
+        if refusal:
+            return refusal
+        r = ctx.readings
+        if self.wanted.load_n > 0.0 or ctx.contact.in_contact:
+            return "the wheel is in contact: lift it first"
+        if abs(r.wheel_speed_m_s) > STANDING_M_S or abs(r.belt_speed_m_s) > STANDING_M_S:
+            return "the rig moves: stop wheel and belt first"
+        limits = ctx.rig.interlocks
+        self.old = ctx.cell.tare
+        self.taring = TakeTare(TARE_S, list(self.reference_tare), limits.zero_warn_n, limits.zero_stop_n)
+        self.used_s = ctx.now
+        return ""
+
+    def _busy(self, ctx: Context) -> str:
+        if not ctx.readings.drives_enabled:
+            return "the drives are not on yet"
+        return "the load cell is being tared" if self.taring is not None else ""
+
+    def _step(self, ctx: Context, axis: JogAxis, sign: float) -> str:
+        wanted, limits, r = self.wanted, ctx.rig.limits, ctx.readings
+        loaded = wanted.load_n > 0.0 or not r.force_z_n < UNLOADED_N
+        if axis in ("sideslip", "camber", "wheel", "belt") and loaded:
+            return f"{axis} moves only with the wheel lifted; under load use both speeds together"
+        if axis in ("wheel", "both"):
+            wanted.wheel_m_s = _within(wanted.wheel_m_s + sign * SPEED_STEP_M_S, 0.0, limits.wheel_speed_m_s)
+        if axis in ("belt", "both"):
+            wanted.belt_m_s = _within(wanted.belt_m_s + sign * SPEED_STEP_M_S, 0.0, limits.belt_speed_m_s)
+        if axis == "sideslip":
+            sideslip_deg = wanted.sideslip_deg + sign * ANGLE_STEP_DEG
+            wanted.sideslip_deg = _within(sideslip_deg, -limits.sideslip_deg, limits.sideslip_deg)
+        elif axis == "camber":
+            wanted.camber_deg = _within(
+                wanted.camber_deg + sign * ANGLE_STEP_DEG, -limits.camber_deg, limits.camber_deg
+            )
+        elif axis == "press":
+            return self._load(ctx, sign)
+        elif axis == "heat":
+            return self._warm(ctx, sign)
+        return ""
+
+    def _load(self, ctx: Context, sign: float) -> str:
+        wanted = self.wanted
+        if sign > 0.0 and (wanted.wheel_m_s < 2.0 * STANDING_M_S or wanted.wheel_m_s != wanted.belt_m_s):
+            return "load only with wheel and belt turning at the same speed"
+        wanted.load_n = _within(wanted.load_n + sign * LOAD_STEP_N, 0.0, ctx.rig.limits.load_n)
+        return ""
+
+    def _warm(self, ctx: Context, sign: float) -> str:
+        wanted, surface = self.wanted, ctx.readings.surface_c
+        if wanted.wheel_m_s < 2.0 * STANDING_M_S:
+            return "heat only with the wheel turning"
+        if not isfinite(wanted.surface_c):
+            if sign < 0.0 or not isfinite(surface):
+                return "the heating is off"
+            wanted.surface_c = round(surface)
+        wanted.surface_c = min(wanted.surface_c + sign * HEAT_STEP_K, ctx.rig.limits.surface_c)
+        if wanted.surface_c < ctx.rig.ambient_c:
+            wanted.surface_c = float("nan")
+        return ""
+
+    def _tared(self, ctx: Context, tare: TakeTare) -> None:
+        """Say what the tare has changed."""
+        if tare.failed:
+            self.tare_text = tare.failed
+        else:
+            new = ctx.cell.tare
+            self.reference_tare = list(new)
+            shifts = ", ".join(
+                f"{name} {b:.2f} ({b - a:+.2f})"
+                for name, a, b in zip(("Fx", "Fy", "Fz", "Mz"), self.old, new, strict=True)
+            )
+            self.tare_text = f"zero from {tare.count} readings: {shifts}"
+        ctx.journal.event(ctx.now, "tare", self.tare_text)
+        self.taring = None
+
+
+def take_over(run: Run) -> ManualExecutor:
+    """Put a person in the place of the run's recipe, and a wheel on a simulated rig."""
+    ctx = run.engine.ctx
+    hand = ManualExecutor(ctx.journal)
+    run.engine.executor = hand
+    ctx.attendant.install(1, 1, "1#", new_specimen=True)
+    return hand
+
+
+def empty_plan() -> Plan:
+    """Return the plan of a run without a recipe."""
+    return Plan("manual mode", (), (), (), 0.0, 1)
+
+
+def no_record() -> NullRecorder:
+    """Return the record of manual mode: it is told to clients, and kept nowhere."""
+    return NullRecorder()
+
+
+def _within(value: float, low: float, high: float) -> float:
+    """Return a value held between two limits, on a grid that steps cannot leave."""
+    return round(min(max(value, low), high), 6)

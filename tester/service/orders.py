@@ -1,0 +1,151 @@
+"""What clients may have done to the rig, and when it is refused."""
+
+from __future__ import annotations
+
+from tester.control.state import Mode
+from tester.service.commands import (
+    Acknowledge,
+    Answer,
+    Arm,
+    Hold,
+    Jog,
+    Release,
+    ResumeRun,
+    RunRecipe,
+    Stop,
+    Tare,
+)
+from tester.service.desk import Desk
+from tester.service.link import Order
+
+
+class Orders:
+    """Carries out orders between two ticks. What takes longer (``job``) is left to the service's loop."""
+
+    def __init__(self, desk: Desk) -> None:
+        """Nothing is under way."""
+        self.desk = desk
+        self.job: Order | None = None
+        self.armed_by = 0
+        """The client that armed manual mode."""
+        self.ending = False
+        desk.obey, desk.lost_control = self.obey, self.lost_control
+
+    def obey(self, order: Order) -> None:
+        """Carry out an order, or say why not."""
+        action = order.action
+        if isinstance(action, Stop):
+            self._stop(order, action)
+        elif isinstance(action, RunRecipe | ResumeRun):
+            self._begin(order)
+        elif isinstance(action, Arm):
+            self._arm(order, action)
+        elif isinstance(action, Acknowledge):
+            self._acknowledge(order, action)
+        elif isinstance(action, Answer):
+            self._reply(order, self._answer(order, action))
+        elif isinstance(action, Jog | Tare):
+            self._reply(order, self._by_hand(action))
+        else:
+            self._reply(order, self._hold(order, action))
+
+    def _reply(self, order: Order, refusal: str) -> None:
+        hub = self.desk.hub
+        if refusal:
+            hub.refuse(order, refusal)
+        else:
+            hub.accept(order)
+
+    def _stop(self, order: Order, action: Stop) -> None:
+        """STOP: whoever says it, whatever is under way."""
+        desk = self.desk
+        kind = "fast stop" if action.fast else "stop"
+        desk.tell("command", f"{kind} by {order.name}", "warning")
+        if desk.watch is not None:
+            desk.watch.run.request_stop(f"{kind} by {order.name}", fast=action.fast)
+            desk.stop_rest(action.fast)
+        elif self.job is not None:
+            desk.hub.refuse(self.job, f"{kind} by {order.name}")
+            self.job = None
+        desk.hub.accept(order)
+
+    def _hold(self, order: Order, action: Hold | Release) -> str:
+        """Hold or release a run; return "" or why not."""
+        watch = self.desk.watch
+        if watch is None:
+            return "nothing runs"
+        name = "hold" if isinstance(action, Hold) else "release"
+        self.desk.tell("command", f"{name} by {order.name}")
+        run = watch.run
+        if isinstance(action, Hold):
+            return run.request_hold(f"held by {order.name}")
+        return run.request_release(f"released by {order.name}")
+
+    def _acknowledge(self, order: Order, action: Acknowledge) -> None:
+        """Acknowledge alarms, a latched rig, and what was found at the start. Nothing moves by it."""
+        desk = self.desk
+        trip = next((alarm.number for alarm in desk.alarms.listed() if alarm.name == desk.tripped), 0)
+        count = desk.alarms.acknowledge(action.number, order.name)
+        refusal = "" if count or desk.latched or desk.interrupted else "nothing to acknowledge"
+        run = desk.watch.run if desk.watch is not None else None
+        if run is None and action.number in (0, trip):
+            desk.unlatch(order.name)
+        elif run is not None and run.engine.control.state.mode is Mode.LATCHED:
+            refusal = run.request_ack()
+        self._reply(order, refusal)
+
+    def _answer(self, order: Order, action: Answer) -> str:
+        """Answer the prompt that waits; return "" or why not."""
+        watch = self.desk.watch
+        waiting = watch.run.engine.ctx.prompts.waiting if watch is not None else None
+        if waiting is None or waiting.number != action.number:
+            return f"prompt {action.number} does not wait for an answer"
+        self.desk.tell("prompt", f"{order.name} answers: {action.answer}")
+        if action.answer.strip().lower() not in ("n", "no"):
+            waiting.answer = action.answer.strip() or "yes"
+        return ""
+
+    def _by_hand(self, action: Jog | Tare) -> str:
+        """Take a step in manual mode; return "" or why not."""
+        desk = self.desk
+        if desk.hand is None or desk.watch is None or desk.watch.mode[0] != "RUN":
+            return "manual mode is not armed"
+        ctx = desk.watch.run.engine.ctx
+        if isinstance(action, Tare):
+            return desk.hand.tare(ctx)
+        return desk.hand.jog(ctx, action.axis, action.direction)
+
+    def lost_control(self) -> None:
+        """Disarm manual mode: whoever armed it does not control any more."""
+        hand = self.desk.hand
+        if hand is not None and self.desk.hub.presence.controller_id != self.armed_by:
+            hand.disarm()
+
+    def _begin(self, order: Order) -> None:
+        """Take an order that begins something, if nothing is under way."""
+        refusal = self._occupied()
+        if refusal:
+            self.desk.hub.refuse(order, refusal)
+        else:
+            self.job = order
+
+    def _occupied(self) -> str:
+        desk = self.desk
+        if self.ending:
+            return "the service is ending"
+        if desk.hand is not None:
+            return "manual mode is armed"
+        if desk.watch is not None or self.job is not None:
+            return f"a run is under way: {desk.run.name if desk.run is not None else 'it begins'}"
+        if desk.latched:
+            return f"the rig is latched ({desk.latched}): acknowledge first"
+        return ""
+
+    def _arm(self, order: Order, action: Arm) -> None:
+        if action.on:
+            self._begin(order)
+            return
+        hand = self.desk.hand
+        if hand is not None:
+            hand.disarm()
+        self._reply(order, "" if hand is not None else "manual mode is not armed")

@@ -1,0 +1,194 @@
+"""The messages between the service and its clients: JSON objects, one a WebSocket message (docs/protocol.md).
+
+A client sends ``join`` first and gets ``hello``; from then on the service sends ``snapshot`` (four a second, newest
+wins), ``plan`` (newest wins), ``event`` (numbered, never dropped) and, while asked for, ``frames``. Each command is
+answered by ``accepted`` or ``refused``. ``goodbye`` says why the service closes the connection.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated, Literal, TypeAlias
+
+from pydantic import Field, JsonValue, TypeAdapter, ValidationError
+
+from tester.service.commands import VERSION, ClientMessage, Command, Join
+from tester.service.state import PlanView, StateView
+
+SNAPSHOT_S = 0.25
+"""Period of snapshots, s of wall time."""
+TREND_ROWS = 2400
+"""Ten minutes of snapshots."""
+EVENTS_KEPT = 2000
+"""Events that a client which comes back can still be given."""
+
+
+@dataclass(frozen=True, slots=True)
+class Event:
+    """Something that happened. ``seq`` counts from 1 in one life of the service, without gaps.
+
+    ``severity``: debug, info, warning, alarm, trip. ``kind``: mode, trip, alarm, step, condition, repeat, prompt,
+    command, run, tare, wear, emergency, heat, rest, control ...
+    """
+
+    seq: int
+    t_s: float
+    utc: str
+    kind: str
+    severity: str
+    text: str
+    run: str
+    type: Literal["event"] = "event"
+
+
+@dataclass(frozen=True, slots=True)
+class Trend:
+    """Rows of ``columns`` (tester.service.state.TREND_COLUMNS), oldest first; None is a value nobody had."""
+
+    columns: tuple[str, ...]
+    rows: tuple[tuple[float | None, ...], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Hello:
+    """The first message: everything as it is now.
+
+    ``service`` identifies this life of the service: ``since`` counts only with the same one. ``events``: those after
+    ``since``, or the last 200; ``complete`` is False where some of them are no longer kept. ``client``: the number
+    this client has here; ``control``: it is the controller.
+    """
+
+    version: int
+    service: str
+    software: str
+    client: int
+    control: bool
+    state: StateView
+    plan: PlanView | None
+    events: tuple[Event, ...]
+    complete: bool
+    trend: Trend
+    type: Literal["hello"] = "hello"
+
+
+@dataclass(frozen=True, slots=True)
+class Snapshot:
+    """The state, four times a second; a slow client gets the newest and misses those in between.
+
+    ``row``: this moment's row of the trend.
+    """
+
+    state: StateView
+    row: tuple[float | None, ...]
+    type: Literal["snapshot"] = "snapshot"
+
+
+@dataclass(frozen=True, slots=True)
+class PlanMessage:
+    """The plan, at the start of a run and whenever a step begins. ``plan`` None: there is none any more."""
+
+    plan: PlanView | None
+    type: Literal["plan"] = "plan"
+
+
+@dataclass(frozen=True, slots=True)
+class Frame:
+    """One frame on a bus: rig seconds, bus, direction (sent or received by the PC), CAN id or unit, bytes in hex."""
+
+    t_s: float
+    bus: str
+    sent: bool
+    ident: int
+    data: str
+
+
+@dataclass(frozen=True, slots=True)
+class Frames:
+    """Frames since the last such message. ``dropped``: how many there were besides; a log for people, not a record."""
+
+    frames: tuple[Frame, ...]
+    dropped: int
+    type: Literal["frames"] = "frames"
+
+
+@dataclass(frozen=True, slots=True)
+class Accepted:
+    """A command was taken; ``result`` is what it returns (docs/protocol.md, per command)."""
+
+    id: int
+    result: JsonValue = None
+    type: Literal["accepted"] = "accepted"
+
+
+@dataclass(frozen=True, slots=True)
+class Refused:
+    """A command was not taken, and why. Nothing has changed."""
+
+    id: int
+    reason: str
+    type: Literal["refused"] = "refused"
+
+
+@dataclass(frozen=True, slots=True)
+class Goodbye:
+    """The last message: why the service closes the connection."""
+
+    reason: str
+    type: Literal["goodbye"] = "goodbye"
+
+
+ServerMessage: TypeAlias = Annotated[
+    Hello | Snapshot | Event | PlanMessage | Frames | Accepted | Refused | Goodbye, Field(discriminator="type")
+]
+
+# -- as text ---------------------------------------------------------------------------------------------------------
+
+SERVER: TypeAdapter[ServerMessage] = TypeAdapter(ServerMessage)
+CLIENT: TypeAdapter[ClientMessage] = TypeAdapter(ClientMessage)
+
+
+class BadMessageError(Exception):
+    """A message that is none of this protocol; the text says what and where."""
+
+
+def to_server(text: str | bytes) -> Join | Command:
+    """Return a client's message. Raises BadMessageError."""
+    try:
+        return CLIENT.validate_json(text)
+    except ValidationError as error:
+        raise BadMessageError(_words(error)) from None
+
+
+def from_server(text: str | bytes) -> ServerMessage:
+    """Return a message of the service; keys that are not known are ignored. Raises BadMessageError."""
+    try:
+        return SERVER.validate_json(text)
+    except ValidationError as error:
+        raise BadMessageError(_words(error)) from None
+
+
+def encode(message: Join | Command | ServerMessage) -> bytes:
+    """Return a message as JSON in UTF-8; what is not a finite number becomes null."""
+    if isinstance(message, Join | Command):
+        return CLIENT.dump_json(message)
+    return SERVER.dump_json(message)
+
+
+def schema() -> dict[str, JsonValue]:
+    """Return the JSON Schema of both directions, as docs/protocol.schema.json holds it."""
+    ways, shared = TypeAdapter.json_schemas([("server", "validation", SERVER), ("client", "validation", CLIENT)])
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": f"friction-tester service protocol, version {VERSION}",
+        "description": "server: a message of the service; client: a message to it",
+        "server": dict(ways["server", "validation"]),
+        "client": dict(ways["client", "validation"]),
+        "$defs": shared["$defs"],
+    }
+
+
+def _words(error: ValidationError) -> str:
+    """Say what is wrong with a message, where, in one line; what was sent is not repeated."""
+    first = error.errors(include_url=False, include_input=False, include_context=False)[0]
+    at = ".".join(str(piece) for piece in first["loc"])
+    return f"{at}: {first['msg']}" if at else str(first["msg"])

@@ -1,0 +1,107 @@
+"""Questions that take computing (check, plan, lists) are answered by a short-lived process each, beside the scan.
+
+That process is the command of the same name with ``--json``: one answer, wherever one asks.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import subprocess
+import sys
+import tempfile
+from collections.abc import Coroutine
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from pydantic import JsonValue
+from pydantic_core import from_json
+
+import recipes
+from tester.service.commands import CheckRecipe, ListRecipes, ListRuns, Query, ShowPlan
+
+AT_ONCE = 2
+"""More questions wait their turn."""
+WITHIN_S = 120.0
+"""A plan of 100,000 conditions takes some seconds; what takes longer is given up, s [A]."""
+MOST = 32_000_000
+"""Longest answer, bytes."""
+NICE = 10
+"""The scan comes first."""
+EXIT_INVALID = 3
+COMMAND = "import sys; from tester.cli.main import main; main()"
+
+
+class QueryError(Exception):
+    """A question that has no answer; the message says why."""
+
+
+@dataclass(slots=True)
+class Queries:
+    """Answers questions. ``runs``: folder of the stored runs; ``rig``: the rig file used where none is named."""
+
+    runs: Path
+    rig: str = "sim"
+    _turns: asyncio.Semaphore = field(default_factory=lambda: asyncio.Semaphore(AT_ONCE))
+    _tasks: set[asyncio.Task[None]] = field(default_factory=set[asyncio.Task[None]])
+
+    def start(self, work: Coroutine[None, None, None]) -> None:
+        """Work on something without waiting for it."""
+        task = asyncio.create_task(work)
+        self._tasks.add(task)
+        task.add_done_callback(self._tasks.discard)
+
+    async def answer(self, question: Query) -> JsonValue:
+        """Return the answer; raises QueryError."""
+        if isinstance(question, ListRecipes):
+            return {"recipes": _recipes()}
+        async with self._turns:
+            if isinstance(question, ListRuns):
+                return {"runs": await _ask(["runs", "--out", str(self.runs), "--json"])}
+            return await self._of_recipe(question)
+
+    async def _of_recipe(self, question: CheckRecipe | ShowPlan) -> JsonValue:
+        options = ["--rig", question.rig or self.rig, "--json"]
+        for override in question.overrides:
+            options += ["--set", override]
+        if not question.text:
+            return await _ask([question.command, *options, "--", question.recipe])
+        with tempfile.TemporaryDirectory(prefix="friction-tester-") as folder:
+            file = Path(folder) / "recipe.yaml"
+            file.write_text(question.text, encoding="utf-8")
+            return await _ask([question.command, *options, "--", str(file)])
+
+
+def _recipes() -> JsonValue:
+    """Return the shipped recipes and the files in ``recipes`` below the service's folder."""
+    found: list[JsonValue] = []
+    for name in recipes.names():
+        found.append({"name": name, "path": name, "shipped": True})
+    here = Path("recipes")
+    if here.is_dir() and here.resolve() != recipes.FOLDER.resolve():
+        for file in sorted(here.glob("*.yaml")):
+            found.append({"name": file.stem, "path": str(file), "shipped": False})
+    return found
+
+
+async def _ask(arguments: list[str]) -> JsonValue:
+    """Return what `tester ARGUMENTS` prints as JSON; raises QueryError with what it says is wrong."""
+    process = await asyncio.create_subprocess_exec(
+        sys.executable, "-c", COMMAND, *arguments,
+        stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+    )  # fmt: skip
+    if hasattr(os, "setpriority"):
+        os.setpriority(os.PRIO_PROCESS, process.pid, NICE)
+    try:
+        async with asyncio.timeout(WITHIN_S):
+            out, err = await process.communicate()
+    except TimeoutError:
+        process.kill()
+        await process.wait()
+        raise QueryError(f"no answer within {WITHIN_S:g} s") from None
+    if process.returncode not in (0, EXIT_INVALID) or not out.strip():
+        raise QueryError(err.decode(errors="replace").strip()[-2000:] or f"exit code {process.returncode}")
+    if len(out) > MOST:
+        raise QueryError(f"the answer is longer than {MOST / 1e6:g} MB")
+    result: JsonValue = from_json(out)
+    return result

@@ -1,0 +1,125 @@
+"""A run in the service: the session that `tester run` carries out too, with clients where that has a terminal."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from types import FrameType
+from typing import cast
+
+from tester import clock
+from tester.campaign.endings import Stop
+from tester.campaign.folder import Begin, Job, Work
+from tester.engine.context import Progress as RunProgress
+from tester.engine.prompts import Prompts
+from tester.engine.run import Run
+from tester.recipe.estimate import estimate
+from tester.service.desk import Desk
+from tester.service.progress import PlanTrack
+from tester.service.state import RunView, TickView
+from tester.session import Session, SessionOptions
+from tester.store.space import expected_bytes
+
+
+class ServiceSession(Session):
+    """A session whose runs the desk looks after. ``begun_``: called once, with what is known of the run."""
+
+    def __init__(
+        self,
+        options: SessionOptions,
+        screen: RunScreen,
+        on_signal: Callable[[], None],
+        begun: Callable[[RunView], None],
+    ) -> None:
+        """``on_signal``: called when the process is asked to end."""
+        super().__init__(options, screen)
+        self.desk = screen.desk
+        self.view = screen.view
+        self._screen = screen
+        self._tell_signal = on_signal
+        self._tell_begun = begun
+        self._track: PlanTrack | None = None
+
+    def begun(self, run: Run) -> None:
+        """Look after a part's run; the first one begins the whole."""
+        super().begun(run)
+        if self._track is None:
+            return
+        first = not self.view.name
+        if first:
+            folder = self.folder
+            assert folder is not None
+            self.view = replace(
+                self.view, name=folder.name, folder=str(folder), recipe=self._screen.name, started_utc=clock.utc_now()
+            )
+        run.stays_latched = True
+        self.desk.attach(run, self._track, self.view)
+        self.desk.stop_rest = self._stop_rest
+        if first:
+            self._tell_begun(self.view)
+
+    def poll(self, now_s: float, run: Run, share: float) -> None:
+        """Let the desk look, and clients speak."""
+        self.desk.tick = TickView(0.0, self.statistics.late_max_s, self.statistics.overruns)
+        self.desk.specimen(run)
+        self.desk.poll(now_s)
+
+    def _record(self, job: Job, work: Work, begin: Begin) -> int:
+        """Estimate the plan before anything moves, then go on as ever."""
+        expected = estimate(work.plan, work.rig)
+        self._track = PlanTrack(work.plan, expected)
+        self.desk.needed = round(expected_bytes(work.plan, expected))
+        return super()._record(job, work, begin)
+
+    def _stop_rest(self, fast: bool) -> None:
+        """Begin no further part."""
+        self.stop(Stop.FAST if fast else Stop.INTERRUPTED)
+
+    def _on_signal(self, number: int, _frame: FrameType | None) -> None:
+        self._tell_signal()
+        if self.run_ is not None:
+            self.run_.stays_latched = False  # nobody will be there to acknowledge
+        super()._on_signal(number, _frame)
+
+
+class RunScreen:
+    """Tells the desk what a session says."""
+
+    can_ask = True
+
+    def __init__(self, desk: Desk, view: RunView, *, answer_yes: bool) -> None:
+        """``view``: what is known of the run before it begins."""
+        self.desk = desk
+        self.view = view
+        self.answer_yes = answer_yes
+        self.name = ""
+        self.missing: list[str] = []
+        self.messages: list[str] = []
+
+    def begin(self, name: str) -> None:
+        """Take the recipe's name."""
+        self.name = name
+
+    def show(self, now_s: float, run: RunProgress, share: float) -> None:
+        """Nothing: the desk looks at the run itself."""
+
+    def attend(self, prompts: Prompts) -> None:
+        """Nothing: clients answer by command."""
+
+    def end(self) -> None:
+        """The last state is shown before the tables are written."""
+        self.desk.show()
+
+    def message(self, text: str) -> None:
+        """Tell every client."""
+        self.messages.append(text)
+        self.desk.tell("message", text)
+
+    def emit(self, record: dict[str, object]) -> None:
+        """Take the figures of the end."""
+        missing = record.get("missing")
+        if record.get("event") == "end" and isinstance(missing, list):
+            self.missing = [str(one) for one in cast("list[object]", missing)]
+
+    def result(self, line: str) -> None:
+        """Nothing: clients know the folder."""

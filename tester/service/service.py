@@ -1,0 +1,238 @@
+"""The service: the process that owns the rig. One thread ticks, and between two ticks it hears and tells clients."""
+
+from __future__ import annotations
+
+import signal
+import sqlite3
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from hashlib import sha256
+from pathlib import Path
+from types import FrameType
+
+from drivers.ports import BusLost
+from recipes import UnknownRecipe
+from tester import clock
+from tester.campaign.claims import hold_rig
+from tester.campaign.endings import CannotStartError
+from tester.campaign.part_run import connect_ports
+from tester.engine.build import build_run
+from tester.engine.prompts import Prompts
+from tester.engine.run import Outcome
+from tester.engine.tickers import TickStatistics, run_real_time, run_simulated
+from tester.lock import RUN_LOCK, ExclusiveUse, user_of
+from tester.recipe.estimate import estimate
+from tester.rig import load_rig
+from tester.service.commands import (
+    Arm,
+    ResumeRun,
+    RunRecipe,
+)
+from tester.service.desk import Desk
+from tester.service.hub import Hub
+from tester.service.link import Order
+from tester.service.manual import empty_plan, no_record, take_over
+from tester.service.orders import Orders
+from tester.service.progress import PlanTrack
+from tester.service.running import RunScreen, ServiceSession
+from tester.service.state import RunView
+from tester.session import SessionOptions
+from tester.source import InvalidSource
+from tester.store.catalogue import find_run
+from tester.store.reader import DATABASE, RunReader
+from tester.store.schema import StoreError
+
+RECIPES = ".recipes"
+"""Folder beside the runs for recipes that came as text, named by their content."""
+NEWEST_RUNS = 200
+"""So many runs are looked at for one that was cut off, the newest first."""
+MANUAL_LAPSE = 1.0
+"""A person moves a simulated rig in real time."""
+REFUSED = (CannotStartError, InvalidSource, UnknownRecipe, StoreError, OSError, sqlite3.Error)
+"""What keeps a run from beginning."""
+
+
+@dataclass(frozen=True, slots=True)
+class ServiceOptions:
+    """What `tester serve` was told."""
+
+    rig: str = "sim"
+    overrides: tuple[str, ...] = ()
+    runs: Path = Path("runs")
+
+
+class Service:
+    """Carries out one thing at a time: a run, manual mode, or nothing."""
+
+    def __init__(self, options: ServiceOptions, hub: Hub) -> None:
+        """Read the rig file; raises InvalidSource. Nothing is connected."""
+        self.options = options
+        self.rig = load_rig(options.rig, options.overrides)
+        self.desk = Desk(hub, self.rig, options.runs)
+        self.orders = Orders(self.desk)
+
+    # -- the loop ---------------------------------------------------------------------------------------------
+
+    def serve(self) -> None:
+        """Serve until the process is told to end (TERM, INT), and leave at standstill."""
+        desk = self.desk
+        with Signals(self.end):
+            desk.interrupted = tuple(interrupted_runs(self.options.runs))
+            for name in desk.interrupted:
+                desk.tell("run", f"{name} was cut off: `tester resume {name}` goes on with it", "warning")
+            while not self.orders.ending:
+                desk.poll(0.0)
+                if self.orders.job is not None:
+                    self._carry_out(self.orders.job)
+                    self.orders.job = None
+                else:
+                    desk.wait()
+        desk.tell("service", "the service ends")
+        desk.show()
+
+    def end(self) -> None:
+        """End as soon as nothing is under way any more."""
+        self.orders.ending = True
+
+    # -- what begins ------------------------------------------------------------------------------------------
+
+    def _carry_out(self, order: Order) -> None:
+        """Carry out what an order begins, to its end."""
+        action = order.action
+        self.desk.run = None
+        if isinstance(action, Arm):
+            self.orders.armed_by = order.client
+            self._manual(order)
+        elif isinstance(action, RunRecipe):
+            self._run(order, action)
+        elif isinstance(action, ResumeRun):
+            self._resume(order, action)
+
+    def _run(self, order: Order, action: RunRecipe) -> None:
+        spooled = self._spooled(action)
+        options = SessionOptions(
+            recipe=spooled or action.recipe,
+            rig=action.rig or self.options.rig,
+            overrides=(*(() if action.rig else self.options.overrides), *action.overrides),
+            out=self.options.runs,
+            seed=action.seed,
+            lapse=action.speed,
+            operator=action.operator,
+        )
+        self._session(order, options, action.yes, action.notes, lambda session: session.run())
+
+    def _resume(self, order: Order, action: ResumeRun) -> None:
+        try:
+            folder = find_run(action.run, self.options.runs)
+        except StoreError as error:
+            self.desk.hub.refuse(order, str(error))
+            return
+        options = SessionOptions(out=self.options.runs, lapse=action.speed, operator=order.name)
+        self._session(order, options, action.yes, "", lambda session: session.resume(folder, action.reason))
+
+    def _spooled(self, action: RunRecipe) -> str:
+        """Write a recipe that came as text where the session can read it, and a resumed run finds it unchanged."""
+        if not action.text:
+            return ""
+        digest = sha256(action.text.encode()).hexdigest()[:16]
+        file = self.options.runs / RECIPES / f"{digest}.yaml"
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(action.text, encoding="utf-8", newline="\n")
+        return str(file)
+
+    def _session(
+        self, order: Order, options: SessionOptions, yes: bool, notes: str, work: Callable[[ServiceSession], int]
+    ) -> None:
+        """Carry out a session from its beginning to its tables."""
+        desk = self.desk
+        view = RunView("", "", "", "", "", options.operator, options.seed, self.rig.simulated, options.lapse, "",
+                       Outcome.RUNNING.value, "", None, ())  # fmt: skip
+
+        def begun(view: RunView) -> None:
+            desk.hub.accept(order, {"run": view.name, "folder": view.folder})
+            if notes and desk.watch is not None:
+                desk.watch.run.engine.ctx.journal.event(0.0, "note", notes)
+
+        screen = RunScreen(desk, view, answer_yes=yes)
+        session = ServiceSession(options, screen, self.end, begun)
+        problem, code = "", None
+        try:
+            code = work(session)
+        except REFUSED as error:
+            problem = str(error)
+        if not session.view.name:
+            desk.hub.refuse(order, problem or "; ".join(screen.messages) or "the run has ended before it began")
+            desk.detach(None)
+            return
+        outcome = session.ending.outcome if session.ending is not None else Outcome.FAILED
+        reason = problem or (session.ending.reason if session.ending is not None else "")
+        known = desk.run or session.view
+        desk.ended(
+            replace(known, outcome=outcome.value, reason=reason, exit=code, missing=tuple(screen.missing)), outcome
+        )
+
+    def _manual(self, order: Order) -> None:
+        """Connect the rig and let the client that asked move it."""
+        desk, rig = self.desk, self.rig
+        view = RunView("manual mode", "", "", "", "", order.name, None, rig.simulated, 1.0, clock.utc_now(),
+                       Outcome.RUNNING.value, "", None, ())  # fmt: skip
+        with ExclusiveUse() as use:
+            try:
+                hold_rig(use, rig, "manual mode")
+                ports, world, attendant = connect_ports(rig, 0, None)
+            except (CannotStartError, BusLost) as error:
+                desk.hub.refuse(order, str(error))
+                return
+            run = build_run(rig, empty_plan(), ports, attendant, no_record(), Prompts())
+            hand = take_over(run)
+            desk.attach(run, PlanTrack(hand.plan, estimate(hand.plan, rig)), view, hand)
+            desk.hub.accept(order)
+            try:
+                if world is not None:
+                    run_simulated(run, world, lapse=MANUAL_LAPSE, poll=self._poll_manual)
+                else:
+                    run_real_time(run, None, poll=self._poll_manual, statistics=TickStatistics(), pace=ports.pace)
+            finally:
+                ports.close()
+        desk.ended(replace(view, outcome=run.outcome.value, reason=run.reason), run.outcome)
+
+    def _poll_manual(self, now_s: float) -> None:
+        if self.orders.ending and self.desk.watch is not None:
+            self.desk.watch.run.request_stop("the service ends", cool=False)
+        self.desk.poll(now_s)
+
+
+class Signals:
+    """TERM and INT end the service, HUP is ignored, while the block lasts."""
+
+    def __init__(self, end: Callable[[], None]) -> None:
+        """``end``: what to call."""
+        self._end = end
+        self._before: dict[int, signal.Handlers | Callable[[int, FrameType | None], object] | int | None] = {}
+
+    def __enter__(self) -> None:
+        """Take over."""
+        for number in (signal.SIGINT, signal.SIGTERM):
+            self._before[number] = signal.signal(number, self._on_signal)
+        if hasattr(signal, "SIGHUP"):
+            self._before[signal.SIGHUP] = signal.signal(signal.SIGHUP, signal.SIG_IGN)
+
+    def __exit__(self, *_: object) -> None:
+        """Give back."""
+        for number, handler in self._before.items():
+            signal.signal(number, handler)
+
+    def _on_signal(self, number: int, frame: FrameType | None) -> None:
+        self._end()
+
+
+def interrupted_runs(runs: Path) -> Iterator[str]:
+    """Yield the runs in a folder that were cut off: open, and nobody at work on them."""
+    folders = sorted(runs.iterdir(), reverse=True)[:NEWEST_RUNS] if runs.is_dir() else []
+    for folder in reversed(folders):
+        if not (folder / DATABASE).is_file() or user_of(folder / RUN_LOCK) is not None:
+            continue
+        with suppress(StoreError), RunReader(folder) as reader:
+            if reader.run().status == Outcome.RUNNING.value:
+                yield folder.name

@@ -1,0 +1,321 @@
+"""The state view: everything a screen shows, as plain values. One object goes out four times a second.
+
+Units are in the names, or in ``unit`` beside a value. What is unknown is None, never NaN and never an old value:
+``age_s`` and ``quality`` say how far a value can be believed. Texts come from recipes, people and devices: whoever
+shows one takes it as it is, never as markup.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+Quality = Literal["good", "stale", "bad", "none"]
+"""good; older than its limit; reported invalid by its device; never received."""
+
+MODES = (
+    "OFFLINE",
+    "INTERRUPTED",
+    "CONNECTING",
+    "IDLE",
+    "ARMED",
+    "RUN",
+    "HOLD",
+    "STOPPING",
+    "COOLDOWN",
+    "FAST STOP",
+    "LATCHED",
+    "E-STOP",
+    "MANUAL",
+)
+"""Values of ``StateView.mode``; a client shows one it does not know as it is. OFFLINE: no rig is connected, a run
+connects it. INTERRUPTED: the same, and the store holds a run that was cut off; shown until somebody acknowledges it."""
+
+TREND_COLUMNS = (
+    "wall_s",
+    "t_s",
+    "friction",
+    "load_n",
+    "load_setpoint_n",
+    "surface_c",
+    "surface_setpoint_c",
+    "hub_c",
+    "hub_setpoint_c",
+    "slip_mm_s",
+    "slip_setpoint_mm_s",
+    "wheel_speed_m_s",
+    "belt_speed_m_s",
+    "sideslip_deg",
+    "heat_percent",
+)
+"""A row of the trend. ``wall_s``: seconds since the service started; ``t_s``: rig time of the run."""
+
+
+@dataclass(frozen=True, slots=True)
+class Value:
+    """One measured value beside what is wanted and what is allowed.
+
+    ``low``, ``high``: the limits at which something happens (an interlock, a hard limit of the rig). ``band_low``,
+    ``band_high``: the gate around the setpoint, inside which samples count. ``scale_low``, ``scale_high``: ends of a
+    bar, fixed for a rig. Keys: friction, load, slip, surface, hub, sideslip, camber, wheel_speed, belt_speed, press,
+    force_x, force_y, moment, torque, heat.
+    """
+
+    key: str
+    label: str
+    unit: str
+    value: float | None
+    setpoint: float | None
+    low: float | None
+    high: float | None
+    band_low: float | None
+    band_high: float | None
+    scale_low: float
+    scale_high: float
+    decimals: int
+    age_s: float | None
+    quality: Quality
+
+
+@dataclass(frozen=True, slots=True)
+class Gate:
+    """One gate of the samples: ``open`` while samples pass it. Keys: load, speed, slip, temperature, settling."""
+
+    key: str
+    open: bool
+
+
+@dataclass(frozen=True, slots=True)
+class SoakView:
+    """A soak under way: 39.6 of 40.0 +- 1.0 degC, in band 190 s of 600 s, given up after ``at_most_s``."""
+
+    surface_c: float | None
+    target_c: float
+    within_k: float
+    in_band_s: float
+    for_s: float
+    waited_s: float
+    at_most_s: float
+
+
+@dataclass(frozen=True, slots=True)
+class ProgressView:
+    """Where the run is. ``share``: of the whole rig time, 0..1, corrected by the durations measured so far.
+
+    ``left_s``: rig seconds to the end; ``finish_utc``: the wall clock then at the run's speed, "" at full speed.
+    """
+
+    step: int = 0
+    steps: int = 0
+    title: str = ""
+    phase: str = ""
+    condition: int = 0
+    conditions: int = 0
+    repeat: int = 0
+    repeats: int = 0
+    revolutions: float = 0.0
+    revolutions_wanted: float = 0.0
+    burst: int = 0
+    share: float = 0.0
+    elapsed_s: float = 0.0
+    left_s: float | None = None
+    finish_utc: str = ""
+
+
+AlarmState = Literal["active", "acknowledged", "returned"]
+"""Cause there and not acknowledged; cause there, acknowledged; cause gone, not acknowledged (ISA-18.2)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Alarm:
+    """One alarm. ``priority`` 1 (trip) to 3. ``first_up``: the first of those that stopped the run.
+
+    ``value``, ``limit``: what was seen and what is allowed, None where it is no number. ``consequence`` says
+    what happens next, ``command`` which command answers it ("ack", "release", "").
+    """
+
+    number: int
+    name: str
+    priority: Literal[1, 2, 3]
+    state: AlarmState
+    text: str
+    value: float | None
+    limit: float | None
+    unit: str
+    consequence: str
+    command: str
+    first_up: bool
+    t_s: float
+    utc: str
+
+
+@dataclass(frozen=True, slots=True)
+class PromptView:
+    """A question that waits for a person; answered with the command ``answer``."""
+
+    number: int
+    text: str
+    t_s: float
+    utc: str
+
+
+@dataclass(frozen=True, slots=True)
+class DeviceView:
+    """One device on a bus. ``kind``: drive, load cell, thermometer, jacket. ``state``: the drive's CiA 402 state.
+
+    ``age_s``: of its newest data. Errors are counted since the run began: time-outs, CRC, exceptions, emergencies.
+    """
+
+    name: str
+    kind: str
+    bus: str
+    address: int
+    state: str
+    online: bool
+    age_s: float | None
+    requests: int
+    errors: int
+    errors_per_hour: float
+    detail: str
+
+
+@dataclass(frozen=True, slots=True)
+class BusView:
+    """One bus: ``load_percent`` None where nobody can know it (a serial line of a real rig)."""
+
+    name: str
+    kind: Literal["can", "modbus"]
+    load_percent: float | None
+    errors: int
+    detail: str
+
+
+@dataclass(frozen=True, slots=True)
+class DiskView:
+    """Space where runs are stored, in bytes. ``needed``: the estimate of the run under way, 0 without one."""
+
+    free: int
+    needed: int
+    low: bool
+
+
+@dataclass(frozen=True, slots=True)
+class RunView:
+    """The run under way, or the last one. ``outcome``: running, done, incomplete, stopped, tripped, failed,
+    rig unreachable. ``exit``: the exit code that `tester run` would give, None while it runs.
+
+    ``speed``: rig seconds per second, None = as fast as it goes. ``missing``: conditions without a value, in words.
+    """
+
+    name: str
+    folder: str
+    recipe: str
+    compound: str
+    note: str
+    operator: str
+    seed: int | None
+    simulated: bool
+    speed: float | None
+    started_utc: str
+    outcome: str
+    reason: str
+    exit: int | None
+    missing: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class ManualView:
+    """Manual mode: armed for ``left_s`` more seconds, or not (None). ``tare``: the newest tare in words."""
+
+    left_s: float | None
+    tare: str
+
+
+@dataclass(frozen=True, slots=True)
+class TickView:
+    """How punctual the scan is, in real time only: worst lateness and overruns since the run began."""
+
+    rate_hz: float
+    late_max_s: float
+    overruns: int
+
+
+@dataclass(frozen=True, slots=True)
+class ClientsView:
+    """Who is connected. ``controller``: the name of the client that controls, "" if none; ``controller_id`` its id."""
+
+    controller: str
+    controller_id: int
+    viewers: int
+
+
+@dataclass(frozen=True, slots=True)
+class Check:
+    """One line of the pre-flight list: ``ok`` None where nobody can know before the rig is connected."""
+
+    name: str
+    ok: bool | None
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class StateView:
+    """The whole state. ``t_s``: rig seconds of the run; ``wall_s``: seconds since the service started.
+
+    ``mode_text`` says why the rig is in its mode. ``interrupted``: runs in the store that were cut off and can be
+    resumed, by name. ``preflight``: what a person should look at before starting.
+    """
+
+    mode: str
+    mode_text: str
+    mode_since_s: float
+    t_s: float
+    wall_s: float
+    utc: str
+    rig: str
+    simulated: bool
+    run: RunView | None
+    progress: ProgressView
+    values: tuple[Value, ...]
+    gates: tuple[Gate, ...]
+    soak: SoakView | None
+    alarms: tuple[Alarm, ...]
+    prompt: PromptView | None
+    manual: ManualView
+    devices: tuple[DeviceView, ...]
+    buses: tuple[BusView, ...]
+    disk: DiskView
+    tick: TickView
+    clients: ClientsView
+    interrupted: tuple[str, ...]
+    preflight: tuple[Check, ...]
+
+    def value(self, key: str) -> Value | None:
+        """Return the value with this key, None where the rig has none."""
+        return next((value for value in self.values if value.key == key), None)
+
+
+StepState = Literal["done", "now", "later"]
+
+
+@dataclass(frozen=True, slots=True)
+class PlanStep:
+    """One step: its number from 1, estimated seconds, and once it is done the measured ones."""
+
+    number: int
+    kind: str
+    title: str
+    state: StepState
+    estimated_s: float
+    measured_s: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class PlanView:
+    """The plan's steps around the present one. ``first``: number of the first listed; ``total``: how many there are."""
+
+    name: str
+    total: int
+    first: int
+    steps: tuple[PlanStep, ...]
+    estimated_s: float

@@ -1,0 +1,195 @@
+"""Put the records of a run's parts into the run's own: one run whose times follow one another.
+
+A part is recorded by itself, from time 0 and with keys from 1. Here it is copied into the run's database behind the
+parts before it: times later by their rig seconds, keys higher by those given so far. What the columns mean is said
+once, in ``TABLES``; columns that only hold values need no mention.
+"""
+
+from __future__ import annotations
+
+import sqlite3
+import zlib
+from collections.abc import Iterator
+from contextlib import closing
+from dataclasses import dataclass
+from pathlib import Path
+from types import TracebackType
+
+import numpy as np
+
+from tester.process import SAMPLE_COLUMNS
+from tester.store.reader import DATABASE, RunReader
+from tester.store.sample_blocks import unpack_array
+
+Cell = str | int | float | bytes | None
+
+
+@dataclass(frozen=True, slots=True)
+class Merged:
+    """What a table's columns mean: rig times, and keys.
+
+    ``key`` counts through the run (None: the part's own keys hold in the run), ``repeat`` refers to a repeat's key.
+    """
+
+    times: tuple[str, ...] = ()
+    key: str | None = None
+    repeat: str | None = None
+
+
+TABLES: dict[str, Merged] = {
+    "wheel": Merged(times=("installed_s", "updated_s", "ground_s")),
+    "repeat": Merged(times=("begun_s", "started_s", "ended_s"), key="id"),
+    "burst": Merged(times=("started_s", "ended_s"), repeat="repeat_id"),
+    "sample_block": Merged(times=("first_s", "last_s"), key="id", repeat="repeat_id"),
+    "event": Merged(times=("t_s",), key="sequence"),
+    "prompt": Merged(times=("asked_s", "answered_s"), key="id"),
+    "tare": Merged(times=("t_s",), key="id", repeat="repeat_id"),
+    "trip": Merged(times=("t_s", "acknowledged_s"), key="id"),
+    "bus_statistic": Merged(times=("t_s",), key="id"),
+    "device_parameter": Merged(times=("t_s",), key="id"),
+}
+"""Tables that are filled while a run goes on, in the order in which they refer to each other."""
+
+HEADER = frozenset(
+    {"run", "metadata", "version", "specimen", "condition", "sample_column", "session", "change", "calibration"}
+)
+"""Tables of the whole run, which parts do not fill. ``condition`` is brought up to date."""
+
+LEFT = ("status", "reason", "warming_k_s", "holdable_band_k")
+"""How a condition was left; ``started_s`` and ``ended_s`` are times."""
+
+_COLUMNS = len(SAMPLE_COLUMNS)
+_TIME = SAMPLE_COLUMNS.index("time_s")
+_KEY = SAMPLE_COLUMNS.index("repeat_key")
+_DIGITS = 6
+"""Rig times lie on a grid of microseconds (tester.engine.tickers); a sum of two is put back on it."""
+_LEVEL = 1
+"""Of compression, as tester.store.sample_blocks writes."""
+
+
+class Merge:
+    """Puts parts into a run's database, each in a transaction of its own; use in a ``with`` block.
+
+    Begins by taking out what an earlier merge left, so it may be done again, after a crash or a resumed part. Raises
+    sqlite3.Error and StoreError; the parts are never written.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        """``folder``: the run's, whose ``run.db`` holds the run and its conditions."""
+        self.rig_seconds = 0.0
+        self._connection = sqlite3.connect(folder / DATABASE, isolation_level=None)
+        try:
+            # The deletion of a rollback journal is synced, too: one that came back would take the merge back.
+            self._connection.execute("PRAGMA synchronous = EXTRA")
+            with self._transaction():
+                for table in reversed(TABLES):
+                    self._connection.execute(f"DELETE FROM {table}")
+                self._connection.execute("UPDATE run SET overruns = 0")
+        except sqlite3.Error:
+            self._connection.close()
+            raise
+
+    def __enter__(self) -> Merge:
+        """Return the merge."""
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, value: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Let go of the file."""
+        self._connection.close()
+
+    def add(self, part: Path) -> None:
+        """Append the part whose record lies in the folder ``part``."""
+        with RunReader(part) as reader:
+            run = reader.run()
+        with closing(sqlite3.connect(f"{(part / DATABASE).absolute().as_uri()}?mode=ro", uri=True)) as source:
+            bases = {table: self._last(table) for table, kind in TABLES.items() if kind.key is not None}
+            with self._transaction():
+                for table in TABLES:
+                    self._copy(source, table, bases)
+                self._update_conditions(source)
+                self._connection.execute("UPDATE run SET overruns = overruns + ?", (run.overruns,))
+        self.rig_seconds = self._later(self.rig_seconds, run.rig_seconds)
+
+    def finish(self, status: str, reason: str, ended_utc: str) -> None:
+        """Record how the whole run ended."""
+        sql = "UPDATE run SET status = ?, reason = ?, rig_seconds = ?, ended_utc = ?"
+        self._connection.execute(sql, (status, reason, self.rig_seconds, ended_utc))
+
+    # -- rows -------------------------------------------------------------------------------------------------
+
+    def _copy(self, source: sqlite3.Connection, table: str, bases: dict[str, int]) -> None:
+        kind = TABLES[table]
+        found = source.execute(f"SELECT * FROM {table} ORDER BY rowid")
+        names = [column[0] for column in found.description]
+        times = [names.index(name) for name in kind.times]
+        key = names.index(kind.key) if kind.key is not None else -1
+        repeat = names.index(kind.repeat) if kind.repeat is not None else -1
+        data = names.index("data") if table == "sample_block" else -1
+
+        def moved() -> Iterator[list[Cell]]:
+            for one in found:
+                row: list[Cell] = list(one)
+                for i in times:
+                    row[i] = self._moved(row[i])
+                if key >= 0:
+                    row[key] = _raised(row[key], bases[table])
+                if repeat >= 0:
+                    row[repeat] = _raised(row[repeat], bases["repeat"])
+                if data >= 0:
+                    row[data] = self._block(row[data], bases["repeat"])
+                yield row
+
+        marks = ", ".join("?" * len(names))
+        self._connection.executemany(f"INSERT INTO {table} ({', '.join(names)}) VALUES ({marks})", moved())
+
+    def _update_conditions(self, source: sqlite3.Connection) -> None:
+        left = ", ".join(f"{name} = ?" for name in LEFT)
+        sql = f"UPDATE condition SET started_s = ?, ended_s = ?, {left} WHERE condition = ?"
+        columns = f"started_s, ended_s, {', '.join(LEFT)}, condition"
+        for started, ended, *rest in source.execute(f"SELECT {columns} FROM condition"):
+            self._connection.execute(sql, (self._moved(started), self._moved(ended), *rest))
+
+    def _block(self, data: Cell, base: int) -> Cell:
+        """Return a block of samples with later times and higher keys."""
+        if not isinstance(data, bytes) or (base == 0 and self.rig_seconds == 0.0):
+            return data
+        rows = len(zlib.decompress(data)) // (8 * _COLUMNS)
+        table = unpack_array(data, rows, _COLUMNS).copy()
+        table[_TIME] = np.round(table[_TIME] + self.rig_seconds, _DIGITS)
+        table[_KEY] += base * (table[_KEY] > 0.0)
+        return zlib.compress(table.astype("<f8").tobytes(), _LEVEL)
+
+    def _moved(self, time_s: Cell) -> Cell:
+        return self._later(time_s, self.rig_seconds) if isinstance(time_s, int | float) else time_s
+
+    @staticmethod
+    def _later(time_s: float, by_s: float) -> float:
+        return round(time_s + by_s, _DIGITS)
+
+    def _last(self, table: str) -> int:
+        return self._connection.execute(f"SELECT coalesce(max({TABLES[table].key}), 0) FROM {table}").fetchone()[0]
+
+    def _transaction(self) -> _Transaction:
+        return _Transaction(self._connection)
+
+
+class _Transaction:
+    """All of it or nothing."""
+
+    def __init__(self, connection: sqlite3.Connection) -> None:
+        self._connection = connection
+
+    def __enter__(self) -> None:
+        self._connection.execute("BEGIN IMMEDIATE")
+
+    def __exit__(
+        self, kind: type[BaseException] | None, value: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._connection.execute("COMMIT" if kind is None else "ROLLBACK")
+
+
+def _raised(key: Cell, base: int) -> Cell:
+    """Return a key of the run; 0 stands for no repeat and stays."""
+    return key + base if isinstance(key, int) and key > 0 else key

@@ -1,0 +1,124 @@
+"""Where an interrupted run stands: which conditions are over, what is committed of the others, which wheel is on."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from math import isfinite
+
+from tester.analysis.results import ConditionStatus, RepeatResult, RepeatStatus
+from tester.recipe.remaining import Stand, WornWheel
+from tester.store.reader import RunReader
+from tester.store.records import NAN, StoredRepeat, WheelInfo
+
+ENDS_A_CONDITION = (RepeatStatus.CANNOT_HOLD, RepeatStatus.NOT_REACHED)
+"""A repeat with one of these is its condition's last."""
+
+FINISHED = "done"
+"""Status of a run that went through its whole plan."""
+
+
+@dataclass(frozen=True, slots=True)
+class ConditionSoFar:
+    """What is committed of a condition that is not over."""
+
+    results: tuple[RepeatResult, ...] = ()
+    """Of its committed repeats, in order."""
+    attempts: Mapping[int, int] = field(default_factory=dict[int, int])
+    """Attempts at each repeat, committed or not."""
+    warming_k_s: float = NAN
+    holdable_band_k: float = NAN
+
+    @property
+    def over(self) -> RepeatStatus | None:
+        """Return the status with which its last repeat ended it, None where it goes on."""
+        status = self.results[-1].status if self.results else None
+        return status if status in ENDS_A_CONDITION else None
+
+
+@dataclass(frozen=True, slots=True)
+class ResumePoint:
+    """Everything a resumed run starts from. Times in rig seconds of the whole run."""
+
+    finished: bool
+    origin_s: float
+    """Rig time at which the run goes on: that of the last thing recorded."""
+    stand: Stand
+    conditions: Mapping[int, ConditionSoFar]
+    """Conditions that are not over, by number; one that is missing has nothing committed."""
+    reference_tare: tuple[float, float, float, float] | None
+    """Zero of the load cell when the present wheel was mounted."""
+    session: int
+    """Number of the next stretch."""
+
+    @property
+    def next_repeat(self) -> tuple[int, int] | None:
+        """Return condition and repeat of the first one begun and not committed, None where none has been begun."""
+        for number, condition in sorted(self.conditions.items()):
+            if condition.over is None:
+                return number, len(condition.results) + 1
+        return None
+
+
+def resume_point(reader: RunReader) -> ResumePoint:
+    """Return where a run stands; raises StoreError where the record cannot be read."""
+    run = reader.run()
+    repeats: dict[int, list[StoredRepeat]] = {}
+    for repeat in reader.repeats(attempts=True):
+        repeats.setdefault(repeat.condition, []).append(repeat)
+    ended: set[int] = set()
+    open_: dict[int, ConditionSoFar] = {}
+    for stored in reader.conditions():
+        number = stored.info.condition
+        if stored.status not in (None, ConditionStatus.PENDING):
+            ended.add(number)
+        elif number in repeats:
+            open_[number] = _so_far(repeats[number], stored.warming_k_s, stored.holdable_band_k)
+    sessions = reader.sessions()
+    return ResumePoint(
+        finished=run.status == FINISHED,
+        origin_s=run.rig_seconds if isfinite(run.rig_seconds) else 0.0,
+        stand=Stand(frozenset(ended), frozenset(repeats), tuple(_wheels(reader.wheels(), repeats))),
+        conditions=open_,
+        reference_tare=_reference(reader),
+        session=max((s.session for s in sessions), default=1) + 1,
+    )
+
+
+def _so_far(attempts: list[StoredRepeat], warming_k_s: float, holdable_band_k: float) -> ConditionSoFar:
+    committed = {r.repeat: r.result for r in attempts if r.result.status not in (RepeatStatus.OPEN, RepeatStatus.VOID)}
+    results: list[RepeatResult] = []
+    while len(results) + 1 in committed:
+        results.append(committed[len(results) + 1])
+    counted: dict[int, int] = {}
+    for r in attempts:
+        counted[r.repeat] = max(counted.get(r.repeat, 0), r.attempt)
+    return ConditionSoFar(tuple(results), counted, warming_k_s, holdable_band_k)
+
+
+def _wheels(wheels: list[WheelInfo], repeats: Mapping[int, list[StoredRepeat]]) -> list[WornWheel]:
+    """Return the wheels in the order in which they were mounted, each with the last condition it was used in."""
+    used: dict[int, int] = {}
+    for condition, attempts in repeats.items():
+        for repeat in attempts:
+            used[repeat.wheel] = max(used.get(repeat.wheel, 0), condition)
+    return [
+        WornWheel(
+            wheel=w.wheel,
+            specimen=w.specimen,
+            replicate=w.replicate,
+            diameter_mm=w.diameter_mm,
+            sliding_m=w.sliding_m,
+            ground=isfinite(w.ground_s),
+            last_condition=used.get(w.wheel, 0),
+        )
+        for w in sorted(wheels, key=lambda w: (w.installed_s, w.wheel))
+    ]
+
+
+def _reference(reader: RunReader) -> tuple[float, float, float, float] | None:
+    found = None
+    for tare in reader.tares():
+        if tare.kind == "reference":
+            found = (tare.force_x_n, tare.force_y_n, tare.force_z_n, tare.moment_z_nm)
+    return found

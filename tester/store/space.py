@@ -1,0 +1,44 @@
+"""Room on the disk: what a run will take, and whether twice that is there."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+from tester.recipe.estimate import Estimate
+from tester.recipe.plan import ConditionStep, Heat, Plan, PreGrind
+
+ROW_BYTES = 60.0
+"""A recorded sample in its block, with its share of the log and of the tables (measured: 38 to 55)."""
+CONTACT_ROWS_S = 60.0
+"""Samples per rig second of a step in contact: 100 in slip, 20 while rolling (interface: exports). Simulated runs of
+the shipped recipes record 25 to 40."""
+IDLE_ROWS_S = 2.0
+FIXED_BYTES = 2_000_000.0
+"""Recipe, rig file, journal, device parameters, tables, and the log before it is folded in."""
+MARGIN = 2.0
+"""Free room is to be this many times the estimate (safety concept: PC)."""
+
+
+def expected_bytes(plan: Plan, expected: Estimate) -> float:
+    """Return what a run of the plan will take on disk, bytes; ``expected`` is the plan's estimate."""
+    rows = 0.0
+    for step, one in zip(plan.steps, expected.steps, strict=True):
+        in_contact = isinstance(step, ConditionStep | PreGrind | Heat)
+        rows += one.seconds * (CONTACT_ROWS_S if in_contact else IDLE_ROWS_S)
+    return FIXED_BYTES + ROW_BYTES * rows
+
+
+def too_little_room(folder: Path, needed: float) -> str:
+    """Return why there is not room for ``needed`` bytes under a folder, with the numbers; empty where there is."""
+    free = shutil.disk_usage(folder).free
+    if free >= MARGIN * needed:
+        return ""
+    return (
+        f"{_mb(free)} free under {folder}, and {_mb(MARGIN * needed)} are asked for: "
+        f"{MARGIN:g} times the {_mb(needed)} that the run is expected to take"
+    )
+
+
+def _mb(size: float) -> str:
+    return f"{size / 1e6:,.1f} MB"

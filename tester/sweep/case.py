@@ -1,0 +1,148 @@
+"""One run of a sweep: carried out in whatever process it is given to, and returned as plain data."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from tester.campaign.endings import Stop
+from tester.campaign.pool import stop_level
+from tester.engine.context import Progress
+from tester.engine.prompts import Prompts
+from tester.export.results import TableRow, results_of
+from tester.session import Session, SessionOptions
+from tester.store.reader import RunReader
+
+NAN = float("nan")
+NOT_RUN = "not run"
+"""Outcome of a case that raised an error or whose process was lost."""
+
+
+@dataclass(frozen=True, slots=True)
+class Task:
+    """What a process needs for one run: texts, so that it may be on another machine.
+
+    ``case`` counts from 1: point after point, seed after seed.
+    """
+
+    case: int
+    point: tuple[str, ...]
+    seed: int
+    recipe_text: str
+    rig_text: str
+
+
+@dataclass(frozen=True, slots=True)
+class RowResult:
+    """One row of the recipe's table: its nominal setpoints, its status, and what was measured (NaN without a value).
+
+    ``s`` is the standard deviation between repeats, ``u_standard`` the stated standard uncertainty of ``mu``.
+    """
+
+    row: int
+    compound: str
+    slip_velocity_mm_s: float
+    load_n: float
+    sideslip_deg: float
+    camber_deg: float
+    temperature_c: float
+    status: str
+    mu: float
+    s: float
+    n_valid: int
+    u_standard: float
+
+
+@dataclass(frozen=True, slots=True)
+class CaseResult:
+    """How one run ended: exit code as that of ``tester run``, rig time in s, wheels installed, rows of its table."""
+
+    case: int
+    point: tuple[str, ...]
+    seed: int
+    outcome: str
+    reason: str
+    exit_code: int
+    rig_seconds: float = NAN
+    wheels: int = 0
+    rows: tuple[RowResult, ...] = ()
+
+    @property
+    def missing(self) -> int:
+        """Rows without a value to be trusted."""
+        return sum(1 for row in self.rows if row.status != "ok")
+
+
+def run_case(task: Task) -> CaseResult:
+    """Run a recipe on a simulated rig as ``tester run --yes`` does, in a folder that does not outlast it."""
+    with TemporaryDirectory(prefix="sweep-", ignore_cleanup_errors=True) as name:
+        folder = Path(name)
+        recipe, rig = folder / "recipe.yaml", folder / "rig.yaml"
+        recipe.write_text(task.recipe_text, encoding="utf-8", newline="\n")
+        rig.write_text(task.rig_text, encoding="utf-8", newline="\n")
+        screen = _Unseen()
+        options = SessionOptions(str(recipe), str(rig), out=folder / "runs", seed=task.seed, samples=False)
+        session = screen.session = Session(options, screen)
+        code = session.run()
+        if session.folder is None or session.ending is None:
+            return CaseResult(task.case, task.point, task.seed, NOT_RUN, " ".join(screen.said), code)
+        ending = session.ending
+        with RunReader(session.folder) as reader:
+            results = results_of(reader)
+            wheels = len(reader.wheels())
+        rows = tuple(_row(row) for row in results.rows)
+        rig_s = results.run.rig_seconds
+        return CaseResult(
+            task.case, task.point, task.seed, ending.outcome.value, ending.reason, code, rig_s, wheels, rows
+        )
+
+
+def not_run(task: Task, error: BaseException) -> CaseResult:
+    """Return the result of a case that raised instead of returning one."""
+    reason = f"{type(error).__name__}: {error}".strip(": ")
+    return CaseResult(task.case, task.point, task.seed, NOT_RUN, reason, 1)
+
+
+def _row(row: TableRow) -> RowResult:
+    i, r = row.info, row.result
+    mu, s, u = (r.mu_resultant, r.s, r.standard) if r.ok else (NAN, NAN, NAN)
+    slip_mm_s = round(1e3 * i.slip_velocity_m_s, 6)
+    setpoints = (slip_mm_s, i.load_n, i.sideslip_deg, i.camber_deg, i.temperature_c)
+    return RowResult(i.row, i.compound, *setpoints, r.status.value, mu, s, r.n_valid, u)
+
+
+class _Unseen:
+    """A screen that nobody looks at; a stop that is ordered of the pool reaches the session through it."""
+
+    answer_yes = True
+    can_ask = False
+
+    def __init__(self) -> None:
+        self.session: Session | None = None
+        self.said: list[str] = []
+
+    def begin(self, name: str) -> None:
+        """Show nothing."""
+
+    def show(self, now_s: float, run: Progress, share: float) -> None:
+        """Look whether somebody wants the sweep to stop."""
+        level = stop_level()
+        if level is not Stop.NONE and self.session is not None:
+            self.session.stop(level)
+
+    def attend(self, prompts: Prompts) -> None:
+        """Ask nobody."""
+
+    def end(self) -> None:
+        """Take nothing away."""
+
+    def message(self, text: str) -> None:
+        """Keep what is said, for a run that does not begin."""
+        self.said.append(text)
+
+    def emit(self, record: dict[str, object]) -> None:
+        """Write nothing."""
+
+    def result(self, line: str) -> None:
+        """Write nothing."""

@@ -1,0 +1,1 @@
+"""Crashes: killed processes and power cuts, and what is left of a run after them."""

@@ -1,0 +1,1 @@
+"""`tester sim` and `tester run` as processes of their own, and what the rig's own logs say of them."""

@@ -1,0 +1,62 @@
+"""What the endings of parts make of a run."""
+
+from __future__ import annotations
+
+import pytest
+
+from tester.campaign.endings import PartEnd, Stop, ending_of
+from tester.engine.run import Outcome
+
+DONE, STOPPED, FAILED, TRIPPED = Outcome.DONE, Outcome.STOPPED, Outcome.FAILED, Outcome.TRIPPED
+UNREACHABLE = Outcome.UNREACHABLE
+
+
+@pytest.mark.parametrize(
+    ("outcomes", "worst"),
+    [
+        ((DONE, DONE), DONE),
+        ((DONE, STOPPED), STOPPED),
+        ((STOPPED, UNREACHABLE), UNREACHABLE),
+        ((FAILED, UNREACHABLE), FAILED),
+        ((STOPPED, TRIPPED, FAILED), TRIPPED),
+    ],
+)
+def test_a_run_ends_as_the_worst_of_its_parts(outcomes: tuple[Outcome, ...], worst: Outcome) -> None:
+    ends = [PartEnd(number, outcome) for number, outcome in enumerate(outcomes, start=1)]
+    assert ending_of(ends, len(ends)).outcome is worst
+
+
+def test_the_reason_is_that_of_the_first_of_the_worst_with_its_part() -> None:
+    ends = [PartEnd(3, TRIPPED, "guard open"), PartEnd(2, TRIPPED, "overload"), PartEnd(1, STOPPED, "another part")]
+    assert ending_of(ends, 3).reason == "part 2: overload"
+
+
+def test_a_run_of_one_part_gives_its_reason_as_it_is() -> None:
+    assert ending_of([PartEnd(1, TRIPPED, "guard open")], 1).reason == "guard open"
+
+
+def test_a_run_with_a_part_that_was_not_begun_is_stopped() -> None:
+    ending = ending_of([PartEnd(1, DONE)], 2, Stop.INTERRUPTED)
+    assert (ending.outcome, ending.reason) == (STOPPED, "interrupted by the operator")
+
+
+def test_a_run_of_which_nothing_was_begun_is_stopped() -> None:
+    assert ending_of([], 2, Stop.TERMINATED).outcome is STOPPED
+
+
+@pytest.mark.parametrize(
+    ("outcome", "failed", "interrupted_once", "missing", "code"),
+    [
+        (DONE, None, False, False, 0),
+        (DONE, None, False, True, 6),
+        (DONE, "disk full", False, False, 1),
+        (STOPPED, None, True, True, 130),
+        (STOPPED, None, False, True, 5),
+        (TRIPPED, None, True, True, 5),
+        (FAILED, None, False, True, 1),
+        (UNREACHABLE, None, False, True, 4),
+    ],
+)
+def test_exit_codes(outcome: Outcome, failed: str | None, interrupted_once: bool, missing: bool, code: int) -> None:
+    ending = ending_of([PartEnd(1, outcome, "", failed)], 1)
+    assert ending.exit_code(interrupted_once=interrupted_once, missing=missing) == code

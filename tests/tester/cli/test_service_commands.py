@@ -1,0 +1,108 @@
+"""`tester status`, `hold`, `release`, `ack`, `stop`, `run --detach` against a service that a test plays."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+from collections.abc import Iterator
+from pathlib import Path
+from threading import Event, Thread
+
+import pytest
+
+from tester.cli.main import invoke
+from tester.service.address import HAS_UNIX
+from tester.service.commands import RunRecipe, Stop
+from tests.tester.service.fake import FakeService
+from tests.tester.service.views import hostile, state
+
+pytestmark = pytest.mark.skipif(not HAS_UNIX, reason="Unix sockets")
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The user's service is at home in the test's folder."""
+    where = tmp_path / "runtime"
+    where.mkdir(mode=0o700)
+    monkeypatch.setenv("TESTER_RUNTIME_DIR", str(where))
+    return where
+
+
+@pytest.fixture
+def fake(folder: Path) -> Iterator[FakeService]:
+    """A played service in a thread of its own."""
+    made = FakeService(folder)
+    up, end = Event(), Event()
+
+    async def live() -> None:
+        async with made:
+            made.show(hostile(state()))
+            up.set()
+            while not end.is_set():
+                await asyncio.sleep(0.01)
+
+    thread = Thread(target=lambda: asyncio.run(live()))
+    thread.start()
+    up.wait(20)
+    yield made
+    end.set()
+    thread.join(20)
+
+
+def test_status_says_that_nothing_runs(capsys: pytest.CaptureFixture[str]) -> None:
+    assert invoke(["status"]) == 0
+    assert capsys.readouterr().out == "no service is running\n"
+
+
+def test_status_says_so_as_json_too(capsys: pytest.CaptureFixture[str]) -> None:
+    assert invoke(["status", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["service"] is False
+
+
+@pytest.mark.parametrize("command", ["hold", "release", "ack", "stop"])
+def test_a_command_without_a_service_is_unreachable(command: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert invoke([command]) == 4
+    assert "tester serve" in capsys.readouterr().err
+
+
+def test_status_shows_mode_run_step_and_values_without_control_characters(
+    fake: FakeService, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert invoke(["status"]) == 0
+    out = capsys.readouterr().out
+    assert out.startswith("RUN\n") and "step     21/60" in out and "Load 199.6 N" in out
+    assert "\x1b" not in out and "\x00" not in out
+
+
+def test_status_as_json_is_the_whole_state(fake: FakeService, capsys: pytest.CaptureFixture[str]) -> None:
+    assert invoke(["status", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["progress"]["condition"] == 17
+
+
+def test_stop_is_given_fast_where_that_is_asked(fake: FakeService) -> None:
+    assert invoke(["stop", "--fast"]) == 0
+    assert fake.orders[-1].action == Stop(fast=True)
+    assert fake.presence.controller == ""
+
+
+def test_a_refusal_is_told_with_exit_code_1(fake: FakeService, capsys: pytest.CaptureFixture[str]) -> None:
+    fake.refusals["hold"] = "nothing runs"
+    assert invoke(["hold"]) == 1
+    assert "refused: nothing runs" in capsys.readouterr().err
+
+
+def test_run_detached_prints_the_folder_and_names_the_recipes_file_in_full(
+    fake: FakeService, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "mine.yaml").write_text("recipe: mine\n")
+    monkeypatch.chdir(tmp_path)
+    fake.results["run"] = {"run": "r", "folder": "runs/r"}
+    assert invoke(["run", "mine.yaml", "--detach", "--seed", "7", "--yes"]) == 0
+    assert capsys.readouterr().out == "runs/r\n"
+    expected = RunRecipe(str((tmp_path / "mine.yaml").resolve()), seed=7, speed=None, yes=True)
+    assert fake.orders[-1].action == expected
+
+
+def test_run_detached_leaves_the_folder_to_the_service(capsys: pytest.CaptureFixture[str]) -> None:
+    assert invoke(["run", "quickstart", "--detach", "--out", "here"]) == 2
+    assert "not with --detach" in capsys.readouterr().err

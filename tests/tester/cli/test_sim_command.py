@@ -1,0 +1,74 @@
+"""`tester sim`: ready line, rig file, state log, and an end in order."""
+
+from __future__ import annotations
+
+import signal
+import socket
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from tester.cli.main import invoke
+from tester.rig import load_rig
+from tester.sim_process import LOG_COLUMNS
+
+COMMAND = "from tester.cli.main import main; main()"
+
+
+@pytest.fixture
+def sim(tmp_path: Path) -> Iterator[subprocess.Popen[str]]:
+    """Start `tester sim` and wait for its ready line, which is read."""
+    arguments = ["sim", "--write-rig", str(tmp_path / "rig.yaml"), "--log", str(tmp_path / "state.csv")]
+    process = subprocess.Popen(
+        [sys.executable, "-c", COMMAND, *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+    assert process.stdout is not None
+    assert process.stdout.readline().startswith("ready: CAN vcan0@127.0.0.1:")
+    yield process
+    process.kill()
+    process.communicate()
+
+
+def test_it_can_be_reached_by_its_rig_file_and_logs_its_state_until_it_is_ended(
+    sim: subprocess.Popen[str], tmp_path: Path
+) -> None:
+    rig = load_rig(tmp_path / "rig.yaml")
+    for address in (rig.can.channel.partition("@")[2], *(line.port for line in rig.lines.values())):
+        host, _, port = address.rpartition(":")
+        socket.create_connection((host, int(port)), 2.0).close()
+    assert not list(tmp_path.glob(".*")), "what was written on the way is left"
+    sim.terminate()
+    _, said = sim.communicate(timeout=20.0)
+    header, *rows = (tmp_path / "state.csv").read_text(encoding="utf-8").splitlines()
+    assert header == ",".join(LOG_COLUMNS)
+    assert all(len(row.split(",")) == len(LOG_COLUMNS) for row in rows)
+    if sys.platform != "win32":  # there a process is ended without a signal that it could see
+        assert sim.returncode == 0
+        assert said.startswith("ended; at most ")
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no signal for one process")
+def test_an_interrupt_ends_it_in_order(sim: subprocess.Popen[str]) -> None:
+    sim.send_signal(signal.SIGINT)
+    sim.communicate(timeout=20.0)
+    assert sim.returncode == 0
+
+
+@pytest.mark.parametrize("address", ["0.0.0.0", "192.168.1.4:29536", "127.0.0.1:70000", "127.0.0.1:x", "::1", "rig"])
+def test_an_address_that_is_not_on_this_machine_is_refused(address: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert invoke(["sim", "--listen", address]) == 2
+    assert "--listen" in capsys.readouterr().err
+
+
+def test_a_taken_port_is_told(capsys: pytest.CaptureFixture[str]) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        assert invoke(["sim", "--listen", f"127.0.0.1:{taken.getsockname()[1]}"]) == 1
+    assert "cannot listen" in capsys.readouterr().err
+
+
+def test_an_unknown_compound_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
+    assert invoke(["sim", "--compound", "9#"]) == 2
+    assert "9#" in capsys.readouterr().err

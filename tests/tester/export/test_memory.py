@@ -1,0 +1,53 @@
+"""Exports of long runs stay in bounded memory."""
+
+from __future__ import annotations
+
+import tracemalloc
+from pathlib import Path
+
+import pytest
+
+from tester.export import samples, write_file, write_parquet_file
+from tester.store.reader import RunReader
+from tester.store.writer import RunWriter
+from tests.tester.store.build import RUN, Clock, row
+
+MB = 1e6
+
+
+def recorded(folder: Path, rows: int) -> Path:
+    """Write a run of so many samples, no two alike."""
+    folder.mkdir()
+    writer = RunWriter(folder / "run.db", clock=Clock(), synchronous=True)
+    writer.begin_run(RUN, [], [])
+    base = row(0.0)
+    for i in range(rows):
+        writer.sample((0.01 * i, *(value + 0.05 * (i % 97) for value in base[1:-1]), 0.0))
+    writer.close()
+    return folder
+
+
+def peak_mb(folder: Path, kind: str) -> float:
+    """Return the most memory that Python took while a run's samples were exported."""
+    with RunReader(folder) as reader:
+        tracemalloc.start()
+        try:
+            if kind == "csv":
+                write_file(folder / "samples.csv", samples(reader))
+            else:
+                write_parquet_file(folder / "samples.parquet", reader)
+            return tracemalloc.get_traced_memory()[1] / MB
+        finally:
+            tracemalloc.stop()
+
+
+def test_csv_takes_no_more_memory_for_a_run_five_times_as_long(tmp_path: Path) -> None:
+    short, long = recorded(tmp_path / "short", 1500), recorded(tmp_path / "long", 7500)
+    assert peak_mb(long, "csv") < 1.2 * peak_mb(short, "csv")
+
+
+@pytest.mark.campaign
+@pytest.mark.parametrize("kind", ["csv", "parquet"])
+def test_eight_hours_export_in_bounded_memory(tmp_path: Path, kind: str) -> None:
+    folder = recorded(tmp_path / "run", 8 * 3600 * 100)
+    assert peak_mb(folder, kind) < 120.0

@@ -1,0 +1,112 @@
+"""A service on a stage: a script in the place of its clients, called at every poll; no socket, no process.
+
+    def script(stage):
+        yield stage.order(RunRecipe(...))
+        yield from stage.until(lambda view: view.mode == "RUN")
+        yield stage.order(Stop())
+
+The stage ends when the script does.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Generator
+from pathlib import Path
+
+from pydantic import JsonValue
+
+from tester.service.address import UnixAddress
+from tester.service.commands import RigAction
+from tester.service.hub import Hub, HubConfig
+from tester.service.link import Order, Presence
+from tester.service.protocol import Event, Frames
+from tester.service.service import Service, ServiceOptions
+from tester.service.state import PlanView, StateView
+
+Script = Generator[Order | Presence | list[Order | Presence] | None]
+MOST_POLLS = 20_000
+"""A script that has not ended by then hangs."""
+
+
+class Stage(Hub):
+    """Hears the script, and keeps what would have been said to clients."""
+
+    def __init__(self, folder: Path, script: Callable[[Stage], Script]) -> None:
+        super().__init__(HubConfig(UnixAddress(folder / "service.sock"), folder / "service.json", folder, "sim"))
+        self.events: list[Event] = []
+        self.views: list[StateView] = []
+        self.plans: list[PlanView | None] = []
+        self.told_frames: list[Frames] = []
+        self.accepted: dict[str, JsonValue] = {}
+        self.refused: dict[str, str] = {}
+        self.notes: list[tuple[str, str]] = []
+        self.polls = 0
+        self.service: Service | None = None
+        self._script = script(self)
+        self._orders = 0
+
+    # -- for scripts ------------------------------------------------------------------------------------------
+
+    def order(self, action: RigAction, client: int = 1) -> Order:
+        self._orders += 1
+        return Order(client, f"client {client}", self._orders, action)
+
+    def until(self, reached: Callable[[StateView], bool]) -> Script:
+        """Wait for a state that is so."""
+        while not (self.views and reached(self.views[-1])):
+            yield None
+
+    def texts(self, kind: str) -> list[str]:
+        return [event.text for event in self.events if event.kind == kind]
+
+    # -- what a hub does --------------------------------------------------------------------------------------
+
+    @property
+    def watched(self) -> bool:
+        return True
+
+    def event(self, kind: str, text: str, severity: str = "info", t_s: float = 0.0, run: str = "") -> None:
+        self.sequence += 1
+        self.events.append(Event(self.sequence, t_s, "", kind, severity, text, run))
+
+    def state(self, view: StateView, row: tuple[float | None, ...]) -> None:
+        self.views.append(view)
+
+    def plan(self, plan: PlanView | None) -> None:
+        self.plans.append(plan)
+
+    def frames(self, frames: Frames) -> None:
+        self.told_frames.append(frames)
+
+    def accept(self, order: Order, result: JsonValue = None) -> None:
+        self.accepted[order.action.command] = result
+
+    def refuse(self, order: Order, reason: str) -> None:
+        self.refused[order.action.command] = reason
+
+    def notify(self, event: str, text: str, run: str, folder: str) -> None:
+        self.notes.append((event, text))
+
+    def hear(self) -> list[Order | Presence]:
+        assert self.service is not None
+        self.polls += 1
+        assert self.polls < MOST_POLLS, "the script does not come to its end"
+        try:
+            heard = next(self._script)
+        except StopIteration:
+            self.service.end()
+            return []
+        if isinstance(heard, Presence):
+            self.presence = heard
+        return heard if isinstance(heard, list) else [] if heard is None else [heard]
+
+    def wait(self, seconds: float) -> None:
+        pass
+
+
+def play(folder: Path, script: Callable[[Stage], Script], *overrides: str) -> Stage:
+    """Let a service live until the script has ended; return what was said."""
+    stage = Stage(folder, script)
+    stage.service = Service(ServiceOptions("sim", overrides, folder / "runs"), stage)
+    stage.service.serve()
+    return stage

@@ -1,0 +1,231 @@
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Awaitable, Callable
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from tester.service.client import Client, LostError, NoServiceError, RefusedError
+from tester.service.commands import Control, Hold, Release, Stop
+from tester.service.outbox import MOST_BEHIND
+from tester.service.protocol import Event, Hello, PlanMessage, Snapshot
+from tests.tester.service.fake import FakeService
+from tests.tester.service.views import HOSTILE, hostile, plan, state
+
+Story = Callable[[FakeService], Awaitable[None]]
+
+
+def play(folder: Path, story: Story, *, uid: int | None = None) -> None:
+    async def run() -> None:
+        async with asyncio.timeout(20.0), FakeService(folder, uid=uid) as fake:
+            await story(fake)
+
+    asyncio.run(run())
+
+
+def test_hello_holds_state_plan_events_and_trend(tmp_path: Path) -> None:
+    async def story(fake: FakeService) -> None:
+        fake.plan(plan())
+        fake.event("step", "heat to 40 degC")
+        async with await Client.connect(fake.address) as client:
+            assert (client.state.mode, client.plan) == ("RUN", plan())
+            assert [event.text for event in client.events] == ["heat to 40 degC"]
+            assert len(client.trend) == 1
+
+    play(tmp_path, story)
+
+
+def test_snapshots_plans_and_events_reach_a_client(tmp_path: Path) -> None:
+    async def story(fake: FakeService) -> None:
+        async with await Client.connect(fake.address) as client:
+            messages = aiter(client)
+            assert isinstance(await anext(messages), Hello)
+            fake.show(state("HOLD"))
+            seen = await anext(messages)
+            assert isinstance(seen, Snapshot) and seen.state.mode == "HOLD"
+            fake.plan(plan())
+            assert isinstance(await anext(messages), PlanMessage)
+            fake.event("mode", "hold")
+            assert isinstance(await anext(messages), Event)
+
+    play(tmp_path, story)
+
+
+def test_an_accepted_command_gives_its_result(tmp_path: Path) -> None:
+    async def story(fake: FakeService) -> None:
+        fake.results["hold"] = {"at": 1.0}
+        async with await Client.connect(fake.address, control=True) as client:
+            assert await client.command(Hold()) == {"at": 1.0}
+            assert fake.orders[-1].action == Hold()
+
+    play(tmp_path, story)
+
+
+def test_a_refused_command_gives_its_reason(tmp_path: Path) -> None:
+    async def story(fake: FakeService) -> None:
+        fake.refusals["release"] = "the rig is not held"
+        async with await Client.connect(fake.address, control=True) as client:
+            with pytest.raises(RefusedError, match="the rig is not held"):
+                await client.command(Release())
+
+    play(tmp_path, story)
+
+
+def test_only_the_first_of_two_that_ask_has_control(tmp_path: Path) -> None:
+    async def story(fake: FakeService) -> None:
+        first = await Client.connect(fake.address, name="first", control=True)
+        second = await Client.connect(fake.address, name="second", control=True)
+        async with first, second:
+            assert fake.presence.controller == "first"
+            with pytest.raises(RefusedError, match="first has control"):
+                await second.command(Hold())
+            with pytest.raises(RefusedError, match="first has control"):
+                await second.command(Control())
+
+    play(tmp_path, story)
+
+
+def test_control_is_taken_over_only_by_force(tmp_path: Path) -> None:
+    async def story(fake: FakeService) -> None:
+        first = await Client.connect(fake.address, name="first", control=True)
+        second = await Client.connect(fake.address, name="second")
+        async with first, second:
+            await second.command(Control(force=True))
+            await second.command(Hold())
+            with pytest.raises(RefusedError, match="second has control"):
+                await first.command(Hold())
+
+    play(tmp_path, story)
+
+
+def test_control_is_free_once_its_holder_has_gone(tmp_path: Path) -> None:
+    async def story(fake: FakeService) -> None:
+        first = await Client.connect(fake.address, name="first", control=True)
+        async with await Client.connect(fake.address, name="second") as second:
+            await first.close()
+            while fake.presence.controller:
+                await asyncio.sleep(0)
+            await second.command(Control())
+            await second.command(Hold())
+
+    play(tmp_path, story)
+
+
+def test_stop_is_taken_from_a_viewer(tmp_path: Path) -> None:
+    async def story(fake: FakeService) -> None:
+        first = await Client.connect(fake.address, name="first", control=True)
+        async with first, await Client.connect(fake.address, name="viewer") as viewer:
+            await viewer.stop(fast=True)
+            assert (fake.orders[-1].action, fake.orders[-1].name) == (Stop(fast=True), "viewer")
+
+    play(tmp_path, story)
+
+
+def test_a_client_that_comes_back_gets_every_event_in_between_once(tmp_path: Path) -> None:
+    async def story(fake: FakeService) -> None:
+        for number in range(5):
+            fake.event("step", f"step {number}")
+        client = await Client.connect(fake.address)
+        service, since = client.service, client.last_seq
+        await client.close()
+        for number in range(5, 8):
+            fake.event("step", f"step {number}")
+        async with await Client.connect(fake.address, service=service, since=since) as again:
+            assert [event.seq for event in again.events] == [6, 7, 8]
+            assert again.complete
+
+    play(tmp_path, story)
+
+
+def test_events_of_another_life_of_the_service_are_not_mistaken_for_missing_ones(tmp_path: Path) -> None:
+    async def story(fake: FakeService) -> None:
+        fake.event("step", "one")
+        async with await Client.connect(fake.address, service="life-0", since=70) as client:
+            assert [event.seq for event in client.events] == [1]
+
+    play(tmp_path, story)
+
+
+def test_events_no_longer_kept_are_said_to_be_missing(tmp_path: Path) -> None:
+    async def story(fake: FakeService) -> None:
+        for number in range(2500):
+            fake.event("step", f"step {number}")
+        async with await Client.connect(fake.address, service="life-1", since=10) as client:
+            assert not client.complete
+            assert len(client.events) == 2000
+
+    play(tmp_path, story)
+
+
+def test_hostile_text_comes_through_as_it_is(tmp_path: Path) -> None:
+    async def story(fake: FakeService) -> None:
+        fake.event("step", HOSTILE)
+        async with await Client.connect(fake.address, name=HOSTILE, control=True) as client:
+            fake.show(hostile(state()))
+            messages = aiter(client)
+            while not isinstance(await anext(messages), Snapshot):
+                pass
+            assert client.state.prompt is not None and client.state.prompt.text == HOSTILE
+            assert client.events[-1].text == HOSTILE
+            assert fake.presence.controller == HOSTILE
+
+    play(tmp_path, story)
+
+
+def test_another_user_is_turned_away(tmp_path: Path) -> None:
+    async def story(fake: FakeService) -> None:
+        with pytest.raises(NoServiceError, match="403"):
+            await Client.connect(fake.address)
+
+    play(tmp_path, story, uid=4_000_000_000)
+
+
+def test_the_socket_is_its_users_alone(tmp_path: Path) -> None:
+    async def story(fake: FakeService) -> None:
+        assert (tmp_path / "service.sock").stat().st_mode & 0o777 == 0o600
+
+    play(tmp_path, story)
+
+
+def test_a_client_that_does_not_read_gets_the_newest_state_and_holds_nobody_up(tmp_path: Path) -> None:
+    async def story(fake: FakeService) -> None:
+        slow = await Client.connect(fake.address, name="slow")
+        slow._connection.transport.pause_reading()  # pyright: ignore[reportPrivateUsage]
+        async with slow, await Client.connect(fake.address, name="quick") as quick:
+            messages = aiter(quick)
+            for number in range(2000):
+                fake.show(replace(state(), t_s=float(number)))
+                if number % 50 == 0:
+                    await asyncio.sleep(0)
+            while quick.state.t_s < 1999.0:
+                await anext(messages)
+            assert all(len(guest.outbox) < 5 for guest in fake.gateway.guests.values())
+            slow._connection.transport.resume_reading()  # pyright: ignore[reportPrivateUsage]
+            messages = aiter(slow)
+            while slow.state.t_s < 1999.0:
+                await anext(messages)
+            assert len(slow.trend) < 1000
+
+    play(tmp_path, story)
+
+
+def test_a_client_that_does_not_take_its_events_is_sent_away(tmp_path: Path) -> None:
+    async def story(fake: FakeService) -> None:
+        slow = await Client.connect(fake.address, name="slow")
+        slow._connection.transport.pause_reading()  # pyright: ignore[reportPrivateUsage]
+        number = 0
+        while fake.gateway.guests and not any(guest.leaving for guest in fake.gateway.guests.values()):
+            number += 1
+            fake.event("step", f"step {number} " + 1000 * "x")
+            await asyncio.sleep(0)
+        assert number > MOST_BEHIND
+        slow._connection.transport.resume_reading()  # pyright: ignore[reportPrivateUsage]
+        async for _ in slow:
+            pass
+        assert "come back with since" in slow.lost
+        with pytest.raises(LostError):
+            await slow.stop()
+
+    play(tmp_path, story)

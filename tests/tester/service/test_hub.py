@@ -1,0 +1,161 @@
+"""The owner's side with a real gateway process behind it, and the service as a process."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from tester.service.address import CARD, TcpAddress, UnixAddress, new_tcp_address, read_card
+from tester.service.client import Client, NoServiceError
+from tester.service.commands import CheckRecipe, ListRecipes, RunRecipe
+from tester.service.hook import Hook
+from tester.service.hub import Hub, HubConfig
+from tester.service.protocol import Snapshot
+from tests.tester.engine.bench import SHORT
+from tests.tester.service.views import state
+
+ROOT = Path(__file__).parents[3]
+ROW = (1.0, 2.0)
+posix = pytest.mark.skipif(os.name != "posix", reason="Unix sockets")
+
+
+@pytest.fixture
+def hub(tmp_path: Path) -> Iterator[Hub]:
+    made = Hub(HubConfig(UnixAddress(tmp_path / "service.sock"), tmp_path / CARD, tmp_path, "sim"))
+    made.open()
+    made.event("step", "before anybody came")
+    made.state(state(), ROW)
+    yield made
+    made.close()
+
+
+async def connected(hub: Hub, address: UnixAddress | TcpAddress | None = None) -> Client:
+    """Connect while the owner goes on talking, as it does between two ticks."""
+    where = address or hub.config.address
+    for _ in range(400):
+        hub.hear()
+        hub.state(state(), ROW)
+        try:
+            return await Client.connect(where, name="test", control=True)
+        except NoServiceError:
+            await asyncio.sleep(0.02)
+    raise AssertionError("the gateway does not come up")
+
+
+@posix
+def test_a_gateway_process_that_dies_is_replaced_and_knows_what_was(hub: Hub) -> None:
+    async def story() -> None:
+        client = await connected(hub)
+        process = hub._process  # pyright: ignore[reportPrivateUsage]
+        assert process is not None
+        process.kill()
+        async for _ in client:
+            pass
+        hub.hear()
+        hub.event("step", "while nobody was there")
+        again = await connected(hub)
+        texts = [event.text for event in again.events]
+        assert texts[0] == "before anybody came" and "while nobody was there" in texts
+        assert len(again.trend) >= 2
+        assert hub.restarts == 1
+        await again.close()
+
+    asyncio.run(story())
+
+
+@posix
+def test_questions_are_answered_beside_the_rig(hub: Hub) -> None:
+    async def story() -> None:
+        async with await connected(hub) as client:
+            listed = await client.command(ListRecipes())
+            assert isinstance(listed, dict)
+            found = listed["recipes"]
+            assert isinstance(found, list) and any(isinstance(one, dict) and one["name"] == "table2" for one in found)
+            answer = await client.command(CheckRecipe("mine", text=SHORT.replace("200 N", "200 kN")))
+            assert isinstance(answer, dict) and answer["valid"] is False
+
+    asyncio.run(story())
+
+
+def test_tcp_needs_the_token(tmp_path: Path) -> None:
+    hub = Hub(HubConfig(new_tcp_address(), tmp_path / CARD, tmp_path, "sim"))
+    hub.open()
+    hub.state(state(), ROW)
+
+    async def story() -> None:
+        while not (tmp_path / CARD).exists():
+            await asyncio.sleep(0.02)
+        address = read_card(tmp_path / CARD)
+        assert (tmp_path / CARD).stat().st_mode & 0o077 == 0 or os.name != "posix"
+        with pytest.raises(NoServiceError, match="401"):
+            await Client.connect(TcpAddress(address.host, address.port, "guessed"))
+        async with await Client.connect(address) as client:
+            assert client.state.mode == "RUN"
+
+    try:
+        asyncio.run(story())
+    finally:
+        hub.close()
+    assert not (tmp_path / CARD).exists()
+
+
+def test_the_hook_gets_the_event_as_json_and_in_its_environment(tmp_path: Path) -> None:
+    out = tmp_path / "out.json"
+    program = (
+        "import json, os, sys; "
+        f"open({str(out)!r}, 'w').write(json.dumps([json.load(sys.stdin), os.environ['TESTER_EVENT']]))"
+    )
+    hook = Hook(f'"{sys.executable}" -c "{program}"')
+    asyncio.run(hook.notify(b'{"event":"trip","text":"overload \\u0000 $(x)","run":"r"}'))
+    assert json.loads(out.read_text()) == [{"event": "trip", "text": "overload \0 $(x)", "run": "r"}, "trip"]
+
+
+def test_a_hook_that_cannot_be_run_is_told_and_harms_nothing(capfd: pytest.CaptureFixture[str]) -> None:
+    asyncio.run(Hook("no-such-program-anywhere").notify(b'{"event":"trip"}'))
+    assert "no-such-program-anywhere" in capfd.readouterr().err
+
+
+@posix
+def test_a_client_that_is_killed_leaves_the_run_alone_and_term_leaves_at_standstill(tmp_path: Path) -> None:
+    address = UnixAddress(tmp_path / "s.sock")
+    serve = ["serve", "--connect", f"unix:{address.path}", "--out", str(tmp_path / "runs")]
+    code = "import sys; from tester.cli.main import main; main()"
+    process = subprocess.Popen([sys.executable, "-c", code, *serve], cwd=ROOT, stderr=subprocess.DEVNULL)
+
+    async def story() -> None:
+        for _ in range(1000):
+            try:
+                client = await Client.connect(address, control=True)
+                break
+            except NoServiceError:
+                await asyncio.sleep(0.02)
+        else:
+            raise AssertionError("the service does not come up")
+        await client.command(RunRecipe("short", text=SHORT, speed=20.0, yes=True))
+        client._connection.transport.abort()  # pyright: ignore[reportPrivateUsage]
+        async with await Client.connect(address) as viewer:
+            async for message in viewer:
+                if isinstance(message, Snapshot) and message.state.mode == "RUN" and message.state.t_s > 10.0:
+                    break
+            assert viewer.state.clients.controller == ""
+            process.send_signal(signal.SIGTERM)
+            async for _ in viewer:
+                pass
+            assert viewer.lost == "the service has ended"
+            assert any("stopped: terminated" in event.text for event in viewer.events)
+
+    try:
+        asyncio.run(story())
+        assert process.wait(20) == 0
+    finally:
+        process.kill()
+        process.wait()
+    assert not address.path.exists()

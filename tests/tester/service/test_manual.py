@@ -1,0 +1,146 @@
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tester.service.commands import Arm, Jog, Stop, Tare
+from tester.service.link import Presence
+from tester.service.state import StateView
+from tests.tester.service.stage import Script, Stage, play
+
+ARMED = Presence("client 1", 1, 0, False)
+
+
+@pytest.fixture(autouse=True)
+def _quick(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Show every poll, and let simulated time run as fast as it goes."""
+    monkeypatch.setattr("tester.service.desk.SNAPSHOT_S", 0.0)
+    monkeypatch.setattr("tester.service.service.MANUAL_LAPSE", 50.0)
+
+
+def manual(view: StateView) -> bool:
+    return view.mode == "MANUAL"
+
+
+def off(view: StateView) -> bool:
+    return view.mode == "OFFLINE" and view.run is not None
+
+
+def armed(stage: Stage) -> Script:
+    yield ARMED
+    yield stage.order(Arm())
+    yield from stage.until(manual)
+    watch = stage.service.desk.watch if stage.service is not None else None
+    assert watch is not None
+    while not watch.run.engine.ctx.readings.drives_enabled:
+        yield None
+
+
+def jog(stage: Stage, *steps: Jog) -> Script:
+    """Press keys, no faster than is allowed."""
+    for step in steps:
+        at_s = stage.views[-1].t_s
+        yield from stage.until(lambda view, due_s=at_s + 0.25: view.t_s >= due_s)
+        yield stage.order(step)
+
+
+def value(view: StateView, key: str) -> float:
+    found = view.value(key)
+    assert found is not None and found.value is not None
+    return found.value
+
+
+def test_a_step_turns_the_wheel_by_one_step_and_no_further(tmp_path: Path) -> None:
+    def script(stage: Stage) -> Script:
+        yield from armed(stage)
+        yield from jog(stage, Jog("both", 1), Jog("both", 1))
+        at_s = stage.views[-1].t_s
+        yield from stage.until(lambda view: view.t_s > at_s + 5.0)
+        assert value(stage.views[-1], "wheel_speed") == pytest.approx(0.1, abs=0.005)
+        assert value(stage.views[-1], "belt_speed") == pytest.approx(0.1, abs=0.005)
+        yield stage.order(Arm(on=False))
+        yield from stage.until(off)
+
+    assert play(tmp_path, script).refused == {}
+
+
+def test_keys_that_come_too_fast_are_refused(tmp_path: Path) -> None:
+    def script(stage: Stage) -> Script:
+        yield from armed(stage)
+        yield [stage.order(Jog("wheel", 1)), stage.order(Jog("wheel", 1))]
+        yield None
+        assert "steps a second" in stage.refused["jog"]
+        yield stage.order(Stop())
+        yield from stage.until(off)
+
+    play(tmp_path, script)
+
+
+@pytest.mark.parametrize(
+    ("step", "reason"),
+    [(Jog("press", 1), "same speed"), (Jog("heat", 1), "wheel turning"), (Jog("heat", -1), "wheel turning")],
+    ids=lambda value: value if isinstance(value, str) else f"{value.axis} {value.direction}",
+)
+def test_what_would_harm_is_refused(tmp_path: Path, step: Jog, reason: str) -> None:
+    def script(stage: Stage) -> Script:
+        yield from armed(stage)
+        yield stage.order(step)
+        yield None
+        assert reason in stage.refused["jog"]
+        yield stage.order(Stop())
+        yield from stage.until(off)
+
+    play(tmp_path, script)
+
+
+def test_under_load_the_speeds_move_only_together_and_no_tare_is_taken(tmp_path: Path) -> None:
+    def script(stage: Stage) -> Script:
+        yield from armed(stage)
+        yield from jog(stage, Jog("both", 1), Jog("press", 1), Jog("press", 1))
+        yield from stage.until(lambda view: value(view, "load") > 15.0)
+        yield from jog(stage, Jog("wheel", 1), Jog("sideslip", 1))
+        yield None
+        assert "only with the wheel lifted" in stage.refused["jog"]
+        yield stage.order(Tare())
+        yield None
+        assert "in contact" in stage.refused["tare"]
+        yield stage.order(Stop())
+        yield from stage.until(off)
+
+    play(tmp_path, script)
+
+
+def test_a_tare_tells_the_new_zero(tmp_path: Path) -> None:
+    def script(stage: Stage) -> Script:
+        yield from armed(stage)
+        yield stage.order(Tare())
+        yield from stage.until(lambda view: bool(view.manual.tare))
+        assert "Fz" in stage.views[-1].manual.tare
+        yield stage.order(Stop())
+        yield from stage.until(off)
+
+    assert "tare" in play(tmp_path, script).accepted
+
+
+def test_it_disarms_a_minute_after_the_last_step(tmp_path: Path) -> None:
+    def script(stage: Stage) -> Script:
+        yield from armed(stage)
+        yield from jog(stage, Jog("wheel", 1))
+        yield from stage.until(off)
+
+    stage = play(tmp_path, script)
+    left = [view.manual.left_s for view in stage.views if view.manual.left_s is not None]
+    assert min(left) < 2.0
+    assert all(value.value is None for value in stage.views[-1].values)
+
+
+def test_it_disarms_when_its_client_loses_control(tmp_path: Path) -> None:
+    def script(stage: Stage) -> Script:
+        yield from armed(stage)
+        yield Presence("", 0, 0, False)
+        yield from stage.until(off)
+
+    stage = play(tmp_path, script)
+    assert stage.texts("control")[-1] == "nobody has control"
+    assert min(view.manual.left_s for view in stage.views if view.manual.left_s is not None) > 50.0

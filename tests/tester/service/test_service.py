@@ -1,0 +1,368 @@
+"""The service with a script in the place of its clients."""
+
+from __future__ import annotations
+
+import os
+import signal
+from pathlib import Path
+
+import pytest
+
+from sim.rig import SimRig
+from tester.lock import RUN_LOCK, ExclusiveUse
+from tester.service.commands import (
+    Acknowledge,
+    Answer,
+    Arm,
+    Hold,
+    Jog,
+    Release,
+    ResumeRun,
+    RunRecipe,
+    Stop,
+    Tare,
+)
+from tester.service.link import Presence
+from tester.service.service import interrupted_runs
+from tester.service.state import StateView
+from tester.session import Session, SessionOptions
+from tester.store.reader import RunReader
+from tests.tester.engine.bench import QUIET, SHORT
+from tests.tester.service.stage import Script, Stage, play
+from tests.tester.test_session import Screen
+
+RUN = RunRecipe("short", text=SHORT, seed=1, speed=None, yes=True)
+TABLES = ("appendix.csv", "conditions.csv", "repeats.csv")
+TWO_COMPOUNDS = SHORT.replace('  - compound: "1#"\n', '  - compound: "1#"\n  - compound: "2#"\n')
+
+
+@pytest.fixture(autouse=True)
+def _every_poll_is_shown(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("tester.service.desk.SNAPSHOT_S", 0.0)
+
+
+def running(view: StateView) -> bool:
+    return view.mode == "RUN"
+
+
+def over(view: StateView) -> bool:
+    return view.run is not None and view.run.exit is not None
+
+
+@pytest.fixture(scope="module")
+def finished(tmp_path_factory: pytest.TempPathFactory) -> Stage:
+    """A run from beginning to end, its frames watched for a while."""
+
+    def script(stage: Stage) -> Script:
+        yield stage.order(RUN)
+        yield from stage.until(running)
+        assert stage.told_frames == []
+        yield Presence("client 1", 1, 0, True)
+        while len(stage.told_frames) < 3:
+            yield None
+        yield Presence("client 1", 1, 0, False)
+        yield None
+        yield None
+        count = len(stage.told_frames)
+        for _ in range(5):
+            yield None
+        assert len(stage.told_frames) == count
+        yield from stage.until(over)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("tester.service.desk.SNAPSHOT_S", 0.0)
+        return play(tmp_path_factory.mktemp("finished"), script, *QUIET)
+
+
+def test_a_run_that_is_watched_leaves_the_tables_of_tester_run(finished: Stage, tmp_path: Path) -> None:
+    (tmp_path / "short.yaml").write_text(SHORT)
+    screen = Screen()
+    options = SessionOptions(str(tmp_path / "short.yaml"), "sim", QUIET, tmp_path / "alone", seed=1)
+    assert Session(options, screen).run() == 0
+    run = finished.views[-1].run
+    assert run is not None and (run.outcome, run.exit) == ("done", 0)
+    for table in TABLES:
+        assert (Path(run.folder) / table).read_bytes() == (Path(screen.results[0]) / table).read_bytes()
+
+
+def test_values_stand_beside_setpoint_gate_and_limit(finished: Stage) -> None:
+    counting = _counting(finished)
+    load, friction = counting.value("load"), counting.value("friction")
+    assert load is not None and friction is not None
+    assert (load.setpoint, load.band_low, load.high, load.quality) == (200.0, 196.0, 450.0, "good")
+    assert load.value == pytest.approx(200.0, abs=5.0)
+    assert friction.value is not None and 0.5 < friction.value < 1.2
+
+
+def test_a_soak_is_shown_with_how_long_it_has_been_in_band(finished: Stage) -> None:
+    soaks = [view.soak for view in finished.views if view.soak is not None]
+    assert soaks and all(soak.for_s == 2.0 and 0.0 <= soak.in_band_s <= 2.1 for soak in soaks)
+
+
+def test_devices_and_buses_are_shown(finished: Stage) -> None:
+    counting = _counting(finished)
+    assert {device.name for device in counting.devices} >= {"wheel", "press", "load cell", "jacket", "thermometer"}
+    assert all(device.online for device in counting.devices)
+    assert counting.buses[0].load_percent is not None and 10.0 < counting.buses[0].load_percent < 40.0
+
+
+def test_what_is_left_shrinks_and_steps_get_their_measured_durations(finished: Stage) -> None:
+    left = [view.progress.left_s for view in finished.views if view.mode == "RUN"]
+    assert left[-1] is not None and left[0] is not None and left[-1] < left[0]
+    last = [plan for plan in finished.plans if plan is not None][-1]
+    assert [step.state for step in last.steps][-1] == "now"
+    assert all(step.measured_s is not None for step in last.steps if step.state == "done")
+    assert finished.texts("step")[0].startswith("install wheel 1")
+
+
+def test_frames_of_every_bus_are_told_in_both_directions(finished: Stage) -> None:
+    frames = [frame for message in finished.told_frames for frame in message.frames]
+    assert {frame.bus for frame in frames} >= {"can", "load_cell"}
+    assert {frame.sent for frame in frames} == {True, False}
+
+
+def _counting(stage: Stage) -> StateView:
+    return next(view for view in stage.views if view.progress.burst and all(gate.open for gate in view.gates))
+
+
+def test_a_run_of_two_specimens_shows_the_way_to_the_end_of_both(tmp_path: Path) -> None:
+    def script(stage: Stage) -> Script:
+        yield stage.order(RunRecipe("two", text=TWO_COMPOUNDS, speed=None, yes=True))
+        yield from stage.until(lambda view: view.run is not None and view.run.compound == "2#")
+        yield stage.order(Stop())
+        yield from stage.until(over)
+
+    stage = play(tmp_path, script, *QUIET)
+    shares = [view.progress.share for view in stage.views if view.mode == "RUN"]
+    assert shares == sorted(shares) and shares[-1] > 0.4
+    assert {view.run.compound for view in stage.views if view.run is not None} >= {"1#", "2#"}
+
+
+def test_stop_ends_a_run_with_exit_code_5_and_names_who(tmp_path: Path) -> None:
+    def script(stage: Stage) -> Script:
+        yield stage.order(RUN)
+        yield from stage.until(running)
+        yield stage.order(Stop(), client=9)
+        yield from stage.until(over)
+
+    stage = play(tmp_path, script)
+    run = stage.views[-1].run
+    assert run is not None and (run.outcome, run.exit, run.reason) == ("stopped", 5, "stop by client 9")
+    assert "stop" in stage.accepted
+
+
+def test_stop_is_taken_when_nothing_runs(tmp_path: Path) -> None:
+    def script(stage: Stage) -> Script:
+        yield stage.order(Stop(fast=True))
+        yield None
+
+    assert "stop" in play(tmp_path, script).accepted
+
+
+def test_a_stop_leaves_the_second_specimen_undone(tmp_path: Path) -> None:
+    def script(stage: Stage) -> Script:
+        yield stage.order(RunRecipe("two", text=TWO_COMPOUNDS, speed=None, yes=True))
+        yield from stage.until(running)
+        yield stage.order(Stop())
+        yield from stage.until(over)
+
+    stage = play(tmp_path, script)
+    assert {view.run.compound for view in stage.views if view.run is not None} <= {"", "1#"}
+
+
+def test_a_second_run_is_refused_while_one_is_under_way(tmp_path: Path) -> None:
+    def script(stage: Stage) -> Script:
+        yield stage.order(RUN)
+        yield from stage.until(running)
+        stage.accepted.clear()
+        yield stage.order(RUN)
+        yield stage.order(Stop())
+        yield from stage.until(over)
+
+    stage = play(tmp_path, script)
+    assert "a run is under way" in stage.refused["run"]
+    assert "run" not in stage.accepted
+
+
+@pytest.mark.parametrize(
+    ("action", "reason"),
+    [
+        (Hold(), "nothing runs"),
+        (Release(), "nothing runs"),
+        (Acknowledge(), "nothing to acknowledge"),
+        (Answer(1), "prompt 1 does not wait"),
+        (Jog("wheel", 1), "manual mode is not armed"),
+        (Tare(), "manual mode is not armed"),
+        (Arm(on=False), "manual mode is not armed"),
+        (ResumeRun("none"), "no run none"),
+        (RunRecipe("no-such-recipe"), "no recipe"),
+        (RunRecipe("bad", text="recipe: [", speed=None), ".yaml:1"),
+        (RunRecipe("quickstart", rig="no-such-rig.yaml"), "no-such-rig.yaml"),
+    ],
+    ids=lambda value: value if isinstance(value, str) else value.command,
+)
+def test_what_makes_no_sense_now_is_refused_and_says_why(
+    tmp_path: Path,
+    action: Hold | Release | Acknowledge | Answer | Jog | Tare | Arm | ResumeRun | RunRecipe,
+    reason: str,
+) -> None:
+    def script(stage: Stage) -> Script:
+        yield stage.order(action)
+        yield None
+        yield None
+
+    stage = play(tmp_path, script)
+    assert reason in stage.refused[action.command]
+    assert not list(tmp_path.glob("runs/2*"))
+
+
+def test_a_prompt_waits_for_its_answer_and_a_no_leaves_it_waiting(tmp_path: Path) -> None:
+    def script(stage: Stage) -> Script:
+        yield stage.order(RunRecipe("short", text=SHORT, speed=None))
+        yield from stage.until(lambda view: view.prompt is not None)
+        yield stage.order(Answer(7))
+        assert "answer" in stage.refused
+        yield stage.order(Answer(1, "no"))
+        yield None
+        assert stage.views[-1].prompt is not None
+        yield stage.order(Answer(1, "mounted"))
+        yield from stage.until(lambda view: view.prompt is None)
+        yield stage.order(Stop())
+        yield from stage.until(over)
+
+    stage = play(tmp_path, script)
+    assert any(name == "prompt" and "install wheel 1" in text for name, text in stage.notes)
+    assert "client 1 answers: mounted" in stage.texts("prompt")
+
+
+def test_a_trip_latches_until_it_is_acknowledged(tmp_path: Path) -> None:
+    def script(stage: Stage) -> Script:
+        yield stage.order(RUN)
+        yield from stage.until(running)
+        assert stage.service is not None and stage.service.desk.watch is not None
+        rig = stage.service.desk.watch.run.engine.ctx.attendant
+        assert isinstance(rig, SimRig)
+        rig.axes["belt"].fault(0x2310)
+        yield from stage.until(lambda view: view.mode == "LATCHED")
+        stage.accepted.clear()
+        yield stage.order(RUN)
+        yield None
+        yield stage.order(Acknowledge())
+        yield from stage.until(lambda view: view.mode == "OFFLINE")
+
+    stage = play(tmp_path, script)
+    assert "run" in stage.refused and "run" not in stage.accepted
+    trips = [alarm for view in stage.views for alarm in view.alarms if alarm.priority == 1]
+    assert trips and all(trip.name == "drive fault" and trip.first_up for trip in trips)
+    assert stage.views[-1].alarms == ()
+    assert any(name == "trip" for name, _ in stage.notes)
+    run = stage.views[-1].run
+    assert run is not None and run.outcome == "tripped"
+
+
+def test_a_held_run_goes_on_when_it_is_released(tmp_path: Path) -> None:
+    def script(stage: Stage) -> Script:
+        yield stage.order(RUN)
+        yield from stage.until(lambda view: view.mode == "RUN" and view.progress.condition == 1)
+        yield stage.order(Hold())
+        yield from stage.until(lambda view: view.mode == "HOLD" and view.mode_since_s > 5.0)
+        yield stage.order(Release())
+        yield from stage.until(running)
+        yield stage.order(Release())
+        yield None
+        assert "nothing to release" in stage.refused["release"]
+        yield stage.order(Stop())
+        yield from stage.until(over)
+
+    stage = play(tmp_path, script)
+    assert set(stage.accepted) >= {"hold", "release"}
+    assert any(name == "hold" for name, _ in stage.notes)
+    held = [view for view in stage.views if view.mode == "HOLD"][-1]
+    load = held.value("load")
+    assert load is not None and load.value is not None and load.value < 5.0
+
+
+def test_term_stops_the_run_and_ends_the_service(tmp_path: Path) -> None:
+    def script(stage: Stage) -> Script:
+        yield stage.order(RUN)
+        yield from stage.until(running)
+        os.kill(os.getpid(), signal.SIGTERM)
+        yield from stage.until(lambda view: False)
+
+    stage = play(tmp_path, script)
+    run = stage.views[-1].run
+    assert run is not None and (run.outcome, run.reason) == ("stopped", "terminated")
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGHUP"), reason="this system has no SIGHUP")
+def test_a_hang_up_is_ignored(tmp_path: Path) -> None:
+    def script(stage: Stage) -> Script:
+        os.kill(os.getpid(), signal.SIGHUP)
+        yield None
+        yield stage.order(Stop())
+
+    assert "stop" in play(tmp_path, script).accepted
+
+
+def test_an_open_run_is_shown_as_interrupted_until_acknowledged(tmp_path: Path) -> None:
+    def cut_off(stage: Stage) -> Script:
+        yield stage.order(RUN)
+        yield from stage.until(running)
+        yield stage.order(Stop())
+        yield from stage.until(over)
+
+    run = play(tmp_path, cut_off).views[-1].run
+    assert run is not None
+    import sqlite3
+
+    with sqlite3.connect(Path(run.folder) / "run.db") as database:
+        database.execute("UPDATE run SET status = 'running'")
+
+    def script(stage: Stage) -> Script:
+        yield from stage.until(lambda view: view.mode == "INTERRUPTED")
+        yield stage.order(Acknowledge())
+        yield from stage.until(lambda view: view.mode == "OFFLINE")
+
+    stage = play(tmp_path, script)
+    assert any(run.name in view.interrupted for view in stage.views)
+    assert stage.views[-1].interrupted == ()
+
+
+def test_a_run_that_somebody_is_at_work_on_is_not_interrupted(tmp_path: Path) -> None:
+    def script(stage: Stage) -> Script:
+        yield stage.order(RUN)
+        yield from stage.until(running)
+        assert list(interrupted_runs(tmp_path / "runs")) == []
+        yield stage.order(Stop())
+        yield from stage.until(over)
+
+    play(tmp_path, script)
+
+
+def test_notes_and_operator_are_kept(tmp_path: Path) -> None:
+    action = RunRecipe("short", text=SHORT, speed=None, yes=True, operator="A. Person", notes="new belt")
+
+    def script(stage: Stage) -> Script:
+        yield stage.order(action)
+        yield from stage.until(running)
+        yield stage.order(Stop())
+        yield from stage.until(over)
+
+    run = play(tmp_path, script).views[-1].run
+    assert run is not None
+    with RunReader(Path(run.folder)) as reader:
+        assert reader.run().info.operator == "A. Person"
+        assert any(event.kind == "note" and event.text == "new belt" for event in reader.events())
+
+
+def test_locks_of_the_run_are_let_go_of(tmp_path: Path) -> None:
+    def script(stage: Stage) -> Script:
+        yield stage.order(RUN)
+        yield from stage.until(running)
+        yield stage.order(Stop())
+        yield from stage.until(over)
+
+    run = play(tmp_path, script).views[-1].run
+    assert run is not None
+    with ExclusiveUse() as use:
+        use.lock_file("run", Path(run.folder) / RUN_LOCK, "", lasting=False)
