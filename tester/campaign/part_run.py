@@ -103,7 +103,8 @@ def _execute(
     ports: Ports | None = None
     try:
         faults = rig.sim.faults + job.faults
-        ports, world, attendant = connect_ports(rig, job.seed, log, faulty=bool(faults))
+        spoilable = {"faulty": True} if faults else {}
+        ports, world, attendant = connect_ports(rig, job.seed, log, **spoilable)
         run = build_run(rig, part.plan, ports, attendant, writer, prompts, work.point)
         _place(run, work, part)
         watch.begun(run)

@@ -9,7 +9,7 @@ import pytest
 from tests.faults import every_scan
 from tests.faults.__main__ import main
 from tests.faults.campaign import Tally, all_cases, conduct, faults_of_campaign, pairs, sample
-from tests.faults.hardware import held_by_hardware
+from tests.faults.hardware import HARDWARE_MUST_HOLD, held_by_hardware
 from tests.faults.moments import Moment, rehearse
 from tests.faults.mutants import MUTANTS, ROOT
 
@@ -67,3 +67,16 @@ def test_every_mutant_still_fits_the_code(mutant):
 @pytest.mark.campaign
 def test_the_sample_of_the_command_meets_every_figure():
     assert main(["--sample"]) == 0
+
+
+def test_the_safety_page_lists_what_hardware_must_hold():
+    page = (ROOT / "docs" / "safety.md").read_text(encoding="utf-8")
+    shown = page.split("<!-- double faults: begin -->")[1].split("<!-- double faults: end -->")[0]
+    for row in HARDWARE_MUST_HOLD:
+        assert f"| {row.one} + {row.other or 'any other'} | {row.device} | {row.why} |" in shown
+
+
+def test_the_full_grid_has_at_least_seven_thousand_cases_of_forty_faults():
+    faults = faults_of_campaign(everything=False)
+    assert len(faults) >= 40
+    assert 120 * len(faults) >= 7000  # the three recipes have 144 moments
