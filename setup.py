@@ -29,6 +29,7 @@ HOT = (
     "sim/can_wire.py",
     "sim/contact.py",
     "sim/friction.py",
+    "sim/heat_flow.py",
     "sim/modbus_wire.py",
     "sim/nodes/canopen_device.py",
     "sim/nodes/cell_slave.py",

@@ -65,7 +65,7 @@ def _frames(record: CanRecord, cell: CellRecord) -> Iterator[Figure]:
     messages = [_emergencies(record, axis.node) for axis in record.axes.values()]
     proved = all([code for _, code in each] == PROOF for each in messages)
     seen = " ".join(f"{code:04X}" for each in messages for _, code in each)
-    yield holds("emergency messages: each drive's to the proof of its watchdog, no other", proved, seen, "8130 0000 each")
+    yield holds("emergency messages: to the proof of each watchdog only", proved, seen, "8130 0000 each")
     yield equal("load cell replies with a wrong CRC", cell.bad_frames, 0)
 
 
@@ -146,7 +146,7 @@ def _states(record: CanRecord, axis: Axis) -> Iterator[Figure]:
     proved_s = max((t for t, _ in _emergencies(record, axis.node)), default=0.0)
     pairs = list(pairwise([state for t, state in timed if t > proved_s]))
     odd = [f"{a}>{b}" for a, b in pairs if (a, b) not in NEIGHBOURS and (b, a) not in NEIGHBOURS]
-    yield equal(f"{axis.name}: of {len(pairs)} changes of state after the proof of the watchdog, those not to a neighbour", odd, [])
+    yield equal(f"{axis.name}: of {len(pairs)} changes of state after that proof, those not to a neighbour", odd, [])
     if axis.mode == "velocity":
         enabled = (words == 15) & (np.concatenate(([0], words[:-1])) != 15)
         targets = sorted(set(commands["60FF"][enabled].tolist()))
