@@ -27,8 +27,10 @@ SAME_AGAIN = (
     "jacket CRC errors", "jacket without", "jacket reply late once", "jacket CRC error once",
     "thermometer reply late once", "thermometer CRC error once",
     "sideslip drive heartbeat", "sideslip drive reboots", "wheel drive reboots", "wheel drive heartbeat",
-    "wheel drive data", "press drive off the bus", "press drive without", "press drive reboots", "press drive following",
-    "belt drive reports", "load cell replies of", "load cell replies cut", "load cell without", "jacket replies late", "thermometer reset",
+    "wheel drive data",
+    "press drive off the bus", "press drive without", "press drive reboots", "press drive following",
+    "belt drive reports", "load cell replies of", "load cell replies cut",
+    "load cell without", "jacket replies late", "thermometer reset",
     "thermometer exception", "jacket exception", "wheel drive following", "wheel drive torque", "load cell saturated",
     "press drive data",
 )  # fmt: skip
