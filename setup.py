@@ -57,7 +57,6 @@ HOT = (
     "tester/engine/devices.py",
     "tester/engine/engine.py",
     "tester/engine/gates.py",
-    "tester/engine/moves.py",
     "tester/engine/sampler.py",
     "tester/engine/thermal_steps.py",
     "tester/engine/tickers.py",

@@ -160,6 +160,8 @@ def _computer_rows() -> Iterator[FaultKind]:
     yield FaultKind("scan stalled shortly", partial(p.Stall, 0.03), ALWAYS, RIDE, 0.0)
     yield FaultKind("scan stalled", p.Stall, ENABLED, TRIP, 0.4 + SCAN_S, "ms", 0.4, lasts_s=0.5,
                     note="tripped by the first scan after it; a drive stops by itself after 0.2 s")
+    yield FaultKind("scan stalled while sliding", partial(p.Stall, 0.165), SLIDING, TRIP, 0.2 + SCAN_S, lasts_s=0.3,
+                    note="later than a scan may be, sooner than most drives stop by themselves")
     yield FaultKind("process killed", p.Killed, ALWAYS, DEVICES, 0.25)
     yield FaultKind("clock jump", p.ClockJump, ENABLED, TRIP, SCAN_S, "ms", 2.0, lasts_s=0.5)
     yield FaultKind("operator hold", partial(p.Operator, "hold"), ALWAYS, HOLD, SCAN_S)

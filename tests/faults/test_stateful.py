@@ -90,6 +90,24 @@ class AnythingHappens(RuleBasedStateMachine):
         """Acknowledge."""
         self.stage.run.request_ack()
 
+    @rule(name=st.sampled_from(("safety chain opened", "belt drive fault", "press drive in local mode")))
+    def acknowledge_too_early(self, name: str) -> None:
+        """Acknowledge while the cause is still there: nothing must come of it (I6)."""
+        stage = self.stage
+        now = stage.next_s
+        if now < self.faulty_until_s or not stage.running:
+            return
+        self.faulty_until_s = now + 6.0
+        stage.inject(Injection(When(at_s=now), CATALOGUE[name], lasts_s=6.0))
+        while stage.next_s < now + 5.0 and stage.mode != "latched":
+            self._watch(stage.tick())
+        latched = stage.mode == "latched"
+        stage.run.request_ack()
+        until = stage.next_s + 0.8
+        while stage.next_s < until:
+            self._watch(stage.tick())
+        assert not latched or stage.mode == "latched"
+
     @invariant()
     def nothing_is_broken(self) -> None:
         """I1, I2, I3, I6, I9, I10 hold in every scan, and the plant shows no harm."""
