@@ -43,7 +43,7 @@ def _drive_rows() -> Iterator[FaultKind]:
         yield FaultKind(f"{axis} drive fault", partial(d.DriveFault, axis, OVERCURRENT), ALWAYS, TRIP, 0.02 + SCAN_S)
         yield FaultKind(f"{axis} drive heartbeat lost", partial(d.HeartbeatLost, axis), ALWAYS, TRIP, 0.2 + SCAN_S)
         yield FaultKind(f"{axis} drive reboots", partial(d.Reboot, axis), ALWAYS, TRIP, 0.25 + SCAN_S,
-                        note="its boot-up message comes after 0.2 s")
+                        lasts_s=1.0, note="its boot-up message comes after 0.2 s")
         yield FaultKind(f"{axis} drive off the bus", partial(c.NodeCut, axis), ALWAYS, TRIP, 0.2 + SCAN_S)
         yield FaultKind(f"{axis} drive without supply", partial(d.Unpowered, axis), ALWAYS, TRIP, 0.2 + SCAN_S)
         yield FaultKind(f"{axis} drive data lost", partial(c.FramesLost, axis, o.TPDO1_BASE), ENABLED, TRIP,

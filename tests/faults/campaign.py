@@ -29,8 +29,8 @@ SAME_AGAIN = (
     "sideslip drive heartbeat", "sideslip drive reboots", "wheel drive reboots", "wheel drive heartbeat",
     "wheel drive data",
     "press drive off the bus", "press drive without", "press drive reboots", "press drive following",
-    "belt drive reports", "load cell replies of", "load cell replies cut",
-    "load cell without", "jacket replies late", "thermometer reset",
+    "belt drive reports",
+    "load cell replies of", "load cell replies cut", "load cell without", "jacket replies late", "thermometer reset",
     "thermometer exception", "jacket exception", "wheel drive following", "wheel drive torque", "load cell saturated",
     "press drive data",
 )  # fmt: skip
