@@ -39,6 +39,8 @@ COMMANDS: dict[str, CommandEntry] = {
     "run": CommandEntry("tester.cli.run_command", "run", "Run a recipe on a rig, simulated unless told."),
     "sweep": CommandEntry("tester.cli.sweep_command", "sweep", "Run a recipe for many seeds and rig parameters."),
     "resume": CommandEntry("tester.cli.resume_command", "resume", "Go on with an interrupted run."),
+    "tui": CommandEntry("tester.cli.tui_command", "tui", "The operator's screen."),
+    "replay": CommandEntry("tester.cli.replay_command", "replay", "The screens over a stored run."),
     "serve": CommandEntry("tester.cli.service_commands", "serve", "Own the rig and serve its screens and commands."),
     "status": CommandEntry("tester.cli.service_commands", "status", "Say what the rig is doing."),
     "hold": CommandEntry("tester.cli.service_commands", "hold", "HOLD: lift and wait, keep the temperature."),

@@ -1,0 +1,220 @@
+"""`tester tui`: the fixed lines, the screens between them, and the keys that work everywhere."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import ClassVar
+
+from textual.app import ComposeResult, SystemCommand
+from textual.binding import Binding, BindingType
+from textual.filter import LineFilter
+from textual.screen import Screen
+from textual.widget import Widget
+from textual.widgets import ContentSwitcher
+
+from tester import clock
+from tester.service.commands import Acknowledge, Control, Hold, Release, ResumeRun
+from tester.tui.dialogs.confirm import AbortDialog, GoOnDialog
+from tester.tui.dialogs.dialog import Dialog
+from tester.tui.dialogs.log import TextDialog
+from tester.tui.filters import AsciiOnly, Colourless
+from tester.tui.host import HostApp, TuiOptions
+from tester.tui.theme import CSS, DARK, THEMES
+from tester.tui.views.bus import BusView
+from tester.tui.views.manual import ManualView
+from tester.tui.views.recipes import RecipesView
+from tester.tui.views.results import ResultsView
+from tester.tui.views.run import RunView
+from tester.tui.views.view import Keys, View
+from tester.tui.widgets.head import TABS, KeyLine, StateLine, TabLine, Tabs
+from tester.tui.widgets.small import SmallPanel
+
+SMALLEST = (60, 15)
+WIDE = (110, 34)
+HUGE = (180, 46)
+EVERYWHERE = """\
+
+On every screen
+F12, Ctrl+X  STOP: software stop, at once, no question. Not an emergency stop: that is hardware.
+F2 … F6      the screens.   Ctrl+P  all commands.   F1  this help.   Esc  closes a dialog.
+space  HOLD    r  resume    x  abort…    a  acknowledge
+q, Ctrl+C    detach: the run goes on; `tester tui` comes back.
+"""
+
+
+class TesterApp(HostApp):
+    """The operator's screen."""
+
+    TITLE = "friction-tester"
+    CSS = CSS
+    FIRST: ClassVar[str] = "recipes"
+    """The screen shown first."""
+    EVERYWHERE: ClassVar[str] = EVERYWHERE
+    SCREENS_HERE: ClassVar[Tabs] = TABS
+    BINDINGS: ClassVar[list[BindingType]] = [
+        *(Binding(key, f"go_to('{name}')", title, show=False) for key, title, name in TABS),
+        Binding("f1", "help", "Help", show=False),
+        Binding("space", "hold", "Hold", show=False),
+        Binding("r", "resume", "Resume", show=False),
+        Binding("x", "abort", "Abort", show=False),
+        Binding("a", "acknowledge", "Acknowledge", show=False),
+        Binding("q", "detach", "Detach", show=False),
+    ]
+
+    def __init__(self, options: TuiOptions, now: Callable[[], float] = clock.monotonic) -> None:
+        """As of HostApp."""
+        super().__init__(options, now)
+        for theme in THEMES.values():
+            self.register_theme(theme)
+        self.theme = THEMES.get(options.theme, DARK).name
+        self._last_filters: list[LineFilter] = [Colourless()] if self.no_color else []
+        if options.plain:
+            self._last_filters.append(AsciiOnly())
+
+    def get_line_filters(self) -> list[LineFilter]:
+        """Return what stands between the screen and the terminal; NO_COLOR takes all colour, not its saturation."""
+        if self._last_filters and self.no_color:
+            return list(self._last_filters)
+        return [*super().get_line_filters(), *self._last_filters]
+
+    # -- layout -----------------------------------------------------------------------------------------------
+
+    def compose(self) -> ComposeResult:
+        """Lay out the fixed lines and the screens."""
+        yield StateLine(id="state")
+        yield TabLine(id="tabs")
+        with ContentSwitcher(initial=self.FIRST, id="views"):
+            yield from self.views()
+        yield SmallPanel(id="tiny")
+        yield from self.below()
+        yield KeyLine(id="keys")
+
+    def below(self) -> Iterable[Widget]:
+        """Return what stands above the last line."""
+        return ()
+
+    def views(self) -> Iterable[View]:
+        """Return the screens."""
+        yield RecipesView(id="recipes")
+        yield RunView(plain=self.options.plain, id="run")
+        yield ManualView(id="manual")
+        yield ResultsView(id="results")
+        yield BusView(id="bus")
+
+    def on_mount(self) -> None:
+        """Begin to listen."""
+        if not self.options.theme and self.console.color_system == "standard":
+            self.theme = THEMES["16"].name
+        self.query_one(TabLine).tabs = self.SCREENS_HERE
+        self.go_to(self.FIRST)
+        self.connect()
+
+    def on_resize(self) -> None:
+        """Lay out for the size there is."""
+        width, height = self.size
+        base = self.screen_stack[0]
+        base.set_class(width < SMALLEST[0] or height < SMALLEST[1], "-tiny")
+        base.set_class(width >= WIDE[0] and height >= WIDE[1], "-wide")
+        base.set_class(width >= HUGE[0] and height >= HUGE[1], "-huge")
+
+    @property
+    def view(self) -> View:
+        """Return the screen that is shown."""
+        base = self.screen_stack[0]
+        switcher = base.query_one(ContentSwitcher)
+        return base.query_one(f"#{switcher.current}", View)
+
+    def scene_changed(self) -> None:
+        """Show what has changed: the fixed lines and the screen that is seen."""
+        base = self.screen_stack[0] if self.screen_stack else None
+        if base is None or not base.query("#keys"):
+            return  # before the first layout, and while the screen is taken down
+        for panel in (base.query_one(StateLine), base.query_one(TabLine), base.query_one(KeyLine)):
+            panel.show(self.scene)
+        base.query_one(SmallPanel).show(self.scene)
+        self.view.show(self.scene)
+        if self.screen is base and (base.focused is None or self.view not in base.focused.ancestors_with_self):
+            self.view.enter()  # a dialog that changed the screen below it has closed
+
+    # -- keys -------------------------------------------------------------------------------------------------
+
+    def go_to(self, name: str) -> None:
+        """Show another screen."""
+        base = self.screen_stack[0]
+        if not base.query(f"#{name}"):
+            self.say("that screen needs a service: `tester tui`")
+            return
+        before = self.view
+        base.query_one(ContentSwitcher).current = name
+        if before is not self.view:
+            before.leave()
+        base.query_one(TabLine).current = name
+        base.query_one(KeyLine).keys = self.keys_of(self.view)
+        if self.screen is base:
+            self.view.enter()
+        self.scene_changed()
+
+    def keys_of(self, view: View) -> Keys:
+        """Return what the last line names on a screen."""
+        return view.KEYS
+
+    def action_go_to(self, name: str) -> None:
+        """Show another screen."""
+        if self.screen is self.screen_stack[0]:
+            self.go_to(name)
+
+    def action_help(self) -> None:
+        """Show the help of this screen."""
+        if not isinstance(self.screen, Dialog):
+            self.push_screen(TextDialog("Help", f"{self.view.HELP}{self.EVERYWHERE}"))
+
+    def action_hold(self) -> None:
+        """HOLD, no question."""
+        self.order(Hold(), "HOLD")
+
+    def action_acknowledge(self) -> None:
+        """Acknowledge the alarm of line 2; without one, what was found at the start."""
+        alarm = self.scene.top_alarm()
+        self.order(Acknowledge(alarm.number if alarm is not None else 0))
+
+    def action_abort(self) -> None:
+        """Ask for the word."""
+        self.push_screen(AbortDialog())
+
+    def action_resume(self) -> None:
+        """Go on after HOLD, or with a run that was cut off, after the pre-flight list."""
+        state = self.scene.state
+        if state is None:
+            return
+        if state.mode == "HOLD":
+            self.push_screen(GoOnDialog(state, Release(), "HOLD ends, the run goes on"))
+        elif state.mode in ("OFFLINE", "INTERRUPTED", "IDLE") and state.interrupted:
+            name = state.interrupted[-1]
+            speed = self.options.speed if state.simulated else 1.0
+            self.push_screen(GoOnDialog(state, ResumeRun(name, speed), f"{name} goes on"))
+            self.go_to("run")
+        else:
+            self.say("nothing to resume")
+
+    def action_take_control(self) -> None:
+        """Take control from whoever has it."""
+        self.order(Control(force=True), "this screen controls")
+
+    def action_use_theme(self, name: str) -> None:
+        """Change the colours."""
+        self.theme = THEMES[name].name
+
+    def get_system_commands(self, screen: Screen[object]) -> Iterable[SystemCommand]:
+        """Return what the palette (Ctrl+P) offers."""
+        yield SystemCommand("STOP", "Software stop, at once (F12, Ctrl+X)", self.action_stop)
+        yield SystemCommand("HOLD", "Lift and wait, keep the temperature (space)", self.action_hold)
+        yield SystemCommand("Resume", "End HOLD, or go on with a run that was cut off (r)", self.action_resume)
+        yield SystemCommand("Abort…", "Controlled stop of the run (x)", self.action_abort)
+        yield SystemCommand("Acknowledge", "The alarm of line 2 (a)", self.action_acknowledge)
+        for key, title, name in self.SCREENS_HERE:
+            yield SystemCommand(f"Screen: {title}", key.upper(), lambda name=name: self.go_to(name))
+        yield SystemCommand("Take control", "From the client that has it", self.action_take_control)
+        for name in THEMES:
+            yield SystemCommand(f"Theme: {name}", "Colours", lambda name=name: self.action_use_theme(name))
+        yield SystemCommand("Help", "Keys of this screen (F1)", self.action_help)
+        yield SystemCommand("Detach", "Leave the screen, the run goes on (q)", self.action_detach)

@@ -1,0 +1,60 @@
+"""What every dialog has: it leaves the fixed lines visible, Escape closes it, and it never stands in STOP's way."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import ClassVar
+
+from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+from textual.containers import Horizontal, Vertical
+from textual.content import Content
+from textual.screen import ModalScreen
+from textual.widget import Widget
+from textual.widgets import Input, Static
+
+from tester.tui.host import HostApp, host_of
+from tester.tui.widgets.panel import Parts
+
+
+class Dialog(ModalScreen[None]):
+    """A box between lines 2 and last."""
+
+    TITLE: ClassVar[str | None] = ""
+    BINDINGS: ClassVar[list[BindingType]] = [Binding("escape", "close", "Close", show=False)]
+
+    @property
+    def host(self) -> HostApp:
+        """Return the application."""
+        return host_of(self)
+
+    def compose(self) -> ComposeResult:
+        """Put the content into the box."""
+        with Vertical(id="box") as box:
+            box.border_title = self.TITLE or ""
+            box.border_subtitle = "Esc closes · F12 STOP"
+            yield from self.content()
+
+    def content(self) -> Iterable[Widget]:
+        """Return what is in the box."""
+        return ()
+
+    def action_close(self) -> None:
+        """Close without a result."""
+        self.dismiss(None)
+
+
+def line(parts: Parts | str, *, id: str | None = None) -> Static:  # noqa: A002 - as in Textual
+    """Return a text, as it is."""
+    content = Content(parts) if isinstance(parts, str) else Content.assemble(*parts)
+    return Static(content, classes="line", markup=False, id=id)
+
+
+def field(label: str, entry: Input) -> Horizontal:
+    """Return an input field with its label, in one row."""
+    return Horizontal(Static(label, markup=False), entry, classes="field")
+
+
+def entry(name: str, value: str = "", *, hint: str = "", limit: int = 200) -> Input:
+    """Return an input field of one row."""
+    return Input(value, placeholder=hint, id=name, compact=True, max_length=limit)

@@ -1,0 +1,90 @@
+"""Export a table of a run to a file: `tester export`, in a process of its own."""
+
+from __future__ import annotations
+
+import asyncio
+import sys
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Protocol
+
+from textual.widget import Widget
+from textual.widgets import Input, OptionList
+from textual.widgets.option_list import Option
+
+from tester.tui.dialogs.dialog import Dialog, entry, field, line
+from tester.tui.starting import COMMAND
+
+FORMATS = (
+    ("appendix", "csv", "the paper's table"),
+    ("conditions", "csv", "conditions with uncertainty"),
+    ("repeats", "csv", "every repeat"),
+    ("samples", "csv", "every sample"),
+    ("parquet", "parquet", "every sample, for programs"),
+)
+"""Format, ending of the file, what it is."""
+
+
+class ExportDialog(Dialog):
+    """Format and file."""
+
+    TITLE = "Export"
+
+    def __init__(self, name: str, runs: Path) -> None:
+        """``name``: of the run below ``runs``."""
+        super().__init__()
+        self.name_of_run, self.runs = name, runs
+
+    def content(self) -> Iterable[Widget]:
+        """Return list and field."""
+        yield line([(self.name_of_run, "bold")])
+        yield OptionList(*(Option(f"{kind:<11} {words}", id=kind) for kind, _, words in FORMATS), id="formats",
+                         markup=False)  # fmt: skip
+        yield field("File", entry("file", limit=1000))
+        yield line("Enter writes it; what is there by that name is replaced.")
+
+    def on_option_list_option_highlighted(self, event: OptionList.OptionHighlighted) -> None:
+        """Name the file after the format."""
+        kind, ending, _ = FORMATS[event.option_index]
+        self.query_one("#file", Input).value = f"{self.name_of_run}-{kind}.{ending}"
+
+    def on_option_list_option_selected(self, event: OptionList.OptionSelected) -> None:
+        """Enter on a format."""
+        event.stop()
+        self._write(event.option_index)
+
+    def on_input_submitted(self, event: Input.Submitted) -> None:
+        """Enter in the field."""
+        event.stop()
+        self._write(self.query_one("#formats", OptionList).highlighted or 0)
+
+    def _write(self, at: int) -> None:
+        path = Path(self.query_one("#file", Input).value.strip())
+        if not path.name:
+            self.host.say("name a file", problem=True)
+            return
+        host = self.host
+        host.run_worker(export(host.say, self.runs / self.name_of_run, FORMATS[at][0], path), exit_on_error=False)
+        self.dismiss(None)
+
+
+class Say(Protocol):
+    """How an export reports: as ``HostApp.say``."""
+
+    def __call__(self, text: str, *, problem: bool = False, lasting: bool = False) -> None:
+        """Tell the operator."""
+        ...
+
+
+async def export(say: Say, folder: Path, kind: str, path: Path) -> None:
+    """Run the command and say how it went."""
+    process = await asyncio.create_subprocess_exec(
+        sys.executable, "-c", COMMAND, "export", "--format", kind, "--out", str(path), "--", str(folder),
+        stdin=asyncio.subprocess.DEVNULL, stdout=asyncio.subprocess.DEVNULL, stderr=asyncio.subprocess.PIPE,
+    )  # fmt: skip
+    _, told = await process.communicate()
+    words = told.decode(errors="replace").strip()
+    if process.returncode:
+        say(f"not exported: {words}", problem=True, lasting=True)
+    else:
+        say(f"exported to {path}" + (f"; {words}" if words else ""), lasting=True)

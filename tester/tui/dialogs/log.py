@@ -1,0 +1,46 @@
+"""The event log and the help, as pages to scroll."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from textual.widget import Widget
+
+from tester.tui.dialogs.dialog import Dialog, line
+from tester.tui.widgets.events import event_row
+from tester.tui.widgets.panel import Parts, rows
+
+WIDTH = 400
+"""Longest line of the log."""
+
+
+class LogDialog(Dialog):
+    """All events that are known, newest first."""
+
+    TITLE = "Events, newest first"
+
+    def on_mount(self) -> None:
+        """Take the whole height."""
+        self.add_class("-tall")
+
+    def content(self) -> Iterable[Widget]:
+        """Return the list."""
+        lines: list[Parts] = [event_row(event, WIDTH) for event in reversed(self.host.scene.events)]
+        yield line(rows(lines) if lines else "nothing has happened yet")
+
+
+class TextDialog(Dialog):
+    """A text to read."""
+
+    def __init__(self, title: str, text: str) -> None:
+        """``text`` is shown as it is."""
+        super().__init__()
+        self._title, self._text = title, text
+
+    def on_mount(self) -> None:
+        """Name the box."""
+        self.query_one("#box").border_title = self._title
+
+    def content(self) -> Iterable[Widget]:
+        """Return the text."""
+        yield line(self._text)

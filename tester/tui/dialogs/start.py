@@ -1,0 +1,142 @@
+"""Start a run: specimen, operator, notes, and the pre-flight list. Motion starts only from here."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from pydantic import JsonValue
+from textual.containers import Horizontal
+from textual.widget import Widget
+from textual.widgets import Button, Checkbox, Input, Static
+
+from tester.service.commands import RunRecipe, ShowPlan
+from tester.service.state import Check
+from tester.tui.dialogs.confirm import preflight_rows
+from tester.tui.dialogs.dialog import Dialog, entry, field, line
+from tester.tui.shelf import Recipe
+from tester.tui.widgets.panel import Parts
+from tester.tui.words import clean, hours
+
+LATER = ("guard and safety chain", "zero of the load cell", "watchdogs of the drives")
+"""What the service shows before a drive is armed, and refuses to start without (docs/safety.md)."""
+ASK = "Answer questions (install wheel, clean debris) by itself:"
+MAX = "max"
+
+
+def speed_words(speed: float | None) -> str:
+    """Return a time lapse as it is typed."""
+    return MAX if speed is None else f"{speed:g}"
+
+
+def speed_of(text: str) -> float | None:
+    """Return a typed time lapse; raises ValueError."""
+    if text.strip().lower() == MAX:
+        return None
+    speed = float(text)
+    if not 0.0 < speed <= 1e6:
+        raise ValueError(text)
+    return speed
+
+
+class PlainCheckbox(Checkbox):
+    """A box whose label says whether it is set: Textual shows that by colour alone."""
+
+    BUTTON_INNER = "·"
+
+
+class StartDialog(Dialog):
+    """The last look before a run begins."""
+
+    TITLE = "Start a run"
+
+    def __init__(self, recipe: Recipe) -> None:
+        """``recipe``: one without problems."""
+        super().__init__()
+        self.recipe = recipe
+
+    def content(self) -> Iterable[Widget]:
+        """Return recipe, list, fields, buttons."""
+        state = self.host.scene.state
+        rig = clean(state.rig) if state is not None else "?"
+        simulated = state is not None and state.simulated
+        where = f"{rig} (simulated)" if simulated else rig
+        yield line([(clean(self.recipe.name), "bold"), f" on rig {where}"])
+        yield line("planning …", id="plan")
+        yield line(preflight_rows(self._checks()), id="preflight")
+        yield field("Specimen, wheel", entry("specimen", hint="batch or serial number"))
+        yield field("Operator", entry("operator"))
+        yield field("Notes", entry("notes", limit=1500))
+        if simulated:
+            yield field("Rig s per second", entry("speed", speed_words(self.host.options.speed), hint="1, 60, max"))
+        yield PlainCheckbox(f"{ASK} no", id="yes", value=False, compact=True)
+        with Horizontal(classes="buttons"):
+            yield Button("Start (Enter)", id="start", compact=True)
+            yield Button("Back", id="back", compact=True)
+
+    def _checks(self) -> tuple[Check, ...]:
+        known = self.host.scene.state.preflight if self.host.scene.state is not None else ()
+        names = {check.name for check in known}
+        later = tuple(Check(name, None, "proved at connecting, before motion") for name in LATER if name not in names)
+        return (Check("recipe", True, "valid on this rig"), *known, *later)
+
+    def on_mount(self) -> None:
+        """Have it planned, and have Enter start it."""
+        self.query_one("#start").focus()
+        self.run_worker(self._plan(), exit_on_error=False)
+
+    async def _plan(self) -> None:
+        found = await self.host.ask(ShowPlan(self.recipe.reference, self.recipe.sent))
+        if self.is_attached and isinstance(found, dict):
+            self.query_one("#plan", Static).update("".join(map(str, totals(found))))
+
+    def on_button_pressed(self, event: Button.Pressed) -> None:
+        """Start, or go back."""
+        event.stop()
+        if event.button.id == "start":
+            self._start()
+        else:
+            self.dismiss(None)
+
+    def on_checkbox_changed(self, event: Checkbox.Changed) -> None:
+        """Say in words what a colour says: not every terminal has one."""
+        event.checkbox.label = f"{ASK} {'yes' if event.value else 'no'}"
+
+    def on_input_submitted(self, event: Input.Submitted) -> None:
+        """Enter in a field leads on to the button."""
+        event.stop()
+        self.query_one("#start").focus()
+
+    def _typed(self, name: str) -> str:
+        return self.query_one(f"#{name}", Input).value.strip()
+
+    def _start(self) -> None:
+        speed: float | None = 1.0
+        if self.query("#speed"):
+            try:
+                speed = speed_of(self._typed("speed"))
+            except ValueError:
+                self.host.say("rig seconds per second: a number above 0, or max", problem=True)
+                self.query_one("#speed").focus()
+                return
+        specimen = self._typed("specimen")
+        notes = "; ".join(text for text in (f"specimen {specimen}" if specimen else "", self._typed("notes")) if text)
+        order = RunRecipe(
+            self.recipe.reference, self.recipe.sent, speed=speed, yes=self.query_one("#yes", Checkbox).value,
+            operator=self._typed("operator"), notes=notes,
+        )  # fmt: skip
+        self.host.order(order, f"{self.recipe.name} has begun")
+        self.host.go_to("run")
+        self.dismiss(None)
+
+
+def totals(plan: dict[str, JsonValue]) -> Parts:
+    """Return a plan's totals in a line."""
+
+    def figure(key: str) -> float:
+        value = plan.get(key)
+        return float(value) if isinstance(value, int | float) else 0.0
+
+    return [
+        f"{figure('conditions'):.0f} conditions, {hours(figure('rig_seconds'))} h of rig time, "
+        f"{figure('sliding_m'):.0f} m of sliding, {figure('loss_mm'):.2f} mm of wear, {figure('wheels'):.0f} wheels"
+    ]

@@ -1,0 +1,156 @@
+"""The application below its screens: the link to the service, what is known of it, and how orders reach it."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import ClassVar, cast
+
+from pydantic import JsonValue
+from textual.app import App
+from textual.binding import Binding, BindingType
+from textual.dom import DOMNode
+
+from tester import clock
+from tester.service.address import Address
+from tester.service.client import Client, Link, Lost, LostError, NoServiceError, RefusedError
+from tester.service.commands import Action, Stop
+from tester.tui.scene import Scene
+from tester.tui.starting import start_service
+from tester.tui.words import clean
+
+TICK_S = 0.5
+"""The age of what is shown is looked at this often."""
+
+
+@dataclass(frozen=True, slots=True)
+class TuiOptions:
+    """What `tester tui` was told. ``speed``: rig seconds per second of simulated runs, None = as fast as it goes."""
+
+    rig: str = "sim"
+    speed: float | None = 1.0
+    runs: Path = Path("runs")
+    address: Address | None = None
+    start: bool = True
+    """Start a service where none runs."""
+    plain: bool = False
+    """ASCII only."""
+    view_only: bool = False
+    theme: str = ""
+    recipe_folder: Path = Path()
+
+
+class HostApp(App[str]):
+    """Holds the link and the scene; knows no screen."""
+
+    ENABLE_COMMAND_PALETTE = True
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("f12,ctrl+x", "stop", "STOP", priority=True, show=False),
+        Binding("ctrl+c,ctrl+q", "detach", "Detach", priority=True, show=False),
+    ]
+
+    def __init__(self, options: TuiOptions, now: Callable[[], float] = clock.monotonic) -> None:
+        """``now``: seconds of tester.clock.monotonic; another one in tests."""
+        super().__init__()
+        self.options = options
+        self.scene = Scene(now=now, view_only=options.view_only)
+        self.link: Link | None = None
+        self._started = False
+        self._stops: set[asyncio.Task[None]] = set()
+
+    # -- what the screens do with it --------------------------------------------------------------------------
+
+    def scene_changed(self) -> None:
+        """Called after each change of the scene."""
+
+    def go_to(self, name: str) -> None:
+        """Show another screen, by its id."""
+
+    def say(self, text: str, *, problem: bool = False, lasting: bool = False) -> None:
+        """Tell the operator something, as it is."""
+        self.notify(
+            clean(text), severity="error" if problem else "information", timeout=60.0 if lasting else 6.0, markup=False
+        )
+
+    # -- link -------------------------------------------------------------------------------------------------
+
+    def connect(self) -> None:
+        """Keep a link to the service from now on."""
+        name = f"tui of process {os.getpid()}"
+        self.link = Link(self.options.address, name=name, control=not self.options.view_only)
+        self.run_worker(self._listen(self.link), name="link", group="link")
+        self.set_interval(TICK_S, self.scene_changed)
+
+    async def _listen(self, link: Link) -> None:
+        async for message in link.messages():
+            self.scene.take(message, link.client)
+            if isinstance(message, Lost) and self.scene.state is None:
+                self._begin_service()
+            self.scene_changed()
+
+    def _begin_service(self) -> None:
+        """Start a service where none runs, once: a service that ended is not brought back behind anybody's back."""
+        if self._started or not self.options.start or self.options.address is not None or self.options.view_only:
+            return
+        self._started = True
+        try:
+            start_service(self.options.rig, self.options.runs)
+        except OSError as error:
+            self.say(f"the service cannot be started: {error}", problem=True, lasting=True)
+
+    # -- orders -----------------------------------------------------------------------------------------------
+
+    def order(self, action: Action, done: str = "") -> None:
+        """Have something done; a refusal is shown, ``done`` once it is taken."""
+        self.run_worker(self.ask(action, done), group="orders", exit_on_error=False)
+
+    async def ask(self, action: Action, done: str = "") -> JsonValue:
+        """Have something done and return the result; None where it was refused, which is shown."""
+        if self.options.view_only or self.link is None:
+            self.say("view only: nothing is commanded from here")
+            return None
+        try:
+            result = await self.link.command(action)
+        except RefusedError as error:
+            self.say(f"refused: {error}", problem=True)
+        except (LostError, TimeoutError) as error:
+            self.say(f"no answer from the service: {error}", problem=True)
+        else:
+            if done:
+                self.say(done)
+            return result if result is not None else {}
+        return None
+
+    def action_stop(self) -> None:
+        """STOP: no question, from everywhere, whoever controls."""
+        if self.options.view_only or self.link is None:
+            self.say("view only: `tester stop` in a shell stops the rig", problem=True)
+            return
+        task = asyncio.create_task(self._stop(self.link))
+        self._stops.add(task)
+        task.add_done_callback(self._stops.discard)
+
+    async def _stop(self, link: Link) -> None:
+        try:
+            try:
+                await link.command(Stop())
+            except LostError:  # the link is coming back: a connection of its own may be quicker
+                async with await Client.connect(link.address, name=link.name) as client:
+                    await client.stop()
+        except (LostError, NoServiceError, RefusedError, TimeoutError) as error:
+            self.say(f"STOP has not reached the service: {error}. Use the machine's own stop.", problem=True,
+                     lasting=True)  # fmt: skip
+            return
+        self.say("STOP taken")
+
+    def action_detach(self) -> None:
+        """Leave the screen; the run goes on."""
+        self.exit("detached: the service and its run go on. `tester tui` comes back, `tester stop` stops the rig")
+
+
+def host_of(node: DOMNode) -> HostApp:
+    """Return the application that a widget is part of."""
+    return cast("HostApp", node.app)  # pyright: ignore[reportUnknownMemberType]  # Textual leaves its type open

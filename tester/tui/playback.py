@@ -1,0 +1,200 @@
+"""A stored run as scenes: what the screens would have shown at a moment of it, as far as it was recorded."""
+
+from __future__ import annotations
+
+from array import array
+from bisect import bisect_right
+from dataclasses import dataclass
+from math import isfinite
+from pathlib import Path
+
+from tester.rig.load import load_rig_text
+from tester.service.protocol import Event
+from tester.service.state import (
+    TREND_COLUMNS,
+    ClientsView,
+    DiskView,
+    ManualView,
+    PlanStep,
+    PlanView,
+    ProgressView,
+    RunView,
+    StateView,
+    TickView,
+    Value,
+)
+from tester.service.values import Spec, friction, specs
+from tester.store.reader import RunReader
+from tester.store.records import ConditionInfo, StoredCondition, StoredRepeat, StoredRun
+from tester.tui.scene import Scene
+from tester.tui.widgets.trends import WINDOW_S
+
+SPACING_S = 0.25
+"""Of the samples that are kept, rig seconds; wider where that would be more than MOST."""
+MOST = 40_000
+OLD_S = 2.0
+"""A sample older than this at the moment shown is stale; between contacts two a second are recorded."""
+COLUMNS = {
+    "sideslip": "sideslip_deg", "camber": "camber_deg", "wheel_speed": "wheel_speed_m_s",
+    "belt_speed": "belt_speed_m_s", "press": "press_mm", "force_x": "force_x_n", "force_y": "force_y_n",
+    "moment": "moment_z_nm", "torque": "drive_torque_nm", "heat": "heat_percent", "load": "force_z_n",
+    "surface": "surface_c", "hub": "hub_c",
+}  # fmt: skip
+"""Where a value comes from."""
+
+
+@dataclass(frozen=True, slots=True)
+class Playback:
+    """A run's record: samples by column, in order of rig time; conditions, repeats, journal."""
+
+    run: StoredRun
+    rig_name: str
+    specs: tuple[Spec, ...]
+    samples: dict[str, array[float]]
+    conditions: tuple[StoredCondition, ...]
+    repeats: tuple[StoredRepeat, ...]
+    events: tuple[Event, ...]
+    event_times: tuple[float, ...]
+
+    @property
+    def length_s(self) -> float:
+        """Return the run's rig seconds."""
+        return max(self.run.rig_seconds, self.samples["time_s"][-1] if self.samples["time_s"] else 0.0)
+
+    def show(self, scene: Scene, at_s: float) -> None:
+        """Have the scene be that of a moment, rig seconds."""
+        condition = next((c for c in self.conditions if c.started_s <= at_s < _end(c, self.length_s)), None)
+        index = bisect_right(self.samples["time_s"], at_s) - 1
+        scene.replayed = True
+        scene.state = self._state(at_s, index, condition)
+        scene.plan = self._plan(at_s)
+        scene.events.clear()
+        scene.events.extend(self.events[: bisect_right(self.event_times, at_s)])
+        scene.trend.clear()
+        first = bisect_right(self.samples["time_s"], at_s - WINDOW_S)
+        step = max((index - first) // 2000, 1)
+        scene.trend.extend(self._row(i) for i in range(first, index + 1, step))
+        scene.epoch += 1
+
+    def _state(self, at_s: float, index: int, condition: StoredCondition | None) -> StateView:
+        info, run = self.run.info, self.run
+        over = at_s >= self.length_s
+        compound = condition.info.compound if condition is not None else ""
+        note = condition.info.note if condition is not None else ""
+        return StateView(
+            mode="RUN" if not over else run.status,
+            mode_text="" if not over else run.reason,
+            mode_since_s=at_s, t_s=at_s, wall_s=at_s, utc=info.started_utc, rig=self.rig_name,
+            simulated=info.simulated,
+            run=RunView(info.name, "", info.recipe_name, compound, note, info.operator, info.seed, info.simulated, None,
+                        info.started_utc, run.status, run.reason, None, ()),
+            progress=self._progress(at_s, condition),
+            values=self._values(at_s, index, condition.info if condition is not None else None),
+            gates=(), soak=None, alarms=(), prompt=None, manual=ManualView(None, ""), devices=(), buses=(),
+            disk=DiskView(0, 0, False), tick=TickView(0.0, 0.0, run.overruns), clients=ClientsView("", 0, 0),
+            interrupted=(), preflight=(),
+        )  # fmt: skip
+
+    def _progress(self, at_s: float, condition: StoredCondition | None) -> ProgressView:
+        begun = [c for c in self.conditions if c.started_s <= at_s]
+        length_s = max(self.length_s, 1e-9)
+        repeat = max((r.repeat for r in self.repeats if condition is not None and r.begun_s <= at_s
+                      and r.condition == condition.info.condition), default=0)  # fmt: skip
+        return ProgressView(
+            step=len(begun), steps=max(len(self.conditions), 1),
+            title=_title(condition.info) if condition is not None else "between conditions",
+            condition=len(begun), conditions=len(self.conditions),
+            repeat=repeat, repeats=condition.info.repeats if condition is not None else 0,
+            share=at_s / length_s, elapsed_s=at_s, left_s=max(length_s - at_s, 0.0),
+        )  # fmt: skip
+
+    def _values(self, at_s: float, index: int, info: ConditionInfo | None) -> tuple[Value, ...]:
+        if index < 0:
+            return tuple(spec.value(None) for spec in self.specs)
+        row = {name: column[index] for name, column in self.samples.items()}
+        age_s = at_s - row["time_s"]
+        wanted: dict[str, tuple[float | None, float | None]] = {
+            "load": (row["load_setpoint_n"], None),
+            "hub": (row["hub_setpoint_c"], None),
+        }
+        if info is not None:
+            wanted["slip"] = (1e3 * info.slip_velocity_m_s, None)
+            wanted["surface"] = (info.temperature_c, info.temperature_band_k)
+            wanted["sideslip"] = (info.sideslip_deg, None)
+        measured = {key: row[name] for key, name in COLUMNS.items()}
+        measured["slip"] = 1e3 * row["slip_m_s"]
+        measured["friction"] = friction(row["force_x_n"], row["force_y_n"], row["force_z_n"])
+        quality = "good" if age_s <= OLD_S else "stale"
+        return tuple(
+            spec.value(measured.get(spec.key), *wanted.get(spec.key, (None, None)), age_s, quality)
+            for spec in self.specs
+        )
+
+    def _plan(self, at_s: float) -> PlanView:
+        steps = tuple(
+            PlanStep(
+                number, "condition", _title(c.info),
+                "done" if _end(c, self.length_s) <= at_s else "now" if c.started_s <= at_s else "later",
+                _end(c, self.length_s) - c.started_s if isfinite(c.started_s) else 0.0,
+                _end(c, self.length_s) - c.started_s if _end(c, self.length_s) <= at_s else None,
+            )
+            for number, c in enumerate(self.conditions, 1)
+        )  # fmt: skip
+        return PlanView(self.run.info.recipe_name, len(steps), 1, steps, self.length_s)
+
+    def _row(self, index: int) -> tuple[float | None, ...]:
+        s = self.samples
+        known = {
+            "wall_s": s["time_s"][index], "t_s": s["time_s"][index],
+            "friction": friction(s["force_x_n"][index], s["force_y_n"][index], s["force_z_n"][index]),
+            "load_n": s["force_z_n"][index], "load_setpoint_n": s["load_setpoint_n"][index],
+            "surface_c": s["surface_c"][index], "hub_c": s["hub_c"][index],
+            "hub_setpoint_c": s["hub_setpoint_c"][index], "slip_mm_s": 1e3 * s["slip_m_s"][index],
+            "wheel_speed_m_s": s["wheel_speed_m_s"][index], "belt_speed_m_s": s["belt_speed_m_s"][index],
+            "sideslip_deg": s["sideslip_deg"][index], "heat_percent": s["heat_percent"][index],
+        }  # fmt: skip
+        return tuple(_known(known.get(name)) for name in TREND_COLUMNS)
+
+
+def _known(value: float | None) -> float | None:
+    return value if value is not None and isfinite(value) else None
+
+
+def _end(condition: StoredCondition, length_s: float) -> float:
+    return condition.ended_s if isfinite(condition.ended_s) else length_s
+
+
+def _title(i: ConditionInfo) -> str:
+    angle = f", {i.sideslip_deg:g}°" if i.sideslip_deg else ""
+    slip_mm_s = round(1e3 * i.slip_velocity_m_s, 3)
+    return f"{i.compound}: {slip_mm_s:g} mm/s, {i.load_n:g} N, {i.temperature_c:g} °C{angle}"
+
+
+def load(folder: Path) -> Playback:
+    """Read a run; raises StoreError, InvalidSource (its rig file), sqlite3.Error."""
+    with RunReader(folder) as reader:
+        run = reader.run()
+        rig = load_rig_text(run.info.rig_text)
+        events = tuple(
+            Event(e.sequence, e.t_s, e.utc, e.kind, e.severity, e.text, run.info.name) for e in reader.events()
+        )
+        return Playback(
+            run, rig.name, specs(rig), _thinned(reader, max(SPACING_S, run.rig_seconds / MOST)),
+            tuple(reader.conditions()), tuple(reader.repeats(attempts=True)), events,
+            tuple(event.t_s for event in events),
+        )  # fmt: skip
+
+
+def _thinned(reader: RunReader, spacing_s: float) -> dict[str, array[float]]:
+    """Return samples that far apart."""
+    kept: dict[str, array[float]] = {name: array("d") for name in reader.sample_columns()}
+    due_s = float("-inf")
+    for block in reader.sample_blocks():
+        chosen: list[int] = []
+        for index, t_s in enumerate(block.columns["time_s"]):
+            if t_s >= due_s:
+                chosen.append(index)
+                due_s = t_s + spacing_s
+        for name, column in block.columns.items():
+            kept[name].extend(column[index] for index in chosen)
+    return kept

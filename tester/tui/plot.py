@@ -1,0 +1,129 @@
+"""Plots in characters: a trend in braille dots (two by four a cell) or, in ASCII, a sign a cell; a scatter."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from math import ceil, floor, log10
+
+Bin = tuple[float, float]
+"""Least and greatest value within one column of dots."""
+BRAILLE = 0x2800
+DOTS = ((0x01, 0x02, 0x04, 0x40), (0x08, 0x10, 0x20, 0x80))
+"""Bits of a braille pattern by column and row (Unicode, block Braille Patterns)."""
+WISH, LIMIT = "╌", "─"
+SHRINK = 4.0
+"""A range is narrowed only when it is this many times wider than what it shows: it does not jump."""
+
+
+@dataclass(slots=True)
+class Range:
+    """The y range of a trend: grows at once to round numbers, shrinks late."""
+
+    low: float = 0.0
+    high: float = 0.0
+    least: float = 1.0
+    """Narrowest range."""
+
+    def cover(self, low: float, high: float) -> None:
+        """Have the range hold these values."""
+        if high - low < self.least:
+            middle = 0.5 * (low + high)
+            low, high = middle - 0.5 * self.least, middle + 0.5 * self.least
+        width = self.high - self.low
+        if low >= self.low and high <= self.high and width < SHRINK * (high - low):
+            return
+        step = round_step((high - low) / 4.0)
+        self.low, self.high = step * floor(low / step), step * ceil(high / step)
+
+
+def round_step(step: float) -> float:
+    """Return the least of 1, 2, 5 times a power of ten that is not below ``step`` (> 0)."""
+    power = 10.0 ** floor(log10(step))
+    return next(factor * power for factor in (1.0, 2.0, 5.0, 10.0) if factor * power >= step * (1.0 - 1e-9))
+
+
+@dataclass(slots=True)
+class Canvas:
+    """A grid of cells with data drawn in dots, and horizontal lines where there is no data."""
+
+    width: int
+    height: int
+    plain: bool = False
+    """ASCII: one dot a cell."""
+    _dots: list[list[int]] = field(default_factory=list[list[int]])
+    _lines: dict[int, str] = field(default_factory=dict[int, str])
+
+    def __post_init__(self) -> None:
+        """Begin empty."""
+        self._dots = [[0] * self.width for _ in range(self.height)]
+
+    @property
+    def columns(self) -> int:
+        """Return how many columns of dots there are."""
+        return self.width if self.plain else 2 * self.width
+
+    def _row(self, y: float, scale: Range) -> int:
+        rows = self.height if self.plain else 4 * self.height
+        share = (y - scale.low) / (scale.high - scale.low)
+        return min(max(round((1.0 - share) * (rows - 1)), 0), rows - 1)
+
+    def level(self, y: float | None, sign: str, scale: Range) -> None:
+        """Draw a horizontal line, if it lies within the range."""
+        if y is not None and scale.low <= y <= scale.high:
+            row = self._row(y, scale)
+            self._lines[row if self.plain else row // 4] = sign
+
+    def bins(self, bins: Sequence[Bin | None], scale: Range) -> None:
+        """Draw the newest bins, the last at the right edge."""
+        shown = bins[-self.columns :]
+        first = self.columns - len(shown)
+        for at, one in enumerate(shown, first):
+            if one is None:
+                continue
+            for row in range(self._row(one[1], scale), self._row(one[0], scale) + 1):
+                if self.plain:
+                    self._dots[row][at] = 1
+                else:
+                    self._dots[row // 4][at // 2] |= DOTS[at % 2][row % 4]
+
+    def lines(self) -> list[str]:
+        """Return the rows of characters."""
+        rows: list[str] = []
+        for number, row in enumerate(self._dots):
+            empty = self._lines.get(number, " ")
+            rows.append("".join(("*" if self.plain else chr(BRAILLE + dots)) if dots else empty for dots in row))
+        return rows
+
+
+@dataclass(frozen=True, slots=True)
+class Point:
+    """One point of a scatter, and the sign that stands for it."""
+
+    x: float
+    y: float
+    sign: str
+
+
+def scatter(points: Sequence[Point], width: int, height: int, decimals: int = 2) -> list[str]:
+    """Return points in a frame of axes, ``width`` by ``height`` characters; points on one another show as ``+``."""
+    margin = 7
+    inner, rows = width - margin - 1, height - 2
+    if inner < 4 or rows < 2 or not points:
+        return []
+    xs, ys = Range(least=1e-6), Range(least=0.02)
+    xs.low, xs.high = min(p.x for p in points), max(p.x for p in points)
+    if xs.high <= xs.low:
+        xs.low, xs.high = xs.low - 1.0, xs.high + 1.0
+    ys.cover(min(p.y for p in points), max(p.y for p in points))
+    grid = [[" "] * inner for _ in range(rows)]
+    for p in points:
+        across = round((p.x - xs.low) / (xs.high - xs.low) * (inner - 1))
+        down = round((ys.high - p.y) / (ys.high - ys.low) * (rows - 1))
+        grid[down][across] = p.sign if grid[down][across] in (" ", p.sign) else "+"
+    labels = {0: f"{ys.high:.{decimals}f}", rows - 1: f"{ys.low:.{decimals}f}"}
+    lines = [f"{labels.get(n, ''):>{margin}}│{''.join(row)}" for n, row in enumerate(grid)]
+    lines.append(" " * margin + "└" + "─" * inner)
+    left, right = f"{xs.low:g}", f"{xs.high:g}"
+    lines.append(" " * (margin + 1) + left + right.rjust(inner - len(left)))
+    return lines

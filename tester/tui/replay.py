@@ -1,0 +1,146 @@
+"""`tester replay`: the screens over a stored run, with a time slider. No rig, no service."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+from typing import ClassVar
+
+from textual.binding import Binding, BindingType
+from textual.widget import Widget
+
+from tester.tui.app import TesterApp
+from tester.tui.host import TuiOptions
+from tester.tui.playback import Playback
+from tester.tui.scene import Scene
+from tester.tui.stored import Stored
+from tester.tui.views.results import ResultsView
+from tester.tui.views.run import RunView
+from tester.tui.views.view import Keys, View
+from tester.tui.widgets.head import TABS, Tabs
+from tester.tui.widgets.panel import FAINT, Panel, Parts
+from tester.tui.words import minutes
+
+FRAME_S = 0.25
+SPEEDS = (1.0, 10.0, 60.0, 600.0)
+"""Rig seconds per second while it plays."""
+HELP = """\
+
+In a replay
+space  play, pause      left, right  10 s back, on      shift+left, shift+right  1 min
+page up, page down  10 min      home, end  begin, end      s  faster (1, 10, 60, 600 times)
+"""
+
+
+class TimeLine(Panel):
+    """The time slider."""
+
+    at_s = 0.0
+    length_s = 0.0
+    playing = False
+    speed = 60.0
+
+    def picture(self, scene: Scene, width: int, height: int) -> Parts:
+        """Return the slider."""
+        words = f" {'▶' if self.playing else '⏸'} {minutes(self.at_s)} / {minutes(self.length_s)}  x{self.speed:g} "
+        keys = " Home End PgUp PgDn "
+        room = width - len(words) - len(keys)
+        if room < 5:
+            return [words[:width]]
+        done = round(self.at_s / max(self.length_s, 1e-9) * (room - 1))
+        return [words, ("━" * done, "bold"), "●", ("─" * (room - 1 - done), FAINT), (keys, FAINT)]
+
+
+class ReplayApp(TesterApp):
+    """Shows moments of a run."""
+
+    FIRST = "run"
+    SCREENS_HERE: ClassVar[Tabs] = tuple(tab for tab in TABS if tab[2] in ("run", "results"))
+    EVERYWHERE = HELP
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("left", "seek(-10)", "Back", show=False),
+        Binding("right", "seek(10)", "On", show=False),
+        Binding("shift+left", "seek(-60)", "Back", show=False),
+        Binding("shift+right", "seek(60)", "On", show=False),
+        Binding("pageup", "seek(-600)", "Back", show=False),
+        Binding("pagedown", "seek(600)", "On", show=False),
+        Binding("home", "seek(-1e9)", "Begin", show=False),
+        Binding("end", "seek(1e9)", "End", show=False),
+        Binding("s", "faster", "Faster", show=False),
+    ]
+
+    def __init__(self, playback: Playback, stored: Stored, *, plain: bool = False, theme: str = "") -> None:
+        """``playback``, ``stored``: the run's record and its table."""
+        super().__init__(TuiOptions(plain=plain, start=False, theme=theme, runs=Path(stored.folder).parent))
+        self.playback, self.stored = playback, stored
+        self.at_s = 0.0
+        self.playing = False
+        self.speed = 60.0
+
+    def views(self) -> Iterable[View]:
+        """Return the screens that a record can fill."""
+        yield RunView(plain=self.options.plain, id="run")
+        yield ResultsView(id="results")
+
+    def below(self) -> Iterable[Widget]:
+        """Return the slider."""
+        yield TimeLine(id="time")
+
+    def keys_of(self, view: View) -> Keys:
+        """Return the keys of a replay."""
+        own = (("p", "Plot"), ("e", "Export")) if isinstance(view, ResultsView) else (("l", "Log"),)
+        return (("space", "Play"), ("←→", "10 s"), ("s", "Faster"), *own, ("F1", "Help"), ("q", "Leave"))
+
+    def connect(self) -> None:
+        """Show the run's beginning."""
+        self.query_one(ResultsView).open(self.stored)
+        self.action_seek(0.0)
+        self.set_interval(FRAME_S, self._tick)
+
+    def _tick(self) -> None:
+        if self.playing:
+            self.action_seek(self.speed * FRAME_S)
+            self.playing = self.at_s < self.playback.length_s
+
+    def action_seek(self, by_s: float) -> None:
+        """Go on or back by rig seconds."""
+        self.at_s = min(max(self.at_s + by_s, 0.0), self.playback.length_s)
+        self.playback.show(self.scene, self.at_s)
+        self._show_time()
+        self.scene_changed()
+
+    def _show_time(self) -> None:
+        line = self.screen_stack[0].query_one(TimeLine)
+        line.at_s, line.length_s = self.at_s, self.playback.length_s
+        line.playing, line.speed = self.playing, self.speed
+        line.show(self.scene)
+
+    def action_hold(self) -> None:
+        """Play, or pause."""
+        self.playing = not self.playing
+        self._show_time()
+
+    def action_faster(self) -> None:
+        """Play at the next speed."""
+        self.speed = SPEEDS[(SPEEDS.index(self.speed) + 1) % len(SPEEDS)]
+        self._show_time()
+
+    def action_stop(self) -> None:
+        """There is nothing to stop here."""
+        self.say("a replay has no rig: `tester stop` stops one", problem=True)
+
+    def action_abort(self) -> None:
+        """There is nothing to abort."""
+        self.action_stop()
+
+    def action_resume(self) -> None:
+        """There is nothing to resume."""
+        self.action_stop()
+
+    def action_acknowledge(self) -> None:
+        """There is nothing to acknowledge."""
+        self.action_stop()
+
+    def action_detach(self) -> None:
+        """Leave."""
+        self.exit("")

@@ -1,0 +1,29 @@
+"""Start the service as a process of its own, which outlives the terminal and whoever started it."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+from tester.service.address import folder
+
+COMMAND = "from tester.cli.main import main; main()"
+LOG = "serve.log"
+"""What the service says goes there, in its folder."""
+
+
+def start_service(rig: str, runs: Path) -> None:
+    """Start ``tester serve``; raises OSError. Whether it lives is seen by connecting to it.
+
+    A session of its own: neither the end of the terminal nor a Ctrl+C in it reaches the service. Windows has process
+    groups for that, as documented; not tried.
+    """
+    arguments = [sys.executable, "-c", COMMAND, "serve", "--rig", rig, "--out", str(runs)]
+    detached = 0
+    if sys.platform == "win32":
+        detached = subprocess.CREATE_NEW_PROCESS_GROUP | subprocess.DETACHED_PROCESS
+    with (folder() / LOG).open("ab") as log:
+        subprocess.Popen(
+            arguments, stdin=subprocess.DEVNULL, stdout=log, stderr=log, start_new_session=True, creationflags=detached
+        )

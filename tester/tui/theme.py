@@ -1,0 +1,139 @@
+"""Themes: a grey base, colour for what is not normal. Two of 24-bit colours, one of the 16 every terminal has."""
+
+from __future__ import annotations
+
+from textual.theme import Theme
+
+DARK = Theme(
+    name="grey-dark",
+    primary="#8a8f98",
+    secondary="#767b84",
+    accent="#a9b1bd",
+    foreground="#c9ccd1",
+    background="#17191c",
+    surface="#1d2024",
+    panel="#24282d",
+    warning="#e0a82e",
+    error="#e5484d",
+    success="#8a8f98",
+    dark=True,
+)
+LIGHT = Theme(
+    name="grey-light",
+    primary="#5d636d",
+    secondary="#737983",
+    accent="#3f4650",
+    foreground="#22262b",
+    background="#e9eaec",
+    surface="#f2f3f4",
+    panel="#dcdee1",
+    warning="#9a6700",
+    error="#c11f26",
+    success="#5d636d",
+    dark=False,
+)
+SIXTEEN = Theme(
+    name="grey-16",
+    primary="#c0c0c0",
+    secondary="#c0c0c0",
+    accent="#ffffff",
+    foreground="#c0c0c0",
+    background="#000000",
+    surface="#000000",
+    panel="#000000",
+    warning="#ffff00",
+    error="#ff0000",
+    success="#c0c0c0",
+    dark=True,
+)
+"""The colours are those of the terminal's own palette, so that nothing is blended away."""
+THEMES = {"dark": DARK, "light": LIGHT, "16": SIXTEEN}
+
+CSS = """
+Screen { background: $background; color: $foreground; layers: base; }
+#state, #tabs, #keys { height: 1; width: 100%; }
+#state { background: $panel; }
+#keys { background: $panel; }
+ContentSwitcher { height: 1fr; }
+View { height: 100%; width: 100%; }
+.box { border: round $secondary; padding: 0 1; }
+.trend { width: 1fr; height: 100%; padding: 0; }
+#tiny { display: none; height: 1fr; }
+Screen.-tiny #tiny { display: block; }
+Screen.-tiny ContentSwitcher { display: none; }
+
+#prompt { height: 4; border: heavy $warning; padding: 0 1; }
+#run-left { width: 1fr; }
+#values { height: 8; }
+#progress { height: 3; }
+#trends-1 { height: 1fr; }
+#trends-2 { height: 1fr; display: none; }
+#trend-slip { display: none; }
+#run-right { width: 44; display: none; }
+#steps, #events { height: 1fr; }
+Screen.-wide #values { height: 12; }
+Screen.-wide #trends-2 { display: block; }
+Screen.-wide #run-right { display: block; }
+Screen.-huge #values { height: 15; }
+Screen.-huge #trend-slip { display: block; }
+Screen.-huge #run-right { width: 60; }
+
+#recipe-list { width: 28; height: 100%; }
+#recipe-right { width: 1fr; }
+#recipe-text { height: 1fr; border: round $secondary; padding: 0; }
+#problems { height: auto; max-height: 40%; }
+Screen.-wide #recipe-list { width: 36; }
+OptionList { background: $background; border: round $secondary; padding: 0; }
+OptionList:focus, DataTable:focus { border: round $accent; }
+OptionList > .option-list--option-highlighted { background: $panel; color: $foreground; text-style: none; }
+OptionList:focus > .option-list--option-highlighted { text-style: bold reverse; }
+DataTable { background: $background; border: round $secondary; }
+DataTable > .datatable--cursor { background: $panel; color: $foreground; text-style: none; }
+DataTable:focus > .datatable--cursor { text-style: bold reverse; }
+DataTable > .datatable--header { background: $panel; color: $foreground; text-style: bold; }
+DataTable > .datatable--hover { background: $background; }
+TextArea { background: $background; }
+TextArea .text-area--cursor-line { background: $panel; text-style: bold; }
+TextArea .text-area--cursor-gutter { text-style: bold reverse; }
+
+Dialog { background: transparent; align: center top; }
+Dialog > #box {
+    width: 76; max-width: 100%; height: auto; max-height: 100%; background: $surface; border: heavy $accent;
+    padding: 0 1; overflow-y: auto; margin: 2 0 1 0;
+}
+Dialog .line { height: auto; width: 100%; }
+Dialog .field { height: 1; width: 100%; }
+Dialog .field Static { width: 20; }
+Dialog .field Input { width: 1fr; }
+Dialog .buttons { height: 1; width: 100%; margin-top: 1; }
+Dialog Button { margin-right: 2; }
+Button, Button.-primary { background: $panel; color: $foreground; }
+Button:focus { text-style: bold reverse; }
+Input { background: $panel; color: $foreground; }
+Input:focus { text-style: underline; }
+Checkbox { background: $surface; border: none; padding: 0; }
+Dialog.-tall > #box { width: 100%; height: 100%; }
+
+#manual-values { height: 12; }
+#manual-axes { width: 1fr; height: 100%; }
+#manual-state { height: 5; }
+#manual-events { height: 1fr; }
+#runs { height: 35%; }
+#conditions { height: 1fr; }
+#plot { height: 40%; display: none; }
+Screen.-wide #plot { display: block; }
+Screen.-wide #runs { height: 25%; }
+#devices { height: 10; }
+#buses { height: 6; }
+Screen.-wide #devices { height: 14; }
+#frames { height: 1fr; }
+#filter { display: none; height: 1; }
+#filter.-open { display: block; }
+
+#time { height: 1; width: 100%; }
+ToastRack { margin-bottom: 1; }
+Toast { width: 60; max-width: 80%; background: $panel; padding: 0 1; margin-top: 0; }
+Tooltip { display: none; }
+CommandPalette { background: transparent; }
+CommandPalette > Vertical { background: $surface; margin: 2 0 1 0; }
+"""

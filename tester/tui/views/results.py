@@ -1,0 +1,190 @@
+"""Results: the stored runs, a run's conditions, a plot, a condition's repeats, export."""
+
+from __future__ import annotations
+
+import asyncio
+import sqlite3
+from typing import ClassVar
+
+from pydantic import JsonValue
+from rich.text import Text
+from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+from textual.widgets import DataTable
+
+from tester.service.commands import ListRuns
+from tester.store.schema import StoreError
+from tester.tui.dialogs.export import ExportDialog
+from tester.tui.dialogs.repeats import RepeatsDialog
+from tester.tui.plot import scatter
+from tester.tui.scene import Scene
+from tester.tui.stored import AXES, HEADER, Stored, points, read
+from tester.tui.views.view import Keys, View
+from tester.tui.widgets.panel import FAINT, Panel, Parts, rows
+from tester.tui.words import clean, fit, minutes
+
+RUN_HEADER = ("Run", "Recipe", "Status", "Values", "Rig time", "Started")
+MISSING = (StoreError, OSError, sqlite3.Error)
+HELP = """\
+Above the stored runs, below the conditions of the chosen one in the export's columns, with s (between repeats) and
+n (valid of planned). A wide terminal shows mu against one setpoint; a point's sign is its compound, + is several.
+
+Enter   on a run: read it. On a condition: its repeats, with traces, and why one is not in the mean.
+p       plot against load, slip, temperature, angle.
+e       export a table to a file.
+g       look for runs again.
+Nothing is deleted from here. A repeat is left out of a mean on objective grounds only, which its line names.
+"""
+
+
+class TextTable(DataTable[Text]):
+    """A table of texts that are never taken for markup."""
+
+
+class PlotPanel(Panel):
+    """Mu against a setpoint."""
+
+    stored: Stored | None = None
+    axis = 0
+
+    def picture(self, scene: Scene, width: int, height: int) -> Parts:
+        """Return the plot."""
+        if self.stored is None:
+            return [("no run chosen", FAINT)]
+        lines = scatter(points(self.stored, self.axis), width, height)
+        shown: list[Parts] = [[fit(line, width)] for line in lines]
+        return rows(shown) if shown else [("no values to plot", FAINT)]
+
+
+class ResultsView(View):
+    """What is stored."""
+
+    KEYS: ClassVar[Keys] = (("Enter", "Open"), ("p", "Plot"), ("e", "Export"), ("g", "Look again"), ("space", "Hold"),
+                            ("F1", "Help"), ("q", "Detach"))  # fmt: skip
+    HELP: ClassVar[str | None] = HELP
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("p", "plot", "Plot", show=False),
+        Binding("e", "export", "Export", show=False),
+        Binding("g", "reload", "Look again", show=False),
+    ]
+
+    def __init__(self, *, id: str) -> None:  # noqa: A002 - as in Textual
+        """Nothing is read yet."""
+        super().__init__(id=id)
+        self.names: list[str] = []
+        self.stored: Stored | None = None
+
+    def compose(self) -> ComposeResult:
+        """Lay out the tables."""
+        runs = TextTable(id="runs", cursor_type="row", zebra_stripes=False)
+        runs.add_columns(*(Text(title) for title in RUN_HEADER))
+        conditions = TextTable(id="conditions", cursor_type="row")
+        conditions.add_columns(*(Text(title) for title in HEADER))
+        runs.border_title, conditions.border_title = "Runs", "Conditions"
+        yield runs
+        yield conditions
+        yield PlotPanel(id="plot", classes="box")
+
+    @property
+    def runs_table(self) -> TextTable:
+        """Return the table of the runs."""
+        return self.query_one("#runs", TextTable)
+
+    @property
+    def conditions_table(self) -> TextTable:
+        """Return the table of the conditions."""
+        return self.query_one("#conditions", TextTable)
+
+    def enter(self) -> None:
+        """Begin at the runs, as they are now."""
+        self.runs_table.focus()
+        self.action_reload()
+
+    def action_reload(self) -> None:
+        """Look for runs again."""
+        if self.host.options.view_only or self.host.link is None:
+            return
+        self.runs_table.border_title = "Runs: looking …"
+        self.run_worker(self._list(), group="runs", exclusive=True, exit_on_error=False)
+
+    async def _list(self) -> None:
+        answer = await self.host.ask(ListRuns())
+        found = answer.get("runs") if isinstance(answer, dict) else None
+        if isinstance(found, list) and self.is_attached:
+            self.fill([one for one in reversed(found) if isinstance(one, dict)])
+
+    def fill(self, runs: list[dict[str, JsonValue]]) -> None:
+        """Show these runs, `tester runs --json`, the newest first."""
+        table = self.runs_table
+        before = table.cursor_row
+        table.clear()
+        self.names = [str(one.get("run", "")) for one in runs]
+        for one in runs:
+            table.add_row(*(Text(cell) for cell in run_cells(one)))
+        if before < len(runs):
+            table.move_cursor(row=before)
+        table.border_title = f"Runs: {len(runs)}"
+
+    def on_data_table_row_selected(self, event: DataTable.RowSelected) -> None:
+        """Enter: read a run, or show a condition's repeats."""
+        event.stop()
+        if self.runs_table.has_focus:
+            if event.cursor_row < len(self.names):
+                name = self.names[event.cursor_row]
+                self.run_worker(self._open(name), group="open", exclusive=True, exit_on_error=False)
+        elif self.stored is not None and event.cursor_row < len(self.stored.rows):
+            self.host.push_screen(RepeatsDialog(self.stored, self.stored.rows[event.cursor_row]))
+
+    async def _open(self, name: str) -> None:
+        self.conditions_table.border_title = "reading …"
+        try:
+            stored = await asyncio.to_thread(read, name, self.host.options.runs)
+        except MISSING as error:
+            self.conditions_table.border_title = "Conditions"
+            self.host.say(f"{name} cannot be read: {error}", problem=True)
+            return
+        if self.is_attached:
+            self.open(stored)
+            self.conditions_table.focus()
+
+    def open(self, stored: Stored) -> None:
+        """Show a run's conditions."""
+        self.stored = stored
+        table = self.conditions_table
+        table.clear()
+        for row in stored.rows:
+            table.add_row(*(Text(clean(cell, 80)) for cell in row.cells))
+        table.border_title = Text(f"{clean(stored.name)}: {clean(stored.recipe)}, {clean(stored.status)}")
+        self._plot(0)
+
+    def _plot(self, axis: int) -> None:
+        panel = self.query_one(PlotPanel)
+        panel.stored, panel.axis = self.stored, axis % len(AXES)
+        name, unit = AXES[panel.axis]
+        panel.border_title = f"mu against {name} ({unit})"
+        panel.redraw()
+
+    def action_plot(self) -> None:
+        """Plot against the next axis."""
+        panel = self.query_one(PlotPanel)
+        if not panel.display:
+            self.host.say("the plot needs a wider terminal (110 by 34)")
+        self._plot(panel.axis + 1)
+
+    def action_export(self) -> None:
+        """Ask what to export, and where."""
+        at = self.runs_table.cursor_row
+        name = self.stored.name if self.stored is not None else self.names[at] if at < len(self.names) else ""
+        if name and not self.host.options.view_only:
+            self.host.push_screen(ExportDialog(name, self.host.options.runs))
+        else:
+            self.host.say("choose a run first")
+
+
+def run_cells(run: dict[str, JsonValue]) -> tuple[str, ...]:
+    """Return a run's cells of RUN_HEADER."""
+    seconds = run.get("rig_seconds")
+    time = minutes(seconds) if isinstance(seconds, int | float) else "—"
+    values = f"{run.get('values', '?')}/{run.get('conditions', '?')}"
+    texts = (run.get("run", ""), run.get("recipe", ""), run.get("status", ""), values, time, run.get("started_utc", ""))
+    return tuple(clean(str(text), 60) for text in texts)

@@ -1,0 +1,144 @@
+"""The fixed lines: 1 the state, 2 the screens or the alarm that wants acknowledging, last the keys with STOP."""
+
+from __future__ import annotations
+
+from tester.service.state import Alarm, StateView
+from tester.tui.scene import STALE_S, Scene
+from tester.tui.widgets.panel import ABNORMAL, FAINT, NOTICE, WARNING, Panel, Part, Parts
+from tester.tui.words import clean, clock_text, fit, hours, number
+
+Tabs = tuple[tuple[str, str, str], ...]
+TABS: Tabs = (("f2", "Recipes", "recipes"), ("f3", "Run", "run"), ("f4", "Manual", "manual"),
+        ("f5", "Results", "results"), ("f6", "Bus", "bus"))  # fmt: skip
+"""Key, title, id of each screen."""
+CALM_MODES = frozenset({"RUN", "IDLE", "OFFLINE", "ARMED", "CONNECTING", "MANUAL"})
+TRIPPED_MODES = frozenset({"FAST STOP", "LATCHED", "E-STOP"})
+ALARM_SIGNS = {"active": "■", "acknowledged": "▣", "returned": "◇"}
+ALARM_STYLES = {1: ABNORMAL, 2: WARNING, 3: NOTICE}
+STOP_KEYS = " F12 STOP "
+
+
+class StateLine(Panel):
+    """Line 1: mode, alarms, condition, repeat, time left and clock at the end, compound."""
+
+    def picture(self, scene: Scene, width: int, height: int) -> Parts:
+        """Return the line."""
+        state = scene.state
+        if state is None:
+            why = clean(scene.lost) or "looking for the service"
+            return [(" NO LINK ", WARNING), fit(f" {why}", width - 9)]
+        parts: Parts = [_mode(scene, state), *_link(scene), "  ", _count(state.alarms)]
+        parts += [fit(piece, width) for piece in _where(scene, state, width)]
+        return _cut(parts, width)
+
+
+def _mode(scene: Scene, state: StateView) -> Part:
+    text = f" {'REPLAY' if scene.replayed else clean(state.mode, 20)} "
+    if not scene.linked:
+        return text.replace(" ", "?", 1), FAINT
+    if state.mode in TRIPPED_MODES:
+        return text, ABNORMAL
+    return (text, "bold") if state.mode in CALM_MODES else (text, WARNING)
+
+
+def _link(scene: Scene) -> Parts:
+    if scene.linked:
+        return []
+    return [(f" NO LINK {max(scene.age_s, STALE_S if not scene.lost else 0.0):.0f} s ", ABNORMAL)]
+
+
+def _count(alarms: tuple[Alarm, ...]) -> Part:
+    waiting = [one for one in alarms if one.state != "acknowledged"]
+    if not alarms:
+        return "□ 0 alarms"
+    text = f"{'■' if waiting else '▣'} {len(alarms)} alarm{'s' if len(alarms) > 1 else ''}"
+    return text, ALARM_STYLES[min(one.priority for one in alarms)] if waiting else NOTICE
+
+
+def _where(scene: Scene, state: StateView, width: int) -> list[str]:
+    """Return what fits beside mode and alarms, the more important first."""
+    progress, run = state.progress, state.run
+    pieces: list[str] = []
+    if progress.conditions:
+        pieces.append(f"  cond {progress.condition}/{progress.conditions}")
+    if progress.repeats:
+        pieces.append(f"  rep {progress.repeat}/{progress.repeats}")
+    if progress.steps and progress.left_s is not None:
+        end = f" → {clock_text(progress.finish_utc)}" if progress.finish_utc else ""
+        pieces.append(f"  left {hours(progress.left_s)}{end}")
+    if run is not None and run.compound:
+        pieces.append(f"  {clean(run.compound, 20)} {clean(run.note, 30)}".rstrip())
+    if scene.view_only:
+        pieces.append("  view only")
+    elif not scene.controls and not scene.replayed:
+        who = clean(state.clients.controller, 30)
+        pieces.append(f"  watching, {who} controls" if who else "  watching")
+    return pieces
+
+
+def _cut(parts: Parts, width: int) -> Parts:
+    """Return as many of the parts as fit, whole ones."""
+    kept: Parts = []
+    used = 0
+    for part in parts:
+        text = part if isinstance(part, str) else part[0]
+        if used + len(text) > width:
+            break
+        kept.append(part)
+        used += len(text)
+    return kept
+
+
+class TabLine(Panel):
+    """Line 2: the screens; in their place the top alarm while one is not acknowledged."""
+
+    current = "recipes"
+    tabs: Tabs = TABS
+
+    def picture(self, scene: Scene, width: int, height: int) -> Parts:
+        """Return the line."""
+        alarm = scene.top_alarm()
+        if alarm is not None:
+            key = f" [{alarm_key(alarm)}] "
+            text = fit(f" {alarm_words(alarm)}", width - len(key))
+            return [(text.ljust(width - len(key)) + key, ALARM_STYLES[alarm.priority])]
+        parts: Parts = []
+        for key, title, name in self.tabs:
+            label = f" {key.upper()} {title} "
+            parts.append((label, "bold reverse") if name == self.current else label)
+        return _cut(parts, width)
+
+
+def alarm_words(alarm: Alarm) -> str:
+    """Return an alarm in a line: what, value, limit, what it means, what happens next."""
+    text = f"{ALARM_SIGNS[alarm.state]} P{alarm.priority} {clean(alarm.name)}"
+    if alarm.value is not None:
+        limit = f" (limit {number(alarm.limit, 1)})" if alarm.limit is not None else ""
+        text += f" {number(alarm.value, 1)} {clean(alarm.unit)}{limit}"
+    gone = ", gone by itself" if alarm.state == "returned" else ""
+    then = f"; {clean(alarm.consequence)}" if alarm.consequence else ""
+    return f"{text}: {clean(alarm.text)}{gone}{then}"
+
+
+def alarm_key(alarm: Alarm) -> str:
+    """Return the key that answers an alarm."""
+    return "r resume" if alarm.command == "release" else "a acknowledge"
+
+
+class KeyLine(Panel):
+    """The last line: the keys that do something here, and STOP, which is always there."""
+
+    keys: tuple[tuple[str, str], ...] = ()
+
+    def picture(self, scene: Scene, width: int, height: int) -> Parts:
+        """Return the line: STOP first where there is no room for more."""
+        stop: Part = (STOP_KEYS, "bold reverse") if not scene.view_only else " view only: `tester stop` "
+        room = width - len(stop if isinstance(stop, str) else stop[0])
+        parts: Parts = []
+        for key, label in self.keys:
+            text = f"  {key} {label}"
+            if len(text) > room:
+                break
+            parts += ["  " if parts else " ", (key, "bold"), f" {label}"]
+            room -= len(text)
+        return [*parts, " ", stop] if room else [*parts, stop]

@@ -1,0 +1,79 @@
+"""Where the run is: campaign, repeat, and the step under way with its soak."""
+
+from __future__ import annotations
+
+from tester.service.state import Gate, ProgressView, SoakView
+from tester.tui.scene import Scene
+from tester.tui.widgets.panel import FAINT, NOTICE, Panel, Parts, rows
+from tester.tui.words import clean, fit, hours, minutes, number
+
+DONE, LEFT = "━", "─"
+NAME = 10
+
+
+class ProgressPanel(Panel):
+    """Three lines."""
+
+    def picture(self, scene: Scene, width: int, height: int) -> Parts:
+        """Return campaign, repeat, step."""
+        state = scene.state
+        if state is None:
+            return []
+        progress = state.progress
+        if not progress.steps:
+            return idle_words(scene, width)
+        share = min(max(progress.share, 0.0), 1.0)
+        whole = _line("Campaign", share, f"{100 * share:3.0f} %   {hours(progress.left_s)} h left", width)
+        return rows([whole, _repeat(progress, width), _step(progress, state.soak, state.gates, width)])
+
+
+def idle_words(scene: Scene, width: int) -> Parts:
+    """Return what there is to say while no run is under way."""
+    state = scene.state
+    if state is None:
+        return []
+    lines: list[Parts] = [[fit(f" {clean(state.mode)}: {clean(state.mode_text)}", width)]]
+    run = state.run
+    if run is not None and run.outcome != "running":
+        reason = f": {clean(run.reason)}" if run.reason else ""
+        lines.append([fit(f" Last run {clean(run.name)} {clean(run.outcome)}{reason}", width)])
+        if run.missing:
+            lines.append([fit(f" Without a value: {'; '.join(clean(one) for one in run.missing)}", width)])
+    if len(lines) < 3 and state.interrupted:
+        lines.append([(fit(f" {clean(state.interrupted[-1])} was cut off: r resumes it", width), NOTICE)])
+    if len(lines) < 3:
+        lines.append([(fit(" F2 chooses a recipe", width), FAINT)])
+    return rows(lines)
+
+
+def _line(name: str, share: float, words: str, width: int) -> Parts:
+    room = max(min(width - NAME - len(words) - 4, 60), 0)
+    done = round(share * room)
+    return [f" {name:<{NAME}}", (DONE * done, "bold"), (LEFT * (room - done), FAINT), f" {words}"]
+
+
+def _repeat(progress: ProgressView, width: int) -> Parts:
+    wanted = progress.revolutions_wanted
+    if not progress.repeats or wanted <= 0.0:
+        return [f" {'This rep':<{NAME}}", ("—", FAINT)]
+    share = min(progress.revolutions / wanted, 1.0)
+    words = f"{100 * share:3.0f} %   {progress.revolutions:.0f} / {wanted:.0f} revolutions"
+    return _line("This rep", share, f"{words}, burst {progress.burst}" if progress.burst else words, width)
+
+
+def _step(progress: ProgressView, soak: SoakView | None, gates: tuple[Gate, ...], width: int) -> Parts:
+    text = f" {progress.step}/{progress.steps} {clean(progress.title)}"
+    if progress.phase:
+        text += f": {clean(progress.phase)}"
+    if soak is not None:
+        words = soak_words(soak)
+        return [fit(text, max(width - len(words) - 3, 0)), "   ", fit(words, width)]
+    if progress.burst and (closed := [clean(gate.key) for gate in gates if not gate.open]):
+        text += f"   waits for {', '.join(closed)}"
+    return [fit(text, width)]
+
+
+def soak_words(soak: SoakView) -> str:
+    """Return a soak in words: 39.6 of 40.0 ± 1.0 °C, in band 3:10 of 10:00."""
+    band = f"{number(soak.surface_c, 1)} of {soak.target_c:.1f} ± {soak.within_k:.1f} °C"
+    return f"{band}, in band {minutes(soak.in_band_s)} of {minutes(soak.for_s)}"

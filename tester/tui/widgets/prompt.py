@@ -1,0 +1,29 @@
+"""A question that waits for a person; the answer is recorded."""
+
+from __future__ import annotations
+
+from tester.tui.scene import Scene
+from tester.tui.widgets.panel import WARNING, Panel, Parts
+from tester.tui.words import clean, clock_text, fit
+
+
+class PromptPanel(Panel):
+    """Shown while a question waits."""
+
+    def show(self, scene: Scene) -> None:
+        """Appear with the question, and vanish with it."""
+        self.display = scene.state is not None and scene.state.prompt is not None
+        super().show(scene)
+
+    def picture(self, scene: Scene, width: int, height: int) -> Parts:
+        """Return question and keys."""
+        if scene.state is None or scene.state.prompt is None:
+            return []
+        prompt = scene.state.prompt
+        since = clock_text(prompt.utc)
+        return [
+            (" ? ", WARNING),
+            fit(f" {clean(prompt.text)}  (waits since {since})", width - 4),
+            "\n",
+            fit("    Enter: done, answer it   y: yes at once", width),
+        ]

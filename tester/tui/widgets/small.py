@@ -1,0 +1,21 @@
+"""What is left when the terminal is too small for a screen."""
+
+from __future__ import annotations
+
+from tester.tui.scene import Scene
+from tester.tui.widgets.panel import Panel, Parts, rows
+from tester.tui.words import clean, fit
+
+
+class SmallPanel(Panel):
+    """That the run goes on, the question that waits, why the rig is in its mode."""
+
+    def picture(self, scene: Scene, width: int, height: int) -> Parts:
+        """Return some lines."""
+        texts = ["terminal too small,", "the run continues"]
+        if scene.state is not None:
+            if scene.state.prompt is not None:
+                texts.append(f"asks: {clean(scene.state.prompt.text)}")
+            texts.append(clean(scene.state.mode_text))
+        lines: list[Parts] = [[fit(text, width)] for text in texts[:height]]
+        return rows(lines)

@@ -1,0 +1,106 @@
+"""Trends: ten minutes of one value, with its setpoint, band and limits drawn in; the y range does not jump."""
+
+from __future__ import annotations
+
+from textual.content import Content
+
+from tester.service.protocol import SNAPSHOT_S, TREND_ROWS
+from tester.tui.plot import LIMIT, WISH, Bin, Canvas, Range
+from tester.tui.scene import Scene
+from tester.tui.widgets.panel import FAINT, Panel, Part, Parts
+from tester.tui.words import clean, number
+
+WINDOW_S = SNAPSHOT_S * TREND_ROWS
+LABELS = 7
+"""Columns of the y labels."""
+
+
+class Bins:
+    """Least and greatest value of each stretch of time; each new row of the trend costs one look."""
+
+    def __init__(self, column: int, count: int, epoch: int) -> None:
+        """``column``: of the trend's rows; ``count``: stretches in the window."""
+        self.column, self.count, self.epoch = column, count, epoch
+        self.bins: list[Bin | None] = []
+        self._first = 0
+        self._seen = float("-inf")
+
+    def take(self, row: tuple[float | None, ...]) -> None:
+        """Take in a row, if it is a newer one."""
+        wall_s = row[0]
+        if wall_s is None or wall_s <= self._seen:
+            return
+        self._seen = wall_s
+        slot = int(wall_s / WINDOW_S * self.count)
+        if not self.bins:
+            self._first = slot
+        while self._first + len(self.bins) <= slot:
+            if slot - self._first - len(self.bins) > self.count:
+                self._first, self.bins = slot, []
+            self.bins.append(None)
+        y = row[self.column]
+        if y is not None:
+            known = self.bins[-1]
+            self.bins[-1] = (y, y) if known is None else (min(known[0], y), max(known[1], y))
+        if len(self.bins) > 2 * self.count:
+            self._first += len(self.bins) - self.count
+            del self.bins[: len(self.bins) - self.count]
+
+
+class TrendPanel(Panel):
+    """One value's trend."""
+
+    def __init__(self, key: str, column: str, least: float, *, plain: bool = False, id: str | None = None) -> None:  # noqa: A002
+        """``least``: narrowest y range, in the value's unit."""
+        super().__init__(id=id, classes="trend box")
+        self.key, self.column, self.plain = key, column, plain
+        self._range = Range(least=least)
+        self._bins: Bins | None = None
+        self._title = ""
+
+    def picture(self, scene: Scene, width: int, height: int) -> Parts:
+        """Return the plot, and have the title say the value."""
+        value = scene.value(self.key)
+        if value is None or self.column not in scene.columns:
+            return ["—"]
+        canvas = Canvas(max(width - LABELS, 4), height, plain=self.plain)
+        bins = self._take(scene, canvas.columns)
+        known = [one for one in bins[-canvas.columns :] if one is not None]
+        ends = [y for one in known for y in one] + ([value.setpoint] if value.setpoint is not None else [])
+        self._entitle(f"{clean(value.label)} {number(value.value, value.decimals)}", value.setpoint, value.decimals)
+        if not ends:
+            return [("no data yet", FAINT)]
+        scale = self._range
+        scale.cover(min(ends), max(ends))
+        for y, sign in ((value.low, LIMIT), (value.high, LIMIT), (value.band_low, "·"), (value.band_high, "·"),
+                        (value.setpoint, WISH)):  # fmt: skip
+            canvas.level(y, sign, scale)
+        canvas.bins(bins, scale)
+        return self._labelled(canvas.lines(), scale, faint=not scene.linked)
+
+    def _take(self, scene: Scene, count: int) -> list[Bin | None]:
+        bins = self._bins
+        if bins is None or bins.count != count or bins.epoch != scene.epoch:
+            bins = self._bins = Bins(scene.columns.index(self.column), count, scene.epoch)
+            for row in scene.trend:
+                bins.take(row)
+        elif scene.trend:
+            bins.take(scene.trend[-1])
+        return bins.bins
+
+    def _entitle(self, text: str, setpoint: float | None, decimals: int) -> None:
+        title = text if setpoint is None else f"{text} ── SP {number(setpoint, decimals)}"
+        if title != self._title:
+            self._title = title
+            self.border_title = Content(title)
+
+    @staticmethod
+    def _labelled(lines: list[str], scale: Range, *, faint: bool) -> Parts:
+        digits = 0 if scale.high - scale.low >= 10.0 else 1 if scale.high - scale.low >= 1.0 else 2
+        labels = {0: f"{scale.high:.{digits}f}", len(lines) - 1: f"{scale.low:.{digits}f}"}
+        parts: Parts = []
+        for at, line in enumerate(lines):
+            text = f"{labels.get(at, ''):>{LABELS - 1}} "
+            drawn: Part = (line, FAINT) if faint else line
+            parts += ["\n" if at else "", (text, FAINT), drawn]
+        return parts

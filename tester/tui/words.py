@@ -1,0 +1,69 @@
+"""Numbers, times and foreign text as the screens write them."""
+
+from __future__ import annotations
+
+import unicodedata
+from datetime import datetime
+
+REPLACEMENT = "\N{REPLACEMENT CHARACTER}"
+NOTHING = "—"
+"""Stands where there is no value."""
+HIDDEN = frozenset({"Cc", "Cf", "Cs", "Co", "Cn", "Zl", "Zp", "Mn", "Me"})
+"""Unicode categories that move the cursor, turn the writing around or cannot be seen."""
+
+
+def clean(text: str, limit: int = 2000) -> str:
+    """Return a text from outside in one line, as it can be shown: what is not a visible character is replaced.
+
+    One character stands for one, so that columns stay where they are. ``limit``: characters kept.
+    """
+    return "".join(" " if c == "\t" else REPLACEMENT if unicodedata.category(c) in HIDDEN else c for c in text[:limit])
+
+
+def clean_lines(text: str) -> str:
+    """Return a text of several lines the same way, its line ends kept."""
+    return "\n".join(clean(line) for line in text.split("\n"))
+
+
+def number(value: float | None, decimals: int) -> str:
+    """Return a number with so many decimals; a dash where there is none."""
+    return NOTHING if value is None else f"{value:.{decimals}f}"
+
+
+def hours(seconds: float | None) -> str:
+    """Return a time left as h:mm."""
+    if seconds is None:
+        return "?"
+    minutes = int(max(seconds, 0.0) + 30.0) // 60
+    return f"{minutes // 60}:{minutes % 60:02d}"
+
+
+def minutes(seconds: float | None) -> str:
+    """Return a duration as m:ss, from an hour on as h:mm:ss."""
+    if seconds is None:
+        return "?"
+    whole = int(max(seconds, 0.0) + 0.5)
+    if whole < 3600:
+        return f"{whole // 60}:{whole % 60:02d}"
+    return f"{whole // 3600}:{whole // 60 % 60:02d}:{whole % 60:02d}"
+
+
+def clock_text(utc: str, *, seconds: bool = False) -> str:
+    """Return the local time of day of an ISO 8601 text in UTC; the text itself where it is none."""
+    try:
+        moment = local(datetime.fromisoformat(utc))
+    except ValueError:
+        return clean(utc, 20)
+    return moment.strftime("%H:%M:%S" if seconds else "%H:%M")
+
+
+def local(moment: datetime) -> datetime:
+    """Return a moment in the time zone of the machine."""
+    return moment.astimezone()
+
+
+def fit(text: str, width: int) -> str:
+    """Return a text cut to so many characters, with an ellipsis where something is missing."""
+    if width <= 0:
+        return ""
+    return text if len(text) <= width else text[: width - 1] + "…"

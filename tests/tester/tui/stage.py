@@ -1,0 +1,146 @@
+"""A screen in front of a service that the test plays, and what is on it as text."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import AsyncIterator, Awaitable, Callable
+from contextlib import asynccontextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+from pydantic import JsonValue
+from textual.pilot import Pilot
+
+from tester.service.commands import Action, CheckRecipe, ListRuns, Query, ShowPlan
+from tester.service.queries import Queries
+from tester.service.state import TREND_COLUMNS, PlanView, StateView
+from tester.tui.app import TesterApp
+from tester.tui.host import TuiOptions
+from tester.tui.views.recipes import RecipesView
+from tests.tester.service.fake import FakeService
+from tests.tester.service.views import plan as a_plan
+from tests.tester.service.views import state as a_state
+
+PLAN: JsonValue = {"conditions": 2, "rig_seconds": 2700.0, "sliding_m": 120.0, "loss_mm": 0.2, "wheels": 1, "steps": []}
+
+
+@dataclass(slots=True)
+class PlayedQueries(Queries):
+    """Answers at once, without processes: every recipe is as good as its text says."""
+
+    async def answer(self, question: Query) -> JsonValue:
+        """Return what the service would."""
+        if isinstance(question, ListRuns):
+            return {"runs": []}
+        if isinstance(question, ShowPlan):
+            return PLAN
+        bad = isinstance(question, CheckRecipe) and "wrong" in question.text
+        return {"problems": [{"line": 3, "column": 5, "message": "load: expected a unit [/x]"}] if bad else []}
+
+
+@dataclass(slots=True)
+class Stage:
+    """The service, the screen and its pilot. ``now``: the screen's clock, s."""
+
+    fake: FakeService
+    app: TesterApp
+    pilot: Pilot[str]
+    now: list[float]
+
+    async def until(self, true: Callable[[], bool], what: str) -> None:
+        """Let both work until something is so."""
+        for _ in range(400):
+            if true():
+                return
+            await self.pilot.pause()
+            await asyncio.sleep(0)
+        raise AssertionError(f"{what}: never\n{self.text()}")
+
+    async def show(self, view: StateView, plan: PlanView | None = None) -> None:
+        """Have the service send a state, and wait until the screen has it."""
+        if plan is not None:
+            self.fake.plan(plan)
+            await self.until(lambda: self.app.scene.plan == plan, "the plan arrives")
+        self.fake.show(view)
+        await self.until(lambda: self.app.scene.state == view, "the state arrives")
+        await self.pilot.pause()
+
+    async def ordered(self, kind: type) -> Action:
+        """Wait until the service has got an order of this kind, and return it."""
+        await self.until(lambda: any(isinstance(o.action, kind) for o in self.fake.orders), kind.__name__)
+        return next(o.action for o in reversed(self.fake.orders) if isinstance(o.action, kind))
+
+    def checked(self) -> bool:
+        """Return whether every recipe has been checked."""
+        view = self.app.screen_stack[0].query_one(RecipesView)
+        return self.app.options.view_only or all(str(one.path) in view.checked for one in view.recipes)
+
+    def text(self) -> str:
+        """Return what is on the screen, a line a row."""
+        return screen_text(self.app)
+
+    def line(self, number: int) -> str:
+        """Return one row, from 0, also from the end."""
+        return self.text().split("\n")[number]
+
+
+def screen_text(app: TesterApp) -> str:
+    """Return what is on the screen, dialogs included."""
+    strips = app.screen._compositor.render_strips()  # the only way to the composed picture
+    return "\n".join("".join(segment.text for segment in strip).rstrip() for strip in strips)
+
+
+def colours(app: TesterApp) -> set[str]:
+    """Return the colours that leave for the terminal."""
+    strips = app.screen._compositor.render_strips()
+    styles = [segment.style for strip in strips for segment in strip if segment.style is not None]
+    return {str(colour) for style in styles for colour in (style.color, style.bgcolor) if colour is not None}
+
+
+def trend() -> list[tuple[float | None, ...]]:
+    """Return two minutes of a trend that rises and waves, the same every time."""
+    rows: list[tuple[float | None, ...]] = []
+    for number in range(480):
+        known: dict[str, float | None] = dict.fromkeys(TREND_COLUMNS, 0.0)
+        known["wall_s"] = 0.25 * number
+        known["friction"] = 0.70 + 0.01 * (number % 7)
+        known["surface_c"] = 38.0 + 0.005 * number
+        known["load_n"] = 199.0 + number % 3
+        known["slip_mm_s"] = 299.0 + number % 5
+        rows.append(tuple(known[column] for column in TREND_COLUMNS))
+    return rows
+
+
+@asynccontextmanager
+async def stage(
+    folder: Path, size: tuple[int, int] = (80, 24), *, plain: bool = False, view_only: bool = False, theme: str = "dark"
+) -> AsyncIterator[Stage]:
+    """Open a screen of some size before a service that has one recipe to offer."""
+    now = [100.0]
+    async with FakeService(folder) as fake:
+        fake.gateway.queries = PlayedQueries(folder)
+        for row in trend():
+            fake.show(a_state(), row)
+        options = TuiOptions(
+            address=fake.address, plain=plain, view_only=view_only, theme=theme, recipe_folder=folder,
+            runs=folder / "runs",
+        )  # fmt: skip
+        app = TesterApp(options, lambda: now[0])
+        async with app.run_test(size=size, notifications=True) as pilot:
+            made = Stage(fake, app, pilot, now)
+            await made.until(lambda: app.scene.state is not None, "the service is found")
+            fake.plan(a_plan())
+            await made.show(a_state())
+            yield made
+
+
+def play(
+    scene: Callable[[Stage], Awaitable[None]], folder: Path, size: tuple[int, int] = (80, 24), **kind: bool
+) -> None:
+    """Carry out a test on a stage of its own."""
+
+    async def act() -> None:
+        async with stage(folder, size, **kind) as on:
+            await scene(on)
+
+    asyncio.run(act())

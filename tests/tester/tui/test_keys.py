@@ -1,0 +1,182 @@
+"""What the keys order, and what must be seen first."""
+
+from __future__ import annotations
+
+from contextlib import nullcontext
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from tester.service.commands import Acknowledge, Answer, Arm, Hold, Jog, Release, RunRecipe, Stop, Tare, WatchFrames
+from tester.service.state import ManualView
+from tester.tui.app import TesterApp
+from tests.tester.service.views import state as a_state
+from tests.tester.service.views import with_alarm, with_prompt
+from tests.tester.tui.stage import Stage, play
+
+
+def test_space_holds_from_another_screen_without_a_question(tmp_path: Path) -> None:
+    async def act(on: Stage) -> None:
+        await on.pilot.press("space")
+        await on.ordered(Hold)
+
+    play(act, tmp_path)
+
+
+def test_going_on_after_hold_needs_the_list_and_enter(tmp_path: Path) -> None:
+    async def act(on: Stage) -> None:
+        await on.show(a_state("HOLD"))
+        await on.pilot.press("f3", "r")
+        assert "guard closed" in on.text() and not on.fake.orders
+        await on.pilot.press("enter")
+        await on.ordered(Release)
+
+    play(act, tmp_path)
+
+
+def test_abort_needs_its_word(tmp_path: Path) -> None:
+    async def act(on: Stage) -> None:
+        await on.pilot.press("f3", "x", "n", "o", "enter")
+        assert not on.fake.orders
+        await on.pilot.press("backspace", "backspace", *"abort", "enter")
+        await on.ordered(Stop)
+
+    play(act, tmp_path)
+
+
+def test_acknowledging_names_the_alarm_of_line_two(tmp_path: Path) -> None:
+    async def act(on: Stage) -> None:
+        await on.show(with_alarm(a_state()))
+        assert "P1 overload 461.0 N (limit 450.0)" in on.line(1) and "[a acknowledge]" in on.line(1)
+        await on.pilot.press("a")
+        assert await on.ordered(Acknowledge) == Acknowledge(1)
+
+    play(act, tmp_path)
+
+
+def test_the_answer_to_a_prompt_is_sent_as_it_is_typed(tmp_path: Path) -> None:
+    async def act(on: Stage) -> None:
+        await on.show(with_prompt(a_state()))
+        await on.pilot.press("f3", "enter", *"by me", "enter")
+        assert await on.ordered(Answer) == Answer(1, "by me")
+
+    play(act, tmp_path)
+
+
+def test_enter_twice_on_quickstart_starts_it_after_the_list_was_shown(tmp_path: Path) -> None:
+    async def act(on: Stage) -> None:
+        await on.until(lambda: on.checked(), "the recipes are checked")
+        await on.pilot.press("enter")
+        assert "disk space: 50 GB free" in on.text() and not on.fake.orders
+        await on.pilot.press("enter")
+        order = await on.ordered(RunRecipe)
+        assert isinstance(order, RunRecipe) and order.recipe == "quickstart" and order.speed == 1.0 and not order.yes
+        await on.until(lambda: "Process" in on.text(), "the run screen is shown")
+
+    play(act, tmp_path)
+
+
+def test_a_recipe_with_a_problem_leads_to_its_line_and_does_not_start(tmp_path: Path) -> None:
+    (tmp_path / "recipes").mkdir()
+    (tmp_path / "recipes" / "mine.yaml").write_text("recipe: mine\nb: 1\nload: wrong\n", encoding="utf-8")
+
+    async def act(on: Stage) -> None:
+        await on.until(lambda: on.checked(), "the recipes are checked")
+        await on.pilot.press("end")
+        assert "✘ 1 mine" in on.text()
+        await on.pilot.press("enter")
+        assert on.app.query_one("#recipe-text").cursor_location[0] == 2  # type: ignore[attr-defined]
+        assert not on.fake.orders
+
+    play(act, tmp_path)
+
+
+def test_editing_a_shipped_recipe_makes_a_copy_and_checks_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    edited: list[str] = []
+
+    def edit(command: list[str], **_: bool) -> None:
+        edited.extend(command)
+        Path(command[-1]).write_text("recipe: wrong\n", encoding="utf-8")
+
+    monkeypatch.setenv("EDITOR", "some editor")
+    monkeypatch.delenv("VISUAL", raising=False)
+    monkeypatch.setattr("tester.tui.views.recipes.subprocess.run", edit)
+    monkeypatch.setattr(TesterApp, "suspend", lambda app: nullcontext())  # no terminal here to give away
+
+    async def act(on: Stage) -> None:
+        await on.until(lambda: on.checked(), "the recipes are checked")
+        await on.pilot.press("e")
+        await on.until(lambda: "✘ 1 my-quickstart" in on.text(), "the copy is checked")
+        assert edited == ["some", "editor", str(tmp_path / "recipes" / "my-quickstart.yaml")]
+
+    play(act, tmp_path)
+
+
+def test_a_key_press_by_hand_is_one_step_and_only_while_armed(tmp_path: Path) -> None:
+    async def act(on: Stage) -> None:
+        await on.pilot.press("f4", "right")
+        assert not [o for o in on.fake.orders if isinstance(o.action, Jog)]
+        await on.pilot.press("m")
+        await on.ordered(Arm)
+        await on.show(replace(a_state("MANUAL"), manual=ManualView(60.0, "")))
+        await on.pilot.press("down", "right")
+        assert await on.ordered(Jog) == Jog("belt", 1)
+        await on.pilot.press("t")
+        await on.ordered(Tare)
+
+    play(act, tmp_path)
+
+
+def test_leaving_the_manual_screen_disarms(tmp_path: Path) -> None:
+    async def act(on: Stage) -> None:
+        clients = replace(a_state().clients, controller_id=1)
+        number = on.app.link.client.number if on.app.link is not None and on.app.link.client is not None else 0
+        armed = replace(a_state("MANUAL"), manual=ManualView(60.0, ""), clients=replace(clients, controller_id=number))
+        await on.pilot.press("f4")
+        await on.show(armed)
+        await on.pilot.press("f3")
+        assert await on.ordered(Arm) == Arm(on=False)
+
+    play(act, tmp_path)
+
+
+def test_frames_are_asked_for_only_while_they_are_looked_at(tmp_path: Path) -> None:
+    async def act(on: Stage) -> None:
+        await on.pilot.press("f6")
+        await on.until(lambda: on.fake.presence.frames, "frames are asked for")
+        await on.pilot.press("f3")
+        await on.until(lambda: not on.fake.presence.frames, "frames are not asked for any more")
+        assert not [o for o in on.fake.orders if isinstance(o.action, WatchFrames)]
+
+    play(act, tmp_path)
+
+
+def test_an_old_state_is_no_state(tmp_path: Path) -> None:
+    async def act(on: Stage) -> None:
+        await on.pilot.press("f3")
+        on.now[0] += 12.0
+        on.app.scene_changed()
+        await on.pilot.pause()
+        assert "NO LINK 12 s" in on.line(0) and "199.6?" in on.text()
+
+    play(act, tmp_path)
+
+
+def test_a_lost_service_is_said_and_found_again(tmp_path: Path) -> None:
+    async def act(on: Stage) -> None:
+        client = on.app.link.client if on.app.link is not None else None
+        assert client is not None
+        await client.close()
+        await on.until(lambda: "NO LINK" in on.line(0), "the loss is shown")
+
+    play(act, tmp_path)
+
+
+def test_a_refusal_is_shown_with_its_reason(tmp_path: Path) -> None:
+    async def act(on: Stage) -> None:
+        on.fake.refusals["hold"] = "nothing runs [/x]"
+        await on.pilot.press("space")
+        await on.until(lambda: "refused: nothing runs [/x]" in on.text(), "the reason is shown")
+
+    play(act, tmp_path)

@@ -1,0 +1,119 @@
+"""A stored run on the screens: results, replay, pictures."""
+
+from __future__ import annotations
+
+import asyncio
+import runpy
+from collections.abc import Awaitable, Callable
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+
+from tester.cli.main import invoke
+from tester.tui.playback import Playback, load
+from tester.tui.replay import ReplayApp
+from tester.tui.stored import read, repeats
+from tests.tester.tui.stage import screen_text
+
+RECIPE = """\
+recipe: short [/x]
+specimens: [{compound: "1#"}]
+measure: {wheel_speed: 0.8 m/s, repeats: 3, window: 5 rev, temperature_band: 2 degC}
+grids:
+  - {name: one, slip_velocity: 200 mm/s, load: 100 N, temperature: 25 degC}
+"""
+PICTURES = Path(__file__).parents[3] / "docs" / "pictures.py"
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory: pytest.TempPathFactory, request: pytest.FixtureRequest) -> Path:
+    """Return a short run on the simulated rig."""
+    folder = tmp_path_factory.mktemp("replay")
+    (folder / "short.yaml").write_text(RECIPE, encoding="utf-8")
+    invoke(["run", str(folder / "short.yaml"), "--yes", "--seed", "1", "--out", str(folder / "runs")])
+    return next((folder / "runs").glob("2*"))
+
+
+@pytest.fixture(scope="module")
+def playback(run: Path) -> Playback:
+    """Return its record."""
+    return load(run)
+
+
+def replay(
+    run: Path, playback: Playback, act: Callable[[ReplayApp, Callable[..., Awaitable[None]]], Awaitable[None]]
+) -> None:
+    """Open a replay and do something with it."""
+
+    async def main() -> None:
+        app = ReplayApp(playback, read(str(run), run.parent), theme="dark")
+        async with app.run_test(size=(120, 40), notifications=True) as pilot:
+            await act(app, pilot.press)
+
+    asyncio.run(main())
+
+
+def test_keys_move_in_time_and_not_beyond_the_run(run: Path, playback: Playback) -> None:
+    async def act(app: ReplayApp, press: Press) -> None:
+        await press("right", "right", "left")
+        assert app.at_s == 10.0
+        await press("end", "right")
+        assert app.at_s == playback.length_s
+        await press("home", "left")
+        assert app.at_s == 0.0
+
+    replay(run, playback, act)
+
+
+def test_a_moment_shows_what_was_recorded_at_it(run: Path, playback: Playback) -> None:
+    first = playback.repeats[0].result
+    at_s = 0.5 * (first.started_s + first.ended_s)
+
+    async def act(app: ReplayApp, press: Press) -> None:
+        app.action_seek(at_s)
+        state = app.scene.state
+        assert state is not None and state.progress.condition == 1 and state.progress.repeats == 3
+        surface = state.value("surface")
+        assert surface is not None and surface.value is not None and abs(surface.value - 25.0) < 3.0
+        assert all(event.t_s <= at_s for event in app.scene.events)
+        await press("f3")
+        assert "REPLAY" in screen_text(app) and "cond 1/1" in screen_text(app)
+
+    replay(run, playback, act)
+
+
+def test_space_plays_and_pauses_and_nothing_is_commanded(run: Path, playback: Playback) -> None:
+    async def act(app: ReplayApp, press: Press) -> None:
+        await press("space")
+        assert app.playing
+        await press("space", "f12")
+        assert not app.playing and "a replay has no rig" in screen_text(app)
+
+    replay(run, playback, act)
+
+
+def test_results_show_the_conditions_and_their_repeats(run: Path, playback: Playback) -> None:
+    stored = read(str(run), run.parent)
+    assert [row.cells[:5] for row in stored.rows] == [("1#", "200", "100", "0", "25")]
+    found = repeats(run, 1, 40)
+    assert [one.repeat for one in found] == [1, 2, 3] and all(one.trace for one in found)
+
+    async def act(app: ReplayApp, press: Press) -> None:
+        await press("f5", "tab", "enter")
+        for _ in range(200):
+            if "repeat 3: mu" in screen_text(app):
+                break
+            await press("f20")
+        assert "repeat 3: mu" in screen_text(app)
+
+    replay(run, playback, act)
+
+
+def test_pictures_are_svg_of_the_screens(run: Path, tmp_path: Path) -> None:
+    draw = runpy.run_path(str(PICTURES))["draw"]
+    written = asyncio.run(draw(run, tmp_path))
+    assert [path.name for path in written] == ["run.svg", "results.svg"]
+    for path in written:
+        assert ElementTree.parse(path).getroot().tag.endswith("svg")
+        assert "F12" in path.read_text(encoding="utf-8")

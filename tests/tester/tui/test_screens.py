@@ -1,0 +1,158 @@
+"""Every screen as it is drawn: normal, with an alarm, stale, without colour, in ASCII; and against what is in golden/.
+
+`TESTER_GOLDEN=write pytest tests/tester/tui/test_screens.py` writes the pictures anew; look at the difference.
+"""
+
+from __future__ import annotations
+
+import os
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from tester.service.state import StateView
+from tests.tester.service.views import HOSTILE, hostile, plan, stale, with_alarm, with_prompt
+from tests.tester.service.views import state as a_state
+from tests.tester.tui.stage import Stage, colours, play
+
+GOLDEN = Path(__file__).parent / "golden"
+SIZES = {"80x24": (80, 24), "120x40": (120, 40)}
+KEYS = {"recipes": "f2", "run": "f3", "manual": "f4", "results": "f5", "bus": "f6"}
+STATES = {"normal": a_state(), "alarm": with_prompt(with_alarm(a_state())), "stale": stale(a_state())}
+
+
+@pytest.fixture(autouse=True)
+def _utc(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("tester.tui.words.local", lambda moment: moment)
+
+
+async def at_screen(on: Stage, name: str, view: StateView) -> None:
+    """Go to a screen, with a state, and wait until it stands."""
+    await on.until(lambda: on.checked(), "the recipes are checked")
+    await on.pilot.press(KEYS[name])
+    await on.show(view, plan())
+    await on.pilot.pause()
+
+
+@pytest.mark.parametrize("size", SIZES)
+@pytest.mark.parametrize("name", KEYS)
+def test_screen_looks_as_it_did(name: str, size: str, tmp_path: Path) -> None:
+    async def act(on: Stage) -> None:
+        for state, view in STATES.items():
+            await at_screen(on, name, view)
+            compare(f"{name}-{size}-{state}", on.text())
+
+    play(act, tmp_path, SIZES[size])
+
+
+def compare(name: str, text: str) -> None:
+    """Hold a picture against the one that was looked at."""
+    file = GOLDEN / f"{name}.txt"
+    if os.environ.get("TESTER_GOLDEN") == "write":
+        GOLDEN.mkdir(exist_ok=True)
+        file.write_text(text + "\n", encoding="utf-8")
+    assert text + "\n" == file.read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("name", KEYS)
+def test_without_colour_the_same_text_stands_and_no_colour_leaves(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("NO_COLOR", "1")
+
+    async def act(on: Stage) -> None:
+        for state, view in STATES.items():
+            await at_screen(on, name, view)
+            compare(f"{name}-80x24-{state}", on.text())
+            assert not colours(on.app)
+
+    play(act, tmp_path)
+
+
+def test_what_is_abnormal_differs_without_colour_by_more_than_text(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("NO_COLOR", "1")
+
+    async def act(on: Stage) -> None:
+        await at_screen(on, "run", STATES["alarm"])
+        first = on.app.screen._compositor.render_strips()[1]
+        assert all(segment.style is not None and segment.style.reverse for segment in first if segment.text.strip())
+
+    play(act, tmp_path)
+
+
+def test_with_ascii_nothing_else_leaves(tmp_path: Path) -> None:
+    async def act(on: Stage) -> None:
+        for name in KEYS:
+            await at_screen(on, name, STATES["alarm"])
+            assert on.text().isascii()
+            await on.pilot.press("f1")
+            assert on.text().isascii()
+            await on.pilot.press("escape")
+
+    play(act, tmp_path, (120, 40), plain=True)
+
+
+@pytest.mark.parametrize("theme", ["light", "16"])
+def test_themes_show_the_same_text(theme: str, tmp_path: Path) -> None:
+    async def act(on: Stage) -> None:
+        await at_screen(on, "run", STATES["normal"])
+        compare("run-80x24-normal", on.text())
+
+    play(act, tmp_path, theme=theme)
+
+
+def test_no_size_from_200x50_to_20x5_breaks_a_screen(tmp_path: Path) -> None:
+    async def act(on: Stage) -> None:
+        for number, (key, share) in enumerate((k, s) for s in range(10, -1, -1) for k in KEYS.values()):
+            if number % 2:
+                await on.show(STATES["alarm"] if number % 3 else STATES["normal"], plan())
+            await on.pilot.resize_terminal(20 + 18 * share, 5 + 9 * share // 2)
+            await on.pilot.press(key)
+            last = on.line(-1)
+            assert "STOP" in last, on.text()
+
+    play(act, tmp_path, (200, 50))
+
+
+@pytest.mark.parametrize("name", KEYS)
+def test_hostile_text_is_shown_and_never_obeyed(name: str, tmp_path: Path) -> None:
+    async def act(on: Stage) -> None:
+        view = hostile(with_alarm(a_state()))
+        alarm = replace(view.alarms[0], name=HOSTILE, text=HOSTILE, consequence=HOSTILE, unit=HOSTILE)
+        devices = tuple(replace(one, name=HOSTILE, state=HOSTILE, detail=HOSTILE) for one in view.devices)
+        values = tuple(replace(one, label=HOSTILE, unit=HOSTILE) for one in view.values)
+        checks = tuple(replace(one, name=HOSTILE, text=HOSTILE) for one in view.preflight)
+        view = replace(view, mode_text=HOSTILE, rig=HOSTILE, alarms=(alarm,), devices=devices, values=values,
+                       preflight=checks, interrupted=(HOSTILE,))  # fmt: skip
+        on.fake.event("note", HOSTILE, "warning")
+        steps = replace(plan(), steps=tuple(replace(step, title=HOSTILE) for step in plan().steps))
+        await at_screen(on, name, view)
+        await on.show(view, steps)
+        seen = [on.text()]
+        for keys in {"run": ["l", "escape", "enter", "escape"], "recipes": ["enter", "escape"]}.get(name, []):
+            await on.pilot.press(keys)
+            seen.append(on.text())
+        on.app.say(HOSTILE, problem=True)
+        await on.pilot.pause()
+        seen.append(on.text())
+        assert not any(sign in text for text in seen for sign in "\x1b\x00\u202e")
+        assert "[/x] [bold]" in "".join(seen)
+
+    play(act, tmp_path, (120, 40))
+
+
+def test_a_recipe_with_hostile_text_and_name_is_shown_as_it_is(tmp_path: Path) -> None:
+    folder = tmp_path / "recipes"
+    folder.mkdir()
+    (folder / "[bold]x[.yaml").write_text(f"recipe: '{HOSTILE}'\nwrong: yes\n", encoding="utf-8")
+
+    async def act(on: Stage) -> None:
+        await on.until(lambda: on.checked(), "the recipes are checked")
+        await on.pilot.press("end")
+        assert "[bold]x[" in on.text() and "3:5 load: expected a unit [/x]" in on.text()
+        assert not any(sign in on.text() for sign in "\x1b\x00\u202e")
+
+    play(act, tmp_path)
