@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.util
 import os
 import platform
 import sys
@@ -19,6 +20,13 @@ def built_with_pgo() -> str:
     return "yes" if guided else "no"
 
 
+def scan_is_compiled() -> str:
+    """Return "yes" or "no": are the modules of the scan machine code (setup.py) or Python."""
+    found = importlib.util.find_spec("tester.control.step")
+    origin = found.origin if found is not None else None
+    return "yes" if origin is not None and not origin.endswith(".py") else "no"
+
+
 def usable_cpus() -> int:
     """Return how many CPUs this process may use."""
     if sys.platform == "linux":
@@ -31,6 +39,7 @@ def machine() -> dict[str, str | int]:
     return {
         "interpreter": f"{platform.python_implementation()} {platform.python_version()}",
         "pgo": built_with_pgo(),
+        "compiled scan": scan_is_compiled(),
         "compiler": platform.python_compiler(),
         "cpus": usable_cpus(),
         "processor": _processor(),

@@ -264,14 +264,14 @@ class CanWire:
         ranked = self._ranked.setdefault(can_id, [])
         ranked.append((rank, listener))
         ranked.sort(key=_rank)
-        self._routes[can_id] = tuple(entry[1] for entry in ranked)
+        self._route(can_id, ranked)
 
     def forget(self, can_id: int, listener: Listener) -> None:
         """Stop calling ``listener`` for this identifier; nothing happens when it was not listening."""
         self.forget_cycle()
         ranked = [entry for entry in self._ranked.get(can_id, ()) if entry[1] != listener]
         self._ranked[can_id] = ranked
-        self._routes[can_id] = tuple(entry[1] for entry in ranked)
+        self._route(can_id, ranked)
 
     def forget_cycle(self) -> None:
         """Have the next cycle taken by every listener, whatever it holds."""
@@ -281,13 +281,13 @@ class CanWire:
         """Have a device answer SYNC, in the order of ``rank`` (its node id)."""
         self._ranked_followers.append((rank, follower))
         self._ranked_followers.sort(key=_rank)
-        self._followers = tuple(entry[1] for entry in self._ranked_followers)
+        self._adopt_followers(self._ranked_followers)
         self.forget_cycle()
 
     def unfollow(self, follower: SyncFollower) -> None:
         """Let a device answer SYNC no more; nothing happens when it did not."""
         self._ranked_followers = [entry for entry in self._ranked_followers if entry[1] is not follower]
-        self._followers = tuple(entry[1] for entry in self._ranked_followers)
+        self._adopt_followers(self._ranked_followers)
         self.forget_cycle()
 
     def beat(self, beat: Beat, first_s: float) -> None:
@@ -356,6 +356,14 @@ class CanWire:
         return (occupied1 - occupied0) / (t1 - t0)
 
     # inner ---------------------------------------------------------------------------------------------------
+
+    def _route(self, can_id: int, ranked: list[tuple[int, Listener]]) -> None:
+        """Take over who listens to an identifier."""
+        self._routes[can_id] = tuple(entry[1] for entry in ranked)
+
+    def _adopt_followers(self, ranked: list[tuple[int, SyncFollower]]) -> None:
+        """Take over who answers SYNC."""
+        self._followers = tuple(entry[1] for entry in ranked)
 
     def _remember(self, frames: tuple[tuple[int, bytes], ...]) -> None:
         """Note a cycle that was taken, if its frames need not be taken again while they stay the same."""

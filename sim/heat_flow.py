@@ -49,6 +49,9 @@ class HeatFlow:
             model.surface_gains(ambient_c, contact, rotating) for contact in (0.0, 1.0) for rotating in (False, True)
         ]
         self.state = model.state(ambient_c)
+        self._calm = False
+        self._due_s = 0.0
+        self._quiet_s = 0.0
         self.restart()
 
     def restart(self) -> None:

@@ -45,6 +45,17 @@ class Impairment:
     skip: int = 0
     delay_s: float = 0.05
     code: int = 4
+    besides: Impairment | None = None
+    """What was wrong with the line before: it strikes where this one does not."""
+
+    def striking(self, unit_id: int) -> Impairment | None:
+        """Return which impairment concerns this transaction, and count it there."""
+        impairment: Impairment | None = self
+        while impairment is not None:
+            if impairment.strikes(unit_id):
+                return impairment
+            impairment = impairment.besides
+        return None
 
     def strikes(self, unit_id: int) -> bool:
         """Tell whether this transaction is concerned, and count it."""
@@ -109,6 +120,10 @@ class ModbusWire:
             raise ValueError(f"two slaves have Modbus address {slave.unit_id}")
         self._slaves[slave.unit_id] = slave
 
+    def has(self, slave: ModbusSlave) -> bool:
+        """Tell whether a slave is on this line."""
+        return self._slaves.get(slave.unit_id) is slave
+
     # the computer's side ---------------------------------------------------------------------------------------
 
     def write(self, data: bytes, now: float) -> None:
@@ -132,9 +147,11 @@ class ModbusWire:
                     each.answer(data, t)
             self._busy_s = end
             return
-        if self.impair is not None and self.impair.strikes(slave.unit_id):
-            self._spoil(self.impair, slave, data, t)
-            return
+        if self.impair is not None:
+            striking = self.impair.striking(slave.unit_id)
+            if striking is not None:
+                self._spoil(striking, slave, data, t)
+                return
         reply = slave.answer(data, t)
         if reply is None:
             self._busy_s = end

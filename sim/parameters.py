@@ -16,6 +16,9 @@ from typing import Annotated, Literal
 FrictionModelName = Literal["paper", "v2"]
 """Which friction formula the plant follows: the paper's (Eqs 4-9) or the better seven-parameter fit."""
 
+PowerLoss = Literal["retract", "hold"]
+"""What the press does without power: its spring retracts it, or its screw holds it where it is."""
+
 MODEL_NAMES: tuple[FrictionModelName, ...] = ("paper", "v2")
 
 
@@ -192,6 +195,8 @@ class SimParameters:
     friction_heat_fraction: Annotated[float, "1"] = 0.06  # the rubber's share of friction heat; 0.5 = hot rig
     belt_conductance: Annotated[float, "W/K"] = 0.06  # rubber to belt in contact; 0.3 = hot rig
     ambient: Annotated[float, "degC"] = 23.0
+    press_on_power_loss: PowerLoss = "retract"
+    faults: tuple[str, ...] = ()  # a fault script (sim.faults.language)
     wheel: WheelParameters = field(default_factory=WheelParameters)
     friction: FrictionParameters = field(default_factory=FrictionParameters)
     thermal: ThermalParameters = field(default_factory=ThermalParameters)

@@ -70,10 +70,13 @@ class SimRig:
     at the rig.
     """
 
-    def __init__(self, spec: RigSpec, parameters: SimParameters, seed: int) -> None:
-        """Switch everything on at time 0."""
+    def __init__(
+        self, spec: RigSpec, parameters: SimParameters, seed: int, can_wire: type[CanWire] = CanWire
+    ) -> None:
+        """Switch everything on at time 0; ``can_wire``: the kind of bus, another one where it can be faulty."""
         self.plant = Plant(parameters, seed)
-        self.can = CanWire(spec.bitrate)
+        self.can = can_wire(spec.bitrate)
+        self._spring_mm_s = PRESS_SPRING_MM_S if parameters.press_on_power_loss == "retract" else 0.0
         self.axes = {name: self._drive(name, config) for name, config in spec.axes.items()}
         self.cell = CellSlave(load_profile(spec.load_cell.profile), spec.load_cell.unit_id, self.plant)
         ir = spec.ir_thermometer
@@ -98,7 +101,7 @@ class SimRig:
         if name != "press":
             return Cia402Slave(config, self.can, serial_number=config.node_id)
         screw = VelocityAxis(config.acceleration, config.deceleration, lag_s=PRESS_LAG_S, low=0.0, high=PRESS_TRAVEL_MM)
-        return Cia402Slave(config, self.can, screw, serial_number=config.node_id, unpowered_velocity=PRESS_SPRING_MM_S)
+        return Cia402Slave(config, self.can, screw, serial_number=config.node_id, unpowered_velocity=self._spring_mm_s)
 
     # -- the wires' side ------------------------------------------------------------------------------------------
 

@@ -102,6 +102,8 @@ class SessionOptions:
     """Processes in which independent parts run side by side (simulated rig only)."""
     samples: bool = True
     """Whether samples are kept."""
+    faults: tuple[str, ...] = ()
+    """Lines of a fault script (sim.faults.language), beside those of the rig file."""
 
 
 class Session:
@@ -127,6 +129,9 @@ class Session:
         FileNotFoundError where there is no such recipe, CannotStartError."""
         options = self.options
         rig = load_rig(options.rig, options.overrides)
+        faults = rig.sim.faults + options.faults
+        if faults:
+            _check_faults(faults, rig)
         path = find(options.recipe)
         recipe = load_checked(path, rig)
         work = work_of(recipe.recipe, rig)
@@ -227,7 +232,8 @@ class Session:
         return ""
 
     def _job(self, folder: Path, seed: int) -> Job:
-        return Job(folder, seed, self.options.lapse, self.options.bus_log, self.options.samples)
+        o = self.options
+        return Job(folder, seed, o.lapse, o.bus_log, o.samples, o.faults)
 
     def _beginning(self, folder: Path, path: Path, recipe: LoadedRecipe, work: Work) -> Begin:
         """Return what begins the run's record: the whole plan, and where everything comes from."""
@@ -325,3 +331,15 @@ class Session:
         self.screen.emit({"event": "end", "outcome": ending.outcome.value, "exit": code, "missing": missing})
         self.screen.result(str(folder))
         return code
+
+
+def _check_faults(texts: tuple[str, ...], rig: RigConfig) -> None:
+    """Raise CannotStartError for a fault script that cannot be read, or a rig that is real."""
+    if rig.can.interface != "sim":
+        raise CannotStartError("faults happen only on a rig that is simulated in this process", EXIT_USAGE)
+    from sim.faults import FaultTextError, parse_script
+
+    try:
+        parse_script(texts)
+    except FaultTextError as error:
+        raise CannotStartError(str(error), EXIT_USAGE) from error

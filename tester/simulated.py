@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
+from sim.can_wire import CanWire
 from sim.rig import DeviceSpec, LineSpec, RigSpec, SimRig
 from tester.bus_log import BusLog
 from tester.engine.build import Ports
 from tester.rig import DeviceConfig, IrThermometerConfig, RigConfig
 
 
-def simulated_ports(rig: RigConfig, seed: int, log: BusLog | None) -> tuple[Ports, SimRig, SimRig]:
-    """Return the wires of a new simulated rig, the rig, and the hands at it (the same object)."""
-    world = SimRig(spec_of(rig), rig.sim, seed)
+def simulated_ports(
+    rig: RigConfig, seed: int, log: BusLog | None, can_wire: type[CanWire] = CanWire
+) -> tuple[Ports, SimRig, SimRig]:
+    """Return the wires of a new simulated rig, the rig, and the hands at it (the same object).
+
+    ``can_wire``: the kind of bus, ``sim.faults.can.FaultyCanWire`` where it is to be spoiled.
+    """
+    world = SimRig(spec_of(rig), rig.sim, seed, can_wire)
     if log is not None:
         world.can.tap = log.can
         for name, line in world.lines.items():

@@ -79,8 +79,8 @@ class CanopenDevice:
         store.hooks[o.CONSUMER_HEARTBEAT] = self._on_consumer_written
         store.hooks[o.PRODUCER_HEARTBEAT] = self._on_producer_written
         wire.attach(self)
-        wire.listen(o.NMT_ID, self._on_nmt)
-        wire.listen(o.SDO_REQUEST_BASE + self.node_id, self._on_sdo)
+        wire.listen(o.NMT_ID, self._on_nmt, self.node_id)
+        wire.listen(o.SDO_REQUEST_BASE + self.node_id, self._on_sdo, self.node_id)
 
     # what a subclass does ------------------------------------------------------------------------------------
 
@@ -211,6 +211,13 @@ class CanopenDevice:
 
     # heartbeats ----------------------------------------------------------------------------------------------
 
+    def withhold_heartbeat(self, withheld: bool) -> None:
+        """Send no heartbeat (True) although 0x1017 asks for it, or send it again."""
+        beat = self._heartbeat
+        self.wire.unbeat(beat, self.now_s)
+        if not withheld and beat.period_s < inf and self.nmt != BOOTING:
+            self.wire.beat(beat, self.now_s + beat.period_s)
+
     def _on_producer_written(self, sub: int, value: int) -> None:
         beat = self._heartbeat
         self.wire.unbeat(beat, self.now_s)
@@ -225,7 +232,7 @@ class CanopenDevice:
         if node and milliseconds:
             self._consumer_id = o.HEARTBEAT_BASE + node
             self._consumer_timeout_s = milliseconds * 1e-3
-            self.wire.listen(self._consumer_id, self._on_heartbeat)
+            self.wire.listen(self._consumer_id, self._on_heartbeat, self.node_id)
         self.reschedule()
 
     def _forget_consumer(self) -> None:

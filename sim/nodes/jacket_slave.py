@@ -43,7 +43,8 @@ class JacketSlave(ModbusSlave):
 
     ``heater_w`` is its heat before the contactor in the supply, also given to ``sink``. ``running``, ``setpoint_c``,
     ``lease_s`` (0 = off), ``lease_expired``, ``limited`` and ``sensor_broken`` tell its state; setting
-    ``sensor_broken`` or ``stuck_output`` (in %) makes it faulty.
+    ``sensor_broken`` or ``stuck_output`` (in %) makes it faulty; ``stuck_element`` (in %) is the heat that flows
+    whatever the output says: a shorted relay, or an open line.
     """
 
     def __init__(
@@ -93,7 +94,9 @@ class JacketSlave(ModbusSlave):
         self.lease_expired = False
         self.limited = False
         self.sensor_broken = False
+        self.output = 0.0
         self.stuck_output: float | None = None
+        self.stuck_element: float | None = None
         self._broken = False
         self._renewed_s = -inf
         self.dither = 0
@@ -146,7 +149,9 @@ class JacketSlave(ModbusSlave):
         self.put(self._switch.address, self._switch.off.to_bytes(2, "big"))
 
     def _heat(self, output: float) -> None:
-        self.heater_w = 0.01 * output * self.power_w
+        self.output = output
+        element = output if self.stuck_element is None else self.stuck_element
+        self.heater_w = 0.01 * element * self.power_w
         if self.sink is not None:
             self.sink.heater_w = self.heater_w
 
@@ -175,7 +180,7 @@ class JacketSlave(ModbusSlave):
             status |= self._remote_bits
         return (
             _PV_MOST if self._broken else min(floor(self.pv_c / pv + PATTERN[phase]), _PV_MOST),
-            round(100.0 * self.heater_w / self.power_w / output),
+            round(self.output / output),
             round(self.setpoint_c / setpoint),
             status,
         )

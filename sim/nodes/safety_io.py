@@ -22,16 +22,19 @@ DROP_OUT_S = 0.02
 class SafetyIo:
     """Inputs as levels, and a contactor that needs both the request and a healthy safety chain.
 
-    ``contactor_closed`` is the state of its power contacts; ``due_s`` is when it moves next.
+    ``contactor_closed`` is the state of its power contacts; ``due_s`` is when it moves next; contacts that are
+    ``welded`` do not open.
     """
 
-    __slots__ = ("_chain", "_guard", "_requested", "contactor_closed", "due_s")
+    __slots__ = ("_chain", "_coil", "_guard", "_requested", "contactor_closed", "due_s", "welded")
 
     def __init__(self) -> None:
         """Start with a healthy chain, a closed guard and the contactor open."""
         self._chain = True
         self._guard = True
         self._requested = False
+        self._coil = True
+        self.welded = False
         self.contactor_closed = False
         self.due_s = inf
 
@@ -63,11 +66,23 @@ class SafetyIo:
         if self.due_s > t:
             return False
         self.due_s = inf
+        if self.welded and self.contactor_closed:
+            return False
         self.contactor_closed = not self.contactor_closed
         return True
 
+    def release(self, t: float) -> None:
+        """Free welded contacts at ``t`` s."""
+        self.welded = False
+        self._aim(t)
+
+    def break_coil(self, broken: bool, t: float) -> None:
+        """Open the coil's circuit at ``t`` s, or mend it."""
+        self._coil = not broken
+        self._aim(t)
+
     def _aim(self, t: float) -> None:
-        wanted = self._requested and self._chain
+        wanted = self._requested and self._chain and self._coil
         if wanted == self.contactor_closed:
             self.due_s = inf
         elif self.due_s == inf:

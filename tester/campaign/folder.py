@@ -39,6 +39,8 @@ class Job:
     bus_log: Path | None = None
     samples: bool = True
     """Whether samples are kept."""
+    faults: tuple[str, ...] = ()
+    """Lines of a fault script (sim.faults.language), beside those of the rig file."""
 
 
 @dataclass(frozen=True, slots=True)

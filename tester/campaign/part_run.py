@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import os
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 from drivers.ports import BusLost
 from tester import clock
@@ -15,7 +17,7 @@ from tester.engine.build import Ports, build_run
 from tester.engine.context import Attendant, Nobody
 from tester.engine.prompts import Prompts
 from tester.engine.run import Outcome, Run
-from tester.engine.tickers import TickStatistics, World, run_real_time, run_simulated
+from tester.engine.tickers import Ticked, TickStatistics, World, run_real_time, run_simulated
 from tester.pace import Pace
 from tester.provenance import record_parameters, record_statistics
 from tester.recipe.estimate import estimate
@@ -23,6 +25,11 @@ from tester.rig import RigConfig
 from tester.store.reader import DATABASE
 from tester.store.writer import RunWriter
 
+if TYPE_CHECKING:
+    from sim.rig import SimRig
+
+KILLED = 137
+"""Exit status of a process that a fault script kills: what a shell shows for SIGKILL."""
 WHEEL_EVERY_S = 1.0
 """The wheel's wear is stored this often of wall time: what an interruption loses of it."""
 
@@ -95,12 +102,15 @@ def _execute(
     log = BusLog(_log_folder(job.bus_log, work, part), rig) if job.bus_log is not None else None
     ports: Ports | None = None
     try:
-        ports, world, attendant = connect_ports(rig, job.seed, log)
+        faults = rig.sim.faults + job.faults
+        spoilable = {"faulty": True} if faults else {}
+        ports, world, attendant = connect_ports(rig, job.seed, log, **spoilable)
         run = build_run(rig, part.plan, ports, attendant, writer, prompts, work.point)
         _place(run, work, part)
         watch.begun(run)
         expected_s = max(estimate(part.plan, rig).rig_seconds, 1.0)
-        seconds = _tick(run, world, ports.pace, job.lapse, expected_s, writer, watch)
+        ticked, lives = _with_faults(run, world, faults) if world is not None and faults else (run, world)
+        seconds = _tick(run, ticked, lives, ports.pace, job.lapse, expected_s, writer, watch)
         record_statistics(run.engine.devices, writer, seconds)
         return run.outcome, run.reason, seconds
     except BusLost as lost:
@@ -126,6 +136,7 @@ def _place(run: Run, work: Work, part: Part) -> None:
 
 def _tick(
     run: Run,
+    ticked: Ticked,
     world: World | None,
     pace: Pace | None,
     lapse: float | None,
@@ -143,15 +154,35 @@ def _tick(
 
     if world is not None:
         # Also at --speed 1: counted ticks, not measured ones, so that no speed changes a result.
-        return run_simulated(run, world, lapse=lapse, poll=poll)
+        return run_simulated(ticked, world, lapse=lapse, poll=poll)
     return run_real_time(run, world, poll=poll, statistics=watch.statistics, pace=pace)
 
 
-def connect_ports(rig: RigConfig, seed: int, log: BusLog | None) -> tuple[Ports, World | None, Attendant]:
-    """Open the wires to the rig: simulated in this process, or real."""
+def _with_faults(run: Run, world: SimRig, texts: Sequence[str]) -> tuple[Ticked, World]:
+    """Return what a ticker drives in place of run and rig while faults happen to them."""
+    from sim.faults import FaultScript, parse_script
+    from tester.faulty import FaultyRun
+
+    faulty = FaultyRun(run, world, FaultScript().add(parse_script(texts)), on_kill=_die)
+    return faulty, faulty
+
+
+def _die() -> None:
+    """End this process as a kill does: at once, nothing closed, nothing flushed."""
+    os._exit(KILLED)
+
+
+def connect_ports(
+    rig: RigConfig, seed: int, log: BusLog | None, *, faulty: bool = False
+) -> tuple[Ports, SimRig | None, Attendant]:
+    """Open the wires to the rig: simulated in this process (its bus spoilable where ``faulty``), or real."""
     if rig.can.interface == "sim":
         from tester.simulated import simulated_ports
 
+        if faulty:
+            from sim.faults.can import FaultyCanWire
+
+            return simulated_ports(rig, seed, log, FaultyCanWire)
         return simulated_ports(rig, seed, log)
     from tester.hardware import hardware_ports
 

@@ -34,6 +34,13 @@ from tester.cli.options import json_option, rig_option, set_option
     help="Simulated rig: processes in which specimens run side by side; the results are the same.",
 )
 @click.option("--bus-log", default=None, metavar="DIR", help="Write every CAN and Modbus frame into this folder.")
+@click.option(
+    "--fault",
+    "faults",
+    multiple=True,
+    metavar="TEXT",
+    help='Simulated rig: let something fail, e.g. "t=130 s: belt drive heartbeat lost for 3 s". May be given again.',
+)
 @click.option("--operator", default="", metavar="NAME", help="Who runs the test; stored with the run.")
 @click.option("--detach", is_flag=True, help="Have the service run it (`tester serve`), and return.")
 @json_option
@@ -49,6 +56,7 @@ def run(
     speed: str | None,
     jobs: int,
     bus_log: str | None,
+    faults: tuple[str, ...],
     operator: str,
     detach: bool,
     as_json: bool,
@@ -79,6 +87,7 @@ def run(
         lapse=time_lapse(speed),
         bus_log=Path(bus_log) if bus_log else None,
         operator=operator,
+        faults=faults,
         jobs=jobs,
     )
     session = Session(options, Console(as_json=as_json, answer_yes=yes))

@@ -16,6 +16,12 @@ CONTACT_LEAST_N = 50.0
 """A target below this is too near to touching to tell a lost contact (rulings, 18)."""
 SPEEDS_OLD_S = 0.5
 """Older than this, speeds, force and position are unknown to a stop, s [A]: it does not end on them."""
+PRESSED_N = 50.0
+"""A contact that nobody wants gets no firmer by more than this, N [A]: runout and noise are 10 N."""
+PUSHED_MM = 0.3
+"""A press that was told to lift has gone on by this at most, mm [A]: its ramp from 10 mm/s takes less."""
+APART_M_S = 0.1
+"""One drive standing, the other faster than this, is no rounding of two equal ramps [A]."""
 CLEAR_MM = 0.5
 """The press stands this far off the known contact: open, whatever the cell shows [A] (runout 0.05 mm, wear)."""
 
@@ -103,7 +109,12 @@ def motion_levels(v: View) -> int:
             held |= _BELT
     if not (r.force_z_n < UNLOADED_N):
         belt_moves = belt > STANDING_M_S or belt < -STANDING_M_S
-        if v.turning is not belt_moves or (v.pressing and not (v.turning and belt_moves)):
+        # While they come down together one may stand a moment before the other: that is no wheel on a stopped belt.
+        slow = -APART_M_S <= wheel <= APART_M_S and -APART_M_S <= belt <= APART_M_S
+        # A quick stop takes both down at once, whatever their difference: it cannot be made any quicker.
+        quick = v.stopped_s >= 0.0 and v.state.stop.fast_s <= r.now_s
+        apart = v.turning is not belt_moves and not slow and not quick
+        if apart or (v.pressing and not (v.turning and belt_moves)):
             held |= _STANDING
     return held
 
@@ -125,7 +136,12 @@ def load_levels(v: View) -> int:
         held |= _POWER
     if v.turning and not (fz < UNLOADED_N) and not (r.now_s - r.cell_changed_s <= b.frozen_cell_s):
         held |= _CELL_FROZEN
-    if v.pressing:
+    if not v.pressing:
+        if not (fz <= v.least_n + PRESSED_N):
+            held |= _OVERSHOOT
+    else:
+        if not (fz >= UNLOADED_N) and not (r.press_mm <= v.touch_most_mm):
+            held |= _CELL_FROZEN
         wanted = v.demand.load_n
         highest = load.highest_n if load.highest_n > wanted else wanted
         if not (fz <= b.overload_factor * highest + b.overload_margin_n):
@@ -158,7 +174,7 @@ def heat_levels(v: View) -> int:
             held |= _STUCK
     if r.now_s - jacket.weak_since_s >= b.open_s and not (jacket.rise_k >= b.open_rise_k):
         held |= _OPEN
-    if heats and not v.turning:
+    if heats and r.contactor_closed and not v.turning:
         held |= _STANDSTILL
     if not (jacket.jump_k <= b.jump_k):
         held |= _HUB_JUMP
@@ -190,6 +206,8 @@ def stop_levels(v: View) -> int:
         held |= _NOT_LIFTED
         if not (since <= b.lift_failed_s):
             held |= _LIFT_FAILED
+    if not (r.press_mm <= stop.press_mm + PUSHED_MM) and not unloaded(v):
+        held |= _LIFT_FAILED
     if not (since <= b.heat_off_s) and not (r.heat_percent <= 0.0) and r.contactor_closed:
         held |= _HEAT_ON
     if not stop.creeps and not standing(r):

@@ -70,6 +70,8 @@ class StopProgress:
     """When the rig left RUN, HOLD or COOLDOWN; infinity while no stop is under way."""
     speed_m_s: float = 0.0
     """The faster of wheel and belt then."""
+    press_mm: float = float("inf")
+    """Where the press was then; infinity where that is not known."""
     fast_s: float = float("inf")
     """When the quick stop began."""
     fast_speed_m_s: float = 0.0

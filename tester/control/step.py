@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import copysign, inf, isfinite
 
 from tester.control.interlocks import INTERLOCKS, WARNINGS
-from tester.control.levels import heat_levels, load_levels, motion_levels, process_levels, stop_levels
+from tester.control.levels import PUSHED_MM, heat_levels, load_levels, motion_levels, process_levels, stop_levels
 from tester.control.permissives import CONFIRMED_M_S, Bounds, may_heat, may_load, may_move, rig_bounds
 from tester.control.safe_outputs import no_outputs
 from tester.control.state import ControlState, Event, Mode, Reaction, Trip
@@ -104,6 +104,8 @@ class Control:
                 begin_stop(state, view, readings.now_s, self.bounds)
         else:
             no_outputs(state.setpoints, self.rig)
+            if not readings.drives_disabled and readings.press_mm > state.stop.press_mm + PUSHED_MM:
+                state.setpoints.power_off = True  # a press that comes although everything is to rest
             if mode is _LATCHED and state.ack_until_s > -inf:
                 self._acknowledge(readings.now_s)
 

@@ -24,6 +24,7 @@ def begin_stop(state: ControlState, view: View, now: float, bounds: Bounds) -> N
     stop = state.stop
     stop.began_s = now
     stop.speed_m_s = _speed(view, bounds)
+    stop.press_mm = view.readings.press_mm if isfinite(view.readings.press_mm) else float("inf")
     stop.fast_s = float("inf")
     stop.creeps = False
 
@@ -80,6 +81,7 @@ def after_stop(state: ControlState, view: View) -> None:
         state.stop.creeps = True
         return
     state.stop.began_s = float("inf")
+    state.stop.press_mm = r.press_mm if isfinite(r.press_mm) else float("inf")
     if trip is not None or state.mode is not Mode.STOPPING:
         state.enter(Mode.LATCHED, now, "standstill")
     else:

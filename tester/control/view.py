@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from math import inf
+from math import inf, isfinite
 
 from tester.control.monitors import RAMP_SHARE, JacketMonitor, SpeedTracker, SurfaceMonitor
 from tester.control.observer import ThermalObserver
@@ -15,6 +15,10 @@ STANDING_M_S = 0.02
 """Below this a drive counts as standing [A]."""
 UNLOADED_N = 20.0
 """Below this the contact counts as unloaded (safety concept, "load with a drive stopped")."""
+TOUCH_MARGIN_MM = 1.5
+"""The wheel is touched at most this much later than where it was touched last, or its diameter says, mm [A]: about
+160 N of force (physics, section 5) that a frozen load cell would not show."""
+
 # Bound once: a look-up on the enum class costs several times as much in every scan (CPython 3.11).
 _LOAD = Press.LOAD
 _RUN, _HOLD = Mode.RUN, Mode.HOLD
@@ -45,6 +49,10 @@ class View:
     """The wheel is confirmed turning."""
     confirmed: bool = False
     """Every drive has been in operation since they were last wanted to be."""
+    least_n: float = inf
+    """The least force since contact was last wanted: what is lifting does not get firmer."""
+    touch_most_mm: float = inf
+    """A press beyond this has touched, whatever the load cell shows."""
     friction_n: float = 0.0
     friction_w: float = 0.0
     """Resultant friction force and its power (NaN where a part is unknown); 0 while unloaded."""
@@ -74,6 +82,14 @@ class View:
         state = self.state
         self.pressing = pressing = demand.press is _LOAD
         self.loaded = loaded = pressing or not (r.force_z_n < UNLOADED_N)
+        if pressing:
+            self.least_n = inf
+            contact_mm = state.load.contact_mm
+            if not isfinite(contact_mm):
+                contact_mm = self.rig.geometry.touch_mm + 0.5 * (self.rig.geometry.wheel_diameter_mm - r.diameter_mm)
+            self.touch_most_mm = contact_mm + TOUCH_MARGIN_MM
+        elif r.force_z_n < self.least_n:
+            self.least_n = r.force_z_n
         wheel_m_s = r.wheel_speed_m_s
         self.turning = wheel_m_s > STANDING_M_S or wheel_m_s < -STANDING_M_S
         self.stopped_s = r.now_s - state.stop.began_s

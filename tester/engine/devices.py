@@ -5,6 +5,7 @@ Inputs fill the process image from the drivers, outputs hand setpoints to them. 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from math import cos, inf, pi, sin
 
@@ -64,6 +65,7 @@ class Devices:
     manual_camber_deg: float = 0.0
     news: bool = True
     """A drive's state, an input or an emergency is new in this scan."""
+    _withheld: bool = False
     lost: str = ""
     """Why a wire is gone. It is never used again: what waits in its queues must not be sent later."""
     _can_alive: bool = True
@@ -80,10 +82,19 @@ class Devices:
         """Fix the drives' order, and see which lines are simulated ones."""
         self.drives = self.axes.present()
         self._inspector = Inspector(self.cell, self.thermometer, self.jacket)
+        self._foresee()
+
+    def _foresee(self) -> None:
         self._lines = tuple(
             (port, link, port if isinstance(port, ForeseeingPort) else None) for port, link in self.lines
         )
         self._foreseeing = next((port for _, link, port in self._lines if link is self.cell.link), None)
+
+    def rewire(self, can: CanPort, lines: Sequence[LinePort]) -> None:
+        """Speak through other ports from now on; ``lines`` in the order of the ones in use."""
+        self.can = can
+        self.lines = [(port, link) for port, (_, link) in zip(lines, self.lines, strict=True)]
+        self._foresee()
 
     def receive(self, now: float) -> None:
         """Take in everything that arrived; a wire that is lost is left alone from then on (``lost`` says why)."""
@@ -113,10 +124,10 @@ class Devices:
         """Go on without a line: what it carried is not valid any more."""
         self.lost = self.lost or f"line lost: {error}"
         self._lines = tuple(entry for entry in self._lines if entry[1] is not link)
-        for station in link.stations:
-            station.owner.lost(now)
         if link is self.cell.link:
             self._foreseeing = None
+        for station in link.stations:
+            station.owner.lost(now)
 
     def transmit(self, now: float, *, scan: bool, next_scan_s: float = NEVER) -> float:
         """Send what is due and return the next time a driver wants to be served; ``next_scan_s`` if it is known."""
@@ -225,7 +236,9 @@ class Devices:
                 enabled = False
                 if not fault and (state is _FAULT or state is _FAULT_REACTION):
                     fault = _fault_text(drive)
-            if not fault and (drive.lost or drive.rebooted or drive.emergency is not None):
+            if not fault and (
+                drive.lost or drive.rebooted or drive.emergency is not None or (drive.connected and not drive.remote)
+            ):
                 fault = _fault_text(drive)
         r.drives_enabled, r.drives_disabled, r.drive_fault = enabled, disabled, fault
         inputs = self.axes.press.inputs
@@ -256,6 +269,9 @@ class Devices:
         if camber is not None and out.camber_deg != camber.aimed:
             camber.aim(out.camber_deg)
         press.outputs = OUTPUT_CONTACTOR if out.contactor else 0
+        if out.power_off is not self._withheld:
+            # The last resort reaches a drive that takes no commands, too: each stops without our heartbeat.
+            self._withheld = self.master.withhold_heartbeat = out.power_off
         jacket = self.jacket
         jacket.enable(out.heat)
         if not out.jacket_silent:
@@ -302,4 +318,6 @@ def _fault_text(drive: ServoDrive) -> str:
         return f"{name}: rebooted"
     if drive.emergency is not None:
         return f"{name}: {drive.emergency.text} (0x{drive.emergency.code:04X})"
+    if drive.connected and not drive.remote:
+        return f"{name}: under local control"
     return f"{name}: fault"

@@ -96,7 +96,10 @@ class Engine:
 
     def _journal(self) -> None:
         """Queue control's events in their order; they are queued before this scan's outputs leave."""
-        state, journal = self.control.state, self.ctx.journal
+        state = self.control.state
+        if not state.events:
+            return
+        journal = self.ctx.journal
         for event in state.events:
             if event.kind == "trip" and state.trip is not None:
                 journal.trip(event.at_s, state.trip.name, event.text)
@@ -115,7 +118,9 @@ class Engine:
         """Set the period of the next scan: it follows the state (rulings, 10)."""
         ctx, state = self.ctx, self.control.state
         mode = state.mode
-        if ctx.moving or mode in _STOPS or (mode is _HOLD and now - state.mode_since_s < HOLD_MOVES_S):
+        # A level that has yet to stand for its delay is looked at often: the delay is not rounded up to slow scans.
+        pending = state.held & ~state.tripped
+        if pending or ctx.moving or mode in _STOPS or (mode is _HOLD and now - state.mode_since_s < HOLD_MOVES_S):
             self.period_s = self.sliding_s
         elif ctx.demand.enabled or not ctx.readings.drives_disabled:
             self.period_s = self.enabled_s

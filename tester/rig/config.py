@@ -27,6 +27,8 @@ class GeometryConfig:
     """Outer diameter of a new wheel."""
     wheel_width_mm: Annotated[float, "mm", _POSITIVE]
     belt_roller_diameter_mm: Annotated[float, "mm", _POSITIVE]
+    touch_mm: Annotated[float, "mm", _POSITIVE]
+    """Press travel from fully lifted to touching a new wheel."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -25,6 +25,8 @@ STATES = {0x40: "disabled", 0x21: "ready", 0x23: "on", 0x27: "enabled"}
 STATES |= {0x07: "quick stop", 0x0F: "reacting", 0x08: "fault"}
 """Names of statusword & 0x6F (CiA 402-2); bit 5 says nothing where the power is off, so 0x60 is 0x40."""
 NEIGHBOURS = {("disabled", "ready"), ("ready", "on"), ("on", "enabled")}
+PROOF = [0x8130, 0x0000]
+"""What a drive says to a heartbeat withheld, and once that is over (CiA 301, table 26)."""
 WHEEL_RADIUS_M = 0.045
 WHEEL, BELT, LOAD_N, GRIND_S = 0.8, 0.6, 200.0, 240.0
 """The pre-grind of the recipe: rim and belt speed in m/s."""
@@ -60,8 +62,10 @@ def _frames(record: CanRecord, cell: CellRecord) -> Iterator[Figure]:
     unknown = sorted(f"{can_id:03X}" for can_id in set(record.frames) - record.known_ids())
     yield equal("unknown identifiers", unknown, [])
     yield equal("frames with 29-bit identifiers", record.extended, 0)
-    emergencies = sum(len(record.frames[0x080 + axis.node]) for axis in record.axes.values())
-    yield equal("emergency messages", emergencies, 0)
+    messages = [_emergencies(record, axis.node) for axis in record.axes.values()]
+    proved = all([code for _, code in each] == PROOF for each in messages)
+    seen = " ".join(f"{code:04X}" for each in messages for _, code in each)
+    yield holds("emergency messages: to the proof of each watchdog only", proved, seen, "8130 0000 each")
     yield equal("load cell replies with a wrong CRC", cell.bad_frames, 0)
 
 
@@ -71,7 +75,7 @@ def _start_up(record: CanRecord) -> Iterator[Figure]:
     nodes = [axis.node for axis in axes]
     yield equal("nodes", sorted(nodes), [1, 2, 3, 4, 5])
     boots = [sum(state == 0 for _, state in record.heartbeats(node)) for node in nodes]
-    yield equal("boot-up messages of each node", boots, [1] * 5)
+    yield equal("boot-up messages of each node: power-on, reset by the connection", boots, [2] * 5)
     vendor, product = (record.variable(0x1018, sub).default for sub in (1, 2))
     expected = [f"{vendor:X}:{product:X}"] * 5
     identities = [_identity(record, node) for node in nodes]
@@ -106,6 +110,11 @@ def _armed(record: CanRecord, node: int) -> tuple[float, str]:
     return read.t, value
 
 
+def _emergencies(record: CanRecord, node: int) -> list[tuple[float, int]]:
+    """Return a node's emergency messages: time in s, code."""
+    return [(t, int.from_bytes(data[:2], "little")) for t, data in record.frames[0x080 + node]]
+
+
 def _started(record: CanRecord, node: int) -> float:
     """Return when a node was started, infinity where it did not become operational."""
     start = next((t for t, command in record.nmt(node) if command == NMT_START), float("inf"))
@@ -130,12 +139,14 @@ def _states(record: CanRecord, axis: Axis) -> Iterator[Figure]:
     first = changes[: changes.index(15) + 1] if 15 in changes else changes
     yield equal(f"{axis.name}: controlwords until enabled", first, [0, 6, 7, 15])
     yield equal(f"{axis.name}: controlwords at the end", changes[-4:], [15, 7, 6, 0])
-    states = [state for _, state in _timed(record, axis)]
+    timed = _timed(record, axis)
+    states = [state for _, state in timed]
     reached = states[: states.index("enabled") + 1] if "enabled" in states else states
     yield equal(f"{axis.name}: states until enabled", reached, ["disabled", "ready", "on", "enabled"])
-    pairs = list(pairwise(states))
+    proved_s = max((t for t, _ in _emergencies(record, axis.node)), default=0.0)
+    pairs = list(pairwise([state for t, state in timed if t > proved_s]))
     odd = [f"{a}>{b}" for a, b in pairs if (a, b) not in NEIGHBOURS and (b, a) not in NEIGHBOURS]
-    yield equal(f"{axis.name}: of {len(pairs)} changes of state, those that are not to a neighbour", odd, [])
+    yield equal(f"{axis.name}: of {len(pairs)} changes of state after that proof, those not to a neighbour", odd, [])
     if axis.mode == "velocity":
         enabled = (words == 15) & (np.concatenate(([0], words[:-1])) != 15)
         targets = sorted(set(commands["60FF"][enabled].tolist()))

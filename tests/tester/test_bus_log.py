@@ -83,8 +83,10 @@ def test_there_are_100_syncs_a_second_while_sliding(frames: list[can.Message]) -
     assert len(syncs) in (100, 101)
 
 
-def test_a_healthy_run_has_no_emergencies(frames: list[can.Message]) -> None:
-    assert not [frame for frame in frames if frame.arbitration_id in EMERGENCIES]
+def test_the_emergencies_of_a_healthy_run_are_those_of_the_watchdogs_proof(frames: list[can.Message]) -> None:
+    codes = {can_id: [f.data[:2] for f in of(frames, can_id)] for can_id in EMERGENCIES}
+    assert {node - SYNC for node in codes if codes[node]} == {1, 2, 3, 4, 5}
+    assert all(each in ([], [b"\x30\x81", b"\x00\x00"]) for each in codes.values())
 
 
 def test_drives_are_disabled_before_the_log_ends(frames: list[can.Message]) -> None:

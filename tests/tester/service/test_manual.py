@@ -143,4 +143,5 @@ def test_it_disarms_when_its_client_loses_control(tmp_path: Path) -> None:
 
     stage = play(tmp_path, script)
     assert stage.texts("control")[-1] == "nobody has control"
-    assert min(view.manual.left_s for view in stage.views if view.manual.left_s is not None) > 50.0
+    # Of 60 s: it was not the time that ran out.
+    assert min(view.manual.left_s for view in stage.views if view.manual.left_s is not None) > 20.0

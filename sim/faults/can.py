@@ -1,0 +1,373 @@
+"""Faults of the CAN bus: frames that are lost, late or repeated, nodes that are cut off, strangers that talk."""
+
+from __future__ import annotations
+
+from bisect import insort
+
+from drivers.canopen import emcy
+from drivers.canopen import objects as o
+from sim.can_wire import CanWire, Listener, SyncFollower
+from sim.faults.scene import Effect, Scene
+
+_NODE = 0x7F
+_FUNCTION = 0x780
+
+
+class Unseen:
+    """A tap that sees nothing."""
+
+    __slots__ = ()
+
+    def frame(self, t: float, can_id: int, data: bytes, from_pc: bool) -> None:
+        """Take no note of a frame."""
+
+
+class FaultyCanWire(CanWire):
+    """A bus on which frames can be spoiled. Without a fault it behaves, frame by frame, as the plain one.
+
+    ``lost`` are identifiers that reach nobody; ``late_s`` delays the frames of a function code (identifier without
+    the node) by s; ``loss`` is the share of all frames lost, evenly spread; ``frozen`` repeats the last data of an
+    identifier; ``repeated`` doubles every frame; ``silent`` loses everything and tells nobody.
+    """
+
+    __slots__ = ("_counted", "_cut", "_own_tap", "frozen", "late_s", "loss", "lost", "repeated", "silent", "spoiled")
+
+    def __init__(self, bitrate: int = 500_000) -> None:
+        """Create an idle bus without faults; ``bitrate`` in bit/s."""
+        self._cut: frozenset[int] = frozenset()
+        self._own_tap = Unseen()
+        super().__init__(bitrate)
+        self.spoiled = False
+        self.lost: frozenset[int] = frozenset()
+        self.frozen: dict[int, bytes] = {}
+        self.late_s = 0.0
+        self.loss = 0.0
+        self.repeated = False
+        self.silent = False
+        self._counted = 0.0
+
+    def note_faults(self) -> None:
+        """Take note that an attribute was changed: a bus without faults passes frames on unseen."""
+        self.spoiled = bool(
+            self.lost or self.frozen or self.late_s or self.loss or self.repeated or self.silent or self._cut
+        )
+        # A bus with a tap takes no short cuts: each frame of it comes through ``send`` or ``transmit``.
+        if self.spoiled and self.tap is None:
+            self.tap = self._own_tap
+        elif not self.spoiled and self.tap is self._own_tap:
+            self.tap = None
+        self.forget_cycle()
+
+    def cut(self, node_id: int, off: bool) -> None:
+        """Take a node off the bus (True), or put it on again: it neither hears nor is heard."""
+        self._cut = self._cut | {node_id} if off else self._cut - {node_id}
+        self.note_faults()
+        for can_id, ranked in self._ranked.items():
+            self._route(can_id, ranked)
+        self._adopt_followers(self._ranked_followers)
+
+    def occupy(self, now: float, seconds: float) -> None:
+        """Let a stranger's frames of high priority have the wire for this long."""
+        self._busy_s = max(self._busy_s, now) + seconds
+        self.occupied_s += seconds
+
+    def _route(self, can_id: int, ranked: list[tuple[int, Listener]]) -> None:
+        super()._route(can_id, [entry for entry in ranked if entry[0] not in self._cut])
+
+    def _adopt_followers(self, ranked: list[tuple[int, SyncFollower]]) -> None:
+        super()._adopt_followers([entry for entry in ranked if entry[0] not in self._cut])
+
+    def send(self, can_id: int, data: bytes, now: float) -> None:
+        """Send a frame of the computer, unless a fault has it; raises BusLost when the adapter is gone."""
+        if self.spoiled and self.connected:
+            if self._loses(can_id):
+                self._busy_s = max(self._busy_s, now) + self._frame_s[len(data)]
+                return
+            if self.repeated:
+                super().send(can_id, data, now)
+        super().send(can_id, data, now)
+
+    def send_cycle(self, frames: tuple[tuple[int, bytes], ...], now: float) -> None:
+        """Send the frames of a bus cycle; on a spoiled bus each is looked at."""
+        if self.spoiled:
+            for can_id, data in frames:
+                self.send(can_id, data, now)
+        else:
+            super().send_cycle(frames, now)
+
+    def transmit(self, can_id: int, data: bytes, t: float, urgent: bool = False) -> None:
+        """Send a node's frame, unless a fault has it."""
+        if self.spoiled:
+            if can_id & _NODE in self._cut or self._loses(can_id):
+                return
+            if can_id in self.frozen:
+                data = self.frozen[can_id] = self.frozen[can_id] or data
+            if self.late_s and can_id & _FUNCTION == o.TPDO1_BASE:
+                self._late(can_id, data, t + self.late_s, urgent)
+                return
+            if self.repeated:
+                super().transmit(can_id, data, t, urgent)
+        super().transmit(can_id, data, t, urgent)
+
+    def _late(self, can_id: int, data: bytes, t: float, urgent: bool) -> None:
+        """Queue a frame for later; what goes through ``transmit`` again must not be delayed twice."""
+        arrival = t + self._frame_s[len(data)]
+        if self.connected:
+            insort(self._inbox, (arrival, can_id, data))
+            if urgent:
+                self._note_urgent(arrival)
+
+    def _loses(self, can_id: int) -> bool:
+        if self.silent or can_id in self.lost:
+            return True
+        if self.loss:
+            self._counted += self.loss
+            if self._counted >= 1.0:
+                self._counted -= 1.0
+                return True
+        return False
+
+
+def wire_of(scene: Scene) -> FaultyCanWire:
+    """Return the rig's bus. Raises TypeError for a rig that was built without faults in mind."""
+    wire = scene.rig.can
+    if not isinstance(wire, FaultyCanWire):
+        raise TypeError("bus faults need a rig that was built with FaultyCanWire")
+    return wire
+
+
+class AdapterGone(Effect):
+    """The computer's CAN adapter is unplugged: every call fails."""
+
+    __slots__ = ()
+
+    def begin(self, scene: Scene, now: float) -> None:
+        """Unplug it."""
+        scene.rig.can.disconnect()
+
+    def end(self, scene: Scene, now: float) -> None:
+        """Plug it in again."""
+        scene.rig.can.reconnect()
+
+
+class BusSilent(Effect):
+    """The bus is off, or cut at the computer: frames vanish and no call fails."""
+
+    __slots__ = ()
+
+    def begin(self, scene: Scene, now: float) -> None:
+        """Lose everything from now on."""
+        wire = wire_of(scene)
+        wire.silent = True
+        wire.note_faults()
+
+    def end(self, scene: Scene, now: float) -> None:
+        """Pass frames on again."""
+        wire = wire_of(scene)
+        wire.silent = False
+        wire.note_faults()
+
+
+class FrameLoss(Effect):
+    """A share of all frames is lost."""
+
+    __slots__ = ("share",)
+
+    def __init__(self, percent: float) -> None:
+        """Lose ``percent`` of the frames."""
+        self.share = 0.01 * percent
+
+    def begin(self, scene: Scene, now: float) -> None:
+        """Begin to lose frames."""
+        wire = wire_of(scene)
+        wire.loss = self.share
+        wire.note_faults()
+
+    def end(self, scene: Scene, now: float) -> None:
+        """Lose no more."""
+        wire = wire_of(scene)
+        wire.loss = 0.0
+        wire.note_faults()
+
+
+class FramesLate(Effect):
+    """The drives' process data reach the computer late."""
+
+    __slots__ = ("seconds",)
+
+    def __init__(self, seconds: float) -> None:
+        """Delay by this much."""
+        self.seconds = seconds
+
+    def begin(self, scene: Scene, now: float) -> None:
+        """Begin to delay."""
+        wire = wire_of(scene)
+        wire.late_s = self.seconds
+        wire.note_faults()
+
+    def end(self, scene: Scene, now: float) -> None:
+        """Delay no more."""
+        wire = wire_of(scene)
+        wire.late_s = 0.0
+        wire.note_faults()
+
+
+class FramesRepeated(Effect):
+    """Every frame comes twice."""
+
+    __slots__ = ()
+
+    def begin(self, scene: Scene, now: float) -> None:
+        """Begin to repeat."""
+        wire = wire_of(scene)
+        wire.repeated = True
+        wire.note_faults()
+
+    def end(self, scene: Scene, now: float) -> None:
+        """Repeat no more."""
+        wire = wire_of(scene)
+        wire.repeated = False
+        wire.note_faults()
+
+
+class BusBusy(Effect):
+    """A babbling node fills a share of the bus with frames of high priority."""
+
+    __slots__ = ("_at_s", "share")
+
+    every_step = True
+
+    def __init__(self, percent: float) -> None:
+        """Take ``percent`` of the time."""
+        self.share = 0.01 * percent
+        self._at_s = -1.0
+
+    def begin(self, scene: Scene, now: float) -> None:
+        """Begin to babble."""
+        self._at_s = now
+
+    def renew(self, scene: Scene, now: float) -> None:
+        """Take the share of the time since the last step."""
+        if now > self._at_s:
+            wire_of(scene).occupy(now, self.share * (now - self._at_s))
+            self._at_s = now
+
+
+class NodeCut(Effect):
+    """One drive's bus plug is pulled: it hears nobody and nobody hears it."""
+
+    __slots__ = ("axis",)
+
+    def __init__(self, axis: str) -> None:
+        """Of this axis."""
+        self.axis = axis
+
+    def begin(self, scene: Scene, now: float) -> None:
+        """Pull it."""
+        wire_of(scene).cut(scene.rig.axes[self.axis].node_id, True)
+
+    def end(self, scene: Scene, now: float) -> None:
+        """Plug it in again."""
+        wire_of(scene).cut(scene.rig.axes[self.axis].node_id, False)
+
+
+class FramesLost(Effect):
+    """Frames of one kind, to or from one drive, are lost."""
+
+    __slots__ = ("axis", "bases")
+
+    def __init__(self, axis: str, *bases: int) -> None:
+        """Lose the identifiers base + node."""
+        self.axis = axis
+        self.bases = bases
+
+    def _ids(self, scene: Scene) -> frozenset[int]:
+        node_id = scene.rig.axes[self.axis].node_id
+        return frozenset(base + node_id for base in self.bases)
+
+    def begin(self, scene: Scene, now: float) -> None:
+        """Begin to lose them."""
+        wire = wire_of(scene)
+        wire.lost |= self._ids(scene)
+        wire.note_faults()
+
+    def end(self, scene: Scene, now: float) -> None:
+        """Lose no more."""
+        wire = wire_of(scene)
+        wire.lost -= self._ids(scene)
+        wire.note_faults()
+
+
+class FeedbackFrozen(Effect):
+    """A drive repeats its last process data for ever."""
+
+    __slots__ = ("axis",)
+
+    def __init__(self, axis: str) -> None:
+        """Of this axis."""
+        self.axis = axis
+
+    def begin(self, scene: Scene, now: float) -> None:
+        """Freeze what comes next."""
+        wire = wire_of(scene)
+        wire.frozen[o.TPDO1_BASE + scene.rig.axes[self.axis].node_id] = b""
+        wire.note_faults()
+
+    def end(self, scene: Scene, now: float) -> None:
+        """Show what is."""
+        wire = wire_of(scene)
+        wire.frozen.pop(o.TPDO1_BASE + scene.rig.axes[self.axis].node_id, None)
+        wire.note_faults()
+
+
+class SecondMaster(Effect):
+    """Another master on the bus sends the same frame again and again."""
+
+    __slots__ = ("_at_s", "axis", "base", "data")
+
+    every_step = True
+    PERIOD_S = 0.1
+
+    def __init__(self, base: int, data: bytes, axis: str = "") -> None:
+        """Send ``data`` with identifier ``base`` (plus the node of ``axis``)."""
+        self.base = base
+        self.data = data
+        self.axis = axis
+        self._at_s = 0.0
+
+    def begin(self, scene: Scene, now: float) -> None:
+        """Send at once."""
+        self._at_s = now
+
+    def renew(self, scene: Scene, now: float) -> None:
+        """Send when it is time."""
+        if now >= self._at_s and scene.rig.can.connected:
+            self._at_s = now + self.PERIOD_S
+            node_id = scene.rig.axes[self.axis].node_id if self.axis else 0
+            scene.rig.can.inject(self.base + node_id, self.data, now)
+
+
+class EmergencyStorm(Effect):
+    """A drive sends the same emergency a hundred times a second."""
+
+    __slots__ = ("_at_s", "axis", "code")
+
+    every_step = True
+    PERIOD_S = 0.01
+
+    def __init__(self, axis: str, code: int) -> None:
+        """Send ``code`` from the drive of ``axis``."""
+        self.axis = axis
+        self.code = code
+        self._at_s = 0.0
+
+    def begin(self, scene: Scene, now: float) -> None:
+        """Send at once."""
+        self._at_s = now
+
+    def renew(self, scene: Scene, now: float) -> None:
+        """Send what has fallen due."""
+        node_id = scene.rig.axes[self.axis].node_id
+        if now >= self._at_s:
+            self._at_s = now + self.PERIOD_S
+            scene.rig.can.transmit(o.EMERGENCY_BASE + node_id, emcy.encode(self.code, 1), now, True)

@@ -1,0 +1,184 @@
+"""The catalogue of faults: one row each. A fault without a row does not exist for language and campaign.
+
+Budgets are those of the safety concept, from the onset (or from when the fault can be noticed) to the safe commands,
+with one scan of 50 ms at the slow rate on top; [A] where the concept gives none.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import partial
+
+from drivers.canopen import objects as o
+from drivers.canopen.objects import NmtCommand
+from sim.faults import actuators as a
+from sim.faults import can as c
+from sim.faults import drives as d
+from sim.faults import modbus as m
+from sim.faults import people as p
+from sim.faults import sensors as s
+from sim.faults.kinds import Exposure, FaultKind, Reaction
+
+AXES = ("wheel", "belt", "press", "sideslip", "camber")
+VELOCITY_AXES = ("wheel", "belt", "press")
+OVERCURRENT, OVERHEATED, FOLLOWING_ERROR, ENCODER, CAN_OVERRUN = 0x2310, 0x4310, 0x8611, 0x7305, 0x8110
+SCAN_S = 0.05
+"""The slow scan's period: what is noticed by a scan is noticed this much later at most, s."""
+
+ALWAYS, CONNECTING, ENABLED, TURNING, LOADED, PRESSING, SLIDING, HEATING = (
+    Exposure.ALWAYS, Exposure.CONNECTING, Exposure.ENABLED, Exposure.TURNING, Exposure.LOADED, Exposure.PRESSING,
+    Exposure.SLIDING, Exposure.HEATING,
+)  # fmt: skip
+TRIP, STOP, HOLD, RIDE, MAY, DEVICES = (
+    Reaction.TRIP, Reaction.STOP, Reaction.HOLD, Reaction.RIDE, Reaction.MAY, Reaction.DEVICES
+)  # fmt: skip
+
+_NMT_STOP_ALL = bytes((NmtCommand.STOP, 0))
+_ENABLE_AND_GO = b"\x0f\x00" + (50_000).to_bytes(4, "little", signed=True)
+"""A stranger's RPDO: enable operation, 0.5 m/s for the packaged rig's belt."""
+
+
+def _drive_rows() -> Iterator[FaultKind]:
+    for axis in AXES:
+        yield FaultKind(f"{axis} drive fault", partial(d.DriveFault, axis, OVERCURRENT), ALWAYS, TRIP, 0.02 + SCAN_S)
+        yield FaultKind(f"{axis} drive heartbeat lost", partial(d.HeartbeatLost, axis), ALWAYS, TRIP, 0.2 + SCAN_S)
+        yield FaultKind(f"{axis} drive reboots", partial(d.Reboot, axis), ALWAYS, TRIP, 0.25 + SCAN_S,
+                        lasts_s=1.0, note="its boot-up message comes after 0.2 s")
+        yield FaultKind(f"{axis} drive off the bus", partial(c.NodeCut, axis), ALWAYS, TRIP, 0.2 + SCAN_S)
+        yield FaultKind(f"{axis} drive without supply", partial(d.Unpowered, axis), ALWAYS, TRIP, 0.2 + SCAN_S)
+        yield FaultKind(f"{axis} drive data lost", partial(c.FramesLost, axis, o.TPDO1_BASE), ENABLED, TRIP,
+                        0.15 + SCAN_S)
+        yield FaultKind(f"{axis} drive of another make", partial(d.WrongIdentity, axis), CONNECTING, TRIP, 3.0)
+        yield FaultKind(f"{axis} drive SDO silent", partial(c.FramesLost, axis, o.SDO_REPLY_BASE), CONNECTING, TRIP,
+                        10.0, note="every request is tried again before a drive is given up")
+    for axis in VELOCITY_AXES:
+        yield FaultKind(f"{axis} drive following error", partial(d.DriveFault, axis, FOLLOWING_ERROR), ALWAYS, TRIP,
+                        0.02 + SCAN_S)
+        yield FaultKind(f"{axis} drive reports overheating", partial(d.Emergency, axis, OVERHEATED), ALWAYS, MAY, 0.1)
+        yield FaultKind(f"{axis} drive setpoints lost", partial(c.FramesLost, axis, o.RPDO1_BASE), ENABLED, MAY, 1.0,
+                        note="noticed as soon as the drive does not follow: a speed error, a load error")
+        yield FaultKind(f"{axis} drive feedback frozen", partial(c.FeedbackFrozen, axis), ENABLED, MAY, 1.0,
+                        note="noticed when the other readings contradict it")
+        yield FaultKind(f"{axis} drive in local mode", partial(d.Local, axis), ENABLED, TRIP, 0.1 + SCAN_S)
+        yield FaultKind(f"{axis} drive torque off", partial(d.TorqueOff, axis), ENABLED, TRIP, 0.1 + SCAN_S)
+
+
+def _bus_rows() -> Iterator[FaultKind]:
+    yield FaultKind("CAN adapter gone", c.AdapterGone, ALWAYS, TRIP, SCAN_S)
+    yield FaultKind("CAN bus off", c.BusSilent, ALWAYS, TRIP, 0.2 + SCAN_S)
+    yield FaultKind("CAN frames lost", c.FrameLoss, ALWAYS, MAY, 0.5, "%", 20.0)
+    yield FaultKind("CAN frames late", c.FramesLate, ENABLED, MAY, 0.5, "ms", 0.1)
+    yield FaultKind("CAN frames repeated", c.FramesRepeated, ALWAYS, RIDE, 0.0)
+    yield FaultKind("CAN bus busy", c.BusBusy, ALWAYS, MAY, 0.5, "%", 95.0)
+    yield FaultKind("second master SYNC", partial(c.SecondMaster, o.SYNC_ID, b""), ALWAYS, TRIP, 0.1 + SCAN_S)
+    yield FaultKind("second master setpoint", partial(c.SecondMaster, o.RPDO1_BASE, _ENABLE_AND_GO, "belt"), ALWAYS,
+                    TRIP, 0.1 + SCAN_S)
+    yield FaultKind("second master stops nodes", partial(c.SecondMaster, o.NMT_ID, _NMT_STOP_ALL), ALWAYS, TRIP,
+                    0.2 + SCAN_S)
+    yield FaultKind("belt drive emergency storm", partial(c.EmergencyStorm, "belt", CAN_OVERRUN), ALWAYS, MAY, 0.1)
+
+
+_SILENT_S = {"load cell": 0.1 + SCAN_S, "thermometer": 1.2 + SCAN_S, "jacket": 1.2 + SCAN_S}
+"""Age at which a reading is stale (rulings, 11) and the delay of its interlock, s."""
+_WATCHED = {"load cell": LOADED, "thermometer": HEATING, "jacket": ALWAYS}
+"""When the readings of a device are needed."""
+
+
+def _modbus_rows() -> Iterator[FaultKind]:
+    for device in m.DEVICES:
+        when, budget_s = _WATCHED[device], _SILENT_S[device]
+        yield FaultKind(f"{device} silent", partial(m.Impaired, device, "silence"), when, TRIP, budget_s)
+        yield FaultKind(f"{device} without supply", partial(m.DeviceOff, device), when, TRIP, budget_s)
+        yield FaultKind(f"{device} reset", partial(m.DeviceReset, device), when, TRIP, budget_s,
+                        lasts_s=m.REBOOT_S)
+        yield FaultKind(f"{device} CRC errors", partial(m.Impaired, device, "corrupt"), when, TRIP, budget_s)
+        yield FaultKind(f"{device} garbage", partial(m.Impaired, device, "noise"), when, MAY, budget_s,
+                        note="a few bytes before a reply can be told from it by its check sum")
+        yield FaultKind(f"{device} replies cut short", partial(m.Impaired, device, "truncate"), when, TRIP, budget_s)
+        yield FaultKind(f"{device} replies of another address", partial(m.Impaired, device, "wrong_id"), when, TRIP,
+                        budget_s)
+        yield FaultKind(f"{device} replies late", partial(m.LateReply, device), when, TRIP, budget_s + 0.5, "ms", 1.5)
+        yield FaultKind(f"{device} reply late once", partial(m.Impaired, device, "late", count=1, delay_s=0.02),
+                        ALWAYS, RIDE, 0.0)
+        yield FaultKind(f"{device} CRC error once", partial(m.Impaired, device, "corrupt", count=1), ALWAYS, RIDE, 0.0)
+        yield FaultKind(f"{device} exception", partial(_exception, device), when, TRIP, budget_s, "", 4.0)
+        yield FaultKind(f"{device} line unplugged", partial(m.LineGone, device), ALWAYS, TRIP, 0.2 + SCAN_S)
+
+
+def _exception(device: str, code: float) -> m.ExceptionReply:
+    return m.ExceptionReply(device, round(code))
+
+
+def _sensor_rows() -> Iterator[FaultKind]:
+    yield FaultKind("load cell frozen", partial(s.CellFault, "frozen"), PRESSING, TRIP, 0.5 + 0.1)
+    yield FaultKind("load cell open", partial(s.CellFault, "open"), LOADED, TRIP, 0.1 + SCAN_S)
+    yield FaultKind("load cell saturated", partial(s.CellFault, "saturated"), LOADED, TRIP, 0.1 + SCAN_S)
+    yield FaultKind("load cell offset", partial(s.CellFault, "offset"), PRESSING, MAY, 1.0, "N", 30.0,
+                    note="seen at the next check of the zero; the force stays inside its limit")
+    yield FaultKind("load cell reads low", partial(s.CellFault, "low"), PRESSING, MAY, 1.0, "%", 50.0,
+                    note="the load loop presses harder: the press position against the contact shows it")
+    yield FaultKind("load cell drift", partial(s.CellFault, "drift"), PRESSING, MAY, 10.0, "N/s", 2.0)
+    yield FaultKind("load cell noisy", partial(s.CellFault, "noise"), PRESSING, MAY, 1.0, "N", 40.0)
+    yield FaultKind("thermometer frozen", partial(s.SurfaceFault, "frozen"), HEATING, MAY, 60.0, slow=True)
+    yield FaultKind("thermometer open", partial(s.SurfaceFault, "open"), HEATING, TRIP, 1.2 + SCAN_S)
+    yield FaultKind("thermometer offset", partial(s.SurfaceFault, "offset"), HEATING, MAY, 30.0, "K", -15.0, slow=True)
+    yield FaultKind("thermometer reads low", partial(s.SurfaceFault, "low"), HEATING, MAY, 60.0, "%", 50.0, slow=True,
+                    note="misaligned or dirty")
+    yield FaultKind("thermometer drift", partial(s.SurfaceFault, "drift"), HEATING, MAY, 60.0, "K/s", -0.2, slow=True)
+    yield FaultKind("thermometer noisy", partial(s.SurfaceFault, "noise"), HEATING, MAY, 30.0, "K", 5.0)
+    yield FaultKind("hub sensor open", partial(s.HubFault, "open"), ALWAYS, TRIP, 1.2 + SCAN_S)
+    yield FaultKind("hub sensor frozen", partial(s.HubFault, "frozen"), HEATING, MAY, 60.0, slow=True)
+    yield FaultKind("hub sensor offset", partial(s.HubFault, "offset"), HEATING, MAY, 60.0, "K", -20.0, slow=True)
+    yield FaultKind("hub sensor reads low", partial(s.HubFault, "low"), HEATING, MAY, 60.0, "%", 80.0, slow=True,
+                    note="shorted towards ambient: the controller heats what it does not see")
+    yield FaultKind("hub sensor noisy", partial(s.HubFault, "noise"), ALWAYS, MAY, 1.0, "K", 8.0,
+                    note="slip ring chatter")
+
+
+def _actuator_rows() -> Iterator[FaultKind]:
+    yield FaultKind("jacket output stuck on", partial(a.JacketOutput, 100.0), HEATING, MAY, 120.0, slow=True)
+    yield FaultKind("jacket output stuck off", partial(a.JacketOutput, 0.0), HEATING, MAY, 120.0, slow=True)
+    yield FaultKind("jacket relay shorted", partial(a.HeaterElement, 100.0), HEATING, MAY, 120.0, slow=True)
+    yield FaultKind("heater line open", partial(a.HeaterElement, 0.0), HEATING, MAY, 120.0, slow=True)
+    yield FaultKind("jacket limiter dead", a.LimiterDead, ALWAYS, MAY, 0.0, slow=True)
+    yield FaultKind("contactor welded", a.ContactorWelded, ALWAYS, MAY, 0.0)
+    yield FaultKind("contactor dead", a.ContactorDead, ALWAYS, MAY, 1.0)
+    yield FaultKind("press runs away", partial(d.Runaway, "press"), LOADED, TRIP, 0.5, "mm/s", 5.0)
+    yield FaultKind("press stuck", partial(d.Jammed, "press"), PRESSING, MAY, 1.0, force_stays=True,
+                    note="a jammed screw is freed by hand: the rig stands, loaded and without heat")
+    yield FaultKind("belt jammed", partial(d.Jammed, "belt"), LOADED, TRIP, 0.1 + SCAN_S)
+    yield FaultKind("wheel jammed", partial(d.Jammed, "wheel"), LOADED, TRIP, 0.1 + SCAN_S)
+    yield FaultKind("belt torn", d.BeltTorn, SLIDING, MAY, 1.0)
+    yield FaultKind("belt slips on its roller", d.BeltSlips, SLIDING, MAY, 1.0, "%", 40.0)
+    yield FaultKind("wheel slips on its shaft", d.WheelSlipsOnShaft, SLIDING, MAY, 1.0)
+    yield FaultKind("safety chain opened", a.ChainOpen, ALWAYS, TRIP, SCAN_S)
+    yield FaultKind("guard opened", a.GuardOpen, ENABLED, TRIP, SCAN_S)
+    yield FaultKind("emergency stop pressed", a.EmergencyStop, ALWAYS, TRIP, SCAN_S)
+
+
+def _computer_rows() -> Iterator[FaultKind]:
+    yield FaultKind("scan stalled shortly", partial(p.Stall, 0.03), ALWAYS, RIDE, 0.0)
+    yield FaultKind("scan stalled", p.Stall, ENABLED, TRIP, 0.4 + SCAN_S, "ms", 0.4, lasts_s=0.5,
+                    note="tripped by the first scan after it; a drive stops by itself after 0.2 s")
+    yield FaultKind("scan stalled while sliding", partial(p.Stall, 0.165), SLIDING, TRIP, 0.2 + SCAN_S, lasts_s=0.3,
+                    note="later than a scan may be, sooner than most drives stop by themselves")
+    yield FaultKind("process killed", p.Killed, ALWAYS, DEVICES, 0.25)
+    yield FaultKind("clock jump", p.ClockJump, ENABLED, TRIP, SCAN_S, "ms", 2.0, lasts_s=0.5)
+    yield FaultKind("operator hold", partial(p.Operator, "hold"), ALWAYS, HOLD, SCAN_S)
+    yield FaultKind("operator release", partial(p.Operator, "release"), ALWAYS, RIDE, 0.0)
+    yield FaultKind("operator abort", partial(p.Operator, "abort"), ALWAYS, STOP, SCAN_S)
+    yield FaultKind("operator stop", partial(p.Operator, "stop"), ALWAYS, STOP, SCAN_S)
+    yield FaultKind("operator fast stop", partial(p.Operator, "fast stop"), ALWAYS, STOP, SCAN_S)
+
+
+def _rows() -> Iterator[FaultKind]:
+    yield from _drive_rows()
+    yield from _bus_rows()
+    yield from _modbus_rows()
+    yield from _sensor_rows()
+    yield from _actuator_rows()
+    yield from _computer_rows()
+
+
+CATALOGUE: dict[str, FaultKind] = {row.phrase: row for row in _rows()}
+"""Every fault by its phrase."""

@@ -1,0 +1,70 @@
+"""What a row of the fault catalogue is made of."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import Enum
+from math import inf
+
+from sim.faults.scene import Effect
+
+
+class Exposure(Enum):
+    """When a fault can be noticed at all: its budget counts from then on."""
+
+    ALWAYS = "at once, once the drives are connected"
+    CONNECTING = "at the next connection"
+    ENABLED = "while the drives are on"
+    TURNING = "while the wheel turns"
+    LOADED = "in contact"
+    PRESSING = "while a load is held"
+    SLIDING = "in contact, with slip"
+    HEATING = "while the jacket heats"
+
+
+class Reaction(Enum):
+    """What has to come of it."""
+
+    TRIP = "trips: the run ends latched"
+    STOP = "the run ends in a controlled stop"
+    HOLD = "holds: lifted, slip to zero"
+    RIDE = "the run goes on"
+    MAY = "may trip or go on, both safely"
+    DEVICES = "the devices stop by themselves"
+
+
+@dataclass(frozen=True, slots=True)
+class FaultKind:
+    """One fault: its name, how it is applied, what has to come of it and by when.
+
+    ``make`` gets the value, where the fault has one (``unit`` not None), and ``value`` where none is given.
+    ``budget_s`` counts from the onset, or from when the fault can be noticed (``exposure``), to the safe commands.
+    ``force_stays`` and ``heat_stays``: the force, or the heat, cannot go by any command (the reason is in ``note``).
+    ``lasts_s``: it is over by itself after this time.
+    ``slow``: a matter of temperature, watched for two minutes and more.
+    """
+
+    phrase: str
+    make: Callable[..., Effect]
+    exposure: Exposure
+    reaction: Reaction
+    budget_s: float
+    unit: str | None = None
+    value: float = 0.0
+    lasts_s: float = inf
+    slow: bool = False
+    force_stays: bool = False
+    heat_stays: bool = False
+    note: str = ""
+
+    def effect(self, value: float | None = None) -> Effect:
+        """Return the fault, ready to begin."""
+        if self.unit is None:
+            return self.make()
+        return self.make(self.value if value is None else value)
+
+    @property
+    def group(self) -> str:
+        """What it concerns: the first word, but for the devices' and operators' names of two words."""
+        return self.phrase.split()[0]

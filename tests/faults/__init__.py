@@ -1,0 +1,1 @@
+"""The fault campaign: does the rig stay safe, whatever breaks, whenever it breaks?"""

@@ -1,0 +1,143 @@
+"""`python -m tests.faults --full | --sample | --mutants`: the fault campaign, one line a figure.
+
+Exit status 0 when every figure is what is asked for, 1 when one misses it.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from dataclasses import dataclass, field
+
+from sim.faults import CATALOGUE
+from tests.faults import every_scan
+from tests.faults.campaign import PAIRS, Tally, all_cases, conduct, faults_of_campaign, pairs, rehearsals, sample
+from tests.faults.hardware import held_by_hardware
+from tests.faults.judge import Verdict
+
+SAMPLE_CASES = 420
+SAMPLE_CPU_S, FULL_CPU_S = 120.0, 1800.0
+SAMPLE_SCANS = 40
+SPARSE = 10
+"""Emergency stop and hold come at every tenth scan: abort, fast stop and kill at every one."""
+HOLD = "sim.press_on_power_loss=hold"
+"""The rig whose press stays where it is without power; sampled beside the one with a spring."""
+
+
+@dataclass(slots=True)
+class Report:
+    """Figures as they come, and whether one has missed."""
+
+    missed: list[str] = field(default_factory=list[str])
+
+    def figure(self, name: str, value: object, asked: str, met: bool) -> None:
+        """Print one figure."""
+        print(f"{'ok  ' if met else 'MISS'} {name}: {value} (asked: {asked})", flush=True)
+        if not met:
+            self.missed.append(name)
+
+    def causes(self, tally: Tally, most: int) -> None:
+        """Print what failed, one line a fault."""
+        for count, text in tally.causes()[:most]:
+            print(f"       {count} x {text}", flush=True)
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Conduct what is asked for; return the exit status."""
+    parser = argparse.ArgumentParser(prog="python -m tests.faults", description=__doc__)
+    kind = parser.add_mutually_exclusive_group(required=True)
+    kind.add_argument("--full", action="store_true", help="every fault x step x phase, pairs, every scan")
+    kind.add_argument("--sample", action="store_true", help="a sample of each, for every change")
+    kind.add_argument("--mutants", action="store_true", help="does the sample notice seeded bugs of the control code?")
+    kind.add_argument("--list", action="store_true", help="the catalogue, one line a fault")
+    parser.add_argument("--jobs", type=int, default=1, metavar="N", help="processors to use")
+    parser.add_argument("--causes", type=int, default=200, metavar="N", help="lines about failures at most")
+    options = parser.parse_args(arguments)
+    if options.list:
+        for row in CATALOGUE.values():
+            print(f"{row.phrase}: {row.reaction.value}; within {row.budget_s:g} s, {row.exposure.value}")
+        return 0
+    if options.mutants:
+        from tests.faults.mutants import main as mutants
+
+        return mutants(options.jobs)
+    report = Report()
+    if options.full:
+        full(report, options.jobs, options.causes)
+    else:
+        short(report, options.jobs, options.causes)
+    print(f"{len(report.missed)} figures missed" if report.missed else "every figure met")
+    return 1 if report.missed else 0
+
+
+def short(report: Report, jobs: int, most: int) -> None:
+    """Conduct the sample."""
+    began_s = cpu_s()
+    moments = rehearsals()
+    faults = faults_of_campaign(everything=True)
+    report.figure("faults in the catalogue", len(CATALOGUE), ">= 40", len(CATALOGUE) >= 40)
+    grid(report, conduct("grid", sample(all_cases(moments, faults), SAMPLE_CASES), jobs), 400, most)
+    ticks = range(every_scan.scans())
+    some = [ticks[i * (len(ticks) - 1) // (SAMPLE_SCANS - 1)] for i in range(SAMPLE_SCANS)]
+    for tally in every_scan.conduct(some, jobs=jobs).values():
+        scans(report, tally, SAMPLE_SCANS, most)
+    spent(report, began_s, SAMPLE_CPU_S)
+
+
+def full(report: Report, jobs: int, most: int) -> None:
+    """Conduct everything."""
+    began_s = cpu_s()
+    moments = rehearsals()
+    faults = faults_of_campaign(everything=False)
+    report.figure("faults in the catalogue", len(CATALOGUE), ">= 40", len(CATALOGUE) >= 40)
+    grid(report, conduct("grid", all_cases(moments, faults), jobs), 7000, most)
+    spent(report, began_s, FULL_CPU_S)
+    doubles(report, conduct("pairs", pairs(moments, faults, PAIRS), jobs, budgets=False), most)
+    held = sample(all_cases(moments, faults), SAMPLE_CASES)
+    grid(report, conduct("grid, press held without power", held, jobs, (HOLD,)), 400, most)
+    ticks = range(every_scan.scans())
+    for tally in every_scan.conduct(ticks, every_scan.EVENTS[:3], jobs).values():
+        scans(report, tally, every_scan.ASKED_FOR, most)
+    for tally in every_scan.conduct(ticks[::SPARSE], every_scan.EVENTS[3:], jobs).values():
+        scans(report, tally, len(ticks[::SPARSE]), most)
+
+
+def cpu_s() -> float:
+    """Return the processor time of this process and of its workers that have ended, s."""
+    return sum(os.times()[:4])
+
+
+def grid(report: Report, tally: Tally, cases: int, most: int) -> None:
+    """Print the figures of a grid."""
+    report.figure(f"{tally.name}: cases", len(tally.verdicts), f">= {cases}", len(tally.verdicts) >= cases)
+    report.figure(f"{tally.name}: unsafe", len(tally.unsafe), "0", not tally.unsafe)
+    report.figure(f"{tally.name}: reaction budgets missed", len(tally.late), "0", not tally.late)
+    report.causes(tally, most)
+
+
+def doubles(report: Report, tally: Tally, most: int) -> None:
+    """Print the figures of the pairs."""
+    outside: list[Verdict] = [v for v in tally.unsafe if held_by_hardware(v.case.faults) is None]
+    report.figure("pairs", len(tally.verdicts), ">= 700", len(tally.verdicts) >= 700)
+    held = len(tally.unsafe) - len(outside)
+    report.figure("pairs: unsafe, held by hardware", held, "written list", True)
+    report.figure("pairs: unsafe outside the list", len(outside), "0", not outside)
+    report.causes(Tally("pairs", outside), most)
+
+
+def scans(report: Report, tally: Tally, points: int, most: int) -> None:
+    """Print the figures of one event at every scan."""
+    report.figure(f"{tally.name}: points", len(tally.verdicts), f">= {points}", len(tally.verdicts) >= points)
+    report.figure(f"{tally.name}: failures", len(tally.failed), "0", not tally.failed)
+    report.causes(tally, most)
+
+
+def spent(report: Report, began_s: float, most_s: float) -> None:
+    """Print the processor time, of this process and its workers."""
+    used_s = cpu_s() - began_s
+    report.figure("processor time of the grid", f"{used_s:.0f} s", f"<= {most_s:.0f} s", used_s <= most_s)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,176 @@
+"""One case of the campaign: a run, a fault at a moment of it, and what has come of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from math import inf
+
+from sim.faults import CATALOGUE, Injection
+from sim.faults.kinds import Exposure, FaultKind, Reaction
+from sim.faults.language import When
+from sim.harm import SAFE_S, Truth
+from tester.process import Press
+from tests.faults.stage import Stage
+
+WATCHED_S = 10.0
+"""A fault that ends nothing is watched this long, s of rig time; a slow one SLOW_S."""
+SLOW_S = 125.0
+SETTLED_S = 0.5
+"""An end state counts as reached when it has lasted this long."""
+ROUNDING_S = 0.011
+"""Ticks are at most this far apart while something happens; a budget is not missed by a rounding."""
+HEARTBEAT_S = 0.25
+"""A drive misses our heartbeat after 200 ms, and we sent the last one up to 50 ms before a kill."""
+
+
+@dataclass(frozen=True, slots=True)
+class Case:
+    """A recipe, a tick of it, the place it is at, and the faults that begin there."""
+
+    recipe: str
+    tick: int
+    place: str
+    faults: tuple[str, ...]
+
+    def __str__(self) -> str:
+        return f"{self.recipe}, tick {self.tick} ({self.place}): {' + '.join(self.faults)}"
+
+
+@dataclass(slots=True)
+class Verdict:
+    """What has come of a case: failures (empty: safe and in time), who tripped, how long it took."""
+
+    case: Case
+    failures: list[str] = field(default_factory=list[str])
+    tripped_by: str = ""
+    ended_after_s: float = inf
+
+
+def exposed(stage: Stage, exposure: Exposure) -> bool:
+    """Tell whether a fault can be noticed now."""
+    engine = stage.run.engine
+    if exposure is Exposure.ALWAYS:
+        return engine.scans > 0
+    if exposure is Exposure.CONNECTING:
+        return engine.scans == 0 and stage.ticks < 3
+    demand, truth = engine.ctx.demand, Truth.of(stage.rig)
+    if not stage.running:
+        return False
+    if exposure is Exposure.ENABLED:
+        return demand.enabled and engine.ctx.readings.drives_enabled
+    if exposure is Exposure.TURNING:
+        return truth.wheel_m_s > 0.04
+    if exposure is Exposure.HEATING:
+        return engine.control.state.setpoints.heat
+    if exposure is Exposure.PRESSING:
+        loaded = engine.ctx.contact.loaded and truth.force_n > 20.0
+        return demand.press is Press.LOAD and demand.load_n >= 50.0 and loaded
+    if exposure is Exposure.SLIDING:
+        return truth.force_n > 20.0 and truth.slip_m_s > 0.05
+    return truth.force_n > 20.0
+
+
+class Judge:
+    """Watches one stage under its faults, tick by tick."""
+
+    def __init__(self, stage: Stage, case: Case, *, budgets: bool = True) -> None:
+        """Begin the faults at the stage's next tick; without ``budgets`` only safety is judged."""
+        self.stage = stage
+        self.budgets = budgets
+        self.kinds: tuple[FaultKind, ...] = tuple(CATALOGUE[name] for name in case.faults)
+        self.verdict = Verdict(case)
+        self.onset_s = stage.next_s
+        self.ended_s = inf
+        self.safe_since_s = inf
+        self.committed = stage.ledger.committed
+        self._exposed_s = [inf] * len(self.kinds)
+        self._was_running = stage.running
+        stage.inject(*(Injection(When(at_s=self.onset_s), kind, text=kind.phrase) for kind in self.kinds))
+        slow = any(kind.slow for kind in self.kinds)
+        self.until_s = self.onset_s + (SLOW_S if slow else WATCHED_S)
+
+    def run(self) -> Verdict:
+        """Tick until it is clear what has come of it."""
+        stage = self.stage
+        while not self._done(stage.tick()):
+            pass
+        verdict = self.verdict
+        verdict.failures += [f"harm: {name}, {text}" for name, text in stage.observer.found.items()]
+        verdict.failures += [f"invariant {name}: {text}" for name, text in stage.invariants.broken.items()]
+        trip = stage.run.engine.control.state.trip
+        if trip is not None:
+            verdict.tripped_by = trip.name
+            if not stage.ledger.trips:
+                verdict.failures.append("a trip is not in the journal")
+        return verdict
+
+    def _done(self, now: float) -> bool:
+        """Look at one tick; return whether everything is clear."""
+        stage = self.stage
+        if stage.faulty.killed and self.ended_s == inf:
+            self.ended_s = now
+        elif self.ended_s == inf and stage.ended:
+            self._end(now)
+        if self.ended_s == inf:
+            late = self._late(now) if self.budgets else ""
+            if late:
+                self.verdict.failures.append(late)
+                return True
+            return now >= self.until_s
+        return self._safe(now)
+
+    def _end(self, now: float) -> None:
+        self.ended_s = now
+        self.verdict.ended_after_s = now - self.onset_s
+        self.committed = self.stage.ledger.committed
+        normal = self.stage.run.engine.executor.finished
+        rides = [kind.phrase for kind in self.kinds if kind.reaction is Reaction.RIDE]
+        if self.budgets and len(rides) == len(self.kinds) and not normal and self._was_running:
+            self.verdict.failures.append(f"ended by a fault it should ride through{self._why()}")
+
+    def _late(self, now: float) -> str:
+        """Return which budget is missed, or ""."""
+        for i, kind in enumerate(self.kinds):
+            if kind.reaction not in (Reaction.TRIP, Reaction.STOP, Reaction.HOLD):
+                continue
+            if now > self.onset_s + kind.lasts_s or not exposed(self.stage, kind.exposure):
+                self._exposed_s[i] = inf
+                continue
+            if kind.reaction is Reaction.HOLD and (self.stage.mode == "hold" or not self._was_running):
+                continue  # a rig that is not up refuses to hold
+            self._exposed_s[i] = min(self._exposed_s[i], now)
+            if now - max(self._exposed_s[i], self.onset_s) > kind.budget_s + ROUNDING_S:
+                return f"missed budget of {kind.budget_s:.2f} s: {kind.phrase}"
+        return ""
+
+    def _safe(self, now: float) -> bool:
+        """See that the end state is reached in time and stays."""
+        stage = self.stage
+        missing = Truth.of(stage.rig).unsafe(
+            creeping=stage.mode == "cooldown",
+            force_stays=any(kind.force_stays for kind in self.kinds),
+            heat_stays=any(kind.heat_stays for kind in self.kinds),
+        )
+        if stage.ledger.committed > self.committed and stage.ledger.trips:
+            self.verdict.failures.append("a repeat was committed after the trip")
+            return True
+        if not missing:
+            self.safe_since_s = min(self.safe_since_s, now)
+            return now - self.safe_since_s >= SETTLED_S and self._at_rest(now)
+        self.safe_since_s = inf
+        allowed_s = SAFE_S + (HEARTBEAT_S if stage.faulty.killed else 0.0)
+        if now - self.ended_s > allowed_s:
+            text = f"not safe {allowed_s:g} s after the end: {', '.join(missing)}{self._why()}"
+            self.verdict.failures.append(text)
+            return True
+        return False
+
+    def _at_rest(self, now: float) -> bool:
+        """Tell whether control is through with stopping, or has had long enough."""
+        stage = self.stage
+        settled = stage.run.finished or stage.faulty.killed or stage.mode in ("latched", "idle", "cooldown")
+        return settled or now - self.ended_s > WATCHED_S
+
+    def _why(self) -> str:
+        trip = self.stage.run.engine.control.state.trip
+        return f" (tripped by {trip.name})" if trip is not None else f" ({self.stage.mode})"

@@ -1,0 +1,93 @@
+"""The moments of a recipe at which the campaign injects: begin, middle and end of every step."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
+from functools import cache
+
+from tests.faults.recipes import RECIPES
+from tests.faults.stage import STANDING, Place, Stage
+
+PHASES = ("begin", "middle", "end")
+
+
+@dataclass(frozen=True, slots=True)
+class Moment:
+    """A tick of a recipe's run, and what is going on there."""
+
+    recipe: str
+    tick: int
+    step: str
+    phase: str
+
+    @property
+    def place(self) -> str:
+        """In words."""
+        return f"{self.step}, {self.phase}"
+
+
+@cache
+def rehearse(recipe: str, overrides: tuple[str, ...] = ()) -> tuple[list[Moment], Stage]:
+    """Run a recipe to its end, once; return begin, middle and end of every step, and the stage at the end."""
+    stage = Stage(RECIPES[recipe], overrides)
+    stretches: list[tuple[Place, str, int, int]] = []
+    while not stage.run.finished:
+        first = stage.ticks
+        stage.tick()
+        place = (stage.place[0], stage.place[1] if stage.running or not stage.run.engine.scans else stage.mode)
+        if stretches and stretches[-1][0] == place:
+            stretches[-1] = (*stretches[-1][:3], first)
+        else:
+            title = stage.run.engine.ctx.progress.title.partition(" ")[0] if place[0] else "connect"
+            stretches.append((place, f"{place[0]} {title} {place[1]}", first, first))
+    return list(_moments(recipe, stretches)), stage
+
+
+def _moments(recipe: str, stretches: list[tuple[Place, str, int, int]]) -> Iterator[Moment]:
+    """Choose, for each place, its longest stretch among the first ten."""
+    chosen: dict[Place, tuple[str, int, int]] = {}
+    seen: dict[Place, int] = {}
+    for place, name, first, last in stretches:
+        if place[1] in STANDING:
+            continue
+        seen[place] = seen.get(place, 0) + 1
+        if seen[place] <= 10 and (place not in chosen or last - first > chosen[place][2] - chosen[place][1]):
+            chosen[place] = (name, first, last)
+    for name, first, last in chosen.values():
+        ticks = {first: "begin", (first + last) // 2: "middle", last: "end"}
+        for tick, phase in sorted(ticks.items()):
+            yield Moment(recipe, tick, name, phase)
+
+
+def visit(
+    recipe: str, moments: Iterable[Moment], look: Callable[[Moment, Twins], None], overrides: tuple[str, ...] = ()
+) -> None:
+    """Run a recipe once and show, before each of the moments' ticks, what gives twins of its stage."""
+    stage = Stage(RECIPES[recipe], overrides)
+    for moment in sorted(moments, key=_tick):
+        while stage.ticks < moment.tick:
+            stage.tick()
+        look(moment, Twins(stage, recipe, overrides))
+
+
+@dataclass(frozen=True, slots=True)
+class Twins:
+    """Gives independent twins of a stage: copies, or (where it cannot be copied) runs of their own up to there."""
+
+    stage: Stage
+    recipe: str
+    overrides: tuple[str, ...]
+
+    def __call__(self) -> Stage:
+        """Return a twin."""
+        if self.stage.copyable:
+            return self.stage.copy()
+        twin = Stage(RECIPES[self.recipe], self.overrides)
+        while twin.ticks < self.stage.ticks:
+            twin.tick()
+        return twin
+
+
+def _tick(moment: Moment) -> int:
+    return moment.tick

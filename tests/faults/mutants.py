@@ -1,0 +1,191 @@
+"""Seeded bugs of the control code: does the campaign notice them?
+
+Each mutant is put into a copy of the source tree, never into the tree itself, and hunted there by a process of its
+own (``--probe``): the recipes must still run to their end, the sample campaign and the stateful test must find
+nothing. What notices anything has killed the mutant. The unchanged copy is hunted first and must pass.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import shutil
+import subprocess
+import sys
+import unittest
+from collections.abc import Iterable
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+ROOT = Path(__file__).resolve().parents[2]
+COPIED = ("tester", "drivers", "sim", "recipes", "tests")
+ASKED_FOR = 0.9
+"""Share of the mutants that must be killed: 18 of 20."""
+FIRST, PROBED = 90, 420
+"""Cases of the short recipe, and of the three of the grid."""
+BATCH = 70
+"""Cases between two looks at the result: each batch runs its recipes anew."""
+
+
+@dataclass(frozen=True, slots=True)
+class Mutant:
+    """One bug: a text in a file, replaced by another."""
+
+    name: str
+    path: str
+    old: str
+    new: str
+
+
+_STEP, _LEVELS, _STOPS = "tester/control/step.py", "tester/control/levels.py", "tester/control/stops.py"
+_TABLE, _SAFE, _MAY = "tester/control/interlocks.py", "tester/control/safe_outputs.py", "tester/control/permissives.py"
+
+MUTANTS: tuple[Mutant, ...] = (
+    Mutant("a comparison inverted: overload", _LEVELS,
+           "if not (fz <= v.limits.load_n):", "if not (fz >= v.limits.load_n):"),
+    Mutant("a comparison inverted: standing under load", _LEVELS,
+           "apart = v.turning is not belt_moves and", "apart = v.turning is belt_moves and"),
+    Mutant("a comparison inverted: overshoot", _LEVELS,
+           "if not (fz <= b.overload_factor * highest + b.overload_margin_n):",
+           "if fz <= -(b.overload_factor * highest + b.overload_margin_n):"),
+    Mutant("a comparison inverted: wheel speed", _LEVELS,
+           "if not (v.wheel.low_m_s - error <= wheel <= v.wheel.high_m_s + error):",
+           "if v.wheel.low_m_s - error <= wheel <= v.wheel.high_m_s + error:"),
+    Mutant("a delay x 10: stale temperatures", _TABLE,
+           '"age > stale_jacket, or not valid",\n              lambda c: c.stale_delay_s,',
+           '"age > stale_jacket, or not valid",\n              lambda c: 10.0 * c.stale_delay_s,'),
+    Mutant("a delay x 10: load overshoot", _TABLE,
+           "lambda c: c.overload_delay_s, FAST", "lambda c: 10.0 * c.overload_delay_s, FAST"),
+    Mutant("a level made an edge", _STEP,
+           "        state.held = held\n        state.tripped", "        held, state.held = held & ~state.held, held\n"
+           "        state.tripped"),
+    Mutant("an early return hides the other levels", _STEP,
+           "        held = process_levels(view) | motion_levels(view)",
+           "        if process_levels(view) & 1:\n            return 0\n"
+           "        held = process_levels(view) | motion_levels(view)"),
+    Mutant("stale accepted: drives", _LEVELS, "held |= _DATA", "held |= 0"),
+    Mutant("stale accepted: load", _LEVELS,
+           "if not (r.now_s - r.cell_at_s <= b.stale_cell_s):\n        held |= _CELL_STALE",
+           "if not (r.now_s - r.cell_at_s <= 1e9):\n        held |= _CELL_STALE"),
+    Mutant("not a number passes: hub", _LEVELS,
+           "if not (r.jacket_valid and r.now_s - r.jacket_at_s <= b.stale_jacket_s):",
+           "if r.jacket_valid and r.now_s - r.jacket_at_s > b.stale_jacket_s:"),
+    Mutant("acknowledged without the cause gone", _STEP, "        holding = state.held & ~WARNINGS\n        if not",
+           "        holding = 0\n        if not"),
+    Mutant("the drives do not watch our heartbeat", "drivers/servo_setup.py",
+           "    watched = heartbeat.consumer_entry(pc_node_id, config.consumer_heartbeat_s)\n", "    watched = 0\n"),
+    Mutant("a unit factor 1000: late scans", _LEVELS,
+           "if not (late_s <= b.late_scan_s):", "if not (1e-3 * late_s <= b.late_scan_s):"),
+    Mutant("safe outputs without: heat off", _SAFE, "    setpoints.heat = False\n", ""),
+    Mutant("safe outputs without: contactor off", _SAFE, "    setpoints.contactor = False\n", ""),
+    Mutant("safe outputs without: lift", _SAFE, "    setpoints.press_mm_s = -rig.loops.load.lift_speed_mm_s\n", ""),
+    Mutant("safe outputs without: belt to zero", _SAFE, "    setpoints.belt_m_s = 0.0\n", ""),
+    Mutant("safe outputs without: quick stop", _SAFE, "    setpoints.quick_stop = fast\n", ""),
+    Mutant("no power off when the lift has failed", _STEP, "            state.setpoints.power_off = True\n",
+           "            state.setpoints.power_off = False\n"),
+    Mutant("heat without the wheel seen turning", _MAY,
+           "now - state.turning_since_s >= TURNING_CONFIRMED_S", "now >= 0.0"),
+    Mutant("latched before the contact is open", _STOPS,
+           "return standing(r) and lifted and unloaded(view)", "return standing(r)"),
+)  # fmt: skip
+
+
+def copy_tree(to: Path) -> None:
+    """Copy the source tree."""
+    for name in COPIED:
+        shutil.copytree(ROOT / name, to / name, ignore=shutil.ignore_patterns("__pycache__"))
+    shutil.copy(ROOT / "pyproject.toml", to / "pyproject.toml")
+
+
+def apply(mutant: Mutant, tree: Path) -> None:
+    """Put a mutant into a copy. Raises ValueError when its text is not there exactly once."""
+    path = tree / mutant.path
+    text = path.read_text(encoding="utf-8")
+    if text.count(mutant.old) != 1:
+        raise ValueError(f"mutant {mutant.name!r}: its text stands {text.count(mutant.old)} times in {mutant.path}")
+    path.write_text(text.replace(mutant.old, mutant.new), encoding="utf-8")
+
+
+def hunt(mutant: Mutant | None) -> tuple[str, str]:
+    """Hunt a mutant (or the unchanged tree) in a copy; return its name and what noticed it ("" if nothing)."""
+    with TemporaryDirectory() as folder:
+        tree = Path(folder)
+        copy_tree(tree)
+        if mutant is not None:
+            apply(mutant, tree)
+        environment = {**os.environ, "PYTHONPATH": folder, "PYTHONDONTWRITEBYTECODE": "1"}
+        done = subprocess.run(
+            [sys.executable, "-m", "tests.faults.mutants", "--probe"],
+            cwd=tree, env=environment, capture_output=True, text=True, check=False,
+        )  # fmt: skip
+    said = (done.stdout.strip() or done.stderr.strip()).splitlines()
+    return mutant.name if mutant is not None else "unchanged", (said[-1] if said else "?") if done.returncode else ""
+
+
+def probe() -> str:
+    """Return what is wrong with the tree this runs in, "" if nothing is found; what is quick is tried first."""
+    from tests.faults.recipes import GRID
+
+    return _recipes(("short",), FIRST) or _stateful() or _recipes(GRID, PROBED)
+
+
+def _recipes(names: Iterable[str], count: int) -> str:
+    """Run recipes to their end, and a sample of ``count`` cases of them."""
+    from tests.faults.campaign import all_cases, conduct, faults_of_campaign, sample
+    from tests.faults.moments import Moment, rehearse
+
+    moments: list[Moment] = []
+    for recipe in names:
+        found, stage = rehearse(recipe)
+        if stage.run.outcome.value != "done":
+            return f"{recipe} ends {stage.run.outcome.value}: {stage.run.reason}"
+        if stage.observer.found or stage.invariants.broken:
+            return f"{recipe}: {stage.observer.found or stage.invariants.broken}"
+        moments += found
+    cases = sample(all_cases(moments, faults_of_campaign(everything=True)), count)
+    for start in range(0, len(cases), BATCH):
+        tally = conduct("probe", cases[start : start + BATCH])
+        if tally.failed:
+            verdict = tally.failed[0]
+            return f"{verdict.case}: {verdict.failures[0]}"
+    return ""
+
+
+def _stateful() -> str:
+    from tests.faults.test_stateful import AnythingHappens
+
+    outcome = unittest.TestResult()
+    unittest.defaultTestLoader.loadTestsFromTestCase(AnythingHappens.TestCase).run(outcome)
+    problems = [text for _, text in (*outcome.failures, *outcome.errors)]
+    return f"stateful test: {problems[0].strip().splitlines()[-1]}" if problems else ""
+
+
+def main(jobs: int = 1, mutants: Iterable[Mutant] = MUTANTS) -> int:
+    """Hunt every mutant; print each and the figure; return 1 when too few are killed."""
+    chosen = list(mutants)
+    _, wrong = hunt(None)
+    if wrong:
+        print(f"MISS the unchanged tree: {wrong}", flush=True)
+        return 1
+    killed = 0
+    with ThreadPoolExecutor(jobs) as pool:
+        for name, noticed in pool.map(hunt, chosen):
+            killed += bool(noticed)
+            print(f"     {'killed' if noticed else 'ALIVE '} {name}{': ' + noticed if noticed else ''}", flush=True)
+    met = killed >= ASKED_FOR * len(chosen)
+    print(f"{'ok  ' if met else 'MISS'} mutants killed: {killed} of {len(chosen)} (asked: >= 18 of 20)")
+    return 0 if met else 1
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--probe", action="store_true", help="look for anything wrong with the tree this runs in")
+    parser.add_argument("--only", default="", metavar="TEXT", help="mutants whose name has this text")
+    options = parser.parse_args()
+    if options.probe:
+        found = probe()
+        print(found)
+        sys.exit(1 if found else 0)
+    sys.exit(main(1, [mutant for mutant in MUTANTS if options.only in mutant.name]))

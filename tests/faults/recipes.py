@@ -1,0 +1,83 @@
+"""The recipes of the campaign: short ones that pass through every step there is."""
+
+from __future__ import annotations
+
+QUICK = """\
+recipe: campaign, quickstart-like
+specimens:
+  - compound: "1#"
+pre_grind: {wheel_speed: 0.8 m/s, belt_speed: 0.6 m/s, load: 200 N, duration: 4 s}
+rest: {at_least: 5 s, until: 40 degC, within: 5 degC}
+measure:
+  wheel_speed: 0.8 m/s
+  repeats: 2
+  min_valid: 2
+  window: 14 rev
+  soak: {within: 2 degC, for: 2 s}
+grids:
+  - name: two loads
+    slip_velocity: 300 mm/s
+    load: [200 N, 100 N]
+    temperature: 25 degC
+"""
+"""Pre-grinding, rest, two loads near ambient."""
+
+SIDESLIP = """\
+recipe: campaign, sideslip
+specimens:
+  - compound: "2#"
+measure:
+  wheel_speed: 0.8 m/s
+  repeats: 1
+  min_valid: 1
+  window: 14 rev
+  soak: {within: 2 degC, for: 2 s}
+grids:
+  - name: yawed
+    slip_velocity: 300 mm/s
+    load: 200 N
+    temperature: 25 degC
+    sideslip: 10 deg
+"""
+"""A wheel at an angle: every burst lifts, yaws and touches again."""
+
+HEATED = """\
+recipe: campaign, heated
+specimens:
+  - compound: "3#"
+measure:
+  wheel_speed: 0.8 m/s
+  repeats: 1
+  min_valid: 1
+  window: 14 rev
+  soak: {within: 2 degC, for: 2 s}
+grids:
+  - name: warm
+    slip_velocity: 200 mm/s
+    load: 150 N
+    temperature: 40 degC
+"""
+"""Heating to 40 degC, soak, slip pulses in the band, cool-down at the end."""
+
+SHORT = """\
+recipe: campaign, short
+specimens:
+  - compound: "1#"
+measure:
+  wheel_speed: 0.8 m/s
+  repeats: 1
+  min_valid: 1
+  window: 14 rev
+  soak: {within: 2 degC, for: 2 s}
+grids:
+  - name: one
+    slip_velocity: 300 mm/s
+    load: 200 N
+    temperature: 25 degC
+"""
+"""The recipe that is stopped and killed at its every scan."""
+
+GRID = ("quick", "sideslip", "heated")
+"""The three recipes of the campaign."""
+
+RECIPES = {"quick": QUICK, "sideslip": SIDESLIP, "heated": HEATED, "short": SHORT}

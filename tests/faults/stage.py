@@ -1,0 +1,153 @@
+"""One run on a rig that can be faulty, ticked by hand and copied in the middle."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from copy import deepcopy
+from functools import cache
+
+from sim.faults import FaultScript, Injection
+from sim.faults.can import FaultyCanWire
+from sim.harm import HarmObserver
+from sim.rig import SimRig
+from tester.analysis.results import Burst, RepeatResult, RepeatStatus
+from tester.engine.build import build_run
+from tester.engine.prompts import Prompts
+from tester.engine.run import Run
+from tester.engine.tickers import next_tick
+from tester.faulty import RIG_STEP_S, FaultyRun
+from tester.recipe.expand import expand
+from tester.recipe.loader import load_recipe
+from tester.recipe.plan import Plan
+from tester.rig import RigConfig, load_rig
+from tester.simulated import simulated_ports
+from tester.store.recorder import NullRecorder, Ticket
+from tests.faults.invariants import Invariants
+
+RUNNING = frozenset({"armed", "run", "hold"})
+STANDING = frozenset({"idle", "latched"})
+EMERGENCY = "emergency stop mirrored"
+AT_REST_S = 0.3
+"""A rig that has latched may take this long to be at rest in every axis: a yaw axis comes down from 20 deg/s
+in 0.25 s on the ramp of its drive, which is disabled with the latching."""
+EMERGENCY_REST_S = 3.0
+"""A mirrored emergency stop begins with the drives at speed: I5 gives them this long."""
+
+Place = tuple[int, str]
+"""Where a run is: the number of the plan's step (0 while connecting) and its phase in one word."""
+
+
+class Ledger(NullRecorder):
+    """Counts what a run would have written down."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.committed = 0
+        self.trips: list[str] = []
+        self.journal: list[str] = []
+
+    def commit_repeat(self, key: int, result: RepeatResult, bursts: Iterable[Burst] = ()) -> Ticket:
+        """Count a repeat that was committed for good."""
+        if result.status is not RepeatStatus.VOID:
+            self.committed += 1
+        return Ticket(done=True)
+
+    def trip(self, t_s: float, interlock: str, text: str, value: float = 0.0, limit: float = 0.0) -> int:
+        """Note a trip."""
+        self.trips.append(interlock)
+        return len(self.trips)
+
+    def event(self, t_s: float, kind: str, text: str, severity: str = "info", data: str = "") -> None:
+        """Note what changes the state."""
+        if kind in ("mode", "trip"):
+            self.journal.append(text)
+
+
+@cache
+def rig_of(overrides: tuple[str, ...]) -> RigConfig:
+    """Return the simulated rig with overrides."""
+    return load_rig("sim", overrides)
+
+
+@cache
+def plan_of(text: str, overrides: tuple[str, ...]) -> Plan:
+    """Return a recipe's plan on that rig."""
+    return expand(load_recipe(text, "campaign.yaml").recipe, rig_of(overrides))
+
+
+class Stage:
+    """Run, rig, ledger and observer, with the time of the next tick."""
+
+    def __init__(self, text: str, overrides: Iterable[str] = (), seed: int = 0) -> None:
+        """Build everything; nothing is sent before the first ``tick``."""
+        config = rig_of(tuple(overrides))
+        self.plan = plan_of(text, tuple(overrides))
+        ports, rig, attendant = simulated_ports(config, seed, None, FaultyCanWire)
+        self.ledger = Ledger()
+        self.rig: SimRig = rig
+        self.run: Run = build_run(config, self.plan, ports, attendant, self.ledger, Prompts(automatic=True))
+        self.faulty = FaultyRun(self.run, rig, FaultScript())
+        planned = max((s.setpoint.slip_velocity_m_s * s.setpoint.load_n for s in self.plan.conditions()), default=0.0)
+        self.observer = HarmObserver(rig, planned)
+        self.invariants = Invariants()
+        self.next_s = 0.0
+        self.ticks = 0
+        self.mode = ""
+        self.mode_since_s = 0.0
+        self._shared: tuple[object, ...] = (config, self.plan)
+
+    def copy(self) -> Stage:
+        """Return an independent twin; configuration and plan never change and are shared."""
+        return deepcopy(self, {id(one): one for one in self._shared})
+
+    def inject(self, *injections: Injection) -> None:
+        """Let faults happen as their times say."""
+        self.faulty.script.add(injections)
+
+    @property
+    def copyable(self) -> bool:
+        """Nothing is being said to a drive outside the scan: such a conversation is a generator."""
+        devices = self.run.engine.devices
+        return not any(devices.master.busy(drive) for drive in devices.drives)
+
+    @property
+    def place(self) -> Place:
+        """Where the run is."""
+        engine = self.run.engine
+        if not engine.scans:
+            return 0, "connect"
+        progress = engine.ctx.progress
+        return progress.step, progress.phase.partition(" ")[0] or progress.title.partition(" ")[0]
+
+    @property
+    def running(self) -> bool:
+        """The recipe is being worked off, or held; not yet while connecting."""
+        return self.mode in RUNNING
+
+    @property
+    def ended(self) -> bool:
+        """The recipe will not go on: stopped, tripped, finished or never begun."""
+        return self.run.finished or (self.run.engine.scans > 0 and self.mode not in RUNNING)
+
+    def tick(self) -> float:
+        """Let the rig live until the next tick and do it; return its time, s. A run that has ended does nothing."""
+        now = self.next_s
+        faulty = self.faulty
+        faulty.advance(now)
+        due = now + RIG_STEP_S if self.run.finished else faulty.tick(now)
+        self.next_s = next_tick(now, due, faulty.urgent_s)
+        self.ticks += 1
+        mode = self.run.engine.control.state.mode.value
+        if mode != self.mode:
+            self.mode, self.mode_since_s = mode, now
+        self.observer.look(self._must_stand(now))
+        self.invariants.look(self)
+        return now
+
+    def _must_stand(self, now: float) -> bool:
+        if self.run.engine.scans == 0:
+            return False  # axes are homed while connecting
+        since_s = now - self.mode_since_s
+        if self.mode == EMERGENCY:
+            return since_s > EMERGENCY_REST_S
+        return self.mode in STANDING and since_s > AT_REST_S

@@ -1,0 +1,82 @@
+"""A short sample of the campaign in the default run; all of it: ``python -m tests.faults --full``."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import pytest
+
+from tests.faults import every_scan
+from tests.faults.__main__ import main
+from tests.faults.campaign import Tally, all_cases, conduct, faults_of_campaign, pairs, sample
+from tests.faults.hardware import HARDWARE_MUST_HOLD, held_by_hardware
+from tests.faults.moments import Moment, rehearse
+from tests.faults.mutants import MUTANTS, ROOT
+
+FEW = 16
+
+
+@cache
+def moments() -> tuple[Moment, ...]:
+    return tuple(rehearse("short")[0])
+
+
+def failures(tally: Tally) -> list[str]:
+    return [f"{verdict.case}: {text}" for verdict in tally.failed for text in verdict.failures]
+
+
+def test_the_recipe_runs_to_its_end_without_harm_and_without_a_trip():
+    found, stage = rehearse("short")
+    assert stage.run.outcome.value == "done"
+    assert not stage.observer.found and not stage.invariants.broken and not stage.ledger.trips
+    assert {moment.phase for moment in found} == {"begin", "middle", "end"}
+
+
+def test_a_few_faults_at_a_few_moments_end_safely_and_in_time():
+    cases = sample(all_cases(moments(), faults_of_campaign(everything=True)), FEW)
+    tally = conduct("few", cases)
+    assert len(tally.verdicts) == FEW
+    assert failures(tally) == []
+
+
+def test_a_few_pairs_end_safely():
+    tally = conduct("few pairs", pairs(moments(), faults_of_campaign(everything=False), 4), budgets=False)
+    assert [str(v.case) for v in tally.unsafe if held_by_hardware(v.case.faults) is None] == []
+
+
+def test_stops_and_kills_at_a_few_scans_end_safely():
+    for tally in every_scan.conduct((450, 3000, 6000)).values():
+        assert failures(tally) == []
+
+
+def test_a_sample_has_every_fault_once_before_any_twice():
+    cases = all_cases(moments(), ["operator stop", "guard opened", "belt jammed"])
+    assert {names for _, names in sample(cases, 6)} == {("operator stop",), ("guard opened",), ("belt jammed",)}
+
+
+def test_the_sample_is_always_the_same():
+    cases = all_cases(moments(), faults_of_campaign(everything=True))
+    assert sample(cases, 50) == sample(cases, 50)
+
+
+@pytest.mark.parametrize("mutant", MUTANTS, ids=lambda mutant: mutant.name)
+def test_every_mutant_still_fits_the_code(mutant):
+    assert (ROOT / mutant.path).read_text(encoding="utf-8").count(mutant.old) == 1
+
+
+@pytest.mark.campaign
+def test_the_sample_of_the_command_meets_every_figure():
+    assert main(["--sample"]) == 0
+
+
+def test_the_safety_page_lists_what_hardware_must_hold():
+    page = (ROOT / "docs" / "safety.md").read_text(encoding="utf-8")
+    shown = page.split("<!-- double faults: begin -->")[1].split("<!-- double faults: end -->")[0]
+    for row in HARDWARE_MUST_HOLD:
+        assert f"| {row.one} + {row.other or 'any other'} | {row.device} | {row.why} |" in shown
+
+
+def test_the_full_grid_has_at_least_seven_thousand_cases_of_forty_faults():
+    faults = faults_of_campaign(everything=False)
+    assert len(faults) >= 40
+    assert 120 * len(faults) >= 7000  # the three recipes have 144 moments
