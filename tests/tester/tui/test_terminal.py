@@ -87,7 +87,7 @@ def terminal(tmp_path: Path) -> Iterator[Terminal]:
     yield made
     subprocess.run(["tmux", "-S", made.at, "kill-server"], check=False, capture_output=True)
     for line in subprocess.run(
-        ["ps", "-eo", "pid,args"], capture_output=True, text=True, check=True
+        ["ps", "-ewwo", "pid,args"], capture_output=True, text=True, check=True
     ).stdout.splitlines():
         if " serve " in line and str(tmp_path) in line:
             os.kill(int(line.split()[0]), signal.SIGTERM)
@@ -105,7 +105,7 @@ def test_an_operator_finds_a_mistake_runs_holds_stops_and_exports(terminal: Term
     on.press("Enter")
     on.see("1 conditions")
     on.press("Enter")
-    on.see("install wheel 1", 60.0)
+    on.see("waits since", 60.0)
     on.press("y")
     on.see("rep 1/3", 120.0)
     on.press("Space")
@@ -136,7 +136,7 @@ def test_a_screen_that_is_killed_leaves_the_run_alone_and_another_one_shows_it(t
     on.press("Enter")
     on.see("2 conditions")
     on.press("Enter")
-    on.see("install wheel 1", 60.0)
+    on.see("waits since", 60.0)
     on.press("y")
     on.see("pre-grind")
     os.kill(int(on.tmux("display-message", "-p", "#{pane_pid}")), signal.SIGKILL)
