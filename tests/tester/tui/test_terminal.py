@@ -132,7 +132,7 @@ def test_a_screen_that_is_killed_leaves_the_run_alone_and_another_one_shows_it(t
     on.open(f"{TESTER} tui --speed 20 --out {on.folder / 'runs'}")
     on.see("✔   quickstart")
     on.press("Enter")
-    on.see("2 conditions")
+    on.see("Start a run")
     on.press("Enter")
     on.see("waits since", 60.0)
     on.press("y")
