@@ -8,6 +8,7 @@ answers) wait in time order until the wire is read, so they win and lose the wir
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from bisect import bisect_right, insort
 from collections import deque
 from collections.abc import Callable
@@ -44,7 +45,7 @@ class CanNode(Protocol):
         ...
 
 
-class SyncFollower:
+class SyncFollower(ABC):
     """A device that answers SYNC.
 
     ``plain``: nothing but one TPDO goes with the next SYNC: ``sample`` under ``sample_id``, or what ``take_sample``
@@ -54,13 +55,14 @@ class SyncFollower:
     __slots__ = ("plain", "sample", "sample_id", "stale", "take_sample")
 
     def __init__(self, take_sample: Callable[[], bytes]) -> None:
-        """Answer by ``on_sync`` until something else is said."""
+        """Not ``plain``: answer by ``on_sync``."""
         self.plain = False
         self.stale = True
         self.sample = b""
         self.sample_id = 0
         self.take_sample = take_sample
 
+    @abstractmethod
     def on_sync(self, t: float) -> None:
         """Act on a SYNC that arrived at ``t`` s and answer it."""
 
@@ -84,6 +86,16 @@ def frame_bits(length: int) -> int:
     stuffable ones (ISO 11898-1; 135 bits at 8 bytes).
     """
     return 47 + 8 * length + (33 + 8 * length) // 4
+
+
+def _same_shape(frames: tuple[tuple[int, bytes], ...], others: tuple[tuple[int, bytes], ...]) -> bool:
+    """Tell whether two cycles have the same identifiers and lengths in the same places: the same times on the wire."""
+    if len(frames) != len(others):
+        return False
+    for one, other in zip(frames, others, strict=True):
+        if one is not other and (one[0] != other[0] or len(one[1]) != len(other[1])):
+            return False
+    return True
 
 
 def _rank(entry: tuple[int, object]) -> int:
@@ -187,7 +199,7 @@ class CanWire:
         new to a drive. SYNC is answered as ever.
         """
         taken = self._cycle
-        if taken is None or len(taken) != len(frames):
+        if taken is None or (frames is not taken and not _same_shape(frames, taken)):
             self._remember(frames)  # before a listener may ask to forget it
             for can_id, data in frames:
                 self.send(can_id, data, now)
@@ -200,7 +212,6 @@ class CanWire:
         self._busy_s = end = start + self._cycle_s
         self.occupied_s += self._cycle_s
         if frames is not taken:
-            # Frames of a cycle keep their lengths and places: each is told when it was complete.
             self._cycle = frames
             for frame, before, offset_s in zip(frames, taken, self._offsets_s, strict=True):
                 if frame is not before:

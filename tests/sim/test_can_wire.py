@@ -8,7 +8,7 @@ from math import inf
 import pytest
 
 from drivers.ports import BusLost
-from sim.can_wire import CanWire, frame_bits
+from sim.can_wire import Beat, CanWire, SyncFollower, frame_bits
 
 FULL_S = 135 / 500_000
 EMPTY_S = 55 / 500_000
@@ -243,6 +243,77 @@ def test_a_third_party_reaches_nodes_and_computer() -> None:
     wire.inject(0x000, b"\x02\x00", 0.0)
     assert len(node.heard) == 1
     assert [can_id for _, can_id, _ in wire.receive(0.1)] == [0x000, 0x701]
+
+
+class Taker:
+    """Keeps what it is handed; equal data mean nothing new to it."""
+
+    def __init__(self, wire: CanWire, can_id: int) -> None:
+        self.heard: list[tuple[float, bytes]] = []
+        wire.listen(can_id, self.on_frame, repeatable=True)
+
+    def on_frame(self, data: bytes, t: float) -> None:
+        self.heard.append((t, data))
+
+
+class Follower(SyncFollower):
+    """Counts SYNCs."""
+
+    def __init__(self, wire: CanWire) -> None:
+        super().__init__(bytes)
+        self.syncs: list[float] = []
+        wire.follow(self, 1)
+
+    def on_sync(self, t: float) -> None:
+        self.syncs.append(t)
+
+
+SYNC = (0x080, b"")
+
+
+def test_only_what_changed_of_a_cycle_is_handed_on_and_at_the_time_it_has_alone() -> None:
+    wire, bare = CanWire(), CanWire()
+    first, second = Taker(wire, 0x201), Taker(wire, 0x202)
+    alone = Taker(bare, 0x202)
+    one, other, newer = (0x201, bytes(6)), (0x202, bytes(6)), (0x202, b"\x01" + bytes(5))
+    for number, frames in enumerate(((one, other, SYNC), (one, other, SYNC), (one, newer, SYNC))):
+        wire.send_cycle(frames, 1.0 + number)
+        for can_id, data in frames:
+            bare.send(can_id, data, 1.0 + number)
+    assert len(first.heard) == 1
+    assert [data for _, data in second.heard] == [bytes(6), newer[1]]
+    assert [t for t, _ in second.heard] == pytest.approx([alone.heard[0][0], alone.heard[2][0]], abs=1e-12)
+    assert wire.occupied_s == pytest.approx(bare.occupied_s)
+
+
+def test_a_cycle_of_as_many_other_frames_is_taken_frame_by_frame() -> None:
+    wire = CanWire()
+    taker, follower = Taker(wire, 0x201), Follower(wire)
+    wire.send_cycle(((0x201, bytes(6)), SYNC), 1.0)
+    wire.send_cycle(((0x202, bytes(6)), (0x201, bytes(6))), 2.0)  # no SYNC in it
+    assert len(taker.heard) == 2 and len(follower.syncs) == 1
+
+
+def test_a_forgotten_cycle_is_handed_on_again() -> None:
+    wire = CanWire()
+    taker, frames = Taker(wire, 0x201), ((0x201, bytes(6)), SYNC)
+    wire.send_cycle(frames, 1.0)
+    wire.forget_cycle()
+    wire.send_cycle(frames, 2.0)
+    assert len(taker.heard) == 2
+
+
+def test_beats_come_in_their_period_until_they_end() -> None:
+    wire = CanWire()
+    beat = Beat(0x701, b"\x05", 0.05)
+    wire.beat(beat, 1.0)
+    assert wire.ready_s == 1.0
+    wire.unbeat(beat, 1.12)
+    assert [t for t, _, _ in wire.receive(2.0)] == [pytest.approx(t + wire_s(1)) for t in (1.0, 1.05, 1.1)]
+
+
+def wire_s(length: int) -> float:
+    return frame_bits(length) / 500_000
 
 
 def test_more_than_eight_bytes_are_refused() -> None:
