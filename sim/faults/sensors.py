@@ -84,16 +84,33 @@ def spoiled(kind: str, value: float, size: float, age_s: float, noise: NormalStr
     return _OFF_SCALE_N if kind == "saturated" else nan
 
 
-class CellFault(Effect):
-    """Something is wrong with the normal force of the load cell."""
+class SensorFault(Effect):
+    """Something is wrong with a sensor: what asks for it is given a spoiled one instead, until the fault ends."""
 
     __slots__ = ("_wrapped", "kind", "value")
 
     def __init__(self, kind: str, value: float = 0.0) -> None:
-        """``kind`` of KINDS, of this size (N, N/s or percent)."""
+        """``kind`` of KINDS, of this size (unit of the sensor, or that a second, or percent)."""
         self.kind = kind
         self.value = value
-        self._wrapped: SpoiledForces | None = None
+        self._wrapped: SpoiledForces | SpoiledTemperature | None = None
+
+    def _spoiled(self, source: SurfaceSource | HubSource, name: str, scene: Scene, now: float) -> SpoiledTemperature:
+        """Put a thermometer's source into wrapping; ``name`` keys its noise."""
+        ambient_c, noise = scene.rig.plant.parameters.ambient, NormalStream(_SEED, f"faulty {name}")
+        self._wrapped = wrapped = SpoiledTemperature(source, self.kind, self.value, now, ambient_c, noise)
+        return wrapped
+
+    def end(self, scene: Scene, now: float) -> None:
+        """Show what is."""
+        if self._wrapped is not None:
+            self._wrapped.active = False
+
+
+class CellFault(SensorFault):
+    """Something is wrong with the normal force of the load cell (N, N/s or percent)."""
+
+    __slots__ = ()
 
     def begin(self, scene: Scene, now: float) -> None:
         """Let it show something else from now on."""
@@ -103,67 +120,42 @@ class CellFault(Effect):
             return
         # A broken bridge drives the amplifier to the end of its range.
         kind = "saturated" if self.kind == "open" else self.kind
-        self._wrapped = SpoiledForces(cell.source, kind, self.value, now, NormalStream(_SEED, "faulty cell"))
-        cell.source = self._wrapped
+        noise = NormalStream(_SEED, "faulty cell")
+        self._wrapped = cell.source = SpoiledForces(cell.source, kind, self.value, now, noise)
 
     def end(self, scene: Scene, now: float) -> None:
         """Show what is."""
+        super().end(scene, now)
         if self.kind == "frozen":
             scene.rig.cell.frozen = False
-        elif self._wrapped is not None:
-            self._wrapped.active = False
 
 
-class SurfaceFault(Effect):
-    """Something is wrong with the infrared thermometer."""
+class SurfaceFault(SensorFault):
+    """Something is wrong with the infrared thermometer (K, K/s or percent)."""
 
-    __slots__ = ("_wrapped", "kind", "value")
-
-    def __init__(self, kind: str, value: float = 0.0) -> None:
-        """``kind`` of KINDS, of this size (K, K/s or percent)."""
-        self.kind = kind
-        self.value = value
-        self._wrapped: SpoiledTemperature | None = None
+    __slots__ = ()
 
     def begin(self, scene: Scene, now: float) -> None:
         """Let it show something else from now on."""
         ir = scene.rig.ir
         if self.kind == "frozen":
             ir.frozen = True
-            return
-        ambient_c = scene.rig.plant.parameters.ambient
-        noise = NormalStream(_SEED, "faulty thermometer")
-        self._wrapped = SpoiledTemperature(ir.source, self.kind, self.value, now, ambient_c, noise)
-        ir.source = self._wrapped
+        else:
+            ir.source = self._spoiled(ir.source, "thermometer", scene, now)
 
     def end(self, scene: Scene, now: float) -> None:
         """Show what is."""
+        super().end(scene, now)
         if self.kind == "frozen":
             scene.rig.ir.frozen = False
-        elif self._wrapped is not None:
-            self._wrapped.active = False
 
 
-class HubFault(Effect):
-    """Something is wrong with the jacket controller's sensor, or with its line through the slip ring."""
+class HubFault(SensorFault):
+    """Something is wrong with the jacket's sensor, or with its line through the slip ring (K, K/s or percent)."""
 
-    __slots__ = ("_wrapped", "kind", "value")
-
-    def __init__(self, kind: str, value: float = 0.0) -> None:
-        """``kind`` of KINDS, of this size (K, K/s or percent)."""
-        self.kind = kind
-        self.value = value
-        self._wrapped: SpoiledTemperature | None = None
+    __slots__ = ()
 
     def begin(self, scene: Scene, now: float) -> None:
         """Let it show something else from now on."""
         jacket = scene.rig.jacket
-        ambient_c = scene.rig.plant.parameters.ambient
-        noise = NormalStream(_SEED, "faulty hub sensor")
-        self._wrapped = SpoiledTemperature(jacket.source, self.kind, self.value, now, ambient_c, noise)
-        jacket.source = self._wrapped
-
-    def end(self, scene: Scene, now: float) -> None:
-        """Show what is."""
-        if self._wrapped is not None:
-            self._wrapped.active = False
+        jacket.source = self._spoiled(jacket.source, "hub sensor", scene, now)

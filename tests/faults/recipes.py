@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from tests.tester.engine.bench import SHORT
+
 QUICK = """\
 recipe: campaign, quickstart-like
 specimens:
@@ -59,25 +61,8 @@ grids:
 """
 """Heating to 40 degC, soak, slip pulses in the band, cool-down at the end."""
 
-SHORT = """\
-recipe: campaign, short
-specimens:
-  - compound: "1#"
-measure:
-  wheel_speed: 0.8 m/s
-  repeats: 1
-  min_valid: 1
-  window: 14 rev
-  soak: {within: 2 degC, for: 2 s}
-grids:
-  - name: one
-    slip_velocity: 300 mm/s
-    load: 200 N
-    temperature: 25 degC
-"""
-"""The recipe that is stopped and killed at its every scan."""
-
 GRID = ("quick", "sideslip", "heated")
 """The three recipes of the campaign."""
 
 RECIPES = {"quick": QUICK, "sideslip": SIDESLIP, "heated": HEATED, "short": SHORT}
+"""``short`` is the recipe that is stopped and killed at its every scan."""
