@@ -126,7 +126,7 @@ def test_bytes_of_another_length_than_the_type_are_refused() -> None:
 
 def test_every_default_fits_its_type() -> None:
     for entry in DICTIONARY.values():
-        encode(entry.type, entry.initial(126))
+        assert decode(entry.type, encode(entry.type, entry.initial(126))) == entry.initial(126)
 
 
 def test_the_highest_sub_index_of_every_record_exists() -> None:

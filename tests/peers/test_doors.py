@@ -75,7 +75,7 @@ def test_python_can_sends_a_sync_without_data(bus: can.BusABC) -> None:
     bus.send(can.Message(arbitration_id=0x000, data=b"\x01\x03", is_extended_id=False))
     bus.send(can.Message(arbitration_id=0x080, data=b"", is_extended_id=False))
     bus.send(can.Message(arbitration_id=0x603, data=bytes.fromhex("4000100000000000"), is_extended_id=False))
-    answer(bus, 0x583)
+    assert bytes(answer(bus, 0x583).data)[:4] == b"\x43\x00\x10\x00"  # the server has not lost its place
 
 
 def test_a_second_python_can_is_turned_away(server: RigServer, bus: can.BusABC) -> None:

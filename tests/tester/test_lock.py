@@ -52,11 +52,23 @@ def test_a_killed_process_frees_the_rig(tmp_path: Path, other: subprocess.Popen[
     other.wait()
     with ExclusiveUse(tmp_path) as use:
         use.lock(["can socketcan:can0"], "another")
+        assert taken(tmp_path, "can socketcan:can0")
+
+
+def taken(folder: Path, resource: str) -> bool:
+    """Tell whether a bus is held by somebody."""
+    try:
+        with ExclusiveUse(folder) as use:
+            use.lock([resource], "a third")
+    except RigInUseError:
+        return True
+    return False
 
 
 def test_another_rig_is_free(tmp_path: Path, other: subprocess.Popen[str]) -> None:
     with ExclusiveUse(tmp_path) as use:
         use.lock(["can socketcan:can1"], "another")
+        assert taken(tmp_path, "can socketcan:can1")
 
 
 def test_nothing_is_kept_of_a_rig_of_which_one_bus_is_taken(tmp_path: Path, other: subprocess.Popen[str]) -> None:

@@ -274,6 +274,8 @@ def test_closing_twice_is_harmless(tmp_path: Path) -> None:
     writer = begun(tmp_path)
     writer.close()
     writer.close()
+    with RunReader(tmp_path) as reader:
+        assert reader.run().status
 
 
 def test_a_run_that_goes_on_keeps_counting_and_voids_what_was_cut_off(tmp_path: Path) -> None:
