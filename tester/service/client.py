@@ -145,18 +145,19 @@ class Client:
     async def command(self, action: Action, *, within_s: float = ANSWER_S) -> JsonValue:
         """Have something done; return the answer's result. Raises RefusedError, LostError, TimeoutError."""
         self._ids += 1
+        number = self._ids  # others may ask while this one waits
         answer: asyncio.Future[Accepted] = asyncio.get_running_loop().create_future()
-        self._answers[self._ids] = answer
+        self._answers[number] = answer
         try:
             if self.lost:
                 raise LostError(self.lost)
             async with asyncio.timeout(within_s):
-                await self._connection.send(encode(Command(self._ids, action)), text=True)
+                await self._connection.send(encode(Command(number, action)), text=True)
                 return (await answer).result
         except ConnectionClosed as error:
             raise LostError(str(error)) from error
         finally:
-            del self._answers[self._ids]
+            del self._answers[number]
 
     async def stop(self, *, fast: bool = False) -> None:
         """STOP: works for every client, whoever has control."""

@@ -73,6 +73,20 @@ def test_a_refused_command_gives_its_reason(tmp_path: Path) -> None:
     play(tmp_path, story)
 
 
+def test_commands_that_wait_side_by_side_each_get_their_own_answer(tmp_path: Path) -> None:
+    async def story(fake: FakeService) -> None:
+        fake.results.update({"hold": "held", "stop": "stopped"})
+        fake.refusals["release"] = "the rig is not held"
+        async with await Client.connect(fake.address, control=True) as client:
+            answers = await asyncio.gather(
+                *(client.command(action, within_s=5.0) for action in (Hold(), Release(), Stop())),
+                return_exceptions=True,
+            )
+            assert [str(answer) for answer in answers] == ["held", "the rig is not held", "stopped"]
+
+    play(tmp_path, story)
+
+
 def test_only_the_first_of_two_that_ask_has_control(tmp_path: Path) -> None:
     async def story(fake: FakeService) -> None:
         first = await Client.connect(fake.address, name="first", control=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 from collections.abc import AsyncIterator, Awaitable, Callable
 from contextlib import asynccontextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from pydantic import JsonValue
@@ -26,14 +26,32 @@ PLAN: JsonValue = {"conditions": 2, "rig_seconds": 2700.0, "sliding_m": 120.0, "
 
 @dataclass(slots=True)
 class PlayedQueries(Queries):
-    """Answers at once, without processes: every recipe is as good as its text says."""
+    """Answers at once, without processes: every recipe is as good as its text says.
+
+    While ``checking`` or ``planning`` is not set such questions wait, ``waiting`` checks. ``planned`` and ``listed``
+    count what was asked for, ``answered`` the checks that were answered.
+    """
+
+    checking: asyncio.Event = field(default_factory=asyncio.Event)
+    planning: asyncio.Event = field(default_factory=asyncio.Event)
+    waiting: int = 0
+    answered: int = 0
+    planned: int = 0
+    listed: int = 0
 
     async def answer(self, question: Query) -> JsonValue:
         """Return what the service would."""
         if isinstance(question, ListRuns):
+            self.listed += 1
             return {"runs": []}
         if isinstance(question, ShowPlan):
+            self.planned += 1
+            await self.planning.wait()
             return PLAN
+        self.waiting += 1
+        await self.checking.wait()
+        self.waiting -= 1
+        self.answered += 1
         bad = isinstance(question, CheckRecipe) and "wrong" in question.text
         return {"problems": [{"line": 3, "column": 5, "message": "load: expected a unit [/x]"}] if bad else []}
 
@@ -46,6 +64,7 @@ class Stage:
     app: TesterApp
     pilot: Pilot[str]
     now: list[float]
+    queries: PlayedQueries
 
     async def until(self, true: Callable[[], bool], what: str) -> None:
         """Let both work until something is so."""
@@ -118,7 +137,9 @@ async def stage(
     """Open a screen of some size before a service that has one recipe to offer."""
     now = [100.0]
     async with FakeService(folder) as fake:
-        fake.gateway.queries = PlayedQueries(folder)
+        fake.gateway.queries = queries = PlayedQueries(folder)
+        queries.checking.set()
+        queries.planning.set()
         for row in trend():
             fake.show(a_state(), row)
         options = TuiOptions(
@@ -127,7 +148,7 @@ async def stage(
         )  # fmt: skip
         app = TesterApp(options, lambda: now[0])
         async with app.run_test(size=size, notifications=True) as pilot:
-            made = Stage(fake, app, pilot, now)
+            made = Stage(fake, app, pilot, now, queries)
             await made.until(lambda: app.scene.state is not None, "the service is found")
             fake.plan(a_plan())
             await made.show(a_state())

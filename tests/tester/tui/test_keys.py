@@ -77,6 +77,23 @@ def test_enter_twice_on_quickstart_starts_it_after_the_list_was_shown(tmp_path: 
     play(act, tmp_path)
 
 
+def test_the_plan_is_shown_though_other_recipes_are_still_being_checked(tmp_path: Path) -> None:
+    async def act(on: Stage) -> None:
+        on.queries.checking.clear()
+        on.queries.planning.clear()
+        await on.pilot.press("g")
+        await on.until(lambda: on.queries.waiting > 0, "a recipe is being checked")
+        await on.pilot.press("enter")
+        await on.until(lambda: on.queries.planned > 0, "the plan is asked for")
+        before = on.queries.answered
+        on.queries.checking.set()
+        await on.until(lambda: on.queries.answered > before + 1, "a check is answered, and the next one asked for")
+        on.queries.planning.set()
+        await on.until(lambda: "2 conditions, 0:45 h" in on.text(), "the plan's totals are shown")
+
+    play(act, tmp_path)
+
+
 def test_a_recipe_with_a_problem_leads_to_its_line_and_does_not_start(tmp_path: Path) -> None:
     (tmp_path / "recipes").mkdir()
     (tmp_path / "recipes" / "mine.yaml").write_text("recipe: mine\nb: 1\nload: wrong\n", encoding="utf-8")
