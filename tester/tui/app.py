@@ -67,6 +67,7 @@ class TesterApp(HostApp):
         for theme in THEMES.values():
             self.register_theme(theme)
         self.theme = THEMES.get(options.theme, DARK).name
+        self._entered: View | None = None
         self._last_filters: list[LineFilter] = [Colourless()] if self.no_color else []
         if options.plain:
             self._last_filters.append(AsciiOnly())
@@ -129,12 +130,24 @@ class TesterApp(HostApp):
         base = self.screen_stack[0] if self.screen_stack else None
         if base is None or not base.query("#keys"):
             return  # before the first layout, and while the screen is taken down
+        self._draw(base)
+        if self.screen is base:
+            self._attend(base)
+
+    def _attend(self, base: Screen[object]) -> None:
+        """Enter the screen that is seen once, also one that a dialog has hidden until now, and let it keep the keys."""
+        view = self.view
+        if self._entered is not view:
+            self._entered = view
+            view.enter()
+        elif base.focused is None and not base.has_class("-tiny"):
+            view.take_focus()
+
+    def _draw(self, base: Screen[object]) -> None:
         for panel in (base.query_one(StateLine), base.query_one(TabLine), base.query_one(KeyLine)):
             panel.show(self.scene)
         base.query_one(SmallPanel).show(self.scene)
         self.view.show(self.scene)
-        if self.screen is base and (base.focused is None or self.view not in base.focused.ancestors_with_self):
-            self.view.enter()  # a dialog that changed the screen below it has closed
 
     # -- keys -------------------------------------------------------------------------------------------------
 
@@ -148,10 +161,9 @@ class TesterApp(HostApp):
         base.query_one(ContentSwitcher).current = name
         if before is not self.view:
             before.leave()
+            self._entered = None
         base.query_one(TabLine).current = name
         base.query_one(KeyLine).keys = self.keys_of(self.view)
-        if self.screen is base:
-            self.view.enter()
         self.scene_changed()
 
     def keys_of(self, view: View) -> Keys:

@@ -30,6 +30,11 @@ def number(value: float | None, decimals: int) -> str:
     return NOTHING if value is None else f"{value:.{decimals}f}"
 
 
+def count(much: float, thing: str) -> str:
+    """Return how many of a thing there are: 1 wheel, 2 wheels."""
+    return f"{much:.0f} {thing}{'' if round(much) == 1 else 's'}"
+
+
 def hours(seconds: float | None) -> str:
     """Return a time left as h:mm."""
     if seconds is None:

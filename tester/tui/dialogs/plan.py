@@ -48,7 +48,7 @@ def plan_text(plan: dict[str, JsonValue]) -> str:
     """Return a plan (`tester plan --json`) in lines."""
     steps = plan.get("steps")
     listed = steps if isinstance(steps, list) else []
-    lines = ["".join(map(str, totals(plan))), ""]
+    lines = [totals(plan), ""]
     for number, step in enumerate(listed[:MOST_STEPS], 1):
         if isinstance(step, dict):
             lines.append(f"{number:5}  {minutes(_number(step, 'seconds')):>9}  {_words(step)}")

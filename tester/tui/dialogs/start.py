@@ -14,8 +14,7 @@ from tester.service.state import Check
 from tester.tui.dialogs.confirm import preflight_rows
 from tester.tui.dialogs.dialog import Dialog, entry, field, line
 from tester.tui.shelf import Recipe
-from tester.tui.widgets.panel import Parts
-from tester.tui.words import clean, hours
+from tester.tui.words import clean, count, hours
 
 LATER = ("guard and safety chain", "zero of the load cell", "watchdogs of the drives")
 """What the service shows before a drive is armed, and refuses to start without (docs/safety.md)."""
@@ -86,8 +85,9 @@ class StartDialog(Dialog):
 
     async def _plan(self) -> None:
         found = await self.host.ask(ShowPlan(self.recipe.reference, self.recipe.sent))
-        if self.is_attached and isinstance(found, dict):
-            self.query_one("#plan", Static).update("".join(map(str, totals(found))))
+        if self.is_attached:
+            words = totals(found) if isinstance(found, dict) else "no plan: it could not be worked out"
+            self.query_one("#plan", Static).update(words)
 
     def on_button_pressed(self, event: Button.Pressed) -> None:
         """Start, or go back."""
@@ -129,14 +129,15 @@ class StartDialog(Dialog):
         self.dismiss(None)
 
 
-def totals(plan: dict[str, JsonValue]) -> Parts:
+def totals(plan: dict[str, JsonValue]) -> str:
     """Return a plan's totals in a line."""
 
     def figure(key: str) -> float:
         value = plan.get(key)
         return float(value) if isinstance(value, int | float) else 0.0
 
-    return [
-        f"{figure('conditions'):.0f} conditions, {hours(figure('rig_seconds'))} h of rig time, "
-        f"{figure('sliding_m'):.0f} m of sliding, {figure('loss_mm'):.2f} mm of wear, {figure('wheels'):.0f} wheels"
-    ]
+    conditions, wheels = count(figure("conditions"), "condition"), count(figure("wheels"), "wheel")
+    return (
+        f"{conditions}, {hours(figure('rig_seconds'))} h of rig time, "
+        f"{figure('sliding_m'):.0f} m of sliding, {figure('loss_mm'):.2f} mm of wear, {wheels}"
+    )

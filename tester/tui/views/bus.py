@@ -129,7 +129,7 @@ class BusView(View, can_focus=True):
 
     def enter(self) -> None:
         """Ask for the frames."""
-        self.focus()
+        super().enter()
         self._epoch = self.host.scene.epoch
         self._watch(on=True)
 

@@ -113,7 +113,7 @@ class ManualView(View):
                             ("manual-events", "Events")):  # fmt: skip
             self.query_one(f"#{name}").border_title = title
 
-    def enter(self) -> None:
+    def take_focus(self) -> None:
         """Begin at the axes."""
         self.query_one("#manual-axes").focus()
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import shlex
 import subprocess
+from functools import partial
 from pathlib import Path
 from typing import ClassVar
 
@@ -77,7 +78,7 @@ class RecipesView(View):
         self.query_one("#problems").display = False
         self._read(FIRST)
 
-    def enter(self) -> None:
+    def take_focus(self) -> None:
         """Begin at the list."""
         self.query_one("#recipe-list").focus()
 
@@ -129,7 +130,7 @@ class RecipesView(View):
         problems.clear_options()
         failed = self.failed.get(str(recipe.path), "")
         if not found and not failed and problems.has_focus:
-            self.enter()
+            self.take_focus()
         problems.display = bool(found or failed)
         if failed:
             problems.add_option(Option(clean(failed)))
@@ -146,7 +147,11 @@ class RecipesView(View):
 
     def _check_all(self) -> None:
         order = sorted(self.recipes, key=lambda one: one is not self.chosen)
-        self.run_worker(self._check(order), group="check", exclusive=True, exit_on_error=False)
+        self._begin_check(order)
+
+    def _begin_check(self, recipes: list[Recipe]) -> None:
+        """Check these, in the place of what was being checked."""
+        self.run_worker(partial(self._check, recipes), group="check", exclusive=True, exit_on_error=False)
 
     async def _check(self, recipes: list[Recipe]) -> None:
         for recipe in recipes:
@@ -226,7 +231,8 @@ class RecipesView(View):
             self.host.say(f"a copy of your own: {own.path}")
         self.checked.pop(str(own.path), None)
         self._read(own.name)
-        self.run_worker(self._check([read_again(own)]), group="check", exclusive=True, exit_on_error=False)
+        others = [one for one in self.recipes if one.path != own.path and str(one.path) not in self.checked]
+        self._begin_check([read_again(own), *others])
 
     def _edit(self, recipe: Recipe) -> None:
         command = shlex.split(next((os.environ[name] for name in EDITORS if os.environ.get(name)), DEFAULT_EDITOR))

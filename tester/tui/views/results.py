@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import sqlite3
+from functools import partial
 from typing import ClassVar
 
 from pydantic import JsonValue
@@ -97,15 +98,19 @@ class ResultsView(View):
 
     def enter(self) -> None:
         """Begin at the runs, as they are now."""
-        self.runs_table.focus()
+        super().enter()
         self.action_reload()
+
+    def take_focus(self) -> None:
+        """Begin at the runs."""
+        self.runs_table.focus()
 
     def action_reload(self) -> None:
         """Look for runs again."""
         if self.host.options.view_only or self.host.link is None:
             return
         self.runs_table.border_title = "Runs: looking …"
-        self.run_worker(self._list(), group="runs", exclusive=True, exit_on_error=False)
+        self.run_worker(self._list, group="runs", exclusive=True, exit_on_error=False)
 
     async def _list(self) -> None:
         answer = await self.host.ask(ListRuns())
@@ -131,7 +136,7 @@ class ResultsView(View):
         if self.runs_table.has_focus:
             if event.cursor_row < len(self.names):
                 name = self.names[event.cursor_row]
-                self.run_worker(self._open(name), group="open", exclusive=True, exit_on_error=False)
+                self.run_worker(partial(self._open, name), group="open", exclusive=True, exit_on_error=False)
         elif self.stored is not None and event.cursor_row < len(self.stored.rows):
             self.host.push_screen(RepeatsDialog(self.stored, self.stored.rows[event.cursor_row]))
 

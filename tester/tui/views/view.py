@@ -30,7 +30,11 @@ class View(Vertical):
             panel.show(scene)
 
     def enter(self) -> None:
-        """Become the screen that is shown."""
+        """Become the screen that is shown, once each time."""
+        self.take_focus()
+
+    def take_focus(self) -> None:
+        """Have the keys go to where they are wanted first."""
         self.focus()
 
     def leave(self) -> None:

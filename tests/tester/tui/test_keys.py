@@ -11,6 +11,7 @@ import pytest
 from tester.service.commands import Acknowledge, Answer, Arm, Hold, Jog, Release, RunRecipe, Stop, Tare, WatchFrames
 from tester.service.state import ManualView
 from tester.tui.app import TesterApp
+from tester.tui.views.recipes import RecipesView
 from tests.tester.service.views import state as a_state
 from tests.tester.service.views import with_alarm, with_prompt
 from tests.tester.tui.stage import Stage, play
@@ -165,6 +166,64 @@ def test_frames_are_asked_for_only_while_they_are_looked_at(tmp_path: Path) -> N
         await on.pilot.press("f3")
         await on.until(lambda: not on.fake.presence.frames, "frames are not asked for any more")
         assert not [o for o in on.fake.orders if isinstance(o.action, WatchFrames)]
+
+    play(act, tmp_path)
+
+
+def test_coming_to_the_results_lists_the_runs_once(tmp_path: Path) -> None:
+    async def act(on: Stage) -> None:
+        await on.pilot.press("f5")
+        await on.until(lambda: on.queries.listed > 0, "the runs are listed")
+        on.app.scene_changed()
+        await on.pilot.pause()
+        assert on.queries.listed == 1
+
+    play(act, tmp_path)
+
+
+def test_a_screen_below_a_dialog_is_entered_when_that_closes(tmp_path: Path) -> None:
+    async def act(on: Stage) -> None:
+        await on.pilot.press("f3", "f1")
+        on.app.go_to("results")
+        await on.pilot.pause()
+        assert not on.queries.listed
+        await on.pilot.press("escape")
+        on.app.scene_changed()
+        await on.until(lambda: on.queries.listed == 1, "the runs are listed")
+
+    play(act, tmp_path)
+
+
+def test_while_the_terminal_is_too_small_nothing_is_asked_for_again(tmp_path: Path) -> None:
+    async def act(on: Stage) -> None:
+        await on.pilot.press("f5")
+        await on.until(lambda: on.queries.listed > 0, "the runs are listed")
+        await on.pilot.resize_terminal(30, 8)
+        for _ in range(3):
+            on.app.scene_changed()
+            await on.pilot.pause()
+        await on.pilot.resize_terminal(80, 24)
+        await on.pilot.pause()
+        on.app.scene_changed()
+        await on.until(lambda: on.app.focused is on.app.query_one("#runs"), "the keys go to the runs again")
+        assert on.queries.listed == 1
+
+    play(act, tmp_path)
+
+
+def test_editing_one_recipe_leaves_none_of_the_others_unchecked(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("EDITOR", "some editor")
+    monkeypatch.setattr("tester.tui.views.recipes.subprocess.run", lambda command, **_: None)
+    monkeypatch.setattr(TesterApp, "suspend", lambda app: nullcontext())
+
+    async def act(on: Stage) -> None:
+        await on.until(on.checked, "the recipes are checked")
+        view = on.app.query_one(RecipesView)
+        view.checked.clear()
+        await on.pilot.press("e")
+        await on.until(on.checked, "the recipes are checked again")
 
     play(act, tmp_path)
 

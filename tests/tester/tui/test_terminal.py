@@ -103,7 +103,7 @@ def test_an_operator_finds_a_mistake_runs_holds_stops_and_exports(terminal: Term
     on.press("e")
     on.see("✔   mine")
     on.press("Enter")
-    on.see("1 conditions")
+    on.see("1 condition,")
     on.press("Enter")
     on.see("waits since", 60.0)
     on.press("y")
