@@ -7,6 +7,7 @@ from typing import ClassVar
 
 from textual.app import ComposeResult, SystemCommand
 from textual.binding import Binding, BindingType
+from textual.events import Resize
 from textual.filter import LineFilter
 from textual.screen import Screen
 from textual.widget import Widget
@@ -110,9 +111,9 @@ class TesterApp(HostApp):
         self.go_to(self.FIRST)
         self.connect()
 
-    def on_resize(self) -> None:
-        """Lay out for the size there is."""
-        width, height = self.size
+    def on_resize(self, event: Resize) -> None:
+        """Lay out for the new size, which the application itself takes on later."""
+        width, height = event.size
         base = self.screen_stack[0]
         base.set_class(width < SMALLEST[0] or height < SMALLEST[1], "-tiny")
         base.set_class(width >= WIDE[0] and height >= WIDE[1], "-wide")

@@ -106,13 +106,14 @@ def test_themes_show_the_same_text(theme: str, tmp_path: Path) -> None:
 
 def test_no_size_from_200x50_to_20x5_breaks_a_screen(tmp_path: Path) -> None:
     async def act(on: Stage) -> None:
-        for number, (key, share) in enumerate((k, s) for s in range(10, -1, -2) for k in KEYS.values()):
-            if number % 2:
-                await on.show(STATES["alarm"] if number % 3 else STATES["normal"], plan())
-            await on.pilot.resize_terminal(20 + 18 * share, 5 + 9 * share // 2)
-            await on.pilot.press(key)
-            last = on.line(-1)
-            assert "STOP" in last, on.text()
+        keys = list(KEYS.values())
+        for turn, share in enumerate(range(10, -1, -2)):
+            await on.show(STATES["alarm"] if turn % 2 else STATES["normal"], plan())
+            await on.pilot.resize_terminal(20 + 18 * share, 5 + 9 * share // 2)  # each time on another screen
+            for key in keys[turn % 5 :] + keys[: turn % 5]:
+                await on.pilot.press(key)
+                assert "STOP" in on.line(-1), on.text()
+                assert ("the run continues" in on.text()) == (share < 3), on.text()
 
     play(act, tmp_path, (200, 50))
 
