@@ -1,0 +1,37 @@
+"""The topics by name."""
+
+from __future__ import annotations
+
+from collections.abc import AsyncIterator
+from dataclasses import dataclass
+from typing import Protocol
+
+from tests.acceptance.figure import Figure
+from tests.screens import stop
+from tests.screens.seat import Seat
+
+
+class Figures(Protocol):
+    """Measures, and yields each figure as soon as it is known."""
+
+    def __call__(self, seat: Seat, *, quick: bool) -> AsyncIterator[Figure]:
+        """Measure at a seat of its own."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class Topic:
+    """One check. ``recipe``: text of recipes/mine.yaml at its seat."""
+
+    name: str
+    title: str
+    figures: Figures
+    recipe: str = ""
+
+
+TOPICS = {
+    topic.name: topic
+    for topic in (
+        Topic("stop", "STOP from a key to the service", stop.figures, stop.RECIPE),
+    )
+}
