@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from types import FrameType
 from typing import cast
 
@@ -13,12 +13,17 @@ from tester.campaign.folder import Begin, Job, Work
 from tester.engine.context import Progress as RunProgress
 from tester.engine.prompts import Prompts
 from tester.engine.run import Run
+from tester.engine.tickers import TickStatistics
 from tester.recipe.estimate import estimate
 from tester.service.desk import Desk
 from tester.service.progress import PlanTrack
 from tester.service.state import RunView, TickView
 from tester.session import Session, SessionOptions
 from tester.store.space import expected_bytes
+
+
+RECENT_S = 1.0
+"""Lateness is told over one to two of these, s: longer than the period of states, so that none is missed."""
 
 
 class ServiceSession(Session):
@@ -39,6 +44,7 @@ class ServiceSession(Session):
         self._tell_signal = on_signal
         self._tell_begun = begun
         self._track: PlanTrack | None = None
+        self._punctual = Punctuality()
 
     def begun(self, run: Run) -> None:
         """Look after a part's run; the first one begins the whole."""
@@ -60,7 +66,7 @@ class ServiceSession(Session):
 
     def poll(self, now_s: float, run: Run, share: float) -> None:
         """Let the desk look, and clients speak."""
-        self.desk.tick = TickView(0.0, self.statistics.late_max_s, self.statistics.overruns)
+        self.desk.tick = self._punctual.look(self.statistics, clock.monotonic())
         self.desk.specimen(run)
         self.desk.poll(now_s)
 
@@ -80,6 +86,28 @@ class ServiceSession(Session):
         if self.run_ is not None:
             self.run_.stays_latched = False  # nobody will be there to acknowledge
         super()._on_signal(number, _frame)
+
+
+@dataclass(slots=True)
+class Punctuality:
+    """How late scans are: the worst since the run began, and the worst of the last one to two seconds."""
+
+    _worst_s: float = 0.0
+    _now_s: float = 0.0
+    _before_s: float = 0.0
+    _turn_s: float = 0.0
+    """When the present second began (tester.clock.monotonic)."""
+
+    def look(self, statistics: TickStatistics, wall_s: float) -> TickView:
+        """Take what the ticker has noted since the last look, and begin its worst anew."""
+        if wall_s - self._turn_s >= RECENT_S:
+            self._before_s = self._now_s if wall_s - self._turn_s < 2.0 * RECENT_S else 0.0
+            self._now_s, self._turn_s = 0.0, wall_s
+        late_s, statistics.late_max_s = statistics.late_max_s, 0.0
+        if late_s > self._now_s:
+            self._now_s = late_s
+            self._worst_s = max(self._worst_s, late_s)
+        return TickView(0.0, self._worst_s, statistics.overruns, max(self._now_s, self._before_s))
 
 
 class RunScreen:

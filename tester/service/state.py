@@ -233,11 +233,15 @@ class ManualView:
 
 @dataclass(frozen=True, slots=True)
 class TickView:
-    """How punctual the scan is, in real time only: worst lateness and overruns since the run began."""
+    """How punctual the scan is, in real time only: worst lateness and overruns since the run began.
+
+    ``late_s``: the worst of the last one to two seconds.
+    """
 
     rate_hz: float
     late_max_s: float
     overruns: int
+    late_s: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)

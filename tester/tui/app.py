@@ -30,6 +30,8 @@ from tester.tui.views.view import Keys, View
 from tester.tui.widgets.head import TABS, KeyLine, StateLine, TabLine, Tabs
 from tester.tui.widgets.small import SmallPanel
 
+UNDER_WAY = "running"
+"""Outcome of a run that has none yet (docs/protocol.md)."""
 SMALLEST = (60, 15)
 WIDE = (110, 34)
 HUGE = (180, 46)
@@ -69,6 +71,8 @@ class TesterApp(HostApp):
             self.register_theme(theme)
         self.theme = THEMES.get(options.theme, DARK).name
         self._entered: View | None = None
+        self._settled = False
+        """A screen has been chosen, by the run that was found or by a person."""
         self._last_filters: list[LineFilter] = [Colourless()] if self.no_color else []
         if options.plain:
             self._last_filters.append(AsciiOnly())
@@ -131,6 +135,11 @@ class TesterApp(HostApp):
         base = self.screen_stack[0] if self.screen_stack else None
         if base is None or not base.query("#keys"):
             return  # before the first layout, and while the screen is taken down
+        if not self._settled and self.scene.state is not None:
+            self._settled = True
+            if self.scene.state.run is not None and self.scene.state.run.outcome == UNDER_WAY:
+                self.go_to("run")  # who comes back to a run wants to see it
+                return
         self._draw(base)
         if self.screen is base:
             self._attend(base)
@@ -174,6 +183,7 @@ class TesterApp(HostApp):
     def action_go_to(self, name: str) -> None:
         """Show another screen."""
         if self.screen is self.screen_stack[0]:
+            self._settled = True
             self.go_to(name)
 
     def action_help(self) -> None:

@@ -7,7 +7,6 @@ from collections.abc import AsyncIterator
 from itertools import cycle
 
 from tests.acceptance.figure import Figure, at_most, equal
-from tests.screens.recipes import SLIDING
 from tests.screens.seat import NotSeenError, Seat, median
 from tests.screens.terminal import Terminal, start_mine
 
@@ -54,6 +53,3 @@ async def figures(seat: Seat, *, quick: bool) -> AsyncIterator[Figure]:
     yield at_most("key to service, maximum", 1e3 * max(taken_s, default=float("nan")), 1e3 * ASKED_S, "ms", 1)
     yield at_most("of those that stopped a run, maximum", 1e3 * max(first_s, default=float("nan")), 1e3 * ASKED_S,
                   "ms", 1)  # fmt: skip
-
-
-RECIPE = SLIDING

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from tests.acceptance.figure import Figure
-from tests.screens import stop
+from tests.screens import cpu, kill, reattach, stop, unread
+from tests.screens.recipes import SHORT, SLIDING
 from tests.screens.seat import Seat
 
 
@@ -32,6 +33,10 @@ class Topic:
 TOPICS = {
     topic.name: topic
     for topic in (
-        Topic("stop", "STOP from a key to the service", stop.figures, stop.RECIPE),
+        Topic("stop", "STOP from a key to the service", stop.figures, SLIDING),
+        Topic("kill", "SIGKILL of the screen leaves the run's tables alone", kill.figures, SHORT),
+        Topic("unread", "a terminal that nobody reads leaves the scan alone", unread.figures, SLIDING),
+        Topic("reattach", "a new screen shows the run", reattach.figures, SLIDING),
+        Topic("cpu", "CPU time of screen and service", cpu.figures, SLIDING),
     )
 }

@@ -150,6 +150,7 @@ async def stage(
         async with app.run_test(size=size, notifications=True) as pilot:
             made = Stage(fake, app, pilot, now, queries)
             await made.until(lambda: app.scene.state is not None, "the service is found")
+            await pilot.press("f2")
             fake.plan(a_plan())
             await made.show(a_state())
             yield made
