@@ -11,7 +11,7 @@ from tests.screens.seat import NotSeenError, Observer, Seat
 from tests.screens.terminal import Terminal, start_mine
 
 KILLS, QUICK = 10, 2
-SPEED = "20"
+SPEED = "40"
 TABLES = ("appendix.csv", "conditions.csv", "repeats.csv")
 SEED = 1
 """Of the moments of the kills."""

@@ -3,9 +3,9 @@
 SHORT = """\
 recipe: short
 specimens: [{compound: "1#"}]
-measure: {wheel_speed: 0.8 m/s, repeats: 3, window: 5 rev, temperature_band: 2 degC}
+measure: {wheel_speed: 0.8 m/s, repeats: 3, min_valid: 1, window: 14 rev, soak: {within: 2 degC, for: 2 s}}
 grids:
-  - {name: one, slip_velocity: 200 mm/s, load: [100 N, 150 N], temperature: 25 degC}
+  - {name: one, slip_velocity: 300 mm/s, load: [100 N, 200 N], temperature: 25 degC}
 """
 """Two rows of three repeats."""
 
@@ -26,5 +26,5 @@ wheel: {replace_after: 15 mm}
 """
 """Slides some 20 s after its start, for many minutes, with the heat on."""
 
-MISTAKEN = SHORT.replace("load: [100 N, 150 N]", "load: 100")
+MISTAKEN = SHORT.replace("load: [100 N, 200 N]", "load: 100")
 """A load without a unit: column 48 of line 5."""
