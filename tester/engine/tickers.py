@@ -93,7 +93,7 @@ def run_simulated(engine: Ticked, world: World, *, lapse: float | None, poll: Ca
             if lapse is not None:
                 poll_due = _wait(origin + later / lapse, now, poll, poll_due)
             wall = clock.monotonic()
-            if wall >= poll_due:
+            if wall >= poll_due - LEAVE_S:  # now rather than with a wake-up of its own
                 poll(now)
                 poll_due = wall + POLL_S
             if engine.waiting:
@@ -134,7 +134,7 @@ def run_real_time(
             wall = pace.now()
             if due < wall:
                 statistics.overruns += 1
-            if wall >= poll_due:
+            if wall >= poll_due - LEAVE_S:  # now rather than with a wake-up of its own
                 poll(now)
                 poll_due = wall + POLL_S
     return pace.now()

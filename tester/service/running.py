@@ -21,7 +21,6 @@ from tester.service.state import RunView, TickView
 from tester.session import Session, SessionOptions
 from tester.store.space import expected_bytes
 
-
 RECENT_S = 1.0
 """Lateness is told over one to two of these, s: longer than the period of states, so that none is missed."""
 

@@ -61,7 +61,8 @@ async def figures(seat: Seat, *, quick: bool) -> AsyncIterator[Figure]:
             found = tables(run)
             differing = [name for name in TABLES if found[name] != wanted[name]]
             same += not differing
-            print(f"kill {number + 1}: at {100 * share:.0f} %: {', '.join(differing) or 'no table'} differs", flush=True)
+            what = ", ".join(differing) or "no table"
+            print(f"kill {number + 1}: at {100 * share:.0f} %: {what} differs", flush=True)
     rows = {name: text.count(b"\n") for name, text in wanted.items()}
     yield equal("rows with their heads of " + ", ".join(TABLES), list(rows.values()), [3, 3, 7])
     yield equal("screens killed in the middle of their run", sum(0.0 < share < 1.0 for share in shares), kills)

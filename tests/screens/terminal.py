@@ -32,7 +32,7 @@ READ_AT_ONCE = 65_536
 
 
 class Terminal:
-    """A pseudo-terminal of ``size`` columns and rows. What nobody reads (``reading`` off) stays in it until it is full."""
+    """A pseudo-terminal of ``size`` columns and rows. What nobody reads stays in it until it is full."""
 
     def __init__(self, seat: Seat, words: Sequence[str], size: tuple[int, int] = (120, 40)) -> None:
         """Start `tester WORDS` in it; it is read from the start."""

@@ -62,7 +62,8 @@ class BusesPanel(Panel):
         if scene.state is None:
             return []
         tick = scene.state.tick
-        scan = f"scan {tick.rate_hz:g} Hz, {1e3 * tick.late_s:.1f} ms late, at most {1e3 * tick.late_max_s:.1f}, {tick.overruns} overruns"
+        late = f"{1e3 * tick.late_s:.1f} ms late, at most {1e3 * tick.late_max_s:.1f}"
+        scan = f"scan {tick.rate_hz:g} Hz, {late}, {tick.overruns} overruns"
         return rows([*([fit(bus_row(one), width)] for one in scene.state.buses[: height - 1]), [fit(scan, width)]])
 
 
