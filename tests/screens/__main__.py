@@ -31,11 +31,11 @@ def options(arguments: list[str] | None) -> argparse.Namespace:
     return read
 
 
-async def measure(topic: Topic, folder: Path, *, quick: bool) -> int:
+async def measure(topic: Topic, seat: Seat, *, quick: bool) -> int:
     """Print the figures of a topic and return how many miss; what keeps one from being measured is a miss."""
     missed = 0
     try:
-        async for figure in topic.figures(Seat(folder, topic.recipe), quick=quick):
+        async for figure in topic.figures(seat, quick=quick):
             missed += not figure.ok
             print(figure, flush=True)
     except (NotSeenError, OSError) as error:
@@ -61,7 +61,7 @@ def main(arguments: list[str] | None = None) -> int:
         for name in dict.fromkeys(read.names or TOPICS):
             topic = TOPICS[name]
             print(f"== {name}: {topic.title}", flush=True)
-            missed += asyncio.run(measure(topic, Path(temporary) / name, quick=read.quick))
+            missed += asyncio.run(measure(topic, Seat(Path(temporary) / name, captures, topic.recipe), quick=read.quick))
     print(f"== {'every figure is kept' if not missed else f'{missed} missed'}")
     return 1 if missed else 0
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import os
+import signal
 import subprocess
 import sys
 from collections.abc import AsyncIterator, Callable, Sequence
@@ -38,9 +39,9 @@ def installed() -> list[str]:
 class Seat:
     """One folder, one service, any number of screens."""
 
-    def __init__(self, folder: Path, recipe: str = "") -> None:
-        """``recipe``: text of recipes/mine.yaml, if there is to be one."""
-        self.folder, self.runs = folder, folder / "runs"
+    def __init__(self, folder: Path, captures: Path, recipe: str = "") -> None:
+        """``recipe``: text of recipes/mine.yaml, if there is to be one; ``captures``: where pictures go."""
+        self.folder, self.captures, self.runs = folder, captures, folder / "runs"
         self.runtime = folder / "rt"
         self.runtime.mkdir(parents=True, mode=0o700)
         self.address = UnixAddress(self.runtime / "service.sock")
@@ -80,6 +81,14 @@ class Seat:
             except subprocess.TimeoutExpired:
                 process.kill()
                 process.wait()
+
+    def end_services(self) -> None:
+        """End what a screen has started here: `tester serve` processes that put their runs into this seat's folder."""
+        listed = subprocess.run(["ps", "-ewwo", "pid=,args="], capture_output=True, text=True, check=True).stdout
+        for line in listed.splitlines():
+            if " serve " in line and str(self.runs) in line:
+                with suppress(ProcessLookupError):
+                    os.kill(int(line.split()[0]), signal.SIGTERM)
 
     async def observer(self, process: subprocess.Popen[bytes] | None = None) -> Observer:
         """Connect to the service once it is there; raises NotSeenError."""

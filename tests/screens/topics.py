@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from tests.acceptance.figure import Figure
-from tests.screens import cpu, kill, reattach, stop, unread
-from tests.screens.recipes import SHORT, SLIDING
+from tests.screens import cpu, kill, operator, reattach, stop, unread
+from tests.screens.recipes import MISTAKEN, SHORT, SLIDING
 from tests.screens.seat import Seat
 
 
@@ -38,5 +38,6 @@ TOPICS = {
         Topic("unread", "a terminal that nobody reads leaves the scan alone", unread.figures, SLIDING),
         Topic("reattach", "a new screen shows the run", reattach.figures, SLIDING),
         Topic("cpu", "CPU time of screen and service", cpu.figures, SLIDING),
+        Topic("operator", "an afternoon at the rig, in tmux", operator.figures, MISTAKEN),
     )
 }
