@@ -62,6 +62,8 @@ class Orders:
         kind = "fast stop" if action.fast else "stop"
         desk.tell("command", f"{kind} by {order.name}", "warning")
         if desk.watch is not None:
+            if desk.watch.run.engine.control.state.mode is Mode.LATCHED:
+                desk.watch.run.stays_latched = False  # its cause may never go; the desk stays latched until it is
             desk.watch.run.request_stop(f"{kind} by {order.name}", fast=action.fast)
             desk.stop_rest(action.fast)
         elif self.job is not None:

@@ -18,6 +18,7 @@ from tester import clock
 from tester.service.address import Address
 from tester.service.client import Client, Link, Lost, LostError, NoServiceError, RefusedError
 from tester.service.commands import Action, Stop
+from tester.service.protocol import Event
 from tester.tui.scene import Scene
 from tester.tui.starting import start_service
 from tester.tui.words import clean
@@ -89,6 +90,8 @@ class HostApp(App[str]):
             self.scene.take(message, link.client)
             if isinstance(message, Lost) and self.scene.state is None:
                 self._begin_service()
+            if isinstance(message, Event) and message.kind == "acknowledgement" and message.text.startswith("refused"):
+                self.say(f"{message.text}; F12 ends the run", problem=True)
             self.scene_changed()
 
     def _begin_service(self) -> None:

@@ -78,6 +78,10 @@ Screen.-huge #values { height: 15; }
 Screen.-huge #trend-slip { display: block; }
 Screen.-huge #run-right { width: 60; }
 
+OptionList, TextArea, DataTable, #box {
+    scrollbar-size-vertical: 1; scrollbar-background: $background; scrollbar-color: $panel;
+    scrollbar-corner-color: $background;
+}
 #recipe-list { width: 28; height: 100%; }
 #recipe-right { width: 1fr; }
 #recipe-text { height: 1fr; border: round $secondary; padding: 0; }
@@ -123,7 +127,7 @@ Dialog.-tall > #box { width: 100%; height: 100%; }
 #plot { height: 40%; display: none; }
 Screen.-wide #plot { display: block; }
 Screen.-wide #runs { height: 25%; }
-#devices { height: 10; }
+#devices { height: 11; }
 #buses { height: 6; }
 Screen.-wide #devices { height: 14; }
 #frames { height: 1fr; }

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import re
 import unicodedata
 from datetime import datetime
+from textwrap import wrap
 
 REPLACEMENT = "\N{REPLACEMENT CHARACTER}"
 NOTHING = "—"
 """Stands where there is no value."""
+_KEY = re.compile(r"\S.*?  +(?=\S)")
+"""In a help text a key is followed by two spaces or more."""
 HIDDEN = frozenset({"Cc", "Cf", "Cs", "Co", "Cn", "Zl", "Zp", "Mn", "Me"})
 """Unicode categories that move the cursor, turn the writing around or cannot be seen."""
 
@@ -27,7 +31,7 @@ def clean_lines(text: str) -> str:
 
 def number(value: float | None, decimals: int) -> str:
     """Return a number with so many decimals; a dash where there is none."""
-    return NOTHING if value is None else f"{value:.{decimals}f}"
+    return NOTHING if value is None else f"{round(value, decimals) + 0.0:.{decimals}f}"  # + 0.0: never -0.0
 
 
 def count(much: float, thing: str) -> str:
@@ -65,6 +69,24 @@ def clock_text(utc: str, *, seconds: bool = False) -> str:
 def local(moment: datetime) -> datetime:
     """Return a moment in the time zone of the machine."""
     return moment.astimezone()
+
+
+def reflow(text: str, width: int) -> str:
+    """Return a help text in lines of so many characters: paragraphs are filled, what a key does hangs beside it."""
+    lines: list[str] = []
+    paragraph: list[str] = []
+    for line in [*text.splitlines(), ""]:
+        key = _KEY.match(line)
+        if paragraph and (key or not line):
+            lines += wrap(" ".join(paragraph), width)
+            paragraph = []
+        if key:
+            lines += wrap(line, width, subsequent_indent=" " * key.end())
+        elif line:
+            paragraph.append(line)
+        else:
+            lines.append("")
+    return "\n".join(lines[:-1])
 
 
 def fit(text: str, width: int) -> str:

@@ -61,7 +61,8 @@ def main(arguments: list[str] | None = None) -> int:
         for name in dict.fromkeys(read.names or TOPICS):
             topic = TOPICS[name]
             print(f"== {name}: {topic.title}", flush=True)
-            missed += asyncio.run(measure(topic, Seat(Path(temporary) / name, captures, topic.recipe), quick=read.quick))
+            seat = Seat(Path(temporary) / name, captures, topic.recipe)
+            missed += asyncio.run(measure(topic, seat, quick=read.quick))
     print(f"== {'every figure is kept' if not missed else f'{missed} missed'}")
     return 1 if missed else 0
 

@@ -14,7 +14,7 @@ from tests.screens.tmux import Tmux, available
 
 MISTAKE = f"5:{MISTAKEN.splitlines()[4].index('100') + 1} "
 """Line and column as the list of problems names them."""
-FAULT = "t=200 s: belt drive heartbeat lost for 3 s"
+FAULT = "t=420 s: belt drive heartbeat lost for 3 s"
 EDITOR = "#!/bin/sh\nsed -i 's/load: 100,/load: [100 N, 200 N],/' \"$1\"\n"
 SPEED = "20"
 
@@ -48,15 +48,17 @@ STEPS = (
     Step("the devices and frames", ("Escape", "F6"), "Frames", "bus"),
     Step("a drive is lost: the rig is latched, line 2 says why", ("F3",), "P1 ", "alarm", 60.0),
     Step("the manual screen shows it too", ("F4",), "P1 ", "alarm on manual"),
-    Step("acknowledged, and the run is over", ("F3", "a"), "tripped", "acknowledged", 60.0),
+    Step("an acknowledgement is refused while the drive is lost", ("F3", "a"), "still there", "refused"),
+    Step("STOP ends the run, the rig stays latched", ("F12",), "Last run", "over"),
+    Step("acknowledged, and ready for another run", ("a",), "OFFLINE", "acknowledged"),
     Step("another run is started", ("F2", "End", "Enter"), "2 conditions", ""),
     Step("it asks, and is answered at once", ("Enter",), "waits since", "", 60.0),
     Step("it measures", ("y",), "rep 1/3", "second run", 60.0),
     Step("STOP", ("F12",), "STOP taken", "stop"),
     Step("the rig is at a standstill", (), "OFFLINE", "stopped", 60.0),
     Step("the results list both runs", ("F5",), "stopped", "results"),
-    Step("a run's conditions", ("Enter",), "mine", "conditions"),
-    Step("a condition's repeats", ("Enter",), "Repeats", "repeats"),
+    Step("the first run's conditions", ("Down", "Enter"), "short, tripped", "conditions"),
+    Step("a condition's repeats", ("Enter",), "repeat 3", "repeats"),
     Step("the export dialog", ("Escape", "e"), "Export", "export"),
     Step("a table is exported", ("Enter",), "exported to", "exported"),
 )

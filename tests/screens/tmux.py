@@ -95,6 +95,6 @@ def draw(seen: str, file: Path, size: tuple[int, int], title: str) -> None:
     file.with_suffix(".ansi").write_text(seen, encoding="utf-8")
     console = Console(width=size[0], height=size[1], record=True, file=StringIO(), force_terminal=True,
                       color_system="truecolor", legacy_windows=False)  # fmt: skip
-    for line in seen.rstrip("\n").split("\n"):
-        console.print(Text.from_ansi(line), no_wrap=True, overflow="crop", crop=True)
+    for line in Text.from_ansi(seen.rstrip("\n")).split("\n"):  # whole: a colour may go on into the next line
+        console.print(line, no_wrap=True, overflow="crop", crop=True)
     console.save_svg(str(file.with_suffix(".svg")), title=title)

@@ -9,9 +9,14 @@ from textual.widget import Widget
 from tester.tui.dialogs.dialog import Dialog, line
 from tester.tui.widgets.events import event_row
 from tester.tui.widgets.panel import Parts, rows
+from tester.tui.words import reflow
 
 WIDTH = 400
 """Longest line of the log."""
+
+
+TEXT_WIDTH = 70
+"""Columns in a dialog's box, beside its scroll bar."""
 
 
 class LogDialog(Dialog):
@@ -33,9 +38,9 @@ class TextDialog(Dialog):
     """A text to read."""
 
     def __init__(self, title: str, text: str) -> None:
-        """``text`` is shown as it is."""
+        """``text``: paragraphs, and keys with two spaces or more before what they do."""
         super().__init__()
-        self._title, self._text = title, text
+        self._title, self._text = title, reflow(text, TEXT_WIDTH)
 
     def on_mount(self) -> None:
         """Name the box."""

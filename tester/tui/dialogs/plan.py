@@ -70,7 +70,7 @@ def _words(step: dict[str, JsonValue]) -> str:
             angles = f", {_number(step, 'sideslip_deg'):g}°" if _number(step, "sideslip_deg") else ""
             return (
                 f"condition {_number(step, 'condition'):g}  {clean(str(step.get('compound', '')))}: "
-                f"{_number(step, 'slip_velocity_mm_s'):g} mm/s, {_number(step, 'load_n'):g} N, "
+                f"{1e3 * _number(step, 'slip_velocity_m_s'):g} mm/s, {_number(step, 'load_n'):g} N, "
                 f"{_number(step, 'temperature_c'):g} °C{angles}"
             )
         case "install":

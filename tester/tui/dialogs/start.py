@@ -138,6 +138,6 @@ def totals(plan: dict[str, JsonValue]) -> str:
 
     conditions, wheels = count(figure("conditions"), "condition"), count(figure("wheels"), "wheel")
     return (
-        f"{conditions}, {hours(figure('rig_seconds'))} h of rig time, "
-        f"{figure('sliding_m'):.0f} m of sliding, {figure('loss_mm'):.2f} mm of wear, {wheels}"
+        f"{conditions}, {wheels}, {hours(figure('rig_seconds'))} h of rig time, "
+        f"{figure('sliding_m'):.0f} m sliding, {figure('loss_mm'):.2f} mm wear"
     )

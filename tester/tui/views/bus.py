@@ -37,18 +37,22 @@ class DevicesPanel(Panel):
         devices = scene.state.devices if scene.state is not None else ()
         if not devices:
             return [("no rig is connected: a run or manual mode connects it", FAINT)]
-        head = fit(
-            f"  {'device':<12} {'bus':<8} {'at':>4} {'age':>8} {'requests':>9} {'errors':>7} {'/h':>7}  state", width
-        )
-        return rows([[(head, "bold")], *(device_row(one, width) for one in devices[: height - 1])])
+        hourly = f"{'/h':>7}" if width >= HOURLY_FROM else ""
+        head = f"  {'device':<11} {'bus':<9} {'at':>3} {'age':>8} {'requests':>9} {'errors':>6}{hourly}  state"
+        return rows([[(fit(head, width), "bold")], *(device_row(one, width) for one in devices[: height - 1])])
+
+
+HOURLY_FROM = 90
+"""Columns from which on there is room for errors per hour beside a drive's state."""
 
 
 def device_row(one: DeviceView, width: int) -> Parts:
     """Return a device."""
     age = "—" if one.age_s is None else f"{one.age_s:.3f} s"
+    hourly = f"{one.errors_per_hour:>7.1f}" if width >= HOURLY_FROM else ""
     text = (
-        f"{'✔' if one.online else '✘'} {clean(one.name):<12} {clean(one.bus):<8} {one.address:>4} {age:>8} "
-        f"{one.requests:>9} {one.errors:>7} {one.errors_per_hour:>7.1f}  {clean(one.state)} {clean(one.detail)}"
+        f"{'✔' if one.online else '✘'} {clean(one.name):<11} {clean(one.bus):<9} {one.address:>3} {age:>8} "
+        f"{one.requests:>9} {one.errors:>6}{hourly}  {clean(one.state)} {clean(one.detail)}"
     ).rstrip()
     old = one.age_s is not None and one.age_s > STALE_S
     return [(fit(text, width), WARNING if not one.online else FAINT if old else NOTICE if one.errors else "")]
@@ -70,7 +74,7 @@ class BusesPanel(Panel):
 def bus_row(one: BusState) -> str:
     """Return a bus."""
     load = f"{number(one.load_percent, 1)} %" if one.load_percent is not None else "load unknown"
-    return f"{clean(one.name):<8} {one.kind:<7} {load:>12}  {one.errors} errors  {clean(one.detail)}"
+    return f"{clean(one.name):<9} {one.kind:<7} {load:>12}  {one.errors} errors  {clean(one.detail)}"
 
 
 class FramesPanel(Panel):

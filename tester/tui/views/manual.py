@@ -24,10 +24,10 @@ AXES: tuple[tuple[JogAxis, str, str], ...] = (
     ("wheel", "Wheel speed", "0.05 m/s a step, lifted"),
     ("belt", "Belt speed", "0.05 m/s a step, lifted"),
     ("both", "Both speeds", "0.05 m/s a step"),
-    ("press", "Load", "10 N a step, both speeds equal"),
+    ("press", "Load", "10 N a step, rolling"),
     ("sideslip", "Sideslip", "1° a step, lifted"),
     ("camber", "Camber", "1° a step, lifted"),
-    ("heat", "Heating", "1 K a step, wheel turning"),
+    ("heat", "Heating", "1 K a step, turning"),
 )
 """Axis, name, the service's step and condition (docs/protocol.md)."""
 SHOWN = ("wheel_speed", "belt_speed", "slip", "load", "press", "sideslip", "camber", "surface", "hub", "heat")

@@ -200,7 +200,7 @@ class RecipesView(View):
         if at < len(found):
             text = self.query_one("#recipe-text", TextArea)
             row = min(max(found[at].line - 1, 0), text.document.line_count - 1)
-            text.move_cursor((row, max(found[at].column - 1, 0)), center=True)
+            text.move_cursor((row, max(found[at].column - 1, 0)))
 
     def action_plan(self) -> None:
         """Show the plan."""

@@ -260,6 +260,27 @@ def test_a_trip_latches_until_it_is_acknowledged(tmp_path: Path) -> None:
     assert run is not None and run.outcome == "tripped"
 
 
+def test_stop_ends_a_tripped_run_whose_cause_stays_and_the_rig_stays_latched(tmp_path: Path) -> None:
+    def script(stage: Stage) -> Script:
+        yield stage.order(RUN)
+        yield from stage.until(running)
+        assert stage.service is not None and stage.service.desk.watch is not None
+        rig = stage.service.desk.watch.run.engine.ctx.attendant
+        assert isinstance(rig, SimRig)
+        rig.axes["belt"].fault(0x2310)
+        yield from stage.until(lambda view: view.mode == "LATCHED")
+        yield stage.order(Stop())
+        yield from stage.until(lambda view: view.run is not None and view.run.outcome == "tripped")
+        yield stage.order(RUN)
+        yield None
+        yield stage.order(Acknowledge())
+        yield from stage.until(lambda view: view.mode == "OFFLINE")
+
+    stage = play(tmp_path, script)
+    assert "acknowledge first" in stage.refused["run"]
+    assert stage.views[-1].alarms == ()
+
+
 def test_a_held_run_goes_on_when_it_is_released(tmp_path: Path) -> None:
     def script(stage: Stage) -> Script:
         yield stage.order(RUN)

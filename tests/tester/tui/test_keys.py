@@ -90,7 +90,7 @@ def test_the_plan_is_shown_though_other_recipes_are_still_being_checked(tmp_path
         on.queries.checking.set()
         await on.until(lambda: on.queries.answered > before + 1, "a check is answered, and the next one asked for")
         on.queries.planning.set()
-        await on.until(lambda: "2 conditions, 0:45 h" in on.text(), "the plan's totals are shown")
+        await on.until(lambda: "2 conditions, 1 wheel, 0:45 h" in on.text(), "the plan's totals are shown")
 
     play(act, tmp_path)
 

@@ -10,7 +10,7 @@ from tester.tui.bar import bar, beyond
 from tester.tui.filters import ascii_text
 from tester.tui.plot import Canvas, Point, Range, round_step, scatter
 from tester.tui.scene import Scene
-from tester.tui.words import clean, fit, hours, minutes
+from tester.tui.words import clean, count, fit, hours, minutes, number, reflow
 from tests.tester.service.views import HOSTILE, value
 
 
@@ -27,6 +27,19 @@ def test_hours(seconds: float, text: str) -> None:
 @pytest.mark.parametrize(("seconds", "text"), [(190.0, "3:10"), (3599.6, "1:00:00"), (None, "?")])
 def test_minutes(seconds: float | None, text: str) -> None:
     assert minutes(seconds) == text
+
+
+def test_a_help_text_fills_its_lines_and_hangs_what_a_key_does_beside_it() -> None:
+    text = "One line of a\nparagraph.\n\nspace  HOLD: lift and wait\nq      leave\n"
+    assert reflow(text, 18) == "One line of a\nparagraph.\n\nspace  HOLD: lift\n       and wait\nq      leave"
+
+
+def test_no_number_is_minus_nought() -> None:
+    assert [number(x, 1) for x in (-0.04, -0.06, None)] == ["0.0", "-0.1", "—"]
+
+
+def test_one_thing_is_not_several() -> None:
+    assert [count(n, "wheel") for n in (0, 1, 2)] == ["0 wheels", "1 wheel", "2 wheels"]
 
 
 def test_fit_marks_what_is_missing() -> None:
