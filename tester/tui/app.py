@@ -20,6 +20,7 @@ from tester.tui.dialogs.dialog import Dialog
 from tester.tui.dialogs.log import TextDialog
 from tester.tui.filters import AsciiOnly, Colourless
 from tester.tui.host import HostApp, TuiOptions
+from tester.tui.scene import UNDER_WAY
 from tester.tui.theme import CSS, DARK, THEMES
 from tester.tui.views.bus import BusView
 from tester.tui.views.manual import ManualView
@@ -30,8 +31,6 @@ from tester.tui.views.view import Keys, View
 from tester.tui.widgets.head import TABS, KeyLine, StateLine, TabLine, Tabs
 from tester.tui.widgets.small import SmallPanel
 
-UNDER_WAY = "running"
-"""Outcome of a run that has none yet (docs/protocol.md)."""
 SMALLEST = (60, 15)
 WIDE = (110, 34)
 HUGE = (180, 46)

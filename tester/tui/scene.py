@@ -15,6 +15,8 @@ from tester.service.state import TREND_COLUMNS, Alarm, PlanView, StateView, Valu
 STALE_S = 2.0
 """A state older than this is no state: no value is to be believed."""
 FRAMES_KEPT = 1000
+UNDER_WAY = "running"
+"""Outcome of a run that has none yet (docs/protocol.md)."""
 
 
 @dataclass(slots=True)

@@ -128,7 +128,7 @@ Dialog.-tall > #box { width: 100%; height: 100%; }
 Screen.-wide #plot { display: block; }
 Screen.-wide #runs { height: 25%; }
 #devices { height: 11; }
-#buses { height: 6; }
+#buses { height: 5; }
 Screen.-wide #devices { height: 14; }
 #frames { height: 1fr; }
 #filter { display: none; height: 1; }

@@ -69,7 +69,7 @@ class Terminal:
     @property
     def text(self) -> str:
         """Return everything drawn since ``forget``, in the order of drawing, without colours and places."""
-        return _ESCAPE.sub(b"", bytes(self._drawn)).decode(errors="replace")
+        return strip(bytes(self._drawn))
 
     def forget(self) -> None:
         """Look only at what is drawn from now on."""
@@ -102,6 +102,11 @@ class Terminal:
         self.process.wait()
         self.reading(on=False)
         os.close(self._end)
+
+
+def strip(drawn: bytes) -> str:
+    """Return what was drawn as text, without escape sequences (ECMA-48)."""
+    return _ESCAPE.sub(b"", drawn).decode(errors="replace")
 
 
 async def start_mine(screen: Terminal) -> None:

@@ -59,7 +59,7 @@ def device_row(one: DeviceView, width: int) -> Parts:
 
 
 class BusesPanel(Panel):
-    """A row a bus, and how punctual the scan is."""
+    """A row a bus; the title says how punctual the scan is."""
 
     def picture(self, scene: Scene, width: int, height: int) -> Parts:
         """Return the table."""
@@ -67,8 +67,8 @@ class BusesPanel(Panel):
             return []
         tick = scene.state.tick
         late = f"{1e3 * tick.late_s:.1f} ms late, at most {1e3 * tick.late_max_s:.1f}"
-        scan = f"scan {tick.rate_hz:g} Hz, {late}, {tick.overruns} overruns"
-        return rows([*([fit(bus_row(one), width)] for one in scene.state.buses[: height - 1]), [fit(scan, width)]])
+        self.entitle(fit(f"Buses ── scan {tick.rate_hz:g} Hz, {late}, {tick.overruns} overruns", width - 2))
+        return rows([[fit(bus_row(one), width)] for one in scene.state.buses[:height]])
 
 
 def bus_row(one: BusState) -> str:
@@ -129,7 +129,7 @@ class BusView(View, can_focus=True):
 
     def on_mount(self) -> None:
         """Name the boxes."""
-        for name, title in (("devices", "Devices"), ("buses", "Buses"), ("frames", "Frames")):
+        for name, title in (("devices", "Devices"), ("frames", "Frames")):
             self.query_one(f"#{name}").border_title = title
 
     def enter(self) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tester.service.state import Alarm, StateView
-from tester.tui.scene import STALE_S, Scene
+from tester.tui.scene import STALE_S, UNDER_WAY, Scene
 from tester.tui.widgets.panel import ABNORMAL, FAINT, NOTICE, WARNING, Panel, Part, Parts
 from tester.tui.words import clean, clock_text, fit, hours, number
 
@@ -66,7 +66,7 @@ def _where(scene: Scene, state: StateView, width: int) -> list[str]:
     if progress.steps and progress.left_s is not None:
         end = f" → {clock_text(progress.finish_utc)}" if progress.finish_utc else ""
         pieces.append(f"  left {hours(progress.left_s)}{end}")
-    if run is not None and run.compound:
+    if run is not None and run.compound and run.outcome == UNDER_WAY:
         pieces.append(f"  {clean(run.compound, 20)} {clean(run.note, 30)}".rstrip())
     if scene.view_only:
         pieces.append("  view only")

@@ -32,6 +32,7 @@ class Panel(Static):
         super().__init__("", markup=False, id=id, classes=classes)
         self.scene: Scene | None = None
         self._drawn: Parts | None = None
+        self._entitled = ""
 
     def show(self, scene: Scene) -> None:
         """Draw the scene as it is now."""
@@ -47,6 +48,12 @@ class Panel(Static):
         if parts != self._drawn:
             self._drawn = parts
             self.update(Content.assemble(*parts), layout=False)
+
+    def entitle(self, title: str) -> None:
+        """Put a title into the border, if it is another one; never taken for markup."""
+        if title != self._entitled:
+            self._entitled = title
+            self.border_title = Content(title)
 
     def on_resize(self) -> None:
         """Draw for the new size."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tester.service.state import Gate, ProgressView, SoakView
-from tester.tui.scene import Scene
+from tester.tui.scene import UNDER_WAY, Scene
 from tester.tui.widgets.panel import FAINT, NOTICE, Panel, Parts, rows
 from tester.tui.words import clean, fit, hours, minutes, number
 
@@ -34,7 +34,7 @@ def idle_words(scene: Scene, width: int) -> Parts:
         return []
     lines: list[Parts] = [[fit(f" {clean(state.mode)}: {clean(state.mode_text)}", width)]]
     run = state.run
-    if run is not None and run.outcome != "running":
+    if run is not None and run.outcome != UNDER_WAY:
         reason = f": {clean(run.reason)}" if run.reason else ""
         lines.append([fit(f" Last run {clean(run.name)} {clean(run.outcome)}{reason}", width)])
         if run.missing:

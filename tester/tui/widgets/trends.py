@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from textual.content import Content
-
 from tester.service.protocol import SNAPSHOT_S, TREND_ROWS
 from tester.tui.plot import LIMIT, WISH, Bin, Canvas, Range
 from tester.tui.scene import Scene
@@ -56,7 +54,6 @@ class TrendPanel(Panel):
         self.key, self.column, self.plain = key, column, plain
         self._range = Range(least=least)
         self._bins: Bins | None = None
-        self._title = ""
 
     def picture(self, scene: Scene, width: int, height: int) -> Parts:
         """Return the plot, and have the title say the value."""
@@ -67,7 +64,8 @@ class TrendPanel(Panel):
         bins = self._take(scene, canvas.columns)
         known = [one for one in bins[-canvas.columns :] if one is not None]
         ends = [y for one in known for y in one] + ([value.setpoint] if value.setpoint is not None else [])
-        self._entitle(f"{clean(value.label)} {number(value.value, value.decimals)}", value.setpoint, value.decimals)
+        wanted = "" if value.setpoint is None else f" ── SP {number(value.setpoint, value.decimals)}"
+        self.entitle(f"{clean(value.label)} {number(value.value, value.decimals)}{wanted}")
         if not ends:
             return [("no data yet", FAINT)]
         scale = self._range
@@ -87,12 +85,6 @@ class TrendPanel(Panel):
         elif scene.trend:
             bins.take(scene.trend[-1])
         return bins.bins
-
-    def _entitle(self, text: str, setpoint: float | None, decimals: int) -> None:
-        title = text if setpoint is None else f"{text} ── SP {number(setpoint, decimals)}"
-        if title != self._title:
-            self._title = title
-            self.border_title = Content(title)
 
     @staticmethod
     def _labelled(lines: list[str], scale: Range, *, faint: bool) -> Parts:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import AsyncIterator, Awaitable, Callable
-from contextlib import asynccontextmanager
+from contextlib import AsyncExitStack, asynccontextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -16,6 +16,7 @@ from tester.service.queries import Queries
 from tester.service.state import TREND_COLUMNS, PlanView, StateView
 from tester.tui.app import TesterApp
 from tester.tui.host import TuiOptions
+from tester.tui.views.bus import BusView
 from tester.tui.views.recipes import RecipesView
 from tests.tester.service.fake import FakeService
 from tests.tester.service.views import plan as a_plan
@@ -65,6 +66,8 @@ class Stage:
     pilot: Pilot[str]
     now: list[float]
     queries: PlayedQueries
+    found: str = ""
+    """The screen that was shown first."""
 
     async def until(self, true: Callable[[], bool], what: str) -> None:
         """Let both work until something is so."""
@@ -150,6 +153,8 @@ async def stage(
         async with app.run_test(size=size, notifications=True) as pilot:
             made = Stage(fake, app, pilot, now, queries)
             await made.until(lambda: app.scene.state is not None, "the service is found")
+            await pilot.pause()
+            made.found = app.view.id or ""
             await pilot.press("f2")
             fake.plan(a_plan())
             await made.show(a_state())
@@ -166,3 +171,43 @@ def play(
             await scene(on)
 
     asyncio.run(act())
+
+
+class House:
+    """A stage that stays open for several tests: starting the application costs more than most of them."""
+
+    def __init__(self, folder: Path) -> None:
+        """Open it in ``folder`` for as long as the block lasts."""
+        self._runner, self._stack = asyncio.Runner(), AsyncExitStack()
+        self._folder = folder
+        self._stage: Stage | None = None
+
+    def __enter__(self) -> House:
+        """Open."""
+        self._stage = self._runner.run(self._stack.enter_async_context(stage(self._folder)))
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """Close."""
+        self._runner.run(self._stack.aclose())
+        self._runner.close()
+
+    def play(self, scene: Callable[[Stage], Awaitable[None]]) -> None:
+        """Carry out a test: no dialog is open, Recipes are shown, nothing has been ordered, and no alarm stands."""
+        on = self._stage
+        assert on is not None
+
+        async def act() -> None:
+            while len(on.app.screen_stack) > 1:
+                on.app.pop_screen()
+                await on.pilot.pause()
+            on.app.clear_notifications()
+            on.app.query_one(BusView).action_unfilter()
+            await on.pilot.press("f2")
+            on.app.view.take_focus()
+            await on.show(a_state())
+            on.fake.orders.clear()
+            on.fake.refusals.clear()
+            await scene(on)
+
+        self._runner.run(act())

@@ -14,18 +14,18 @@ from tester.tui.app import TesterApp
 from tester.tui.views.recipes import RecipesView
 from tests.tester.service.views import state as a_state
 from tests.tester.service.views import with_alarm, with_prompt
-from tests.tester.tui.stage import Stage, play
+from tests.tester.tui.stage import House, Stage, play
 
 
-def test_space_holds_from_another_screen_without_a_question(tmp_path: Path) -> None:
+def test_space_holds_from_another_screen_without_a_question(house: House) -> None:
     async def act(on: Stage) -> None:
         await on.pilot.press("space")
         await on.ordered(Hold)
 
-    play(act, tmp_path)
+    house.play(act)
 
 
-def test_going_on_after_hold_needs_the_list_and_enter(tmp_path: Path) -> None:
+def test_going_on_after_hold_needs_the_list_and_enter(house: House) -> None:
     async def act(on: Stage) -> None:
         await on.show(a_state("HOLD"))
         await on.pilot.press("f3", "r")
@@ -33,39 +33,39 @@ def test_going_on_after_hold_needs_the_list_and_enter(tmp_path: Path) -> None:
         await on.pilot.press("enter")
         await on.ordered(Release)
 
-    play(act, tmp_path)
+    house.play(act)
 
 
-def test_abort_needs_its_word(tmp_path: Path) -> None:
+def test_abort_needs_its_word(house: House) -> None:
     async def act(on: Stage) -> None:
         await on.pilot.press("f3", "x", "n", "o", "enter")
         assert not on.fake.orders
         await on.pilot.press("backspace", "backspace", *"abort", "enter")
         await on.ordered(Stop)
 
-    play(act, tmp_path)
+    house.play(act)
 
 
-def test_acknowledging_names_the_alarm_of_line_two(tmp_path: Path) -> None:
+def test_acknowledging_names_the_alarm_of_line_two(house: House) -> None:
     async def act(on: Stage) -> None:
         await on.show(with_alarm(a_state()))
         assert "P1 overload 461.0 N (limit 450.0)" in on.line(1) and "[a acknowledge]" in on.line(1)
         await on.pilot.press("a")
         assert await on.ordered(Acknowledge) == Acknowledge(1)
 
-    play(act, tmp_path)
+    house.play(act)
 
 
-def test_the_answer_to_a_prompt_is_sent_as_it_is_typed(tmp_path: Path) -> None:
+def test_the_answer_to_a_prompt_is_sent_as_it_is_typed(house: House) -> None:
     async def act(on: Stage) -> None:
         await on.show(with_prompt(a_state()))
         await on.pilot.press("f3", "enter", *"by me", "enter")
         assert await on.ordered(Answer) == Answer(1, "by me")
 
-    play(act, tmp_path)
+    house.play(act)
 
 
-def test_enter_twice_on_quickstart_starts_it_after_the_list_was_shown(tmp_path: Path) -> None:
+def test_enter_twice_on_quickstart_starts_it_after_the_list_was_shown(house: House) -> None:
     async def act(on: Stage) -> None:
         await on.until(lambda: on.checked(), "the recipes are checked")
         await on.pilot.press("enter")
@@ -75,10 +75,10 @@ def test_enter_twice_on_quickstart_starts_it_after_the_list_was_shown(tmp_path: 
         assert isinstance(order, RunRecipe) and order.recipe == "quickstart" and order.speed == 1.0 and not order.yes
         await on.until(lambda: "Process" in on.text(), "the run screen is shown")
 
-    play(act, tmp_path)
+    house.play(act)
 
 
-def test_the_plan_is_shown_though_other_recipes_are_still_being_checked(tmp_path: Path) -> None:
+def test_the_plan_is_shown_though_other_recipes_are_still_being_checked(house: House) -> None:
     async def act(on: Stage) -> None:
         on.queries.checking.clear()
         on.queries.planning.clear()
@@ -92,7 +92,7 @@ def test_the_plan_is_shown_though_other_recipes_are_still_being_checked(tmp_path
         on.queries.planning.set()
         await on.until(lambda: "2 conditions, 1 wheel, 0:45 h" in on.text(), "the plan's totals are shown")
 
-    play(act, tmp_path)
+    house.play(act)
 
 
 def test_a_recipe_with_a_problem_leads_to_its_line_and_does_not_start(tmp_path: Path) -> None:
@@ -131,7 +131,7 @@ def test_editing_a_shipped_recipe_makes_a_copy_and_checks_it(tmp_path: Path, mon
     play(act, tmp_path)
 
 
-def test_a_key_press_by_hand_is_one_step_and_only_while_armed(tmp_path: Path) -> None:
+def test_a_key_press_by_hand_is_one_step_and_only_while_armed(house: House) -> None:
     async def act(on: Stage) -> None:
         await on.pilot.press("f4", "right")
         assert not [o for o in on.fake.orders if isinstance(o.action, Jog)]
@@ -143,10 +143,10 @@ def test_a_key_press_by_hand_is_one_step_and_only_while_armed(tmp_path: Path) ->
         await on.pilot.press("t")
         await on.ordered(Tare)
 
-    play(act, tmp_path)
+    house.play(act)
 
 
-def test_leaving_the_manual_screen_disarms(tmp_path: Path) -> None:
+def test_leaving_the_manual_screen_disarms(house: House) -> None:
     async def act(on: Stage) -> None:
         clients = replace(a_state().clients, controller_id=1)
         number = on.app.link.client.number if on.app.link is not None and on.app.link.client is not None else 0
@@ -156,10 +156,10 @@ def test_leaving_the_manual_screen_disarms(tmp_path: Path) -> None:
         await on.pilot.press("f3")
         assert await on.ordered(Arm) == Arm(on=False)
 
-    play(act, tmp_path)
+    house.play(act)
 
 
-def test_frames_are_asked_for_only_while_they_are_looked_at(tmp_path: Path) -> None:
+def test_frames_are_asked_for_only_while_they_are_looked_at(house: House) -> None:
     async def act(on: Stage) -> None:
         await on.pilot.press("f6")
         await on.until(lambda: on.fake.presence.frames, "frames are asked for")
@@ -167,7 +167,7 @@ def test_frames_are_asked_for_only_while_they_are_looked_at(tmp_path: Path) -> N
         await on.until(lambda: not on.fake.presence.frames, "frames are not asked for any more")
         assert not [o for o in on.fake.orders if isinstance(o.action, WatchFrames)]
 
-    play(act, tmp_path)
+    house.play(act)
 
 
 def test_coming_to_the_results_lists_the_runs_once(tmp_path: Path) -> None:
@@ -239,6 +239,21 @@ def test_an_old_state_is_no_state(tmp_path: Path) -> None:
     play(act, tmp_path)
 
 
+def test_a_screen_that_finds_a_run_under_way_shows_it(tmp_path: Path) -> None:
+    async def act(on: Stage) -> None:
+        assert on.found == "run"
+
+    play(act, tmp_path)
+
+
+def test_a_refused_acknowledgement_is_said_with_the_way_out(tmp_path: Path) -> None:
+    async def act(on: Stage) -> None:
+        on.fake.event("acknowledgement", "refused, still there: drive fault")
+        await on.until(lambda: "drive fault; F12 ends the run" in on.text(), "the way out is shown")
+
+    play(act, tmp_path)
+
+
 def test_a_lost_service_is_said_and_found_again(tmp_path: Path) -> None:
     async def act(on: Stage) -> None:
         client = on.app.link.client if on.app.link is not None else None
@@ -249,10 +264,10 @@ def test_a_lost_service_is_said_and_found_again(tmp_path: Path) -> None:
     play(act, tmp_path)
 
 
-def test_a_refusal_is_shown_with_its_reason(tmp_path: Path) -> None:
+def test_a_refusal_is_shown_with_its_reason(house: House) -> None:
     async def act(on: Stage) -> None:
         on.fake.refusals["hold"] = "nothing runs [/x]"
         await on.pilot.press("space")
         await on.until(lambda: "refused: nothing runs [/x]" in on.text(), "the reason is shown")
 
-    play(act, tmp_path)
+    house.play(act)

@@ -10,7 +10,7 @@ from textual.widgets import Input
 from tester.service.commands import Stop
 from tests.tester.service.views import state as a_state
 from tests.tester.service.views import with_alarm, with_prompt
-from tests.tester.tui.stage import Stage, play
+from tests.tester.tui.stage import House, Stage, play
 
 SCREENS = {"recipes": ["f2"], "run": ["f3"], "manual": ["f4"], "results": ["f5"], "bus": ["f6"]}
 PLACES: dict[str, list[str]] = {
@@ -32,7 +32,7 @@ PLACES: dict[str, list[str]] = {
 
 
 @pytest.mark.parametrize("place", PLACES)
-def test_both_stop_keys_reach_the_service_from(place: str, tmp_path: Path) -> None:
+def test_both_stop_keys_reach_the_service_from(place: str, house: House) -> None:
     async def act(on: Stage) -> None:
         await on.show(with_prompt(a_state("HOLD" if place == "resume dialog" else "RUN")))
         await on.until(lambda: on.checked(), "the recipes are checked")
@@ -47,7 +47,7 @@ def test_both_stop_keys_reach_the_service_from(place: str, tmp_path: Path) -> No
             await on.pilot.press(key)
             assert await on.ordered(Stop) == Stop()
 
-    play(act, tmp_path)
+    house.play(act)
 
 
 def test_stop_works_while_the_terminal_is_too_small(tmp_path: Path) -> None:

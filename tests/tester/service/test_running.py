@@ -1,0 +1,25 @@
+"""How punctual the scan of a run is, as clients are told."""
+
+from __future__ import annotations
+
+from tester.engine.tickers import TickStatistics
+from tester.service.running import Punctuality
+
+
+def test_lateness_is_told_for_a_second_or_two_and_its_worst_for_the_whole_run() -> None:
+    statistics, punctual = TickStatistics(), Punctuality()
+    told: list[tuple[float, float]] = []
+    for number in range(8):
+        statistics.note(0.004 if number == 2 else 0.001)
+        view = punctual.look(statistics, 100.0 + 0.5 * number)
+        told.append((view.late_s, view.late_max_s))
+    assert told[:2] == [(0.001, 0.001)] * 2
+    assert told[2:6] == [(0.004, 0.004)] * 4
+    assert told[6:] == [(0.001, 0.004)] * 2
+
+
+def test_a_run_that_begins_after_a_pause_forgets_what_was_before() -> None:
+    statistics, punctual = TickStatistics(), Punctuality()
+    statistics.note(0.1)
+    punctual.look(statistics, 100.0)
+    assert punctual.look(statistics, 110.0).late_s == 0.0
