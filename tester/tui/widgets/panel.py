@@ -32,7 +32,7 @@ class Panel(Static):
         super().__init__("", markup=False, id=id, classes=classes)
         self.scene: Scene | None = None
         self._drawn: Parts | None = None
-        self._entitled = ""
+        self._entitled: str = ""
 
     def show(self, scene: Scene) -> None:
         """Draw the scene as it is now."""
