@@ -236,7 +236,28 @@ CREATE TABLE calibration (
 """What a resumed run needs: its stretches (``session``, one for each process that worked on it), what was changed
 between them and why, when a wheel was ground in, and the calibration as a history."""
 
-MIGRATIONS: tuple[str, ...] = (_VERSION_1, _VERSION_2)
+_VERSION_3 = """
+CREATE TABLE exclusion (
+    id INTEGER PRIMARY KEY,
+    condition INTEGER NOT NULL REFERENCES condition (condition),
+    repeat INTEGER NOT NULL,
+    attempt INTEGER NOT NULL,
+    excluded INTEGER NOT NULL CHECK (excluded IN (0, 1)),
+    reason TEXT NOT NULL CHECK (reason <> ''),
+    operator TEXT NOT NULL,
+    utc TEXT NOT NULL,
+    software_version TEXT NOT NULL,
+    manifest_before TEXT NOT NULL
+);
+CREATE TRIGGER exclusion_is_not_changed BEFORE UPDATE ON exclusion
+    BEGIN SELECT RAISE(ABORT, 'exclusions are only added'); END;
+CREATE TRIGGER exclusion_is_not_deleted BEFORE DELETE ON exclusion
+    BEGIN SELECT RAISE(ABORT, 'exclusions are only added'); END;
+"""
+"""Repeats that a person has left out of a mean, or taken in again (``excluded`` 0): who, when, why. Rows are only ever
+added. ``manifest_before``: the folder's manifest as it was before, with the hashes of the record without this row."""
+
+MIGRATIONS: tuple[str, ...] = (_VERSION_1, _VERSION_2, _VERSION_3)
 """Migration n leads from schema n to n + 1."""
 
 VERSION = len(MIGRATIONS)
