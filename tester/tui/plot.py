@@ -12,6 +12,8 @@ BRAILLE = 0x2800
 DOTS = ((0x01, 0x02, 0x04, 0x40), (0x08, 0x10, 0x20, 0x80))
 """Bits of a braille pattern by column and row (Unicode, block Braille Patterns)."""
 WISH, LIMIT = "╌", "─"
+OTHER = "·"
+"""Sign of a point that gives way to every other."""
 SHRINK = 4.0
 """A range is narrowed only when it is this many times wider than what it shows: it does not jump."""
 
@@ -120,7 +122,9 @@ def scatter(points: Sequence[Point], width: int, height: int, decimals: int = 2)
     for p in points:
         across = round((p.x - xs.low) / (xs.high - xs.low) * (inner - 1))
         down = round((ys.high - p.y) / (ys.high - ys.low) * (rows - 1))
-        grid[down][across] = p.sign if grid[down][across] in (" ", p.sign) else "+"
+        there = grid[down][across]
+        if p.sign != OTHER or there == " ":
+            grid[down][across] = p.sign if there in (" ", OTHER, p.sign) else "+"
     labels = {0: f"{ys.high:.{decimals}f}", rows - 1: f"{ys.low:.{decimals}f}"}
     lines = [f"{labels.get(n, ''):>{margin}}│{''.join(row)}" for n, row in enumerate(grid)]
     lines.append(" " * margin + "└" + "─" * inner)

@@ -114,6 +114,10 @@ Input:focus { text-style: underline; }
 Checkbox { background: $surface; border: none; padding: 0; }
 Dialog.-tall > #box { width: 100%; height: 100%; }
 
+#repeat-list { height: auto; max-height: 9; border: none; }
+#traces { height: 1fr; }
+#big-plot { height: 1fr; }
+
 #manual-values { height: 12; }
 #manual-axes { width: 1fr; height: 100%; }
 #manual-state { height: 5; }

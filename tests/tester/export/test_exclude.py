@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import sqlite3
 from pathlib import Path
 
@@ -162,7 +161,7 @@ def test_a_run_that_was_cut_off_takes_the_word_and_gets_no_tables_yet(tmp_path: 
     folder = small_run(tmp_path / "run", FOUR)
     record_word(folder, OUT)
     assert results(folder).rows[1].result.n_valid == 3
-    assert sorted(os.listdir(folder)) == ["run.db"]
+    assert [path.name for path in folder.iterdir()] == ["run.db"]
 
 
 @pytest.mark.parametrize("text", ["", "3", "3/", "/2", "3/2/1", "a/b", "-1/2", "٣/2"])
