@@ -36,7 +36,7 @@ from tester.store.records import (
     WheelInfo,
 )
 from tester.store.sample_blocks import unpack, unpack_array
-from tester.store.schema import VERSION, StoreError, migrate, version_of
+from tester.store.schema import StoreError, migrate, reads_as_present, version_of
 
 if TYPE_CHECKING:
     from array import array
@@ -134,7 +134,7 @@ class RunReader:
         except StoreError as error:
             connection.close()
             raise StoreError(f"{self.path}: {error}") from error
-        if version == VERSION:
+        if reads_as_present(connection, version):
             return connection
         if version == 0:
             connection.close()

@@ -236,8 +236,8 @@ CREATE TABLE calibration (
 """What a resumed run needs: its stretches (``session``, one for each process that worked on it), what was changed
 between them and why, when a wheel was ground in, and the calibration as a history."""
 
-_VERSION_3 = """
-CREATE TABLE exclusion (
+_EXCLUSION = """
+CREATE {temporary}TABLE exclusion (
     id INTEGER PRIMARY KEY,
     condition INTEGER NOT NULL REFERENCES condition (condition),
     repeat INTEGER NOT NULL,
@@ -249,6 +249,9 @@ CREATE TABLE exclusion (
     software_version TEXT NOT NULL,
     manifest_before TEXT NOT NULL
 );
+"""
+
+_VERSION_3 = f"""{_EXCLUSION.format(temporary="")}
 CREATE TRIGGER exclusion_is_not_changed BEFORE UPDATE ON exclusion
     BEGIN SELECT RAISE(ABORT, 'exclusions are only added'); END;
 CREATE TRIGGER exclusion_is_not_deleted BEFORE DELETE ON exclusion
@@ -280,6 +283,19 @@ def version_of(connection: sqlite3.Connection) -> int:
 
 def _empty(connection: sqlite3.Connection) -> bool:
     return connection.execute("SELECT count(*) FROM sqlite_master").fetchone()[0] == 0
+
+
+def reads_as_present(connection: sqlite3.Connection, version: int) -> bool:
+    """Let an older database be read as one of the present schema without writing it; False where that cannot be.
+
+    What version 3 has added is an empty table, which a connection can have for itself.
+    """
+    if version == VERSION:
+        return True
+    if version != 2:
+        return False
+    connection.execute(_EXCLUSION.format(temporary="TEMP "))
+    return True
 
 
 def migrate(connection: sqlite3.Connection) -> None:

@@ -247,6 +247,19 @@ def test_a_record_of_an_older_schema_is_read_and_left_as_it_is(tmp_path: Path) -
     assert (folder / "run.db").read_bytes() == before
 
 
+def test_a_record_without_exclusions_is_read_in_place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    folder = small_run(tmp_path / "run")
+    with sqlite3.connect(folder / "run.db") as database:
+        database.execute("DROP TABLE exclusion")
+        database.execute("PRAGMA user_version = 2")
+    database.close()
+    before = (folder / "run.db").read_bytes()
+    monkeypatch.delattr("tester.store.reader.TemporaryDirectory")  # no copy of it is made
+    with RunReader(folder) as reader:
+        assert reader.exclusions() == [] and len(reader.repeats()) == 6
+    assert (folder / "run.db").read_bytes() == before
+
+
 def test_samples_come_as_an_arrow_table(tmp_path: Path) -> None:
     from tester.store.arrow import sample_table
 
