@@ -11,7 +11,7 @@ from tester.export.results import Measured, RunResults, results_of
 from tester.store.catalogue import find_run
 from tester.store.reader import RunReader
 from tester.store.records import StoredExclusion
-from tester.tui.plot import OTHER, Bin, Point
+from tester.tui.plot import OTHER, SERIES, Bin, Point
 
 AXES = (
     ("load", "N"),
@@ -120,6 +120,12 @@ def _trace(reader: RunReader, condition: int, repeat: int, columns: int) -> tupl
     return tuple((float(piece.min()), float(piece.max())) for piece in pieces)
 
 
+def row_words(row: Row) -> str:
+    """Return a condition's setpoints in words."""
+    load_n, slip_mm_s, temperature_c, sideslip_deg = row.at
+    return f"{row.compound}: {slip_mm_s:g} mm/s, {load_n:g} N, {sideslip_deg:g}°, {temperature_c:g} °C"
+
+
 def series(stored: Stored, row: Row, axis: int) -> list[Row]:
     """Return the conditions with a value that differ from ``row`` along one axis at most."""
 
@@ -132,11 +138,11 @@ def series(stored: Stored, row: Row, axis: int) -> list[Row]:
 def points(stored: Stored, axis: int, chosen: Row | None = None) -> list[Point]:
     """Return the conditions as points of mu against an axis; the sign is the compound's first letter or digit.
 
-    Where a ``chosen`` row has a series along the axis, everything else is a ``·``.
+    Where a ``chosen`` row has a series along the axis, that is drawn as ``●`` and everything else as ``·``.
     """
     marked = series(stored, chosen, axis) if chosen is not None else []
     return [
-        Point(row.at[axis], row.mu, OTHER if len(marked) > 1 and row not in marked else _sign(row))
+        Point(row.at[axis], row.mu, _sign(row) if len(marked) < 2 else SERIES if row in marked else OTHER)
         for row in stored.rows
         if row.mu is not None
     ]

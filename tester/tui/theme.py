@@ -86,7 +86,9 @@ Screen.-wide #recipe-list { width: 36; }
 OptionList { background: $background; border: round $secondary; padding: 0; }
 OptionList:focus, DataTable:focus { border: round $accent; }
 OptionList > .option-list--option-highlighted { background: $panel; color: $foreground; text-style: none; }
-OptionList:focus > .option-list--option-highlighted { text-style: bold reverse; }
+OptionList:focus > .option-list--option-highlighted {
+    background: $foreground; color: $background; text-style: bold underline;
+}
 DataTable { background: $background; border: round $secondary; }
 DataTable > .datatable--cursor { background: $panel; color: $foreground; text-style: none; }
 DataTable:focus > .datatable--cursor { text-style: bold reverse; }
@@ -108,7 +110,7 @@ Dialog .field Input { width: 1fr; }
 Dialog .buttons { height: 1; width: 100%; margin-top: 1; }
 Dialog Button { margin-right: 2; }
 Button, Button.-primary { background: $panel; color: $foreground; }
-Button:focus { text-style: bold reverse; }
+Button:focus, Button.-primary:focus { background: $foreground; color: $background; text-style: bold underline; }
 Input { background: $panel; color: $foreground; }
 Input:focus { text-style: underline; }
 Checkbox { background: $surface; border: none; padding: 0; }

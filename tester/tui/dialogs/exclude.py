@@ -11,7 +11,7 @@ from tester.lock import user
 from tester.tui.calling import call
 from tester.tui.dialogs.dialog import Dialog, entry, field, line
 from tester.tui.host import HostApp
-from tester.tui.stored import RepeatRow, Row, Stored
+from tester.tui.stored import RepeatRow, Row, Stored, row_words
 from tester.tui.words import clean, number
 
 
@@ -33,7 +33,7 @@ class ExcludeDialog(Dialog):
 
     def content(self) -> Iterable[Widget]:
         """Return what it is about, and the fields."""
-        yield line([(clean(" ".join(self.row.cells[:5])), "bold")])
+        yield line([(clean(row_words(self.row)), "bold")])
         yield line(f"Repeat {self.repeat.repeat}: mu {number(self.repeat.mu, 3)}, {clean(self.repeat.status)}")
         if self.repeat.by_hand:
             yield line(f"Left out by {clean(self.repeat.by_hand)}. It enters the mean again, if it is valid.")

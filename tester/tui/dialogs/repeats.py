@@ -16,11 +16,15 @@ from tester.store.schema import StoreError
 from tester.tui.dialogs.dialog import Dialog, line
 from tester.tui.dialogs.exclude import ExcludeDialog
 from tester.tui.plot import Canvas, Range
-from tester.tui.stored import RepeatRow, Row, Stored, repeats
+from tester.tui.stored import RepeatRow, Row, Stored, repeats, row_words
 from tester.tui.widgets.panel import FAINT, Parts, rows
 from tester.tui.words import clean, fit, number
 
-WIDTH, HEIGHT = 60, 5
+HEIGHT = 5
+WIDTH = 60
+"""Of a trace where nobody knows the width of the screen, characters."""
+MARGIN = 14
+"""Of the dialog beside a trace: borders, labels, scroll bar."""
 LONGEST = 400
 """Characters of a repeat's line."""
 
@@ -38,10 +42,14 @@ class RepeatsDialog(Dialog):
 
     def content(self) -> Iterable[Widget]:
         """Return the place of the repeats."""
-        yield line([(clean(" ".join(self.row.cells)), "bold")])
+        yield line([(f"{clean(row_words(self.row))}  {clean(self._result())}", "bold")])
         yield OptionList(id="repeat-list", markup=False)
         with VerticalScroll(id="traces", can_focus=False):
             yield line("reading …", id="repeats")
+
+    def _result(self) -> str:
+        mu, s, n, status = self.row.cells[5:]
+        return f"mu {mu}  s {s}  n {n}  {status}"
 
     def on_mount(self) -> None:
         """Have them read."""
@@ -54,7 +62,8 @@ class RepeatsDialog(Dialog):
         self.run_worker(self._read_repeats(), group="read", exclusive=True, exit_on_error=False)
 
     async def _read_repeats(self) -> None:
-        columns = WIDTH if self.host.options.plain else 2 * WIDTH
+        plain, width = self.host.options.plain, max(self.size.width - MARGIN, WIDTH // 3)
+        columns = width if plain else 2 * width
         try:
             found = await asyncio.to_thread(repeats, self.stored.folder, self.row.condition, columns)
         except (StoreError, OSError, sqlite3.Error) as error:
@@ -66,7 +75,7 @@ class RepeatsDialog(Dialog):
             at = listed.highlighted or 0
             listed.set_options([Option(Content(repeat_words(one))) for one in found])
             listed.highlighted = min(at, len(found) - 1) if found else None
-            parts = trace_parts(found, plain=self.host.options.plain)
+            parts = trace_parts(found, width, plain=plain)
             self.query_one("#repeats", Static).update(Content.assemble(*parts))
 
     def on_option_list_option_highlighted(self, event: OptionList.OptionHighlighted) -> None:
@@ -96,7 +105,7 @@ def repeat_words(one: RepeatRow) -> str:
     return fit(f"repeat {one.repeat}: mu {number(one.mu, 3)}  {clean(one.status)}{out}{who}", LONGEST)
 
 
-def trace_parts(found: Iterable[RepeatRow], *, plain: bool = False) -> Parts:
+def trace_parts(found: Iterable[RepeatRow], width: int = WIDTH, *, plain: bool = False) -> Parts:
     """Return the traces one below the other, each under its number."""
     listed = list(found)
     known = [y for one in listed for ends in one.trace if ends is not None for y in ends]
@@ -109,7 +118,7 @@ def trace_parts(found: Iterable[RepeatRow], *, plain: bool = False) -> Parts:
     for one in listed:
         lines.append([(f"repeat {one.repeat}: mu {number(one.mu, 3)}", FAINT if one.exclusion else "bold")])
         if one.trace:
-            canvas = Canvas(WIDTH, HEIGHT, plain=plain)
+            canvas = Canvas(width, HEIGHT, plain=plain)
             canvas.bins(one.trace, scale)
             labels = {0: f"{scale.high:.2f}", HEIGHT - 1: f"{scale.low:.2f}"}
             lines += [[(f"{labels.get(at, ''):>6} ", FAINT), drawn] for at, drawn in enumerate(canvas.lines())]

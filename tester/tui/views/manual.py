@@ -31,7 +31,7 @@ AXES: tuple[tuple[JogAxis, str, str], ...] = (
 )
 """Axis, name, the service's step and condition (docs/protocol.md)."""
 SHOWN = ("wheel_speed", "belt_speed", "slip", "load", "press", "sideslip", "camber", "surface", "hub", "heat")
-CALIBRATION = "load cell calibration: a wizard with hung weights, not here yet; see the rig file"
+CALIBRATION = "load cell calibration by a wizard: not here yet, see the rig file"
 SOON_S = 15.0
 """Less time left than this is worth a warning."""
 HELP = """\

@@ -31,7 +31,7 @@ class PlotPanel(Panel):
         others = ", ".join(
             f"{at:g} {unit}" for i, (at, (_, unit)) in enumerate(zip(self.row.at, AXES, strict=True)) if i != self.axis
         )
-        return f"{what} at {clean(self.row.compound, 20)}, {others}; · others"
+        return f"{what}: ● {clean(self.row.compound, 20)}, {others}   · others"
 
     def picture(self, scene: Scene, width: int, height: int) -> Parts:
         """Return the plot."""

@@ -52,7 +52,7 @@ def test_the_series_of_a_condition_is_what_differs_along_one_axis_alone() -> Non
 
 
 def test_what_is_not_of_the_series_is_a_faint_dot() -> None:
-    assert [point.sign for point in points(STORED, 0, ROW)] == ["1", "1", "·", "·"]
+    assert [point.sign for point in points(STORED, 0, ROW)] == ["●", "●", "·", "·"]
 
 
 def test_a_condition_without_a_series_leaves_every_sign_as_it_is() -> None:
@@ -66,7 +66,7 @@ def test_the_plot_is_reached_at_every_size_and_names_its_series(size: tuple[int,
     async def act(on: Stage) -> None:
         await at_repeats(on, run)
         await on.pilot.press("escape", *(["p"] if size[0] < 110 else []))
-        assert "mu against load (N) at 1#, 300 mm/s, 25 °C, 0 °; · others" in on.text()
+        assert "mu against load (N): ● 1#, 300 mm/s, 25 °C, 0 °   · others" in on.text()
         await on.pilot.press("p")
         assert "mu against slip (mm/s)" in on.text()
 
