@@ -34,7 +34,7 @@ def verify(run: str, as_json: bool) -> int:
         print_json(_record(folder.name, found, code))
     elif not found.problems:
         state = "complete" if found.complete else "interrupted or under way"
-        by_hand = f"; {found.excluded} repeats excluded by hand" if found.excluded else ""
+        by_hand = f"; excluded by hand: {found.excluded}" if found.excluded else ""
         read = f"{found.samples} samples in {found.blocks} blocks read"
         click.echo(f"{folder.name}: as it was left, {state}; {read}{by_hand}")
     for problem in found.problems:

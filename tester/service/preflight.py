@@ -30,7 +30,6 @@ SOON = timedelta(days=30)
 class Past:
     """What the newest run in the store left: how it ended, the wheel it used last, its newest zero of the load cell."""
 
-    name: str
     status: str
     reason: str
     wheel: WheelInfo | None
@@ -47,7 +46,7 @@ def past_of(runs: Path) -> Past | None:
             run = reader.run()
             wheel = max(reader.wheels(), key=lambda one: (one.installed_s, one.wheel), default=None)
             new_mm = wheel.installed_diameter_mm if wheel is not None else 0.0
-            return Past(folder.name, run.status, run.reason, wheel, new_mm, _tare_utc(reader))
+            return Past(run.status, run.reason, wheel, new_mm, _tare_utc(reader))
     return None
 
 
@@ -84,8 +83,8 @@ def last_run_check(past: Past | None, latched: str) -> Check:
     if past is None:
         return Check("last run", None if not latched else False, latched or "none is stored")
     if past.status == Outcome.RUNNING.value:
-        return Check("last run", None, f"{past.name} was cut off: r goes on with it")
-    text = f"{past.name}: {past.status}" + (f": {past.reason}" if past.reason else "")
+        return Check("last run", None, "was cut off: r goes on with it")
+    text = past.status + (f": {past.reason}" if past.reason else "")
     if latched:
         return Check("last run", False, f"{text}; not acknowledged")
     return Check("last run", True if past.status == Outcome.DONE.value else None, text)
@@ -114,18 +113,18 @@ def calibration_check(calibration: CalibrationConfig, now_utc: str, *, simulated
 
 
 def wheel_check(past: Past | None) -> Check:
-    """Return what is known of the wheel that is on: a run begins by mounting one and asks for it."""
+    """Return what is known of the wheel that is on; a run begins by asking for a fresh one."""
     if past is None or past.wheel is None or not isfinite(past.wheel.diameter_mm):
-        return Check("wheel", None, "none on record; the run asks for one")
+        return Check("wheel", None, "none on record; a fresh one comes")
     one = past.wheel
     worn = max(past.new_mm - one.diameter_mm, 0.0)
-    text = f"last {one.compound}, {one.diameter_mm:.2f} mm, {worn:.2f} mm worn off in {one.sliding_m:.0f} m"
-    return Check("wheel", None, f"{text}; the run asks for a fresh one")
+    text = f"{one.compound}, {one.diameter_mm:.2f} mm, {worn:.2f} mm worn off in {one.sliding_m:.0f} m"
+    return Check("wheel", None, f"last {text}; a fresh one comes")
 
 
 def zero_check(past: Past | None, now_utc: str) -> Check:
     """Return how old the zero of the load cell is; a run takes one for each wheel and before each repeat."""
-    anew = "taken anew with the wheel and before each repeat"
+    anew = "taken anew before motion"
     if past is None or not past.tare_utc:
         return Check("zero of the load cell", None, anew)
     try:

@@ -85,18 +85,18 @@ def _number(value: float, decimals: int) -> str:
     return f"{value:.{decimals}f}" if isfinite(value) else "—"
 
 
-def repeats(folder: Path, condition: int, columns: int) -> tuple[RepeatRow, ...]:
-    """Read a condition's repeats with traces of ``columns`` columns; raises StoreError, sqlite3.Error."""
+def condition(folder: Path, number: int, columns: int) -> tuple[Row, tuple[RepeatRow, ...]]:
+    """Read a condition and its repeats with traces of ``columns`` columns; raises StoreError, sqlite3.Error."""
     with RunReader(folder) as reader:
-        measured = next(one for one in results_of(reader).conditions() if one.info.condition == condition)
-        return tuple(
+        measured = next(one for one in results_of(reader).conditions() if one.info.condition == number)
+        return _row(measured), tuple(
             RepeatRow(
                 one.repeat,
                 one.result.mu_resultant if isfinite(one.result.mu_resultant) else None,
                 one.result.status.value,
                 measured.exclusion(one),
                 _who(measured.left_out_by(one)),
-                _trace(reader, condition, one.repeat, columns),
+                _trace(reader, number, one.repeat, columns),
             )
             for one in measured.repeats
         )

@@ -141,5 +141,9 @@ ToastRack { margin-bottom: 1; }
 Toast { width: 60; max-width: 80%; background: $panel; padding: 0 1; margin-top: 0; }
 Tooltip { display: none; }
 CommandPalette { background: transparent; }
+CommandPalette SearchIcon { display: none; }
+CommandPalette CommandList > .option-list--option-highlighted {
+    background: $foreground; color: $background; text-style: bold underline;
+}
 CommandPalette > Vertical { background: $surface; margin: 2 0 1 0; }
 """

@@ -16,7 +16,7 @@ from tester.store.schema import StoreError
 from tester.tui.dialogs.dialog import Dialog, line
 from tester.tui.dialogs.exclude import ExcludeDialog
 from tester.tui.plot import Canvas, Range
-from tester.tui.stored import RepeatRow, Row, Stored, repeats, row_words
+from tester.tui.stored import RepeatRow, Row, Stored, condition, row_words
 from tester.tui.widgets.panel import FAINT, Parts, rows
 from tester.tui.words import clean, fit, number
 
@@ -42,14 +42,14 @@ class RepeatsDialog(Dialog):
 
     def content(self) -> Iterable[Widget]:
         """Return the place of the repeats."""
-        yield line([(f"{clean(row_words(self.row))}  {clean(self._result())}", "bold")])
+        yield line(self._heading(), id="condition")
         yield OptionList(id="repeat-list", markup=False)
         with VerticalScroll(id="traces", can_focus=False):
             yield line("reading …", id="repeats")
 
-    def _result(self) -> str:
+    def _heading(self) -> Parts:
         mu, s, n, status = self.row.cells[5:]
-        return f"mu {mu}  s {s}  n {n}  {status}"
+        return [(clean(f"{row_words(self.row)}  mu {mu}  s {s}  n {n}  {status}"), "bold")]
 
     def on_mount(self) -> None:
         """Have them read."""
@@ -65,12 +65,13 @@ class RepeatsDialog(Dialog):
         plain, width = self.host.options.plain, max(self.size.width - MARGIN, WIDTH // 3)
         columns = width if plain else 2 * width
         try:
-            found = await asyncio.to_thread(repeats, self.stored.folder, self.row.condition, columns)
+            self.row, found = await asyncio.to_thread(condition, self.stored.folder, self.row.condition, columns)
         except (StoreError, OSError, sqlite3.Error) as error:
             self.host.say(f"cannot be read: {error}", problem=True)
             return
         if self.is_attached:
             self.found = found
+            self.query_one("#condition", Static).update(Content.assemble(*self._heading()))
             listed = self.query_one("#repeat-list", OptionList)
             at = listed.highlighted or 0
             listed.set_options([Option(Content(repeat_words(one))) for one in found])

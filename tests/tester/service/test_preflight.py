@@ -27,7 +27,7 @@ from tests.tester.store.build import CONDITION, RUN, SPECIMENS, open_writer
 
 NOW = "2026-03-01T12:00:00.000Z"
 WHEEL = WheelInfo(1, 1, 1, "1#", 60.0, 90.0, 89.4, 812.0)
-PAST = Past("one", "done", "", WHEEL, 90.0, "2026-03-01T09:30:00.000Z")
+PAST = Past("done", "", WHEEL, 90.0, "2026-03-01T09:30:00.000Z")
 
 
 def test_every_matter_has_a_line_once() -> None:
@@ -47,11 +47,11 @@ def test_standing_alarms_are_wrong_and_named() -> None:
 @pytest.mark.parametrize(
     ("status", "reason", "latched", "ok", "words"),
     [
-        ("done", "", "", True, "one: done"),
-        ("stopped", "stop by ada", "", None, "one: stopped: stop by ada"),
-        ("tripped", "overload", "overload", False, "one: tripped: overload; not acknowledged"),
-        ("tripped", "overload", "", None, "one: tripped: overload"),
-        ("running", "", "", None, "one was cut off: r goes on with it"),
+        ("done", "", "", True, "done"),
+        ("stopped", "stop by ada", "", None, "stopped: stop by ada"),
+        ("tripped", "overload", "overload", False, "tripped: overload; not acknowledged"),
+        ("tripped", "overload", "", None, "tripped: overload"),
+        ("running", "", "", None, "was cut off: r goes on with it"),
     ],
 )
 def test_how_the_last_run_ended_is_said(status: str, reason: str, latched: str, ok: bool | None, words: str) -> None:
@@ -107,11 +107,11 @@ def test_the_newest_run_is_looked_at_with_its_wheel_and_zero(tmp_path: Path) -> 
         writer.wheel_installed(WHEEL)
         writer.tare(70.0, "reference", (0.0, 0.0, 1.0, 0.0), 0)
         writer.event(71.0, "step", "pre-grind")
-        writer.finish("stopped", "stop by ada", rig_seconds=80.0)
+        writer.finish("stopped", f"in the {name[-3:]} one", rig_seconds=80.0)
         writer.close()
     (tmp_path / "2025-not-a-run").mkdir()
     past = past_of(tmp_path)
-    assert past is not None and (past.name, past.status) == ("2024-02-21T14-05-09-new", "stopped")
+    assert past is not None and (past.status, past.reason) == ("stopped", "in the new one")
     assert past.wheel is not None and past.wheel.compound == "1#"
     assert past.tare_utc == "2024-02-21T14:06:00.000Z"
 

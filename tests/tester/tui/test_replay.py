@@ -14,7 +14,7 @@ from tester.cli.main import invoke
 from tester.tui.playback import Playback, load
 from tester.tui.replay import ReplayApp
 from tester.tui.scene import Scene
-from tester.tui.stored import read, repeats
+from tester.tui.stored import condition, read
 from tests.tester.tui.stage import screen_text
 
 RECIPE = """\
@@ -116,7 +116,8 @@ def test_the_runs_own_line_stands_in_the_table_of_runs(run: Path, playback: Play
 def test_results_show_the_conditions_and_their_repeats(run: Path, playback: Playback) -> None:
     stored = read(str(run), run.parent)
     assert [row.cells[:5] for row in stored.rows] == [("1#", "200", "100", "0", "25")]
-    found = repeats(run, 1, 40)
+    row, found = condition(run, 1, 40)
+    assert row == stored.rows[0]
     assert [one.repeat for one in found] == [1, 2, 3] and all(one.trace for one in found)
 
     async def act(app: ReplayApp, press: Press) -> None:

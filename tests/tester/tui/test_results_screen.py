@@ -82,6 +82,7 @@ def test_a_repeat_is_left_out_with_a_reason_and_the_table_follows(tmp_path: Path
         assert isinstance(on.app.screen, ExcludeDialog) and "mu 0.700" in on.text()
         await on.pilot.press(*"[/x]", "enter")
         await on.until(lambda: "✘ not in the mean: excluded by hand: [/x]" in on.text(), "the repeat is left out")
+        assert "mu 0.730" in on.line(3)
         await on.until(lambda: "2/1 excluded" in on.text(), "what has become of the condition is said")
         await on.pilot.press("escape")
         await on.until(lambda: "ok excluded" in on.text() and "0.723" not in on.text(), "the table follows")
