@@ -15,7 +15,7 @@ from collections.abc import Callable
 from heapq import heapify, heapreplace
 from itertools import accumulate
 from math import inf
-from typing import Protocol
+from typing import Final, Protocol
 
 from drivers.canopen.objects import SYNC_ID
 from drivers.ports import BusLost, CanFrame
@@ -23,7 +23,7 @@ from drivers.ports import BusLost, CanFrame
 Listener = Callable[[bytes, float], None]
 """Called with the data of a frame and its arrival time in s."""
 
-_LOAD_MARK_S = 0.1
+_LOAD_MARK_S: Final = 0.1
 """Resolution in s of the one-second bus load."""
 
 

@@ -9,6 +9,7 @@ methods are what instruments make of it.
 from __future__ import annotations
 
 from math import cos, exp, inf, pi, radians, sin, sqrt
+from typing import Final
 
 from sim.contact import ContactModel
 from sim.friction import V2_LOAD_N, FrictionModel
@@ -19,8 +20,8 @@ from sim.sensors import LoadCellSensor, SpeedSensor, TemperatureSensor
 from sim.slip import cornering_factor, traction_direction
 from sim.thermal import ThermalModel, ThermalState
 
-_TURN = 2.0 * pi
-_RUNNING_IN_LASTS = 37.0
+_TURN: Final = 2.0 * pi
+_RUNNING_IN_LASTS: Final = 37.0
 """Running-in distances after which its factor is 1 to the last bit: exp(-37) is less than 2^-53."""
 
 

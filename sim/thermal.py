@@ -10,13 +10,14 @@ from __future__ import annotations
 
 import math
 from itertools import accumulate, pairwise
+from typing import Final
 
 from sim.parameters import ThermalParameters, WheelParameters
 
-MAX_STEP_S = 0.05
+MAX_STEP_S: Final = 0.05
 """Longest explicit step; shorter where the cells need it (``ThermalModel.step_s``)."""
 
-CALM_STEP_S = 0.2
+CALM_STEP_S: Final = 0.2
 """Length of an implicit step (``ThermalModel.calm_step``)."""
 
 

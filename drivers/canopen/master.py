@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from drivers.canopen import heartbeat
 from drivers.canopen import objects as o
@@ -14,17 +14,17 @@ if TYPE_CHECKING:
     from drivers.ports import CanFrame, CanPort
     from drivers.servo import ServoDrive
 
-EARLY_S = 0.0005
+EARLY_S: Final = 0.0005
 """Work due within half a millisecond is done at once: it saves a tick of its own and hides rounding of times."""
 
-_FUNCTION = 0x780
-_NODE = 0x07F
-_MASTER_FUNCTIONS = {
+_FUNCTION: Final = 0x780
+_NODE: Final = 0x07F
+_MASTER_FUNCTIONS: Final = {
     o.RPDO1_BASE: "RPDO1", o.RPDO2_BASE: "RPDO2", o.RPDO3_BASE: "RPDO3", o.RPDO4_BASE: "RPDO4",
     o.SDO_REQUEST_BASE: "SDO request",
 }
 """What only a master sends: received, it is somebody else's."""
-_SYNC = (o.SYNC_ID, b"")
+_SYNC: Final = (o.SYNC_ID, b"")
 
 
 class CanMaster:

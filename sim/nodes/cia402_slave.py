@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import struct
 from math import inf
+from typing import Final
 
 from drivers import cia402
 from drivers.axis import AxisConfig
@@ -27,19 +28,19 @@ from sim.nodes.object_store import ObjectStore
 from sim.nodes.pdo_channels import ReceivePdo, TransmitPdo
 from sim.nodes.safety_io import SafetyIo
 
-_CONTROLWORD = (o.CONTROLWORD, 0)
-_MODE = (o.MODE, 0)
-_OUTPUTS = (o.DIGITAL_OUTPUTS, 1)
-_OUTPUT_MASK = (o.DIGITAL_OUTPUTS, 2)
+_CONTROLWORD: Final = (o.CONTROLWORD, 0)
+_MODE: Final = (o.MODE, 0)
+_OUTPUTS: Final = (o.DIGITAL_OUTPUTS, 1)
+_OUTPUT_MASK: Final = (o.DIGITAL_OUTPUTS, 2)
 
-_TARGET_VELOCITY = (o.TARGET_VELOCITY, 0)
+_TARGET_VELOCITY: Final = (o.TARGET_VELOCITY, 0)
 
-_RPDO1 = struct.Struct("<Hi").unpack
-_TPDO1 = struct.Struct("<Hih").pack
+_RPDO1: Final = struct.Struct("<Hi").unpack
+_TPDO1: Final = struct.Struct("<Hih").pack
 
-_URGENT_BITS = 0x006F | cia402.VOLTAGE | cia402.REMOTE | cia402.FOLLOWING_ERROR
+_URGENT_BITS: Final = 0x006F | cia402.VOLTAGE | cia402.REMOTE | cia402.FOLLOWING_ERROR
 """Statusword bits whose change asks for an early tick: the state, voltage, remote, deviation."""
-_URGENT_IN_POSITION_MODES = _URGENT_BITS | cia402.TARGET_REACHED | cia402.SET_POINT_ACKNOWLEDGED
+_URGENT_IN_POSITION_MODES: Final = _URGENT_BITS | cia402.TARGET_REACHED | cia402.SET_POINT_ACKNOWLEDGED
 """... and where a move is waited for, its acknowledgement and its end."""
 
 

@@ -9,19 +9,20 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import exp, isfinite, pi, sqrt
+from typing import Final
 
 from tester.process import Demand, Press, Readings
 from tester.rig import AxisConfig, LoadLoopConfig
 
-STIFFNESS_EXPONENT = 0.23
+STIFFNESS_EXPONENT: Final = 0.23
 """Tangent stiffness of the line contact grows with load to this power: 125 to 172 N/mm from 100 to 400 N [A]."""
-DECELERATION_SHARE = 0.6
+DECELERATION_SHARE: Final = 0.6
 """Share of the press's acceleration limit that approach profiles use, so that the drive can follow them."""
-POSITION_GAIN_PER_S = 6.0
+POSITION_GAIN_PER_S: Final = 6.0
 """Final approach to a press position: mm/s per mm, well below the drive's 30 ms lag [A]."""
-LOAD_RATE_N_S = 100.0
+LOAD_RATE_N_S: Final = 100.0
 """A change of load is expected to be followed at this rate at least [A]: 2 mm/s make it at about 290 N/s."""
-HELD_BAND = 0.03
+HELD_BAND: Final = 0.03
 """Inside this relative error the slower holding bandwidth is used: it does not chase the runout."""
 
 

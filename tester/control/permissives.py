@@ -8,21 +8,22 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import cos, pi
+from typing import Final
 
 from tester.control.state import ControlState
 from tester.control.view import STANDING_M_S
 from tester.process import Demand, Readings
 from tester.rig import InterlocksConfig, RigConfig
 
-TURNING_CONFIRMED_S = 0.3
+TURNING_CONFIRMED_S: Final = 0.3
 """Heat is allowed once the wheel has been seen turning this long [A]."""
-CONFIRMED_M_S = 2.0 * STANDING_M_S
+CONFIRMED_M_S: Final = 2.0 * STANDING_M_S
 """A speed above this is confirmed turning."""
-HARD_LOAD_N = 500.0
-HARD_HUB_C = 155.0
-HARD_SURFACE_C = 130.0
+HARD_LOAD_N: Final = 500.0
+HARD_HUB_C: Final = 155.0
+HARD_SURFACE_C: Final = 130.0
 """Beyond these is harm (rulings, 21), whatever a rig file or a recipe says."""
-_RADIANS = pi / 180.0
+_RADIANS: Final = pi / 180.0
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from math import copysign, inf, isfinite
+from typing import Final
 
 from tester.control.interlocks import INTERLOCKS, WARNINGS
 from tester.control.levels import PUSHED_MM, heat_levels, load_levels, motion_levels, process_levels, stop_levels
@@ -22,24 +23,30 @@ from tester.control.view import UNLOADED_N, View
 from tester.process import Demand, Press, Readings, Setpoints
 from tester.rig import RigConfig
 
-CEILING_WINDOW_S = 600.0
+CEILING_WINDOW_S: Final = 600.0
 """The runaway limit looks back this long (rulings, interlocks)."""
-CEILING_STEP_S = 1.0
+CEILING_STEP_S: Final = 1.0
 """How exactly it knows when a setpoint was left, s."""
-ACK_WAIT_S = 1.0
+ACK_WAIT_S: Final = 1.0
 """An acknowledged drive has reset its fault by then, s [A]; a cause that still holds refuses the acknowledgement."""
-HEAT_NOT_OFF = "heat not off"
+HEAT_NOT_OFF: Final = "heat not off"
 """The row after which the jacket's lease is left to run out."""
-COLD_K = 3.0
+COLD_K: Final = 3.0
 """A hub this near to ambient is cold: the rubber on it is, too (safety concept, "both at the start")."""
 
 # Bound once: a look-up on the enum class costs several times as much in every scan (CPython 3.11).
-_IDLE, _RUN, _HOLD, _STOPPING, _COOLDOWN, _FAST_STOP, _EMERGENCY, _LATCHED = (
-    Mode.IDLE, Mode.RUN, Mode.HOLD, Mode.STOPPING, Mode.COOLDOWN, Mode.FAST_STOP, Mode.EMERGENCY, Mode.LATCHED
-)  # fmt: skip
-_LOAD, _LIFT = Press.LOAD, Press.LIFT
-_AT_REST = frozenset({Mode.IDLE, Mode.ARMED, Mode.LATCHED})
-_WORKING = frozenset({Mode.RUN, Mode.HOLD})
+_IDLE: Final = Mode.IDLE
+_RUN: Final = Mode.RUN
+_HOLD: Final = Mode.HOLD
+_STOPPING: Final = Mode.STOPPING
+_COOLDOWN: Final = Mode.COOLDOWN
+_FAST_STOP: Final = Mode.FAST_STOP
+_EMERGENCY: Final = Mode.EMERGENCY
+_LATCHED: Final = Mode.LATCHED
+_LOAD: Final = Press.LOAD
+_LIFT: Final = Press.LIFT
+_AT_REST: Final = frozenset({Mode.IDLE, Mode.ARMED, Mode.LATCHED})
+_WORKING: Final = frozenset({Mode.RUN, Mode.HOLD})
 
 
 class Control:

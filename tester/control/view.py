@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from math import inf, isfinite
+from typing import Final
 
 from tester.control.monitors import RAMP_SHARE, JacketMonitor, SpeedTracker, SurfaceMonitor
 from tester.control.observer import ThermalObserver
@@ -11,17 +12,18 @@ from tester.control.state import ControlState, Mode
 from tester.process import Demand, Press, Readings
 from tester.rig import InterlocksConfig, LimitsConfig, RigConfig
 
-STANDING_M_S = 0.02
+STANDING_M_S: Final = 0.02
 """Below this a drive counts as standing [A]."""
-UNLOADED_N = 20.0
+UNLOADED_N: Final = 20.0
 """Below this the contact counts as unloaded (safety concept, "load with a drive stopped")."""
-TOUCH_MARGIN_MM = 1.5
+TOUCH_MARGIN_MM: Final = 1.5
 """The wheel is touched at most this much later than where it was touched last, or its diameter says, mm [A]: about
 160 N of force (physics, section 5) that a frozen load cell would not show."""
 
 # Bound once: a look-up on the enum class costs several times as much in every scan (CPython 3.11).
-_LOAD = Press.LOAD
-_RUN, _HOLD = Mode.RUN, Mode.HOLD
+_LOAD: Final = Press.LOAD
+_RUN: Final = Mode.RUN
+_HOLD: Final = Mode.HOLD
 
 
 @dataclass(slots=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from math import inf
+from typing import Final
 
 from tester.control.state import Mode
 from tester.control.step import Control
@@ -12,17 +13,18 @@ from tester.engine.executor import Executor
 from tester.engine.sampler import Sampler
 from tester.process import Readings
 
-CONTACT_N = 5.0
+CONTACT_N: Final = 5.0
 """Above this force the wheel counts as in contact, for recording."""
-SOONEST_S = 5e-4
+SOONEST_S: Final = 5e-4
 """No tick is asked for sooner after another."""
 
 # Bound once: a look-up on the enum class costs several times as much in every scan (CPython 3.11).
-_RUN, _HOLD = Mode.RUN, Mode.HOLD
-_STOPS = frozenset({Mode.STOPPING, Mode.FAST_STOP, Mode.EMERGENCY})
-HOLD_MOVES_S = 3.0
+_RUN: Final = Mode.RUN
+_HOLD: Final = Mode.HOLD
+_STOPS: Final = frozenset({Mode.STOPPING, Mode.FAST_STOP, Mode.EMERGENCY})
+HOLD_MOVES_S: Final = 3.0
 """A hold has lifted and taken the slip out within this, s [A]: scans come at the sliding rate until then."""
-SEVERITIES = {"trip": "trip", "alarm": "alarm", "warning": "warning"}
+SEVERITIES: Final = {"trip": "trip", "alarm": "alarm", "warning": "warning"}
 """Of control's events, by their kind; any other is information."""
 
 

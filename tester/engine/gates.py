@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import isfinite
+from typing import Final
 
 from tester.process import (
     GATE_LOAD,
@@ -19,12 +20,12 @@ from tester.process import (
 )
 from tester.rig import GatesConfig
 
-RESTART_SHARE = 0.15
+RESTART_SHARE: Final = 0.15
 """An average starts again while the instant value is this far off: it holds only what followed the approach [A]."""
-RATE_FAST_S = 0.3
-RATE_SLOW_S = 1.5
+RATE_FAST_S: Final = 0.3
+RATE_SLOW_S: Final = 1.5
 """Time constants of the two averages whose difference gives the surface's rate of change [A]."""
-RATE_LIMIT_K_S = 5.0
+RATE_LIMIT_K_S: Final = 5.0
 """A faster surface is a sensor fault, not a rate."""
 
 
