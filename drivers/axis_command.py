@@ -12,6 +12,7 @@ from drivers.cia402 import Goal, State
 
 # All axes share this layout (drivers.canopen.pdo): controlword, target velocity or target position.
 _RPDO1: Final = struct.Struct("<Hi").pack
+_INF: Final = math.inf
 _I32_MAX: Final = 0x7FFF_FFFF
 _IO_MAX: Final = 0xFFFF_FFFF
 
@@ -92,7 +93,7 @@ class AxisCommand:
         """Set ``target``; the same as last time costs a comparison (compare ``aimed`` to save the call, too)."""
         if value == self.aimed:
             return
-        if not math.isfinite(value):
+        if not -_INF < value < _INF:
             raise ValueError(f"{self.config.name}: target {value} is not a number")
         self.aimed = value
         if value < self._low:
@@ -100,7 +101,7 @@ class AxisCommand:
         elif value > self._high:
             value = self._high
         self._target = value
-        counts = round(self._target * self._per_unit)
+        counts = math.floor(self._target * self._per_unit + 0.5)
         if counts != self._target_counts:
             self._target_counts = counts
             self.dirty = True

@@ -7,7 +7,7 @@ position, homing), ``drive_objects`` (what the objects of the profile show, acce
 from __future__ import annotations
 
 import struct
-from math import inf
+from math import floor, inf
 from typing import Final
 
 from drivers import cia402
@@ -320,8 +320,8 @@ class Cia402Slave(DrivePower):
             self._sent_value = value
             self._sent_torque = torque
             self._sent_status = self.statusword
-            counts = round((value - self._offset) * self._increments)
-            per_mille = round(torque * self._per_mille)
+            counts = floor((value - self._offset) * self._increments + 0.5)
+            per_mille = floor(torque * self._per_mille + 0.5)
             try:
                 self._sent_data = _TPDO1(self.statusword, counts, per_mille)
             except struct.error:

@@ -6,13 +6,14 @@ Every comparison is made in every scan. Conditions are written so that NaN and m
 
 from __future__ import annotations
 
-from math import isfinite
+from math import inf, isfinite
 from typing import Final
 
 from tester.control.interlocks import bit
 from tester.control.view import STANDING_M_S, UNLOADED_N, View
 from tester.process import Readings
 
+_INF: Final = inf
 CONTACT_LEAST_N: Final = 50.0
 """A target below this is too near to touching to tell a lost contact (rulings, 18)."""
 SPEEDS_OLD_S: Final = 0.5
@@ -204,7 +205,7 @@ def heat_levels(v: View) -> int:
         held |= _STANDSTILL
     if not (jacket.jump_k <= b.jump_k):
         held |= _HUB_JUMP
-    if v.pressing or isfinite(v.demand.surface_c):
+    if v.pressing or -_INF < v.demand.surface_c < _INF:
         if not (r.surface_valid and r.now_s - r.surface_at_s <= b.stale_ir_s):
             held |= _SURFACE_STALE
         if not (v.surface.jump_k <= b.jump_k):

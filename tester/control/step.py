@@ -23,6 +23,7 @@ from tester.control.view import UNLOADED_N, View
 from tester.process import Demand, Press, Readings, Setpoints
 from tester.rig import RigConfig
 
+_INF: Final = inf
 CEILING_WINDOW_S: Final = 600.0
 """The runaway limit looks back this long (rulings, interlocks)."""
 CEILING_STEP_S: Final = 1.0
@@ -330,7 +331,7 @@ class Control:
             state.turning_since_s = inf
         elif state.turning_since_s > now:
             state.turning_since_s = now
-        wanted = isfinite(demand.surface_c)
+        wanted = -_INF < demand.surface_c < _INF
         out.heat = out.contactor = wanted and may_heat(state, readings, self.rig.interlocks)
         if not wanted:
             out.hub_c = loop.hub_min_c

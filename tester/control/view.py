@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from math import inf, isfinite
+from math import inf, sqrt
 from typing import Final
 
 from tester.control.monitors import RAMP_SHARE, JacketMonitor, SpeedTracker, SurfaceMonitor
@@ -12,6 +12,7 @@ from tester.control.state import ControlState, Mode
 from tester.process import Demand, Press, Readings
 from tester.rig import InterlocksConfig, LimitsConfig, RigConfig
 
+_INF: Final = inf
 STANDING_M_S: Final = 0.02
 """Below this a drive counts as standing [A]."""
 UNLOADED_N: Final = 20.0
@@ -87,7 +88,7 @@ class View:
         if pressing:
             self.least_n = inf
             contact_mm = state.load.contact_mm
-            if not isfinite(contact_mm):
+            if not -_INF < contact_mm < _INF:
                 contact_mm = self.rig.geometry.touch_mm + 0.5 * (self.rig.geometry.wheel_diameter_mm - r.diameter_mm)
             self.touch_most_mm = contact_mm + TOUCH_MARGIN_MM
         elif r.force_z_n < self.least_n:
@@ -99,7 +100,7 @@ class View:
         observer = self.observer
         if loaded:
             fx, fy = r.force_x_n, r.force_y_n
-            self.friction_n = friction = (fx * fx + fy * fy) ** 0.5
+            self.friction_n = friction = sqrt(fx * fx + fy * fy)
             self.friction_w = power = friction * r.slip_m_s
             if not (r.force_z_n < UNLOADED_N):
                 observer.rub(power, dt)

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
-from math import isfinite, pi
+from math import isnan, pi
 from typing import Final
 
 from sim.slip import slip_velocity
@@ -144,7 +144,11 @@ class MeasureRepeat:
         self.surface_sum_k = 0.0
         self.surface_count = 0
         sp = self.setpoint
-        self.slip_m_s = slip_velocity(sp.wheel_speed_m_s, sp.belt_speed_m_s, sp.sideslip_deg)[2]
+        self.belt_m_s = sp.belt_speed_m_s
+        self.slip_m_s = slip_velocity(sp.wheel_speed_m_s, self.belt_m_s, sp.sideslip_deg)[2]
+        self.target_c = sp.temperature_c
+        self.band_k = step.temperature_band_k
+        self.window_rev = step.window.revolutions
         self.yawed = sp.sideslip_deg != 0.0 or sp.camber_deg != 0.0
         self.rolling_only = not self.yawed and abs(sp.slip_velocity_m_s) < 1e-9
 
@@ -204,7 +208,7 @@ class MeasureRepeat:
 
     def _to_ready(self, ctx: Context) -> None:
         self.phase = Phase.READY
-        if not isfinite(self.ready_since_s):
+        if isnan(self.ready_since_s):
             self.ready_since_s = ctx.now
         self.rolling_since_s = ctx.now
         self.mark_s, self.mark_c = ctx.now, float("inf")
@@ -269,24 +273,27 @@ class MeasureRepeat:
             count_before=self.surface_count,
         )
         ctx.burst = self.bursts
+        demand = ctx.demand
+        demand.freeze_heat = not self.rolling_only
+        demand.belt_speed_m_s = self.belt_m_s
+        self._aim(ctx)
         self._count(ctx)
 
     def _count(self, ctx: Context) -> None:
-        sp, r, burst = self.setpoint, ctx.readings, self.burst
+        r, burst = ctx.readings, self.burst
         ctx.moving = not self.rolling_only
-        ctx.demand.freeze_heat = not self.rolling_only
-        ctx.demand.belt_speed_m_s = sp.belt_speed_m_s
-        self._aim(ctx)
         done = self.counter.add(ctx.sample) is not None
-        surface, rate = ctx.gates.surface_now_c(), ctx.gates.surface.rate_k_s
-        burst.peak_rate_k_s = max(burst.peak_rate_k_s, rate)
-        if not isfinite(burst.slid_s) and r.slip_m_s >= 0.5 * self.slip_m_s:
+        trend = ctx.gates.surface
+        surface, rate = trend.now_c, trend.rate_k_s
+        if rate > burst.peak_rate_k_s:
+            burst.peak_rate_k_s = rate
+        if isnan(burst.slid_s) and r.slip_m_s >= 0.5 * self.slip_m_s:
             burst.slid_s, burst.slid_c = ctx.now, r.surface_c
         if ctx.gate == 0:
-            if not isfinite(burst.began_c):
+            if isnan(burst.began_c):
                 burst.began_c = surface
             burst.counted_s = ctx.now
-            self.surface_sum_k += r.surface_c - sp.temperature_c
+            self.surface_sum_k += r.surface_c - self.target_c
             self.surface_count += 1
         if done and self._complete(ctx):
             self._learn_offset(FEW_REVOLUTIONS, self.offset_k)
@@ -307,17 +314,17 @@ class MeasureRepeat:
     def _burst_over(self, ctx: Context, surface: float, rate: float) -> bool:
         if self.rolling_only:
             return ctx.now - self.burst.counted_s > BLIND_S
-        target, band = self.setpoint.temperature_c, self.condition.temperature_band_k
+        target, band = self.target_c, self.band_k
         start = self.burst.began_c
-        below = target - start if isfinite(start) else self.offset_k
+        below = self.offset_k if isnan(start) else target - start
         limit = target + min(band, max(below, CENTRED_K) + 0.2)
         if surface >= limit:
             return True
         mean = self.surface_sum_k / self.surface_count if self.surface_count else 0.0
         if mean > MEAN_LIMIT_K and surface > target + MEAN_LIMIT_K:
             return True
-        window = self.condition.window.revolutions
-        if window is not None and isfinite(start):
+        window = self.window_rev
+        if window is not None and not isnan(start):
             share = 0.5 if surface - start > SPLIT_RISE_K else 1.0
             if self.revolutions - self.burst.blocks_before >= share * window:
                 return True
@@ -393,7 +400,7 @@ class MeasureRepeat:
         target, sp = ctx.gates.target, self.setpoint
         target.load_n = sp.load_n
         target.wheel_speed_m_s = sp.wheel_speed_m_s
-        target.belt_speed_m_s = sp.belt_speed_m_s
+        target.belt_speed_m_s = self.belt_m_s
         target.slip_m_s = self.slip_m_s
         target.temperature_c = sp.temperature_c
         target.band_k = self.condition.temperature_band_k

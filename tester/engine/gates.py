@@ -7,7 +7,7 @@ temperature inside the band with the infrared thermometer's lag allowed for (rul
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import isfinite
+from math import inf, isfinite
 from typing import Final
 
 from tester.process import (
@@ -20,6 +20,7 @@ from tester.process import (
 )
 from tester.rig import GatesConfig
 
+_INF: Final = inf
 RESTART_SHARE: Final = 0.15
 """An average starts again while the instant value is this far off: it holds only what followed the approach [A]."""
 RATE_FAST_S: Final = 0.3
@@ -43,7 +44,7 @@ class Average:
         """Take in one value that stood for ``dt`` s; return the average."""
         value = self.value
         off, jump = abs(x - target), RESTART_SHARE * abs(target)
-        if (off > self.floor and off > jump) or not isfinite(value):
+        if (off > self.floor and off > jump) or not -_INF < value < _INF:
             self.value = x
             self.age_s = 0.0
             return x

@@ -36,7 +36,7 @@ class Sampler:
         if not contact and ctx.now < self.due_s:
             return
         self.due_s = ctx.now + IDLE_PERIOD_S
-        row = (
+        row: tuple[float, ...] = (
             ctx.now,
             r.wheel_speed_m_s,
             r.belt_speed_m_s,

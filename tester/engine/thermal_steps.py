@@ -5,8 +5,9 @@ from __future__ import annotations
 from math import isfinite
 from typing import Final
 
+from tester.engine.activity import Activity
 from tester.engine.context import Context
-from tester.engine.moves import Activity, Ask, Lift, Load, Power, Sequence, Turn, Yaw
+from tester.engine.moves import Ask, Lift, Load, Power, Sequence, Turn, Yaw
 from tester.recipe.plan import Cool, Heat, Rest, Soak
 
 NEAR_AMBIENT_K: Final = 3.0

@@ -7,7 +7,7 @@ import sys
 from collections.abc import Callable, Generator
 from contextlib import contextmanager
 from dataclasses import dataclass
-from math import ceil
+from math import ceil, floor
 from typing import Final, Protocol
 
 from tester import clock
@@ -72,7 +72,7 @@ def next_tick(now: float, wanted: float, urgent: float) -> float:
     Simulated time is counted, not measured: on a grid, equal runs have equal times to the last bit.
     """
     due = ceil((wanted if wanted < urgent else urgent) * 1e6 - 1e-3)
-    soonest = round(now * 1e6) + 1
+    soonest = floor(now * 1e6 + 0.5) + 1
     return (due if due > soonest else soonest) / 1e6
 
 
