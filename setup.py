@@ -1,4 +1,4 @@
-"""Compile the modules of the scan to machine code where that can be done; everything else, and elsewhere all, stays Python.
+"""Compile the modules of the scan to machine code where that can be done; all others, and elsewhere all, stay Python.
 
 A simulated campaign then takes a third of the time, with the same results to the last bit (docs/decisions/0019). Where
 there is no compiler, or FRICTION_TESTER_COMPILE=0 is set, the same files run as they are.
@@ -37,6 +37,7 @@ HOT = (
     "sim/nodes/cia402_slave.py",
     "sim/nodes/dither.py",
     "sim/nodes/drive_modes.py",
+    "sim/nodes/drive_positioning.py",
     "sim/nodes/drive_power.py",
     "sim/nodes/ir_slave.py",
     "sim/nodes/jacket_slave.py",
@@ -45,6 +46,7 @@ HOT = (
     "sim/nodes/pdo_channels.py",
     "sim/nodes/pdo_exchange.py",
     "sim/nodes/pid.py",
+    "sim/nodes/safety_io.py",
     "sim/noise.py",
     "sim/plant.py",
     "sim/rig.py",
@@ -98,7 +100,7 @@ class CompileWherePossible(build_ext):
             self._take(compiled_modules())
             self.parallel = self.parallel or os.cpu_count() or 1
             super().run()
-        except (Exception, SystemExit) as error:  # whatever a compiler or its absence may raise: all of it is optional
+        except (Exception, SystemExit) as error:  # noqa: BLE001 - a compiler, or none, raises what it likes
             print(f"warning: the scan stays Python, it could not be compiled: {error}", file=sys.stderr)
             for output in map(Path, self.get_outputs()):
                 output.unlink(missing_ok=True)  # half of it would not work
@@ -107,7 +109,7 @@ class CompileWherePossible(build_ext):
     def _take(self, extensions: list[Extension]) -> None:
         """Make these what is to be built."""
         self.distribution.ext_modules = extensions
-        self.reinitialize_command(self)
+        self.reinitialize_command(self, inplace=self.inplace, parallel=self.parallel)
         self.ensure_finalized()
 
 

@@ -154,7 +154,8 @@ class ServoDrive(AxisCommand):
         if len(data) != _TPDO1_SIZE:
             self.malformed += 1
             return
-        statusword, raw, torque = _TPDO1(data)
+        fields: tuple[int, int, int] = _TPDO1(data)
+        statusword, raw, torque = fields
         if statusword != self.statusword:
             self.take_statusword(statusword)
         if self._at_rest and self._position_mode:

@@ -12,7 +12,6 @@ from abc import ABC, abstractmethod
 from bisect import bisect_right, insort
 from collections import deque
 from collections.abc import Callable
-from heapq import heapify, heapreplace
 from itertools import accumulate
 from math import inf
 from typing import Final, Protocol
@@ -68,14 +67,15 @@ class SyncFollower(ABC):
 
 
 class Beat:
-    """A frame that a node sends in a fixed period, by itself."""
+    """A frame that a node sends in a fixed period, by itself; ``due_s`` is when it is sent next."""
 
-    __slots__ = ("can_id", "data", "period_s")
+    __slots__ = ("can_id", "data", "due_s", "period_s")
 
     def __init__(self, can_id: int, data: bytes, period_s: float) -> None:
         """Take the identifier, the data and the period in s (> 0)."""
         self.can_id = can_id
         self.data = data
+        self.due_s = inf
         self.period_s = period_s
 
 
@@ -155,7 +155,7 @@ class CanWire:
         self._ranked: dict[int, list[tuple[int, Listener]]] = {}
         self._inbox: list[CanFrame] = []
         self._pending: list[tuple[float, int, int, bytes, bool]] = []
-        self._beats: list[tuple[float, int, Beat]] = []  # a heap
+        self._beats: list[Beat] = []  # the next one first
         self._followers: tuple[SyncFollower, ...] = ()
         self._ranked_followers: list[tuple[int, SyncFollower]] = []
         self._repeatable: set[int] = set()
@@ -312,16 +312,15 @@ class CanWire:
 
     def beat(self, beat: Beat, first_s: float) -> None:
         """Send a node's frame at ``first_s`` s and then in its period, until ``unbeat``."""
-        self._beats.append((first_s, beat.can_id, beat))
-        heapify(self._beats)
+        beat.due_s = first_s
+        self._queue(beat)
         self._find_ready()
 
     def unbeat(self, beat: Beat, t: float) -> None:
         """End a periodic frame at ``t`` s; nothing happens when it was not sent."""
         if self.ready_s <= t:
             self.settle(t)
-        self._beats = [entry for entry in self._beats if entry[2] is not beat]
-        heapify(self._beats)
+        self._beats = [other for other in self._beats if other is not beat]
         self._find_ready()
 
     def transmit(self, can_id: int, data: bytes, t: float, urgent: bool = False) -> None:
@@ -422,18 +421,21 @@ class CanWire:
         while True:
             first = pending[0] if pending else None
             if beats:
-                due, can_id, beat = beats[0]
-                if due <= now and (first is None or (due, can_id) <= first[:2]):
-                    heapreplace(beats, (due + beat.period_s, can_id, beat))
+                beat = beats[0]
+                due = beat.due_s
+                if due <= now and (first is None or (due, beat.can_id) <= first[:2]):
+                    del beats[0]
+                    beat.due_s = due + beat.period_s
+                    self._queue(beat)
                     if due < self._busy_s:
                         due = self._busy_s
                     if quick:
                         self._busy_s = due = due + frame_s
                         self.occupied_s += frame_s
-                        self._inbox.append((due, can_id, beat.data))
+                        self._inbox.append((due, beat.can_id, beat.data))
                     else:
                         self._busy_s = due
-                        self.transmit(can_id, beat.data, due)
+                        self.transmit(beat.can_id, beat.data, due)
                     continue
             if first is None or first[0] > now:
                 break
@@ -445,9 +447,20 @@ class CanWire:
         if self.urgent_s < inf:
             self._find_urgent(now)
 
+    def _queue(self, beat: Beat) -> None:
+        """Put a periodic frame where its time, then its identifier, belongs: nearly always at the end."""
+        beats = self._beats
+        at = len(beats)
+        while at > 0:
+            other = beats[at - 1]
+            if other.due_s < beat.due_s or (other.due_s == beat.due_s and other.can_id <= beat.can_id):
+                break
+            at -= 1
+        beats.insert(at, beat)
+
     def _find_ready(self) -> None:
         ready = self._pending[0][0] if self._pending else inf
-        self.ready_s = min(ready, self._beats[0][0]) if self._beats else ready
+        self.ready_s = min(ready, self._beats[0].due_s) if self._beats else ready
 
     def _note_urgent(self, arrival: float) -> None:
         self._urgent.append(arrival)

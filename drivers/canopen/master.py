@@ -43,6 +43,7 @@ class CanMaster:
         "_by_node",
         "_commands",
         "_cycle_ids",
+        "_cycle_key",
         "_cycle_syncs",
         "_dialogues",
         "_drives",
@@ -77,6 +78,7 @@ class CanMaster:
         self._withheld = False
         self._commands: list[bytes | None] = []
         self._cycle_ids: tuple[int, ...] = ()
+        self._cycle_key: int = 0                # whose commands are in the cycle, and whether SYNC is
         self._payloads: tuple[bytes, ...] = ()
         self._cycle_syncs = False
         self._drives: list[ServoDrive] = []
@@ -177,20 +179,24 @@ class CanMaster:
 
     def _compose(self, sync: bool) -> None:
         """Put the commands of all drives, and SYNC, into the cycle; what has not changed stays the same object."""
-        can_ids: list[int] = []
         payloads: list[bytes] = []
-        for i, drive in enumerate(self._drives):
-            command = self._commands[i]
+        key = bit = 1
+        for command in self._commands:
+            bit <<= 1
             if command is not None:
-                can_ids.append(drive.rpdo1_id)
+                key |= bit
                 payloads.append(command)
         if sync:
-            can_ids.append(_SYNC_ID)
             payloads.append(b"")
+        else:
+            key -= 1
         self._payloads = tuple(payloads)
-        if len(can_ids) != len(self._cycle_ids) or can_ids != list(self._cycle_ids):
-            self._cycle_ids = tuple(can_ids)
         self._cycle_syncs = sync
+        if key != self._cycle_key:
+            self._cycle_key = key
+            commanded = zip(self._drives, self._commands, strict=True)
+            can_ids = [drive.rpdo1_id for drive, command in commanded if command is not None]
+            self._cycle_ids = (*can_ids, _SYNC_ID) if sync else tuple(can_ids)
 
     def service(self, port: CanPort, now: float) -> None:
         """Send our heartbeat when due and go on with the conversations; notice drives that fell silent."""

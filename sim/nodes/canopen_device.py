@@ -197,7 +197,9 @@ class CanopenDevice:
 
     def reschedule(self) -> None:
         """Find the next timer."""
-        self.due_s = min(self._boot_at, self._consumer_at, self.pdos.due_s, self._application_due())
+        due_s = min(self._boot_at, self._consumer_at)
+        due_s = min(due_s, self.pdos.due_s)
+        self.due_s = min(due_s, self._application_due())
 
     def fire(self, t: float) -> None:
         """Do what has fallen due by ``t`` s."""

@@ -216,7 +216,8 @@ class Cia402Slave(DrivePower):
 
     def _take_velocity(self, data: bytes, t: float) -> None:
         """Take controlword and target velocity; in steady operation only the latter can be new."""
-        controlword, target = _RPDO1(data)
+        fields: tuple[int, int] = _RPDO1(data)
+        controlword, target = fields
         values = self.store.values
         values[_TARGET_VELOCITY] = target
         if self._steady and controlword == self._controlword and self._velocity is not None:

@@ -157,9 +157,9 @@ def load_levels(v: View) -> int:
         held |= _CELL_STALE
     if not r.cell_valid:
         held |= _CELL_BAD
-    if not (fz <= v.limits.load_n):
+    if not (fz <= b.load_n):
         held |= _OVERLOAD
-    if not (v.friction_w <= v.limits.slip_power_w):
+    if not (v.friction_w <= b.slip_power_w):
         held |= _POWER
     if v.turning and not (fz < UNLOADED_N) and not (r.now_s - r.cell_changed_s <= b.frozen_cell_s):
         held |= _CELL_FROZEN
@@ -192,10 +192,10 @@ def heat_levels(v: View) -> int:
     if not (r.jacket_valid and r.now_s - r.jacket_at_s <= b.stale_jacket_s):
         held |= _JACKET_STALE
     if r.jacket_valid:
-        if not (r.hub_c <= v.limits.jacket_c + b.jacket_margin_k):
+        if not (r.hub_c <= b.jacket_c + b.jacket_margin_k):
             held |= _HUB_HOT
         ceiling = v.state.hub_ceiling
-        if heats and ceiling and not (r.hub_c <= max(ceiling[0][1], v.rig.loops.heat.hub_min_c) + b.runaway_k):
+        if heats and ceiling and not (r.hub_c <= max(ceiling[0][1], b.hub_min_c) + b.runaway_k):
             held |= _RUNAWAY
         if not (jacket.rate_k_s <= b.stuck_rate_k_s) and r.now_s - jacket.off_since_s >= b.stuck_off_s:
             held |= _STUCK
@@ -211,7 +211,7 @@ def heat_levels(v: View) -> int:
         if not (v.surface.jump_k <= b.jump_k):
             held |= _SURFACE_JUMP
     if r.surface_valid:
-        if not (r.surface_c <= v.limits.surface_c):
+        if not (r.surface_c <= b.surface_c):
             held |= _SURFACE_HOT
         if v.turning:
             model = v.observer.surface_c

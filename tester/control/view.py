@@ -9,8 +9,9 @@ from typing import Final
 from tester.control.monitors import RAMP_SHARE, JacketMonitor, SpeedTracker, SurfaceMonitor
 from tester.control.observer import ThermalObserver
 from tester.control.state import ControlState, Mode
+from tester.control.thresholds import Thresholds, thresholds_of
 from tester.process import Demand, Press, Readings
-from tester.rig import InterlocksConfig, LimitsConfig, RigConfig
+from tester.rig import RigConfig
 
 _INF: Final = inf
 STANDING_M_S: Final = 0.02
@@ -33,8 +34,7 @@ class View:
 
     state: ControlState
     rig: RigConfig
-    limits: LimitsConfig = field(init=False)
-    bounds: InterlocksConfig = field(init=False)
+    bounds: Thresholds = field(init=False)
     readings: Readings = field(init=False)
     demand: Demand = field(init=False)
     observer: ThermalObserver = field(init=False)
@@ -68,8 +68,8 @@ class View:
     def __post_init__(self) -> None:
         """Keep the parts of the rig file that levels compare with."""
         rig = self.rig
-        self.limits = limits = rig.limits
-        self.bounds = bounds = rig.interlocks
+        self.bounds = thresholds_of(rig)
+        limits, bounds = rig.limits, rig.interlocks
         self.observer = ThermalObserver(rig)
         radius_m = 0.5e-3 * rig.geometry.wheel_diameter_mm
         self.wheel = SpeedTracker(RAMP_SHARE * rig.axes.wheel.acceleration * radius_m)

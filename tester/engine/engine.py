@@ -21,7 +21,9 @@ SOONEST_S: Final = 5e-4
 # Bound once: a look-up on the enum class costs several times as much in every scan (CPython 3.11).
 _RUN: Final = Mode.RUN
 _HOLD: Final = Mode.HOLD
-_STOPS: Final = frozenset({Mode.STOPPING, Mode.FAST_STOP, Mode.EMERGENCY})
+_STOPPING: Final = Mode.STOPPING
+_FAST_STOP: Final = Mode.FAST_STOP
+_EMERGENCY: Final = Mode.EMERGENCY
 HOLD_MOVES_S: Final = 3.0
 """A hold has lifted and taken the slip out within this, s [A]: scans come at the sliding rate until then."""
 SEVERITIES: Final = {"trip": "trip", "alarm": "alarm", "warning": "warning"}
@@ -38,6 +40,7 @@ class Engine:
         self.executor = executor
         self.ctx = ctx
         self.sampler = sampler
+        self._wear_mm3_per_n_m = ctx.rig.wear.rate_mm3_per_n_m
         scan = ctx.rig.scan
         self.sliding_s = 1.0 / scan.sliding_hz
         self.enabled_s = 1.0 / scan.enabled_hz
@@ -94,7 +97,7 @@ class Engine:
 
     def _wear(self, r: Readings) -> None:
         """Account for what this scan's sliding takes off the wheel."""
-        self.ctx.wheel.slide(r.force_z_n, r.slip_m_s, self.ctx.dt, self.ctx.rig.wear.rate_mm3_per_n_m)
+        self.ctx.wheel.slide(r.force_z_n, r.slip_m_s, self.ctx.dt, self._wear_mm3_per_n_m)
 
     def _journal(self) -> None:
         """Queue control's events in their order; they are queued before this scan's outputs leave."""
@@ -122,7 +125,8 @@ class Engine:
         mode = state.mode
         # A level that has yet to stand for its delay is looked at often: the delay is not rounded up to slow scans.
         pending = state.held & ~state.tripped
-        if pending or ctx.moving or mode in _STOPS or (mode is _HOLD and now - state.mode_since_s < HOLD_MOVES_S):
+        stops = mode is _STOPPING or mode is _FAST_STOP or mode is _EMERGENCY
+        if pending or ctx.moving or stops or (mode is _HOLD and now - state.mode_since_s < HOLD_MOVES_S):
             self.period_s = self.sliding_s
         elif ctx.demand.enabled or not ctx.readings.drives_disabled:
             self.period_s = self.enabled_s
