@@ -6,6 +6,7 @@ What the device is for (the drive) is a subclass: it is told of resets, lost con
 from __future__ import annotations
 
 from math import inf
+from typing import Final
 
 from drivers.canopen import objects as o
 from drivers.canopen.objects import NmtCommand, NmtState
@@ -17,15 +18,15 @@ from sim.nodes.pdo_channels import ReceivePdo, TransmitPdo
 from sim.nodes.pdo_exchange import RPDO_TIMED_OUT, PdoExchange
 from sim.nodes.sdo_server import SdoServer
 
-HEARTBEAT_LOST = 0x8130
-COMMUNICATION_BOOT_S = 0.02
+HEARTBEAT_LOST: Final = 0x8130
+COMMUNICATION_BOOT_S: Final = 0.02
 """From a communication reset to the boot-up message, s [A]."""
 
 # NMT states as plain integers for the hot path.
-BOOTING = int(NmtState.BOOT_UP)
-STOPPED = int(NmtState.STOPPED)
-OPERATIONAL = int(NmtState.OPERATIONAL)
-PRE_OPERATIONAL = int(NmtState.PRE_OPERATIONAL)
+BOOTING: Final = int(NmtState.BOOT_UP)
+STOPPED: Final = int(NmtState.STOPPED)
+OPERATIONAL: Final = int(NmtState.OPERATIONAL)
+PRE_OPERATIONAL: Final = int(NmtState.PRE_OPERATIONAL)
 
 
 class CanopenDevice:
@@ -196,7 +197,9 @@ class CanopenDevice:
 
     def reschedule(self) -> None:
         """Find the next timer."""
-        self.due_s = min(self._boot_at, self._consumer_at, self.pdos.due_s, self._application_due())
+        due_s = min(self._boot_at, self._consumer_at)
+        due_s = min(due_s, self.pdos.due_s)
+        self.due_s = min(due_s, self._application_due())
 
     def fire(self, t: float) -> None:
         """Do what has fallen due by ``t`` s."""
