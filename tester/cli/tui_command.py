@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 
 import click
@@ -10,6 +11,8 @@ from tester.cli.options import rig_option
 from tester.cli.service_commands import connect_option
 
 MAX = "max"
+SWITCH_S = 0.001
+"""How long drawing may keep the interpreter from the thread that sends STOP, s (Python: 5 ms)."""
 
 
 class SpeedType(click.ParamType[float | None]):
@@ -73,6 +76,7 @@ def tui(
             theme=theme or "",
         )
     )  # fmt: skip
+    sys.setswitchinterval(SWITCH_S)
     farewell = app.run()
     if farewell:
         click.echo(farewell, err=True)

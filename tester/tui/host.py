@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import os
 from collections.abc import Callable
+from concurrent.futures import Future
 from dataclasses import dataclass
 from pathlib import Path
 from typing import ClassVar, cast
@@ -21,6 +22,7 @@ from tester.service.commands import Action, Stop
 from tester.service.protocol import Event
 from tester.tui.scene import Scene
 from tester.tui.starting import start_service
+from tester.tui.stop_line import KEYS, NotTakenError, StopLine, stopping
 from tester.tui.words import clean
 
 TICK_S = 0.5
@@ -48,8 +50,10 @@ class HostApp(App[str]):
     """Holds the link and the scene; knows no screen."""
 
     ENABLE_COMMAND_PALETTE = True
+    HAS_RIG: ClassVar[bool] = True
+    """There is a rig behind this screen."""
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("f12,ctrl+x", "stop", "STOP", priority=True, show=False),
+        Binding(",".join(KEYS), "stop", "STOP", priority=True, show=False),
         Binding("ctrl+c,ctrl+q", "detach", "Detach", priority=True, show=False),
     ]
 
@@ -57,6 +61,9 @@ class HostApp(App[str]):
         """``now``: seconds of tester.clock.monotonic; another one in tests."""
         super().__init__()
         self.options = options
+        self.stop_line = StopLine(options.address, client_name())
+        if self.HAS_RIG and not options.view_only:
+            self.driver_class = stopping(self.driver_class, self.stop_line)
         self.scene = Scene(now=now, view_only=options.view_only)
         self.link: Link | None = None
         self._started = False
@@ -80,8 +87,7 @@ class HostApp(App[str]):
 
     def connect(self) -> None:
         """Keep a link to the service from now on."""
-        name = f"tui of process {os.getpid()}"
-        self.link = Link(self.options.address, name=name, control=not self.options.view_only)
+        self.link = Link(self.options.address, name=client_name(), control=not self.options.view_only)
         self.run_worker(self._listen(self.link), name="link", group="link")
         self.set_interval(TICK_S, self.scene_changed)
 
@@ -132,11 +138,20 @@ class HostApp(App[str]):
         if self.options.view_only or self.link is None:
             self.say("view only: `tester stop` in a shell stops the rig", problem=True)
             return
-        task = asyncio.create_task(self._stop(self.link))
+        task = asyncio.create_task(self._stop(self.link, self.stop_line.take()))
         self._stops.add(task)
         task.add_done_callback(self._stops.discard)
 
-    async def _stop(self, link: Link) -> None:
+    async def _stop(self, link: Link, sent: Future[None] | None) -> None:
+        """Wait for what the key has sent already; where there is nothing, or it failed, go over the link."""
+        if sent is not None:
+            try:
+                await asyncio.wrap_future(sent)
+            except NotTakenError:
+                pass
+            else:
+                self.say("STOP taken")
+                return
         try:
             try:
                 await link.command(Stop())
@@ -152,6 +167,11 @@ class HostApp(App[str]):
     def action_detach(self) -> None:
         """Leave the screen; the run goes on."""
         self.exit("detached: the service and its run go on. `tester tui` comes back, `tester stop` stops the rig")
+
+
+def client_name() -> str:
+    """Return how this screen is called at the service."""
+    return f"tui of process {os.getpid()}"
 
 
 def host_of(node: DOMNode) -> HostApp:

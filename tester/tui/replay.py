@@ -58,6 +58,7 @@ class ReplayApp(TesterApp):
     FIRST = "run"
     SCREENS_HERE: ClassVar[Tabs] = tuple(tab for tab in TABS if tab[2] in ("run", "results"))
     EVERYWHERE = HELP
+    HAS_RIG: ClassVar[bool] = False
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("left", "seek(-10)", "Back", show=False),
         Binding("right", "seek(10)", "On", show=False),

@@ -162,6 +162,28 @@ class Observer:
         await self.until(slides, "sliding under load", 180.0)
 
 
+class Noise:
+    """How late this process, which does nothing else, is woken: what the machine adds to every figure of time."""
+
+    def __init__(self) -> None:
+        """Watch from now on."""
+        self.late_s: list[float] = []
+        self._watching = asyncio.create_task(self._watch())
+
+    async def _watch(self) -> None:
+        while True:
+            due_s = clock.monotonic() + LOOK_S
+            await asyncio.sleep(LOOK_S)
+            self.late_s.append(clock.monotonic() - due_s)
+
+    def end(self) -> str:
+        """Stop, and return the figures in words."""
+        self._watching.cancel()
+        ordered = sorted(self.late_s) or [0.0]
+        rare, most = ordered[-1 - len(ordered) // 1000], ordered[-1]
+        return f"{1e3 * median(ordered):.1f} ms, {1e3 * rare:.1f} ms, {1e3 * most:.1f} ms"
+
+
 def slides(state: StateView) -> bool:
     """Tell whether the wheel slides under load."""
     slip, load = state.value("slip"), state.value("load")

@@ -13,6 +13,8 @@ from tests.screens.terminal import Terminal
 
 WATCHED_S, QUICK_S = 20.0, 6.0
 LATER_S = 0.02
+STOP_S = 0.5
+"""Of a screen that stands still, s [A]: the 50 ms are asked of one that is read."""
 EVERY_S = 0.2
 
 
@@ -46,6 +48,9 @@ async def figures(seat: Seat, *, quick: bool) -> AsyncIterator[Figure]:
                 await screen.until(" RUN ")
                 screen.reading(on=False)
                 with_s = await latest_s(observer, seconds)
+                pressed_s = screen.key("F12")
+                stopped_s = await observer.event(lambda event: event.text.startswith("stop by tui"), pressed_s,
+                                                 "STOP from the terminal that nobody reads")  # fmt: skip
                 screen.forget()
                 screen.reading(on=True)
                 await screen.until("Friction", 10.0)
@@ -59,4 +64,6 @@ async def figures(seat: Seat, *, quick: bool) -> AsyncIterator[Figure]:
     yield holds(f"{name} without a screen", True, f"{1e3 * without_s:.1f} ms late", "no limit")
     yield holds(f"{name} beside a terminal that nobody reads", True, f"{1e3 * with_s:.1f} ms late", "no limit")
     yield at_most("later than without it", 1e3 * max(with_s - without_s, 0.0), 1e3 * LATER_S, "ms", 1)
+    took_ms = 1e3 * (stopped_s - pressed_s)
+    yield at_most("STOP from that terminal reaches the service after", took_ms, 1e3 * STOP_S, "ms", 1)
     yield holds("the terminal, read again, shows the run", back, "yes" if back else "no", "yes")
