@@ -6,7 +6,8 @@ from bisect import insort
 
 from drivers.canopen import emcy
 from drivers.canopen import objects as o
-from sim.can_wire import CanWire, Listener, SyncFollower
+from sim.can_traffic import Listener, SyncFollower
+from sim.can_wire import CanWire
 from sim.faults.scene import Effect, Scene
 
 _NODE = 0x7F

@@ -10,7 +10,8 @@ from typing import Final
 
 from drivers.canopen import objects as o
 from drivers.canopen.objects import NmtCommand, NmtState
-from sim.can_wire import Beat, CanWire
+from sim.can_traffic import Beat
+from sim.can_wire import CanWire
 from sim.nodes import communication_objects
 from sim.nodes.emergencies import Emergencies
 from sim.nodes.object_store import ObjectStore

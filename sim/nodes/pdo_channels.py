@@ -13,7 +13,7 @@ from typing import Final, Protocol
 from drivers.canopen import objects as o
 from drivers.canopen.dictionary import DICTIONARY
 from drivers.canopen.pdo import PdoMap, PdoMapError
-from sim.can_wire import Listener
+from sim.can_traffic import Listener
 from sim.nodes import sdo_server as sdo
 from sim.nodes.object_store import Key, ObjectStore
 from sim.nodes.sdo_server import SdoAbortError

@@ -261,3 +261,18 @@ class TakeTare:
             self.failed = text
         if drift > self.warn_n:
             ctx.journal.event(ctx.now, "tare", text, "warning")
+
+
+class Settle:
+    """Wait at the fast scan rate for ``seconds``."""
+
+    def __init__(self, seconds: float) -> None:
+        """How long, s."""
+        self.seconds = seconds
+        self.left_s = seconds
+
+    def step(self, ctx: Context) -> bool:
+        """Done when the time is over."""
+        ctx.moving = True
+        self.left_s -= ctx.dt
+        return self.left_s <= 0.0
