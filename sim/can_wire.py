@@ -115,6 +115,7 @@ class CanWire:
         "_busy_s",
         "_cycle",
         "_cycle_s",
+        "_cycled_s",
         "_followers",
         "_frame_s",
         "_inbox",
@@ -127,6 +128,7 @@ class CanWire:
         "_repeatable",
         "_routes",
         "_sequence",
+        "_skipped_s",
         "_urgent",
         "bitrate",
         "connected",
@@ -158,6 +160,8 @@ class CanWire:
         self._repeatable: set[int] = set()
         self._cycle: tuple[tuple[int, bytes], ...] | None = None  # that every listener has taken already
         self._cycle_s = 0.0
+        self._cycled_s = -inf  # when that cycle last went unheard
+        self._skipped_s: dict[int, float] = {}  # the same of frames of earlier cycles
         self._offsets_s: tuple[float, ...] = ()
         self._sequence = 0
         self._urgent: list[float] = []
@@ -209,7 +213,7 @@ class CanWire:
         if self.ready_s <= now:
             self.settle(now)
         start = self._busy_s if self._busy_s > now else now
-        self._busy_s = end = start + self._cycle_s
+        self._cycled_s = self._busy_s = end = start + self._cycle_s
         self.occupied_s += self._cycle_s
         if frames is not taken:
             self._cycle = frames
@@ -264,7 +268,7 @@ class CanWire:
 
         Listeners are called in the order of ``rank``: nodes that answer a broadcast at the same time give their
         node id, because the lowest identifier wins the wire. ``repeatable``: the same data again mean nothing to the
-        listener, and when they came does not either; it need not be called for them (``forget_cycle``).
+        listener; it need not be called for them (``forget_cycle``) and asks when they came (``skipped_s``).
         """
         first = not self._routes.get(can_id)
         if repeatable and (first or can_id in self._repeatable):
@@ -286,7 +290,16 @@ class CanWire:
 
     def forget_cycle(self) -> None:
         """Have the next cycle taken by every listener, whatever it holds."""
-        self._cycle = None
+        if self._cycle is not None:
+            for can_id, _ in self._cycle:
+                self._skipped_s[can_id] = self._cycled_s
+            self._cycle = None
+
+    def skipped_s(self, can_id: int) -> float:
+        """Return when a frame last went past its ``repeatable`` listeners because it held nothing new, s; or -inf."""
+        if self._cycle is not None and any(frame[0] == can_id for frame in self._cycle):
+            return self._cycled_s
+        return self._skipped_s.get(can_id, -inf)
 
     def follow(self, follower: SyncFollower, rank: int) -> None:
         """Have a device answer SYNC, in the order of ``rank`` (its node id)."""
@@ -378,7 +391,7 @@ class CanWire:
 
     def _remember(self, frames: tuple[tuple[int, bytes], ...]) -> None:
         """Note a cycle that was taken, if its frames need not be taken again while they stay the same."""
-        self._cycle = None
+        self.forget_cycle()
         if not frames or frames[-1][0] != SYNC_ID or self._routes.get(SYNC_ID):
             return
         if all(can_id in self._repeatable or not self._routes.get(can_id) for can_id, _ in frames[:-1]):

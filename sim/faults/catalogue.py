@@ -55,8 +55,8 @@ def _drive_rows() -> Iterator[FaultKind]:
         yield FaultKind(f"{axis} drive following error", partial(d.DriveFault, axis, FOLLOWING_ERROR), ALWAYS, TRIP,
                         0.02 + SCAN_S)
         yield FaultKind(f"{axis} drive reports overheating", partial(d.Emergency, axis, OVERHEATED), ALWAYS, MAY, 0.1)
-        yield FaultKind(f"{axis} drive setpoints lost", partial(c.FramesLost, axis, o.RPDO1_BASE), ENABLED, MAY, 1.0,
-                        note="noticed as soon as the drive does not follow: a speed error, a load error")
+        yield FaultKind(f"{axis} drive setpoints lost", partial(c.FramesLost, axis, o.RPDO1_BASE), ENABLED, TRIP,
+                        0.2 + SCAN_S, note="the drive's own deadline (0x1400:05), or sooner a speed or load error")
         yield FaultKind(f"{axis} drive feedback frozen", partial(c.FeedbackFrozen, axis), ENABLED, MAY, 1.0,
                         note="noticed when the other readings contradict it")
         yield FaultKind(f"{axis} drive in local mode", partial(d.Local, axis), ENABLED, TRIP, 0.1 + SCAN_S)
