@@ -25,9 +25,9 @@ OVERCURRENT, OVERHEATED, FOLLOWING_ERROR, ENCODER, CAN_OVERRUN = 0x2310, 0x4310,
 SCAN_S = 0.05
 """The slow scan's period: what is noticed by a scan is noticed this much later at most, s."""
 
-ALWAYS, CONNECTING, ENABLED, TURNING, LOADED, PRESSING, SLIDING, HEATING = (
-    Exposure.ALWAYS, Exposure.CONNECTING, Exposure.ENABLED, Exposure.TURNING, Exposure.LOADED, Exposure.PRESSING,
-    Exposure.SLIDING, Exposure.HEATING,
+ALWAYS, DRIVES, CONNECTING, ENABLED, TURNING, LOADED, PRESSING, SLIDING, HEATING = (
+    Exposure.ALWAYS, Exposure.DRIVES, Exposure.CONNECTING, Exposure.ENABLED, Exposure.TURNING, Exposure.LOADED,
+    Exposure.PRESSING, Exposure.SLIDING, Exposure.HEATING,
 )  # fmt: skip
 TRIP, STOP, HOLD, RIDE, MAY, DEVICES = (
     Reaction.TRIP, Reaction.STOP, Reaction.HOLD, Reaction.RIDE, Reaction.MAY, Reaction.DEVICES
@@ -40,19 +40,19 @@ _ENABLE_AND_GO = b"\x0f\x00" + (50_000).to_bytes(4, "little", signed=True)
 
 def _drive_rows() -> Iterator[FaultKind]:
     for axis in AXES:
-        yield FaultKind(f"{axis} drive fault", partial(d.DriveFault, axis, OVERCURRENT), ALWAYS, TRIP, 0.02 + SCAN_S)
-        yield FaultKind(f"{axis} drive heartbeat lost", partial(d.HeartbeatLost, axis), ALWAYS, TRIP, 0.2 + SCAN_S)
-        yield FaultKind(f"{axis} drive reboots", partial(d.Reboot, axis), ALWAYS, TRIP, 0.25 + SCAN_S,
+        yield FaultKind(f"{axis} drive fault", partial(d.DriveFault, axis, OVERCURRENT), DRIVES, TRIP, 0.02 + SCAN_S)
+        yield FaultKind(f"{axis} drive heartbeat lost", partial(d.HeartbeatLost, axis), DRIVES, TRIP, 0.2 + SCAN_S)
+        yield FaultKind(f"{axis} drive reboots", partial(d.Reboot, axis), DRIVES, TRIP, 0.25 + SCAN_S,
                         lasts_s=1.0, note="its boot-up message comes after 0.2 s")
-        yield FaultKind(f"{axis} drive off the bus", partial(c.NodeCut, axis), ALWAYS, TRIP, 0.2 + SCAN_S)
-        yield FaultKind(f"{axis} drive without supply", partial(d.Unpowered, axis), ALWAYS, TRIP, 0.2 + SCAN_S)
+        yield FaultKind(f"{axis} drive off the bus", partial(c.NodeCut, axis), DRIVES, TRIP, 0.2 + SCAN_S)
+        yield FaultKind(f"{axis} drive without supply", partial(d.Unpowered, axis), DRIVES, TRIP, 0.2 + SCAN_S)
         yield FaultKind(f"{axis} drive data lost", partial(c.FramesLost, axis, o.TPDO1_BASE), ENABLED, TRIP,
                         0.15 + SCAN_S)
         yield FaultKind(f"{axis} drive of another make", partial(d.WrongIdentity, axis), CONNECTING, TRIP, 3.0)
         yield FaultKind(f"{axis} drive SDO silent", partial(c.FramesLost, axis, o.SDO_REPLY_BASE), CONNECTING, TRIP,
                         10.0, note="every request is tried again before a drive is given up")
     for axis in VELOCITY_AXES:
-        yield FaultKind(f"{axis} drive following error", partial(d.DriveFault, axis, FOLLOWING_ERROR), ALWAYS, TRIP,
+        yield FaultKind(f"{axis} drive following error", partial(d.DriveFault, axis, FOLLOWING_ERROR), DRIVES, TRIP,
                         0.02 + SCAN_S)
         yield FaultKind(f"{axis} drive reports overheating", partial(d.Emergency, axis, OVERHEATED), ALWAYS, MAY, 0.1)
         yield FaultKind(f"{axis} drive setpoints lost", partial(c.FramesLost, axis, o.RPDO1_BASE), ENABLED, TRIP,
@@ -64,16 +64,16 @@ def _drive_rows() -> Iterator[FaultKind]:
 
 
 def _bus_rows() -> Iterator[FaultKind]:
-    yield FaultKind("CAN adapter gone", c.AdapterGone, ALWAYS, TRIP, SCAN_S)
-    yield FaultKind("CAN bus off", c.BusSilent, ALWAYS, TRIP, 0.2 + SCAN_S)
+    yield FaultKind("CAN adapter gone", c.AdapterGone, DRIVES, TRIP, SCAN_S)
+    yield FaultKind("CAN bus off", c.BusSilent, DRIVES, TRIP, 0.2 + SCAN_S)
     yield FaultKind("CAN frames lost", c.FrameLoss, ALWAYS, MAY, 0.5, "%", 20.0)
     yield FaultKind("CAN frames late", c.FramesLate, ENABLED, MAY, 0.5, "ms", 0.1)
     yield FaultKind("CAN frames repeated", c.FramesRepeated, ALWAYS, RIDE, 0.0)
     yield FaultKind("CAN bus busy", c.BusBusy, ALWAYS, MAY, 0.5, "%", 95.0)
-    yield FaultKind("second master SYNC", partial(c.SecondMaster, o.SYNC_ID, b""), ALWAYS, TRIP, 0.1 + SCAN_S)
-    yield FaultKind("second master setpoint", partial(c.SecondMaster, o.RPDO1_BASE, _ENABLE_AND_GO, "belt"), ALWAYS,
+    yield FaultKind("second master SYNC", partial(c.SecondMaster, o.SYNC_ID, b""), DRIVES, TRIP, 0.1 + SCAN_S)
+    yield FaultKind("second master setpoint", partial(c.SecondMaster, o.RPDO1_BASE, _ENABLE_AND_GO, "belt"), DRIVES,
                     TRIP, 0.1 + SCAN_S)
-    yield FaultKind("second master stops nodes", partial(c.SecondMaster, o.NMT_ID, _NMT_STOP_ALL), ALWAYS, TRIP,
+    yield FaultKind("second master stops nodes", partial(c.SecondMaster, o.NMT_ID, _NMT_STOP_ALL), DRIVES, TRIP,
                     0.2 + SCAN_S)
     yield FaultKind("belt drive emergency storm", partial(c.EmergencyStorm, "belt", CAN_OVERRUN), ALWAYS, MAY, 0.1)
 
@@ -102,7 +102,7 @@ def _modbus_rows() -> Iterator[FaultKind]:
                         ALWAYS, RIDE, 0.0)
         yield FaultKind(f"{device} CRC error once", partial(m.Impaired, device, "corrupt", count=1), ALWAYS, RIDE, 0.0)
         yield FaultKind(f"{device} exception", partial(_exception, device), when, TRIP, budget_s, "", 4.0)
-        yield FaultKind(f"{device} line unplugged", partial(m.LineGone, device), ALWAYS, TRIP, 0.2 + SCAN_S)
+        yield FaultKind(f"{device} line unplugged", partial(m.LineGone, device), DRIVES, TRIP, 0.2 + SCAN_S)
 
 
 def _exception(device: str, code: float) -> m.ExceptionReply:
@@ -151,9 +151,9 @@ def _actuator_rows() -> Iterator[FaultKind]:
     yield FaultKind("belt torn", d.BeltTorn, SLIDING, MAY, 1.0)
     yield FaultKind("belt slips on its roller", d.BeltSlips, SLIDING, MAY, 1.0, "%", 40.0)
     yield FaultKind("wheel slips on its shaft", d.WheelSlipsOnShaft, SLIDING, MAY, 1.0)
-    yield FaultKind("safety chain opened", a.ChainOpen, ALWAYS, TRIP, SCAN_S)
+    yield FaultKind("safety chain opened", a.ChainOpen, DRIVES, TRIP, SCAN_S)
     yield FaultKind("guard opened", a.GuardOpen, ENABLED, TRIP, SCAN_S)
-    yield FaultKind("emergency stop pressed", a.EmergencyStop, ALWAYS, TRIP, SCAN_S)
+    yield FaultKind("emergency stop pressed", a.EmergencyStop, DRIVES, TRIP, SCAN_S)
 
 
 def _computer_rows() -> Iterator[FaultKind]:
@@ -166,9 +166,9 @@ def _computer_rows() -> Iterator[FaultKind]:
     yield FaultKind("clock jump", p.ClockJump, ENABLED, TRIP, SCAN_S, "ms", 2.0, lasts_s=0.5)
     yield FaultKind("operator hold", partial(p.Operator, "hold"), ALWAYS, HOLD, SCAN_S)
     yield FaultKind("operator release", partial(p.Operator, "release"), ALWAYS, RIDE, 0.0)
-    yield FaultKind("operator abort", partial(p.Operator, "abort"), ALWAYS, STOP, SCAN_S)
-    yield FaultKind("operator stop", partial(p.Operator, "stop"), ALWAYS, STOP, SCAN_S)
-    yield FaultKind("operator fast stop", partial(p.Operator, "fast stop"), ALWAYS, STOP, SCAN_S)
+    yield FaultKind("operator abort", partial(p.Operator, "abort"), DRIVES, STOP, SCAN_S)
+    yield FaultKind("operator stop", partial(p.Operator, "stop"), DRIVES, STOP, SCAN_S)
+    yield FaultKind("operator fast stop", partial(p.Operator, "fast stop"), DRIVES, STOP, SCAN_S)
 
 
 def _rows() -> Iterator[FaultKind]:

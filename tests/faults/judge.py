@@ -51,6 +51,8 @@ def exposed(stage: Stage, exposure: Exposure) -> bool:
     engine = stage.run.engine
     if exposure is Exposure.ALWAYS:
         return engine.scans > 0
+    if exposure is Exposure.DRIVES:
+        return engine.scans > 0 or stage.run.connector.watches_drives
     if exposure is Exposure.CONNECTING:
         return engine.scans == 0 and stage.ticks < 3
     demand, truth = engine.ctx.demand, Truth.of(stage.rig)
