@@ -68,6 +68,8 @@ INTERLOCKS: tuple[Interlock, ...] = (
               "off what its ramp allows by > speed_error", lambda c: c.speed_error_delay_s, FAST, ACK),
     Interlock("belt speed", "belt not at its speed: jammed, wrong scale",
               "off what its ramp allows by > speed_error", lambda c: c.speed_error_delay_s, FAST, ACK),
+    Interlock("press speed", "press comes on its own: broken velocity loop, setpoints lost",
+              "further towards the contact than its ramp allows by > press_error", _now, FAST, REPAIR),
     Interlock("drive standing under load", "wheel on a stopped belt, or belt under a stopped wheel",
               "load > 20 N, one stands, the other above 0.1 m/s", lambda c: c.standing_delay_s, FAST, ACK),
     Interlock("belt torn", "friction and drive torque collapsed while sliding under load",
@@ -124,7 +126,7 @@ INTERLOCKS: tuple[Interlock, ...] = (
     # Stops that do not work
     Interlock("not lifted", "still loaded after a stop", "Fz >= 20 N at lift_late after the stop", _now, FAST, REPAIR),
     Interlock("lift failed", "still loaded after the quick stop, or the press goes on",
-              "Fz >= 20 N at lift_failed after the stop; or the press 0.3 mm further on",
+              "Fz >= 20 N at lift_failed after the stop; or the press 0.3 mm beyond its ramp",
               _now, POWER_OFF, REPAIR),
     Interlock("not stopping", "a drive turns longer than its ramp allows", "turning at v / deceleration + stop_margin",
               _now, FAST, REPAIR),

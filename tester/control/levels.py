@@ -19,7 +19,7 @@ SPEEDS_OLD_S = 0.5
 PRESSED_N = 50.0
 """A contact that nobody wants gets no firmer by more than this, N [A]: runout and noise are 10 N."""
 PUSHED_MM = 0.3
-"""A press that was told to lift has gone on by this at most, mm [A]: its ramp from 10 mm/s takes less."""
+"""A press that was told to lift has gone on beyond its ramp by this at most, mm [A]: 50 N at 200 N of load."""
 APART_M_S = 0.1
 """One drive standing, the other faster than this, is no rounding of two equal ramps [A]."""
 CLEAR_MM = 0.5
@@ -29,6 +29,7 @@ _CHAIN, _FAULT, _BUS, _MASTER = bit("safety chain"), bit("drive fault"), bit("bu
 _JUMPED, _LATE, _DELAYED = bit("clock jump"), bit("scan late"), bit("scan delayed")
 _GUARD, _DATA, _DROPPED = bit("guard open"), bit("drive data stale"), bit("drive dropped out")
 _OVERSPEED, _WHEEL, _BELT = bit("overspeed"), bit("wheel speed"), bit("belt speed")
+_PRESS = bit("press speed")
 _STANDING, _TORN = bit("drive standing under load"), bit("belt torn")
 _CELL_STALE, _CELL_BAD = bit("load cell stale"), bit("load cell saturated")
 _CELL_FROZEN = bit("load cell frozen")
@@ -107,6 +108,8 @@ def motion_levels(v: View) -> int:
             held |= _WHEEL
         if not (v.belt.low_m_s - error <= belt <= v.belt.high_m_s + error):
             held |= _BELT
+        if not (v.press.ahead_mm <= b.press_error_mm):
+            held |= _PRESS
     if not (r.force_z_n < UNLOADED_N):
         belt_moves = belt > STANDING_M_S or belt < -STANDING_M_S
         # While they come down together one may stand a moment before the other: that is no wheel on a stopped belt.

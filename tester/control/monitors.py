@@ -128,6 +128,37 @@ class SurfaceMonitor:
 
 
 @dataclass(slots=True)
+class PressTracker:
+    """How far the press has come towards the contact beyond what it was told to."""
+
+    ramp_mm_s2: float
+    """Of a slow ramp."""
+    high_mm_s: float = 0.0
+    """The fastest it may still be coming."""
+    at_s: float = -inf
+    press_mm: float = nan
+    ahead_mm: float = 0.0
+
+    def begin(self, r: Readings) -> None:
+        """Begin where the press stands."""
+        self.high_mm_s = self.ahead_mm = 0.0
+        self.at_s, self.press_mm = r.press_at_s, r.press_mm
+
+    def follow(self, target_mm_s: float, dt: float, r: Readings) -> None:
+        """Take in a target of ``dt`` s, and a new position where there is one."""
+        high = self.high_mm_s - self.ramp_mm_s2 * dt
+        if not high > target_mm_s:
+            high = target_mm_s
+        self.high_mm_s = high = high if high > 0.0 else 0.0
+        at_s = r.press_at_s
+        if at_s > self.at_s:
+            press_mm = r.press_mm
+            ahead = self.ahead_mm + press_mm - self.press_mm - high * (at_s - self.at_s)
+            self.ahead_mm = 0.0 if ahead < 0.0 else ahead
+            self.at_s, self.press_mm = at_s, press_mm
+
+
+@dataclass(slots=True)
 class SpeedTracker:
     """Between which speeds a drive may be: its target, and where a slow ramp to it would be by now."""
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from sim.faults import CATALOGUE
 from tests.faults import every_scan
 from tests.faults.campaign import PAIRS, Tally, all_cases, conduct, faults_of_campaign, pairs, rehearsals, sample
-from tests.faults.hardware import held_by_hardware
+from tests.faults.hardware import held_by_hardware, press_must_lift
 from tests.faults.judge import Verdict
 
 SAMPLE_CASES = 420
@@ -95,7 +95,7 @@ def full(report: Report, jobs: int, most: int) -> None:
     spent(report, began_s, FULL_CPU_S)
     doubles(report, conduct("pairs", pairs(moments, faults, PAIRS), jobs, budgets=False), most)
     held = sample(all_cases(moments, faults), SAMPLE_CASES)
-    grid(report, conduct("grid, press held without power", held, jobs, (HOLD,)), 400, most)
+    held_press(report, conduct("grid, press held without power", held, jobs, (HOLD,)), most)
     ticks = range(every_scan.scans())
     for tally in every_scan.conduct(ticks, every_scan.EVENTS[:3], jobs).values():
         scans(report, tally, every_scan.ASKED_FOR, most)
@@ -114,6 +114,18 @@ def grid(report: Report, tally: Tally, cases: int, most: int) -> None:
     report.figure(f"{tally.name}: unsafe", len(tally.unsafe), "0", not tally.unsafe)
     report.figure(f"{tally.name}: reaction budgets missed", len(tally.late), "0", not tally.late)
     report.causes(tally, most)
+
+
+def held_press(report: Report, tally: Tally, most: int) -> None:
+    """Print the figures of a rig whose press stays where it is without power."""
+    name, count = tally.name, len(tally.verdicts)
+    held = [verdict for verdict in tally.unsafe if press_must_lift(verdict)]
+    outside = Tally(name, [verdict for verdict in tally.verdicts if verdict not in held])
+    report.figure(f"{name}: cases", count, ">= 400", count >= 400)
+    report.figure(f"{name}: load stays on, held by hardware", len(held), "written list", True)
+    report.figure(f"{name}: unsafe outside the list", len(outside.unsafe), "0", not outside.unsafe)
+    report.figure(f"{name}: reaction budgets missed", len(tally.late), "0", not tally.late)
+    report.causes(outside, most)
 
 
 def doubles(report: Report, tally: Tally, most: int) -> None:

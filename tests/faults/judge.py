@@ -38,12 +38,21 @@ class Case:
 
 @dataclass(slots=True)
 class Verdict:
-    """What has come of a case: failures (empty: safe and in time), who tripped, how long it took."""
+    """What has come of a case: failures (empty: safe and in time), who tripped, how long it took.
+
+    ``missing`` is what the safe state lacked in the end.
+    """
 
     case: Case
     failures: list[str] = field(default_factory=list[str])
+    missing: list[str] = field(default_factory=list[str])
     tripped_by: str = ""
     ended_after_s: float = inf
+
+    @property
+    def only_force(self) -> bool:
+        """Nothing is wrong but that the load stayed on: in time, no harm, no invariant broken, all else safe."""
+        return len(self.failures) == 1 and [text.partition(" ")[0] for text in self.missing] == ["force"]
 
 
 def exposed(stage: Stage, exposure: Exposure) -> bool:
@@ -162,6 +171,7 @@ class Judge:
         self.safe_since_s = inf
         allowed_s = SAFE_S + (HEARTBEAT_S if stage.faulty.killed else 0.0)
         if now - self.ended_s > allowed_s:
+            self.verdict.missing = missing
             text = f"not safe {allowed_s:g} s after the end: {', '.join(missing)}{self._why()}"
             self.verdict.failures.append(text)
             return True

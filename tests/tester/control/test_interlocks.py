@@ -102,6 +102,7 @@ CAUSES: dict[str, list[Break]] = {
     "overspeed": [_set(wheel_speed_m_s=1.3), _set(belt_speed_m_s=-1.5), _set(wheel_speed_m_s=NAN)],
     "wheel speed": [_set(wheel_speed_m_s=0.7), _set(wheel_speed_m_s=0.9), _set(wheel_speed_m_s=NAN)],
     "belt speed": [_set(belt_speed_m_s=0.4), _set(belt_speed_m_s=0.6), _set(belt_speed_m_s=NAN)],
+    "press speed": [_set(press_mm=12.2), _set(press_mm=NAN)],
     "drive standing under load": [_set(belt_speed_m_s=0.0), _set(wheel_speed_m_s=0.0), _set(belt_speed_m_s=NAN)],
     "belt torn": [_torn],
     "load cell stale": [_stale("cell_at_s")],
