@@ -29,7 +29,7 @@ def begin_stop(state: ControlState, view: View, now: float, bounds: Bounds) -> N
     stop = state.stop
     stop.began_s = now
     stop.speed_m_s = _speed(view, bounds)
-    coming = max(0.0, state.setpoints.press_mm_s)
+    coming = max(view.press.high_mm_s, state.setpoints.press_mm_s)
     coming_mm = coming * (LAG_S + 0.5 * coming / view.rig.axes.press.deceleration)
     stop.press_mm = view.readings.press_mm + coming_mm if isfinite(view.readings.press_mm) else float("inf")
     stop.fast_s = float("inf")

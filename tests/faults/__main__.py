@@ -11,7 +11,7 @@ import sys
 from dataclasses import dataclass, field
 
 from sim.faults import CATALOGUE
-from tests.faults import every_scan
+from tests.faults import every_scan, late_scans
 from tests.faults.campaign import PAIRS, Tally, all_cases, conduct, faults_of_campaign, pairs, rehearsals, sample
 from tests.faults.hardware import held_by_hardware, press_must_lift
 from tests.faults.judge import Verdict
@@ -82,6 +82,7 @@ def short(report: Report, jobs: int, most: int) -> None:
     some = [ticks[i * (len(ticks) - 1) // (SAMPLE_SCANS - 1)] for i in range(SAMPLE_SCANS)]
     for tally in every_scan.conduct(some, jobs=jobs).values():
         scans(report, tally, SAMPLE_SCANS, most)
+    late(report, most)
     spent(report, began_s, SAMPLE_CPU_S)
 
 
@@ -96,6 +97,7 @@ def full(report: Report, jobs: int, most: int) -> None:
     doubles(report, conduct("pairs", pairs(moments, faults, PAIRS), jobs, budgets=False), most)
     held = sample(all_cases(moments, faults), SAMPLE_CASES)
     held_press(report, conduct("grid, press held without power", held, jobs, (HOLD,)), most)
+    late(report, most)
     ticks = range(every_scan.scans())
     for tally in every_scan.conduct(ticks, every_scan.EVENTS[:3], jobs).values():
         scans(report, tally, every_scan.ASKED_FOR, most)
@@ -142,6 +144,14 @@ def scans(report: Report, tally: Tally, points: int, most: int) -> None:
     """Print the figures of one event at every scan."""
     report.figure(f"{tally.name}: points", len(tally.verdicts), f">= {points}", len(tally.verdicts) >= points)
     report.figure(f"{tally.name}: failures", len(tally.failed), "0", not tally.failed)
+    report.causes(tally, most)
+
+
+def late(report: Report, most: int) -> None:
+    """Print the figures of late scans on a rig whose drives wait."""
+    tally = late_scans.conduct()
+    report.figure(f"{tally.name}: cases", len(tally.verdicts), ">= 25", len(tally.verdicts) >= 25)
+    report.figure(f"{tally.name}: not tripped as such", len(tally.failed), "0", not tally.failed)
     report.causes(tally, most)
 
 

@@ -6,7 +6,7 @@ from functools import cache
 
 import pytest
 
-from tests.faults import every_scan
+from tests.faults import every_scan, late_scans
 from tests.faults.__main__ import main
 from tests.faults.campaign import Tally, all_cases, conduct, faults_of_campaign, pairs, sample
 from tests.faults.hardware import HARDWARE_MUST_HOLD, PRESS_RELEASE, UNLIFTED, held_by_hardware, press_must_lift
@@ -48,6 +48,11 @@ def test_a_few_pairs_end_safely():
 def test_stops_and_kills_at_a_few_scans_end_safely():
     for tally in every_scan.conduct((450, 3000, 6000)).values():
         assert failures(tally) == []
+
+
+def test_a_late_scan_is_the_first_cause_where_no_drive_trips_before():
+    tally = late_scans.conduct()
+    assert len(tally.verdicts) >= 25 and failures(tally) == []
 
 
 def test_a_sample_has_every_fault_once_before_any_twice():
