@@ -16,6 +16,7 @@ from sim.faults import can as c
 from sim.faults import drives as d
 from sim.faults import modbus as m
 from sim.faults import people as p
+from sim.faults import sdo
 from sim.faults import sensors as s
 from sim.faults.kinds import Exposure, FaultKind, Reaction
 
@@ -49,6 +50,12 @@ def _drive_rows() -> Iterator[FaultKind]:
         yield FaultKind(f"{axis} drive data lost", partial(c.FramesLost, axis, o.TPDO1_BASE), ENABLED, TRIP,
                         0.15 + SCAN_S)
         yield FaultKind(f"{axis} drive of another make", partial(d.WrongIdentity, axis), CONNECTING, TRIP, 3.0)
+        yield FaultKind(f"{axis} drive mode refused", partial(sdo.ModeRefused, axis), CONNECTING, TRIP, 5.0)
+        yield FaultKind(f"{axis} drive SDO abort", partial(sdo.SdoSpoiled, axis, "abort"), CONNECTING, TRIP, 3.0)
+        yield FaultKind(f"{axis} drive SDO toggle error", partial(sdo.SdoSpoiled, axis, "toggle"), CONNECTING, TRIP,
+                        10.0, note="in segmented uploads, which a device may choose for any object")
+        yield FaultKind(f"{axis} drive SDO of another object", partial(sdo.SdoSpoiled, axis, "other object"),
+                        CONNECTING, TRIP, 10.0, note="a reply that is not believed counts as none: tried again")
         yield FaultKind(f"{axis} drive SDO silent", partial(c.FramesLost, axis, o.SDO_REPLY_BASE), CONNECTING, TRIP,
                         10.0, note="every request is tried again before a drive is given up")
     for axis in VELOCITY_AXES:
@@ -75,6 +82,8 @@ def _bus_rows() -> Iterator[FaultKind]:
                     TRIP, 0.1 + SCAN_S)
     yield FaultKind("second master stops nodes", partial(c.SecondMaster, o.NMT_ID, _NMT_STOP_ALL), DRIVES, TRIP,
                     0.2 + SCAN_S)
+    yield FaultKind("belt drive short emergency", partial(d.ShortEmergency, "belt", OVERHEATED, 3), ALWAYS, TRIP,
+                    0.02 + SCAN_S, lasts_s=0.3, note="what is missing of it counts as an unknown error")
     yield FaultKind("belt drive emergency storm", partial(c.EmergencyStorm, "belt", CAN_OVERRUN), ALWAYS, MAY, 0.1)
 
 
@@ -97,12 +106,24 @@ def _modbus_rows() -> Iterator[FaultKind]:
         yield FaultKind(f"{device} replies cut short", partial(m.Impaired, device, "truncate"), when, TRIP, budget_s)
         yield FaultKind(f"{device} replies of another address", partial(m.Impaired, device, "wrong_id"), when, TRIP,
                         budget_s)
+        yield FaultKind(f"{device} replies split", partial(m.Impaired, device, "split", delay_s=0.005), when, MAY,
+                        budget_s, note="a gateway or a slow driver of the line: the second half comes 5 ms later")
+        yield FaultKind(f"{device} replies merged", partial(m.Impaired, device, "merged"), when, MAY, budget_s,
+                        note="a gateway keeps every second reply and sends it with the next, in one piece")
         yield FaultKind(f"{device} replies late", partial(m.LateReply, device), when, TRIP, budget_s + 0.5, "ms", 1.5)
         yield FaultKind(f"{device} reply late once", partial(m.Impaired, device, "late", count=1, delay_s=0.02),
                         ALWAYS, RIDE, 0.0)
         yield FaultKind(f"{device} CRC error once", partial(m.Impaired, device, "corrupt", count=1), ALWAYS, RIDE, 0.0)
         yield FaultKind(f"{device} exception", partial(_exception, device), when, TRIP, budget_s, "", 4.0)
         yield FaultKind(f"{device} line unplugged", partial(m.LineGone, device), DRIVES, TRIP, 0.2 + SCAN_S)
+
+
+    yield FaultKind("load cell words swapped", partial(m.Impaired, "load cell", "swapped"), LOADED, TRIP, 0.1 + SCAN_S,
+                    note="the order of the words of its 32-bit values was changed at the device")
+    yield FaultKind("load cell half updated", partial(m.Impaired, "load cell", "torn"), LOADED, MAY, 0.15,
+                    note="a value of 32 bits is read while the device writes it: off by 3277 N where its sign changes")
+    yield FaultKind("jacket memory worn out", partial(m.MemoryWorn, "jacket"), ALWAYS, MAY, 1.0,
+                    note="what it keeps without supply, standby among it, cannot be changed any more: exception 04")
 
 
 def _exception(device: str, code: float) -> m.ExceptionReply:

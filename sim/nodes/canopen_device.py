@@ -281,6 +281,10 @@ class CanopenDevice:
         self.error(RPDO_TIMED_OUT, t)
         self._connection_lost(t)
 
+    def serve_with(self, server: SdoServer) -> None:
+        """Let another SDO server answer from now on."""
+        self._sdo = server
+
     # SDO -----------------------------------------------------------------------------------------------------
 
     def _on_sdo(self, data: bytes, t: float) -> None:

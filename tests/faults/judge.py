@@ -15,6 +15,8 @@ from tests.faults.stage import Stage
 WATCHED_S = 10.0
 """A fault that ends nothing is watched this long, s of rig time; a slow one SLOW_S."""
 SLOW_S = 125.0
+MISSED_S = 1.0
+"""A fault that only the next connection can see is watched this long in a run."""
 SETTLED_S = 0.5
 """An end state counts as reached when it has lasted this long."""
 ROUNDING_S = 0.011
@@ -81,6 +83,15 @@ def exposed(stage: Stage, exposure: Exposure) -> bool:
     return truth.force_n > 20.0
 
 
+def _watched_s(stage: Stage, kinds: tuple[FaultKind, ...]) -> float:
+    """Return how long a case is watched that does not end, s."""
+    if any(kind.slow for kind in kinds):
+        return SLOW_S
+    if stage.run.engine.scans > 0 and all(kind.exposure is Exposure.CONNECTING for kind in kinds):
+        return MISSED_S
+    return WATCHED_S
+
+
 class Judge:
     """Watches one stage under its faults, tick by tick."""
 
@@ -97,8 +108,7 @@ class Judge:
         self._exposed_s = [inf] * len(self.kinds)
         self._was_running = stage.running
         stage.inject(*(Injection(When(at_s=self.onset_s), kind, text=kind.phrase) for kind in self.kinds))
-        slow = any(kind.slow for kind in self.kinds)
-        self.until_s = self.onset_s + (SLOW_S if slow else WATCHED_S)
+        self.until_s = self.onset_s + _watched_s(stage, self.kinds)
 
     def run(self) -> Verdict:
         """Tick until it is clear what has come of it."""

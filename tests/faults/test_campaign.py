@@ -33,6 +33,11 @@ def test_the_recipe_runs_to_its_end_without_harm_and_without_a_trip():
     assert {moment.phase for moment in found} == {"begin", "middle", "end"}
 
 
+def test_a_run_spares_the_memory_of_the_jackets_controller():
+    wear = rehearse("short")[1].rig.jacket.wear
+    assert wear and max(wear.values()) <= 20, "100 000 writes are 5 000 such runs and more"
+
+
 def test_a_few_faults_at_a_few_moments_end_safely_and_in_time():
     cases = sample(all_cases(moments(), faults_of_campaign(everything=True)), FEW)
     tally = conduct("few", cases)
