@@ -136,6 +136,9 @@ def _sensor_rows() -> Iterator[FaultKind]:
     yield FaultKind("load cell saturated", partial(s.CellFault, "saturated"), LOADED, TRIP, 0.1 + SCAN_S)
     yield FaultKind("load cell offset", partial(s.CellFault, "offset"), PRESSING, MAY, 1.0, "N", 30.0,
                     note="seen at the next check of the zero; the force stays inside its limit")
+    yield FaultKind("load cell jumps", partial(s.CellFault, "offset"), PRESSING, TRIP, 0.05 + 2.0 * SCAN_S, "N", 150.0,
+                    lasts_s=0.3,
+                    note="a bolt gives way, an amplifier changes its range: the load reads above its target")
     yield FaultKind("load cell reads low", partial(s.CellFault, "low"), PRESSING, MAY, 1.0, "%", 50.0,
                     note="the load loop presses harder: the press position against the contact shows it")
     yield FaultKind("load cell drift", partial(s.CellFault, "drift"), PRESSING, MAY, 10.0, "N/s", 2.0)

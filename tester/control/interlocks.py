@@ -96,7 +96,7 @@ INTERLOCKS: tuple[Interlock, ...] = (
     Interlock("jacket hot", "hub above its limit", "hub > limits.jacket + jacket_margin",
               lambda c: c.jacket_delay_s, CONTROLLED, ACK),
     Interlock("jacket runaway", "hub above every setpoint of the last ten minutes",
-              "hub > highest setpoint + runaway with output", lambda c: c.runaway_delay_s, CONTROLLED, ACK),
+              "hub > highest setpoint + runaway; cooling without output: > the coolest since + runaway", lambda c: c.runaway_delay_s, CONTROLLED, ACK),
     Interlock("heater stuck", "the hub heats although no output is given",
               "rate > stuck_rate, no output for stuck_off", lambda c: c.stuck_delay_s, CONTROLLED, REPAIR),
     Interlock("heater line open", "full output and the hub does not warm: slip ring or heater open",

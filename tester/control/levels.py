@@ -171,8 +171,11 @@ def heat_levels(v: View) -> int:
         if not (r.hub_c <= v.limits.jacket_c + b.jacket_margin_k):
             held |= _HUB_HOT
         ceiling = v.state.hub_ceiling
-        if heats and ceiling and not (r.hub_c <= max(ceiling[0][1], v.rig.loops.heat.hub_min_c) + b.runaway_k):
-            held |= _RUNAWAY
+        # A hub that was hot takes longer to cool than the window is: then it must not get hotter again.
+        if ceiling:
+            highest = max(ceiling[0][1], v.rig.loops.heat.hub_min_c, jacket.coolest_c)
+            if not (r.hub_c <= highest + b.runaway_k):
+                held |= _RUNAWAY
         if not (jacket.rate_k_s <= b.stuck_rate_k_s) and r.now_s - jacket.off_since_s >= b.stuck_off_s:
             held |= _STUCK
     if r.now_s - jacket.weak_since_s >= b.open_s and not (jacket.rise_k >= b.open_rise_k):

@@ -38,6 +38,8 @@ class JacketMonitor:
     """(time, filtered hub) at the last two ends of a window, older first."""
     off_since_s: float = inf
     """Since when no heat has been commanded, or none has been put out."""
+    coolest_c: float = -inf
+    """The coolest valid reading since the last output; -inf while there is one."""
     weak_since_s: float = inf
     """Since when the output has been high with the hub well below its setpoint."""
     weak_from_c: float = nan
@@ -48,6 +50,7 @@ class JacketMonitor:
         """Compare nothing with the readings before: a person was at the wheel and its hub."""
         self.filtered_c = nan
         self.jump_k = 0.0
+        self.coolest_c = -inf
         self.blind_until_s = now + BLIND_S
 
     def update(self, r: Readings, heat: bool, setpoint_c: float, bounds: InterlocksConfig) -> None:
@@ -64,6 +67,10 @@ class JacketMonitor:
         known = isfinite(self.hub_c) and stamp > self.blind_until_s
         self.jump_k = abs(hub - self.hub_c) if known else 0.0
         self.hub_c = hub
+        if not r.heat_percent <= 0.0:
+            self.coolest_c = -inf
+        elif self.coolest_c == -inf or hub < self.coolest_c:
+            self.coolest_c = hub
         self._follow_rate(stamp, hub, dt)
         self._watch_line(r, heat, setpoint_c, bounds)
 
