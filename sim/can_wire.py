@@ -51,6 +51,7 @@ class CanWire:
         "_cycle_ids",
         "_cycle_listeners",
         "_cycle_s",
+        "_cycled_s",
         "_followers",
         "_frame_s",
         "_inbox",
@@ -63,6 +64,7 @@ class CanWire:
         "_repeatable",
         "_routes",
         "_sequence",
+        "_skipped_s",
         "_taken",
         "_urgent",
         "bitrate",
@@ -97,6 +99,8 @@ class CanWire:
         self._cycle_ids: tuple[int, ...] = ()
         self._cycle_listeners: list[tuple[Listener, ...]] = []
         self._cycle_s = 0.0
+        self._cycled_s = -inf  # when that cycle last went unheard
+        self._skipped_s: dict[int, float] = {}  # the same of frames of earlier cycles
         self._offsets_s: tuple[float, ...] = ()
         self._sequence = 0
         self._urgent: list[float] = []
@@ -152,7 +156,7 @@ class CanWire:
         if self.ready_s <= now:
             self.settle(now)
         start = self._busy_s if self._busy_s > now else now
-        self._busy_s = end = start + self._cycle_s
+        self._cycled_s = self._busy_s = end = start + self._cycle_s
         self.occupied_s += self._cycle_s
         if payloads is not taken:
             self._taken = payloads
@@ -207,7 +211,7 @@ class CanWire:
 
         Listeners are called in the order of ``rank``: nodes that answer a broadcast at the same time give their
         node id, because the lowest identifier wins the wire. ``repeatable``: the same data again mean nothing to the
-        listener, and when they came does not either; it need not be called for them (``forget_cycle``).
+        listener; it need not be called for them (``forget_cycle``) and asks when they came (``skipped_s``).
         """
         first = not self._routes.get(can_id)
         if repeatable and (first or can_id in self._repeatable):
@@ -229,7 +233,16 @@ class CanWire:
 
     def forget_cycle(self) -> None:
         """Have the next cycle taken by every listener, whatever it holds."""
-        self._taken = None
+        if self._taken is not None:
+            for can_id in self._cycle_ids:
+                self._skipped_s[can_id] = self._cycled_s
+            self._taken = None
+
+    def skipped_s(self, can_id: int) -> float:
+        """Return when a frame last went past its ``repeatable`` listeners because it held nothing new, s; or -inf."""
+        if self._taken is not None and can_id in self._cycle_ids:
+            return self._cycled_s
+        return self._skipped_s.get(can_id, -inf)
 
     def follow(self, follower: SyncFollower, rank: int) -> None:
         """Have a device answer SYNC, in the order of ``rank`` (its node id)."""
@@ -320,7 +333,7 @@ class CanWire:
 
     def _remember(self, can_ids: tuple[int, ...], payloads: tuple[bytes, ...]) -> None:
         """Note a cycle that was taken, if its frames need not be taken again while they stay the same."""
-        self._taken = None
+        self.forget_cycle()
         if not can_ids or can_ids[-1] != SYNC_ID or self._routes.get(SYNC_ID):
             return
         if all(can_id in self._repeatable or not self._routes.get(can_id) for can_id in can_ids[:-1]):

@@ -199,6 +199,17 @@ class ReceivePdo:
         self.held = bytes(self.size)
         self._plain_size = self.size if self.synchronous and self.deadline_s == 0.0 else -1
 
+    def watch(self, t: float) -> None:
+        """Expect the next frame within the deadline from ``t`` s on."""
+        self.deadline_at = t + self.deadline_s
+        if self.synchronous:
+            self._plain_size = self.size
+
+    def unwatch(self) -> None:
+        """Expect nothing until a frame has come again."""
+        self.deadline_at = inf
+        self._plain_size = -1
+
     def on_frame(self, data: bytes, t: float) -> None:
         """Take a frame that arrived at ``t`` s."""
         self.stamp_s = t

@@ -133,8 +133,7 @@ class PdoExchange(SyncFollower):
             for received in self.rpdos:
                 if received.cob_id is not None:
                     self.owner.prepare_sink(received)
-                    repeatable = received.synchronous and received.deadline_s == 0.0
-                    self._listen(received.cob_id, received.on_frame, repeatable=repeatable)
+                    self._listen(received.cob_id, received.on_frame, repeatable=received.synchronous)
             self._single = len(self._each_sync) == 1 and not self._counted_tpdos
             if self._single:
                 self.sample_id, self.take_sample = self._each_sync[0]
@@ -155,7 +154,7 @@ class PdoExchange(SyncFollower):
     # in ------------------------------------------------------------------------------------------------------
 
     def examine(self, pdo: ReceivePdo, data: bytes, t: float) -> None:
-        """Take an RPDO with a deadline, an event-driven one, or one of the wrong length."""
+        """Take the first RPDO with a deadline, an event-driven one, or one of the wrong length."""
         pdo.data = data
         size = len(data)
         if pdo.faulty:
@@ -168,7 +167,7 @@ class PdoExchange(SyncFollower):
                 return
         pdo.held = data = data[: pdo.size]
         if pdo.deadline_s > 0.0 and pdo.deadline_at == inf:
-            pdo.deadline_at = t + pdo.deadline_s
+            pdo.watch(t)
             self.owner.recovered(RPDO_TIMED_OUT, t)
             self._find_due()
         if pdo.synchronous:
@@ -227,10 +226,10 @@ class PdoExchange(SyncFollower):
     def fire(self, t: float) -> None:
         """Do what has fallen due by ``t`` s."""
         for pdo in self.rpdos:
-            if pdo.deadline_at <= t:
-                pdo.deadline_at = pdo.stamp_s + pdo.deadline_s
+            if pdo.deadline_at <= t and pdo.cob_id is not None:
+                pdo.watch(max(pdo.stamp_s, self._wire.skipped_s(pdo.cob_id)))
                 if pdo.deadline_at <= t:
-                    pdo.deadline_at = inf
+                    pdo.unwatch()
                     self.refresh()
                     self.owner.deadline_missed(t)
         self.send_events(t)
