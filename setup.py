@@ -26,6 +26,7 @@ HOT = (
     "drivers/modbus/request.py",
     "drivers/modbus/schedule.py",
     "drivers/servo.py",
+    "sim/can_traffic.py",
     "sim/can_wire.py",
     "sim/contact.py",
     "sim/faults/can.py",

@@ -8,84 +8,18 @@ answers) wait in time order until the wire is read, so they win and lose the wir
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
 from bisect import bisect_right, insort
 from collections import deque
-from collections.abc import Callable
 from itertools import accumulate
 from math import inf
-from typing import Final, Protocol
+from typing import Final
 
 from drivers.canopen.objects import SYNC_ID
 from drivers.ports import BusLost, CanFrame
-
-Listener = Callable[[bytes, float], None]
-"""Called with the data of a frame and its arrival time in s."""
+from sim.can_traffic import Beat, CanNode, CanTap, Listener, SyncFollower, frame_bits
 
 _LOAD_MARK_S: Final = 0.1
 """Resolution in s of the one-second bus load."""
-
-
-class CanTap(Protocol):
-    """Whoever wants to see every frame on the wire (the bus log)."""
-
-    def frame(self, t: float, can_id: int, data: bytes, from_pc: bool) -> None:
-        """Take note of a frame that was complete at ``t`` seconds."""
-        ...
-
-
-class CanNode(Protocol):
-    """A device on the wire: it is advanced in time and listens through ``CanWire.listen``."""
-
-    due_s: float
-
-    def advance(self, t0: float, t1: float) -> None:
-        """Move from ``t0`` to ``t1`` seconds, sending what falls due on the way."""
-        ...
-
-
-class SyncFollower(ABC):
-    """A device that answers SYNC.
-
-    ``plain``: nothing but one TPDO goes with the next SYNC: ``sample`` under ``sample_id``, or what ``take_sample``
-    returns where it is ``stale``.
-    """
-
-    __slots__ = ("plain", "sample", "sample_id", "stale", "take_sample")
-
-    def __init__(self, take_sample: Callable[[], bytes]) -> None:
-        """Not ``plain``: answer by ``on_sync``."""
-        self.plain = False
-        self.stale = True
-        self.sample = b""
-        self.sample_id = 0
-        self.take_sample = take_sample
-
-    @abstractmethod
-    def on_sync(self, t: float) -> None:
-        """Act on a SYNC that arrived at ``t`` s and answer it."""
-
-
-class Beat:
-    """A frame that a node sends in a fixed period, by itself; ``due_s`` is when it is sent next."""
-
-    __slots__ = ("can_id", "data", "due_s", "period_s")
-
-    def __init__(self, can_id: int, data: bytes, period_s: float) -> None:
-        """Take the identifier, the data and the period in s (> 0)."""
-        self.can_id = can_id
-        self.data = data
-        self.due_s = inf
-        self.period_s = period_s
-
-
-def frame_bits(length: int) -> int:
-    """Return the worst-case bits of a standard data frame with ``length`` data bytes, intermission included.
-
-    44 bits of frame and 3 of intermission around the data, and one stuff bit for every four of the 34 + 8 n - 1
-    stuffable ones (ISO 11898-1; 135 bits at 8 bytes).
-    """
-    return 47 + 8 * length + (33 + 8 * length) // 4
 
 
 def _same_lengths(payloads: tuple[bytes, ...], others: tuple[bytes, ...]) -> bool:
@@ -117,6 +51,7 @@ class CanWire:
         "_cycle_ids",
         "_cycle_listeners",
         "_cycle_s",
+        "_cycled_s",
         "_followers",
         "_frame_s",
         "_inbox",
@@ -129,6 +64,7 @@ class CanWire:
         "_repeatable",
         "_routes",
         "_sequence",
+        "_skipped_s",
         "_taken",
         "_urgent",
         "bitrate",
@@ -163,6 +99,8 @@ class CanWire:
         self._cycle_ids: tuple[int, ...] = ()
         self._cycle_listeners: list[tuple[Listener, ...]] = []
         self._cycle_s = 0.0
+        self._cycled_s = -inf  # when that cycle last went unheard
+        self._skipped_s: dict[int, float] = {}  # the same of frames of earlier cycles
         self._offsets_s: tuple[float, ...] = ()
         self._sequence = 0
         self._urgent: list[float] = []
@@ -218,7 +156,7 @@ class CanWire:
         if self.ready_s <= now:
             self.settle(now)
         start = self._busy_s if self._busy_s > now else now
-        self._busy_s = end = start + self._cycle_s
+        self._cycled_s = self._busy_s = end = start + self._cycle_s
         self.occupied_s += self._cycle_s
         if payloads is not taken:
             self._taken = payloads
@@ -273,7 +211,7 @@ class CanWire:
 
         Listeners are called in the order of ``rank``: nodes that answer a broadcast at the same time give their
         node id, because the lowest identifier wins the wire. ``repeatable``: the same data again mean nothing to the
-        listener, and when they came does not either; it need not be called for them (``forget_cycle``).
+        listener; it need not be called for them (``forget_cycle``) and asks when they came (``skipped_s``).
         """
         first = not self._routes.get(can_id)
         if repeatable and (first or can_id in self._repeatable):
@@ -295,7 +233,16 @@ class CanWire:
 
     def forget_cycle(self) -> None:
         """Have the next cycle taken by every listener, whatever it holds."""
-        self._taken = None
+        if self._taken is not None:
+            for can_id in self._cycle_ids:
+                self._skipped_s[can_id] = self._cycled_s
+            self._taken = None
+
+    def skipped_s(self, can_id: int) -> float:
+        """Return when a frame last went past its ``repeatable`` listeners because it held nothing new, s; or -inf."""
+        if self._taken is not None and can_id in self._cycle_ids:
+            return self._cycled_s
+        return self._skipped_s.get(can_id, -inf)
 
     def follow(self, follower: SyncFollower, rank: int) -> None:
         """Have a device answer SYNC, in the order of ``rank`` (its node id)."""
@@ -386,7 +333,7 @@ class CanWire:
 
     def _remember(self, can_ids: tuple[int, ...], payloads: tuple[bytes, ...]) -> None:
         """Note a cycle that was taken, if its frames need not be taken again while they stay the same."""
-        self._taken = None
+        self.forget_cycle()
         if not can_ids or can_ids[-1] != SYNC_ID or self._routes.get(SYNC_ID):
             return
         if all(can_id in self._repeatable or not self._routes.get(can_id) for can_id in can_ids[:-1]):

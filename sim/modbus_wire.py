@@ -13,7 +13,7 @@ from typing import Literal, Protocol
 
 from drivers.crc16 import with_crc
 from drivers.ports import BusLost
-from sim.nodes.modbus_slave import BROADCAST, ModbusSlave
+from sim.nodes.modbus_slave import BROADCAST, READ_HOLDING, READ_INPUT, ModbusSlave
 
 
 class LineTap(Protocol):
@@ -24,13 +24,18 @@ class LineTap(Protocol):
         ...
 
 
-Kind = Literal["silence", "lost", "late", "corrupt", "truncate", "split", "noise", "wrong_id", "stale", "exception"]
+Kind = Literal[
+    "silence", "lost", "late", "corrupt", "truncate", "split", "noise", "wrong_id", "stale", "exception",
+    "swapped", "torn", "merged",
+]  # fmt: skip
 """What happens to a transaction:
 
 ``silence`` the slave does not get the request; ``lost`` it acts, the reply is lost; ``late`` the reply comes
 ``delay_s`` later; ``corrupt`` one bit of it is wrong; ``truncate`` its end is missing; ``split`` its second half comes
 ``delay_s`` later; ``noise`` a few bytes come before it; ``wrong_id`` it carries another address; ``stale`` the reply to
-the request before is sent again; ``exception`` the slave answers with exception ``code`` and does nothing.
+the request before is sent again; ``exception`` the slave answers with exception ``code`` and does nothing; ``swapped``
+each pair of registers comes in the other order; ``torn`` each pair has its first register from the reply before, as far
+as the device had come with writing it; ``merged`` the reply is kept, and comes in one piece with the next one.
 """
 
 
@@ -45,6 +50,8 @@ class Impairment:
     skip: int = 0
     delay_s: float = 0.05
     code: int = 4
+    kept: bytes = b""
+    """A reply that waits for the next one."""
     besides: Impairment | None = None
     """What was wrong with the line before: it strikes where this one does not."""
 
@@ -247,7 +254,34 @@ class ModbusWire:
             self._reply(b"\x00\xff\xfe" + reply, start)
         elif kind == "wrong_id":
             self._reply(with_crc(bytes((reply[0] ^ 0x40,)) + reply[1:-2]), start)
+        elif kind == "swapped":
+            self._reply(_in_pairs(reply, reply, swap=True), start)
+        elif kind == "torn":
+            self._reply(_in_pairs(before, reply, swap=False), start)
+        elif kind == "merged":
+            kept, impairment.kept = impairment.kept, b"" if impairment.kept else reply
+            self._last_reply = reply
+            self._busy_s = t
+            if kept:
+                self._reply(kept + reply, start)
         elif kind == "stale":
             self._reply(before or reply, start)
         else:
             self._reply(reply, start)
+
+
+def _in_pairs(before: bytes, reply: bytes, *, swap: bool) -> bytes:
+    """Return a reply to a read with its registers put together anew, two by two; every other reply as it is.
+
+    The first of each pair is that of ``before``, a reply of the same shape, or with ``swap`` the second one.
+    """
+    head, data = reply[:3], reply[3:-2]
+    if reply[1] not in (READ_HOLDING, READ_INPUT) or reply[2] != len(data) or before[:3] != head:
+        return reply
+    words = [data[at : at + 2] for at in range(0, len(data), 2)]
+    for high in range(0, len(words) - 1, 2):
+        if swap:
+            words[high], words[high + 1] = words[high + 1], words[high]
+        else:
+            words[high] = before[3 + 2 * high : 5 + 2 * high]
+    return with_crc(head + b"".join(words))

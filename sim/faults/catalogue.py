@@ -16,6 +16,7 @@ from sim.faults import can as c
 from sim.faults import drives as d
 from sim.faults import modbus as m
 from sim.faults import people as p
+from sim.faults import sdo
 from sim.faults import sensors as s
 from sim.faults.kinds import Exposure, FaultKind, Reaction
 
@@ -25,9 +26,9 @@ OVERCURRENT, OVERHEATED, FOLLOWING_ERROR, ENCODER, CAN_OVERRUN = 0x2310, 0x4310,
 SCAN_S = 0.05
 """The slow scan's period: what is noticed by a scan is noticed this much later at most, s."""
 
-ALWAYS, CONNECTING, ENABLED, TURNING, LOADED, PRESSING, SLIDING, HEATING = (
-    Exposure.ALWAYS, Exposure.CONNECTING, Exposure.ENABLED, Exposure.TURNING, Exposure.LOADED, Exposure.PRESSING,
-    Exposure.SLIDING, Exposure.HEATING,
+ALWAYS, DRIVES, CONNECTING, ENABLED, TURNING, LOADED, PRESSING, SLIDING, HEATING = (
+    Exposure.ALWAYS, Exposure.DRIVES, Exposure.CONNECTING, Exposure.ENABLED, Exposure.TURNING, Exposure.LOADED,
+    Exposure.PRESSING, Exposure.SLIDING, Exposure.HEATING,
 )  # fmt: skip
 TRIP, STOP, HOLD, RIDE, MAY, DEVICES = (
     Reaction.TRIP, Reaction.STOP, Reaction.HOLD, Reaction.RIDE, Reaction.MAY, Reaction.DEVICES
@@ -40,23 +41,29 @@ _ENABLE_AND_GO = b"\x0f\x00" + (50_000).to_bytes(4, "little", signed=True)
 
 def _drive_rows() -> Iterator[FaultKind]:
     for axis in AXES:
-        yield FaultKind(f"{axis} drive fault", partial(d.DriveFault, axis, OVERCURRENT), ALWAYS, TRIP, 0.02 + SCAN_S)
-        yield FaultKind(f"{axis} drive heartbeat lost", partial(d.HeartbeatLost, axis), ALWAYS, TRIP, 0.2 + SCAN_S)
-        yield FaultKind(f"{axis} drive reboots", partial(d.Reboot, axis), ALWAYS, TRIP, 0.25 + SCAN_S,
+        yield FaultKind(f"{axis} drive fault", partial(d.DriveFault, axis, OVERCURRENT), DRIVES, TRIP, 0.02 + SCAN_S)
+        yield FaultKind(f"{axis} drive heartbeat lost", partial(d.HeartbeatLost, axis), DRIVES, TRIP, 0.2 + SCAN_S)
+        yield FaultKind(f"{axis} drive reboots", partial(d.Reboot, axis), DRIVES, TRIP, 0.25 + SCAN_S,
                         lasts_s=1.0, note="its boot-up message comes after 0.2 s")
-        yield FaultKind(f"{axis} drive off the bus", partial(c.NodeCut, axis), ALWAYS, TRIP, 0.2 + SCAN_S)
-        yield FaultKind(f"{axis} drive without supply", partial(d.Unpowered, axis), ALWAYS, TRIP, 0.2 + SCAN_S)
+        yield FaultKind(f"{axis} drive off the bus", partial(c.NodeCut, axis), DRIVES, TRIP, 0.2 + SCAN_S)
+        yield FaultKind(f"{axis} drive without supply", partial(d.Unpowered, axis), DRIVES, TRIP, 0.2 + SCAN_S)
         yield FaultKind(f"{axis} drive data lost", partial(c.FramesLost, axis, o.TPDO1_BASE), ENABLED, TRIP,
                         0.15 + SCAN_S)
         yield FaultKind(f"{axis} drive of another make", partial(d.WrongIdentity, axis), CONNECTING, TRIP, 3.0)
+        yield FaultKind(f"{axis} drive mode refused", partial(sdo.ModeRefused, axis), CONNECTING, TRIP, 5.0)
+        yield FaultKind(f"{axis} drive SDO abort", partial(sdo.SdoSpoiled, axis, "abort"), CONNECTING, TRIP, 3.0)
+        yield FaultKind(f"{axis} drive SDO toggle error", partial(sdo.SdoSpoiled, axis, "toggle"), CONNECTING, TRIP,
+                        10.0, note="in segmented uploads, which a device may choose for any object")
+        yield FaultKind(f"{axis} drive SDO of another object", partial(sdo.SdoSpoiled, axis, "other object"),
+                        CONNECTING, TRIP, 10.0, note="a reply that is not believed counts as none: tried again")
         yield FaultKind(f"{axis} drive SDO silent", partial(c.FramesLost, axis, o.SDO_REPLY_BASE), CONNECTING, TRIP,
                         10.0, note="every request is tried again before a drive is given up")
     for axis in VELOCITY_AXES:
-        yield FaultKind(f"{axis} drive following error", partial(d.DriveFault, axis, FOLLOWING_ERROR), ALWAYS, TRIP,
+        yield FaultKind(f"{axis} drive following error", partial(d.DriveFault, axis, FOLLOWING_ERROR), DRIVES, TRIP,
                         0.02 + SCAN_S)
         yield FaultKind(f"{axis} drive reports overheating", partial(d.Emergency, axis, OVERHEATED), ALWAYS, MAY, 0.1)
-        yield FaultKind(f"{axis} drive setpoints lost", partial(c.FramesLost, axis, o.RPDO1_BASE), ENABLED, MAY, 1.0,
-                        note="noticed as soon as the drive does not follow: a speed error, a load error")
+        yield FaultKind(f"{axis} drive setpoints lost", partial(c.FramesLost, axis, o.RPDO1_BASE), ENABLED, TRIP,
+                        0.2 + SCAN_S, note="the drive's own deadline (0x1400:05), or sooner a speed or load error")
         yield FaultKind(f"{axis} drive feedback frozen", partial(c.FeedbackFrozen, axis), ENABLED, MAY, 1.0,
                         note="noticed when the other readings contradict it")
         yield FaultKind(f"{axis} drive in local mode", partial(d.Local, axis), ENABLED, TRIP, 0.1 + SCAN_S)
@@ -64,17 +71,19 @@ def _drive_rows() -> Iterator[FaultKind]:
 
 
 def _bus_rows() -> Iterator[FaultKind]:
-    yield FaultKind("CAN adapter gone", c.AdapterGone, ALWAYS, TRIP, SCAN_S)
-    yield FaultKind("CAN bus off", c.BusSilent, ALWAYS, TRIP, 0.2 + SCAN_S)
+    yield FaultKind("CAN adapter gone", c.AdapterGone, DRIVES, TRIP, SCAN_S)
+    yield FaultKind("CAN bus off", c.BusSilent, DRIVES, TRIP, 0.2 + SCAN_S)
     yield FaultKind("CAN frames lost", c.FrameLoss, ALWAYS, MAY, 0.5, "%", 20.0)
     yield FaultKind("CAN frames late", c.FramesLate, ENABLED, MAY, 0.5, "ms", 0.1)
     yield FaultKind("CAN frames repeated", c.FramesRepeated, ALWAYS, RIDE, 0.0)
     yield FaultKind("CAN bus busy", c.BusBusy, ALWAYS, MAY, 0.5, "%", 95.0)
-    yield FaultKind("second master SYNC", partial(c.SecondMaster, o.SYNC_ID, b""), ALWAYS, TRIP, 0.1 + SCAN_S)
-    yield FaultKind("second master setpoint", partial(c.SecondMaster, o.RPDO1_BASE, _ENABLE_AND_GO, "belt"), ALWAYS,
+    yield FaultKind("second master SYNC", partial(c.SecondMaster, o.SYNC_ID, b""), DRIVES, TRIP, 0.1 + SCAN_S)
+    yield FaultKind("second master setpoint", partial(c.SecondMaster, o.RPDO1_BASE, _ENABLE_AND_GO, "belt"), DRIVES,
                     TRIP, 0.1 + SCAN_S)
-    yield FaultKind("second master stops nodes", partial(c.SecondMaster, o.NMT_ID, _NMT_STOP_ALL), ALWAYS, TRIP,
+    yield FaultKind("second master stops nodes", partial(c.SecondMaster, o.NMT_ID, _NMT_STOP_ALL), DRIVES, TRIP,
                     0.2 + SCAN_S)
+    yield FaultKind("belt drive short emergency", partial(d.ShortEmergency, "belt", OVERHEATED, 3), ALWAYS, TRIP,
+                    0.02 + SCAN_S, lasts_s=0.3, note="what is missing of it counts as an unknown error")
     yield FaultKind("belt drive emergency storm", partial(c.EmergencyStorm, "belt", CAN_OVERRUN), ALWAYS, MAY, 0.1)
 
 
@@ -97,12 +106,24 @@ def _modbus_rows() -> Iterator[FaultKind]:
         yield FaultKind(f"{device} replies cut short", partial(m.Impaired, device, "truncate"), when, TRIP, budget_s)
         yield FaultKind(f"{device} replies of another address", partial(m.Impaired, device, "wrong_id"), when, TRIP,
                         budget_s)
+        yield FaultKind(f"{device} replies split", partial(m.Impaired, device, "split", delay_s=0.005), when, MAY,
+                        budget_s, note="a gateway or a slow driver of the line: the second half comes 5 ms later")
+        yield FaultKind(f"{device} replies merged", partial(m.Impaired, device, "merged"), when, MAY, budget_s,
+                        note="a gateway keeps every second reply and sends it with the next, in one piece")
         yield FaultKind(f"{device} replies late", partial(m.LateReply, device), when, TRIP, budget_s + 0.5, "ms", 1.5)
         yield FaultKind(f"{device} reply late once", partial(m.Impaired, device, "late", count=1, delay_s=0.02),
                         ALWAYS, RIDE, 0.0)
         yield FaultKind(f"{device} CRC error once", partial(m.Impaired, device, "corrupt", count=1), ALWAYS, RIDE, 0.0)
         yield FaultKind(f"{device} exception", partial(_exception, device), when, TRIP, budget_s, "", 4.0)
-        yield FaultKind(f"{device} line unplugged", partial(m.LineGone, device), ALWAYS, TRIP, 0.2 + SCAN_S)
+        yield FaultKind(f"{device} line unplugged", partial(m.LineGone, device), DRIVES, TRIP, 0.2 + SCAN_S)
+
+
+    yield FaultKind("load cell words swapped", partial(m.Impaired, "load cell", "swapped"), LOADED, TRIP, 0.1 + SCAN_S,
+                    note="the order of the words of its 32-bit values was changed at the device")
+    yield FaultKind("load cell half updated", partial(m.Impaired, "load cell", "torn"), LOADED, MAY, 0.15,
+                    note="a value of 32 bits is read while the device writes it: off by 3277 N where its sign changes")
+    yield FaultKind("jacket memory worn out", partial(m.MemoryWorn, "jacket"), ALWAYS, MAY, 1.0,
+                    note="what it keeps without supply, standby among it, cannot be changed any more: exception 04")
 
 
 def _exception(device: str, code: float) -> m.ExceptionReply:
@@ -115,6 +136,9 @@ def _sensor_rows() -> Iterator[FaultKind]:
     yield FaultKind("load cell saturated", partial(s.CellFault, "saturated"), LOADED, TRIP, 0.1 + SCAN_S)
     yield FaultKind("load cell offset", partial(s.CellFault, "offset"), PRESSING, MAY, 1.0, "N", 30.0,
                     note="seen at the next check of the zero; the force stays inside its limit")
+    yield FaultKind("load cell jumps", partial(s.CellFault, "offset"), PRESSING, TRIP, 0.05 + 2.0 * SCAN_S, "N", 150.0,
+                    lasts_s=0.3,
+                    note="a bolt gives way, an amplifier changes its range: the load reads above its target")
     yield FaultKind("load cell reads low", partial(s.CellFault, "low"), PRESSING, MAY, 1.0, "%", 50.0,
                     note="the load loop presses harder: the press position against the contact shows it")
     yield FaultKind("load cell drift", partial(s.CellFault, "drift"), PRESSING, MAY, 10.0, "N/s", 2.0)
@@ -151,9 +175,9 @@ def _actuator_rows() -> Iterator[FaultKind]:
     yield FaultKind("belt torn", d.BeltTorn, SLIDING, MAY, 1.0)
     yield FaultKind("belt slips on its roller", d.BeltSlips, SLIDING, MAY, 1.0, "%", 40.0)
     yield FaultKind("wheel slips on its shaft", d.WheelSlipsOnShaft, SLIDING, MAY, 1.0)
-    yield FaultKind("safety chain opened", a.ChainOpen, ALWAYS, TRIP, SCAN_S)
+    yield FaultKind("safety chain opened", a.ChainOpen, DRIVES, TRIP, SCAN_S)
     yield FaultKind("guard opened", a.GuardOpen, ENABLED, TRIP, SCAN_S)
-    yield FaultKind("emergency stop pressed", a.EmergencyStop, ALWAYS, TRIP, SCAN_S)
+    yield FaultKind("emergency stop pressed", a.EmergencyStop, DRIVES, TRIP, SCAN_S)
 
 
 def _computer_rows() -> Iterator[FaultKind]:
@@ -166,9 +190,9 @@ def _computer_rows() -> Iterator[FaultKind]:
     yield FaultKind("clock jump", p.ClockJump, ENABLED, TRIP, SCAN_S, "ms", 2.0, lasts_s=0.5)
     yield FaultKind("operator hold", partial(p.Operator, "hold"), ALWAYS, HOLD, SCAN_S)
     yield FaultKind("operator release", partial(p.Operator, "release"), ALWAYS, RIDE, 0.0)
-    yield FaultKind("operator abort", partial(p.Operator, "abort"), ALWAYS, STOP, SCAN_S)
-    yield FaultKind("operator stop", partial(p.Operator, "stop"), ALWAYS, STOP, SCAN_S)
-    yield FaultKind("operator fast stop", partial(p.Operator, "fast stop"), ALWAYS, STOP, SCAN_S)
+    yield FaultKind("operator abort", partial(p.Operator, "abort"), DRIVES, STOP, SCAN_S)
+    yield FaultKind("operator stop", partial(p.Operator, "stop"), DRIVES, STOP, SCAN_S)
+    yield FaultKind("operator fast stop", partial(p.Operator, "fast stop"), DRIVES, STOP, SCAN_S)
 
 
 def _rows() -> Iterator[FaultKind]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from drivers.canopen import emcy
 from drivers.canopen import objects as o
 from sim.faults.scene import Effect, Scene
 from sim.nodes.cia402_slave import Cia402Slave
@@ -63,6 +64,25 @@ class Emergency(_OnAxis):
     def end(self, scene: Scene, now: float) -> None:
         """Report that it has gone."""
         self.drive(scene).recovered(self.code, now)
+
+
+class ShortEmergency(Emergency):
+    """The drive reports an error in a frame that is too short."""
+
+    __slots__ = ("length",)
+
+    def __init__(self, axis: str, code: int, length: int) -> None:
+        """With the first ``length`` bytes of the message for this emergency code."""
+        super().__init__(axis, code)
+        self.length = length
+
+    def begin(self, scene: Scene, now: float) -> None:
+        """Report it, once."""
+        drive = self.drive(scene)
+        drive.wire.transmit(o.EMERGENCY_BASE + drive.node_id, emcy.encode(self.code, 1)[: self.length], now, True)
+
+    def end(self, scene: Scene, now: float) -> None:
+        """Say nothing: the drive never took note of it."""
 
 
 class HeartbeatLost(_OnAxis):

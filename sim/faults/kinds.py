@@ -13,7 +13,8 @@ from sim.faults.scene import Effect
 class Exposure(Enum):
     """When a fault can be noticed at all: its budget counts from then on."""
 
-    ALWAYS = "at once, once the drives are connected"
+    ALWAYS = "at once, once the run has begun"
+    DRIVES = "at once, once every drive is configured"
     CONNECTING = "at the next connection"
     ENABLED = "while the drives are on"
     TURNING = "while the wheel turns"

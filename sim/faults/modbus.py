@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from sim.faults.scene import Effect, Scene
 from sim.modbus_wire import Impairment, Kind, ModbusWire
-from sim.nodes.modbus_slave import ModbusSlave
+from sim.nodes.modbus_slave import ENDURANCE, ModbusSlave
 
 DEVICES = ("load cell", "thermometer", "jacket")
 REBOOT_S = 2.0
@@ -141,3 +141,21 @@ class DeviceReset(Effect):
         """Have it start when it is time."""
         if now >= self._until_s and not slave_of(scene, self.device).powered:
             switch(scene, self.device, True)
+
+
+class MemoryWorn(Effect):
+    """A device's non-volatile memory has been written too often: what it keeps cannot be changed any more."""
+
+    __slots__ = ("device",)
+
+    def __init__(self, device: str) -> None:
+        """This device."""
+        self.device = device
+
+    def begin(self, scene: Scene, now: float) -> None:
+        """Wear it out."""
+        slave_of(scene, self.device).endurance = 0
+
+    def end(self, scene: Scene, now: float) -> None:
+        """Put in a new one."""
+        slave_of(scene, self.device).endurance = ENDURANCE

@@ -10,7 +10,8 @@ from typing import Final
 
 from drivers.canopen import objects as o
 from drivers.canopen.objects import NmtCommand, NmtState
-from sim.can_wire import Beat, CanWire
+from sim.can_traffic import Beat
+from sim.can_wire import CanWire
 from sim.nodes import communication_objects
 from sim.nodes.emergencies import Emergencies
 from sim.nodes.object_store import ObjectStore
@@ -46,6 +47,7 @@ class CanopenDevice:
         "_heartbeat",
         "_sdo",
         "_turnaround_s",
+        "_withheld",
         "due_s",
         "emergencies",
         "nmt",
@@ -73,6 +75,7 @@ class CanopenDevice:
         self._consumer_heard_s = -inf
         self._boot_at = self._consumer_at = inf
         self._heartbeat = Beat(o.HEARTBEAT_BASE + self.node_id, b"\0", inf)
+        self._withheld = False
         self._sdo = SdoServer(store)
         self.emergencies = Emergencies(wire, store)
         self.pdos = PdoExchange(self, wire, store)
@@ -216,16 +219,18 @@ class CanopenDevice:
 
     def withhold_heartbeat(self, withheld: bool) -> None:
         """Send no heartbeat (True) although 0x1017 asks for it, or send it again."""
-        beat = self._heartbeat
-        self.wire.unbeat(beat, self.now_s)
-        if not withheld and beat.period_s < inf and self.nmt != BOOTING:
-            self.wire.beat(beat, self.now_s + beat.period_s)
+        self._withheld = withheld
+        self._beat_again(self.nmt != BOOTING)
 
     def _on_producer_written(self, sub: int, value: int) -> None:
+        self._heartbeat.period_s = value * 1e-3 if value else inf
+        self._beat_again(True)
+
+    def _beat_again(self, up: bool) -> None:
+        """Begin the heartbeat anew, if there is one and the device is ``up``."""
         beat = self._heartbeat
         self.wire.unbeat(beat, self.now_s)
-        if value:
-            beat.period_s = value * 1e-3
+        if up and not self._withheld and beat.period_s < inf:
             self.wire.beat(beat, self.now_s + beat.period_s)
 
     def _on_consumer_written(self, sub: int, value: int) -> None:
@@ -279,6 +284,10 @@ class CanopenDevice:
         """Report an RPDO that did not come in time, and react as to a lost connection."""
         self.error(RPDO_TIMED_OUT, t)
         self._connection_lost(t)
+
+    def serve_with(self, server: SdoServer) -> None:
+        """Let another SDO server answer from now on."""
+        self._sdo = server
 
     # SDO -----------------------------------------------------------------------------------------------------
 

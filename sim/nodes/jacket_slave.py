@@ -77,6 +77,10 @@ class JacketSlave(ModbusSlave):
         self._lease = profile.writes.get("lease")
         self._switch = profile.switches["run"]
         self._setup = frozenset((write.address, write.value) for write in profile.setup)
+        kept = {self._switch.address, *(write.address for write in profile.setup)}
+        if self._lease is not None:
+            kept.add(self._lease.address)
+        self.stored = frozenset(kept)
         self.put(self._switch.address, self._switch.off.to_bytes(2, "big"))
         self.source = source
         self.sink = sink

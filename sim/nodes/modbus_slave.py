@@ -19,6 +19,9 @@ WRITE_MANY: Final = 16
 ILLEGAL_FUNCTION: Final = 1
 ILLEGAL_ADDRESS: Final = 2
 ILLEGAL_VALUE: Final = 3
+DEVICE_FAILURE: Final = 4
+ENDURANCE: Final = 100_000
+"""Writes that a device's non-volatile memory stands (Eurotherm HA028651)."""
 BROADCAST: Final = 0
 
 _MOST_READ: Final = 125
@@ -72,6 +75,10 @@ class ModbusSlave:
         self.windows = _windows(registers)
         self._reads: dict[bytes, _Read] = {}
         self._writes: dict[bytes, tuple[bytes, int, tuple[int, ...]]] = {}
+        self.stored: frozenset[int] = frozenset()
+        """Registers kept without supply: written to memory when they change [A], each so often (``wear``)."""
+        self.wear: dict[int, int] = {}
+        self.endurance = ENDURANCE
         self.blocks: dict[tuple[int, int], int] = {}
         """Numbers by (address, count) of what is usually read in one request: ``sample`` is asked for these."""
 
@@ -190,9 +197,21 @@ class ModbusSlave:
         self.refresh(t)
         return bytes(read.window.data[read.start : read.last])
 
+    def _keep(self, address: int, value: int) -> int:
+        """Count a write to memory; return 0, or the code of the exception where that is worn out."""
+        if value == self.get(address):
+            return 0
+        worn = self.wear.get(address, 0)
+        if worn >= self.endurance:
+            return DEVICE_FAILURE
+        self.wear[address] = worn + 1
+        return 0
+
     def _write(self, reply: bytes, address: int, values: tuple[int, ...], t: float) -> bytes:
         for place, value in enumerate(values, address):
-            code = self.written(place, value, t)
+            code = self._keep(place, value) if place in self.stored else 0
+            if not code:
+                code = self.written(place, value, t)
             if code:
                 return self.exception(reply[1], code)
             self.put(place, value.to_bytes(2, "big"))

@@ -13,7 +13,7 @@ from typing import Final, Protocol
 from drivers.canopen import objects as o
 from drivers.canopen.dictionary import DICTIONARY
 from drivers.canopen.pdo import PdoMap, PdoMapError
-from sim.can_wire import Listener
+from sim.can_traffic import Listener
 from sim.nodes import sdo_server as sdo
 from sim.nodes.object_store import Key, ObjectStore
 from sim.nodes.sdo_server import SdoAbortError
@@ -198,6 +198,17 @@ class ReceivePdo:
         self.data: bytes | None = None
         self.held = bytes(self.size)
         self._plain_size = self.size if self.synchronous and self.deadline_s == 0.0 else -1
+
+    def watch(self, t: float) -> None:
+        """Expect the next frame within the deadline from ``t`` s on."""
+        self.deadline_at = t + self.deadline_s
+        if self.synchronous:
+            self._plain_size = self.size
+
+    def unwatch(self) -> None:
+        """Expect nothing until a frame has come again."""
+        self.deadline_at = inf
+        self._plain_size = -1
 
     def on_frame(self, data: bytes, t: float) -> None:
         """Take a frame that arrived at ``t`` s."""

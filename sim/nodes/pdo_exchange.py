@@ -7,7 +7,8 @@ from math import inf
 from typing import Final, Protocol
 
 from drivers.canopen import objects as o
-from sim.can_wire import CanWire, Listener, SyncFollower
+from sim.can_traffic import Listener, SyncFollower
+from sim.can_wire import CanWire
 from sim.nodes.object_store import ObjectStore
 from sim.nodes.pdo_channels import ReceivePdo, TransmitPdo
 
@@ -58,7 +59,7 @@ class PdoExchange(SyncFollower):
 
     ``due_s`` is the next deadline or event timer; ``urgent`` marks the next synchronous TPDO as urgent for the wire.
     ``plain`` says that the next SYNC asks for nothing but ``sample``, the TPDO ``sample_id``; while it is ``stale`` it
-    has to be taken anew (``sim.can_wire.SyncFollower``).
+    has to be taken anew (``sim.can_traffic.SyncFollower``).
     """
 
     __slots__ = (
@@ -132,8 +133,7 @@ class PdoExchange(SyncFollower):
             for received in self.rpdos:
                 if received.cob_id is not None:
                     self.owner.prepare_sink(received)
-                    repeatable = received.synchronous and received.deadline_s == 0.0
-                    self._listen(received.cob_id, received.on_frame, repeatable=repeatable)
+                    self._listen(received.cob_id, received.on_frame, repeatable=received.synchronous)
             self._single = len(self._each_sync) == 1 and not self._counted_tpdos
             if self._single:
                 self.sample_id, self.take_sample = self._each_sync[0]
@@ -154,7 +154,7 @@ class PdoExchange(SyncFollower):
     # in ------------------------------------------------------------------------------------------------------
 
     def examine(self, pdo: ReceivePdo, data: bytes, t: float) -> None:
-        """Take an RPDO with a deadline, an event-driven one, or one of the wrong length."""
+        """Take the first RPDO with a deadline, an event-driven one, or one of the wrong length."""
         pdo.data = data
         size = len(data)
         if pdo.faulty:
@@ -167,7 +167,7 @@ class PdoExchange(SyncFollower):
                 return
         pdo.held = data = data[: pdo.size]
         if pdo.deadline_s > 0.0 and pdo.deadline_at == inf:
-            pdo.deadline_at = t + pdo.deadline_s
+            pdo.watch(t)
             self.owner.recovered(RPDO_TIMED_OUT, t)
             self._find_due()
         if pdo.synchronous:
@@ -226,10 +226,10 @@ class PdoExchange(SyncFollower):
     def fire(self, t: float) -> None:
         """Do what has fallen due by ``t`` s."""
         for pdo in self.rpdos:
-            if pdo.deadline_at <= t:
-                pdo.deadline_at = pdo.stamp_s + pdo.deadline_s
+            if pdo.deadline_at <= t and pdo.cob_id is not None:
+                pdo.watch(max(pdo.stamp_s, self._wire.skipped_s(pdo.cob_id)))
                 if pdo.deadline_at <= t:
-                    pdo.deadline_at = inf
+                    pdo.unwatch()
                     self.refresh()
                     self.owner.deadline_missed(t)
         self.send_events(t)

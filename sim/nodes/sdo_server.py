@@ -118,10 +118,13 @@ class SdoServer:
         size = len(value)
         if 1 <= size <= 4:
             return self._head(0x43 | (4 - size) << 2) + value.ljust(4, b"\0")
+        return self._begin_segments(value)
+
+    def _begin_segments(self, value: bytes) -> bytes:
         self._mode = _UPLOAD
         self._buffer = value
         self._toggle = 0
-        return self._head(0x41) + size.to_bytes(4, "little")
+        return self._head(0x41) + len(value).to_bytes(4, "little")
 
     def _upload_segment(self, data: bytes) -> bytes:
         self._check_toggle(data[0])

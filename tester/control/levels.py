@@ -21,55 +21,56 @@ SPEEDS_OLD_S: Final = 0.5
 PRESSED_N: Final = 50.0
 """A contact that nobody wants gets no firmer by more than this, N [A]: runout and noise are 10 N."""
 PUSHED_MM: Final = 0.3
-"""A press that was told to lift has gone on by this at most, mm [A]: its ramp from 10 mm/s takes less."""
+"""A press that was told to lift has gone on beyond its ramp by this at most, mm [A]: 50 N at 200 N of load."""
 APART_M_S: Final = 0.1
 """One drive standing, the other faster than this, is no rounding of two equal ramps [A]."""
 CLEAR_MM: Final = 0.5
 """The press stands this far off the known contact: open, whatever the cell shows [A] (runout 0.05 mm, wear)."""
 
-_CHAIN: Final = bit('safety chain')
-_FAULT: Final = bit('drive fault')
-_BUS: Final = bit('bus lost')
-_MASTER: Final = bit('second master')
-_JUMPED: Final = bit('clock jump')
-_LATE: Final = bit('scan late')
-_DELAYED: Final = bit('scan delayed')
-_GUARD: Final = bit('guard open')
-_DATA: Final = bit('drive data stale')
-_DROPPED: Final = bit('drive dropped out')
-_OVERSPEED: Final = bit('overspeed')
-_WHEEL: Final = bit('wheel speed')
-_BELT: Final = bit('belt speed')
-_STANDING: Final = bit('drive standing under load')
-_TORN: Final = bit('belt torn')
-_CELL_STALE: Final = bit('load cell stale')
-_CELL_BAD: Final = bit('load cell saturated')
+_CHAIN: Final = bit("safety chain")
+_FAULT: Final = bit("drive fault")
+_BUS: Final = bit("bus lost")
+_MASTER: Final = bit("second master")
+_JUMPED: Final = bit("clock jump")
+_LATE: Final = bit("scan late")
+_DELAYED: Final = bit("scan delayed")
+_GUARD: Final = bit("guard open")
+_DATA: Final = bit("drive data stale")
+_DROPPED: Final = bit("drive dropped out")
+_OVERSPEED: Final = bit("overspeed")
+_WHEEL: Final = bit("wheel speed")
+_BELT: Final = bit("belt speed")
+_PRESS: Final = bit("press speed")
+_STANDING: Final = bit("drive standing under load")
+_TORN: Final = bit("belt torn")
+_CELL_STALE: Final = bit("load cell stale")
+_CELL_BAD: Final = bit("load cell saturated")
 _CELL_FROZEN: Final = bit("load cell frozen")
-_OVERLOAD: Final = bit('overload')
-_OVERSHOOT: Final = bit('load overshoot')
-_CONTACT: Final = bit('contact lost')
-_POWER: Final = bit('slip power')
-_SURFACE_HOT: Final = bit('surface hot')
-_HUB_HOT: Final = bit('jacket hot')
-_RUNAWAY: Final = bit('jacket runaway')
-_STUCK: Final = bit('heater stuck')
-_OPEN: Final = bit('heater line open')
-_STANDSTILL: Final = bit('heating at standstill')
-_HUB_JUMP: Final = bit('hub sensor jump')
-_SURFACE_JUMP: Final = bit('surface sensor jump')
-_FROZEN: Final = bit('thermometer frozen')
-_MODEL: Final = bit('surface off model')
-_SURFACE_STALE: Final = bit('surface data stale')
-_JACKET_STALE: Final = bit('jacket data stale')
-_REFUSED: Final = bit('device refused')
-_NOISY: Final = bit('line noisy')
-_WORN: Final = bit('wheel worn')
-_NOT_LIFTED: Final = bit('not lifted')
-_LIFT_FAILED: Final = bit('lift failed')
-_NOT_STOPPING: Final = bit('not stopping')
-_QUICK_FAILED: Final = bit('quick stop failed')
-_HEAT_ON: Final = bit('heat not off')
-_WELDED: Final = bit('contactor welded')
+_OVERLOAD: Final = bit("overload")
+_OVERSHOOT: Final = bit("load overshoot")
+_CONTACT: Final = bit("contact lost")
+_POWER: Final = bit("slip power")
+_SURFACE_HOT: Final = bit("surface hot")
+_HUB_HOT: Final = bit("jacket hot")
+_RUNAWAY: Final = bit("jacket runaway")
+_STUCK: Final = bit("heater stuck")
+_OPEN: Final = bit("heater line open")
+_STANDSTILL: Final = bit("heating at standstill")
+_HUB_JUMP: Final = bit("hub sensor jump")
+_SURFACE_JUMP: Final = bit("surface sensor jump")
+_FROZEN: Final = bit("thermometer frozen")
+_MODEL: Final = bit("surface off model")
+_SURFACE_STALE: Final = bit("surface data stale")
+_JACKET_STALE: Final = bit("jacket data stale")
+_REFUSED: Final = bit("device refused")
+_NOISY: Final = bit("line noisy")
+_WORN: Final = bit("wheel worn")
+_NOT_LIFTED: Final = bit("not lifted")
+_LIFT_FAILED: Final = bit("lift failed")
+_NOT_STOPPING: Final = bit("not stopping")
+_QUICK_FAILED: Final = bit("quick stop failed")
+_HEAT_ON: Final = bit("heat not off")
+_WELDED: Final = bit("contactor welded")
 
 
 def process_levels(v: View) -> int:
@@ -134,6 +135,8 @@ def motion_levels(v: View) -> int:
             held |= _WHEEL
         if not (v.belt.low_m_s - error <= belt <= v.belt.high_m_s + error):
             held |= _BELT
+        if not (v.press.ahead_mm <= b.press_error_mm):
+            held |= _PRESS
     if not (r.force_z_n < UNLOADED_N):
         belt_moves = belt > STANDING_M_S or belt < -STANDING_M_S
         # While they come down together one may stand a moment before the other: that is no wheel on a stopped belt.
@@ -195,8 +198,11 @@ def heat_levels(v: View) -> int:
         if not (r.hub_c <= b.jacket_c + b.jacket_margin_k):
             held |= _HUB_HOT
         ceiling = v.state.hub_ceiling
-        if heats and ceiling and not (r.hub_c <= max(ceiling[0][1], b.hub_min_c) + b.runaway_k):
-            held |= _RUNAWAY
+        # A hub that was hot takes longer to cool than the window is: then it must not get hotter again.
+        if ceiling:
+            highest = max(ceiling[0][1], b.hub_min_c, jacket.coolest_c)
+            if not (r.hub_c <= highest + b.runaway_k):
+                held |= _RUNAWAY
         if not (jacket.rate_k_s <= b.stuck_rate_k_s) and r.now_s - jacket.off_since_s >= b.stuck_off_s:
             held |= _STUCK
     if r.now_s - jacket.weak_since_s >= b.open_s and not (jacket.rise_k >= b.open_rise_k):

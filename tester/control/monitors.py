@@ -39,6 +39,8 @@ class JacketMonitor:
     """(time, filtered hub) at the last two ends of a window, older first."""
     off_since_s: float = inf
     """Since when no heat has been commanded, or none has been put out."""
+    coolest_c: float = -inf
+    """The coolest valid reading since the last output; -inf while there is one."""
     weak_since_s: float = inf
     """Since when the output has been high with the hub well below its setpoint."""
     weak_from_c: float = nan
@@ -49,6 +51,7 @@ class JacketMonitor:
         """Compare nothing with the readings before: a person was at the wheel and its hub."""
         self.filtered_c = nan
         self.jump_k = 0.0
+        self.coolest_c = -inf
         self.blind_until_s = now + BLIND_S
 
     def update(self, r: Readings, heat: bool, setpoint_c: float, bounds: Thresholds) -> None:
@@ -65,6 +68,10 @@ class JacketMonitor:
         known = isfinite(self.hub_c) and stamp > self.blind_until_s
         self.jump_k = abs(hub - self.hub_c) if known else 0.0
         self.hub_c = hub
+        if not r.heat_percent <= 0.0:
+            self.coolest_c = -inf
+        elif self.coolest_c == -inf or hub < self.coolest_c:
+            self.coolest_c = hub
         self._follow_rate(stamp, hub, dt)
         self._watch_line(r, heat, setpoint_c, bounds)
 
@@ -126,6 +133,37 @@ class SurfaceMonitor:
         known = isfinite(self.surface_c) and self.stamp_s > self.blind_until_s
         self.jump_k = abs(r.surface_c - self.surface_c) if known else 0.0
         self.surface_c = r.surface_c
+
+
+@dataclass(slots=True)
+class PressTracker:
+    """How far the press has come towards the contact beyond what it was told to."""
+
+    ramp_mm_s2: float
+    """Of a slow ramp."""
+    high_mm_s: float = 0.0
+    """The fastest it may still be coming."""
+    at_s: float = -inf
+    press_mm: float = nan
+    ahead_mm: float = 0.0
+
+    def begin(self, r: Readings) -> None:
+        """Begin where the press stands."""
+        self.high_mm_s = self.ahead_mm = 0.0
+        self.at_s, self.press_mm = r.press_at_s, r.press_mm
+
+    def follow(self, target_mm_s: float, dt: float, r: Readings) -> None:
+        """Take in a target of ``dt`` s, and a new position where there is one."""
+        high = self.high_mm_s - self.ramp_mm_s2 * dt
+        if not high > target_mm_s:
+            high = target_mm_s
+        self.high_mm_s = high = high if high > 0.0 else 0.0
+        at_s = r.press_at_s
+        if at_s > self.at_s:
+            press_mm = r.press_mm
+            ahead = self.ahead_mm + press_mm - self.press_mm - high * (at_s - self.at_s)
+            self.ahead_mm = 0.0 if ahead < 0.0 else ahead
+            self.at_s, self.press_mm = at_s, press_mm
 
 
 @dataclass(slots=True)

@@ -71,7 +71,7 @@ class StopProgress:
     speed_m_s: float = 0.0
     """The faster of wheel and belt then."""
     press_mm: float = float("inf")
-    """Where the press was then; infinity where that is not known."""
+    """How far the press may still have come then, by its ramp; infinity where that is not known."""
     fast_s: float = float("inf")
     """When the quick stop began."""
     fast_speed_m_s: float = 0.0

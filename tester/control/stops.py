@@ -15,17 +15,24 @@ STOP_TIMEOUT_S: Final = 10.0
 """A stop that has not reached standstill by then latches where it is, power off [A]."""
 SLIP_OUT_S: Final = 0.5
 """Slip is taken out under load for this long at most before both drives come down [A]."""
+LAG_S: Final = 0.05
+"""From a command to the press following it, scan and wire and drive together [A]."""
 MATCHED_M_S: Final = 2.0 * STANDING_M_S
 LIFTED_MM: Final = 0.2
 """The press is where it was sent within this [A]."""
 
 
 def begin_stop(state: ControlState, view: View, now: float, bounds: Bounds) -> None:
-    """Note when a stop began, and how fast the drives were: what is not known counts as the most allowed."""
+    """Note when a stop began, and how fast the drives were: what is not known counts as the most allowed.
+
+    A press on its way to the contact still has its ramp before it, and the lag of scan and drive.
+    """
     stop = state.stop
     stop.began_s = now
     stop.speed_m_s = _speed(view, bounds)
-    stop.press_mm = view.readings.press_mm if isfinite(view.readings.press_mm) else float("inf")
+    coming = max(view.press.high_mm_s, state.setpoints.press_mm_s)
+    coming_mm = coming * (LAG_S + 0.5 * coming / view.rig.axes.press.deceleration)
+    stop.press_mm = view.readings.press_mm + coming_mm if isfinite(view.readings.press_mm) else float("inf")
     stop.fast_s = float("inf")
     stop.creeps = False
 

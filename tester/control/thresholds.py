@@ -37,6 +37,7 @@ class Thresholds:
     open_s: float
     overload_factor: float
     overload_margin_n: float
+    press_error_mm: float
     runaway_k: float
     speed_error_m_s: float
     stale_can_s: float

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from math import inf, sqrt
 from typing import Final
 
-from tester.control.monitors import RAMP_SHARE, JacketMonitor, SpeedTracker, SurfaceMonitor
+from tester.control.monitors import RAMP_SHARE, JacketMonitor, PressTracker, SpeedTracker, SurfaceMonitor
 from tester.control.observer import ThermalObserver
 from tester.control.state import ControlState, Mode
 from tester.control.thresholds import Thresholds, thresholds_of
@@ -42,6 +42,7 @@ class View:
     surface: SurfaceMonitor = field(default_factory=SurfaceMonitor)
     wheel: SpeedTracker = field(init=False)
     belt: SpeedTracker = field(init=False)
+    press: PressTracker = field(init=False)
     scan_s: float = 0.0
     """Period of the scan, s."""
     pressing: bool = False
@@ -74,6 +75,7 @@ class View:
         radius_m = 0.5e-3 * rig.geometry.wheel_diameter_mm
         self.wheel = SpeedTracker(RAMP_SHARE * rig.axes.wheel.acceleration * radius_m)
         self.belt = SpeedTracker(RAMP_SHARE * rig.axes.belt.acceleration)
+        self.press = PressTracker(RAMP_SHARE * rig.axes.press.acceleration)
         self.wheel_most_m_s = limits.wheel_speed_m_s * (1.0 + bounds.overspeed_share)
         self.belt_most_m_s = limits.belt_speed_m_s * (1.0 + bounds.overspeed_share)
 
@@ -126,9 +128,11 @@ class View:
             self.confirmed = True
             self.wheel.begin(r.wheel_speed_m_s)
             self.belt.begin(r.belt_speed_m_s)
+            self.press.begin(r)
         out = self.state.setpoints
         self.wheel.follow(out.wheel_rad_s * r.diameter_mm * 0.5e-3, dt)
         self.belt.follow(out.belt_m_s, dt)
+        self.press.follow(out.press_mm_s, dt, r)
 
     def wheel_changed(self, now: float) -> None:
         """Begin anew with a wheel at ambient temperature: nothing is compared with the one before."""

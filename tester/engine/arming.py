@@ -75,6 +75,11 @@ class Proof:
         """Everything has been shown, or something has not."""
         return self.stage is Stage.DONE or bool(self.failure)
 
+    @property
+    def provokes(self) -> bool:
+        """Drives are made to stop by themselves, or have not been reset yet after that."""
+        return self.stage in (Stage.WITHHOLD, Stage.STILL, Stage.RESTORE)
+
     def proven(self) -> str:
         """Return a line for the journal: what was shown, and what was not because the rig file says so."""
         arming = self.rig.arming

@@ -19,7 +19,7 @@ from sim.slip import slip_velocity
 from tester.analysis.blocks import RevolutionCounter
 from tester.analysis.stability import assess
 from tester.engine.context import Context
-from tester.engine.moves import Lift, Load, Power, Sequence, TakeTare, Turn, Yaw
+from tester.engine.moves import Lift, Load, Power, Sequence, Settle, TakeTare, Turn, Yaw
 from tester.engine.thermal_steps import roll
 from tester.recipe.plan import ConditionStep
 
@@ -410,18 +410,3 @@ class MeasureRepeat:
         progress.phase = self.phase._value_
         progress.burst = self.bursts
         progress.revolutions = float(len(self.counter.blocks))
-
-
-class Settle:
-    """Wait at the fast scan rate for ``seconds``."""
-
-    def __init__(self, seconds: float) -> None:
-        """How long, s."""
-        self.seconds = seconds
-        self.left_s = seconds
-
-    def step(self, ctx: Context) -> bool:
-        """Done when the time is over."""
-        ctx.moving = True
-        self.left_s -= ctx.dt
-        return self.left_s <= 0.0

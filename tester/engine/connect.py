@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from enum import Enum
 
+from drivers.cia402 import State
 from drivers.ports import BusLost
 from tester.engine.arming import Proof
-from tester.engine.devices import Devices
+from tester.engine.devices import INPUT_GUARD, INPUT_SAFETY_CHAIN, Devices
 from tester.rig import RigConfig
 
 CONNECT_S = 0.01
@@ -30,7 +31,9 @@ class Stage(Enum):
     FAILED = "failed"
 
 
-_SCANNING = frozenset({Stage.HOME, Stage.HEAR, Stage.PROVE, Stage.RELEASE})
+_MOVING = frozenset({Stage.HOME, Stage.HEAR, Stage.PROVE})
+"""Every drive is configured, and axes move or are about to: slowly, unloaded and cold."""
+_SCANNING = _MOVING | {Stage.RELEASE}
 
 
 class Connector:
@@ -52,6 +55,16 @@ class Connector:
     def finished(self) -> bool:
         """Ready or failed."""
         return self.stage in (Stage.READY, Stage.FAILED)
+
+    @property
+    def failed(self) -> bool:
+        """Given up; drives may still be being released."""
+        return self.stage in (Stage.RELEASE, Stage.FAILED)
+
+    @property
+    def watches_drives(self) -> bool:
+        """Every drive is configured, and one that stops by itself ends the connection at once."""
+        return self.stage in _MOVING and not (self._proof is not None and self._proof.provokes)
 
     def tick(self, now: float) -> float:
         """Do what is due at ``now``; return when to be called again (s). Raises BusLost."""
@@ -83,6 +96,8 @@ class Connector:
             self._fail(refused)
         elif devices.master.foreign_master:
             self._fail(f"another CANopen master is sending on this bus: {devices.master.foreign_frame}")
+        elif self.stage in _MOVING and self._unfit():
+            self._fail(f"not armed: {self._unfit()}")
         elif elapsed > TIMEOUT_S:
             self._fail(f"not up after {TIMEOUT_S:g} s: {self._missing()}")
         elif self.stage is Stage.LISTEN:
@@ -125,6 +140,19 @@ class Connector:
         elif proof.done:
             self.shown = proof.proven()
             self.stage = Stage.READY
+
+    def _unfit(self) -> str:
+        """Return why no axis may move, or go on moving; "" while all may."""
+        for drive in self.devices.drives:
+            name = f"{drive.config.name} drive"
+            if drive.lost:
+                return f"{name} rebooted" if drive.rebooted else f"{name}: heartbeat lost"
+            if self.watches_drives and drive.state in (State.FAULT, State.FAULT_REACTION):
+                return f"{name} in fault" + (f": {drive.emergency.text}" if drive.emergency is not None else "")
+        inputs = self.devices.axes.press.inputs
+        if not inputs & INPUT_SAFETY_CHAIN:
+            return "safety chain"
+        return "" if inputs & INPUT_GUARD else "guard open"
 
     # -- giving up ------------------------------------------------------------------------------------------
 

@@ -226,6 +226,7 @@ class InterlocksConfig:
     torn_delay_s: Annotated[float, "s", _NOT_NEGATIVE]
     speed_error_m_s: Annotated[float, "m/s", _POSITIVE]
     speed_error_delay_s: Annotated[float, "s", _NOT_NEGATIVE]
+    press_error_mm: Annotated[float, "mm", _POSITIVE]
     dropped_delay_s: Annotated[float, "s", _NOT_NEGATIVE]
     frozen_cell_s: Annotated[float, "s", _POSITIVE]
     frozen_surface_s: Annotated[float, "s", _POSITIVE]

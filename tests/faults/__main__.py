@@ -11,9 +11,9 @@ import sys
 from dataclasses import dataclass, field
 
 from sim.faults import CATALOGUE
-from tests.faults import every_scan
+from tests.faults import every_scan, late_scans
 from tests.faults.campaign import PAIRS, Tally, all_cases, conduct, faults_of_campaign, pairs, rehearsals, sample
-from tests.faults.hardware import held_by_hardware
+from tests.faults.hardware import held_by_hardware, press_must_lift
 from tests.faults.judge import Verdict
 
 SAMPLE_CASES = 420
@@ -82,6 +82,7 @@ def short(report: Report, jobs: int, most: int) -> None:
     some = [ticks[i * (len(ticks) - 1) // (SAMPLE_SCANS - 1)] for i in range(SAMPLE_SCANS)]
     for tally in every_scan.conduct(some, jobs=jobs).values():
         scans(report, tally, SAMPLE_SCANS, most)
+    late(report, most)
     spent(report, began_s, SAMPLE_CPU_S)
 
 
@@ -95,7 +96,8 @@ def full(report: Report, jobs: int, most: int) -> None:
     spent(report, began_s, FULL_CPU_S)
     doubles(report, conduct("pairs", pairs(moments, faults, PAIRS), jobs, budgets=False), most)
     held = sample(all_cases(moments, faults), SAMPLE_CASES)
-    grid(report, conduct("grid, press held without power", held, jobs, (HOLD,)), 400, most)
+    held_press(report, conduct("grid, press held without power", held, jobs, (HOLD,)), most)
+    late(report, most)
     ticks = range(every_scan.scans())
     for tally in every_scan.conduct(ticks, every_scan.EVENTS[:3], jobs).values():
         scans(report, tally, every_scan.ASKED_FOR, most)
@@ -116,6 +118,18 @@ def grid(report: Report, tally: Tally, cases: int, most: int) -> None:
     report.causes(tally, most)
 
 
+def held_press(report: Report, tally: Tally, most: int) -> None:
+    """Print the figures of a rig whose press stays where it is without power."""
+    name, count = tally.name, len(tally.verdicts)
+    held = [verdict for verdict in tally.unsafe if press_must_lift(verdict)]
+    outside = Tally(name, [verdict for verdict in tally.verdicts if verdict not in held])
+    report.figure(f"{name}: cases", count, ">= 400", count >= 400)
+    report.figure(f"{name}: load stays on, held by hardware", len(held), "written list", True)
+    report.figure(f"{name}: unsafe outside the list", len(outside.unsafe), "0", not outside.unsafe)
+    report.figure(f"{name}: reaction budgets missed", len(tally.late), "0", not tally.late)
+    report.causes(outside, most)
+
+
 def doubles(report: Report, tally: Tally, most: int) -> None:
     """Print the figures of the pairs."""
     outside: list[Verdict] = [v for v in tally.unsafe if held_by_hardware(v.case.faults) is None]
@@ -130,6 +144,14 @@ def scans(report: Report, tally: Tally, points: int, most: int) -> None:
     """Print the figures of one event at every scan."""
     report.figure(f"{tally.name}: points", len(tally.verdicts), f">= {points}", len(tally.verdicts) >= points)
     report.figure(f"{tally.name}: failures", len(tally.failed), "0", not tally.failed)
+    report.causes(tally, most)
+
+
+def late(report: Report, most: int) -> None:
+    """Print the figures of late scans on a rig whose drives wait."""
+    tally = late_scans.conduct()
+    report.figure(f"{tally.name}: cases", len(tally.verdicts), ">= 25", len(tally.verdicts) >= 25)
+    report.figure(f"{tally.name}: not tripped as such", len(tally.failed), "0", not tally.failed)
     report.causes(tally, most)
 
 

@@ -32,7 +32,8 @@ SAME_AGAIN = (
     "belt drive reports",
     "load cell replies of", "load cell replies cut", "load cell without", "jacket replies late", "thermometer reset",
     "thermometer exception", "jacket exception", "wheel drive following", "wheel drive torque", "load cell saturated",
-    "press drive data",
+    "press drive data", "wheel drive mode", "press drive mode", "thermometer replies merged",
+    "thermometer replies split", "jacket replies split",
 )  # fmt: skip
 """Faults whose phrase begins so are those of another axis or device over again: in the sample, not in the full grid."""
 

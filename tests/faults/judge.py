@@ -15,6 +15,8 @@ from tests.faults.stage import Stage
 WATCHED_S = 10.0
 """A fault that ends nothing is watched this long, s of rig time; a slow one SLOW_S."""
 SLOW_S = 125.0
+MISSED_S = 1.0
+"""A fault that only the next connection can see is watched this long in a run."""
 SETTLED_S = 0.5
 """An end state counts as reached when it has lasted this long."""
 ROUNDING_S = 0.011
@@ -38,12 +40,21 @@ class Case:
 
 @dataclass(slots=True)
 class Verdict:
-    """What has come of a case: failures (empty: safe and in time), who tripped, how long it took."""
+    """What has come of a case: failures (empty: safe and in time), who tripped, how long it took.
+
+    ``missing`` is what the safe state lacked in the end.
+    """
 
     case: Case
     failures: list[str] = field(default_factory=list[str])
+    missing: list[str] = field(default_factory=list[str])
     tripped_by: str = ""
     ended_after_s: float = inf
+
+    @property
+    def only_force(self) -> bool:
+        """Nothing is wrong but that the load stayed on: in time, no harm, no invariant broken, all else safe."""
+        return len(self.failures) == 1 and [text.partition(" ")[0] for text in self.missing] == ["force"]
 
 
 def exposed(stage: Stage, exposure: Exposure) -> bool:
@@ -51,6 +62,8 @@ def exposed(stage: Stage, exposure: Exposure) -> bool:
     engine = stage.run.engine
     if exposure is Exposure.ALWAYS:
         return engine.scans > 0
+    if exposure is Exposure.DRIVES:
+        return engine.scans > 0 or stage.run.connector.watches_drives
     if exposure is Exposure.CONNECTING:
         return engine.scans == 0 and stage.ticks < 3
     demand, truth = engine.ctx.demand, Truth.of(stage.rig)
@@ -70,6 +83,15 @@ def exposed(stage: Stage, exposure: Exposure) -> bool:
     return truth.force_n > 20.0
 
 
+def _watched_s(stage: Stage, kinds: tuple[FaultKind, ...]) -> float:
+    """Return how long a case is watched that does not end, s."""
+    if any(kind.slow for kind in kinds):
+        return SLOW_S
+    if stage.run.engine.scans > 0 and all(kind.exposure is Exposure.CONNECTING for kind in kinds):
+        return MISSED_S
+    return WATCHED_S
+
+
 class Judge:
     """Watches one stage under its faults, tick by tick."""
 
@@ -86,8 +108,7 @@ class Judge:
         self._exposed_s = [inf] * len(self.kinds)
         self._was_running = stage.running
         stage.inject(*(Injection(When(at_s=self.onset_s), kind, text=kind.phrase) for kind in self.kinds))
-        slow = any(kind.slow for kind in self.kinds)
-        self.until_s = self.onset_s + (SLOW_S if slow else WATCHED_S)
+        self.until_s = self.onset_s + _watched_s(stage, self.kinds)
 
     def run(self) -> Verdict:
         """Tick until it is clear what has come of it."""
@@ -160,6 +181,7 @@ class Judge:
         self.safe_since_s = inf
         allowed_s = SAFE_S + (HEARTBEAT_S if stage.faulty.killed else 0.0)
         if now - self.ended_s > allowed_s:
+            self.verdict.missing = missing
             text = f"not safe {allowed_s:g} s after the end: {', '.join(missing)}{self._why()}"
             self.verdict.failures.append(text)
             return True

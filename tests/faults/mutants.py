@@ -128,7 +128,7 @@ def probe() -> str:
     """Return what is wrong with the tree this runs in, "" if nothing is found; what is quick is tried first."""
     from tests.faults.recipes import GRID
 
-    return _recipes(("short",), FIRST) or _stateful() or _recipes(GRID, PROBED)
+    return _recipes(("short",), FIRST) or _late() or _stateful() or _recipes(GRID, PROBED)
 
 
 def _recipes(names: Iterable[str], count: int) -> str:
@@ -151,6 +151,13 @@ def _recipes(names: Iterable[str], count: int) -> str:
             verdict = tally.failed[0]
             return f"{verdict.case}: {verdict.failures[0]}"
     return ""
+
+
+def _late() -> str:
+    from tests.faults.late_scans import conduct
+
+    failed = conduct().failed
+    return f"late scans: {failed[0].case}: {failed[0].failures[0]}" if failed else ""
 
 
 def _stateful() -> str:

@@ -127,7 +127,8 @@ class Stage:
     @property
     def ended(self) -> bool:
         """The recipe will not go on: stopped, tripped, finished or never begun."""
-        return self.run.finished or (self.run.engine.scans > 0 and self.mode not in RUNNING)
+        run = self.run
+        return run.finished or run.connector.failed or (run.engine.scans > 0 and self.mode not in RUNNING)
 
     def tick(self) -> float:
         """Let the rig live until the next tick and do it; return its time, s. A run that has ended does nothing."""

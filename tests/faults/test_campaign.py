@@ -6,10 +6,11 @@ from functools import cache
 
 import pytest
 
-from tests.faults import every_scan
+from tests.faults import every_scan, late_scans
 from tests.faults.__main__ import main
 from tests.faults.campaign import Tally, all_cases, conduct, faults_of_campaign, pairs, sample
-from tests.faults.hardware import HARDWARE_MUST_HOLD, held_by_hardware
+from tests.faults.hardware import HARDWARE_MUST_HOLD, PRESS_RELEASE, UNLIFTED, held_by_hardware, press_must_lift
+from tests.faults.judge import Case, Verdict
 from tests.faults.moments import Moment, rehearse
 from tests.faults.mutants import MUTANTS, ROOT
 
@@ -32,6 +33,11 @@ def test_the_recipe_runs_to_its_end_without_harm_and_without_a_trip():
     assert {moment.phase for moment in found} == {"begin", "middle", "end"}
 
 
+def test_a_run_spares_the_memory_of_the_jackets_controller():
+    wear = rehearse("short")[1].rig.jacket.wear
+    assert wear and max(wear.values()) <= 20, "100 000 writes are 5 000 such runs and more"
+
+
 def test_a_few_faults_at_a_few_moments_end_safely_and_in_time():
     cases = sample(all_cases(moments(), faults_of_campaign(everything=True)), FEW)
     tally = conduct("few", cases)
@@ -47,6 +53,11 @@ def test_a_few_pairs_end_safely():
 def test_stops_and_kills_at_a_few_scans_end_safely():
     for tally in every_scan.conduct((450, 3000, 6000)).values():
         assert failures(tally) == []
+
+
+def test_a_late_scan_is_the_first_cause_where_no_drive_trips_before():
+    tally = late_scans.conduct()
+    assert len(tally.verdicts) >= 25 and failures(tally) == []
 
 
 def test_a_sample_has_every_fault_once_before_any_twice():
@@ -74,6 +85,28 @@ def test_the_safety_page_lists_what_hardware_must_hold():
     shown = page.split("<!-- double faults: begin -->")[1].split("<!-- double faults: end -->")[0]
     for row in HARDWARE_MUST_HOLD:
         assert f"| {row.one} + {row.other or 'any other'} | {row.device} | {row.why} |" in shown
+
+
+def test_the_safety_page_lists_after_which_faults_a_press_without_spring_is_not_lifted():
+    page = (ROOT / "docs" / "safety.md").read_text(encoding="utf-8")
+    shown = page.split("<!-- unlifted: begin -->")[1].split("<!-- unlifted: end -->")[0]
+    assert PRESS_RELEASE in " ".join(page.split())
+    assert shown.splitlines()[3:] == [f"| {fault} | {why} |" for fault, why in UNLIFTED]
+
+
+@pytest.mark.parametrize(
+    ("fault", "failures", "missing", "held"),
+    [
+        ("press drive fault", ["not safe"], ["force 200 N"], True),
+        ("press drive fault", ["not safe"], ["force 200 N", "wheel 0.1 m/s"], False),
+        ("press drive fault", ["not safe", "harm: force, 501 N"], ["force 200 N"], False),
+        ("press drive fault", ["missed budget of 0.07 s"], [], False),
+        ("hub sensor open", ["not safe"], ["force 200 N"], False),
+    ],
+)
+def test_only_a_load_that_stays_on_is_left_to_hardware_and_only_after_a_listed_fault(fault, failures, missing, held):
+    verdict = Verdict(Case("short", 1, "", (fault,)), failures, missing)
+    assert press_must_lift(verdict) is held
 
 
 def test_the_full_grid_has_at_least_seven_thousand_cases_of_forty_faults():

@@ -8,7 +8,8 @@ from math import inf
 import pytest
 
 from drivers.ports import BusLost
-from sim.can_wire import Beat, CanWire, SyncFollower, frame_bits
+from sim.can_traffic import Beat, SyncFollower, frame_bits
+from sim.can_wire import CanWire
 
 FULL_S = 135 / 500_000
 EMPTY_S = 55 / 500_000

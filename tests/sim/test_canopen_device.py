@@ -140,6 +140,19 @@ def arm(bench: DriveBench, milliseconds: int = 200) -> None:
     bench.write(0x1016, 1, PC << 16 | milliseconds, 4)
 
 
+def test_a_heartbeat_that_is_withheld_stays_so_when_it_is_configured_anew(bench: DriveBench) -> None:
+    bench.drive.withhold_heartbeat(True)
+    bench.nmt(130)
+    bench.run(0.1)
+    bench.heard.clear()
+    bench.write(0x1017, 0, 50, 2)
+    bench.run(0.5)
+    assert bench.frames(HEARTBEAT) == []
+    bench.drive.withhold_heartbeat(False)
+    bench.run(0.5)
+    assert len(bench.frames(HEARTBEAT)) >= 9
+
+
 def test_the_consumer_waits_for_the_first_heartbeat(bench: DriveBench) -> None:
     arm(bench)
     bench.run(2.0)

@@ -418,3 +418,24 @@ def test_a_copy_of_controller_and_hub_lives_on_its_own() -> None:
     oven.run(5.0)
     assert twin.hub.hub_c == oven.hub.hub_c
     assert twin.hub is not oven.hub
+
+
+# non-volatile memory
+
+
+def test_only_a_changed_value_is_written_to_memory_and_the_remote_setpoint_never() -> None:
+    jacket = JacketSlave(JACKET, 1, Quantities())
+    for value in (20, 20, 20, 30):
+        write(jacket, 5000, value)
+        write(jacket, 26, 10 * value)
+    assert jacket.wear == {5000: 2}
+
+
+def test_a_memory_worn_out_refuses_a_change_with_exception_04_and_keeps_the_value() -> None:
+    jacket = JacketSlave(JACKET, 1, Quantities())
+    write(jacket, 199, 0)
+    jacket.endurance = 1
+    assert write(jacket, 199, 1).hex() == "018604"
+    assert jacket.running and jacket.get(199) == 0
+    assert write(jacket, 199, 0).hex() == "010600c70000"
+    assert write(jacket, 26, 500)[1] == 6

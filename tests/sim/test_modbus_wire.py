@@ -9,7 +9,7 @@ import pytest
 
 from drivers.crc16 import with_crc
 from drivers.ports import BusLost
-from sim.modbus_wire import Impairment, ModbusWire
+from sim.modbus_wire import Impairment, Kind, ModbusWire
 from sim.nodes.modbus_slave import ModbusSlave
 from tests.drivers.modbus_rig import Log
 
@@ -206,6 +206,48 @@ def test_stale_is_the_reply_before() -> None:
     line.impair = Impairment("stale")
     ((_, data),) = exchange(line, WRITE, 2.0)
     assert data == first
+
+
+def registers(frame: bytes) -> list[int]:
+    assert with_crc(frame[:-2]) == frame
+    return [int.from_bytes(frame[at : at + 2], "big") for at in range(3, len(frame) - 2, 2)]
+
+
+def test_swapped_words_change_places_in_pairs_and_the_crc_is_good() -> None:
+    line, slave = wire()
+    slave.put(0, bytes.fromhex("000100020003000400050006000700080009"))
+    line.impair = Impairment("swapped")
+    ((_, data),) = exchange(line, READ_NINE)
+    assert registers(data) == [2, 1, 4, 3, 6, 5, 8, 7, 9]
+
+
+def test_a_torn_value_has_its_first_word_from_the_reply_before() -> None:
+    line, slave = wire()
+    slave.put(0, bytes.fromhex("FFFFFFFE"))
+    exchange(line, READ_NINE)
+    slave.put(0, bytes.fromhex("00000003"))
+    line.impair = Impairment("torn")
+    ((_, data),) = exchange(line, READ_NINE, 1.0)
+    assert registers(data)[:2] == [0xFFFF, 0x0003]
+
+
+@pytest.mark.parametrize("kind", ["swapped", "torn"])
+def test_the_confirmation_of_a_write_has_no_words_to_mix_up(kind: Kind) -> None:
+    line, _ = wire()
+    line.impair = Impairment(kind, -1)
+    ((_, data),) = exchange(line, WRITE)
+    assert data == WRITE
+
+
+def test_every_second_of_merged_replies_comes_with_the_next_in_one_piece() -> None:
+    line, slave = wire()
+    line.impair = Impairment("merged", -1)
+    slave.put(0, b"\x00\x01")
+    assert exchange(line, READ_NINE) == []
+    slave.put(0, b"\x00\x02")
+    ((_, data),) = exchange(line, READ_NINE, 1.0)
+    assert (registers(data[:23])[0], registers(data[23:])[0]) == (1, 2)
+    assert exchange(line, READ_NINE, 2.0) == []
 
 
 def test_an_impairment_waits_for_its_turn_and_ends_with_its_count() -> None:

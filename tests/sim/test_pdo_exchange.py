@@ -282,6 +282,29 @@ def test_unchanged_rpdos_keep_the_deadline() -> None:
     assert bench.state == ENABLED
 
 
+def test_rpdos_of_a_repeated_cycle_keep_the_deadline_and_their_end_misses_it() -> None:
+    bench = deadline()
+    can_ids, payloads = (RPDO1, 0x080), (struct.pack("<Hi", 0x0F, 1000), b"")
+    for _ in range(20):
+        bench.wire.send_cycle(can_ids, payloads, bench.now)
+        bench.run(0.08)
+    assert bench.emergencies == []
+    last = bench.now - 0.08
+    bench.wire.forget_cycle()
+    bench.run(0.5)
+    assert [code for code, _ in bench.emergencies] == [0x8250]
+    assert bench.times(0x080 + NODE)[0] == pytest.approx(last + 0.1, abs=0.002)
+
+
+def test_a_repeated_cycle_without_the_rpdo_misses_the_deadline() -> None:
+    bench = deadline()
+    data = struct.pack("<Hi", 0x0F, 1000)
+    for can_ids, payloads in (((RPDO1, 0x080), (data, b"")),) * 5 + (((0x080,), (b"",)),) * 5:
+        bench.wire.send_cycle(can_ids, payloads, bench.now)
+        bench.run(0.08)
+    assert [code for code, _ in bench.emergencies] == [0x8250]
+
+
 def test_a_missed_deadline_is_an_emergency_and_a_quick_stop() -> None:
     bench = deadline()
     bench.cycle(0x0F, 1000)

@@ -102,6 +102,7 @@ CAUSES: dict[str, list[Break]] = {
     "overspeed": [_set(wheel_speed_m_s=1.3), _set(belt_speed_m_s=-1.5), _set(wheel_speed_m_s=NAN)],
     "wheel speed": [_set(wheel_speed_m_s=0.7), _set(wheel_speed_m_s=0.9), _set(wheel_speed_m_s=NAN)],
     "belt speed": [_set(belt_speed_m_s=0.4), _set(belt_speed_m_s=0.6), _set(belt_speed_m_s=NAN)],
+    "press speed": [_set(press_mm=12.2), _set(press_mm=NAN)],
     "drive standing under load": [_set(belt_speed_m_s=0.0), _set(wheel_speed_m_s=0.0), _set(belt_speed_m_s=NAN)],
     "belt torn": [_torn],
     "load cell stale": [_stale("cell_at_s")],
@@ -347,6 +348,35 @@ def test_a_hub_that_was_heated_at_full_power_until_now_is_no_stuck_heater(bench:
             bench.readings.heat_percent, bench.readings.contactor_closed = 0.0, False
         bench.scan(0.2)
         assert not bench.state.held & bit("heater stuck")
+
+
+def _long_off(bench: Bench, hub_c: float) -> None:
+    """Leave the heat off for longer than setpoints count, with a hub that stays hot."""
+    bench.demand.surface_c = NAN
+    bench.readings.heat_percent, bench.readings.contactor_closed = 0.0, False
+    bench.control.view.jacket.forget(bench.readings.now_s)
+    bench.readings.hub_c = hub_c
+    _model(0.0)(bench)
+    bench.scans(620.0, 0.1)
+
+
+def test_a_hot_hub_that_cools_for_longer_than_setpoints_count_is_no_runaway(bench: Bench) -> None:
+    _long_off(bench, 110.0)
+    for _ in range(6000):
+        bench.readings.hub_c -= 0.01
+        bench.scan(0.1)
+    assert bench.state.trip is None
+
+
+def test_a_hub_that_gets_hotter_without_output_is_a_runaway_however_slowly(bench: Bench) -> None:
+    _long_off(bench, 60.0)
+    for _ in range(9000):
+        bench.readings.hub_c += 0.001
+        bench.scan(0.1)
+        if bench.state.trip is not None:
+            break
+    assert bench.state.trip is not None and bench.state.trip.name == "jacket runaway"
+    assert bench.readings.hub_c <= 60.0 + bench.control.rig.interlocks.runaway_k + 0.1
 
 
 def test_a_heater_that_is_stuck_on_is_found_within_10_s_of_the_command(bench: Bench) -> None:

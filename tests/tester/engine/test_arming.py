@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import pytest
 
 from drivers.canopen import objects as o
 from drivers.cia402 import State
+from sim.nodes.cia402_slave import Cia402Slave
 from tester.engine.connect import Stage
 from tester.engine.run import Outcome
 from tests.tester.engine.bench import SHORT, Simulation
+
+Happens = Callable[[Cia402Slave], None]
 
 
 def connected(simulation: Simulation) -> Simulation:
@@ -88,6 +93,28 @@ def test_an_open_safety_chain_refuses_to_arm_and_releases_the_drives() -> None:
     assert simulation.run.reason == "not armed: safety chain"
     simulation.world.advance(simulation.now + 5.0)
     assert all(axis.state is not State.FAULT for axis in simulation.world.axes.values())
+
+
+@pytest.mark.parametrize(
+    ("happens", "reason"),
+    [
+        (lambda press: press.withhold_heartbeat(True), "press drive: heartbeat lost"),
+        (lambda press: press.fault(0x2310), "press drive in fault"),
+        (lambda press: press.set_guard(False), "guard open"),
+        (lambda press: press.set_safety_chain(False), "safety chain"),
+    ],
+)
+def test_what_happens_to_a_moving_axis_ends_the_arming_at_once(happens: Happens, reason: str) -> None:
+    simulation = Simulation()
+    wheel, press = simulation.world.axes["wheel"], simulation.world.axes["press"]
+    simulation.until(lambda s: s.run.connector.stage is Stage.PROVE and wheel.axis.value > 0.1)
+    happens(press)
+    began = simulation.now
+    simulation.until(lambda s: s.run.connector.failed)
+    assert simulation.now - began <= 0.21
+    assert reason in simulation.run.connector.failure
+    simulation.until(lambda s: wheel.axis.value == 0.0)
+    assert simulation.now - began <= 0.4
 
 
 def test_a_failed_connection_releases_the_drives_that_were_configured() -> None:
