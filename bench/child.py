@@ -8,14 +8,22 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from bench.effort import TopicFailedError
+from bench.machine import measures_installed
 
 ROOT = Path(__file__).resolve().parent.parent
-"""Where ``tester``, ``sim`` and ``bench`` are imported from."""
+"""Where ``bench`` is imported from, and ``tester`` and ``sim`` where they are not installed."""
+
+
+def command(arguments: Sequence[str]) -> list[str]:
+    """Return the command line of an interpreter whose ``-c`` code imports the ``tester`` that is measured here."""
+    # Without -P the folder it is started in, this checkout, comes before what is installed.
+    safe = ["-P"] if arguments[0] == "-c" and measures_installed() else []
+    return [sys.executable, *safe, *arguments]
 
 
 def run(arguments: Sequence[str], expected: int = 0) -> str:
     """Run the interpreter with arguments and return its output; raises TopicFailedError for another exit code."""
-    done = subprocess.run([sys.executable, *arguments], capture_output=True, text=True, check=False, cwd=ROOT)
+    done = subprocess.run(command(arguments), capture_output=True, text=True, check=False, cwd=ROOT)
     if done.returncode != expected:
         raise TopicFailedError(f"python {' '.join(arguments)[:60]}: exit code {done.returncode}: {done.stderr[-300:]}")
     return done.stdout

@@ -27,11 +27,11 @@ def scan_is_compiled() -> str:
     return "yes" if origin is not None and not origin.endswith(".py") else "no"
 
 
-def _is_checkout() -> bool:
-    """Tell whether ``tester`` is imported from beside this package."""
+def measures_installed() -> bool:
+    """Tell whether ``tester`` is imported from where it is installed, and not from beside this package."""
     found = importlib.util.find_spec("tester")
     places = found.submodule_search_locations if found is not None else None
-    return any(Path(place).resolve().parent == Path(__file__).resolve().parent.parent for place in places or ())
+    return all(Path(place).resolve().parent != Path(__file__).resolve().parent.parent for place in places or ())
 
 
 def usable_cpus() -> int:
@@ -46,7 +46,7 @@ def machine() -> dict[str, str | int]:
     return {
         "interpreter": f"{platform.python_implementation()} {platform.python_version()}",
         "pgo": built_with_pgo(),
-        "measured": "checkout" if _is_checkout() else "installed",
+        "measured": "installed" if measures_installed() else "checkout",
         "compiled scan": scan_is_compiled(),
         "compiler": platform.python_compiler(),
         "cpus": usable_cpus(),

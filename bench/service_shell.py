@@ -9,7 +9,6 @@ from __future__ import annotations
 import asyncio
 import os
 import subprocess
-import sys
 from collections.abc import Generator
 from contextlib import contextmanager
 from io import FileIO
@@ -17,7 +16,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from threading import Thread, get_native_id
 
-from bench.child import ROOT
+from bench.child import ROOT, command
 from bench.effort import Effort, TopicFailedError
 from bench.figures import Figure, at_most, ratio, unavailable
 from bench.lateness import percentile
@@ -161,7 +160,7 @@ def _clients(path: Path) -> Generator[None]:
     while not path.exists():
         clock.sleep_until(clock.monotonic() + 0.05)
     process = subprocess.Popen(
-        [sys.executable, "-c", CLIENTS, str(path), str(VIEWERS), str(COMERS)], cwd=ROOT, stderr=subprocess.DEVNULL
+        command(["-c", CLIENTS, str(path), str(VIEWERS), str(COMERS)]), cwd=ROOT, stderr=subprocess.DEVNULL
     )
     clock.sleep_until(clock.monotonic() + 2.0)
     try:
@@ -180,7 +179,7 @@ async def _live(folder: Path, seconds: float) -> tuple[float, list[float], list[
     """Return CPU share in %, and the times in ms that STOPs and returns took, of a service that runs the quickstart."""
     address = UnixAddress(folder / "service.sock")
     process = subprocess.Popen(
-        [sys.executable, "-c", SERVE, "serve", "--connect", str(address), "--out", str(folder / "runs")],
+        command(["-c", SERVE, "serve", "--connect", str(address), "--out", str(folder / "runs")]),
         cwd=ROOT, stderr=subprocess.DEVNULL,
     )  # fmt: skip
     try:
