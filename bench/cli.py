@@ -61,6 +61,7 @@ def _parser() -> argparse.ArgumentParser:
     shown = parser.add_mutually_exclusive_group()
     shown.add_argument("--json", action="store_true", help="one JSON object instead of the table")
     shown.add_argument("--markdown", action="store_true", help="the table in Markdown, as in docs/performance.md")
+    parser.add_argument("--source", action="store_true", help="measure this checkout, not what is installed")
     parser.add_argument("--quick", action="store_true", help="short measurements, for a look")
     parser.add_argument("--runs", type=int, default=3, metavar="N", help="runs of every figure (default 3)")
     return parser

@@ -27,6 +27,13 @@ def scan_is_compiled() -> str:
     return "yes" if origin is not None and not origin.endswith(".py") else "no"
 
 
+def _is_checkout() -> bool:
+    """Tell whether ``tester`` is imported from beside this package."""
+    found = importlib.util.find_spec("tester")
+    places = found.submodule_search_locations if found is not None else None
+    return any(Path(place).resolve().parent == Path(__file__).resolve().parent.parent for place in places or ())
+
+
 def usable_cpus() -> int:
     """Return how many CPUs this process may use."""
     if sys.platform == "linux":
@@ -39,6 +46,7 @@ def machine() -> dict[str, str | int]:
     return {
         "interpreter": f"{platform.python_implementation()} {platform.python_version()}",
         "pgo": built_with_pgo(),
+        "measured": "checkout" if _is_checkout() else "installed",
         "compiled scan": scan_is_compiled(),
         "compiler": platform.python_compiler(),
         "cpus": usable_cpus(),

@@ -11,10 +11,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from statistics import median
 
+from bench import scan_outside
 from bench.effort import Effort
 from bench.figures import Figure, at_most
 from bench.ledger import PARTS, Ledger
 from bench.live import SLIDING_RECIPE, LiveRun, live_run
+from bench.machine import scan_is_compiled
 from bench.stopwatch import cpu_seconds_of
 from bench.wrapping import wrapped
 from tester.engine.tickers import collector_at_rest
@@ -58,6 +60,12 @@ def measure(effort: Effort) -> list[Figure]:
     """Return the medians of every part in a sliding phase at 100 Hz, and the whole without instruments."""
     seconds = effort.pick(30.0, 10.0)
     whole, ticks = _whole(seconds, effort.runs)
+    whole_figures = [
+        Figure("whole scan without instruments, mean", "us CPU", tuple(whole), note="all threads"),
+        Figure("ticks for a scan", "", tuple(ticks), note="those between scans serve heartbeats and time-outs"),
+    ]
+    if scan_is_compiled() == "yes":
+        return scan_outside.measure(effort, LIMITS) + whole_figures
     columns: dict[str, list[float]] = {}
     ledger = Ledger()
     with wrapped(ledger) as missing, live_run(SLIDING_RECIPE) as live:
@@ -66,11 +74,7 @@ def measure(effort: Effort) -> list[Figure]:
             for name, value in summary(_scans(live, ledger, seconds)).items():
                 columns.setdefault(name, []).append(value)
     figures = [_figure(name, columns[name]) for name in ORDER]
-    figures += [
-        Figure("sum of the parts, mean", "us", tuple(columns["mean"])),
-        Figure("whole scan without instruments, mean", "us CPU", tuple(whole), note="all threads"),
-        Figure("ticks for a scan", "", tuple(ticks), note="those between scans serve heartbeats and time-outs"),
-    ]
+    figures += [Figure("sum of the parts, mean", "us", tuple(columns["mean"])), *whole_figures]
     if missing:
         note = f"their time counts with the caller's: {', '.join(missing)}"
         figures.append(Figure("entry points not found", "", (float(len(missing)),), note=note))

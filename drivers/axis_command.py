@@ -4,21 +4,25 @@ from __future__ import annotations
 
 import math
 import struct
+from typing import Final
 
 from drivers import cia402
 from drivers.axis import AxisConfig
 from drivers.cia402 import Goal, State
 
 # All axes share this layout (drivers.canopen.pdo): controlword, target velocity or target position.
-_RPDO1 = struct.Struct("<Hi").pack
-_I32_MAX = 0x7FFF_FFFF
-_IO_MAX = 0xFFFF_FFFF
+_RPDO1: Final = struct.Struct("<Hi").pack
+_INF: Final = math.inf
+_I32_MAX: Final = 0x7FFF_FFFF
+_IO_MAX: Final = 0xFFFF_FFFF
 
 # Members bound once: a look-up on the enum class costs several times as much in every scan (CPython 3.11).
-_DISABLED, _ENABLED, _QUICK_STOP = Goal.DISABLED, Goal.ENABLED, Goal.QUICK_STOP
-_OPERATING = State.OPERATION_ENABLED
+_DISABLED: Final = Goal.DISABLED
+_ENABLED: Final = Goal.ENABLED
+_QUICK_STOP: Final = Goal.QUICK_STOP
+_OPERATING: Final = State.OPERATION_ENABLED
 
-_STOPPED_BY_ITSELF = frozenset(
+_STOPPED_BY_ITSELF: Final = frozenset(
     (State.OPERATION_ENABLED, State.QUICK_STOP_ACTIVE, State.FAULT_REACTION, State.FAULT))
 """A drive that leaves one of these for less, with the goal still ENABLED, is not enabled again by itself."""
 
@@ -89,7 +93,7 @@ class AxisCommand:
         """Set ``target``; the same as last time costs a comparison (compare ``aimed`` to save the call, too)."""
         if value == self.aimed:
             return
-        if not math.isfinite(value):
+        if not -_INF < value < _INF:
             raise ValueError(f"{self.config.name}: target {value} is not a number")
         self.aimed = value
         if value < self._low:
@@ -97,7 +101,7 @@ class AxisCommand:
         elif value > self._high:
             value = self._high
         self._target = value
-        counts = round(self._target * self._per_unit)
+        counts = math.floor(self._target * self._per_unit + 0.5)
         if counts != self._target_counts:
             self._target_counts = counts
             self.dirty = True

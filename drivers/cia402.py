@@ -6,6 +6,7 @@ A client only ever sees the statusword and only ever sends a controlword, one st
 from __future__ import annotations
 
 from enum import IntEnum
+from typing import Final
 
 
 class State(IntEnum):
@@ -35,32 +36,32 @@ class Goal(IntEnum):
 
 
 # Statusword bits
-VOLTAGE = 0x0010
-NOT_QUICK_STOP = 0x0020
-WARNING = 0x0080
-REMOTE = 0x0200
-TARGET_REACHED = 0x0400
-INTERNAL_LIMIT = 0x0800
-SPEED_ZERO = 0x1000               # profile velocity
-SET_POINT_ACKNOWLEDGED = 0x1000   # profile position
-HOMING_ATTAINED = 0x1000          # homing
-MAX_SLIPPAGE = 0x2000             # profile velocity
-FOLLOWING_ERROR = 0x2000          # profile position
-HOMING_ERROR = 0x2000             # homing
+VOLTAGE: Final = 0x0010
+NOT_QUICK_STOP: Final = 0x0020
+WARNING: Final = 0x0080
+REMOTE: Final = 0x0200
+TARGET_REACHED: Final = 0x0400
+INTERNAL_LIMIT: Final = 0x0800
+SPEED_ZERO: Final = 0x1000               # profile velocity
+SET_POINT_ACKNOWLEDGED: Final = 0x1000   # profile position
+HOMING_ATTAINED: Final = 0x1000          # homing
+MAX_SLIPPAGE: Final = 0x2000             # profile velocity
+FOLLOWING_ERROR: Final = 0x2000          # profile position
+HOMING_ERROR: Final = 0x2000             # homing
 
 # Controlword
-DISABLE_VOLTAGE = 0x0000
-QUICK_STOP = 0x0002
-SHUTDOWN = 0x0006
-SWITCH_ON = 0x0007                # from SWITCHED_ON downwards: disable operation
-ENABLE_OPERATION = 0x000F
-NEW_SET_POINT = 0x0010            # profile position
-HOMING_START = 0x0010             # homing
-CHANGE_IMMEDIATELY = 0x0020       # profile position
-FAULT_RESET = 0x0080              # acts on its rising edge
-HALT = 0x0100
+DISABLE_VOLTAGE: Final = 0x0000
+QUICK_STOP: Final = 0x0002
+SHUTDOWN: Final = 0x0006
+SWITCH_ON: Final = 0x0007                # from SWITCHED_ON downwards: disable operation
+ENABLE_OPERATION: Final = 0x000F
+NEW_SET_POINT: Final = 0x0010            # profile position
+HOMING_START: Final = 0x0010             # homing
+CHANGE_IMMEDIATELY: Final = 0x0020       # profile position
+FAULT_RESET: Final = 0x0080              # acts on its rising edge
+HALT: Final = 0x0100
 
-_MASKS = (
+_MASKS: Final = (
     (0x4F, 0x00, State.NOT_READY),
     (0x4F, 0x40, State.SWITCH_ON_DISABLED),
     (0x6F, 0x21, State.READY_TO_SWITCH_ON),
@@ -70,7 +71,7 @@ _MASKS = (
     (0x4F, 0x0F, State.FAULT_REACTION),
     (0x4F, 0x08, State.FAULT),
 )
-_STATE_BITS = 0x6F
+_STATE_BITS: Final = 0x6F
 
 
 def _state_of(word: int) -> State:
@@ -80,7 +81,7 @@ def _state_of(word: int) -> State:
     return State.NOT_READY    # no state of the standard: command nothing
 
 
-_STATES = tuple(_state_of(word) for word in range(_STATE_BITS + 1))
+_STATES: Final = tuple(_state_of(word) for word in range(_STATE_BITS + 1))
 
 
 def decode(statusword: int) -> State:
@@ -88,14 +89,14 @@ def decode(statusword: int) -> State:
     return _STATES[statusword & _STATE_BITS]
 
 
-_UP = {
+_UP: Final = {
     State.SWITCH_ON_DISABLED: SHUTDOWN,
     State.READY_TO_SWITCH_ON: SWITCH_ON,
     State.SWITCHED_ON: ENABLE_OPERATION,
     State.OPERATION_ENABLED: ENABLE_OPERATION,
     State.QUICK_STOP_ACTIVE: QUICK_STOP,      # a stop that has begun is finished first
 }
-_DOWN = {
+_DOWN: Final = {
     State.OPERATION_ENABLED: SWITCH_ON,       # disable operation: ramps down (0x605C = 1)
     State.SWITCHED_ON: SHUTDOWN,
     State.QUICK_STOP_ACTIVE: QUICK_STOP,
@@ -112,7 +113,7 @@ def _word(state: State, goal: Goal) -> int:
     return DISABLE_VOLTAGE
 
 
-_WORDS = tuple(tuple(_word(state, goal) for goal in Goal) for state in State)
+_WORDS: Final = tuple(tuple(_word(state, goal) for goal in Goal) for state in State)
 
 
 def controlword(state: State, goal: Goal) -> int:

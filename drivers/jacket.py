@@ -6,15 +6,16 @@ Software gives the setpoint and watches; the loop, its limit and what happens wi
 from __future__ import annotations
 
 from math import inf, isfinite, nan
+from typing import Final
 
 from drivers.modbus import Device, ModbusLink, Request
 from drivers.profiles.model import DeviceProfile, ProfileError
 
-RENEW_S = 0.45
+RENEW_S: Final = 0.45
 """The command registers are written again after this: twice a second also with scans at 20 Hz (rulings, 14)."""
-LEASE_S = 2.0
+LEASE_S: Final = 2.0
 """Without a setpoint for this long the controller stops heating by itself (rulings, 14)."""
-STATUS_AGE_S = 2.0
+STATUS_AGE_S: Final = 2.0
 """A status older than this against the temperature makes the reading invalid [A]."""
 
 

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from math import floor, inf, nan
+from typing import Final
 
 from drivers.modbus import Device, ModbusLink, Request
 from drivers.profiles.model import DeviceProfile, ProfileError
 
-CHANNELS = ("fx", "fy", "fz", "mz")
+CHANNELS: Final = ("fx", "fy", "fz", "mz")
 """Longitudinal, lateral and normal force (N), moment about the vertical (N m), in the wheel's frame."""
 
-SATURATED_SHARE = 0.98
+SATURATED_SHARE: Final = 0.98
 """Share of the range from which a channel counts as saturated (safety page)."""
 
 Vector = tuple[float, float, float, float]

@@ -24,10 +24,10 @@ class CanPort(Protocol):
         """Queue one data frame for transmission; raises BusLost."""
         ...
 
-    def send_cycle(self, frames: tuple[tuple[int, bytes], ...], now: float) -> None:
-        """Queue (identifier, data) of one bus cycle in this order; raises BusLost.
+    def send_cycle(self, can_ids: tuple[int, ...], payloads: tuple[bytes, ...], now: float) -> None:
+        """Queue the frames of one bus cycle, identifiers and data beside each other, in this order; raises BusLost.
 
-        The very same tuple again says that nothing in it has changed: a port may make use of that.
+        The very same bytes again in a place say that nothing has changed there: a port may make use of that.
         """
         ...
 
@@ -45,9 +45,9 @@ class FrameByFrame(ABC):
     def send(self, can_id: int, data: bytes, now: float) -> None:
         """Queue one data frame for transmission."""
 
-    def send_cycle(self, frames: tuple[tuple[int, bytes], ...], now: float) -> None:
+    def send_cycle(self, can_ids: tuple[int, ...], payloads: tuple[bytes, ...], now: float) -> None:
         """Queue the frames of one bus cycle."""
-        for can_id, data in frames:
+        for can_id, data in zip(can_ids, payloads, strict=True):
             self.send(can_id, data, now)
 
 

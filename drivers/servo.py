@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import struct
+from typing import Final
 
 from drivers import cia402, servo_setup
 from drivers.axis import AxisConfig as AxisConfig
@@ -17,14 +18,14 @@ from drivers.canopen.heartbeat import HeartbeatMonitor
 from drivers.cia402 import Goal, State
 
 # All axes share this layout (drivers.canopen.pdo): statusword, velocity or position, torque.
-_TPDO1 = struct.Struct("<Hih").unpack
-_TPDO1_SIZE = 8
-_IO_PACK = struct.Struct("<I").pack
-_IO_UNPACK = struct.Struct("<I").unpack
-_IO_SIZE = 4
-_MAX_EMERGENCIES = 64     # kept for the journal between two calls of take_emergencies
-_HOMING_SCANS = 3         # until the statusword surely answers the start bit: sent, sampled, reported
-_HOMED = cia402.HOMING_ATTAINED | cia402.TARGET_REACHED
+_TPDO1: Final = struct.Struct("<Hih").unpack
+_TPDO1_SIZE: Final = 8
+_IO_PACK: Final = struct.Struct("<I").pack
+_IO_UNPACK: Final = struct.Struct("<I").unpack
+_IO_SIZE: Final = 4
+_MAX_EMERGENCIES: Final = 64     # kept for the journal between two calls of take_emergencies
+_HOMING_SCANS: Final = 3         # until the statusword surely answers the start bit: sent, sampled, reported
+_HOMED: Final = cia402.HOMING_ATTAINED | cia402.TARGET_REACHED
 
 
 class ServoDrive(AxisCommand):
@@ -153,7 +154,8 @@ class ServoDrive(AxisCommand):
         if len(data) != _TPDO1_SIZE:
             self.malformed += 1
             return
-        statusword, raw, torque = _TPDO1(data)
+        fields: tuple[int, int, int] = _TPDO1(data)
+        statusword, raw, torque = fields
         if statusword != self.statusword:
             self.take_statusword(statusword)
         if self._at_rest and self._position_mode:

@@ -8,94 +8,29 @@ answers) wait in time order until the wire is read, so they win and lose the wir
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
 from bisect import bisect_right, insort
 from collections import deque
-from collections.abc import Callable
-from heapq import heapify, heapreplace
 from itertools import accumulate
 from math import inf
-from typing import Protocol
+from typing import Final
 
 from drivers.canopen.objects import SYNC_ID
 from drivers.ports import BusLost, CanFrame
+from sim.can_traffic import Beat, CanNode, CanTap, Listener, SyncFollower, frame_bits
 
-Listener = Callable[[bytes, float], None]
-"""Called with the data of a frame and its arrival time in s."""
-
-_LOAD_MARK_S = 0.1
+_LOAD_MARK_S: Final = 0.1
 """Resolution in s of the one-second bus load."""
 
 
-class CanTap(Protocol):
-    """Whoever wants to see every frame on the wire (the bus log)."""
-
-    def frame(self, t: float, can_id: int, data: bytes, from_pc: bool) -> None:
-        """Take note of a frame that was complete at ``t`` seconds."""
-        ...
-
-
-class CanNode(Protocol):
-    """A device on the wire: it is advanced in time and listens through ``CanWire.listen``."""
-
-    due_s: float
-
-    def advance(self, t0: float, t1: float) -> None:
-        """Move from ``t0`` to ``t1`` seconds, sending what falls due on the way."""
-        ...
-
-
-class SyncFollower(ABC):
-    """A device that answers SYNC.
-
-    ``plain``: nothing but one TPDO goes with the next SYNC: ``sample`` under ``sample_id``, or what ``take_sample``
-    returns where it is ``stale``.
-    """
-
-    __slots__ = ("plain", "sample", "sample_id", "stale", "take_sample")
-
-    def __init__(self, take_sample: Callable[[], bytes]) -> None:
-        """Not ``plain``: answer by ``on_sync``."""
-        self.plain = False
-        self.stale = True
-        self.sample = b""
-        self.sample_id = 0
-        self.take_sample = take_sample
-
-    @abstractmethod
-    def on_sync(self, t: float) -> None:
-        """Act on a SYNC that arrived at ``t`` s and answer it."""
-
-
-class Beat:
-    """A frame that a node sends in a fixed period, by itself."""
-
-    __slots__ = ("can_id", "data", "period_s")
-
-    def __init__(self, can_id: int, data: bytes, period_s: float) -> None:
-        """Take the identifier, the data and the period in s (> 0)."""
-        self.can_id = can_id
-        self.data = data
-        self.period_s = period_s
-
-
-def frame_bits(length: int) -> int:
-    """Return the worst-case bits of a standard data frame with ``length`` data bytes, intermission included.
-
-    44 bits of frame and 3 of intermission around the data, and one stuff bit for every four of the 34 + 8 n - 1
-    stuffable ones (ISO 11898-1; 135 bits at 8 bytes).
-    """
-    return 47 + 8 * length + (33 + 8 * length) // 4
-
-
-def _same_shape(frames: tuple[tuple[int, bytes], ...], others: tuple[tuple[int, bytes], ...]) -> bool:
-    """Tell whether two cycles have the same identifiers and lengths in the same places: the same times on the wire."""
-    if len(frames) != len(others):
+def _same_lengths(payloads: tuple[bytes, ...], others: tuple[bytes, ...]) -> bool:
+    """Tell whether the frames of two cycles are as long as each other: with equal identifiers, equal times."""
+    if len(payloads) != len(others):
         return False
-    for one, other in zip(frames, others, strict=True):
-        if one is not other and (one[0] != other[0] or len(one[1]) != len(other[1])):
-            return False
-    return True
+    same = True
+    for i in range(len(payloads)):
+        if payloads[i] is not others[i] and len(payloads[i]) != len(others[i]):
+            same = False
+    return same
 
 
 def _rank(entry: tuple[int, object]) -> int:
@@ -113,7 +48,8 @@ class CanWire:
     __slots__ = (
         "_beats",
         "_busy_s",
-        "_cycle",
+        "_cycle_ids",
+        "_cycle_listeners",
         "_cycle_s",
         "_cycled_s",
         "_followers",
@@ -129,6 +65,7 @@ class CanWire:
         "_routes",
         "_sequence",
         "_skipped_s",
+        "_taken",
         "_urgent",
         "bitrate",
         "connected",
@@ -154,11 +91,13 @@ class CanWire:
         self._ranked: dict[int, list[tuple[int, Listener]]] = {}
         self._inbox: list[CanFrame] = []
         self._pending: list[tuple[float, int, int, bytes, bool]] = []
-        self._beats: list[tuple[float, int, Beat]] = []  # a heap
+        self._beats: list[Beat] = []  # the next one first
         self._followers: tuple[SyncFollower, ...] = ()
         self._ranked_followers: list[tuple[int, SyncFollower]] = []
         self._repeatable: set[int] = set()
-        self._cycle: tuple[tuple[int, bytes], ...] | None = None  # that every listener has taken already
+        self._taken: tuple[bytes, ...] | None = None  # payloads of a cycle that every listener has taken already
+        self._cycle_ids: tuple[int, ...] = ()
+        self._cycle_listeners: list[tuple[Listener, ...]] = []
         self._cycle_s = 0.0
         self._cycled_s = -inf  # when that cycle last went unheard
         self._skipped_s: dict[int, float] = {}  # the same of frames of earlier cycles
@@ -196,16 +135,20 @@ class CanWire:
         if can_id == SYNC_ID:
             self._answer(arrival)
 
-    def send_cycle(self, frames: tuple[tuple[int, bytes], ...], now: float) -> None:
+    def send_cycle(self, can_ids: tuple[int, ...], payloads: tuple[bytes, ...], now: float) -> None:
         """Send the frames of a bus cycle one after the other.
 
         A frame that its listeners have taken already only takes its time on the wire: equal process data mean nothing
         new to a drive. SYNC is answered as ever.
         """
-        taken = self._cycle
-        if taken is None or (frames is not taken and not _same_shape(frames, taken)):
-            self._remember(frames)  # before a listener may ask to forget it
-            for can_id, data in frames:
+        taken = self._taken
+        if (
+            taken is None
+            or (can_ids is not self._cycle_ids and can_ids != self._cycle_ids)
+            or (payloads is not taken and not _same_lengths(payloads, taken))
+        ):
+            self._remember(can_ids, payloads)  # before a listener may ask to forget it
+            for can_id, data in zip(can_ids, payloads, strict=True):
                 self.send(can_id, data, now)
             return
         if not self.connected:
@@ -215,14 +158,14 @@ class CanWire:
         start = self._busy_s if self._busy_s > now else now
         self._cycled_s = self._busy_s = end = start + self._cycle_s
         self.occupied_s += self._cycle_s
-        if frames is not taken:
-            self._cycle = frames
-            for frame, before, offset_s in zip(frames, taken, self._offsets_s, strict=True):
-                if frame is not before:
-                    for listener in self._routes.get(frame[0], ()):
-                        listener(frame[1], start + offset_s)
+        if payloads is not taken:
+            self._taken = payloads
+            for i in range(len(payloads)):
+                if payloads[i] is not taken[i]:
+                    for listener in self._cycle_listeners[i]:
+                        listener(payloads[i], start + self._offsets_s[i])
         if self.tap is not None:
-            for (can_id, data), offset_s in zip(frames, self._offsets_s, strict=True):
+            for can_id, data, offset_s in zip(can_ids, payloads, self._offsets_s, strict=True):
                 self.tap.frame(start + offset_s, can_id, data, True)
         self._answer(end)
 
@@ -290,14 +233,14 @@ class CanWire:
 
     def forget_cycle(self) -> None:
         """Have the next cycle taken by every listener, whatever it holds."""
-        if self._cycle is not None:
-            for can_id, _ in self._cycle:
+        if self._taken is not None:
+            for can_id in self._cycle_ids:
                 self._skipped_s[can_id] = self._cycled_s
-            self._cycle = None
+            self._taken = None
 
     def skipped_s(self, can_id: int) -> float:
         """Return when a frame last went past its ``repeatable`` listeners because it held nothing new, s; or -inf."""
-        if self._cycle is not None and any(frame[0] == can_id for frame in self._cycle):
+        if self._taken is not None and can_id in self._cycle_ids:
             return self._cycled_s
         return self._skipped_s.get(can_id, -inf)
 
@@ -316,16 +259,15 @@ class CanWire:
 
     def beat(self, beat: Beat, first_s: float) -> None:
         """Send a node's frame at ``first_s`` s and then in its period, until ``unbeat``."""
-        self._beats.append((first_s, beat.can_id, beat))
-        heapify(self._beats)
+        beat.due_s = first_s
+        self._queue(beat)
         self._find_ready()
 
     def unbeat(self, beat: Beat, t: float) -> None:
         """End a periodic frame at ``t`` s; nothing happens when it was not sent."""
         if self.ready_s <= t:
             self.settle(t)
-        self._beats = [entry for entry in self._beats if entry[2] is not beat]
-        heapify(self._beats)
+        self._beats = [other for other in self._beats if other is not beat]
         self._find_ready()
 
     def transmit(self, can_id: int, data: bytes, t: float, urgent: bool = False) -> None:
@@ -389,14 +331,16 @@ class CanWire:
         """Take over who answers SYNC."""
         self._followers = tuple(entry[1] for entry in ranked)
 
-    def _remember(self, frames: tuple[tuple[int, bytes], ...]) -> None:
+    def _remember(self, can_ids: tuple[int, ...], payloads: tuple[bytes, ...]) -> None:
         """Note a cycle that was taken, if its frames need not be taken again while they stay the same."""
         self.forget_cycle()
-        if not frames or frames[-1][0] != SYNC_ID or self._routes.get(SYNC_ID):
+        if not can_ids or can_ids[-1] != SYNC_ID or self._routes.get(SYNC_ID):
             return
-        if all(can_id in self._repeatable or not self._routes.get(can_id) for can_id, _ in frames[:-1]):
-            self._cycle = frames
-            self._offsets_s = tuple(accumulate(self._frame_s[len(data)] for _, data in frames))
+        if all(can_id in self._repeatable or not self._routes.get(can_id) for can_id in can_ids[:-1]):
+            self._cycle_ids = can_ids
+            self._taken = payloads
+            self._cycle_listeners = [self._routes.get(can_id, ()) for can_id in can_ids]
+            self._offsets_s = tuple(accumulate(self._frame_s[len(data)] for data in payloads))
             self._cycle_s = self._offsets_s[-1]
 
     def _answer(self, t: float) -> None:
@@ -424,18 +368,21 @@ class CanWire:
         while True:
             first = pending[0] if pending else None
             if beats:
-                due, can_id, beat = beats[0]
-                if due <= now and (first is None or (due, can_id) <= first[:2]):
-                    heapreplace(beats, (due + beat.period_s, can_id, beat))
+                beat = beats[0]
+                due = beat.due_s
+                if due <= now and (first is None or (due, beat.can_id) <= first[:2]):
+                    del beats[0]
+                    beat.due_s = due + beat.period_s
+                    self._queue(beat)
                     if due < self._busy_s:
                         due = self._busy_s
                     if quick:
                         self._busy_s = due = due + frame_s
                         self.occupied_s += frame_s
-                        self._inbox.append((due, can_id, beat.data))
+                        self._inbox.append((due, beat.can_id, beat.data))
                     else:
                         self._busy_s = due
-                        self.transmit(can_id, beat.data, due)
+                        self.transmit(beat.can_id, beat.data, due)
                     continue
             if first is None or first[0] > now:
                 break
@@ -447,9 +394,20 @@ class CanWire:
         if self.urgent_s < inf:
             self._find_urgent(now)
 
+    def _queue(self, beat: Beat) -> None:
+        """Put a periodic frame where its time, then its identifier, belongs: nearly always at the end."""
+        beats = self._beats
+        at = len(beats)
+        while at > 0:
+            other = beats[at - 1]
+            if other.due_s < beat.due_s or (other.due_s == beat.due_s and other.can_id <= beat.can_id):
+                break
+            at -= 1
+        beats.insert(at, beat)
+
     def _find_ready(self) -> None:
         ready = self._pending[0][0] if self._pending else inf
-        self.ready_s = min(ready, self._beats[0][0]) if self._beats else ready
+        self.ready_s = min(ready, self._beats[0].due_s) if self._beats else ready
 
     def _note_urgent(self, arrival: float) -> None:
         self._urgent.append(arrival)

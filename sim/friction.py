@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from sim.parameters import MODEL_NAMES, FrictionModelName
 
@@ -59,25 +59,25 @@ class V2Parameters:
     a2: float
 
 
-COMPOUNDS: dict[str, PaperParameters] = {
+COMPOUNDS: Final[dict[str, PaperParameters]] = {
     "1#": PaperParameters(0.2238, 0.002231, 1.013, 10.3850, 0.3975, -0.3834, 1.200, 70.0),
     "2#": PaperParameters(0.6278, 0.001974, 0.980, 12.1476, 0.3204, -0.4440, 1.550, 68.0),
     "3#": PaperParameters(0.8712, 0.002744, 1.028, 71.9234, 0.5443, -0.6167, 1.455, 73.0),
 }
 """The paper's three compounds, coefficients verbatim (Eqs 7-9)."""
 
-V2: dict[str, V2Parameters] = {
+V2: Final[dict[str, V2Parameters]] = {
     "1#": V2Parameters(0.234637, 0.001839, 66.478, 0.344942, -0.341934, 1.136499, 0.396179),
     "2#": V2Parameters(0.597188, 0.002186, 69.231, 0.197275, -0.419724, 1.470303, 0.314343),
     "3#": V2Parameters(0.845325, 0.002587, 72.263, 0.510386, -0.567485, 1.322839, 0.552537),
 }
 
-KNOWN: list[str] = list(COMPOUNDS)
+KNOWN: Final[list[str]] = list(COMPOUNDS)
 """Compounds that have a friction model."""
 
-V2_TEMPERATURE_C = 25.0
-V2_LOAD_N = 200.0
-V2_SLIP_M_S = 0.3
+V2_TEMPERATURE_C: Final = 25.0
+V2_LOAD_N: Final = 200.0
+V2_SLIP_M_S: Final = 0.3
 """The point at which the v2 form is normalised."""
 
 

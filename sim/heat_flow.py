@@ -7,14 +7,16 @@ away and the implicit step of ``sim.thermal`` serves as well at a fifth of the w
 
 from __future__ import annotations
 
+from typing import Final
+
 from sim.sensors import LoadCellSensor, TemperatureSensor
 from sim.thermal import CALM_STEP_S, ThermalModel
 
-CALM_AFTER_S = 5.0
+CALM_AFTER_S: Final = 5.0
 """Time without a disturbance after which all is calm: then both steps agree within 0.02 K, on the hot rig too."""
-CALM_FRICTION_W = 1.0
+CALM_FRICTION_W: Final = 1.0
 """Friction that is no disturbance: rolling at 200 N with 4 mm/s of slip."""
-SAME_STEP_S = 1e-9
+SAME_STEP_S: Final = 1e-9
 """Ticks whose lengths differ by less share their step constants: a float clock's differences are never quite equal."""
 
 

@@ -12,13 +12,14 @@ import math
 import zlib
 from collections.abc import Iterator
 from copy import copy
+from typing import Final
 
 import numpy as np
 
 from sim.parameters import SimParameters
 
-_SEED_MASK = 0xFFFF_FFFF_FFFF_FFFF
-BLOCKS = (128, 1024)
+_SEED_MASK: Final = 0xFFFF_FFFF_FFFF_FFFF
+BLOCKS: Final = (128, 1024)
 """Numbers drawn at a time, the first time and from then on (multiples of four): the hot path steps through a list."""
 
 

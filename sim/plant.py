@@ -8,7 +8,9 @@ methods are what instruments make of it.
 
 from __future__ import annotations
 
+import math
 from math import cos, exp, inf, pi, radians, sin, sqrt
+from typing import Final
 
 from sim.contact import ContactModel
 from sim.friction import V2_LOAD_N, FrictionModel
@@ -19,8 +21,8 @@ from sim.sensors import LoadCellSensor, SpeedSensor, TemperatureSensor
 from sim.slip import cornering_factor, traction_direction
 from sim.thermal import ThermalModel, ThermalState
 
-_TURN = 2.0 * pi
-_RUNNING_IN_LASTS = 37.0
+_TURN: Final = 2.0 * pi
+_RUNNING_IN_LASTS: Final = 37.0
 """Running-in distances after which its factor is 1 to the last bit: exp(-37) is less than 2^-53."""
 
 
@@ -228,7 +230,8 @@ class Plant:
             depth_mm += swing * sin(angle)
             if depth_mm > 0.0:
                 factor, exponent, damping = self._stiffness
-                load_n = factor * depth_mm**exponent + damping * (press_mm_s + swing * wheel_rad_s * cos(angle))
+                rate_mm_s = press_mm_s + swing * wheel_rad_s * cos(angle)
+                load_n = factor * math.pow(depth_mm, exponent) + damping * rate_mm_s
         if load_n > 0.0:
             power_w = self._rub(dt, load_n, vx, vy)
         elif self.force_z_n > 0.0:
@@ -266,7 +269,7 @@ class Plant:
         slip_m_s = self.slip_m_s
         counted_n = load_n if load_n > floor else floor
         off = self.surface_c - tm
-        mu = (heat * exp(-beta * off * off) + base) * (speed * slip_m_s**b2 * counted_n**b1 + a2)
+        mu = (heat * exp(-beta * off * off) + base) * (speed * math.pow(slip_m_s, b2) * math.pow(counted_n, b1) + a2)
         if load_factor:
             mu *= exp(load_factor * (counted_n - V2_LOAD_N))
         within = self._within

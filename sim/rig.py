@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from math import floor
-from typing import Literal
+from typing import Final, Literal
 
 from drivers.axis import AxisConfig
 from drivers.profiles import load_profile
@@ -23,14 +23,14 @@ from sim.nodes.motion import VelocityAxis
 from sim.parameters import SimParameters
 from sim.plant import Plant
 
-PRESS_LAG_S = 0.03
+PRESS_LAG_S: Final = 0.03
 """Lag of the press screw behind its velocity command, s [A] (physics, section 5)."""
-PRESS_TRAVEL_MM = 30.0
+PRESS_TRAVEL_MM: Final = 30.0
 """Travel of the press from fully lifted, mm [A]: beyond a wheel worn to its hub."""
-PRESS_SPRING_MM_S = -20.0
+PRESS_SPRING_MM_S: Final = -20.0
 """Speed at which the spring retracts an unpowered press, mm/s [A] (rulings, 22)."""
-SHORTEST_STEP_S = 1e-3
-LONGEST_STEP_S = 0.1
+SHORTEST_STEP_S: Final = 1e-3
+LONGEST_STEP_S: Final = 0.1
 """The plant is advanced in steps between these."""
 
 

@@ -8,20 +8,21 @@ sideslip rows of the paper (Polymers 2024, 16(5), 596, doi 10.3390/polym16050596
 from __future__ import annotations
 
 import math
+from typing import Final
 
 from sim.friction import UnknownCompoundError, coefficient
 from sim.parameters import FrictionModelName
 
-CORNERING: dict[str, float] = {"1#": 0.58, "2#": 0.0, "3#": 0.0}
+CORNERING: Final[dict[str, float]] = {"1#": 0.58, "2#": 0.0, "3#": 0.0}
 """Extra friction per sin|d|. 1#: fitted to the paper's rows; 2#: vector slip alone explains them to 2.4 %."""
 
-SIDESLIP_DATA: frozenset[str] = frozenset({"1#", "2#"})
+SIDESLIP_DATA: Final[frozenset[str]] = frozenset({"1#", "2#"})
 """Compounds with valid sideslip data: the paper's rows of 3# repeat those of 2#, so its factor is none."""
 
-CREEP_M_S = 0.008
+CREEP_M_S: Final = 0.008
 """[A] Slip added along x to find the direction of friction when there is no slip (the plant's default)."""
 
-REVERSAL_WIDTH_M_S = 0.001
+REVERSAL_WIDTH_M_S: Final = 0.001
 """[A] The force passes through zero over this width of slip (the plant's default)."""
 
 

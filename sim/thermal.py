@@ -10,13 +10,14 @@ from __future__ import annotations
 
 import math
 from itertools import accumulate, pairwise
+from typing import Final
 
 from sim.parameters import ThermalParameters, WheelParameters
 
-MAX_STEP_S = 0.05
+MAX_STEP_S: Final = 0.05
 """Longest explicit step; shorter where the cells need it (``ThermalModel.step_s``)."""
 
-CALM_STEP_S = 0.2
+CALM_STEP_S: Final = 0.2
 """Length of an implicit step (``ThermalModel.calm_step``)."""
 
 
@@ -227,7 +228,7 @@ class ThermalModel:
             outer.append(surface)
             state.cells_c = [
                 a * t + b * u + c * v + d
-                for a, t, b, u, c, v, d in zip(own, cells, inside, inner, outside, outer, air, strict=False)
+                for a, t, b, u, c, v, d in zip(own, cells, inside, inner, outside, outer, air)  # noqa: B905
             ]
             state.surface_c = surface
             state.hub_c = hub + dt * (heater_w - loss) / self._hub_j_k
@@ -251,7 +252,7 @@ class ThermalModel:
         hub_keep, hub_gain = hub
         excess = hub_keep * (state.hub_c - ambient_c) + hub_gain * heater_w
         solved = [excess]
-        for t, own, inside in zip(state.cells_c, keep, take, strict=True):
+        for t, own, inside in zip(state.cells_c, keep, take):  # noqa: B905 - compiles to a plain loop
             excess = own * (t - ambient_c) + inside * excess
             solved.append(excess)
         surface_take, surface_gain, surface_hand, belt_keep, belt_take, belt_gain = surface_and_belt
@@ -263,7 +264,7 @@ class ThermalModel:
         state.surface_c = ambient_c + excess
         solved.reverse()
         found: list[float] = []
-        for own, outside in zip(solved, hand, strict=True):
+        for own, outside in zip(solved, hand):  # noqa: B905
             excess = own + outside * excess
             found.append(ambient_c + excess)
         state.hub_c = found.pop()

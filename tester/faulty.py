@@ -36,9 +36,9 @@ class SkewedCan:
         """Send a frame; raises BusLost."""
         self.port.send(can_id, data, now - self.skew.ahead_s)
 
-    def send_cycle(self, frames: tuple[tuple[int, bytes], ...], now: float) -> None:
+    def send_cycle(self, can_ids: tuple[int, ...], payloads: tuple[bytes, ...], now: float) -> None:
         """Send the frames of a bus cycle; raises BusLost."""
-        self.port.send_cycle(frames, now - self.skew.ahead_s)
+        self.port.send_cycle(can_ids, payloads, now - self.skew.ahead_s)
 
     def receive(self, now: float) -> list[CanFrame]:
         """Return what arrived, stamped with the computer's clock; raises BusLost."""

@@ -68,7 +68,7 @@ class ExclusiveUse:
 
     def lock_file(self, resource: str, path: Path, run: str, *, lasting: bool = True) -> None:
         """Lock one file; one that is not ``lasting`` goes when it is released. Raises RigInUseError, OSError."""
-        holder = Holder(os.getpid(), _user(), clock.utc_now(), run)
+        holder = Holder(os.getpid(), user(), clock.utc_now(), run)
         self._held.append(_locked(path, resource, holder, mode=0o666 if lasting else 0o644))
         if not lasting:
             self._files.append(path)
@@ -190,7 +190,7 @@ else:
         return True
 
 
-def _user() -> str:
+def user() -> str:
     try:
         return getuser()
     except (KeyError, OSError):  # no such user here, as in many containers

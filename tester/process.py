@@ -9,8 +9,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import IntEnum
+from typing import Final
 
-SAMPLE_COLUMNS: tuple[str, ...] = (
+SAMPLE_COLUMNS: Final[tuple[str, ...]] = (
     "time_s",
     "wheel_speed_m_s",
     "belt_speed_m_s",
@@ -36,17 +37,17 @@ SAMPLE_COLUMNS: tuple[str, ...] = (
 """Columns of a recorded sample, in order, all float64, unit in the name. ``gate`` is a mask of GATE_* (0 = accepted),
 ``burst`` counts within the repeat (0 = outside a burst), ``repeat_key`` is the repeat's row in the store (0 = none)."""
 
-GATE_LOAD = 1
-GATE_SPEED = 2
-GATE_SLIP = 4
-GATE_TEMPERATURE = 8
-GATE_ALARM = 16
-GATE_SETTLING = 32
+GATE_LOAD: Final = 1
+GATE_SPEED: Final = 2
+GATE_SLIP: Final = 4
+GATE_TEMPERATURE: Final = 8
+GATE_ALARM: Final = 16
+GATE_SETTLING: Final = 32
 
-NEVER = float("-inf")
+NEVER: Final = float("-inf")
 """Time stamp of a source that has not reported yet: older than anything, hence stale."""
 
-NAN = float("nan")
+NAN: Final = float("nan")
 """Value of a source that has not reported yet, or of a demand that is not made."""
 
 

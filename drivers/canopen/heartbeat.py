@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
+from typing import Final
 
-MISSED = 3
+MISSED: Final = 3
 """A producer is lost when nothing was heard for this many of its periods (safety.md: 3 x 50 ms)."""
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from drivers.canopen import heartbeat
 from drivers.canopen import objects as o
@@ -14,17 +14,17 @@ if TYPE_CHECKING:
     from drivers.ports import CanFrame, CanPort
     from drivers.servo import ServoDrive
 
-EARLY_S = 0.0005
+EARLY_S: Final = 0.0005
 """Work due within half a millisecond is done at once: it saves a tick of its own and hides rounding of times."""
 
-_FUNCTION = 0x780
-_NODE = 0x07F
-_MASTER_FUNCTIONS = {
+_FUNCTION: Final = 0x780
+_NODE: Final = 0x07F
+_MASTER_FUNCTIONS: Final = {
     o.RPDO1_BASE: "RPDO1", o.RPDO2_BASE: "RPDO2", o.RPDO3_BASE: "RPDO3", o.RPDO4_BASE: "RPDO4",
     o.SDO_REQUEST_BASE: "SDO request",
 }
 """What only a master sends: received, it is somebody else's."""
-_SYNC = (o.SYNC_ID, b"")
+_SYNC_ID: Final = o.SYNC_ID
 
 
 class CanMaster:
@@ -39,10 +39,30 @@ class CanMaster:
     it; the caller clears them. ``unknown_frames`` counts frames of nobody added here.
     """
 
-    __slots__ = ("_by_node", "_commands", "_cycle", "_cycle_syncs", "_dialogues", "_drives", "_heartbeat",
-                 "_heartbeat_due", "_heartbeats", "_io_drives", "_tpdo1", "_withheld", "deadline",
-                 "foreign_frame", "foreign_master", "heartbeat_s", "node_id", "sdo_timeout_s", "sync",
-                 "unknown_frames")
+    __slots__ = (
+        "_by_node",
+        "_commands",
+        "_cycle_ids",
+        "_cycle_key",
+        "_cycle_syncs",
+        "_dialogues",
+        "_drives",
+        "_heartbeat",
+        "_heartbeat_due",
+        "_heartbeats",
+        "_io_drives",
+        "_payloads",
+        "_tpdo1",
+        "_withheld",
+        "deadline",
+        "foreign_frame",
+        "foreign_master",
+        "heartbeat_s",
+        "node_id",
+        "sdo_timeout_s",
+        "sync",
+        "unknown_frames",
+    )
 
     def __init__(self, node_id: int = 127, heartbeat_s: float = 0.05, sdo_timeout_s: float = 0.3) -> None:
         self.node_id = node_id
@@ -56,8 +76,10 @@ class CanMaster:
         self._heartbeat = (o.HEARTBEAT_BASE + node_id, bytes((o.NmtState.OPERATIONAL,)))
         self._heartbeat_due = -math.inf
         self._withheld = False
-        self._commands: list[tuple[int, bytes] | None] = []
-        self._cycle: tuple[tuple[int, bytes], ...] = ()
+        self._commands: list[bytes | None] = []
+        self._cycle_ids: tuple[int, ...] = ()
+        self._cycle_key: int = 0                # whose commands are in the cycle, and whether SYNC is
+        self._payloads: tuple[bytes, ...] = ()
         self._cycle_syncs = False
         self._drives: list[ServoDrive] = []
         self._io_drives: list[ServoDrive] = []
@@ -113,17 +135,17 @@ class CanMaster:
 
     def feed(self, frames: list[CanFrame], now: float) -> None:
         """Take the frames that arrived up to ``now``, oldest first."""
-        tpdo1, heartbeats = self._tpdo1.get, self._heartbeats.get
+        tpdo1, heartbeats = self._tpdo1, self._heartbeats
         talking = bool(self._dialogues)
         for t, can_id, data in frames:
-            drive = tpdo1(can_id)
+            drive = tpdo1.get(can_id)
             if drive is not None:
                 if data == drive.tpdo1_data:
                     drive.stamp_s = t
                 else:
                     drive.on_tpdo1(t, data)
                 continue
-            drive = heartbeats(can_id)
+            drive = heartbeats.get(can_id)
             if drive is not None and data == drive.usual_heartbeat and not talking:
                 monitor = drive.heartbeat
                 monitor.heard_s = t
@@ -146,11 +168,10 @@ class CanMaster:
         for i, drive in enumerate(self._drives):
             if drive.dirty:
                 changed = True
-                data = drive.emit(sync)
-                self._commands[i] = None if data is None else (drive.rpdo1_id, data)
+                self._commands[i] = drive.emit(sync)
         if changed:
             self._compose(sync)
-        port.send_cycle(self._cycle, now)
+        port.send_cycle(self._cycle_ids, self._payloads, now)
         if self._heartbeat_due < until - EARLY_S:
             self._heartbeat_due = self.deadline = now
         if self._dialogues or now + EARLY_S >= self.deadline:
@@ -158,9 +179,24 @@ class CanMaster:
 
     def _compose(self, sync: bool) -> None:
         """Put the commands of all drives, and SYNC, into the cycle; what has not changed stays the same object."""
-        frames = tuple([frame for frame in self._commands if frame is not None])
-        self._cycle = (*frames, _SYNC) if sync else frames
+        payloads: list[bytes] = []
+        key = bit = 1
+        for command in self._commands:
+            bit <<= 1
+            if command is not None:
+                key |= bit
+                payloads.append(command)
+        if sync:
+            payloads.append(b"")
+        else:
+            key -= 1
+        self._payloads = tuple(payloads)
         self._cycle_syncs = sync
+        if key != self._cycle_key:
+            self._cycle_key = key
+            commanded = zip(self._drives, self._commands, strict=True)
+            can_ids = [drive.rpdo1_id for drive, command in commanded if command is not None]
+            self._cycle_ids = (*can_ids, _SYNC_ID) if sync else tuple(can_ids)
 
     def service(self, port: CanPort, now: float) -> None:
         """Send our heartbeat when due and go on with the conversations; notice drives that fell silent."""

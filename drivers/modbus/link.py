@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import inf
+from typing import Final
 
 from drivers.crc16 import crc16
 from drivers.modbus import codec
@@ -17,16 +18,16 @@ from drivers.modbus.schedule import Schedule
 from drivers.ports import LinePort
 from drivers.profiles.model import Timing
 
-MISSES_TO_LOSE = 3
+MISSES_TO_LOSE: Final = 3
 """Failed attempts in a row after which a station counts as lost (safety page: 3 misses)."""
-BUSY_S = 0.02
+BUSY_S: Final = 0.02
 """Pause before a request is repeated that a device was too busy or failed to answer (exceptions 04 to 08)."""
-POLL_S = 0.002
+POLL_S: Final = 0.002
 """While others wait and a reply is overdue, the link asks to be served on a grid of this."""
 
-_TINY_S = 1e-9
-_CONFIGURATION = frozenset({1, 2, 3})
-_DEVICE_GONE = frozenset({10, 11})
+_TINY_S: Final = 1e-9
+_CONFIGURATION: Final = frozenset({1, 2, 3})
+_DEVICE_GONE: Final = frozenset({10, 11})
 
 
 class ModbusLink:

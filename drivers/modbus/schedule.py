@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 from math import inf
+from typing import Final
 
 from drivers.modbus.request import Request, Station
 
-PROBE_S = 1.0
+PROBE_S: Final = 1.0
 """Pause between attempts to reach a lost station: it must not take the line from the others."""
-RETRY_S = 0.5
+RETRY_S: Final = 0.5
 """Pause before a write or a single read is tried again whose attempts all failed."""
-SLACK_S = 0.06
+SLACK_S: Final = 0.06
 """A periodic read waits this long for a regular scan: scans at 20 Hz serve the slow line without ticks of its own."""
 
-_EARLY_S = 1e-3
+_EARLY_S: Final = 1e-3
 """What falls due within this is sent now: the next scan would be later."""
 
 

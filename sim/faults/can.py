@@ -6,7 +6,8 @@ from bisect import insort
 
 from drivers.canopen import emcy
 from drivers.canopen import objects as o
-from sim.can_wire import CanWire, Listener, SyncFollower
+from sim.can_traffic import Listener, SyncFollower
+from sim.can_wire import CanWire
 from sim.faults.scene import Effect, Scene
 
 _NODE = 0x7F
@@ -87,13 +88,13 @@ class FaultyCanWire(CanWire):
                 super().send(can_id, data, now)
         super().send(can_id, data, now)
 
-    def send_cycle(self, frames: tuple[tuple[int, bytes], ...], now: float) -> None:
+    def send_cycle(self, can_ids: tuple[int, ...], payloads: tuple[bytes, ...], now: float) -> None:
         """Send the frames of a bus cycle; on a spoiled bus each is looked at."""
         if self.spoiled:
-            for can_id, data in frames:
+            for can_id, data in zip(can_ids, payloads, strict=True):
                 self.send(can_id, data, now)
         else:
-            super().send_cycle(frames, now)
+            super().send_cycle(can_ids, payloads, now)
 
     def transmit(self, can_id: int, data: bytes, t: float, urgent: bool = False) -> None:
         """Send a node's frame, unless a fault has it."""

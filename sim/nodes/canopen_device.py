@@ -6,10 +6,12 @@ What the device is for (the drive) is a subclass: it is told of resets, lost con
 from __future__ import annotations
 
 from math import inf
+from typing import Final
 
 from drivers.canopen import objects as o
 from drivers.canopen.objects import NmtCommand, NmtState
-from sim.can_wire import Beat, CanWire
+from sim.can_traffic import Beat
+from sim.can_wire import CanWire
 from sim.nodes import communication_objects
 from sim.nodes.emergencies import Emergencies
 from sim.nodes.object_store import ObjectStore
@@ -17,15 +19,15 @@ from sim.nodes.pdo_channels import ReceivePdo, TransmitPdo
 from sim.nodes.pdo_exchange import RPDO_TIMED_OUT, PdoExchange
 from sim.nodes.sdo_server import SdoServer
 
-HEARTBEAT_LOST = 0x8130
-COMMUNICATION_BOOT_S = 0.02
+HEARTBEAT_LOST: Final = 0x8130
+COMMUNICATION_BOOT_S: Final = 0.02
 """From a communication reset to the boot-up message, s [A]."""
 
 # NMT states as plain integers for the hot path.
-BOOTING = int(NmtState.BOOT_UP)
-STOPPED = int(NmtState.STOPPED)
-OPERATIONAL = int(NmtState.OPERATIONAL)
-PRE_OPERATIONAL = int(NmtState.PRE_OPERATIONAL)
+BOOTING: Final = int(NmtState.BOOT_UP)
+STOPPED: Final = int(NmtState.STOPPED)
+OPERATIONAL: Final = int(NmtState.OPERATIONAL)
+PRE_OPERATIONAL: Final = int(NmtState.PRE_OPERATIONAL)
 
 
 class CanopenDevice:
@@ -198,7 +200,9 @@ class CanopenDevice:
 
     def reschedule(self) -> None:
         """Find the next timer."""
-        self.due_s = min(self._boot_at, self._consumer_at, self.pdos.due_s, self._application_due())
+        due_s = min(self._boot_at, self._consumer_at)
+        due_s = min(due_s, self.pdos.due_s)
+        self.due_s = min(due_s, self._application_due())
 
     def fire(self, t: float) -> None:
         """Do what has fallen due by ``t`` s."""

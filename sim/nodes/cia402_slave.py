@@ -7,7 +7,8 @@ position, homing), ``drive_objects`` (what the objects of the profile show, acce
 from __future__ import annotations
 
 import struct
-from math import inf
+from math import floor, inf
+from typing import Final
 
 from drivers import cia402
 from drivers.axis import AxisConfig
@@ -27,19 +28,19 @@ from sim.nodes.object_store import ObjectStore
 from sim.nodes.pdo_channels import ReceivePdo, TransmitPdo
 from sim.nodes.safety_io import SafetyIo
 
-_CONTROLWORD = (o.CONTROLWORD, 0)
-_MODE = (o.MODE, 0)
-_OUTPUTS = (o.DIGITAL_OUTPUTS, 1)
-_OUTPUT_MASK = (o.DIGITAL_OUTPUTS, 2)
+_CONTROLWORD: Final = (o.CONTROLWORD, 0)
+_MODE: Final = (o.MODE, 0)
+_OUTPUTS: Final = (o.DIGITAL_OUTPUTS, 1)
+_OUTPUT_MASK: Final = (o.DIGITAL_OUTPUTS, 2)
 
-_TARGET_VELOCITY = (o.TARGET_VELOCITY, 0)
+_TARGET_VELOCITY: Final = (o.TARGET_VELOCITY, 0)
 
-_RPDO1 = struct.Struct("<Hi").unpack
-_TPDO1 = struct.Struct("<Hih").pack
+_RPDO1: Final = struct.Struct("<Hi").unpack
+_TPDO1: Final = struct.Struct("<Hih").pack
 
-_URGENT_BITS = 0x006F | cia402.VOLTAGE | cia402.REMOTE | cia402.FOLLOWING_ERROR
+_URGENT_BITS: Final = 0x006F | cia402.VOLTAGE | cia402.REMOTE | cia402.FOLLOWING_ERROR
 """Statusword bits whose change asks for an early tick: the state, voltage, remote, deviation."""
-_URGENT_IN_POSITION_MODES = _URGENT_BITS | cia402.TARGET_REACHED | cia402.SET_POINT_ACKNOWLEDGED
+_URGENT_IN_POSITION_MODES: Final = _URGENT_BITS | cia402.TARGET_REACHED | cia402.SET_POINT_ACKNOWLEDGED
 """... and where a move is waited for, its acknowledgement and its end."""
 
 
@@ -215,7 +216,8 @@ class Cia402Slave(DrivePower):
 
     def _take_velocity(self, data: bytes, t: float) -> None:
         """Take controlword and target velocity; in steady operation only the latter can be new."""
-        controlword, target = _RPDO1(data)
+        fields: tuple[int, int] = _RPDO1(data)
+        controlword, target = fields
         values = self.store.values
         values[_TARGET_VELOCITY] = target
         if self._steady and controlword == self._controlword and self._velocity is not None:
@@ -319,8 +321,8 @@ class Cia402Slave(DrivePower):
             self._sent_value = value
             self._sent_torque = torque
             self._sent_status = self.statusword
-            counts = round((value - self._offset) * self._increments)
-            per_mille = round(torque * self._per_mille)
+            counts = floor((value - self._offset) * self._increments + 0.5)
+            per_mille = floor(torque * self._per_mille + 0.5)
             try:
                 self._sent_data = _TPDO1(self.statusword, counts, per_mille)
             except struct.error:

@@ -8,16 +8,16 @@ is enabled, ``watch`` after every step of an axis that moves or whose bits wait 
 from __future__ import annotations
 
 from math import inf
-from typing import Protocol
+from typing import Final, Protocol
 
 from drivers import cia402
 from drivers.canopen import objects as o
 from sim.nodes.motion import VelocityAxis
 from sim.nodes.object_store import ObjectStore
 
-_UNLIMITED = 0xFFFF_FFFF
-ROUNDING_S = 1e-9
-_TARGET_VELOCITY = (o.TARGET_VELOCITY, 0)
+_UNLIMITED: Final = 0xFFFF_FFFF
+ROUNDING_S: Final = 1e-9
+_TARGET_VELOCITY: Final = (o.TARGET_VELOCITY, 0)
 
 
 class Ramps:

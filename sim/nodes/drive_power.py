@@ -5,6 +5,8 @@ The states and what leads from one to the next are in ``drive_state``; this is w
 
 from __future__ import annotations
 
+from typing import Final
+
 from drivers import cia402
 from drivers.canopen import objects as o
 from drivers.cia402 import State
@@ -20,11 +22,11 @@ from sim.nodes.safety_io import SafetyIo
 Axis = VelocityAxis | PositionAxis
 DriveMode = ProfileVelocity | ProfilePosition | Homing
 
-CONNECTION_ERROR = 0x8100
+CONNECTION_ERROR: Final = 0x8100
 """EMCY code of a connection ended otherwise than by a lost heartbeat (CiA 301: communication, generic)."""
 
-_OUTPUTS = (o.DIGITAL_OUTPUTS, 1)
-_HOLDING = 5
+_OUTPUTS: Final = (o.DIGITAL_OUTPUTS, 1)
+_HOLDING: Final = 5
 """Quick stop options from this one on stay in QUICK_STOP_ACTIVE at standstill."""
 
 

@@ -3,24 +3,24 @@
 from __future__ import annotations
 
 from math import floor, inf, isfinite
-from typing import Protocol
+from typing import Final, Protocol
 
 from drivers.profiles.model import LIMITS, DeviceProfile, ProfileError
 from sim.nodes.dither import PATTERN
 from sim.nodes.modbus_slave import ILLEGAL_ADDRESS, ILLEGAL_VALUE, ModbusSlave
 from sim.nodes.pid import Pid
 
-CYCLE_S = 0.125
+CYCLE_S: Final = 0.125
 """Time between two runs of the controller's loop [A]."""
-POWER_W = 200.0
+POWER_W: Final = 200.0
 """Heat of the jacket at 100 % (physics, section 4) [A]."""
-SETPOINT_MAX_C = 150.0
+SETPOINT_MAX_C: Final = 150.0
 """The controller takes no setpoint above this [A]."""
-LIMIT_C = 155.0
+LIMIT_C: Final = 155.0
 """The controller's own limiter: from here on no heat until it has been in standby below LIMIT_RESET_C [A]."""
-LIMIT_RESET_C = 145.0
-_SHOWN = ("pv", "output", "setpoint", "status")
-_PV_MOST = LIMITS["i16"][1]
+LIMIT_RESET_C: Final = 145.0
+_SHOWN: Final = ("pv", "output", "setpoint", "status")
+_PV_MOST: Final = LIMITS["i16"][1]
 """What the temperature register shows when the sensor is broken."""
 
 

@@ -7,30 +7,31 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from struct import Struct
+from typing import Final
 
 from drivers.crc16 import crc16, with_crc
 
-READ_HOLDING = 3
-READ_INPUT = 4
-WRITE_ONE = 6
-WRITE_MANY = 16
+READ_HOLDING: Final = 3
+READ_INPUT: Final = 4
+WRITE_ONE: Final = 6
+WRITE_MANY: Final = 16
 
-ILLEGAL_FUNCTION = 1
-ILLEGAL_ADDRESS = 2
-ILLEGAL_VALUE = 3
-DEVICE_FAILURE = 4
-ENDURANCE = 100_000
+ILLEGAL_FUNCTION: Final = 1
+ILLEGAL_ADDRESS: Final = 2
+ILLEGAL_VALUE: Final = 3
+DEVICE_FAILURE: Final = 4
+ENDURANCE: Final = 100_000
 """Writes that a device's non-volatile memory stands (Eurotherm HA028651)."""
-BROADCAST = 0
+BROADCAST: Final = 0
 
-_MOST_READ = 125
-_MOST_WRITTEN = 123
+_MOST_READ: Final = 125
+_MOST_WRITTEN: Final = 123
 """Registers in one request (Modbus application protocol V1.1b3, 6.3 and 6.12)."""
-_REMEMBERED = 64
+_REMEMBERED: Final = 64
 """Requests of each kind kept taken apart."""
 
-_WORD = Struct(">H")
-_REQUEST = Struct(">BBHH")
+_WORD: Final = Struct(">H")
+_REQUEST: Final = Struct(">BBHH")
 
 
 class Window:

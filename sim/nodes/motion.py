@@ -8,11 +8,12 @@ time is cut into ticks.
 from __future__ import annotations
 
 from math import copysign, exp, inf, isfinite, sqrt
+from typing import Final
 
-SETTLED = 1e-6
+SETTLED: Final = 1e-6
 """Difference to the target (axis units) below which a lagging axis is set on its target."""
 
-_ON_TARGET = 1e-9
+_ON_TARGET: Final = 1e-9
 """Distance (position units) below which a positioning axis is set on its target."""
 
 

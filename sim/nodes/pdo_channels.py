@@ -8,21 +8,21 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from math import inf
-from typing import Protocol
+from typing import Final, Protocol
 
 from drivers.canopen import objects as o
 from drivers.canopen.dictionary import DICTIONARY
 from drivers.canopen.pdo import PdoMap, PdoMapError
-from sim.can_wire import Listener
+from sim.can_traffic import Listener
 from sim.nodes import sdo_server as sdo
 from sim.nodes.object_store import Key, ObjectStore
 from sim.nodes.sdo_server import SdoAbortError
 
-LAST_CYCLIC = 240
+LAST_CYCLIC: Final = 240
 """Transmission types up to this one follow the SYNC; 254 and 255 are event driven, those between are refused."""
-_EVENT = 254
-_COB_EXTENDED = 0x2000_0000
-_MAX_ENTRIES = 4
+_EVENT: Final = 254
+_COB_EXTENDED: Final = 0x2000_0000
+_MAX_ENTRIES: Final = 4
 
 
 def _restricted(cob_id: int) -> bool:

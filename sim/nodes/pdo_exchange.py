@@ -4,17 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from math import inf
-from typing import Protocol
+from typing import Final, Protocol
 
 from drivers.canopen import objects as o
-from sim.can_wire import CanWire, Listener, SyncFollower
+from sim.can_traffic import Listener, SyncFollower
+from sim.can_wire import CanWire
 from sim.nodes.object_store import ObjectStore
 from sim.nodes.pdo_channels import ReceivePdo, TransmitPdo
 
-PDO_TOO_SHORT = 0x8210
-PDO_TOO_LONG = 0x8220
-RPDO_TIMED_OUT = 0x8250
-_STATUSWORD = (o.STATUSWORD, 0)
+PDO_TOO_SHORT: Final = 0x8210
+PDO_TOO_LONG: Final = 0x8220
+RPDO_TIMED_OUT: Final = 0x8250
+_STATUSWORD: Final = (o.STATUSWORD, 0)
 
 
 def _nothing() -> bytes:
@@ -58,7 +59,7 @@ class PdoExchange(SyncFollower):
 
     ``due_s`` is the next deadline or event timer; ``urgent`` marks the next synchronous TPDO as urgent for the wire.
     ``plain`` says that the next SYNC asks for nothing but ``sample``, the TPDO ``sample_id``; while it is ``stale`` it
-    has to be taken anew (``sim.can_wire.SyncFollower``).
+    has to be taken anew (``sim.can_traffic.SyncFollower``).
     """
 
     __slots__ = (

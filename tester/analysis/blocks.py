@@ -18,7 +18,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import hypot
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from tester.process import SAMPLE_COLUMNS
 
@@ -26,17 +26,17 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-MAX_STEP_REV = 0.25
+MAX_STEP_REV: Final = 0.25
 """A wider step of the wheel angle, in revolutions, ends a stretch: the ripple of the runout would not be
 sampled. At 20 Hz and 1.1 m/s, the slowest sampling in contact and the fastest wheel, a step is 0.20."""
 
-_TIME = SAMPLE_COLUMNS.index("time_s")
-_ANGLE = SAMPLE_COLUMNS.index("wheel_angle_rev")
-_GATE = SAMPLE_COLUMNS.index("gate")
-_BURST = SAMPLE_COLUMNS.index("burst")
-_KEY = SAMPLE_COLUMNS.index("repeat_key")
+_TIME: Final = SAMPLE_COLUMNS.index("time_s")
+_ANGLE: Final = SAMPLE_COLUMNS.index("wheel_angle_rev")
+_GATE: Final = SAMPLE_COLUMNS.index("gate")
+_BURST: Final = SAMPLE_COLUMNS.index("burst")
+_KEY: Final = SAMPLE_COLUMNS.index("repeat_key")
 
-AVERAGED: tuple[str, ...] = (
+AVERAGED: Final[tuple[str, ...]] = (
     "force_x_n",
     "force_y_n",
     "force_z_n",
@@ -52,7 +52,7 @@ AVERAGED: tuple[str, ...] = (
 )
 """Columns of a sample that a block averages; fields of the same name in Block."""
 
-_AVERAGED = tuple(SAMPLE_COLUMNS.index(name) for name in AVERAGED)
+_AVERAGED: Final = tuple(SAMPLE_COLUMNS.index(name) for name in AVERAGED)
 
 
 @dataclass(slots=True)

@@ -1,17 +1,19 @@
 """From repeats to a condition's coefficient, and from replicates on several wheels to one.
 
-A repeat is left out only on objective grounds: a gate or the drift test made it not valid, or it fluctuates
+By itself a repeat is left out only on objective grounds: a gate or the drift test made it not valid, or it fluctuates
 in excess, by Cochran's C (1 %) and by a variation within its window of more than three times its siblings'
 median. A value far from the others is flagged and stays: leaving out what does not agree makes any machine
-look precise (the closest two of three show a third of the true scatter). Both means are given.
+look precise (the closest two of three show a third of the true scatter). Both means are given. What a person leaves
+out, for a reason that is on record, is flagged ``excluded``.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from math import isfinite, sqrt
 from statistics import median
+from types import MappingProxyType
 
 from tester.analysis.blocks import AVERAGED
 from tester.analysis.quantiles import f_quantile, t_quantile
@@ -24,6 +26,14 @@ COCHRAN_ALPHA = 0.01
 
 EXCESS_FACTOR = 3.0
 """A repeat that varies by more than this times its siblings' median (physics.md 6)."""
+
+BY_HAND = "excluded by hand"
+"""Begins the reason of an exclusion that a person has made."""
+
+EXCLUDED = "excluded"
+"""Flag of a condition of which a person has left something out."""
+
+_NOTHING: Mapping[int, str] = MappingProxyType({})
 
 OUTLIER_SIGMAS = 3.5
 REPEATABILITY = 0.02
@@ -96,13 +106,14 @@ def excess_fluctuation(results: Sequence[RepeatResult]) -> int | None:
     return worst if results[worst].fluctuation_percent > EXCESS_FACTOR * median(siblings) else None
 
 
-def _exclusions(results: Sequence[RepeatResult]) -> list[Exclusion]:
-    excluded = [
+def _exclusions(results: Sequence[RepeatResult], by_hand: Mapping[int, str]) -> list[Exclusion]:
+    excluded = [Exclusion(i, f"{BY_HAND}: {reason}") for i, reason in by_hand.items()]
+    excluded += [
         Exclusion(i, f"{result.status.value}{': ' + result.reason if result.reason else ''}")
         for i, result in enumerate(results)
-        if not result.valid
+        if not result.valid and i not in by_hand
     ]
-    kept = [i for i, result in enumerate(results) if result.valid]
+    kept = [i for i, result in enumerate(results) if result.valid and i not in by_hand]
     while True:
         worst = excess_fluctuation([results[i] for i in kept])
         if worst is None:
@@ -128,28 +139,30 @@ def combine_repeats(
     ended: ConditionStatus | None = None,
     reason: str = "",
     *,
+    by_hand: Mapping[int, str] = _NOTHING,
     repeatability: float = REPEATABILITY,
     instruments: Instruments = INSTRUMENTS,
 ) -> ConditionResult:
     """Return a condition's result from its repeats (one result per repeat: its last attempt; none void).
 
     ``planned`` repeats were asked for and ``min_valid`` valid ones make a value. ``ended`` and ``reason``
-    are what the run said when it left the condition (None: it has not). ``repeatability`` is the historic
-    standard deviation between repeats as a share of mu.
+    are what the run said when it left the condition (None: it has not). ``by_hand``: positions that a person has left
+    out, each with the reason. ``repeatability`` is the historic standard deviation between repeats as a share of mu.
     """
-    excluded = _exclusions(results)
+    excluded = _exclusions(results, by_hand)
     left_out = {exclusion.position for exclusion in excluded}
     kept = [i for i in range(len(results)) if i not in left_out]
     status, why = _condition_status(results, excluded, planned, min_valid, ended, reason)
     if not kept:
-        return ConditionResult(status, why, n=planned, excluded=tuple(excluded))
+        return ConditionResult(status, why, EXCLUDED if by_hand else "", n=planned, excluded=tuple(excluded))
     values = [results[i].mu_resultant for i in kept]
     flagged = outliers(values, repeatability)
     flags = {flag for i in kept for flag in results[i].flags.split()}
+    flags |= {word for word, on in (("outlier", flagged), (EXCLUDED, by_hand)) if on}
     shell = ConditionResult(
         status=status,
         reason=why,
-        flags=" ".join(sorted(flags | ({"outlier"} if flagged else set()))),
+        flags=" ".join(sorted(flags)),
         mu_longitudinal=_mean([results[i].mu_longitudinal for i in kept]),
         mu_lateral=_mean([results[i].mu_lateral for i in kept]),
         n=planned,

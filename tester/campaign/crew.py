@@ -16,6 +16,7 @@ from tester.engine.context import Progress
 from tester.engine.prompts import Prompts
 from tester.engine.run import Outcome, Run
 from tester.engine.tickers import TickStatistics
+from tester.recipe.estimate import estimate
 
 POLL_S = 0.1
 """How often the parent looks for reports, s of wall time."""
@@ -39,7 +40,7 @@ def side_by_side(
     """
     with Pool(min(jobs, len(work.parts))) as pool:
         pool_made(pool)
-        running = {pool.submit(run_in_worker, job, part.number): part.number for part in work.parts}
+        running = {pool.submit(run_in_worker, job, number): number for number in longest_first(work)}
         while running:
             done, _ = wait(running, timeout=POLL_S, return_when=FIRST_COMPLETED)
             for sight in pool.reports():
@@ -52,6 +53,12 @@ def side_by_side(
                 if end.outcome is not Outcome.DONE:
                     pool.stop(Stop.OTHER_PART)
                 yield end
+
+
+def longest_first(work: Work) -> list[int]:
+    """Return the numbers of a run's parts, what is expected to take longest first: it must not be left for the end."""
+    expected_s = {part.number: estimate(part.plan, work.rig).rig_seconds for part in work.parts}
+    return sorted(expected_s, key=lambda number: (-expected_s[number], number))
 
 
 def _end_of(future: Future[PartEnd | None], part: int) -> PartEnd | None:

@@ -49,6 +49,8 @@ COMMANDS: dict[str, CommandEntry] = {
     "stop": CommandEntry("tester.cli.service_commands", "stop", "STOP the rig."),
     "runs": CommandEntry("tester.cli.runs_command", "runs", "List the runs that are stored."),
     "show": CommandEntry("tester.cli.result_commands", "show", "Show what a run holds."),
+    "exclude": CommandEntry("tester.cli.exclude_command", "exclude", "Leave a repeat out of the means, with a reason."),
+    "include": CommandEntry("tester.cli.exclude_command", "include", "Take an excluded repeat into the means again."),
     "compare": CommandEntry("tester.cli.compare_command", "compare", "Hold two runs' conditions against each other."),
     "verify": CommandEntry("tester.cli.verify_command", "verify", "Check that a run is as it was left."),
     "export": CommandEntry("tester.cli.result_commands", "export", "Write a run's results as a table."),

@@ -16,7 +16,7 @@ from tester.cli.showing import Json, dump, duration, number, shown
 if TYPE_CHECKING:
     from tester.export.results import Measured, RunResults, TableRow
     from tester.store.reader import RunReader
-    from tester.store.records import Change, SessionInfo
+    from tester.store.records import Change, SessionInfo, StoredExclusion
 
 FORMATS = ("appendix", "conditions", "repeats", "samples", "parquet")
 
@@ -37,10 +37,12 @@ def show(run: str, as_json: bool) -> None:
     try:
         with RunReader(folder) as reader:
             results, sessions, changes = results_of(reader), reader.sessions(), reader.changes()
+            said = reader.exclusions()
     except StoreError as error:
         raise click.ClickException(str(error)) from error
     if as_json:
         history: dict[str, Json] = {"sessions": [*map(_session, sessions)], "changes": [*map(_change, changes)]}
+        history["exclusions"] = [*map(_word, said)]
         dump(_summary(folder.name, results) | history)
         return
     for text in _lines(folder.name, results):
@@ -50,6 +52,10 @@ def show(run: str, as_json: bool) -> None:
         click.echo(f"went on at {where}, version {session.software_version}")
     for change in changes:
         click.echo(f"{change.subject} changed before stretch {change.session}: {shown(change.reason)}")
+    for word in said:
+        what = "excluded" if word.excluded else "included again"
+        who = f" by {shown(word.operator)}" if word.operator else ""
+        click.echo(f"{word.condition}/{word.repeat} {what} {word.utc}{who}: {shown(word.reason)}")
 
 
 def _session(session: SessionInfo) -> Json:
@@ -72,6 +78,19 @@ def _change(change: Change) -> Json:
         "before_sha256": change.before_sha256,
         "after_sha256": change.after_sha256,
         "reason": change.reason,
+    }
+
+
+def _word(word: StoredExclusion) -> Json:
+    return {
+        "condition": word.condition,
+        "repeat": word.repeat,
+        "attempt": word.attempt,
+        "excluded": bool(word.excluded),
+        "reason": word.reason,
+        "operator": word.operator,
+        "utc": word.utc,
+        "software_version": word.software_version,
     }
 
 
@@ -129,6 +148,7 @@ def _condition(measured: Measured) -> Json:
                 "status": repeat.result.status.value,
                 "reason": repeat.result.reason,
                 "mu": number(repeat.result.mu_resultant),
+                "exclusion": measured.exclusion(repeat),
             }
             for repeat in measured.repeats
         ],

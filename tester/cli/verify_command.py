@@ -34,7 +34,9 @@ def verify(run: str, as_json: bool) -> int:
         print_json(_record(folder.name, found, code))
     elif not found.problems:
         state = "complete" if found.complete else "interrupted or under way"
-        click.echo(f"{folder.name}: as it was left, {state}; {found.samples} samples in {found.blocks} blocks read")
+        by_hand = f"; excluded by hand: {found.excluded}" if found.excluded else ""
+        read = f"{found.samples} samples in {found.blocks} blocks read"
+        click.echo(f"{folder.name}: as it was left, {state}; {read}{by_hand}")
     for problem in found.problems:
         click.echo(f"{folder.name}: {problem}", err=True)
     return code
@@ -50,6 +52,7 @@ def _record(name: str, found: Verification, code: int) -> dict[str, object]:
         "complete": found.complete,
         "blocks": found.blocks,
         "samples": found.samples,
+        "excluded": found.excluded,
         "verified_with": __version__,
         "exit": code,
     }

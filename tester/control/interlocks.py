@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Final
 
 from tester.control.state import Reaction
 from tester.rig import InterlocksConfig, RigConfig
@@ -31,21 +32,24 @@ class Interlock:
         return self.delay(rig.interlocks)
 
 
-WARN, CONTROLLED, FAST = Reaction.WARN, Reaction.CONTROLLED, Reaction.FAST
-POWER_OFF, EMERGENCY = Reaction.POWER_OFF, Reaction.EMERGENCY
+WARN: Final = Reaction.WARN
+CONTROLLED: Final = Reaction.CONTROLLED
+FAST: Final = Reaction.FAST
+POWER_OFF: Final = Reaction.POWER_OFF
+EMERGENCY: Final = Reaction.EMERGENCY
 
-ACK = "cause gone, acknowledged"
-REPAIR = "repaired, acknowledged"
-DRIVE = "drive reset by the acknowledgement"
-ALONE = "other master gone, started anew"
-SELF = "by itself"
+ACK: Final = "cause gone, acknowledged"
+REPAIR: Final = "repaired, acknowledged"
+DRIVE: Final = "drive reset by the acknowledgement"
+ALONE: Final = "other master gone, started anew"
+SELF: Final = "by itself"
 
 
 def _now(_: InterlocksConfig) -> float:
     return 0.0
 
 
-INTERLOCKS: tuple[Interlock, ...] = (
+INTERLOCKS: Final[tuple[Interlock, ...]] = (
     # What takes effect at once
     Interlock("safety chain", "emergency stop circuit open (drive input)", "input 0x60FD bit 16 = 0",
               _now, EMERGENCY, ACK),
@@ -142,7 +146,7 @@ INTERLOCKS: tuple[Interlock, ...] = (
               _now, WARN, SELF),
 )  # fmt: skip
 
-_PLACES = {row.name: i for i, row in enumerate(INTERLOCKS)}
+_PLACES: Final = {row.name: i for i, row in enumerate(INTERLOCKS)}
 
 
 def bit(name: str) -> int:
@@ -150,5 +154,5 @@ def bit(name: str) -> int:
     return 1 << _PLACES[name]
 
 
-WARNINGS = sum(bit(row.name) for row in INTERLOCKS if row.reaction is WARN)
+WARNINGS: Final = sum(bit(row.name) for row in INTERLOCKS if row.reaction is WARN)
 """Rows that stop nothing: they do not stand in the way of arming or acknowledging."""

@@ -6,44 +6,71 @@ Every comparison is made in every scan. Conditions are written so that NaN and m
 
 from __future__ import annotations
 
-from math import isfinite
+from math import inf, isfinite
+from typing import Final
 
 from tester.control.interlocks import bit
 from tester.control.view import STANDING_M_S, UNLOADED_N, View
 from tester.process import Readings
 
-CONTACT_LEAST_N = 50.0
+_INF: Final = inf
+CONTACT_LEAST_N: Final = 50.0
 """A target below this is too near to touching to tell a lost contact (rulings, 18)."""
-SPEEDS_OLD_S = 0.5
+SPEEDS_OLD_S: Final = 0.5
 """Older than this, speeds, force and position are unknown to a stop, s [A]: it does not end on them."""
-PRESSED_N = 50.0
+PRESSED_N: Final = 50.0
 """A contact that nobody wants gets no firmer by more than this, N [A]: runout and noise are 10 N."""
-PUSHED_MM = 0.3
+PUSHED_MM: Final = 0.3
 """A press that was told to lift has gone on beyond its ramp by this at most, mm [A]: 50 N at 200 N of load."""
-APART_M_S = 0.1
+APART_M_S: Final = 0.1
 """One drive standing, the other faster than this, is no rounding of two equal ramps [A]."""
-CLEAR_MM = 0.5
+CLEAR_MM: Final = 0.5
 """The press stands this far off the known contact: open, whatever the cell shows [A] (runout 0.05 mm, wear)."""
 
-_CHAIN, _FAULT, _BUS, _MASTER = bit("safety chain"), bit("drive fault"), bit("bus lost"), bit("second master")
-_JUMPED, _LATE, _DELAYED = bit("clock jump"), bit("scan late"), bit("scan delayed")
-_GUARD, _DATA, _DROPPED = bit("guard open"), bit("drive data stale"), bit("drive dropped out")
-_OVERSPEED, _WHEEL, _BELT = bit("overspeed"), bit("wheel speed"), bit("belt speed")
-_PRESS = bit("press speed")
-_STANDING, _TORN = bit("drive standing under load"), bit("belt torn")
-_CELL_STALE, _CELL_BAD = bit("load cell stale"), bit("load cell saturated")
-_CELL_FROZEN = bit("load cell frozen")
-_OVERLOAD, _OVERSHOOT = bit("overload"), bit("load overshoot")
-_CONTACT, _POWER = bit("contact lost"), bit("slip power")
-_SURFACE_HOT, _HUB_HOT, _RUNAWAY = bit("surface hot"), bit("jacket hot"), bit("jacket runaway")
-_STUCK, _OPEN, _STANDSTILL = bit("heater stuck"), bit("heater line open"), bit("heating at standstill")
-_HUB_JUMP, _SURFACE_JUMP = bit("hub sensor jump"), bit("surface sensor jump")
-_FROZEN, _MODEL = bit("thermometer frozen"), bit("surface off model")
-_SURFACE_STALE, _JACKET_STALE = bit("surface data stale"), bit("jacket data stale")
-_REFUSED, _NOISY, _WORN = bit("device refused"), bit("line noisy"), bit("wheel worn")
-_NOT_LIFTED, _LIFT_FAILED = bit("not lifted"), bit("lift failed")
-_NOT_STOPPING, _QUICK_FAILED = bit("not stopping"), bit("quick stop failed")
-_HEAT_ON, _WELDED = bit("heat not off"), bit("contactor welded")
+_CHAIN: Final = bit("safety chain")
+_FAULT: Final = bit("drive fault")
+_BUS: Final = bit("bus lost")
+_MASTER: Final = bit("second master")
+_JUMPED: Final = bit("clock jump")
+_LATE: Final = bit("scan late")
+_DELAYED: Final = bit("scan delayed")
+_GUARD: Final = bit("guard open")
+_DATA: Final = bit("drive data stale")
+_DROPPED: Final = bit("drive dropped out")
+_OVERSPEED: Final = bit("overspeed")
+_WHEEL: Final = bit("wheel speed")
+_BELT: Final = bit("belt speed")
+_PRESS: Final = bit("press speed")
+_STANDING: Final = bit("drive standing under load")
+_TORN: Final = bit("belt torn")
+_CELL_STALE: Final = bit("load cell stale")
+_CELL_BAD: Final = bit("load cell saturated")
+_CELL_FROZEN: Final = bit("load cell frozen")
+_OVERLOAD: Final = bit("overload")
+_OVERSHOOT: Final = bit("load overshoot")
+_CONTACT: Final = bit("contact lost")
+_POWER: Final = bit("slip power")
+_SURFACE_HOT: Final = bit("surface hot")
+_HUB_HOT: Final = bit("jacket hot")
+_RUNAWAY: Final = bit("jacket runaway")
+_STUCK: Final = bit("heater stuck")
+_OPEN: Final = bit("heater line open")
+_STANDSTILL: Final = bit("heating at standstill")
+_HUB_JUMP: Final = bit("hub sensor jump")
+_SURFACE_JUMP: Final = bit("surface sensor jump")
+_FROZEN: Final = bit("thermometer frozen")
+_MODEL: Final = bit("surface off model")
+_SURFACE_STALE: Final = bit("surface data stale")
+_JACKET_STALE: Final = bit("jacket data stale")
+_REFUSED: Final = bit("device refused")
+_NOISY: Final = bit("line noisy")
+_WORN: Final = bit("wheel worn")
+_NOT_LIFTED: Final = bit("not lifted")
+_LIFT_FAILED: Final = bit("lift failed")
+_NOT_STOPPING: Final = bit("not stopping")
+_QUICK_FAILED: Final = bit("quick stop failed")
+_HEAT_ON: Final = bit("heat not off")
+_WELDED: Final = bit("contactor welded")
 
 
 def process_levels(v: View) -> int:
@@ -133,9 +160,9 @@ def load_levels(v: View) -> int:
         held |= _CELL_STALE
     if not r.cell_valid:
         held |= _CELL_BAD
-    if not (fz <= v.limits.load_n):
+    if not (fz <= b.load_n):
         held |= _OVERLOAD
-    if not (v.friction_w <= v.limits.slip_power_w):
+    if not (v.friction_w <= b.slip_power_w):
         held |= _POWER
     if v.turning and not (fz < UNLOADED_N) and not (r.now_s - r.cell_changed_s <= b.frozen_cell_s):
         held |= _CELL_FROZEN
@@ -168,12 +195,12 @@ def heat_levels(v: View) -> int:
     if not (r.jacket_valid and r.now_s - r.jacket_at_s <= b.stale_jacket_s):
         held |= _JACKET_STALE
     if r.jacket_valid:
-        if not (r.hub_c <= v.limits.jacket_c + b.jacket_margin_k):
+        if not (r.hub_c <= b.jacket_c + b.jacket_margin_k):
             held |= _HUB_HOT
         ceiling = v.state.hub_ceiling
         # A hub that was hot takes longer to cool than the window is: then it must not get hotter again.
         if ceiling:
-            highest = max(ceiling[0][1], v.rig.loops.heat.hub_min_c, jacket.coolest_c)
+            highest = max(ceiling[0][1], b.hub_min_c, jacket.coolest_c)
             if not (r.hub_c <= highest + b.runaway_k):
                 held |= _RUNAWAY
         if not (jacket.rate_k_s <= b.stuck_rate_k_s) and r.now_s - jacket.off_since_s >= b.stuck_off_s:
@@ -184,13 +211,13 @@ def heat_levels(v: View) -> int:
         held |= _STANDSTILL
     if not (jacket.jump_k <= b.jump_k):
         held |= _HUB_JUMP
-    if v.pressing or isfinite(v.demand.surface_c):
+    if v.pressing or -_INF < v.demand.surface_c < _INF:
         if not (r.surface_valid and r.now_s - r.surface_at_s <= b.stale_ir_s):
             held |= _SURFACE_STALE
         if not (v.surface.jump_k <= b.jump_k):
             held |= _SURFACE_JUMP
     if r.surface_valid:
-        if not (r.surface_c <= v.limits.surface_c):
+        if not (r.surface_c <= b.surface_c):
             held |= _SURFACE_HOT
         if v.turning:
             model = v.observer.surface_c

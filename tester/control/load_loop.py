@@ -7,21 +7,26 @@ removes the slow drift from wear and thermal growth.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
-from math import exp, isfinite, pi, sqrt
+from math import exp, inf, isfinite, pi, sqrt
+from typing import Final
 
 from tester.process import Demand, Press, Readings
 from tester.rig import AxisConfig, LoadLoopConfig
 
-STIFFNESS_EXPONENT = 0.23
+_INF: Final = inf
+_LOAD: Final = Press.LOAD
+_TURN: Final = 2.0 * pi
+STIFFNESS_EXPONENT: Final = 0.23
 """Tangent stiffness of the line contact grows with load to this power: 125 to 172 N/mm from 100 to 400 N [A]."""
-DECELERATION_SHARE = 0.6
+DECELERATION_SHARE: Final = 0.6
 """Share of the press's acceleration limit that approach profiles use, so that the drive can follow them."""
-POSITION_GAIN_PER_S = 6.0
+POSITION_GAIN_PER_S: Final = 6.0
 """Final approach to a press position: mm/s per mm, well below the drive's 30 ms lag [A]."""
-LOAD_RATE_N_S = 100.0
+LOAD_RATE_N_S: Final = 100.0
 """A change of load is expected to be followed at this rate at least [A]: 2 mm/s make it at about 290 N/s."""
-HELD_BAND = 0.03
+HELD_BAND: Final = 0.03
 """Inside this relative error the slower holding bandwidth is used: it does not chase the runout."""
 
 
@@ -52,7 +57,7 @@ class LoadLoop:
         Unknown force or position never presses: the result is then a retraction.
         """
         force, position = readings.force_z_n, readings.press_mm
-        if demand.press is not Press.LOAD or not isfinite(force) or not isfinite(position):
+        if demand.press is not _LOAD or not (-_INF < force < _INF and -_INF < position < _INF):
             return self._lift(position, loop, press)
         self.highest_n = max(demand.load_n, self.highest_n - LOAD_RATE_N_S * dt)
         self.lowest_n = min(demand.load_n, self.lowest_n + LOAD_RATE_N_S * dt)
@@ -116,8 +121,8 @@ class LoadLoop:
 
 def _gain(loop: LoadLoopConfig, bandwidth_hz: float, force_n: float) -> float:
     """Return mm/s per N that closes the loop at ``bandwidth_hz`` at the contact's tangent stiffness."""
-    stiffness = loop.stiffness_n_per_mm * (max(force_n, 20.0) / 200.0) ** STIFFNESS_EXPONENT
-    return 2.0 * pi * bandwidth_hz / stiffness
+    stiffness = loop.stiffness_n_per_mm * math.pow(max(force_n, 20.0) / 200.0, STIFFNESS_EXPONENT)
+    return _TURN * bandwidth_hz / stiffness
 
 
 def _profile(distance_mm: float, press: AxisConfig) -> float:

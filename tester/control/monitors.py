@@ -8,18 +8,19 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import inf, isfinite, nan
+from typing import Final
 
+from tester.control.thresholds import Thresholds
 from tester.process import Readings
-from tester.rig import InterlocksConfig
 
-RATE_FILTER_S = 1.0
-RATE_WINDOW_S = 4.0
+RATE_FILTER_S: Final = 1.0
+RATE_WINDOW_S: Final = 4.0
 """The hub's rate is that of its filtered readings over one to two of these windows: 5 mK/s of noise at 5 Hz [A]."""
-RATE_SETTLE_S = 3.0
+RATE_SETTLE_S: Final = 3.0
 """After the heat went off the sensor and the filter still catch up for this long [A]: no window begins before."""
-BLIND_S = 1.0
+BLIND_S: Final = 1.0
 """After a wheel was changed, readings still on their way are not compared with those before, s [A]."""
-RAMP_SHARE = 0.3
+RAMP_SHARE: Final = 0.3
 """A speed on its way may follow this share of the configured ramp [A]: delays of scan and wire, and load."""
 
 
@@ -53,7 +54,7 @@ class JacketMonitor:
         self.coolest_c = -inf
         self.blind_until_s = now + BLIND_S
 
-    def update(self, r: Readings, heat: bool, setpoint_c: float, bounds: InterlocksConfig) -> None:
+    def update(self, r: Readings, heat: bool, setpoint_c: float, bounds: Thresholds) -> None:
         """Take in a new reading; ``heat`` and ``setpoint_c`` (degC) are what is commanded."""
         stamp = r.jacket_at_s
         dt, self.stamp_s = stamp - self.stamp_s, stamp
@@ -90,7 +91,7 @@ class JacketMonitor:
         if stamp - old_s >= RATE_WINDOW_S:
             self.rate_k_s = (self.filtered_c - old_c) / (stamp - old_s)
 
-    def _watch_line(self, r: Readings, heat: bool, setpoint_c: float, bounds: InterlocksConfig) -> None:
+    def _watch_line(self, r: Readings, heat: bool, setpoint_c: float, bounds: Thresholds) -> None:
         """Measure the rise while the output is high: a heater whose line is open makes none."""
         weak = heat and r.heat_percent >= bounds.open_output_percent and r.hub_c < setpoint_c - bounds.open_below_k
         if not weak:

@@ -10,16 +10,17 @@ from __future__ import annotations
 
 from itertools import accumulate, pairwise
 from math import isfinite, log, nan, pi
+from typing import Final
 
 from sim.thermal import cell_thicknesses
 from tester.rig import RigConfig
 
-CELLS = 5
-OUTER_CELL_MM = 0.5
+CELLS: Final = 5
+OUTER_CELL_MM: Final = 0.5
 """Mesh over the rubber layer [A]: the surface's first second is not its business."""
-STEP_S = 0.5
+STEP_S: Final = 0.5
 """Length of a step; the outermost cell is stable up to about one second [A]."""
-LONGEST_S = 60.0
+LONGEST_S: Final = 60.0
 """A longer gap between two scans than this is not caught up with, s: scans that late have tripped."""
 
 

@@ -8,21 +8,23 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import cos, pi
+from typing import Final
 
 from tester.control.state import ControlState
+from tester.control.thresholds import Thresholds
 from tester.control.view import STANDING_M_S
 from tester.process import Demand, Readings
-from tester.rig import InterlocksConfig, RigConfig
+from tester.rig import RigConfig
 
-TURNING_CONFIRMED_S = 0.3
+TURNING_CONFIRMED_S: Final = 0.3
 """Heat is allowed once the wheel has been seen turning this long [A]."""
-CONFIRMED_M_S = 2.0 * STANDING_M_S
+CONFIRMED_M_S: Final = 2.0 * STANDING_M_S
 """A speed above this is confirmed turning."""
-HARD_LOAD_N = 500.0
-HARD_HUB_C = 155.0
-HARD_SURFACE_C = 130.0
+HARD_LOAD_N: Final = 500.0
+HARD_HUB_C: Final = 155.0
+HARD_SURFACE_C: Final = 130.0
 """Beyond these is harm (rulings, 21), whatever a rig file or a recipe says."""
-_RADIANS = pi / 180.0
+_RADIANS: Final = pi / 180.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,33 +71,35 @@ def may_move(readings: Readings) -> bool:
     return readings.safety_chain and readings.guard_closed and not readings.drive_fault
 
 
-def may_heat(state: ControlState, readings: Readings, interlocks: InterlocksConfig) -> bool:
+def may_heat(state: ControlState, readings: Readings, limits: Thresholds) -> bool:
     """Tell whether the jacket may heat: wheel seen turning for a while, both temperatures fresh and valid."""
     r, now = readings, readings.now_s
     return (
         now - state.turning_since_s >= TURNING_CONFIRMED_S
         and r.jacket_valid
         and r.surface_valid
-        and now - r.jacket_at_s <= interlocks.stale_jacket_s
-        and now - r.surface_at_s <= interlocks.stale_ir_s
+        and now - r.jacket_at_s <= limits.stale_jacket_s
+        and now - r.surface_at_s <= limits.stale_ir_s
     )
 
 
-def may_load(state: ControlState, demand: Demand, readings: Readings, rig: RigConfig, most_n: float) -> bool:
+def may_load(
+    state: ControlState, demand: Demand, readings: Readings, limits: Thresholds, most_n: float
+) -> bool:
     """Tell whether the press may approach or press.
 
     Both speeds confirmed and their difference bounded, the angles in place before touching, the load fresh and the
     wanted one allowed. The drives' data are fresh: stale ones trip.
     """
-    r, interlocks = readings, rig.interlocks
+    r = readings
     wheel, belt = r.wheel_speed_m_s, r.belt_speed_m_s
     along = wheel if r.sideslip_deg == 0.0 else wheel * cos(r.sideslip_deg * _RADIANS)
     return (
         wheel > CONFIRMED_M_S
         and belt > CONFIRMED_M_S
         and r.cell_valid
-        and r.now_s - r.cell_at_s <= interlocks.stale_cell_s
+        and r.now_s - r.cell_at_s <= limits.stale_cell_s
         and (state.load.in_contact or r.yaw_reached)
-        and -interlocks.max_slip_m_s <= along - belt <= interlocks.max_slip_m_s
+        and -limits.max_slip_m_s <= along - belt <= limits.max_slip_m_s
         and demand.load_n <= most_n
     )

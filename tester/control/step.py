@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from math import copysign, inf, isfinite
+from typing import Final
 
 from tester.control.interlocks import INTERLOCKS, WARNINGS
 from tester.control.levels import PUSHED_MM, heat_levels, load_levels, motion_levels, process_levels, stop_levels
@@ -22,24 +23,31 @@ from tester.control.view import UNLOADED_N, View
 from tester.process import Demand, Press, Readings, Setpoints
 from tester.rig import RigConfig
 
-CEILING_WINDOW_S = 600.0
+_INF: Final = inf
+CEILING_WINDOW_S: Final = 600.0
 """The runaway limit looks back this long (rulings, interlocks)."""
-CEILING_STEP_S = 1.0
+CEILING_STEP_S: Final = 1.0
 """How exactly it knows when a setpoint was left, s."""
-ACK_WAIT_S = 1.0
+ACK_WAIT_S: Final = 1.0
 """An acknowledged drive has reset its fault by then, s [A]; a cause that still holds refuses the acknowledgement."""
-HEAT_NOT_OFF = "heat not off"
+HEAT_NOT_OFF: Final = "heat not off"
 """The row after which the jacket's lease is left to run out."""
-COLD_K = 3.0
+COLD_K: Final = 3.0
 """A hub this near to ambient is cold: the rubber on it is, too (safety concept, "both at the start")."""
 
 # Bound once: a look-up on the enum class costs several times as much in every scan (CPython 3.11).
-_IDLE, _RUN, _HOLD, _STOPPING, _COOLDOWN, _FAST_STOP, _EMERGENCY, _LATCHED = (
-    Mode.IDLE, Mode.RUN, Mode.HOLD, Mode.STOPPING, Mode.COOLDOWN, Mode.FAST_STOP, Mode.EMERGENCY, Mode.LATCHED
-)  # fmt: skip
-_LOAD, _LIFT = Press.LOAD, Press.LIFT
-_AT_REST = frozenset({Mode.IDLE, Mode.ARMED, Mode.LATCHED})
-_WORKING = frozenset({Mode.RUN, Mode.HOLD})
+_IDLE: Final = Mode.IDLE
+_RUN: Final = Mode.RUN
+_HOLD: Final = Mode.HOLD
+_STOPPING: Final = Mode.STOPPING
+_COOLDOWN: Final = Mode.COOLDOWN
+_FAST_STOP: Final = Mode.FAST_STOP
+_EMERGENCY: Final = Mode.EMERGENCY
+_LATCHED: Final = Mode.LATCHED
+_LOAD: Final = Press.LOAD
+_LIFT: Final = Press.LIFT
+_AT_REST: Final = frozenset({Mode.IDLE, Mode.ARMED, Mode.LATCHED})
+_WORKING: Final = frozenset({Mode.RUN, Mode.HOLD})
 
 
 class Control:
@@ -63,6 +71,8 @@ class Control:
         """What is wanted in HOLD."""
         self._delays = tuple(row.delay_s(rig) for row in INTERLOCKS)
         self.view = View(state, rig)
+        self._load_loop, self._heat_loop, self._press = rig.loops.load, rig.loops.heat, rig.axes.press
+        self._ambient_c = rig.ambient_c
         state.pending_s = [inf] * len(INTERLOCKS)
 
     def step(self, demand: Demand, readings: Readings, scan_s: float) -> Setpoints:
@@ -292,13 +302,13 @@ class Control:
         wheel = _bounded(demand.wheel_speed_m_s, bounds.wheel_speed_m_s)
         out.belt_m_s = _bounded(demand.belt_speed_m_s, bounds.belt_speed_m_s)
         out.wheel_rad_s = wheel / (readings.diameter_mm * 0.5e-3) if readings.diameter_mm > 1.0 else 0.0
-        load = self.rig.loops.load
+        load = self._load_loop
         if not readings.drives_enabled:
             out.press_mm_s = 0.0
-        elif demand.press is _LOAD and not may_load(state, demand, readings, self.rig, bounds.load_n):
+        elif demand.press is _LOAD and not may_load(state, demand, readings, self.view.bounds, bounds.load_n):
             out.press_mm_s = -load.lift_speed_mm_s if not (readings.force_z_n <= UNLOADED_N) else 0.0
         else:
-            out.press_mm_s = state.load.velocity(demand, readings, dt, load, self.rig.axes.press)
+            out.press_mm_s = state.load.velocity(demand, readings, dt, load, self._press)
         self._heat(demand, readings)
 
     def _hold(self, readings: Readings, dt: float) -> None:
@@ -318,21 +328,22 @@ class Control:
         return _bounded(demand.sideslip_deg, bounds.sideslip_deg), _bounded(demand.camber_deg, bounds.camber_deg)
 
     def _heat(self, demand: Demand, readings: Readings) -> None:
-        out, state, loop, now = self.state.setpoints, self.state, self.rig.loops.heat, readings.now_s
+        out, state, now = self.state.setpoints, self.state, readings.now_s
+        least_c = self.view.bounds.hub_min_c
         if not readings.wheel_speed_m_s > CONFIRMED_M_S:
             state.turning_since_s = inf
         elif state.turning_since_s > now:
             state.turning_since_s = now
-        wanted = isfinite(demand.surface_c)
-        out.heat = out.contactor = wanted and may_heat(state, readings, self.rig.interlocks)
+        wanted = -_INF < demand.surface_c < _INF
+        out.heat = out.contactor = wanted and may_heat(state, readings, self.view.bounds)
         if not wanted:
-            out.hub_c = loop.hub_min_c
+            out.hub_c = least_c
         elif not demand.freeze_heat:
             target = min(demand.surface_c, self.bounds.surface_c)
             ratio = self.loss_ratios[1 if state.load.in_contact else 0]
-            hub_c = state.heat.update(now, target, readings.surface_c, self.rig.ambient_c, ratio, loop)
+            hub_c = state.heat.update(now, target, readings.surface_c, self._ambient_c, ratio, self._heat_loop)
             out.hub_c = min(hub_c, self.bounds.hub_c)
-        setpoint_c = out.hub_c if out.heat else loop.hub_min_c
+        setpoint_c = out.hub_c if out.heat else least_c
         ceiling = state.hub_ceiling
         if not ceiling or ceiling[-1][1] != setpoint_c or now - ceiling[-1][0] >= CEILING_STEP_S:
             self._note_ceiling(now, setpoint_c)

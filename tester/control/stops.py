@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from math import isfinite
+from typing import Final
 
 from tester.control.levels import standing, unloaded
 from tester.control.permissives import Bounds
@@ -10,14 +11,14 @@ from tester.control.safe_outputs import mirror_emergency, no_outputs, safe_outpu
 from tester.control.state import ControlState, Mode
 from tester.control.view import STANDING_M_S, UNLOADED_N, View
 
-STOP_TIMEOUT_S = 10.0
+STOP_TIMEOUT_S: Final = 10.0
 """A stop that has not reached standstill by then latches where it is, power off [A]."""
-SLIP_OUT_S = 0.5
+SLIP_OUT_S: Final = 0.5
 """Slip is taken out under load for this long at most before both drives come down [A]."""
-LAG_S = 0.05
+LAG_S: Final = 0.05
 """From a command to the press following it, scan and wire and drive together [A]."""
-MATCHED_M_S = 2.0 * STANDING_M_S
-LIFTED_MM = 0.2
+MATCHED_M_S: Final = 2.0 * STANDING_M_S
+LIFTED_MM: Final = 0.2
 """The press is where it was sent within this [A]."""
 
 

@@ -3,25 +3,29 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from math import inf, isfinite
+from math import inf, sqrt
+from typing import Final
 
 from tester.control.monitors import RAMP_SHARE, JacketMonitor, PressTracker, SpeedTracker, SurfaceMonitor
 from tester.control.observer import ThermalObserver
 from tester.control.state import ControlState, Mode
+from tester.control.thresholds import Thresholds, thresholds_of
 from tester.process import Demand, Press, Readings
-from tester.rig import InterlocksConfig, LimitsConfig, RigConfig
+from tester.rig import RigConfig
 
-STANDING_M_S = 0.02
+_INF: Final = inf
+STANDING_M_S: Final = 0.02
 """Below this a drive counts as standing [A]."""
-UNLOADED_N = 20.0
+UNLOADED_N: Final = 20.0
 """Below this the contact counts as unloaded (safety concept, "load with a drive stopped")."""
-TOUCH_MARGIN_MM = 1.5
+TOUCH_MARGIN_MM: Final = 1.5
 """The wheel is touched at most this much later than where it was touched last, or its diameter says, mm [A]: about
 160 N of force (physics, section 5) that a frozen load cell would not show."""
 
 # Bound once: a look-up on the enum class costs several times as much in every scan (CPython 3.11).
-_LOAD = Press.LOAD
-_RUN, _HOLD = Mode.RUN, Mode.HOLD
+_LOAD: Final = Press.LOAD
+_RUN: Final = Mode.RUN
+_HOLD: Final = Mode.HOLD
 
 
 @dataclass(slots=True)
@@ -30,8 +34,7 @@ class View:
 
     state: ControlState
     rig: RigConfig
-    limits: LimitsConfig = field(init=False)
-    bounds: InterlocksConfig = field(init=False)
+    bounds: Thresholds = field(init=False)
     readings: Readings = field(init=False)
     demand: Demand = field(init=False)
     observer: ThermalObserver = field(init=False)
@@ -66,8 +69,8 @@ class View:
     def __post_init__(self) -> None:
         """Keep the parts of the rig file that levels compare with."""
         rig = self.rig
-        self.limits = limits = rig.limits
-        self.bounds = bounds = rig.interlocks
+        self.bounds = thresholds_of(rig)
+        limits, bounds = rig.limits, rig.interlocks
         self.observer = ThermalObserver(rig)
         radius_m = 0.5e-3 * rig.geometry.wheel_diameter_mm
         self.wheel = SpeedTracker(RAMP_SHARE * rig.axes.wheel.acceleration * radius_m)
@@ -87,7 +90,7 @@ class View:
         if pressing:
             self.least_n = inf
             contact_mm = state.load.contact_mm
-            if not isfinite(contact_mm):
+            if not -_INF < contact_mm < _INF:
                 contact_mm = self.rig.geometry.touch_mm + 0.5 * (self.rig.geometry.wheel_diameter_mm - r.diameter_mm)
             self.touch_most_mm = contact_mm + TOUCH_MARGIN_MM
         elif r.force_z_n < self.least_n:
@@ -99,7 +102,7 @@ class View:
         observer = self.observer
         if loaded:
             fx, fy = r.force_x_n, r.force_y_n
-            self.friction_n = friction = (fx * fx + fy * fy) ** 0.5
+            self.friction_n = friction = sqrt(fx * fx + fy * fy)
             self.friction_w = power = friction * r.slip_m_s
             if not (r.force_z_n < UNLOADED_N):
                 observer.rub(power, dt)

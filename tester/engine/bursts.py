@@ -12,53 +12,54 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
-from math import isfinite, pi
+from math import isnan, pi
+from typing import Final
 
 from sim.slip import slip_velocity
 from tester.analysis.blocks import RevolutionCounter
 from tester.analysis.stability import assess
 from tester.engine.context import Context
-from tester.engine.moves import Lift, Load, Power, Sequence, TakeTare, Turn, Yaw
+from tester.engine.moves import Lift, Load, Power, Sequence, Settle, TakeTare, Turn, Yaw
 from tester.engine.thermal_steps import roll
 from tester.recipe.plan import ConditionStep
 
-TARE_S = 1.0
+TARE_S: Final = 1.0
 """Averaging time of the zero before each repeat, s [A]: about three turns."""
-TARE_WAIT_S = 0.4
+TARE_WAIT_S: Final = 0.4
 """The cell settles this long after lifting, s [A]."""
-COLDER_K = 0.3
+COLDER_K: Final = 0.3
 """A burst does not start further than this below where it is meant to: its samples would lie too cold, K [A]."""
-OFFSET_STEP_K = 0.5
+OFFSET_STEP_K: Final = 0.5
 """How much lower the next burst starts after one that warmed through the band too quickly, K [A]."""
-OFFSET_BEYOND_BAND_K = 1.5
+OFFSET_BEYOND_BAND_K: Final = 1.5
 """How far below the band a burst may start: what warms up before the first sample counts, K [A]."""
-FEW_REVOLUTIONS = 3
+FEW_REVOLUTIONS: Final = 3
 """A burst with fewer whole turns than this starts the next one lower."""
-SLOW_COOLING_S = 45.0
-SLOW_COOLING_K = 0.15
+SLOW_COOLING_S: Final = 45.0
+SLOW_COOLING_K: Final = 0.15
 """Cooling by less than this in that time is not worth waiting for, as long as the surface is below the setpoint [A]."""
-CENTRED_K = 0.2
+CENTRED_K: Final = 0.2
 """A start this far below the setpoint still lets samples centre on it [A]."""
-MEAN_LIMIT_K = 0.45
+MEAN_LIMIT_K: Final = 0.45
 """A burst ends before the mean surface temperature of the repeat's samples is more than this off the setpoint [A]
 (acceptance: within 0.7 K, rulings 29)."""
-ROLLING_START_K = 0.4
+ROLLING_START_K: Final = 0.4
 """Without slip nothing moves the surface during the window: it starts this near to the setpoint, K [A]."""
-BELOW_K = 0.3
+BELOW_K: Final = 0.3
 """A burst whose samples lie further below the setpoint than this, in the mean, starts the next one higher, K [A]."""
-OFFSET_LEAST_K = 0.2
-SPLIT_RISE_K = 0.25
+OFFSET_LEAST_K: Final = 0.2
+SPLIT_RISE_K: Final = 0.25
 """A burst that has warmed by this much ends at half the window, any other at a whole one: a second rise tells
 temperature from time [A]."""
-BLIND_S = 20.0
+BLIND_S: Final = 20.0
 """A burst in which nothing has counted for this long is given up, s [A]."""
-LIFT_TO_COOL_S = 180.0
+LIFT_TO_COOL_S: Final = 180.0
 """Rolling that has not brought the temperature back by then is tried lifted, s [A]."""
-COOL_AT_MOST_S = 360.0
+COOL_AT_MOST_S: Final = 360.0
 """Longest cooling lifted before rolling is tried again, s [A]."""
-EMPTY_BURSTS = 3
+EMPTY_BURSTS: Final = 3
 """That many bursts in a row without a whole turn, begun as low as it goes: the condition cannot be held [A]."""
-WARM_SHARE = 1.2
+WARM_SHARE: Final = 1.2
 """Revolutions a condition must hold, with the ramp, to be called possible: used for the band that would do."""
 
 
@@ -76,9 +77,13 @@ class Phase(Enum):
 
 
 # Bound once: a look-up on the enum class costs several times as much in every scan (CPython 3.11).
-_TARE, _ROLL, _READY, _COOL, _MOVE_IN, _COUNT, _MOVE_OUT = (
-    Phase.TARE, Phase.ROLL, Phase.READY, Phase.COOL, Phase.MOVE_IN, Phase.COUNT, Phase.MOVE_OUT
-)  # fmt: skip
+_TARE: Final = Phase.TARE
+_ROLL: Final = Phase.ROLL
+_READY: Final = Phase.READY
+_COOL: Final = Phase.COOL
+_MOVE_IN: Final = Phase.MOVE_IN
+_COUNT: Final = Phase.COUNT
+_MOVE_OUT: Final = Phase.MOVE_OUT
 
 
 class Ending(Enum):
@@ -139,7 +144,11 @@ class MeasureRepeat:
         self.surface_sum_k = 0.0
         self.surface_count = 0
         sp = self.setpoint
-        self.slip_m_s = slip_velocity(sp.wheel_speed_m_s, sp.belt_speed_m_s, sp.sideslip_deg)[2]
+        self.belt_m_s = sp.belt_speed_m_s
+        self.slip_m_s = slip_velocity(sp.wheel_speed_m_s, self.belt_m_s, sp.sideslip_deg)[2]
+        self.target_c = sp.temperature_c
+        self.band_k = step.temperature_band_k
+        self.window_rev = step.window.revolutions
         self.yawed = sp.sideslip_deg != 0.0 or sp.camber_deg != 0.0
         self.rolling_only = not self.yawed and abs(sp.slip_velocity_m_s) < 1e-9
 
@@ -199,7 +208,7 @@ class MeasureRepeat:
 
     def _to_ready(self, ctx: Context) -> None:
         self.phase = Phase.READY
-        if not isfinite(self.ready_since_s):
+        if isnan(self.ready_since_s):
             self.ready_since_s = ctx.now
         self.rolling_since_s = ctx.now
         self.mark_s, self.mark_c = ctx.now, float("inf")
@@ -264,24 +273,27 @@ class MeasureRepeat:
             count_before=self.surface_count,
         )
         ctx.burst = self.bursts
+        demand = ctx.demand
+        demand.freeze_heat = not self.rolling_only
+        demand.belt_speed_m_s = self.belt_m_s
+        self._aim(ctx)
         self._count(ctx)
 
     def _count(self, ctx: Context) -> None:
-        sp, r, burst = self.setpoint, ctx.readings, self.burst
+        r, burst = ctx.readings, self.burst
         ctx.moving = not self.rolling_only
-        ctx.demand.freeze_heat = not self.rolling_only
-        ctx.demand.belt_speed_m_s = sp.belt_speed_m_s
-        self._aim(ctx)
         done = self.counter.add(ctx.sample) is not None
-        surface, rate = ctx.gates.surface_now_c(), ctx.gates.surface.rate_k_s
-        burst.peak_rate_k_s = max(burst.peak_rate_k_s, rate)
-        if not isfinite(burst.slid_s) and r.slip_m_s >= 0.5 * self.slip_m_s:
+        trend = ctx.gates.surface
+        surface, rate = trend.now_c, trend.rate_k_s
+        if rate > burst.peak_rate_k_s:
+            burst.peak_rate_k_s = rate
+        if isnan(burst.slid_s) and r.slip_m_s >= 0.5 * self.slip_m_s:
             burst.slid_s, burst.slid_c = ctx.now, r.surface_c
         if ctx.gate == 0:
-            if not isfinite(burst.began_c):
+            if isnan(burst.began_c):
                 burst.began_c = surface
             burst.counted_s = ctx.now
-            self.surface_sum_k += r.surface_c - sp.temperature_c
+            self.surface_sum_k += r.surface_c - self.target_c
             self.surface_count += 1
         if done and self._complete(ctx):
             self._learn_offset(FEW_REVOLUTIONS, self.offset_k)
@@ -302,17 +314,17 @@ class MeasureRepeat:
     def _burst_over(self, ctx: Context, surface: float, rate: float) -> bool:
         if self.rolling_only:
             return ctx.now - self.burst.counted_s > BLIND_S
-        target, band = self.setpoint.temperature_c, self.condition.temperature_band_k
+        target, band = self.target_c, self.band_k
         start = self.burst.began_c
-        below = target - start if isfinite(start) else self.offset_k
+        below = self.offset_k if isnan(start) else target - start
         limit = target + min(band, max(below, CENTRED_K) + 0.2)
         if surface >= limit:
             return True
         mean = self.surface_sum_k / self.surface_count if self.surface_count else 0.0
         if mean > MEAN_LIMIT_K and surface > target + MEAN_LIMIT_K:
             return True
-        window = self.condition.window.revolutions
-        if window is not None and isfinite(start):
+        window = self.window_rev
+        if window is not None and not isnan(start):
             share = 0.5 if surface - start > SPLIT_RISE_K else 1.0
             if self.revolutions - self.burst.blocks_before >= share * window:
                 return True
@@ -388,7 +400,7 @@ class MeasureRepeat:
         target, sp = ctx.gates.target, self.setpoint
         target.load_n = sp.load_n
         target.wheel_speed_m_s = sp.wheel_speed_m_s
-        target.belt_speed_m_s = sp.belt_speed_m_s
+        target.belt_speed_m_s = self.belt_m_s
         target.slip_m_s = self.slip_m_s
         target.temperature_c = sp.temperature_c
         target.band_k = self.condition.temperature_band_k
@@ -398,18 +410,3 @@ class MeasureRepeat:
         progress.phase = self.phase._value_
         progress.burst = self.bursts
         progress.revolutions = float(len(self.counter.blocks))
-
-
-class Settle:
-    """Wait at the fast scan rate for ``seconds``."""
-
-    def __init__(self, seconds: float) -> None:
-        """How long, s."""
-        self.seconds = seconds
-        self.left_s = seconds
-
-    def step(self, ctx: Context) -> bool:
-        """Done when the time is over."""
-        ctx.moving = True
-        self.left_s -= ctx.dt
-        return self.left_s <= 0.0

@@ -7,9 +7,10 @@ from math import isfinite
 from typing import Protocol
 
 from tester.analysis.results import RepeatStatus
+from tester.engine.activity import Activity
 from tester.engine.bursts import Ending, MeasureRepeat
 from tester.engine.context import Context
-from tester.engine.moves import Activity, Ask, Load, Sequence
+from tester.engine.moves import Ask, Load, Sequence
 from tester.engine.thermal_steps import SoakTo, roll, soak_within_k
 from tester.recipe.plan import ConditionStep
 from tester.rig import RigConfig

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from math import cos, inf, pi, sin
+from typing import Final
 
 from drivers.canopen.master import CanMaster
 from drivers.cia402 import Goal, State
@@ -20,17 +21,22 @@ from drivers.servo import ServoDrive
 from tester.engine.inspection import Inspector
 from tester.process import NEVER, Readings, Setpoints
 
-INPUT_SAFETY_CHAIN = 1 << 16
-INPUT_GUARD = 1 << 17
-INPUT_CONTACTOR = 1 << 18
-OUTPUT_CONTACTOR = 1 << 16
+INPUT_SAFETY_CHAIN: Final = 1 << 16
+INPUT_GUARD: Final = 1 << 17
+INPUT_CONTACTOR: Final = 1 << 18
+OUTPUT_CONTACTOR: Final = 1 << 16
 """Bits of the press drive's digital inputs 0x60FD and outputs 0x60FE (rulings, 20)."""
 
 # Bound once: a look-up on the enum class costs several times as much in every scan (CPython 3.11).
-_OPERATING, _FAULT_REACTION, _FAULT = State.OPERATION_ENABLED, State.FAULT_REACTION, State.FAULT
-_ENABLED, _DISABLED, _QUICK_STOP, _FREE = Goal.ENABLED, Goal.DISABLED, Goal.QUICK_STOP, Goal.FREE
-_RADIANS_PER_DEGREE = pi / 180.0
-_TURN = 2.0 * pi
+_OPERATING: Final = State.OPERATION_ENABLED
+_FAULT_REACTION: Final = State.FAULT_REACTION
+_FAULT: Final = State.FAULT
+_ENABLED: Final = Goal.ENABLED
+_DISABLED: Final = Goal.DISABLED
+_QUICK_STOP: Final = Goal.QUICK_STOP
+_FREE: Final = Goal.FREE
+_RADIANS_PER_DEGREE: Final = pi / 180.0
+_TURN: Final = 2.0 * pi
 
 
 @dataclass(slots=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from math import inf
+from typing import Final
 
 from tester.control.state import Mode
 from tester.control.step import Control
@@ -12,17 +13,20 @@ from tester.engine.executor import Executor
 from tester.engine.sampler import Sampler
 from tester.process import Readings
 
-CONTACT_N = 5.0
+CONTACT_N: Final = 5.0
 """Above this force the wheel counts as in contact, for recording."""
-SOONEST_S = 5e-4
+SOONEST_S: Final = 5e-4
 """No tick is asked for sooner after another."""
 
 # Bound once: a look-up on the enum class costs several times as much in every scan (CPython 3.11).
-_RUN, _HOLD = Mode.RUN, Mode.HOLD
-_STOPS = frozenset({Mode.STOPPING, Mode.FAST_STOP, Mode.EMERGENCY})
-HOLD_MOVES_S = 3.0
+_RUN: Final = Mode.RUN
+_HOLD: Final = Mode.HOLD
+_STOPPING: Final = Mode.STOPPING
+_FAST_STOP: Final = Mode.FAST_STOP
+_EMERGENCY: Final = Mode.EMERGENCY
+HOLD_MOVES_S: Final = 3.0
 """A hold has lifted and taken the slip out within this, s [A]: scans come at the sliding rate until then."""
-SEVERITIES = {"trip": "trip", "alarm": "alarm", "warning": "warning"}
+SEVERITIES: Final = {"trip": "trip", "alarm": "alarm", "warning": "warning"}
 """Of control's events, by their kind; any other is information."""
 
 
@@ -36,6 +40,7 @@ class Engine:
         self.executor = executor
         self.ctx = ctx
         self.sampler = sampler
+        self._wear_mm3_per_n_m = ctx.rig.wear.rate_mm3_per_n_m
         scan = ctx.rig.scan
         self.sliding_s = 1.0 / scan.sliding_hz
         self.enabled_s = 1.0 / scan.enabled_hz
@@ -92,7 +97,7 @@ class Engine:
 
     def _wear(self, r: Readings) -> None:
         """Account for what this scan's sliding takes off the wheel."""
-        self.ctx.wheel.slide(r.force_z_n, r.slip_m_s, self.ctx.dt, self.ctx.rig.wear.rate_mm3_per_n_m)
+        self.ctx.wheel.slide(r.force_z_n, r.slip_m_s, self.ctx.dt, self._wear_mm3_per_n_m)
 
     def _journal(self) -> None:
         """Queue control's events in their order; they are queued before this scan's outputs leave."""
@@ -120,7 +125,8 @@ class Engine:
         mode = state.mode
         # A level that has yet to stand for its delay is looked at often: the delay is not rounded up to slow scans.
         pending = state.held & ~state.tripped
-        if pending or ctx.moving or mode in _STOPS or (mode is _HOLD and now - state.mode_since_s < HOLD_MOVES_S):
+        stops = mode is _STOPPING or mode is _FAST_STOP or mode is _EMERGENCY
+        if pending or ctx.moving or stops or (mode is _HOLD and now - state.mode_since_s < HOLD_MOVES_S):
             self.period_s = self.sliding_s
         elif ctx.demand.enabled or not ctx.readings.drives_disabled:
             self.period_s = self.enabled_s

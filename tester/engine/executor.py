@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections import deque
 
+from tester.engine.activity import Activity, MoveFailedError, Resumable
 from tester.engine.condition import MeasureCondition, Results
 from tester.engine.context import Context
-from tester.engine.moves import Activity, Ask, MoveFailedError, Resumable
+from tester.engine.moves import Ask
 from tester.engine.thermal_steps import CoolDown, HeatUp, RestStep
 from tester.engine.wheel_steps import InstallWheel, PreGrindStep
 from tester.process import Press

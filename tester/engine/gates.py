@@ -7,7 +7,8 @@ temperature inside the band with the infrared thermometer's lag allowed for (rul
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import isfinite
+from math import inf, isfinite
+from typing import Final
 
 from tester.process import (
     GATE_LOAD,
@@ -19,12 +20,13 @@ from tester.process import (
 )
 from tester.rig import GatesConfig
 
-RESTART_SHARE = 0.15
+_INF: Final = inf
+RESTART_SHARE: Final = 0.15
 """An average starts again while the instant value is this far off: it holds only what followed the approach [A]."""
-RATE_FAST_S = 0.3
-RATE_SLOW_S = 1.5
+RATE_FAST_S: Final = 0.3
+RATE_SLOW_S: Final = 1.5
 """Time constants of the two averages whose difference gives the surface's rate of change [A]."""
-RATE_LIMIT_K_S = 5.0
+RATE_LIMIT_K_S: Final = 5.0
 """A faster surface is a sensor fault, not a rate."""
 
 
@@ -42,7 +44,7 @@ class Average:
         """Take in one value that stood for ``dt`` s; return the average."""
         value = self.value
         off, jump = abs(x - target), RESTART_SHARE * abs(target)
-        if (off > self.floor and off > jump) or not isfinite(value):
+        if (off > self.floor and off > jump) or not -_INF < value < _INF:
             self.value = x
             self.age_s = 0.0
             return x

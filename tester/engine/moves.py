@@ -7,8 +7,8 @@ state in plain attributes: a running activity can be copied.
 from __future__ import annotations
 
 from math import inf, isfinite
-from typing import Protocol, runtime_checkable
 
+from tester.engine.activity import Activity, MoveFailedError
 from tester.engine.context import Context
 from tester.process import Press
 
@@ -26,27 +26,6 @@ TARE_LEAST = 10
 """Readings that a tare averages at least."""
 CELL_SILENT_S = 5.0
 """A tare that has not got its readings this long after its time is given up, s [A]."""
-
-
-class Activity(Protocol):
-    """Something that takes scans."""
-
-    def step(self, ctx: Context) -> bool:
-        """Advance by one scan; return True when done."""
-        ...
-
-
-@runtime_checkable
-class Resumable(Protocol):
-    """An activity that has to begin something anew after a hold. One that has not goes on where it was."""
-
-    def resume(self, ctx: Context) -> None:
-        """Go on: the wheel is lifted, both drives run at the wheel's speed or stand."""
-        ...
-
-
-class MoveFailedError(Exception):
-    """A move has not ended in its time: the run stops in a controlled way, with this as its reason."""
 
 
 class Move:
@@ -282,3 +261,18 @@ class TakeTare:
             self.failed = text
         if drift > self.warn_n:
             ctx.journal.event(ctx.now, "tare", text, "warning")
+
+
+class Settle:
+    """Wait at the fast scan rate for ``seconds``."""
+
+    def __init__(self, seconds: float) -> None:
+        """How long, s."""
+        self.seconds = seconds
+        self.left_s = seconds
+
+    def step(self, ctx: Context) -> bool:
+        """Done when the time is over."""
+        ctx.moving = True
+        self.left_s -= ctx.dt
+        return self.left_s <= 0.0

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Protocol
+from typing import Final, Protocol
 
 from tester.engine.context import Context
 from tester.process import Press, Setpoints
 
-IDLE_PERIOD_S = 0.5
+IDLE_PERIOD_S: Final = 0.5
 """Recording period out of contact (2 Hz, interface: exports)."""
-CONTACT_N = 5.0
+CONTACT_N: Final = 5.0
 """Above this force the wheel counts as in contact."""
 
 
@@ -36,7 +36,7 @@ class Sampler:
         if not contact and ctx.now < self.due_s:
             return
         self.due_s = ctx.now + IDLE_PERIOD_S
-        row = (
+        row: tuple[float, ...] = (
             ctx.now,
             r.wheel_speed_m_s,
             r.belt_speed_m_s,

@@ -3,21 +3,23 @@
 from __future__ import annotations
 
 from math import isfinite
+from typing import Final
 
+from tester.engine.activity import Activity
 from tester.engine.context import Context
-from tester.engine.moves import Activity, Ask, Lift, Load, Power, Sequence, Turn, Yaw
+from tester.engine.moves import Ask, Lift, Load, Power, Sequence, Turn, Yaw
 from tester.recipe.plan import Cool, Heat, Rest, Soak
 
-NEAR_AMBIENT_K = 3.0
+NEAR_AMBIENT_K: Final = 3.0
 """A setpoint this near to ambient can be neither heated nor cooled to quickly: it soaks to the band (rulings, 2)."""
-HEAT_LOAD_N = 200.0
+HEAT_LOAD_N: Final = 200.0
 """Highest load for heating up in rolling contact [A]: the paper's reference load."""
-HEAT_AT_MOST_S = 5400.0
+HEAT_AT_MOST_S: Final = 5400.0
 """Longest heating up to one temperature [A]."""
-COOL_AT_MOST_S = 3 * 3600.0
+COOL_AT_MOST_S: Final = 3 * 3600.0
 """Longest cooling of a hub before a person may touch it; then a prompt says how warm it is [A]."""
 
-SHOW_S = 1.0
+SHOW_S: Final = 1.0
 """How often people are told how far a wait has come, s."""
 
 

@@ -7,15 +7,15 @@ import sys
 from collections.abc import Callable, Generator
 from contextlib import contextmanager
 from dataclasses import dataclass
-from math import ceil
-from typing import Protocol
+from math import ceil, floor
+from typing import Final, Protocol
 
 from tester import clock
 from tester.pace import Pace
 
-POLL_S = 0.02
+POLL_S: Final = 0.02
 """Period of ``poll``, s of wall time: a STOP from a screen is heard within it."""
-LEAVE_S = 0.002
+LEAVE_S: Final = 0.002
 """No poll begins this shortly before a tick is due, s."""
 
 
@@ -72,7 +72,7 @@ def next_tick(now: float, wanted: float, urgent: float) -> float:
     Simulated time is counted, not measured: on a grid, equal runs have equal times to the last bit.
     """
     due = ceil((wanted if wanted < urgent else urgent) * 1e6 - 1e-3)
-    soonest = round(now * 1e6) + 1
+    soonest = floor(now * 1e6 + 0.5) + 1
     return (due if due > soonest else soonest) / 1e6
 
 
@@ -140,7 +140,7 @@ def run_real_time(
     return pace.now()
 
 
-SWITCH_S = 0.0005
+SWITCH_S: Final = 0.0005
 """How long another thread (recorder, reception) may keep the interpreter from a scan that is due, s (Python: 5 ms)."""
 
 

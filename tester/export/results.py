@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from itertools import groupby
 from math import isfinite
@@ -10,8 +10,9 @@ from math import isfinite
 from tester.analysis.repeats import ConditionResult, combine_repeats, combine_replicates
 from tester.analysis.uncertainty import Instruments, instruments_of
 from tester.export.cells import nominal
+from tester.store.exclusions import standing
 from tester.store.reader import RunReader
-from tester.store.records import ConditionInfo, StoredCondition, StoredRepeat, StoredRun
+from tester.store.records import ConditionInfo, StoredCondition, StoredExclusion, StoredRepeat, StoredRun
 from tester.store.schema import StoreError
 
 
@@ -22,6 +23,8 @@ class Measured:
     condition: StoredCondition
     repeats: tuple[StoredRepeat, ...]
     result: ConditionResult
+    by_hand: Mapping[int, StoredExclusion]
+    """What a person has left out, by its position in ``repeats``."""
 
     @property
     def info(self) -> ConditionInfo:
@@ -32,6 +35,10 @@ class Measured:
         """Return why a repeat is not in the mean, an empty text if it is."""
         position = self.repeats.index(repeat)
         return next((e.reason for e in self.result.excluded if e.position == position), "")
+
+    def left_out_by(self, repeat: StoredRepeat) -> StoredExclusion | None:
+        """Return who has left a repeat out, None where nobody has."""
+        return self.by_hand.get(self.repeats.index(repeat))
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,12 +92,15 @@ def results_of(reader: RunReader) -> RunResults:
         instruments = instruments_of(run.info.metadata)
     except ValueError as error:
         raise StoreError(f"{reader.path}: {error}") from error
+    left_out = standing(reader.exclusions())
     repeats: dict[int, list[StoredRepeat]] = {}
     for repeat in reader.repeats():
         repeats.setdefault(repeat.condition, []).append(repeat)
     rows: list[TableRow] = []
     for _, group in groupby(reader.conditions(), key=lambda stored: stored.info.row):
-        replicates = tuple(_measured(stored, repeats.get(stored.info.condition, []), instruments) for stored in group)
+        replicates = tuple(
+            _measured(stored, repeats.get(stored.info.condition, []), instruments, left_out) for stored in group
+        )
         if len(replicates) == 1:
             rows.append(TableRow(replicates, replicates[0].result))
         else:
@@ -99,14 +109,21 @@ def results_of(reader: RunReader) -> RunResults:
     return RunResults(run, tuple(rows))
 
 
-def _measured(stored: StoredCondition, repeats: list[StoredRepeat], instruments: Instruments) -> Measured:
+def _measured(
+    stored: StoredCondition,
+    repeats: list[StoredRepeat],
+    instruments: Instruments,
+    left_out: dict[tuple[int, int, int], StoredExclusion],
+) -> Measured:
     info = stored.info
+    by_hand = {i: left_out[one.target] for i, one in enumerate(repeats) if one.target in left_out}
     result = combine_repeats(
         [repeat.result for repeat in repeats],
         planned=info.repeats,
         min_valid=info.min_valid,
         ended=stored.status,
         reason=stored.reason,
+        by_hand={i: one.reason for i, one in by_hand.items()},
         instruments=instruments,
     )
-    return Measured(stored, tuple(repeats), result)
+    return Measured(stored, tuple(repeats), result, by_hand)

@@ -5,11 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
+from tester.export.exclude import is_unfinished
 from tester.export.manifest import MANIFEST, manifest_problems
 from tester.source import InvalidSource, read_tree
+from tester.store.exclusions import problems as exclusion_problems
+from tester.store.exclusions import standing
 from tester.store.reader import RunReader
 from tester.store.recorder import calibration_sha256, text_sha256
-from tester.store.records import StoredRun
+from tester.store.records import StoredExclusion, StoredRun
 from tester.store.resume import FINISHED
 from tester.store.schema import StoreError
 
@@ -23,6 +26,8 @@ class Verification:
     blocks: int = 0
     samples: int = 0
     """What was read of the record: sample blocks, and samples in them."""
+    excluded: int = 0
+    """Repeats that people have left out of the means; the manifest is of the tables without them."""
 
     @property
     def complete(self) -> bool:
@@ -38,13 +43,26 @@ def verify(folder: Path) -> Verification:
             run = reader.run()
             problems += [f"run.db: {problem}" for problem in reader.integrity_problems()]
             problems += _texts(folder, run)
+            said = reader.exclusions()
+            problems += [f"run.db: {problem}" for problem in exclusion_problems(said, reader.repeats(attempts=True))]
+            problems += _cut_off(folder, said)
             blocks = samples = 0
             for block in reader.sample_blocks():
                 blocks += 1
                 samples += block.rows
     except StoreError as error:
         return Verification(None, (*problems, str(error)))
-    return Verification(run, tuple(problems), blocks, samples)
+    return Verification(run, tuple(problems), blocks, samples, len(standing(said)))
+
+
+def _cut_off(folder: Path, said: list[StoredExclusion]) -> list[str]:
+    """Return what to do where a kill came between a person's word on a repeat and the tables without it."""
+    path = folder / MANIFEST
+    if not path.is_file() or not is_unfinished(said, path.read_text("utf-8", errors="replace")):
+        return []
+    last = said[-1]
+    command = f"tester {'exclude' if last.excluded else 'include'} {folder.name} {last.condition}/{last.repeat}"
+    return [f"`{command}` was cut off before the tables were made: the same command again makes them"]
 
 
 def _manifest(folder: Path) -> list[str]:

@@ -6,6 +6,7 @@ from drivers.axis import AxisConfig
 from tester.rig.config import (
     ArmingConfig,
     AxesConfig,
+    CalibrationConfig,
     CanConfig,
     DeviceConfig,
     DevicesConfig,
@@ -29,6 +30,7 @@ __all__ = [
     "ArmingConfig",
     "AxesConfig",
     "AxisConfig",
+    "CalibrationConfig",
     "CanConfig",
     "DeviceConfig",
     "DevicesConfig",

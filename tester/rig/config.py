@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from datetime import date
 from typing import Annotated, Literal
 
 from drivers.axis import AxisConfig
@@ -282,6 +283,34 @@ class WearConfig:
 
 
 @dataclass(frozen=True, slots=True)
+class CalibrationConfig:
+    """The last days on which the certificates of the sensors hold, as 2027-01-31; "" is not known.
+
+    Nothing is computed with them: the list before a start shows them.
+    """
+
+    load_cell: str = ""
+    thermometer: str = ""
+    jacket: str = ""
+
+    def __post_init__(self) -> None:
+        """Refuse what is no date."""
+        self.ends()
+
+    def ends(self) -> dict[str, date | None]:
+        """Return the last day of each certificate; raises ValueError for a text that is no date."""
+        texts = {"load cell": self.load_cell, "thermometer": self.thermometer, "jacket": self.jacket}
+        return {name: _day(name, text) for name, text in texts.items()}
+
+
+def _day(name: str, text: str) -> date | None:
+    try:
+        return date.fromisoformat(text) if text else None
+    except ValueError:
+        raise ValueError(f'{name}: expected a date such as 2027-01-31, or "", got "{text}"') from None
+
+
+@dataclass(frozen=True, slots=True)
 class ObserverConfig:
     """What software believes of the wheel's thermal behaviour: heat loop, estimates and thermal interlocks use it.
 
@@ -318,6 +347,7 @@ class RigConfig:
     arming: ArmingConfig
     wear: WearConfig
     observer: ObserverConfig
+    calibration: CalibrationConfig = field(default_factory=CalibrationConfig)
     sim: SimParameters = field(default_factory=SimParameters)
     """The simulated rig's physics; without meaning on a real one."""
 

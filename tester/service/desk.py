@@ -14,9 +14,10 @@ from tester.service.alarms import AlarmList, Cause
 from tester.service.hub import Hub
 from tester.service.link import Order
 from tester.service.manual import ManualExecutor
+from tester.service.preflight import Past, known_checks
 from tester.service.progress import PlanTrack
 from tester.service.protocol import SNAPSHOT_S
-from tester.service.state import Check, DiskView, ManualView, ProgressView, RunView, StateView, TickView, Value
+from tester.service.state import DiskView, ManualView, ProgressView, RunView, StateView, TickView, Value
 from tester.service.values import unknown_values
 from tester.service.watch import RunWatch
 from tester.store.space import MARGIN
@@ -68,6 +69,8 @@ class Desk:
     tripped: str = ""
     """Name of the alarm of that trip."""
     interrupted: tuple[str, ...] = ()
+    past: Past | None = None
+    """What the newest run in the store left; looked at while no run ticks."""
     needed: int = 0
     """Bytes that the run is expected to take."""
     now_s: float = 0.0
@@ -225,7 +228,9 @@ class Desk:
         disk = self._disk_view()
         rig = watch.rig if watch is not None else self.rig
         lapse = (self.run.speed if self.run.simulated else 1.0) if self.run is not None else None
-        preflight = (Check("disk space", not disk.low, f"{disk.free / 1e9:.1f} GB free"),)
+        known = known_checks(self.rig, disk, self.alarms.listed(), self.past, self.latched, clock.utc_now())
+        own = watch.preflight() if watch is not None else ()
+        said = {check.name for check in own}
         return StateView(
             mode=mode,
             mode_text=text,
@@ -249,7 +254,7 @@ class Desk:
             tick=self._tick_view(),
             clients=hub.clients,
             interrupted=self.interrupted,
-            preflight=preflight + (watch.preflight() if watch is not None else ()),
+            preflight=(*(check for check in known if check.name not in said), *own),
         )
 
     def _situation(self) -> tuple[str, str, float]:

@@ -34,6 +34,7 @@ from tester.service.hub import Hub
 from tester.service.link import Order
 from tester.service.manual import empty_plan, no_record, take_over
 from tester.service.orders import Orders
+from tester.service.preflight import past_of
 from tester.service.progress import PlanTrack
 from tester.service.running import RunScreen, ServiceSession
 from tester.service.state import RunView
@@ -79,6 +80,7 @@ class Service:
         desk = self.desk
         with Signals(self.end):
             desk.interrupted = tuple(interrupted_runs(self.options.runs))
+            desk.past = past_of(self.options.runs)
             for name in desk.interrupted:
                 desk.tell("run", f"{name} was cut off: `tester resume {name}` goes on with it", "warning")
             while not self.orders.ending:
@@ -86,6 +88,7 @@ class Service:
                 if self.orders.job is not None:
                     self._carry_out(self.orders.job)
                     self.orders.job = None
+                    desk.past = past_of(self.options.runs)
                 else:
                     desk.wait()
         desk.tell("service", "the service ends")

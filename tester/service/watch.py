@@ -109,10 +109,18 @@ class RunWatch:
         """Return what the connected rig says of its readiness."""
         r, rig = self.run.engine.ctx.readings, self.rig
         wheel = self.run.engine.ctx.wheel
+        worn = f"{wheel.diameter_mm:.2f} mm, {wheel.loss_mm:.2f} mm worn off"
+        allowed_mm = self.run.engine.executor.plan.replace_after_mm  # 0: by hand, nothing is planned
+        left_mm = allowed_mm - wheel.loss_mm
+        wheel_check = Check("wheel", None, worn)
+        if allowed_mm > 0.0:
+            left = f"{max(left_mm, 0.0):.2f} mm left before it is changed"
+            wheel_check = Check("wheel", left_mm > 0.0, f"{worn}, {left}")
         return (
             Check("safety chain", r.safety_chain, "closed" if r.safety_chain else "open"),
             Check("guard closed", r.guard_closed, "" if r.guard_closed else "the guard is open"),
-            Check("wheel", None, f"{wheel.diameter_mm:.2f} mm, {wheel.loss_mm:.2f} mm worn off"),
+            wheel_check,
+            Check("last run", None, "under way"),
             Check("ambient", None, f"{rig.ambient_c:g} °C"),
         )
 

@@ -51,7 +51,18 @@ TABLES: dict[str, Merged] = {
 """Tables that are filled while a run goes on, in the order in which they refer to each other."""
 
 HEADER = frozenset(
-    {"run", "metadata", "version", "specimen", "condition", "sample_column", "session", "change", "calibration"}
+    {
+        "run",
+        "metadata",
+        "version",
+        "specimen",
+        "condition",
+        "sample_column",
+        "session",
+        "change",
+        "calibration",
+        "exclusion",
+    }
 )
 """Tables of the whole run, which parts do not fill. ``condition`` is brought up to date."""
 

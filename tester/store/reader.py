@@ -27,6 +27,7 @@ from tester.store.records import (
     SessionInfo,
     SpecimenInfo,
     StoredCondition,
+    StoredExclusion,
     StoredPrompt,
     StoredRepeat,
     StoredRun,
@@ -35,7 +36,7 @@ from tester.store.records import (
     WheelInfo,
 )
 from tester.store.sample_blocks import unpack, unpack_array
-from tester.store.schema import VERSION, StoreError, migrate, version_of
+from tester.store.schema import StoreError, migrate, reads_as_present, version_of
 
 if TYPE_CHECKING:
     from array import array
@@ -133,7 +134,7 @@ class RunReader:
         except StoreError as error:
             connection.close()
             raise StoreError(f"{self.path}: {error}") from error
-        if version == VERSION:
+        if reads_as_present(connection, version):
             return connection
         if version == 0:
             connection.close()
@@ -251,6 +252,10 @@ class RunReader:
         values = () if session is None else (session,)
         rows = self._rows(f"SELECT * FROM calibration WHERE session = {which} ORDER BY id", values)
         return [_record(Calibration, row) for row in rows]
+
+    def exclusions(self) -> list[StoredExclusion]:
+        """Return what people have said of single repeats, in order: left out, or taken in again."""
+        return [_record(StoredExclusion, row) for row in self._rows("SELECT * FROM exclusion ORDER BY id")]
 
     def tares(self) -> Iterator[StoredTare]:
         """Yield the zeros of the load cell in order."""

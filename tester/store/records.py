@@ -230,6 +230,35 @@ class StoredRepeat:
     begun_s: float
     result: RepeatResult
 
+    @property
+    def target(self) -> tuple[int, int, int]:
+        """Return condition, repeat and attempt, by which it is known for good: keys change when parts are merged."""
+        return self.condition, self.repeat, self.attempt
+
+
+@dataclass(frozen=True, slots=True)
+class StoredExclusion:
+    """A person's word on a repeat: out of the mean (``excluded`` 1), or in again (0); ``id`` counts from 1.
+
+    ``manifest_before`` is the text of the folder's manifest before it, "" where there was none.
+    """
+
+    id: int
+    condition: int
+    repeat: int
+    attempt: int
+    excluded: int
+    reason: str
+    operator: str
+    utc: str
+    software_version: str
+    manifest_before: str
+
+    @property
+    def target(self) -> tuple[int, int, int]:
+        """Return condition, repeat and attempt."""
+        return self.condition, self.repeat, self.attempt
+
 
 @dataclass(frozen=True, slots=True)
 class Event:

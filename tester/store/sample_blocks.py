@@ -14,7 +14,7 @@ import sys
 import zlib
 from array import array
 from collections.abc import Sequence
-from itertools import chain
+from struct import Struct
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -29,12 +29,10 @@ _LEVEL = 1
 
 def pack(rows: Sequence[Sequence[float]], columns: int) -> bytes:
     """Return the blob of rows that have ``columns`` values each; raises ValueError where one has not."""
-    flat = array("d", chain.from_iterable(rows))
-    if len(flat) != len(rows) * columns:
+    if any(len(row) != columns for row in rows):
         raise ValueError(f"a sample does not have {columns} values")
-    if sys.byteorder == "big":
-        flat.byteswap()
-    return zlib.compress(b"".join([flat[i::columns].tobytes() for i in range(columns)]), _LEVEL)
+    layout = Struct(f"<{len(rows)}d")
+    return zlib.compress(b"".join([layout.pack(*column) for column in zip(*rows, strict=True)]), _LEVEL)
 
 
 def unpack(data: bytes, rows: int, columns: int) -> list[array[float]]:

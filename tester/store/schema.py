@@ -236,7 +236,31 @@ CREATE TABLE calibration (
 """What a resumed run needs: its stretches (``session``, one for each process that worked on it), what was changed
 between them and why, when a wheel was ground in, and the calibration as a history."""
 
-MIGRATIONS: tuple[str, ...] = (_VERSION_1, _VERSION_2)
+_EXCLUSION = """
+CREATE {temporary}TABLE exclusion (
+    id INTEGER PRIMARY KEY,
+    condition INTEGER NOT NULL REFERENCES condition (condition),
+    repeat INTEGER NOT NULL,
+    attempt INTEGER NOT NULL,
+    excluded INTEGER NOT NULL CHECK (excluded IN (0, 1)),
+    reason TEXT NOT NULL CHECK (reason <> ''),
+    operator TEXT NOT NULL,
+    utc TEXT NOT NULL,
+    software_version TEXT NOT NULL,
+    manifest_before TEXT NOT NULL
+);
+"""
+
+_VERSION_3 = f"""{_EXCLUSION.format(temporary="")}
+CREATE TRIGGER exclusion_is_not_changed BEFORE UPDATE ON exclusion
+    BEGIN SELECT RAISE(ABORT, 'exclusions are only added'); END;
+CREATE TRIGGER exclusion_is_not_deleted BEFORE DELETE ON exclusion
+    BEGIN SELECT RAISE(ABORT, 'exclusions are only added'); END;
+"""
+"""Repeats that a person has left out of a mean, or taken in again (``excluded`` 0): who, when, why. Rows are only ever
+added. ``manifest_before``: the folder's manifest as it was before, with the hashes of the record without this row."""
+
+MIGRATIONS: tuple[str, ...] = (_VERSION_1, _VERSION_2, _VERSION_3)
 """Migration n leads from schema n to n + 1."""
 
 VERSION = len(MIGRATIONS)
@@ -259,6 +283,19 @@ def version_of(connection: sqlite3.Connection) -> int:
 
 def _empty(connection: sqlite3.Connection) -> bool:
     return connection.execute("SELECT count(*) FROM sqlite_master").fetchone()[0] == 0
+
+
+def reads_as_present(connection: sqlite3.Connection, version: int) -> bool:
+    """Let an older database be read as one of the present schema without writing it; False where that cannot be.
+
+    What version 3 has added is an empty table, which a connection can have for itself.
+    """
+    if version == VERSION:
+        return True
+    if version != 2:
+        return False
+    connection.execute(_EXCLUSION.format(temporary="TEMP "))
+    return True
 
 
 def migrate(connection: sqlite3.Connection) -> None:

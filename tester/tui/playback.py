@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from math import isfinite
 from pathlib import Path
 
+from tester.analysis.results import Burst
 from tester.rig.load import load_rig_text
 from tester.service.protocol import Event
 from tester.service.state import (
@@ -53,6 +54,8 @@ class Playback:
     samples: dict[str, array[float]]
     conditions: tuple[StoredCondition, ...]
     repeats: tuple[StoredRepeat, ...]
+    bursts: dict[int, tuple[Burst, ...]]
+    """Of the committed repeats, by their keys."""
     events: tuple[Event, ...]
     event_times: tuple[float, ...]
 
@@ -98,13 +101,18 @@ class Playback:
     def _progress(self, at_s: float, condition: StoredCondition | None) -> ProgressView:
         begun = [c for c in self.conditions if c.started_s <= at_s]
         length_s = max(self.length_s, 1e-9)
-        repeat = max((r.repeat for r in self.repeats if condition is not None and r.begun_s <= at_s
-                      and r.condition == condition.info.condition), default=0)  # fmt: skip
+        last = max((r for r in self.repeats if condition is not None and r.begun_s <= at_s
+                    and r.condition == condition.info.condition), key=lambda r: r.begun_s, default=None)  # fmt: skip
+        bursts = [one for one in self.bursts.get(last.key, ()) if one.started_s <= at_s] if last is not None else []
+        wanted = condition.info.window_revolutions if condition is not None else None
         return ProgressView(
             step=len(begun), steps=max(len(self.conditions), 1),
             title=_title(condition.info) if condition is not None else "between conditions",
             condition=len(begun), conditions=len(self.conditions),
-            repeat=repeat, repeats=condition.info.repeats if condition is not None else 0,
+            repeat=last.repeat if last is not None else 0,
+            repeats=condition.info.repeats if condition is not None else 0,
+            revolutions=sum(_done(one, at_s) for one in bursts), revolutions_wanted=wanted or 0.0,
+            burst=bursts[-1].number if bursts else 0,
             share=at_s / length_s, elapsed_s=at_s, left_s=max(length_s - at_s, 0.0),
         )  # fmt: skip
 
@@ -138,7 +146,7 @@ class Playback:
                 _end(c, self.length_s) - c.started_s if isfinite(c.started_s) else 0.0,
                 _end(c, self.length_s) - c.started_s if _end(c, self.length_s) <= at_s else None,
             )
-            for number, c in enumerate(self.conditions, 1)
+            for number, c in enumerate(sorted(self.conditions, key=_began), 1)
         )  # fmt: skip
         return PlanView(self.run.info.recipe_name, len(steps), 1, steps, self.length_s)
 
@@ -156,8 +164,17 @@ class Playback:
         return tuple(_known(known.get(name)) for name in TREND_COLUMNS)
 
 
+def _done(burst: Burst, at_s: float) -> float:
+    """Return the revolutions of a burst that were counted by then, as if evenly."""
+    return burst.revolutions * min((at_s - burst.started_s) / max(burst.ended_s - burst.started_s, 1e-9), 1.0)
+
+
 def _known(value: float | None) -> float | None:
     return value if value is not None and isfinite(value) else None
+
+
+def _began(condition: StoredCondition) -> float:
+    return condition.started_s if isfinite(condition.started_s) else float("inf")
 
 
 def _end(condition: StoredCondition, length_s: float) -> float:
@@ -178,9 +195,10 @@ def load(folder: Path) -> Playback:
         events = tuple(
             Event(e.sequence, e.t_s, e.utc, e.kind, e.severity, e.text, run.info.name) for e in reader.events()
         )
+        repeats = tuple(reader.repeats(attempts=True))
         return Playback(
             run, rig.name, specs(rig), _thinned(reader, max(SPACING_S, run.rig_seconds / MOST)),
-            tuple(reader.conditions()), tuple(reader.repeats(attempts=True)), events,
+            tuple(reader.conditions()), repeats, {one.key: tuple(reader.bursts(one.key)) for one in repeats}, events,
             tuple(event.t_s for event in events),
         )  # fmt: skip
 

@@ -12,6 +12,9 @@ BRAILLE = 0x2800
 DOTS = ((0x01, 0x02, 0x04, 0x40), (0x08, 0x10, 0x20, 0x80))
 """Bits of a braille pattern by column and row (Unicode, block Braille Patterns)."""
 WISH, LIMIT = "╌", "─"
+SERIES = "●"
+OTHER = "·"
+"""Sign of a point that gives way to every other."""
 SHRINK = 4.0
 """A range is narrowed only when it is this many times wider than what it shows: it does not jump."""
 
@@ -120,10 +123,26 @@ def scatter(points: Sequence[Point], width: int, height: int, decimals: int = 2)
     for p in points:
         across = round((p.x - xs.low) / (xs.high - xs.low) * (inner - 1))
         down = round((ys.high - p.y) / (ys.high - ys.low) * (rows - 1))
-        grid[down][across] = p.sign if grid[down][across] in (" ", p.sign) else "+"
+        there = grid[down][across]
+        if p.sign != OTHER or there == " ":
+            grid[down][across] = p.sign if there in (" ", OTHER, p.sign) else "+"
     labels = {0: f"{ys.high:.{decimals}f}", rows - 1: f"{ys.low:.{decimals}f}"}
+    if rows >= 9 and rows % 2:
+        labels[rows // 2] = f"{0.5 * (ys.low + ys.high):.{decimals + 1}f}"
     lines = [f"{labels.get(n, ''):>{margin}}│{''.join(row)}" for n, row in enumerate(grid)]
     lines.append(" " * margin + "└" + "─" * inner)
-    left, right = f"{xs.low:g}", f"{xs.high:g}"
-    lines.append(" " * (margin + 1) + left + right.rjust(inner - len(left)))
+    at = {round((x - xs.low) / (xs.high - xs.low) * (inner - 1)): f"{x:g}" for x in {p.x for p in points}}
+    lines.append(" " * (margin + 1) + _labels(at, inner))
     return lines
+
+
+def _labels(at: dict[int, str], width: int) -> str:
+    """Return texts below their columns, the first and the last before those between, each where there is room."""
+    line = [" "] * width
+    columns = sorted(at)
+    for column in dict.fromkeys((columns[0], columns[-1], *columns)):
+        text = at[column]
+        first = min(max(column - len(text) // 2, 0), width - len(text))
+        if first >= 0 and not "".join(line[max(first - 1, 0) : first + len(text) + 1]).strip():
+            line[first : first + len(text)] = text
+    return "".join(line).rstrip()

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import ClassVar
 
+from pydantic import JsonValue
 from textual.binding import Binding, BindingType
 from textual.widget import Widget
 
@@ -42,7 +43,7 @@ class TimeLine(Panel):
 
     def picture(self, scene: Scene, width: int, height: int) -> Parts:
         """Return the slider."""
-        words = f" {'▶' if self.playing else '⏸'} {minutes(self.at_s)} / {minutes(self.length_s)}  x{self.speed:g} "
+        words = f" {'▶' if self.playing else '‖'} {minutes(self.at_s)} / {minutes(self.length_s)}  x{self.speed:g} "
         keys = " Home End PgUp PgDn "
         room = width - len(words) - len(keys)
         if room < 5:
@@ -93,9 +94,25 @@ class ReplayApp(TesterApp):
 
     def connect(self) -> None:
         """Show the run's beginning."""
-        self.query_one(ResultsView).open(self.stored)
+        results = self.query_one(ResultsView)
+        results.fill([self._line_of_runs()])
+        results.open(self.stored)
         self.action_seek(0.0)
         self.set_interval(FRAME_S, self._tick)
+
+    def _line_of_runs(self) -> dict[str, JsonValue]:
+        """Return the run as `tester runs --json` lists it."""
+        run, rows = self.playback.run, self.stored.rows
+        values = sum(row.mu is not None for row in rows)
+        return {
+            "run": self.stored.name,
+            "recipe": self.stored.recipe,
+            "status": self.stored.status,
+            "values": values,
+            "conditions": len(rows),
+            "rig_seconds": run.rig_seconds,
+            "started_utc": run.info.started_utc,
+        }
 
     def _tick(self) -> None:
         if self.playing:

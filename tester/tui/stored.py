@@ -10,7 +10,8 @@ from tester.export.cells import nominal
 from tester.export.results import Measured, RunResults, results_of
 from tester.store.catalogue import find_run
 from tester.store.reader import RunReader
-from tester.tui.plot import Bin, Point
+from tester.store.records import StoredExclusion
+from tester.tui.plot import OTHER, SERIES, Bin, Point
 
 AXES = (
     ("load", "N"),
@@ -42,6 +43,8 @@ class RepeatRow:
     mu: float | None
     status: str
     exclusion: str
+    by_hand: str
+    """Who has left it out, and when; "" where nobody has."""
     trace: tuple[Bin | None, ...]
 
 
@@ -82,20 +85,25 @@ def _number(value: float, decimals: int) -> str:
     return f"{value:.{decimals}f}" if isfinite(value) else "—"
 
 
-def repeats(folder: Path, condition: int, columns: int) -> tuple[RepeatRow, ...]:
-    """Read a condition's repeats with traces of ``columns`` columns; raises StoreError, sqlite3.Error."""
+def condition(folder: Path, number: int, columns: int) -> tuple[Row, tuple[RepeatRow, ...]]:
+    """Read a condition and its repeats with traces of ``columns`` columns; raises StoreError, sqlite3.Error."""
     with RunReader(folder) as reader:
-        measured = next(one for one in results_of(reader).conditions() if one.info.condition == condition)
-        return tuple(
+        measured = next(one for one in results_of(reader).conditions() if one.info.condition == number)
+        return _row(measured), tuple(
             RepeatRow(
                 one.repeat,
                 one.result.mu_resultant if isfinite(one.result.mu_resultant) else None,
                 one.result.status.value,
                 measured.exclusion(one),
-                _trace(reader, condition, one.repeat, columns),
+                _who(measured.left_out_by(one)),
+                _trace(reader, number, one.repeat, columns),
             )
             for one in measured.repeats
         )
+
+
+def _who(word: StoredExclusion | None) -> str:
+    return f"{word.operator or 'somebody'}, {word.utc[:16].replace('T', ' ')} UTC" if word is not None else ""
 
 
 def _trace(reader: RunReader, condition: int, repeat: int, columns: int) -> tuple[Bin | None, ...]:
@@ -112,10 +120,33 @@ def _trace(reader: RunReader, condition: int, repeat: int, columns: int) -> tupl
     return tuple((float(piece.min()), float(piece.max())) for piece in pieces)
 
 
-def points(stored: Stored, axis: int) -> list[Point]:
-    """Return the conditions as points of mu against an axis; the sign is the compound's first letter or digit."""
+def row_words(row: Row) -> str:
+    """Return a condition's setpoints in words."""
+    load_n, slip_mm_s, temperature_c, sideslip_deg = row.at
+    return f"{row.compound}: {slip_mm_s:g} mm/s, {load_n:g} N, {sideslip_deg:g}°, {temperature_c:g} °C"
+
+
+def series(stored: Stored, row: Row, axis: int) -> list[Row]:
+    """Return the conditions with a value that differ from ``row`` along one axis at most."""
+
+    def others(one: Row) -> tuple[object, ...]:
+        return one.compound, *one.at[:axis], *one.at[axis + 1 :]
+
+    return [one for one in stored.rows if one.mu is not None and others(one) == others(row)]
+
+
+def points(stored: Stored, axis: int, chosen: Row | None = None) -> list[Point]:
+    """Return the conditions as points of mu against an axis; the sign is the compound's first letter or digit.
+
+    Where a ``chosen`` row has a series along the axis, that is drawn as ``●`` and everything else as ``·``.
+    """
+    marked = series(stored, chosen, axis) if chosen is not None else []
     return [
-        Point(row.at[axis], row.mu, next((c for c in row.compound if c.isalnum() and c.isascii()), "o"))
+        Point(row.at[axis], row.mu, _sign(row) if len(marked) < 2 else SERIES if row in marked else OTHER)
         for row in stored.rows
         if row.mu is not None
     ]
+
+
+def _sign(row: Row) -> str:
+    return next((c for c in row.compound if c.isalnum() and c.isascii()), "o")

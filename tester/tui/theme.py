@@ -86,7 +86,9 @@ Screen.-wide #recipe-list { width: 36; }
 OptionList { background: $background; border: round $secondary; padding: 0; }
 OptionList:focus, DataTable:focus { border: round $accent; }
 OptionList > .option-list--option-highlighted { background: $panel; color: $foreground; text-style: none; }
-OptionList:focus > .option-list--option-highlighted { text-style: bold reverse; }
+OptionList:focus > .option-list--option-highlighted {
+    background: $foreground; color: $background; text-style: bold underline;
+}
 DataTable { background: $background; border: round $secondary; }
 DataTable > .datatable--cursor { background: $panel; color: $foreground; text-style: none; }
 DataTable:focus > .datatable--cursor { text-style: bold reverse; }
@@ -108,11 +110,15 @@ Dialog .field Input { width: 1fr; }
 Dialog .buttons { height: 1; width: 100%; margin-top: 1; }
 Dialog Button { margin-right: 2; }
 Button, Button.-primary { background: $panel; color: $foreground; }
-Button:focus { text-style: bold reverse; }
+Button:focus, Button.-primary:focus { background: $foreground; color: $background; text-style: bold underline; }
 Input { background: $panel; color: $foreground; }
 Input:focus { text-style: underline; }
 Checkbox { background: $surface; border: none; padding: 0; }
 Dialog.-tall > #box { width: 100%; height: 100%; }
+
+#repeat-list { height: auto; max-height: 9; border: none; }
+#traces { height: 1fr; }
+#big-plot { height: 1fr; }
 
 #manual-values { height: 12; }
 #manual-axes { width: 1fr; height: 100%; }
@@ -135,5 +141,9 @@ ToastRack { margin-bottom: 1; }
 Toast { width: 60; max-width: 80%; background: $panel; padding: 0 1; margin-top: 0; }
 Tooltip { display: none; }
 CommandPalette { background: transparent; }
+CommandPalette SearchIcon { display: none; }
+CommandPalette CommandList > .option-list--option-highlighted {
+    background: $foreground; color: $background; text-style: bold underline;
+}
 CommandPalette > Vertical { background: $surface; margin: 2 0 1 0; }
 """

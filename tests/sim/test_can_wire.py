@@ -8,7 +8,8 @@ from math import inf
 import pytest
 
 from drivers.ports import BusLost
-from sim.can_wire import Beat, CanWire, SyncFollower, frame_bits
+from sim.can_traffic import Beat, SyncFollower, frame_bits
+from sim.can_wire import CanWire
 
 FULL_S = 135 / 500_000
 EMPTY_S = 55 / 500_000
@@ -271,13 +272,17 @@ class Follower(SyncFollower):
 SYNC = (0x080, b"")
 
 
+def send_cycle(wire: CanWire, frames: tuple[tuple[int, bytes], ...], now: float) -> None:
+    wire.send_cycle(tuple(can_id for can_id, _ in frames), tuple(data for _, data in frames), now)
+
+
 def test_only_what_changed_of_a_cycle_is_handed_on_and_at_the_time_it_has_alone() -> None:
     wire, bare = CanWire(), CanWire()
     first, second = Taker(wire, 0x201), Taker(wire, 0x202)
     alone = Taker(bare, 0x202)
     one, other, newer = (0x201, bytes(6)), (0x202, bytes(6)), (0x202, b"\x01" + bytes(5))
     for number, frames in enumerate(((one, other, SYNC), (one, other, SYNC), (one, newer, SYNC))):
-        wire.send_cycle(frames, 1.0 + number)
+        send_cycle(wire, frames, 1.0 + number)
         for can_id, data in frames:
             bare.send(can_id, data, 1.0 + number)
     assert len(first.heard) == 1
@@ -289,17 +294,17 @@ def test_only_what_changed_of_a_cycle_is_handed_on_and_at_the_time_it_has_alone(
 def test_a_cycle_of_as_many_other_frames_is_taken_frame_by_frame() -> None:
     wire = CanWire()
     taker, follower = Taker(wire, 0x201), Follower(wire)
-    wire.send_cycle(((0x201, bytes(6)), SYNC), 1.0)
-    wire.send_cycle(((0x202, bytes(6)), (0x201, bytes(6))), 2.0)  # no SYNC in it
+    send_cycle(wire, ((0x201, bytes(6)), SYNC), 1.0)
+    send_cycle(wire, ((0x202, bytes(6)), (0x201, bytes(6))), 2.0)  # no SYNC in it
     assert len(taker.heard) == 2 and len(follower.syncs) == 1
 
 
 def test_a_forgotten_cycle_is_handed_on_again() -> None:
     wire = CanWire()
     taker, frames = Taker(wire, 0x201), ((0x201, bytes(6)), SYNC)
-    wire.send_cycle(frames, 1.0)
+    send_cycle(wire, frames, 1.0)
     wire.forget_cycle()
-    wire.send_cycle(frames, 2.0)
+    send_cycle(wire, frames, 2.0)
     assert len(taker.heard) == 2
 
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
-import sys
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Protocol
@@ -12,8 +10,8 @@ from textual.widget import Widget
 from textual.widgets import Input, OptionList
 from textual.widgets.option_list import Option
 
+from tester.tui.calling import call
 from tester.tui.dialogs.dialog import Dialog, entry, field, line
-from tester.tui.starting import COMMAND
 
 FORMATS = (
     ("appendix", "csv", "the paper's table"),
@@ -78,13 +76,8 @@ class Say(Protocol):
 
 async def export(say: Say, folder: Path, kind: str, path: Path) -> None:
     """Run the command and say how it went."""
-    process = await asyncio.create_subprocess_exec(
-        sys.executable, "-c", COMMAND, "export", "--format", kind, "--out", str(path), "--", str(folder),
-        stdin=asyncio.subprocess.DEVNULL, stdout=asyncio.subprocess.DEVNULL, stderr=asyncio.subprocess.PIPE,
-    )  # fmt: skip
-    _, told = await process.communicate()
-    words = told.decode(errors="replace").strip()
-    if process.returncode:
+    done, words = await call("export", "--format", kind, "--out", str(path), "--", str(folder))
+    if not done:
         say(f"not exported: {words}", problem=True, lasting=True)
     else:
         say(f"exported to {path}" + (f"; {words}" if words else ""), lasting=True)

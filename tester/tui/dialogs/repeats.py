@@ -1,23 +1,32 @@
-"""The repeats of a condition, each with its trace."""
+"""The repeats of a condition, each with its trace; from here one is left out of the mean, or taken in again."""
 
 from __future__ import annotations
 
 import asyncio
 import sqlite3
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 
+from textual.containers import VerticalScroll
 from textual.content import Content
 from textual.widget import Widget
-from textual.widgets import Static
+from textual.widgets import OptionList, Static
+from textual.widgets.option_list import Option
 
 from tester.store.schema import StoreError
 from tester.tui.dialogs.dialog import Dialog, line
+from tester.tui.dialogs.exclude import ExcludeDialog
 from tester.tui.plot import Canvas, Range
-from tester.tui.stored import RepeatRow, Row, Stored, repeats
-from tester.tui.widgets.panel import FAINT, NOTICE, Parts, rows
-from tester.tui.words import clean, number
+from tester.tui.stored import RepeatRow, Row, Stored, condition, row_words
+from tester.tui.widgets.panel import FAINT, Parts, rows
+from tester.tui.words import clean, fit, number
 
-WIDTH, HEIGHT = 60, 5
+HEIGHT = 5
+WIDTH = 60
+"""Of a trace where nobody knows the width of the screen, characters."""
+MARGIN = 14
+"""Of the dialog beside a trace: borders, labels, scroll bar."""
+LONGEST = 400
+"""Characters of a repeat's line."""
 
 
 class RepeatsDialog(Dialog):
@@ -25,35 +34,80 @@ class RepeatsDialog(Dialog):
 
     TITLE = "Repeats"
 
-    def __init__(self, stored: Stored, row: Row) -> None:
-        """``row``: a condition of ``stored``."""
+    def __init__(self, stored: Stored, row: Row, changed: Callable[[], None]) -> None:
+        """``row``: a condition of ``stored``; ``changed`` is called when a repeat has been left out or taken in."""
         super().__init__()
-        self.stored, self.row = stored, row
+        self.stored, self.row, self.changed = stored, row, changed
+        self.found: tuple[RepeatRow, ...] = ()
 
     def content(self) -> Iterable[Widget]:
         """Return the place of the repeats."""
-        yield line([(clean(" ".join(self.row.cells)), "bold")])
-        yield line("reading …", id="repeats")
+        yield line(self._heading(), id="condition")
+        yield OptionList(id="repeat-list", markup=False)
+        with VerticalScroll(id="traces", can_focus=False):
+            yield line("reading …", id="repeats")
+
+    def _heading(self) -> Parts:
+        mu, s, n, status = self.row.cells[5:]
+        return [(clean(f"{row_words(self.row)}  mu {mu}  s {s}  n {n}  {status}"), "bold")]
 
     def on_mount(self) -> None:
         """Have them read."""
         self.add_class("-tall")
-        self.run_worker(self._read_repeats(), exit_on_error=False)
+        self.query_one("#box").border_subtitle = "Enter excludes or includes · Esc closes · F12 STOP"
+        self.query_one("#repeat-list").focus()
+        self._read()
+
+    def _read(self) -> None:
+        self.run_worker(self._read_repeats(), group="read", exclusive=True, exit_on_error=False)
 
     async def _read_repeats(self) -> None:
-        columns = WIDTH if self.host.options.plain else 2 * WIDTH
+        plain, width = self.host.options.plain, max(self.size.width - MARGIN, WIDTH // 3)
+        columns = width if plain else 2 * width
         try:
-            found = await asyncio.to_thread(repeats, self.stored.folder, self.row.condition, columns)
+            self.row, found = await asyncio.to_thread(condition, self.stored.folder, self.row.condition, columns)
         except (StoreError, OSError, sqlite3.Error) as error:
             self.host.say(f"cannot be read: {error}", problem=True)
             return
         if self.is_attached:
-            parts = repeat_parts(found, plain=self.host.options.plain)
+            self.found = found
+            self.query_one("#condition", Static).update(Content.assemble(*self._heading()))
+            listed = self.query_one("#repeat-list", OptionList)
+            at = listed.highlighted or 0
+            listed.set_options([Option(Content(repeat_words(one))) for one in found])
+            listed.highlighted = min(at, len(found) - 1) if found else None
+            parts = trace_parts(found, width, plain=plain)
             self.query_one("#repeats", Static).update(Content.assemble(*parts))
 
+    def on_option_list_option_highlighted(self, event: OptionList.OptionHighlighted) -> None:
+        """Bring the repeat's trace into sight."""
+        event.stop()
+        above = sum(1 + (HEIGHT if one.trace else 0) for one in self.found[: event.option_index])
+        self.query_one("#traces", VerticalScroll).scroll_to(y=above, animate=False)
 
-def repeat_parts(found: Iterable[RepeatRow], *, plain: bool = False) -> Parts:
-    """Return the repeats one below the other."""
+    def on_option_list_option_selected(self, event: OptionList.OptionSelected) -> None:
+        """Ask why it is to be left out, or taken in again."""
+        event.stop()
+        if self.host.options.view_only:
+            self.host.say("view only: nothing is changed from here")
+            return
+        self.host.push_screen(ExcludeDialog(self.stored, self.row, self.found[event.option_index], self._has_changed))
+
+    def _has_changed(self) -> None:
+        self.changed()
+        if self.is_attached:
+            self._read()
+
+
+def repeat_words(one: RepeatRow) -> str:
+    """Return a repeat in a line: its coefficient, its status, why it is not in the mean and who says so."""
+    out = f"  ✘ not in the mean: {clean(one.exclusion)}" if one.exclusion else ""
+    who = f" ({clean(one.by_hand)})" if one.by_hand else ""
+    return fit(f"repeat {one.repeat}: mu {number(one.mu, 3)}  {clean(one.status)}{out}{who}", LONGEST)
+
+
+def trace_parts(found: Iterable[RepeatRow], width: int = WIDTH, *, plain: bool = False) -> Parts:
+    """Return the traces one below the other, each under its number."""
     listed = list(found)
     known = [y for one in listed for ends in one.trace if ends is not None for y in ends]
     if not listed:
@@ -63,11 +117,9 @@ def repeat_parts(found: Iterable[RepeatRow], *, plain: bool = False) -> Parts:
         scale.cover(min(known), max(known))
     lines: list[Parts] = []
     for one in listed:
-        out = f"  not in the mean: {clean(one.exclusion)}" if one.exclusion else ""
-        words = f"repeat {one.repeat}: mu {number(one.mu, 3)}  {clean(one.status)}{out}"
-        lines.append([(words, NOTICE if out else "bold")])
+        lines.append([(f"repeat {one.repeat}: mu {number(one.mu, 3)}", FAINT if one.exclusion else "bold")])
         if one.trace:
-            canvas = Canvas(WIDTH, HEIGHT, plain=plain)
+            canvas = Canvas(width, HEIGHT, plain=plain)
             canvas.bins(one.trace, scale)
             labels = {0: f"{scale.high:.2f}", HEIGHT - 1: f"{scale.low:.2f}"}
             lines += [[(f"{labels.get(at, ''):>6} ", FAINT), drawn] for at, drawn in enumerate(canvas.lines())]

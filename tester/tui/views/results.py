@@ -15,45 +15,30 @@ from textual.widgets import DataTable
 from tester.service.commands import ListRuns
 from tester.store.schema import StoreError
 from tester.tui.dialogs.export import ExportDialog
+from tester.tui.dialogs.plot import PlotDialog
 from tester.tui.dialogs.repeats import RepeatsDialog
-from tester.tui.plot import scatter
-from tester.tui.scene import Scene
-from tester.tui.stored import AXES, HEADER, Stored, points, read
+from tester.tui.stored import HEADER, Row, Stored, read
 from tester.tui.views.view import Keys, View
-from tester.tui.widgets.panel import FAINT, Panel, Parts, rows
-from tester.tui.words import clean, fit, minutes
+from tester.tui.widgets.scatter import PlotPanel
+from tester.tui.words import clean, minutes
 
 RUN_HEADER = ("Run", "Recipe", "Status", "Values", "Rig time", "Started")
 MISSING = (StoreError, OSError, sqlite3.Error)
 HELP = """\
 Above the stored runs, below the conditions of the chosen one in the export's columns, with s (between repeats) and
-n (valid of planned). A wide terminal shows mu against one setpoint; a point's sign is its compound, + is several.
+n (valid of planned). The plot is mu against one setpoint; a point's sign is its compound, + is several. What differs
+from the chosen condition in more than that setpoint is a faint dot.
 
-Enter   on a run: read it. On a condition: its repeats, with traces, and why one is not in the mean.
+Enter   on a run: read it. On a condition: its repeats, with traces, and why one is not in the mean; Enter there
+        leaves a repeat out, or takes it in again, with a reason that goes on record. Nothing is ever deleted.
 p       plot against load, slip, temperature, angle.
 e       export a table to a file.
 g       look for runs again.
-Nothing is deleted from here. A repeat is left out of a mean on objective grounds only, which its line names.
 """
 
 
 class TextTable(DataTable[Text]):
     """A table of texts that are never taken for markup."""
-
-
-class PlotPanel(Panel):
-    """Mu against a setpoint."""
-
-    stored: Stored | None = None
-    axis = 0
-
-    def picture(self, scene: Scene, width: int, height: int) -> Parts:
-        """Return the plot."""
-        if self.stored is None:
-            return [("no run chosen", FAINT)]
-        lines = scatter(points(self.stored, self.axis), width, height)
-        shown: list[Parts] = [[fit(line, width)] for line in lines]
-        return rows(shown) if shown else [("no values to plot", FAINT)]
 
 
 class ResultsView(View):
@@ -105,7 +90,7 @@ class ResultsView(View):
         if self.host.options.view_only or self.host.link is None:
             return
         self.runs_table.border_title = "Runs: looking …"
-        self.run_worker(self._list(), group="runs", exclusive=True, exit_on_error=False)
+        self.run_worker(self._list, group="runs", exclusive=True, exit_on_error=False)
 
     async def _list(self) -> None:
         answer = await self.host.ask(ListRuns())
@@ -132,8 +117,24 @@ class ResultsView(View):
             if event.cursor_row < len(self.names):
                 name = self.names[event.cursor_row]
                 self.run_worker(self._open(name), group="open", exclusive=True, exit_on_error=False)
-        elif self.stored is not None and event.cursor_row < len(self.stored.rows):
-            self.host.push_screen(RepeatsDialog(self.stored, self.stored.rows[event.cursor_row]))
+        elif self.stored is not None and (row := self.chosen) is not None:
+            self.host.push_screen(RepeatsDialog(self.stored, row, self._read_again))
+
+    def on_data_table_row_highlighted(self, event: DataTable.RowHighlighted) -> None:
+        """Mark the series of the condition under the cursor."""
+        event.stop()
+        self._plot(self.query_one(PlotPanel).axis)
+
+    @property
+    def chosen(self) -> Row | None:
+        """Return the condition under the cursor."""
+        at = self.conditions_table.cursor_row
+        return self.stored.rows[at] if self.stored is not None and at < len(self.stored.rows) else None
+
+    def _read_again(self) -> None:
+        """Read the run again: somebody has left out a repeat."""
+        if self.stored is not None:
+            self.run_worker(self._open(str(self.stored.folder)), group="open", exclusive=True, exit_on_error=False)
 
     async def _open(self, name: str) -> None:
         self.conditions_table.border_title = "reading …"
@@ -145,31 +146,36 @@ class ResultsView(View):
             return
         if self.is_attached:
             self.open(stored)
-            self.conditions_table.focus()
+            if self.host.screen is self.screen:
+                self.conditions_table.focus()
 
     def open(self, stored: Stored) -> None:
         """Show a run's conditions."""
-        self.stored = stored
         table = self.conditions_table
+        again = self.stored is not None and self.stored.folder == stored.folder
+        at, axis = (table.cursor_row, self.query_one(PlotPanel).axis) if again else (0, 0)
+        self.stored = stored
         table.clear()
         for row in stored.rows:
             table.add_row(*(Text(clean(cell, 80)) for cell in row.cells))
         table.border_title = Text(f"{clean(stored.name)}: {clean(stored.recipe)}, {clean(stored.status)}")
-        self._plot(0)
+        table.move_cursor(row=at)
+        self._plot(axis)
 
     def _plot(self, axis: int) -> None:
         panel = self.query_one(PlotPanel)
-        panel.stored, panel.axis = self.stored, axis % len(AXES)
-        name, unit = AXES[panel.axis]
-        panel.border_title = f"mu against {name} ({unit})"
-        panel.redraw()
+        panel.plot(self.stored, self.chosen, axis)
+        panel.border_title = Text(panel.title)
 
     def action_plot(self) -> None:
-        """Plot against the next axis."""
+        """Plot against the next axis; over the whole screen where there is no room beside the tables."""
         panel = self.query_one(PlotPanel)
-        if not panel.display:
-            self.host.say("the plot needs a wider terminal (110 by 34)")
-        self._plot(panel.axis + 1)
+        if panel.display:
+            self._plot(panel.axis + 1)
+        elif self.stored is not None:
+            self.host.push_screen(PlotDialog(self.stored, self.chosen, panel.axis))
+        else:
+            self.host.say("choose a run first")
 
     def action_export(self) -> None:
         """Ask what to export, and where."""

@@ -38,7 +38,7 @@ def _mode(scene: Scene, state: StateView) -> Part:
         return text.replace(" ", "?", 1), FAINT
     if state.mode in TRIPPED_MODES:
         return text, ABNORMAL
-    return (text, "bold") if state.mode in CALM_MODES else (text, WARNING)
+    return (text, "bold") if state.mode in CALM_MODES or scene.replayed else (text, WARNING)
 
 
 def _link(scene: Scene) -> Parts:

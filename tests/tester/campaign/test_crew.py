@@ -5,19 +5,20 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future
 from concurrent.futures.process import BrokenProcessPool
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from tester.campaign import crew
-from tester.campaign.crew import Sight, side_by_side
+from tester.campaign.crew import Sight, longest_first, side_by_side
 from tester.campaign.endings import PartEnd, Stop
 from tester.campaign.folder import Job, Work
 from tester.campaign.pool import say, stop_level
 from tester.campaign.split import split
 from tester.engine.context import Progress
 from tester.engine.run import Outcome
-from tests.tester.campaign.test_split import THREE
+from tests.tester.campaign.test_split import PREPARED, THREE, WORN
 from tests.tester.engine.bench import plan_of
 from tests.tester.recipe.texts import rig
 
@@ -120,3 +121,9 @@ def test_what_workers_report_is_shown(carried: Callable[[dict[int, Result]], Car
 def test_a_process_that_is_no_worker_is_told_nothing_and_says_nothing() -> None:
     say("unheard")
     assert stop_level() is Stop.NONE
+
+
+def test_what_takes_longest_begins_first() -> None:
+    brief, long = split(plan_of(PREPARED), simulated=True)[0], split(plan_of(WORN), simulated=True)[0]
+    parts = (brief, replace(long, number=2), replace(brief, number=3))
+    assert longest_first(Work(rig(), brief.plan, parts)) == [2, 1, 3]

@@ -9,10 +9,10 @@ from typing import NamedTuple
 
 from sim.rig import SimRig
 from tester.control.load_loop import LoadLoop
+from tester.engine.activity import Activity
 from tester.engine.build import build_run
 from tester.engine.context import Context, Nobody, WheelLife
 from tester.engine.gates import Gates
-from tester.engine.moves import Activity
 from tester.engine.prompts import Prompts
 from tester.engine.run import Run
 from tester.engine.sampler import Sampler

@@ -6,8 +6,9 @@ from math import nan
 
 import pytest
 
+from tester.engine.activity import MoveFailedError
 from tester.engine.context import Context
-from tester.engine.moves import Ask, Lift, Load, MoveFailedError, Power, Sequence, TakeTare, Turn, Wait, Yaw
+from tester.engine.moves import Ask, Lift, Load, Power, Sequence, TakeTare, Turn, Wait, Yaw
 from tester.process import Press
 from tests.tester.engine.bench import Bench, make_bench
 

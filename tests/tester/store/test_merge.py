@@ -11,11 +11,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from tester.store.exclusions import add_exclusion
 from tester.store.merge import HEADER, TABLES, Merge
 from tester.store.reader import RunReader
-from tester.store.records import WheelInfo
+from tester.store.records import StoredExclusion, WheelInfo
 from tester.store.schema import StoreError, migrate
-from tests.tester.store.build import CONDITION, RUN, SPECIMENS, open_writer, record
+from tests.tester.store.build import CONDITION, RUN, SPECIMENS, open_writer, record, small_run
 
 FIRST_S, SECOND_S = 2700.5, 100.25
 
@@ -179,3 +180,12 @@ def test_dropped_samples_are_counted_over_all_parts(run: Path) -> None:
             database.execute("UPDATE run SET overruns = ?", (number,))
     with RunReader(merge(run)) as reader:
         assert reader.run().overruns == 3
+
+
+def test_what_a_person_has_said_of_a_repeat_survives_a_merge(tmp_path: Path) -> None:
+    folder = small_run(tmp_path / "run")
+    add_exclusion(folder, StoredExclusion(0, 1, 2, 1, 1, "debris", "ada", "2024-02-21T15:00:00.000Z", "0.1.0", ""))
+    with Merge(folder):
+        pass  # what parts have recorded is taken out, and comes again from them
+    with RunReader(folder) as reader:
+        assert reader.repeats() == [] and [one.target for one in reader.exclusions()] == [(1, 2, 1)]

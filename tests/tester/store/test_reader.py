@@ -230,7 +230,7 @@ def test_a_name_with_spaces_and_marks_is_just_a_name(tmp_path: Path) -> None:
 def test_a_record_of_an_older_schema_is_read_and_left_as_it_is(tmp_path: Path) -> None:
     folder = small_run(tmp_path / "run")
     with sqlite3.connect(folder / "run.db") as database:
-        for table in ("session", "change", "calibration"):
+        for table in ("session", "change", "calibration", "exclusion"):
             database.execute(f"DROP TABLE {table}")
         for table, column in (
             ("wheel", "ground_s"),
@@ -244,6 +244,19 @@ def test_a_record_of_an_older_schema_is_read_and_left_as_it_is(tmp_path: Path) -
     before = (folder / "run.db").read_bytes()
     with RunReader(folder) as reader:
         assert len(reader.repeats()) == 6 and reader.sessions() == [] and reader.run().status == "finished"
+    assert (folder / "run.db").read_bytes() == before
+
+
+def test_a_record_without_exclusions_is_read_in_place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    folder = small_run(tmp_path / "run")
+    with sqlite3.connect(folder / "run.db") as database:
+        database.execute("DROP TABLE exclusion")
+        database.execute("PRAGMA user_version = 2")
+    database.close()
+    before = (folder / "run.db").read_bytes()
+    monkeypatch.delattr("tester.store.reader.TemporaryDirectory")  # no copy of it is made
+    with RunReader(folder) as reader:
+        assert reader.exclusions() == [] and len(reader.repeats()) == 6
     assert (folder / "run.db").read_bytes() == before
 
 

@@ -13,7 +13,8 @@ import pytest
 from tester.cli.main import invoke
 from tester.tui.playback import Playback, load
 from tester.tui.replay import ReplayApp
-from tester.tui.stored import read, repeats
+from tester.tui.scene import Scene
+from tester.tui.stored import condition, read
 from tests.tester.tui.stage import screen_text
 
 RECIPE = """\
@@ -94,10 +95,29 @@ def test_space_plays_and_pauses_and_nothing_is_commanded(run: Path, playback: Pl
     replay(run, playback, act)
 
 
+def test_revolutions_and_burst_are_those_of_the_moment(run: Path, playback: Playback) -> None:
+    first = playback.repeats[0]
+    burst = playback.bursts[first.key][0]
+    scene = Scene()
+    playback.show(scene, 0.5 * (burst.started_s + burst.ended_s))
+    state = scene.state
+    assert state is not None and (state.progress.burst, state.progress.revolutions_wanted) == (1, 5.0)
+    assert state.progress.revolutions == pytest.approx(0.5 * burst.revolutions)
+
+
+def test_the_runs_own_line_stands_in_the_table_of_runs(run: Path, playback: Playback) -> None:
+    async def act(app: ReplayApp, press: Press) -> None:
+        await press("f5")
+        assert "Runs: 1" in screen_text(app) and run.name in screen_text(app)
+
+    replay(run, playback, act)
+
+
 def test_results_show_the_conditions_and_their_repeats(run: Path, playback: Playback) -> None:
     stored = read(str(run), run.parent)
     assert [row.cells[:5] for row in stored.rows] == [("1#", "200", "100", "0", "25")]
-    found = repeats(run, 1, 40)
+    row, found = condition(run, 1, 40)
+    assert row == stored.rows[0]
     assert [one.repeat for one in found] == [1, 2, 3] and all(one.trace for one in found)
 
     async def act(app: ReplayApp, press: Press) -> None:
@@ -114,7 +134,8 @@ def test_results_show_the_conditions_and_their_repeats(run: Path, playback: Play
 def test_pictures_are_svg_of_the_screens(run: Path, tmp_path: Path) -> None:
     draw = runpy.run_path(str(PICTURES))["draw"]
     written = asyncio.run(draw(run, tmp_path))
-    assert [path.name for path in written] == ["run.svg", "results.svg"]
+    assert [path.name for path in written] == ["run.svg", "results.svg", "repeats.svg"]
     for path in written:
         assert ElementTree.parse(path).getroot().tag.endswith("svg")
-        assert "F12" in path.read_text(encoding="utf-8")
+        text = path.read_text(encoding="utf-8")
+        assert "F12" in text and "url(" not in text.replace("url(#", "")

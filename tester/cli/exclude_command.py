@@ -1,0 +1,61 @@
+"""``tester exclude`` and ``tester include``: a person's word on a repeat, with a reason, on record."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, TypeVar
+
+import click
+
+from tester.cli.finding import run_folder
+from tester.cli.showing import shown
+
+Decorated = TypeVar("Decorated", bound=Callable[..., Any])
+
+
+def _of_a_repeat(command: Decorated) -> Decorated:
+    """Add the arguments and options that both commands have."""
+    command = click.option("--operator", default=None, metavar="NAME", help="Who says so.  [default: user]")(command)
+    command = click.option("--reason", required=True, metavar="TEXT", help="Why; goes on record.")(command)
+    command = click.argument("repeat", metavar="CONDITION/REPEAT")(command)
+    return click.argument("run")(command)
+
+
+@click.command(short_help="Leave a repeat out of a run's means, with a reason.")
+@_of_a_repeat
+def exclude(run: str, repeat: str, reason: str, operator: str | None) -> None:
+    """Leave a repeat of RUN out of its condition's mean, and make the run's tables anew.
+
+    CONDITION/REPEAT as repeats.csv counts them, e.g. 3/2. Nothing is deleted: `tester include` takes it in again.
+    """
+    _say(run, repeat, reason, operator, excluded=True)
+
+
+@click.command(short_help="Take an excluded repeat into the means again.")
+@_of_a_repeat
+def include(run: str, repeat: str, reason: str, operator: str | None) -> None:
+    """Take a repeat of RUN that was excluded into its condition's mean again, and make the run's tables anew."""
+    _say(run, repeat, reason, operator, excluded=False)
+
+
+def _say(run: str, repeat: str, reason: str, operator: str | None, *, excluded: bool) -> None:
+    from tester.export.exclude import CannotExcludeError, Word, parse_target, record_word
+    from tester.export.results import results_of
+    from tester.lock import user
+    from tester.store.reader import RunReader
+    from tester.store.schema import StoreError
+
+    folder = run_folder(run)
+    try:
+        condition, number = parse_target(repeat)
+    except CannotExcludeError as error:
+        raise click.UsageError(str(error)) from error
+    try:
+        record_word(folder, Word(condition, number, excluded, reason, user() if operator is None else operator))
+        with RunReader(folder) as reader:
+            rows = results_of(reader).rows
+    except (CannotExcludeError, StoreError, OSError) as error:
+        raise click.ClickException(str(error)) from error
+    row = next(row for row in rows if any(one.info.condition == condition for one in row.replicates))
+    n = f"n {row.result.n_valid} of {row.result.n}"
+    click.echo(f"{condition}/{number} {'excluded' if excluded else 'included'}: {shown(row.describe())}, {n}", err=True)

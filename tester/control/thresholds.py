@@ -1,0 +1,66 @@
+"""What the levels compare with: the numbers of the rig file that a scan asks for, in one plain object.
+
+A scan reads some fifty of them. The configuration is known by its annotations and therefore stays Python where the scan
+is compiled (docs/decisions/0019); asking it each time would cost more than comparing.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+
+from tester.rig import RigConfig
+
+
+@dataclass(slots=True)
+class Thresholds:
+    """Names, units and meaning are the rig file's: its sections ``interlocks``, ``limits`` and ``loops.heat``."""
+
+    # interlocks
+    contact_share: float
+    frozen_cell_s: float
+    frozen_model_k: float
+    frozen_surface_s: float
+    heat_off_s: float
+    jacket_margin_k: float
+    jump_k: float
+    late_scan_s: float
+    late_warn_s: float
+    least_diameter_mm: float
+    lift_failed_s: float
+    lift_late_s: float
+    line_errors: float
+    max_slip_m_s: float
+    model_k: float
+    open_below_k: float
+    open_output_percent: float
+    open_rise_k: float
+    open_s: float
+    overload_factor: float
+    overload_margin_n: float
+    press_error_mm: float
+    runaway_k: float
+    speed_error_m_s: float
+    stale_can_s: float
+    stale_can_scans: float
+    stale_cell_s: float
+    stale_ir_s: float
+    stale_jacket_s: float
+    stop_margin_s: float
+    stuck_off_s: float
+    stuck_rate_k_s: float
+    torn_share: float
+    torn_slip_m_s: float
+    # limits
+    jacket_c: float
+    load_n: float
+    slip_power_w: float
+    surface_c: float
+    # loops.heat
+    hub_min_c: float
+
+
+def thresholds_of(rig: RigConfig) -> Thresholds:
+    """Take the numbers over from a rig's configuration; every name is in one of the three sections."""
+    sections = (rig.interlocks, rig.limits, rig.loops.heat)
+    names = [field.name for field in fields(Thresholds)]
+    return Thresholds(*[next(getattr(part, name) for part in sections if hasattr(part, name)) for name in names])

@@ -1,0 +1,114 @@
+"""Leave a repeat out of a run's means, or take it in again: the word goes on record, then the tables are made anew."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+from tester import __version__, clock
+from tester.export import write_all
+from tester.export.manifest import MANIFEST, manifest_problems
+from tester.lock import RUN_LOCK, ExclusiveUse, RigInUseError
+from tester.store.exclusions import add_exclusion, standing
+from tester.store.reader import RunReader
+from tester.store.records import StoredExclusion, StoredRepeat
+
+MADE_ANEW = frozenset({"run.db", "appendix.csv", "conditions.csv", "repeats.csv"})
+"""Files of a run's folder that an exclusion changes, beside the manifest."""
+LONGEST = 2000
+"""Characters of a reason."""
+
+
+class CannotExcludeError(Exception):
+    """It is not done; the message says why, for people."""
+
+
+@dataclass(frozen=True, slots=True)
+class Word:
+    """What a person says of a repeat: out of the mean, or in again; why; who."""
+
+    condition: int
+    repeat: int
+    excluded: bool
+    reason: str
+    operator: str
+
+
+def parse_target(text: str) -> tuple[int, int]:
+    """Return condition and repeat of a text such as ``3/2``; raises CannotExcludeError."""
+    found = re.fullmatch(r"\s*(\d{1,9})\s*/\s*(\d{1,9})\s*", text, re.ASCII)
+    if found is None:
+        raise CannotExcludeError(f'expected CONDITION/REPEAT such as 3/2 (as in repeats.csv), got "{text}"')
+    return int(found[1]), int(found[2])
+
+
+def record_word(folder: Path, word: Word) -> None:
+    """Put a person's word on record and make the folder's tables and manifest anew.
+
+    Refused while a process works on the run, for a repeat that is not committed, without a reason, and where the folder
+    is not as its manifest says: a new manifest would hide that. Raises CannotExcludeError, StoreError, OSError.
+    """
+    if not word.reason.strip() or len(word.reason) > LONGEST:
+        raise CannotExcludeError(f"a reason is needed, of at most {LONGEST} characters: it goes on record")
+    with ExclusiveUse() as use:
+        try:
+            use.lock_file(folder.name, folder / RUN_LOCK, folder.name, lasting=False)
+        except RigInUseError as error:
+            raise CannotExcludeError(f"the run is under way, wait for its end: {error}") from error
+        manifest = folder / MANIFEST
+        before = manifest.read_text("utf-8") if manifest.is_file() else ""
+        with RunReader(folder) as reader:
+            said = reader.exclusions()
+            repeat = _wanted(reader.repeats(), word)
+        unfinished = is_unfinished(said, before)
+        if before:
+            _check_manifest(folder, unfinished=unfinished)
+        finishes = unfinished and (said[-1].target, said[-1].excluded) == (repeat.target, int(word.excluded))
+        if not finishes:  # else the word is on record already, and only the tables are missing
+            _refuse_contradiction(said, repeat, word)
+            now = clock.utc_now()
+            add_exclusion(
+                folder,
+                StoredExclusion(0, *repeat.target, int(word.excluded), word.reason.strip(), word.operator.strip(), now,
+                                __version__, before),
+            )  # fmt: skip
+        if before:  # a run without a manifest has no tables yet: they come at its end
+            write_all(folder)
+
+
+def is_unfinished(said: list[StoredExclusion], manifest: str) -> bool:
+    """Return whether a power cut or a kill came between the newest word and the tables that follow from it."""
+    return bool(said) and bool(manifest) and said[-1].manifest_before == manifest
+
+
+def _wanted(repeats: list[StoredRepeat], word: Word) -> StoredRepeat:
+    found = next((one for one in repeats if (one.condition, one.repeat) == (word.condition, word.repeat)), None)
+    if found is not None:
+        return found
+    known = sorted(one.repeat for one in repeats if one.condition == word.condition)
+    there = f"repeats {', '.join(map(str, known))}" if known else "no committed repeat"
+    raise CannotExcludeError(
+        f"{word.condition}/{word.repeat} is not a committed repeat: condition {word.condition} has {there}"
+    )
+
+
+def _refuse_contradiction(said: list[StoredExclusion], repeat: StoredRepeat, word: Word) -> None:
+    present = standing(said).get(repeat.target)
+    name = f"{word.condition}/{word.repeat}"
+    if word.excluded and present is not None:
+        by = f" by {present.operator}" if present.operator else ""
+        raise CannotExcludeError(f"{name} is excluded already, {present.utc}{by}: {present.reason}")
+    if not word.excluded and present is None:
+        raise CannotExcludeError(f"{name} has not been excluded by anybody")
+
+
+def _check_manifest(folder: Path, *, unfinished: bool) -> None:
+    try:
+        wrong = manifest_problems(folder)
+    except (ValueError, KeyError, TypeError, AttributeError) as error:
+        raise CannotExcludeError(f"{MANIFEST} cannot be read: {error}") from error
+    if unfinished:
+        wrong = [line for line in wrong if line.partition(":")[0] not in MADE_ANEW]
+    if wrong:
+        raise CannotExcludeError(f"the run is not as it was left, see `tester verify`: {'; '.join(wrong)}")

@@ -1,0 +1,18 @@
+"""Commands that the screen has done in a process of their own: `tester export`, `tester exclude`."""
+
+from __future__ import annotations
+
+import asyncio
+import sys
+
+from tester.tui.starting import COMMAND
+
+
+async def call(*arguments: str) -> tuple[bool, str]:
+    """Carry out ``tester ARGUMENTS``; return whether it was done, and what it said."""
+    process = await asyncio.create_subprocess_exec(
+        sys.executable, "-c", COMMAND, *arguments,
+        stdin=asyncio.subprocess.DEVNULL, stdout=asyncio.subprocess.DEVNULL, stderr=asyncio.subprocess.PIPE,
+    )  # fmt: skip
+    _, told = await process.communicate()
+    return process.returncode == 0, told.decode(errors="replace").strip()

@@ -1,0 +1,135 @@
+"""Results: the series in the plot, the repeats of a condition, and leaving one out with a reason."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from textual.widgets import Input
+
+from tester import export
+from tester.service.commands import Stop
+from tester.store.reader import RunReader
+from tester.tui.dialogs.exclude import ExcludeDialog
+from tester.tui.dialogs.repeats import RepeatsDialog
+from tester.tui.stored import Row, Stored, points, read, series
+from tester.tui.views.results import ResultsView
+from tests.tester.store.build import small_run
+from tests.tester.tui.stage import Stage, play
+
+ROW = Row((), (200.0, 300.0, 25.0, 0.0), "1#", 0.7, 1)
+ROWS = (
+    ROW,
+    replace(ROW, at=(300.0, 300.0, 25.0, 0.0), condition=2),
+    replace(ROW, at=(200.0, 300.0, 40.0, 0.0), condition=3),
+    replace(ROW, at=(300.0, 300.0, 25.0, 0.0), compound="2#", condition=4),
+    replace(ROW, at=(400.0, 300.0, 25.0, 0.0), mu=None, condition=5),
+)
+STORED = Stored("run", Path(), "some recipe", "finished", ROWS)
+
+
+def a_run(folder: Path) -> Path:
+    """Write a run of two loads below the folder of runs and return its folder."""
+    run = small_run(folder / "runs" / "one", ([0.90, 0.91, 0.89, 0.90], [0.70, 0.74, 0.72, 0.73]))
+    export.write_all(run)
+    return run
+
+
+async def at_repeats(on: Stage, run: Path) -> None:
+    """Open the repeats of the second condition."""
+    await on.pilot.press("f5")
+    view = on.app.screen_stack[0].query_one(ResultsView)
+    view.open(read(str(run), run.parent))
+    view.conditions_table.focus()
+    await on.pilot.press("down", "enter")
+    await on.until(lambda: "repeat 4: mu 0.730" in on.text(), "the repeats are read")
+
+
+def test_the_series_of_a_condition_is_what_differs_along_one_axis_alone() -> None:
+    assert [row.condition for row in series(STORED, ROW, 0)] == [1, 2]
+    assert [row.condition for row in series(STORED, ROW, 2)] == [1, 3]
+
+
+def test_what_is_not_of_the_series_is_a_faint_dot() -> None:
+    assert [point.sign for point in points(STORED, 0, ROW)] == ["●", "●", "·", "·"]
+
+
+def test_a_condition_without_a_series_leaves_every_sign_as_it_is() -> None:
+    assert [point.sign for point in points(STORED, 1, ROW)] == ["1", "1", "1", "2"]
+
+
+@pytest.mark.parametrize("size", [(80, 24), (120, 40)])
+def test_the_plot_is_reached_at_every_size_and_names_its_series(size: tuple[int, int], tmp_path: Path) -> None:
+    run = a_run(tmp_path)
+
+    async def act(on: Stage) -> None:
+        await at_repeats(on, run)
+        await on.pilot.press("escape", *(["p"] if size[0] < 110 else []))
+        assert "mu against load (N): ● 1#, 300 mm/s, 25 °C, 0 °   · others" in on.text()
+        await on.pilot.press("p")
+        assert "mu against slip (mm/s)" in on.text()
+
+    play(act, tmp_path, size)
+
+
+def test_a_repeat_is_left_out_with_a_reason_and_the_table_follows(tmp_path: Path) -> None:
+    run = a_run(tmp_path)
+
+    async def act(on: Stage) -> None:
+        await at_repeats(on, run)
+        await on.pilot.press("enter")
+        assert isinstance(on.app.screen, ExcludeDialog) and "mu 0.700" in on.text()
+        await on.pilot.press(*"[/x]", "enter")
+        await on.until(lambda: "✘ not in the mean: excluded by hand: [/x]" in on.text(), "the repeat is left out")
+        assert "mu 0.730" in on.line(3)
+        await on.until(lambda: "2/1 excluded" in on.text(), "what has become of the condition is said")
+        await on.pilot.press("escape")
+        await on.until(lambda: "ok excluded" in on.text() and "0.723" not in on.text(), "the table follows")
+
+    play(act, tmp_path)
+    with RunReader(run) as reader:
+        (word,) = reader.exclusions()
+    assert (word.target, word.reason, bool(word.operator)) == ((2, 1, 1), "[/x]", True)
+
+
+def test_without_a_reason_nothing_is_done(tmp_path: Path) -> None:
+    run = a_run(tmp_path)
+    before = (run / "run.db").read_bytes()
+
+    async def act(on: Stage) -> None:
+        await at_repeats(on, run)
+        await on.pilot.press("enter", "space", "enter")
+        await on.until(lambda: "a reason is needed" in on.text(), "the reason is asked for")
+        assert isinstance(on.app.screen, ExcludeDialog)
+
+    play(act, tmp_path)
+    assert (run / "run.db").read_bytes() == before
+
+
+def test_a_view_only_screen_changes_nothing(tmp_path: Path) -> None:
+    run = a_run(tmp_path)
+
+    async def act(on: Stage) -> None:
+        await at_repeats(on, run)
+        await on.pilot.press("enter")
+        assert isinstance(on.app.screen, RepeatsDialog) and "view only" in on.text()
+
+    play(act, tmp_path, view_only=True)
+
+
+@pytest.mark.parametrize(("place", "keys"), {"repeats": [], "reason": ["enter", "a"], "plot": ["escape", "p"]}.items())
+def test_stop_reaches_the_service_from(place: str, keys: list[str], tmp_path: Path) -> None:
+    run = a_run(tmp_path)
+
+    async def act(on: Stage) -> None:
+        await at_repeats(on, run)
+        await on.pilot.press(*keys)
+        assert len(on.app.screen_stack) == (3 if place == "reason" else 2), on.text()
+        assert place != "reason" or isinstance(on.app.focused, Input)
+        for key in ("f12", "ctrl+x"):
+            on.fake.orders.clear()
+            await on.pilot.press(key)
+            assert await on.ordered(Stop) == Stop()
+
+    play(act, tmp_path)
