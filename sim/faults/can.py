@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from bisect import insort
+from typing import Final
 
 from drivers.canopen import emcy
 from drivers.canopen import objects as o
@@ -10,8 +11,8 @@ from sim.can_traffic import Listener, SyncFollower
 from sim.can_wire import CanWire
 from sim.faults.scene import Effect, Scene
 
-_NODE = 0x7F
-_FUNCTION = 0x780
+_NODE: Final = 0x7F
+_FUNCTION: Final = 0x780
 
 
 class Unseen:

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from typing import Final
+
 from drivers import cia402
 from drivers.canopen import objects as o
 from sim.nodes.drive_modes import Held, ModeOwner
 from sim.nodes.motion import PositionAxis
 
-FOLLOWING_ERROR_CODE = 0x8611
-_RELATIVE = 0x0040
-_HERE = frozenset((33, 34, 35, 37))
+FOLLOWING_ERROR_CODE: Final = 0x8611
+_RELATIVE: Final = 0x0040
+_HERE: Final = frozenset((33, 34, 35, 37))
 """Homing methods that take the present position (CiA 402-2, 8.2: index pulse, current position)."""
 
 

@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 from math import inf
+from typing import Final
 
-SAFETY_CHAIN = 1 << 16
+SAFETY_CHAIN: Final = 1 << 16
 """0x60FD bit 16: the safety chain (emergency stop circuit) is healthy."""
-GUARD_CLOSED = 1 << 17
+GUARD_CLOSED: Final = 1 << 17
 """0x60FD bit 17: the guard is closed."""
-CONTACTOR = 1 << 18
+CONTACTOR: Final = 1 << 18
 """0x60FD bit 18: the contactor has pulled in (feedback contact)."""
-CONTACTOR_REQUEST = 1 << 16
+CONTACTOR_REQUEST: Final = 1 << 16
 """0x60FE:01 bit 16: pull the contactor in."""
 
-PULL_IN_S = 0.03
+PULL_IN_S: Final = 0.03
 """From the request to the feedback of a small power contactor, s [A]."""
-DROP_OUT_S = 0.02
+DROP_OUT_S: Final = 0.02
 """From the end of the request or of the safety chain to the feedback, s [A]."""
 
 

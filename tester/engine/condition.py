@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import isfinite
-from typing import Protocol
+from typing import Final, Protocol
 
 from tester.analysis.results import RepeatStatus
 from tester.engine.activity import Activity
@@ -15,9 +15,9 @@ from tester.engine.thermal_steps import SoakTo, roll, soak_within_k
 from tester.recipe.plan import ConditionStep
 from tester.rig import RigConfig
 
-ROLL_CHECK_N = 50.0
+ROLL_CHECK_N: Final = 50.0
 """Load of the automatic diameter check, N [A]: little penetration, and above the press's friction."""
-ROLL_CHECK_TURNS = 3.0
+ROLL_CHECK_TURNS: Final = 3.0
 """Whole turns averaged by the check: runout drops out."""
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
+from typing import Final
 
 from tester.engine.activity import Activity, MoveFailedError, Resumable
 from tester.engine.condition import MeasureCondition, Results
@@ -24,9 +25,9 @@ from tester.recipe.plan import (
 )
 from tester.recipe.wheel_change import wheel_change
 
-DEFAULT_SPEED_M_S = 0.8
+DEFAULT_SPEED_M_S: Final = 0.8
 """Wheel speed for heating when no condition follows (the paper's)."""
-DEFAULT_LOAD_N = 200.0
+DEFAULT_LOAD_N: Final = 200.0
 
 
 class Executor:

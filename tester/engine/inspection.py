@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from math import inf
+from typing import Final
 
 from drivers.ir_thermometer import IrThermometer
 from drivers.jacket import HeatingJacket
@@ -10,11 +11,11 @@ from drivers.load_cell import LoadCell
 from drivers.modbus.request import Counters, Station
 from tester.process import Readings
 
-PERIOD_S = 0.5
+PERIOD_S: Final = 0.5
 """Between two looks, s [A]. Silence and age are watched in every scan; this is for what lasts."""
-WINDOW = 4
+WINDOW: Final = 4
 """Looks that a share of failed requests is taken over: 2 s [A]."""
-LEAST_REQUESTS = 8
+LEAST_REQUESTS: Final = 8
 """Fewer requests in the window than this say nothing about a line [A]."""
 
 

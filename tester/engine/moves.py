@@ -7,24 +7,25 @@ state in plain attributes: a running activity can be copied.
 from __future__ import annotations
 
 from math import inf, isfinite
+from typing import Final
 
 from tester.engine.activity import Activity, MoveFailedError
 from tester.engine.context import Context
 from tester.process import Press
 
-SPEED_SHARE = 0.01
-SPEED_FLOOR_M_S = 0.003
+SPEED_SHARE: Final = 0.01
+SPEED_FLOOR_M_S: Final = 0.003
 """A speed counts as reached within 1 % or 3 mm/s, whichever is more [A]."""
 Zero = tuple[float, float, float, float]
 """Offsets of the load cell: Fx, Fy, Fz in N, Mz in N m."""
 
-LIFTED_N = 5.0
+LIFTED_N: Final = 5.0
 """Below this force the wheel counts as lifted (safety concept: "F < 5 N")."""
-LIFTED_MM = 0.3
+LIFTED_MM: Final = 0.3
 """... or this near to the lifted position: the zero of the cell may have drifted by more than that force [A]."""
-TARE_LEAST = 10
+TARE_LEAST: Final = 10
 """Readings that a tare averages at least."""
-CELL_SILENT_S = 5.0
+CELL_SILENT_S: Final = 5.0
 """A tare that has not got its readings this long after its time is given up, s [A]."""
 
 

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from enum import Enum
+from typing import Final
 
 from drivers.ports import BusLost
 from tester.control.state import Mode, Trip
 from tester.engine.connect import Connector, Stage
 from tester.engine.engine import Engine
 
-POWER_OFF_S = 2.0
+POWER_OFF_S: Final = 2.0
 """A drive that has not switched its power off by then is released all the same, s [A]."""
-RELEASE_S = 5.0
+RELEASE_S: Final = 5.0
 """The drives have let go of our heartbeat by then, s [A]."""
 
 

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from typing import Final
+
 from tester.engine.context import Context, WheelLife
 from tester.engine.moves import Ask, Lift, Load, Power, Sequence, TakeTare, Turn, speeds_reached
 from tester.engine.thermal_steps import Straighten
 from tester.recipe.plan import Install, PreGrind, WornState
 from tester.store.records import WheelInfo
 
-REFERENCE_TARE_S = 2.0
+REFERENCE_TARE_S: Final = 2.0
 """Averaging time of a wheel's first tare, s [A]."""
 
 
