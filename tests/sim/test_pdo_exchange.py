@@ -284,15 +284,9 @@ def test_unchanged_rpdos_keep_the_deadline() -> None:
 
 def test_rpdos_of_a_repeated_cycle_keep_the_deadline_and_their_end_misses_it() -> None:
     bench = deadline()
-<<<<<<< HEAD
-    data = (struct.pack("<Hi", 0x0F, 1000), b"")
-    for _ in range(20):
-        bench.wire.send_cycle((RPDO1, 0x080), data, bench.now)
-=======
     can_ids, payloads = (RPDO1, 0x080), (struct.pack("<Hi", 0x0F, 1000), b"")
     for _ in range(20):
         bench.wire.send_cycle(can_ids, payloads, bench.now)
->>>>>>> main
         bench.run(0.08)
     assert bench.emergencies == []
     last = bench.now - 0.08
@@ -304,15 +298,9 @@ def test_rpdos_of_a_repeated_cycle_keep_the_deadline_and_their_end_misses_it() -
 
 def test_a_repeated_cycle_without_the_rpdo_misses_the_deadline() -> None:
     bench = deadline()
-<<<<<<< HEAD
-    rpdo = struct.pack("<Hi", 0x0F, 1000)
-    for can_ids, data in (((RPDO1, 0x080), (rpdo, b"")),) * 5 + (((0x080,), (b"",)),) * 5:
-        bench.wire.send_cycle(can_ids, data, bench.now)
-=======
     data = struct.pack("<Hi", 0x0F, 1000)
     for can_ids, payloads in (((RPDO1, 0x080), (data, b"")),) * 5 + (((0x080,), (b"",)),) * 5:
         bench.wire.send_cycle(can_ids, payloads, bench.now)
->>>>>>> main
         bench.run(0.08)
     assert [code for code, _ in bench.emergencies] == [0x8250]
 
