@@ -134,6 +134,7 @@ class Devices:
             self._foreseeing = None
         for station in link.stations:
             station.owner.lost(now)
+        link.deadline = inf  # nobody serves it any more, and it must not ask for that either
 
     def transmit(self, now: float, *, scan: bool, next_scan_s: float = NEVER) -> float:
         """Send what is due and return the next time a driver wants to be served; ``next_scan_s`` if it is known."""

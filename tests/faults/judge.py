@@ -12,8 +12,10 @@ from sim.harm import SAFE_S, Truth
 from tester.process import Press
 from tests.faults.stage import Stage
 
-WATCHED_S = 10.0
-"""A fault that ends nothing is watched this long, s of rig time; a slow one SLOW_S."""
+WATCHED_S = 6.0
+"""A fault that ends nothing is watched this long, s of rig time, and 3 s longer than its budget; a slow one SLOW_S."""
+LATCHED_S = SAFE_S + 1.0
+"""A stop that does not come to its end is watched this long."""
 SLOW_S = 125.0
 MISSED_S = 1.0
 """A fault that only the next connection can see is watched this long in a run."""
@@ -89,7 +91,7 @@ def _watched_s(stage: Stage, kinds: tuple[FaultKind, ...]) -> float:
         return SLOW_S
     if stage.run.engine.scans > 0 and all(kind.exposure is Exposure.CONNECTING for kind in kinds):
         return MISSED_S
-    return WATCHED_S
+    return max(WATCHED_S, *(kind.budget_s + SAFE_S for kind in kinds))
 
 
 class Judge:
@@ -191,7 +193,7 @@ class Judge:
         """Tell whether control is through with stopping, or has had long enough."""
         stage = self.stage
         settled = stage.run.finished or stage.faulty.killed or stage.mode in ("latched", "idle", "cooldown")
-        return settled or now - self.ended_s > WATCHED_S
+        return settled or now - self.ended_s > LATCHED_S
 
     def _why(self) -> str:
         trip = self.stage.run.engine.control.state.trip

@@ -44,7 +44,7 @@ _TABLE, _SAFE, _MAY = "tester/control/interlocks.py", "tester/control/safe_outpu
 
 MUTANTS: tuple[Mutant, ...] = (
     Mutant("a comparison inverted: overload", _LEVELS,
-           "if not (fz <= v.limits.load_n):", "if not (fz >= v.limits.load_n):"),
+           "if not (fz <= b.load_n):", "if not (fz >= b.load_n):"),
     Mutant("a comparison inverted: standing under load", _LEVELS,
            "apart = v.turning is not belt_moves and", "apart = v.turning is belt_moves and"),
     Mutant("a comparison inverted: overshoot", _LEVELS,

@@ -135,8 +135,11 @@ class Stage:
         now = self.next_s
         faulty = self.faulty
         faulty.advance(now)
-        due = now + RIG_STEP_S if self.run.finished else faulty.tick(now)
-        self.next_s = next_tick(now, due, faulty.urgent_s)
+        if self.run.finished:
+            # Nobody takes frames off the wire any more, however urgent they are.
+            self.next_s = next_tick(now, now + RIG_STEP_S, faulty.script.due_s)
+        else:
+            self.next_s = next_tick(now, faulty.tick(now), faulty.urgent_s)
         self.ticks += 1
         mode = self.run.engine.control.state.mode.value
         if mode != self.mode:

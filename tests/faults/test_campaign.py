@@ -6,6 +6,8 @@ from functools import cache
 
 import pytest
 
+from sim.faults import CATALOGUE, Injection
+from sim.faults.language import When
 from tests.faults import every_scan, late_scans
 from tests.faults.__main__ import main
 from tests.faults.campaign import Tally, all_cases, conduct, faults_of_campaign, pairs, sample
@@ -13,6 +15,8 @@ from tests.faults.hardware import HARDWARE_MUST_HOLD, PRESS_RELEASE, UNLIFTED, h
 from tests.faults.judge import Case, Verdict
 from tests.faults.moments import Moment, rehearse
 from tests.faults.mutants import MUTANTS, ROOT
+from tests.faults.recipes import RECIPES
+from tests.faults.stage import Stage
 
 FEW = 16
 
@@ -31,6 +35,18 @@ def test_the_recipe_runs_to_its_end_without_harm_and_without_a_trip():
     assert stage.run.outcome.value == "done"
     assert not stage.observer.found and not stage.invariants.broken and not stage.ledger.trips
     assert {moment.phase for moment in found} == {"begin", "middle", "end"}
+
+
+@pytest.mark.parametrize("fault", ["load cell line unplugged", "CAN frames late", "belt drive emergency storm"])
+def test_after_a_fault_ticks_come_no_quicker_than_scans_and_arrivals(fault: str):
+    stage = Stage(RECIPES["short"])
+    while not stage.running:
+        stage.tick()
+    stage.inject(Injection(When(at_s=stage.next_s), CATALOGUE[fault]))
+    began_s, ticks = stage.next_s, stage.ticks
+    while stage.next_s < began_s + 3.0:
+        stage.tick()
+    assert stage.ticks - ticks < 3.0 * 400
 
 
 def test_a_run_spares_the_memory_of_the_jackets_controller():
