@@ -215,12 +215,28 @@ def test_a_rig_that_does_not_answer_exits_4(tmp_path: Path, at_the_rig: Callable
     assert any("belt drive (node 2)" in text for text in ended.screen.messages)
 
 
-def test_a_trip_exits_5_with_its_cause(tmp_path: Path, at_the_rig: Callable[[Prepare], None]) -> None:
+def test_a_guard_that_is_open_from_the_start_exits_4_and_says_so(
+    tmp_path: Path, at_the_rig: Callable[[Prepare], None]
+) -> None:
     def open_guard(world: World, hands: Attendant) -> Attendant:
         world.axes["press"].set_guard(False)  # type: ignore[attr-defined]
         return hands
 
     at_the_rig(open_guard)
+    ended = run(tmp_path)
+    assert ended.code == 4 and any("guard" in text for text in ended.screen.messages)
+
+
+def test_a_trip_exits_5_with_its_cause(tmp_path: Path, at_the_rig: Callable[[Prepare], None]) -> None:
+    class OpensTheGuard:
+        def __init__(self, world: World, hands: Attendant) -> None:
+            self.world = world
+            self.install, self.remount = hands.install, hands.remount
+
+        def begin_repeat(self, condition: int, repeat: int, attempt: int) -> None:
+            self.world.axes["press"].set_guard(False)  # type: ignore[attr-defined]
+
+    at_the_rig(OpensTheGuard)
     ended = run(tmp_path)
     assert ended.code == 5 and ended.status() == "tripped"
     assert any(text.startswith("tripped: guard open") for text in ended.screen.messages)
