@@ -40,7 +40,7 @@ def measure(effort: Effort) -> list[Figure]:
             together.append(wall_s(folder, 2, number))
             if tables(folder, 1, number) != tables(folder, 2, number):
                 raise TopicFailedError("one job and two jobs gave different tables")
-    note = "shortened: a load, two repeats, one minute of rest" if effort.quick else "four loads, five repeats on each"
+    note = "shortened: a load, two repeats, one minute of rest" if effort.quick else "four loads, three temperatures, five repeats on each"
     return [
         Figure("four equal specimens, one job", "s", tuple(alone), note=note),
         Figure("four equal specimens, two jobs", "s", tuple(together)),
@@ -53,9 +53,10 @@ def four_specimens(shortened: bool) -> str:
     recipe = yaml.safe_load(find("quickstart").read_text(encoding="utf-8"))
     recipe["specimens"] = [dict(recipe["specimens"][0]) for _ in range(SPECIMENS)]
     recipe["grids"][0]["load"] = ["100 N", "200 N", "300 N", "400 N"]
+    recipe["grids"][0]["temperature"] = ["40 degC", "50 degC", "60 degC"]
     recipe["measure"] |= {"repeats": 5, "min_valid": 3}
     if shortened:
-        recipe["grids"][0]["load"] = "200 N"
+        recipe["grids"][0] |= {"load": "200 N", "temperature": "40 degC"}
         recipe["measure"] |= {"repeats": 2, "min_valid": 2}
         recipe["rest"]["at_least"] = "1 min"
     return yaml.safe_dump(recipe, sort_keys=False, allow_unicode=True)
