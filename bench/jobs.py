@@ -40,7 +40,8 @@ def measure(effort: Effort) -> list[Figure]:
             together.append(wall_s(folder, 2, number))
             if tables(folder, 1, number) != tables(folder, 2, number):
                 raise TopicFailedError("one job and two jobs gave different tables")
-    note = "shortened: a load, two repeats, one minute of rest" if effort.quick else "four loads, three temperatures, five repeats on each"
+    short = "shortened: a load, two repeats, one minute of rest"
+    note = short if effort.quick else "four loads, three temperatures, five repeats on each"
     return [
         Figure("four equal specimens, one job", "s", tuple(alone), note=note),
         Figure("four equal specimens, two jobs", "s", tuple(together)),
