@@ -190,13 +190,6 @@ class ModbusLink:
         """Tell that ``deadline`` is for a missing reply alone: nothing else waits for the line."""
         return self._active is not None and self.deadline == self._give_up_s
 
-    def reset(self) -> None:
-        """Forget the transaction under way: the port was opened anew."""
-        self._active = None
-        self._buffer = b""
-        self._quiet_s = self.wants_s = -inf
-        self._schedule.look_again()
-
     def _numbered(self, request: Request) -> bytes:
         """Return the request with the next transaction number (TCP)."""
         self._transaction = self._transaction % 0xFFFF + 1

@@ -1,7 +1,7 @@
 """`tester tui --web`: the screen in a browser, on this machine only, to look at.
 
 Who can reach the port can see it: any user of this machine, and any page in its browser. So nothing is commanded from
-there, not even STOP (docs/decisions/0024).
+there, not even STOP (docs/decisions/0023).
 """
 
 from __future__ import annotations

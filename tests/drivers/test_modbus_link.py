@@ -305,15 +305,6 @@ def test_a_lost_port_is_reported() -> None:
         bench.serve(0.0)
 
 
-def test_reset_forgets_the_transaction_under_way() -> None:
-    bench = Bench()
-    bench.link.enable(bench.link.read(bench.station(), 3, 0, 9, 0.0))
-    bench.serve(0.0)
-    bench.link.reset()
-    bench.serve(0.001)
-    assert bench.times == [0.0, 0.001]
-
-
 @pytest.mark.parametrize("unit_id", [0, 248])
 def test_an_address_outside_the_standard_is_refused(unit_id: int) -> None:
     with pytest.raises(ValueError, match=r"1\.\.247"):

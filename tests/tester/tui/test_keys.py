@@ -10,7 +10,6 @@ import pytest
 
 from tester.service.commands import Acknowledge, Answer, Arm, Hold, Jog, Release, RunRecipe, Stop, Tare, WatchFrames
 from tester.service.state import ManualView
-from tester.tui.app import TesterApp
 from tester.tui.views.recipes import RecipesView
 from tests.tester.service.views import state as a_state
 from tests.tester.service.views import with_alarm, with_prompt
@@ -120,7 +119,7 @@ def test_editing_a_shipped_recipe_makes_a_copy_and_checks_it(tmp_path: Path, mon
     monkeypatch.setenv("EDITOR", "some editor")
     monkeypatch.delenv("VISUAL", raising=False)
     monkeypatch.setattr("tester.tui.views.recipes.subprocess.run", edit)
-    monkeypatch.setattr(TesterApp, "suspend", lambda app: nullcontext())  # no terminal here to give away
+    monkeypatch.setattr("tester.tui.app.TesterApp.suspend", lambda app: nullcontext())  # no terminal here to give away
 
     async def act(on: Stage) -> None:
         await on.until(lambda: on.checked(), "the recipes are checked")
@@ -216,7 +215,7 @@ def test_editing_one_recipe_leaves_none_of_the_others_unchecked(
 ) -> None:
     monkeypatch.setenv("EDITOR", "some editor")
     monkeypatch.setattr("tester.tui.views.recipes.subprocess.run", lambda command, **_: None)
-    monkeypatch.setattr(TesterApp, "suspend", lambda app: nullcontext())
+    monkeypatch.setattr("tester.tui.app.TesterApp.suspend", lambda app: nullcontext())
 
     async def act(on: Stage) -> None:
         await on.until(on.checked, "the recipes are checked")
