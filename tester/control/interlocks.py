@@ -35,6 +35,7 @@ class Interlock:
 WARN: Final = Reaction.WARN
 CONTROLLED: Final = Reaction.CONTROLLED
 FAST: Final = Reaction.FAST
+REFUSE: Final = Reaction.REFUSE
 POWER_OFF: Final = Reaction.POWER_OFF
 EMERGENCY: Final = Reaction.EMERGENCY
 
@@ -74,6 +75,8 @@ INTERLOCKS: Final[tuple[Interlock, ...]] = (
               "off what its ramp allows by > speed_error", lambda c: c.speed_error_delay_s, FAST, ACK),
     Interlock("press speed", "press comes on its own: broken velocity loop, setpoints lost",
               "further towards the contact than its ramp allows by > press_error", _now, FAST, REPAIR),
+    Interlock("press travel", "press outside its travel: ran past its end, or its zero is wrong",
+              "position outside axes.press.software_limits", _now, FAST, ACK),
     Interlock("drive standing under load", "wheel on a stopped belt, or belt under a stopped wheel",
               "load > 20 N, one stands, the other above 0.1 m/s", lambda c: c.standing_delay_s, FAST, ACK),
     Interlock("belt torn", "friction and drive torque collapsed while sliding under load",
@@ -129,9 +132,10 @@ INTERLOCKS: Final[tuple[Interlock, ...]] = (
     Interlock("wheel worn", "wheel diameter below its least", "diameter < least_diameter", _now, CONTROLLED,
               "new wheel, acknowledged"),
     # Stops that do not work
-    Interlock("not lifted", "still loaded after a stop", "Fz >= 20 N at lift_late after the stop", _now, FAST, REPAIR),
+    Interlock("not lifted", "still loaded after a stop or in a hold", "Fz >= 20 N at lift_late after it began",
+              _now, FAST, REPAIR),
     Interlock("lift failed", "still loaded after the quick stop, or the press goes on",
-              "Fz >= 20 N at lift_failed after the stop; or the press 0.3 mm beyond its ramp",
+              "Fz >= 20 N at lift_failed after it began; or the press 0.3 mm beyond its ramp",
               _now, POWER_OFF, REPAIR),
     Interlock("not stopping", "a drive turns longer than its ramp allows", "turning at v / deceleration + stop_margin",
               _now, FAST, REPAIR),
@@ -141,6 +145,12 @@ INTERLOCKS: Final[tuple[Interlock, ...]] = (
               _now, FAST, REPAIR),
     Interlock("contactor welded", "the contactor is closed without request", "feedback closed, request off",
               lambda c: c.contactor_delay_s, CONTROLLED, REPAIR),
+    # At rest: in idle, armed and latched
+    Interlock("moving at rest", "a drive turns, or the press comes, although everything is to rest",
+              "a speed >= 0.02 m/s or unknown, or the press 0.3 mm further", lambda c: c.dropped_delay_s, POWER_OFF,
+              REPAIR),
+    Interlock("loaded at rest", "the wheel is pressed although everything is to rest",
+              "Fz >= 20 N, or unknown and the press not clear of the contact", _now, REFUSE, "cause gone"),
     # Only said
     Interlock("scan delayed", "the controlling process was late, but not dangerously", "scan later than late_warn",
               _now, WARN, SELF),
@@ -154,5 +164,7 @@ def bit(name: str) -> int:
     return 1 << _PLACES[name]
 
 
+AT_REST: Final = bit("moving at rest") | bit("contactor welded") | bit("heating at standstill")
+"""Rows that trip in idle, too: there is nothing to stop by then, but something to take the power off."""
 WARNINGS: Final = sum(bit(row.name) for row in INTERLOCKS if row.reaction is WARN)
 """Rows that stop nothing: they do not stand in the way of arming or acknowledging."""

@@ -71,6 +71,9 @@ _NOT_STOPPING: Final = bit("not stopping")
 _QUICK_FAILED: Final = bit("quick stop failed")
 _HEAT_ON: Final = bit("heat not off")
 _WELDED: Final = bit("contactor welded")
+_TRAVEL: Final = bit("press travel")
+_MOVING: Final = bit("moving at rest")
+_LOADED: Final = bit("loaded at rest")
 
 
 def process_levels(v: View) -> int:
@@ -123,6 +126,8 @@ def motion_levels(v: View) -> int:
                 and r.camber_at_s >= since
             ):
                 held |= _DATA
+            if not (b.press_low_mm <= r.press_mm <= b.press_high_mm):
+                held |= _TRAVEL
         elif v.confirmed:
             held |= _DROPPED
     if not r.drives_disabled and not (
@@ -230,15 +235,21 @@ def heat_levels(v: View) -> int:
     return held
 
 
+def lift_levels(v: View) -> int:
+    """Return the levels of a stop or a hold that does not lift; call it only while one is under way."""
+    b, held = v.bounds, 0
+    if not (v.lifting_s <= b.lift_late_s) and not unloaded(v):
+        held |= _NOT_LIFTED
+        if not (v.lifting_s <= b.lift_failed_s):
+            held |= _LIFT_FAILED
+    return held
+
+
 def stop_levels(v: View) -> int:
     """Return the levels of a stop that does not work; call it only while one is under way."""
     r, b, stop = v.readings, v.bounds, v.state.stop
     since = v.stopped_s
     held = 0
-    if not (since <= b.lift_late_s) and not unloaded(v):
-        held |= _NOT_LIFTED
-        if not (since <= b.lift_failed_s):
-            held |= _LIFT_FAILED
     if not (r.press_mm <= stop.press_mm + PUSHED_MM) and not unloaded(v):
         held |= _LIFT_FAILED
     if not (since <= b.heat_off_s) and not (r.heat_percent <= 0.0) and r.contactor_closed:
@@ -250,6 +261,17 @@ def stop_levels(v: View) -> int:
             held |= _NOT_STOPPING
         if not (r.now_s - stop.fast_s <= stop.fast_speed_m_s / axis.quick_stop_deceleration + b.stop_margin_s):
             held |= _QUICK_FAILED
+    return held
+
+
+def rest_levels(v: View) -> int:
+    """Return the levels of a rig that is to rest; call it only in idle, armed and latched."""
+    r = v.readings
+    held = 0
+    if not standing(r) or (not r.drives_disabled and not (r.press_mm <= v.state.stop.press_mm + PUSHED_MM)):
+        held |= _MOVING
+    if not unloaded(v):
+        held |= _LOADED
     return held
 
 
@@ -265,10 +287,16 @@ def standing(r: Readings) -> bool:
 
 
 def unloaded(v: View) -> bool:
-    """Tell whether the contact is known to be open: by a fresh force, or by the press standing clear of it."""
+    """Tell whether the contact is known to be open: by a fresh force, or by the press standing clear of it.
+
+    The position only counts where the cell says nothing: it is stale, invalid, or repeats itself.
+    """
     r = v.readings
-    if r.cell_valid and r.now_s - r.cell_at_s <= SPEEDS_OLD_S and r.force_z_n < UNLOADED_N:
-        return True
+    if r.cell_valid and r.now_s - r.cell_at_s <= SPEEDS_OLD_S:
+        if r.force_z_n < UNLOADED_N:
+            return True
+        if r.now_s - r.cell_changed_s <= SPEEDS_OLD_S:
+            return False
     load = v.state.load
     known = isfinite(load.contact_mm) and r.now_s - r.press_at_s <= SPEEDS_OLD_S
     return known and r.press_mm <= load.contact_mm - CLEAR_MM

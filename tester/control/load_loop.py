@@ -18,6 +18,8 @@ from tester.rig import AxisConfig, LoadLoopConfig
 _INF: Final = inf
 _LOAD: Final = Press.LOAD
 _TURN: Final = 2.0 * pi
+UNLOADED_N: Final = 20.0
+"""Below this the contact counts as unloaded (safety concept, "load with a drive stopped")."""
 STIFFNESS_EXPONENT: Final = 0.23
 """Tangent stiffness of the line contact grows with load to this power: 125 to 172 N/mm from 100 to 400 N [A]."""
 DECELERATION_SHARE: Final = 0.6
@@ -26,6 +28,8 @@ POSITION_GAIN_PER_S: Final = 6.0
 """Final approach to a press position: mm/s per mm, well below the drive's 30 ms lag [A]."""
 LOAD_RATE_N_S: Final = 100.0
 """A change of load is expected to be followed at this rate at least [A]: 2 mm/s make it at about 290 N/s."""
+OPEN_SHARE: Final = 0.5
+"""Below this share of the touching force the contact was seen open: only then is the next touch a first one [A]."""
 HELD_BAND: Final = 0.03
 """Inside this relative error the slower holding bandwidth is used: it does not chase the runout."""
 
@@ -37,6 +41,8 @@ class LoadLoop:
     contact_mm: float = float("nan")
     """Press position at the last first touch; NaN until the wheel has been touched since its installation."""
     in_contact: bool = False
+    seen_open: bool = False
+    """The contact was open since it was touched last: where it is touched again is where the rubber begins."""
     loaded: bool = False
     """Half of the wanted load has been reached since touching: from then on losing it is a fault."""
     highest_n: float = 0.0
@@ -58,7 +64,7 @@ class LoadLoop:
         """
         force, position = readings.force_z_n, readings.press_mm
         if demand.press is not _LOAD or not (-_INF < force < _INF and -_INF < position < _INF):
-            return self._lift(position, loop, press)
+            return self._lift(force, position, loop, press)
         self.highest_n = max(demand.load_n, self.highest_n - LOAD_RATE_N_S * dt)
         self.lowest_n = min(demand.load_n, self.lowest_n + LOAD_RATE_N_S * dt)
         self._track_contact(force, position, loop)
@@ -73,21 +79,31 @@ class LoadLoop:
         """Return the press position that counts as lifted, mm: a clearance off the known contact, else fully back."""
         return max(0.0, self.contact_mm - loop.clearance_mm) if isfinite(self.contact_mm) else 0.0
 
-    def _lift(self, position: float, loop: LoadLoopConfig, press: AxisConfig) -> float:
+    def _lift(self, force: float, position: float, loop: LoadLoopConfig, press: AxisConfig) -> float:
+        """Return the velocity to the lifted position; while the cell shows a load, the press goes back to its end."""
         self.in_contact = self.loaded = False
+        self._look_open(force, loop)
         self.highest_n = self.lowest_n = 0.0
         self.integral_mm_s = 0.0
         if not isfinite(position):
             return -loop.lift_speed_mm_s
-        distance = self.lifted_mm(loop) - position
+        distance = (self.lifted_mm(loop) if force < UNLOADED_N else 0.0) - position
         if distance >= 0.0:
             return min(distance * POSITION_GAIN_PER_S, loop.loading_speed_mm_s) if distance > 0.5 else 0.0
         return -min(loop.lift_speed_mm_s, _profile(-distance, press), -distance * POSITION_GAIN_PER_S)
 
+    def _look_open(self, force: float, loop: LoadLoopConfig) -> None:
+        if force < OPEN_SHARE * loop.touch_load_n:
+            self.seen_open = True
+
     def _track_contact(self, force: float, position: float, loop: LoadLoopConfig) -> None:
+        """Note touching; a load that comes again before the contact was open says nothing about where it begins."""
+        self._look_open(force, loop)
         if not self.in_contact and force > loop.touch_load_n:
             self.in_contact = True
-            self.contact_mm = position
+            if self.seen_open:
+                self.contact_mm = position
+            self.seen_open = False
         elif self.in_contact and not self.loaded and force < 0.3 * loop.touch_load_n:
             self.in_contact = False
 

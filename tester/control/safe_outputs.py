@@ -22,10 +22,14 @@ def safe_outputs(setpoints: Setpoints, rig: RigConfig, *, fast: bool) -> None:
 
 
 def no_outputs(setpoints: Setpoints, rig: RigConfig) -> None:
-    """Set every command to zero and want no power: at rest."""
+    """Set every command to zero and want no power: at rest. What was escalated stays so until it is acknowledged."""
     safe_outputs(setpoints, rig, fast=False)
     setpoints.press_mm_s = 0.0
     setpoints.enable = False
+
+
+def withdraw_escalation(setpoints: Setpoints) -> None:
+    """Let drives and jacket hear from us again: a person has acknowledged, or a run is armed."""
     setpoints.power_off = False
     setpoints.jacket_silent = False
 

@@ -36,6 +36,8 @@ class Reaction(Enum):
 
     WARN = "warning"
     """An event in the journal."""
+    REFUSE = "neither armed nor acknowledged"
+    """Nothing is left to stop; nothing may begin."""
     CONTROLLED = "controlled stop"
     FAST = "fast stop"
     POWER_OFF = "power off"

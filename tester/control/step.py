@@ -5,10 +5,18 @@ from __future__ import annotations
 from math import copysign, inf, isfinite
 from typing import Final
 
-from tester.control.interlocks import INTERLOCKS, WARNINGS
-from tester.control.levels import PUSHED_MM, heat_levels, load_levels, motion_levels, process_levels, stop_levels
+from tester.control.interlocks import AT_REST, INTERLOCKS, WARNINGS, bit
+from tester.control.levels import (
+    heat_levels,
+    lift_levels,
+    load_levels,
+    motion_levels,
+    process_levels,
+    rest_levels,
+    stop_levels,
+)
 from tester.control.permissives import CONFIRMED_M_S, Bounds, may_heat, may_load, may_move, rig_bounds
-from tester.control.safe_outputs import no_outputs
+from tester.control.safe_outputs import no_outputs, withdraw_escalation
 from tester.control.state import ControlState, Event, Mode, Reaction, Trip
 from tester.control.stops import (
     after_stop,
@@ -30,8 +38,9 @@ CEILING_STEP_S: Final = 1.0
 """How exactly it knows when a setpoint was left, s."""
 ACK_WAIT_S: Final = 1.0
 """An acknowledged drive has reset its fault by then, s [A]; a cause that still holds refuses the acknowledgement."""
-HEAT_NOT_OFF: Final = "heat not off"
-"""The row after which the jacket's lease is left to run out."""
+_HEATING: Final = bit("heat not off") | bit("contactor welded") | bit("heating at standstill")
+"""Rows after which a heat that is still on leaves the jacket's lease to run out."""
+_MOVING: Final = bit("moving at rest")
 COLD_K: Final = 3.0
 """A hub this near to ambient is cold: the rubber on it is, too (safety concept, "both at the start")."""
 
@@ -114,8 +123,6 @@ class Control:
                 begin_stop(state, view, readings.now_s, self.bounds)
         else:
             no_outputs(state.setpoints, self.rig)
-            if not readings.drives_disabled and readings.press_mm > state.stop.press_mm + PUSHED_MM:
-                state.setpoints.power_off = True  # a press that comes although everything is to rest
             if mode is _LATCHED and state.ack_until_s > -inf:
                 self._acknowledge(readings.now_s)
 
@@ -135,6 +142,7 @@ class Control:
         state.stop.began_s = inf
         state.held = state.tripped = 0
         state.pending_s[:] = [inf] * len(INTERLOCKS)
+        withdraw_escalation(state.setpoints)
         demand = self._withdrawn
         demand.enabled = False
         self.view.look(demand, readings, 0.0, 0.0)
@@ -182,6 +190,8 @@ class Control:
             state.cooled = True
         if mode in _AT_REST or mode is _FAST_STOP or mode is _EMERGENCY:
             return
+        if mode is _COOLDOWN and not fast and not state.cooled:
+            return
         state.stop_requested = state.stop_requested or why
         if mode is not _STOPPING:
             begin_stop(state, self.view, now, self.bounds)
@@ -198,6 +208,7 @@ class Control:
             return f"nothing to acknowledge: the rig is in {state.mode.value}"
         if state.ack_until_s < now:
             state.ack_until_s = now + ACK_WAIT_S
+            withdraw_escalation(state.setpoints)
         return ""
 
     def _acknowledge(self, now: float) -> None:
@@ -227,8 +238,12 @@ class Control:
     def _levels(self) -> int:
         view = self.view
         held = process_levels(view) | motion_levels(view) | load_levels(view) | heat_levels(view)
-        if view.stopped_s >= 0.0:
-            held |= stop_levels(view)
+        if view.lifting_s >= 0.0:
+            held |= lift_levels(view)
+            if view.stopped_s >= 0.0:
+                held |= stop_levels(view)
+        if view.resting:
+            held |= rest_levels(view)
         return held
 
     def _time(self, held: int, readings: Readings) -> None:
@@ -253,13 +268,14 @@ class Control:
                 self._trip(i, lowest, readings)
 
     def _trip(self, i: int, own: int, readings: Readings) -> None:
-        """Act on a row that is due: warn, or stop by its reaction. At rest nothing is left to stop."""
+        """Act on a row that is due: warn, or stop by its reaction. At rest little is left to stop."""
         state, row, now = self.state, INTERLOCKS[i], readings.now_s
         if row.reaction is Reaction.WARN:
             state.tripped |= own
             state.events.append(Event(now, "warning", f"{row.name}: {row.cause}"))
             return
-        if state.mode in _AT_REST:
+        resting = state.mode in _AT_REST
+        if resting and not self._acts_at_rest(own, readings):
             return
         state.tripped |= own
         text = row.cause + _detail(readings)
@@ -268,7 +284,18 @@ class Control:
             state.events.append(Event(now, "trip", f"{row.name}: {text}"))
         else:
             state.events.append(Event(now, "alarm", f"{row.name}: {text}"))
-        self._react(row.reaction, now, row.name)
+        if own & _HEATING and not (readings.heat_percent <= 0.0):
+            state.setpoints.jacket_silent = True
+        if not resting:
+            self._react(row.reaction, now, row.name)
+        else:
+            state.setpoints.power_off = state.setpoints.power_off or row.reaction is Reaction.POWER_OFF
+            if state.mode is not _LATCHED:
+                state.enter(_LATCHED, now, row.name)
+
+    def _acts_at_rest(self, own: int, readings: Readings) -> bool:
+        """Tell whether a row trips at rest: something is on that is to be off. A belt may be turned by hand."""
+        return own & AT_REST != 0 and not (own == _MOVING and readings.drives_disabled)
 
     def _react(self, reaction: Reaction, now: float, why: str) -> None:
         state, mode = self.state, self.state.mode
@@ -289,8 +316,6 @@ class Control:
                 state.enter(_FAST_STOP, now, why)
         if reaction is Reaction.POWER_OFF:
             state.setpoints.power_off = True
-        if why == HEAT_NOT_OFF:
-            state.setpoints.jacket_silent = True
 
     # -- modes ----------------------------------------------------------------------------------------------
 

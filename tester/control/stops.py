@@ -63,19 +63,32 @@ def stop_outputs(state: ControlState, view: View) -> None:
         # Slip to zero first: with equal decelerations the slower belt would stand while the wheel still turns.
         out.wheel_rad_s = wheel_rad_s
         out.belt_m_s = min(r.wheel_speed_m_s, rig.limits.belt_speed_m_s)
-    if r.press_mm <= state.load.lifted_mm(rig.loops.load) + LIFTED_MM:
+    lifted_mm = state.load.lifted_mm(rig.loops.load) if unloaded(view) else 0.0
+    if r.press_mm <= lifted_mm + LIFTED_MM:
         out.press_mm_s = 0.0
 
 
 def stop_ended(state: ControlState, view: View) -> bool:
-    """Tell whether the rig stands, lifted and unloaded, or the time for it is over."""
+    """Tell whether the rig stands, lifted, unloaded and without heat, or the time for it is over."""
     r = view.readings
     if r.now_s - state.mode_since_s > STOP_TIMEOUT_S:
         return True
     lifted = r.press_mm <= state.load.lifted_mm(view.rig.loops.load) + LIFTED_MM
     if state.mode is Mode.EMERGENCY or state.setpoints.power_off:
         lifted = True  # the press has no power: the open contact is what counts
-    return standing(r) and lifted and unloaded(view)
+    return standing(r) and lifted and unloaded(view) and heat_off(view)
+
+
+def heat_off(view: View) -> bool:
+    """Tell whether the heat is known to be off: no output and the contactor open.
+
+    Once the time for both is over, one of them is enough, for it keeps the heat off; the other one's row has tripped.
+    """
+    r, b = view.readings, view.bounds
+    silent = r.jacket_valid and r.now_s - r.jacket_at_s <= b.stale_jacket_s and r.heat_percent <= 0.0
+    if view.stopped_s <= b.heat_off_s:
+        return silent and not r.contactor_closed
+    return silent or not r.contactor_closed
 
 
 def after_stop(state: ControlState, view: View) -> None:

@@ -7,6 +7,7 @@ is compiled (docs/decisions/0019); asking it each time would cost more than comp
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
+from math import inf
 
 from tester.rig import RigConfig
 
@@ -57,10 +58,17 @@ class Thresholds:
     surface_c: float
     # loops.heat
     hub_min_c: float
+    # axes.press: its software limits, mm
+    press_low_mm: float
+    press_high_mm: float
 
 
 def thresholds_of(rig: RigConfig) -> Thresholds:
-    """Take the numbers over from a rig's configuration; every name is in one of the three sections."""
+    """Take the numbers over from a rig's configuration; every other name is in one of the three sections."""
     sections = (rig.interlocks, rig.limits, rig.loops.heat)
-    names = [field.name for field in fields(Thresholds)]
-    return Thresholds(*[next(getattr(part, name) for part in sections if hasattr(part, name)) for name in names])
+    low_mm, high_mm = rig.axes.press.software_limits or (-inf, inf)
+    known = {"press_low_mm": low_mm, "press_high_mm": high_mm}
+    for field in fields(Thresholds):
+        if field.name not in known:
+            known[field.name] = next(getattr(part, field.name) for part in sections if hasattr(part, field.name))
+    return Thresholds(**known)

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from math import inf, sqrt
 from typing import Final
 
+from tester.control.load_loop import UNLOADED_N
 from tester.control.monitors import RAMP_SHARE, JacketMonitor, PressTracker, SpeedTracker, SurfaceMonitor
 from tester.control.observer import ThermalObserver
 from tester.control.state import ControlState, Mode
@@ -16,8 +17,6 @@ from tester.rig import RigConfig
 _INF: Final = inf
 STANDING_M_S: Final = 0.02
 """Below this a drive counts as standing [A]."""
-UNLOADED_N: Final = 20.0
-"""Below this the contact counts as unloaded (safety concept, "load with a drive stopped")."""
 TOUCH_MARGIN_MM: Final = 1.5
 """The wheel is touched at most this much later than where it was touched last, or its diameter says, mm [A]: about
 160 N of force (physics, section 5) that a frozen load cell would not show."""
@@ -26,6 +25,10 @@ TOUCH_MARGIN_MM: Final = 1.5
 _LOAD: Final = Press.LOAD
 _RUN: Final = Mode.RUN
 _HOLD: Final = Mode.HOLD
+_COOLDOWN: Final = Mode.COOLDOWN
+_IDLE: Final = Mode.IDLE
+_ARMED: Final = Mode.ARMED
+_LATCHED: Final = Mode.LATCHED
 
 
 @dataclass(slots=True)
@@ -62,6 +65,10 @@ class View:
     """Resultant friction force and its power (NaN where a part is unknown); 0 while unloaded."""
     stopped_s: float = -inf
     """How long a stop has been under way; -inf while none is."""
+    lifting_s: float = -inf
+    """How long a stop or a hold has been lifting; -inf while neither is."""
+    resting: bool = True
+    """Everything is to rest: idle, armed or latched."""
     wheel_most_m_s: float = field(init=False)
     belt_most_m_s: float = field(init=False)
     """Overspeed begins here."""
@@ -97,7 +104,11 @@ class View:
             self.least_n = r.force_z_n
         wheel_m_s = r.wheel_speed_m_s
         self.turning = wheel_m_s > STANDING_M_S or wheel_m_s < -STANDING_M_S
-        self.stopped_s = r.now_s - state.stop.began_s
+        mode = state.mode
+        self.stopped_s = self.lifting_s = r.now_s - state.stop.began_s
+        if mode is _HOLD:
+            self.lifting_s = r.now_s - state.mode_since_s
+        self.resting = mode is _IDLE or mode is _LATCHED or mode is _ARMED
         self._follow_speeds(demand, r, dt)
         observer = self.observer
         if loaded:
@@ -117,9 +128,12 @@ class View:
             self.surface.update(r, observer.surface_c)
 
     def _follow_speeds(self, demand: Demand, r: Readings, dt: float) -> None:
-        """Bring the speed trackers up to date while the drives are in operation and a step commands them."""
+        """Bring the speed trackers up to date while the drives are in operation and something commands them.
+
+        A stop has limits of its own: its ramps are steeper, and it says itself what has not come to its end.
+        """
         mode = self.state.mode
-        if not demand.enabled or not (mode is _RUN or mode is _HOLD):
+        if not demand.enabled or not (mode is _RUN or mode is _HOLD or mode is _COOLDOWN):
             self.confirmed = False
             return
         if not self.confirmed:

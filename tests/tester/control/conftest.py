@@ -94,6 +94,7 @@ def make_bench(rig: RigConfig) -> Bench:
     readings.contactor_closed = False
     readings.heat_percent = 0.0
     readings.wheel_at_s = readings.belt_at_s = readings.jacket_at_s = readings.surface_at_s = readings.now_s
+    readings.cell_at_s = readings.now_s
     readings.surface_changed_s = readings.now_s
     readings.wheel_speed_m_s = readings.belt_speed_m_s = readings.force_z_n = readings.force_x_n = 0.0
     assert control.start(readings) == ""

@@ -103,6 +103,7 @@ CAUSES: dict[str, list[Break]] = {
     "wheel speed": [_set(wheel_speed_m_s=0.7), _set(wheel_speed_m_s=0.9), _set(wheel_speed_m_s=NAN)],
     "belt speed": [_set(belt_speed_m_s=0.4), _set(belt_speed_m_s=0.6), _set(belt_speed_m_s=NAN)],
     "press speed": [_set(press_mm=12.2), _set(press_mm=NAN)],
+    "press travel": [_set(press_mm=18.1), _set(press_mm=-1.1), _set(press_mm=NAN)],
     "drive standing under load": [_set(belt_speed_m_s=0.0), _set(wheel_speed_m_s=0.0), _set(belt_speed_m_s=NAN)],
     "belt torn": [_torn],
     "load cell stale": [_stale("cell_at_s")],
@@ -128,11 +129,11 @@ CAUSES: dict[str, list[Break]] = {
     "line noisy": [_set(line_errors=0.5), _set(line_errors=NAN)],
     "wheel worn": [_set(diameter_mm=77.9), _set(diameter_mm=NAN)],
 }
-"""Causes by the row they belong to. The rows of a stop, of the scan and of the contactor have tests of their own."""
+"""Causes by the row they belong to. Rows of a stop, of rest, of the scan and of the contactor have their own tests."""
 
 OWN_TESTS = {
     "clock jump", "scan late", "scan delayed", "not lifted", "lift failed", "not stopping", "quick stop failed",
-    "heat not off", "contactor welded",
+    "heat not off", "contactor welded", "moving at rest", "loaded at rest",
 }  # fmt: skip
 
 AGES = {"load cell stale": 0.05, "load cell frozen": 0.5, "surface data stale": 1.0, "jacket data stale": 1.0}

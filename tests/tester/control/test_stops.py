@@ -78,10 +78,11 @@ def test_heat_that_does_not_go_off_leaves_the_jackets_lease_to_run_out(bench: Be
 def test_a_contactor_that_stays_closed_is_said_and_latched(bench: Bench) -> None:
     stop(bench)
     lift(bench)
-    bench.readings.heat_percent = 0.0
-    bench.scans(0.7)
     stand(bench)
-    bench.scans(0.1)
+    bench.readings.heat_percent = 0.0
+    bench.scans(0.4)
+    assert bench.state.mode is Mode.STOPPING
+    bench.scans(0.7)
     assert bench.state.mode is Mode.LATCHED
     assert bench.state.trip is not None and bench.state.trip.name == "contactor welded"
 
@@ -106,6 +107,57 @@ def test_a_press_that_stands_clear_counts_as_unloaded_whatever_a_dead_cell_shows
     bench.readings.press_mm = 8.0
     bench.scans(0.1)
     assert bench.state.mode in (Mode.LATCHED, Mode.IDLE)
+
+
+def test_a_press_that_stands_clear_does_not_count_as_unloaded_against_a_cell_that_lives(bench: Bench) -> None:
+    bench.state.load.contact_mm = 13.0
+    stop(bench)
+    cool(bench)
+    stand(bench)
+    bench.readings.press_mm = 10.5
+    bench.readings.force_z_n = 95.0
+    bench.scans(0.9)
+    assert bench.state.mode is Mode.STOPPING and bench.state.setpoints.press_mm_s < 0.0
+    bench.scans(0.2)
+    assert bench.state.trip is not None and bench.state.trip.name == "not lifted"
+
+
+def test_a_stop_does_not_end_before_the_heat_is_seen_off(bench: Bench) -> None:
+    stop(bench)
+    lift(bench)
+    stand(bench)
+    bench.readings.heat_percent = 0.0
+    bench.scans(0.3)
+    assert bench.state.mode is Mode.STOPPING
+    cool(bench)
+    bench.scan()
+    assert bench.state.mode is Mode.IDLE
+
+
+def test_heat_that_stays_on_is_told_before_the_stop_ends_and_stays_silent_until_acknowledged(bench: Bench) -> None:
+    stop(bench)
+    lift(bench)
+    stand(bench)
+    bench.scans(2.0)
+    assert bench.state.mode is Mode.FAST_STOP and bench.state.setpoints.jacket_silent
+    cool(bench)
+    bench.scans(1.0)
+    assert bench.state.mode is Mode.LATCHED and bench.state.setpoints.jacket_silent
+    bench.control.request_ack(bench.readings.now_s)
+    bench.scans(0.1)
+    assert bench.state.mode is Mode.IDLE and not bench.state.setpoints.jacket_silent
+
+
+def test_a_jacket_that_is_silent_does_not_keep_a_stop_from_ending_with_the_contactor_open(bench: Bench) -> None:
+    stop(bench)
+    lift(bench)
+    stand(bench)
+    bench.readings.contactor_closed = False
+    bench.readings.jacket_valid = False
+    bench.scans(0.9)
+    assert bench.state.mode is Mode.STOPPING
+    bench.scans(0.2)
+    assert bench.state.mode is Mode.LATCHED
 
 
 def test_after_a_controlled_trip_a_hot_jacket_is_cooled_turning_and_then_latched(bench: Bench) -> None:
@@ -166,6 +218,17 @@ def test_a_hold_that_lasts_too_long_is_a_controlled_stop_without_a_trip(bench: B
     bench.state.mode_since_s -= bench.control.rig.interlocks.hold_at_most_s
     bench.scans(0.05)
     assert bench.state.mode is Mode.STOPPING and bench.state.trip is None
+
+
+def test_a_hold_that_does_not_lift_is_a_fast_stop_and_then_takes_the_power_off(bench: Bench) -> None:
+    hold(bench)
+    bench.readings.belt_speed_m_s, bench.readings.slip_m_s = 0.8, 0.0
+    bench.scans(0.9)
+    assert bench.state.mode is Mode.HOLD
+    bench.scans(0.2)
+    assert bench.state.mode is Mode.FAST_STOP
+    assert bench.state.trip is not None and bench.state.trip.name == "not lifted"
+    assert bench.scans(2.0).power_off
 
 
 @pytest.mark.parametrize("again", [1, 3])

@@ -1,0 +1,129 @@
+"""Cool-down and rest: what turns, comes, presses or heats although nothing is wanted is noticed and taken off."""
+
+from __future__ import annotations
+
+import pytest
+
+from tester.control.state import Mode
+from tests.tester.control.conftest import Bench
+from tests.tester.control.test_stops import cool, lift, stand
+
+
+def rest(bench: Bench, mode: Mode = Mode.IDLE) -> None:
+    """Stop, and come to rest; LATCHED by a guard that was open for a moment."""
+    if mode is Mode.LATCHED:
+        bench.readings.guard_closed = False
+        bench.scan()
+        bench.readings.guard_closed = True
+    else:
+        bench.state.cooled = True
+        bench.control.request_stop(bench.readings.now_s, "test")
+        bench.scan()
+    lift(bench)
+    stand(bench)
+    cool(bench)
+    bench.scans(0.1)
+    assert bench.state.mode is mode
+    bench.readings.drives_enabled, bench.readings.drives_disabled = False, True
+    bench.scans(0.1)
+
+
+def creep(bench: Bench) -> None:
+    """Stop with a hot hub, and be in the cool-down."""
+    bench.control.view.jacket.forget(bench.readings.now_s)
+    bench.readings.hub_c = 65.0
+    bench.control.request_stop(bench.readings.now_s, "test")
+    bench.scan()
+    lift(bench)
+    stand(bench)
+    cool(bench)
+    bench.scan()
+    bench.readings.wheel_speed_m_s = 0.1
+    bench.scans(1.0)
+    assert bench.state.mode is Mode.COOLDOWN and bench.state.trip is None
+
+
+@pytest.mark.parametrize(
+    ("signal", "value", "row"),
+    [
+        ("wheel_speed_m_s", 0.9, "wheel speed"),
+        ("belt_speed_m_s", 0.5, "belt speed"),
+        ("press_mm", 1.0, "press speed"),
+        ("drives_enabled", False, "drive dropped out"),
+        ("force_z_n", 60.0, "not lifted"),
+    ],
+)
+def test_the_cool_down_is_watched(bench: Bench, signal: str, value: float, row: str) -> None:
+    creep(bench)
+    setattr(bench.readings, signal, value)
+    bench.scans(0.5)
+    assert bench.state.trip is not None and bench.state.trip.name == row
+    assert bench.state.mode is Mode.FAST_STOP
+
+
+def test_a_second_stop_in_the_cool_down_changes_nothing(bench: Bench) -> None:
+    creep(bench)
+    for _ in range(5):
+        bench.control.request_stop(bench.readings.now_s, "again")
+        bench.scans(0.5)
+    assert bench.state.mode is Mode.COOLDOWN and bench.state.trip is None
+
+
+def test_a_stop_that_wants_no_cool_down_ends_it(bench: Bench) -> None:
+    creep(bench)
+    bench.control.request_stop(bench.readings.now_s, "leave", cool=False)
+    bench.readings.wheel_speed_m_s = 0.0
+    bench.scans(0.5)
+    assert bench.state.mode is Mode.IDLE
+
+
+@pytest.mark.parametrize("mode", [Mode.IDLE, Mode.LATCHED])
+@pytest.mark.parametrize("signal", ["wheel_speed_m_s", "belt_speed_m_s", "press_mm"])
+def test_what_moves_at_rest_under_power_loses_it_and_latches(bench: Bench, mode: Mode, signal: str) -> None:
+    rest(bench, mode)
+    bench.readings.drives_disabled = False
+    setattr(bench.readings, signal, getattr(bench.readings, signal) + 0.5)
+    out = bench.scans(0.2)
+    assert out.power_off and bench.state.mode is Mode.LATCHED
+    assert any(text.startswith("moving at rest") for text in bench.texts("trip") + bench.texts("alarm"))
+
+
+def test_a_belt_turned_by_hand_trips_nothing_but_is_not_armed(bench: Bench) -> None:
+    rest(bench)
+    bench.readings.belt_speed_m_s = 0.3
+    out = bench.scans(1.0)
+    assert bench.state.mode is Mode.IDLE and not out.power_off
+    assert "moving at rest" in bench.control.start(bench.readings)
+
+
+def test_a_load_that_is_still_on_is_neither_acknowledged_nor_armed(bench: Bench) -> None:
+    rest(bench, Mode.LATCHED)
+    bench.readings.force_z_n = 152.0
+    bench.scans(0.1)
+    bench.control.request_ack(bench.readings.now_s)
+    bench.scans(1.5)
+    assert bench.state.mode is Mode.LATCHED
+    assert any("loaded at rest" in text for text in bench.texts("acknowledgement"))
+
+
+def test_a_power_that_was_taken_stays_off_until_the_acknowledgement(bench: Bench) -> None:
+    bench.state.cooled = True
+    bench.control.request_stop(bench.readings.now_s, "test")
+    bench.scan()
+    stand(bench)
+    cool(bench)
+    assert bench.scans(2.0).power_off
+    lift(bench)
+    assert bench.scans(1.0).power_off and bench.state.mode is Mode.LATCHED
+    bench.control.request_ack(bench.readings.now_s)
+    assert not bench.scan().power_off
+
+
+@pytest.mark.parametrize(("signal", "percent"), [("contactor_closed", 0.0), ("contactor_closed", 50.0)])
+def test_a_contactor_that_closes_by_itself_at_rest_is_latched(bench: Bench, signal: str, percent: float) -> None:
+    rest(bench)
+    setattr(bench.readings, signal, True)
+    bench.readings.heat_percent = percent
+    out = bench.scans(1.0)
+    assert bench.state.mode is Mode.LATCHED and bench.state.trip is not None
+    assert out.jacket_silent is (percent > 0.0)
