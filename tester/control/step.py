@@ -222,6 +222,7 @@ class Control:
             state.enter(_IDLE, now, "acknowledged")
         elif now > state.ack_until_s:
             state.ack_until_s = -inf
+            state.tripped &= ~AT_REST  # what still moves or heats loses its power again
             names = ", ".join(names_of(holding))
             state.events.append(Event(now, "acknowledgement", f"refused, still there: {names}"))
 

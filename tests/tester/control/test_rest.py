@@ -119,6 +119,16 @@ def test_a_power_that_was_taken_stays_off_until_the_acknowledgement(bench: Bench
     assert not bench.scan().power_off
 
 
+def test_an_acknowledgement_while_a_drive_still_turns_takes_its_power_again(bench: Bench) -> None:
+    rest(bench, Mode.LATCHED)
+    bench.readings.drives_disabled = False
+    bench.readings.belt_speed_m_s = 0.5
+    assert bench.scans(0.2).power_off
+    bench.control.request_ack(bench.readings.now_s)
+    assert not bench.scan().power_off
+    assert bench.scans(1.2).power_off and bench.state.mode is Mode.LATCHED
+
+
 @pytest.mark.parametrize(("signal", "percent"), [("contactor_closed", 0.0), ("contactor_closed", 50.0)])
 def test_a_contactor_that_closes_by_itself_at_rest_is_latched(bench: Bench, signal: str, percent: float) -> None:
     rest(bench)
