@@ -36,6 +36,7 @@ _LATE: Final = bit("scan late")
 _DELAYED: Final = bit("scan delayed")
 _GUARD: Final = bit("guard open")
 _DATA: Final = bit("drive data stale")
+_INPUTS: Final = bit("inputs stale")
 _DROPPED: Final = bit("drive dropped out")
 _OVERSPEED: Final = bit("overspeed")
 _WHEEL: Final = bit("wheel speed")
@@ -79,6 +80,8 @@ def process_levels(v: View) -> int:
     held = 0
     if not r.safety_chain:
         held |= _CHAIN
+    if not (r.now_s - r.inputs_at_s <= b.stale_inputs_s):
+        held |= _INPUTS
     if r.drive_fault:
         held |= _FAULT
     if r.bus_fault:
