@@ -46,6 +46,7 @@ class AxisConfig:
     home_timeout_s: Annotated[float, "s"] = 60.0
     position_window: float = 0.0                     # position unit; 0x6067; 0: leave the drive's
     digital_io: bool = False                         # PDO 2 carries 0x60FE:01 and 0x60FD
+    inputs_period_s: Annotated[float, "s"] = 0.1     # 0x1801:05: 0x60FD comes at least this often, besides by event
     vendor_id: int = VENDOR_ID                       # default: the simulated drive's
     product_code: int = PRODUCT_CODE
     serial_number: int = 0
@@ -79,6 +80,8 @@ class AxisConfig:
             value = getattr(self, name)
             if not 0.001 <= value <= 65.535:
                 problems.append(f"{name} is {value} s, possible are 0.001..65.535 s")
+        if self.digital_io and not 0.01 <= self.inputs_period_s <= 65.535:
+            problems.append(f"inputs_period is {self.inputs_period_s} s, possible are 0.01..65.535 s")
         return problems
 
 

@@ -24,6 +24,7 @@ _IO_PACK: Final = struct.Struct("<I").pack
 _IO_UNPACK: Final = struct.Struct("<I").unpack
 _IO_SIZE: Final = 4
 _MAX_EMERGENCIES: Final = 64     # kept for the journal between two calls of take_emergencies
+OUTPUTS_AGAIN_S: Final = 0.1       # RPDO2 goes again while its effect does not show: a frame may be lost [A]
 _HOMING_SCANS: Final = 3         # until the statusword surely answers the start bit: sent, sampled, reported
 _HOMED: Final = cia402.HOMING_ATTAINED | cia402.TARGET_REACHED
 
@@ -40,15 +41,16 @@ class ServoDrive(AxisCommand):
     booted while in use (``rebooted``); stays until the next connect, and until then it is sent a quick stop
     (nothing, once rebooted). ``refused`` says why connect or home failed. ``emergency`` is the last EMCY that
     was neither reset by the device nor acknowledged. ``parameters`` holds what was read back of the device,
-    by (index, sub-index).
+    by (index, sub-index). ``inputs_stamp_s`` is the arrival of the last TPDO2, -inf before the first. Whoever sees
+    that outputs have not done what they are for sets ``outputs_unanswered``: they are then sent again.
 
     The methods ``on_...``, ``emit...``, ``check_heartbeat`` and ``holds`` are the master's.
     """
 
-    __slots__ = ("_nm_per_mille", "_outputs_sent", "_raw_per_unit", "actual", "booted", "diagnosis",
+    __slots__ = ("_nm_per_mille", "_outputs_again_s", "_outputs_sent", "_raw_per_unit", "actual", "booted", "diagnosis",
                  "emergencies_dropped", "emergency", "emergency_log", "heartbeat", "homed", "identity", "inputs",
-                 "inputs_stamp_s", "malformed", "nmt_state", "node_id", "online", "parameters", "rebooted",
-                 "refused", "rpdo1_id", "rpdo2_id", "stamp_s", "torque_nm", "tpdo1_data", "usual_heartbeat")
+                 "inputs_stamp_s", "malformed", "nmt_state", "node_id", "online", "outputs_unanswered", "parameters",
+                 "rebooted", "refused", "rpdo1_id", "rpdo2_id", "stamp_s", "torque_nm", "tpdo1_data", "usual_heartbeat")
 
     def __init__(self, config: AxisConfig) -> None:
         super().__init__(config)
@@ -85,6 +87,8 @@ class ServoDrive(AxisCommand):
         self.refused: str | None = None
         self.parameters: dict[tuple[int, int], int] = {}
         self._outputs_sent = 0
+        self._outputs_again_s = math.inf
+        self.outputs_unanswered = False
 
     # --- verbs ----------------------------------------------------------------------------------------------
 
@@ -171,9 +175,12 @@ class ServoDrive(AxisCommand):
         if len(data) != _IO_SIZE:
             self.malformed += 1
         elif self.connected:
-            (self.inputs,) = _IO_UNPACK(data)
-            self.news = True
+            fields: tuple[int] = _IO_UNPACK(data)
+            inputs = fields[0]
             self.inputs_stamp_s = t
+            if inputs != self.inputs:
+                self.inputs = inputs
+                self.news = True
 
     def on_heartbeat(self, t: float, nmt_state: int) -> None:
         """Take a heartbeat or boot-up message that arrived at ``t``."""
@@ -206,12 +213,18 @@ class ServoDrive(AxisCommand):
             self.usual_heartbeat = b""
             self.dirty = self.news = True
 
-    def emit_outputs(self) -> bytes | None:
-        """Return RPDO2 when the outputs have changed, else None; a lost drive is sent zeros."""
+    def emit_outputs(self, now: float) -> bytes | None:
+        """Return RPDO2 when the outputs have changed, or are unanswered after a while; else None.
+
+        A lost drive is sent zeros.
+        """
         wanted = 0 if self.lost else self._outputs
-        if wanted == self._outputs_sent or not self.connected:
+        if wanted == self._outputs_sent and not (self.outputs_unanswered and now >= self._outputs_again_s):
+            return None
+        if not self.connected:
             return None
         self._outputs_sent = wanted
+        self._outputs_again_s = now + OUTPUTS_AGAIN_S
         return _IO_PACK(wanted)
 
     def holds(self, condition: Condition) -> bool:

@@ -193,6 +193,8 @@ def settings(config: AxisConfig) -> list[tuple[int, int, int]]:
     if config.digital_io:
         values.append((o.DIGITAL_OUTPUTS, 2, OUTPUT_MASK))
         values.append((o.DIGITAL_OUTPUTS, 1, 0))
+        # An event comes once, and a lost frame is not repeated: the timer shows that the inputs still arrive.
+        values.append((o.TPDO_COMMUNICATION + 1, 5, round(config.inputs_period_s * 1000)))
     if config.rpdo_deadline_s:
         values.append((o.RPDO_COMMUNICATION, 5, round(config.rpdo_deadline_s * 1000)))
     return values

@@ -104,6 +104,8 @@ class Readings:
     safety_chain: bool = False
     guard_closed: bool = False
     contactor_closed: bool = False
+    inputs_at_s: float = NEVER
+    """When the drive with the safety inputs last said how these three are."""
 
     force_x_n: float = NAN
     force_y_n: float = NAN

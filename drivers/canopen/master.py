@@ -161,7 +161,7 @@ class CanMaster:
         """
         sync = self.sync
         for drive in self._io_drives:
-            outputs = drive.emit_outputs()
+            outputs = drive.emit_outputs(now)
             if outputs is not None:
                 port.send(drive.rpdo2_id, outputs, now)
         changed = sync is not self._cycle_syncs

@@ -27,7 +27,6 @@ MAX_WAITING = 20_000
 _BUS_OFF = 0x40
 """Class bit of a SocketCAN error frame (linux/can/error.h, CAN_ERR_BUSOFF)."""
 _FUNCTION = 0x780
-_EVENTS = (o.EMERGENCY_BASE, o.TPDO2_BASE)
 _BOOT_UP = bytes((o.NmtState.BOOT_UP,))
 _STATE_LOW, _STATE_HIGH = 0x7F, 0x22
 """Statusword bits of a drive's state, voltage, remote control and deviation, by bytes (CiA 402-2)."""
@@ -55,6 +54,7 @@ class PythonCanPort(FrameByFrame):
         self._clock = clock
         self._on_urgent = on_urgent
         self._states: dict[int, tuple[int, int]] = {}
+        self._inputs: dict[int, bytes] = {}
         self._message = can.Message
         self._errors = (can.CanError, OSError, ValueError)
         self._frames: deque[CanFrame] = deque()
@@ -146,7 +146,11 @@ class PythonCanPort(FrameByFrame):
             return changed
         if function == o.HEARTBEAT_BASE:
             return data == _BOOT_UP
-        return function in _EVENTS and can_id != o.SYNC_ID
+        if function == o.TPDO2_BASE:
+            known = self._inputs.get(can_id) == data      # repeated by its timer
+            self._inputs[can_id] = data
+            return not known
+        return function == o.EMERGENCY_BASE and can_id != o.SYNC_ID
 
 
 def open_can(interface: str, channel: str, bitrate: int, clock: Callable[[], float] | None = None,

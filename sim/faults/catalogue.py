@@ -68,6 +68,10 @@ def _drive_rows() -> Iterator[FaultKind]:
                         note="noticed when the other readings contradict it")
         yield FaultKind(f"{axis} drive in local mode", partial(d.Local, axis), ENABLED, TRIP, 0.1 + SCAN_S)
         yield FaultKind(f"{axis} drive torque off", partial(d.TorqueOff, axis), ENABLED, TRIP, 0.1 + SCAN_S)
+    yield FaultKind("press drive inputs lost", partial(c.FramesLost, "press", o.TPDO2_BASE), DRIVES, TRIP,
+                    0.25 + 2.0 * SCAN_S, note="safety chain, guard and contactor are not known any more; idle at 10 Hz")
+    yield FaultKind("press drive outputs lost shortly", partial(c.FramesLost, "press", o.RPDO2_BASE), ALWAYS, RIDE, 0.0,
+                    lasts_s=0.3, note="the request for the contactor is repeated until its feedback answers")
 
 
 def _bus_rows() -> Iterator[FaultKind]:

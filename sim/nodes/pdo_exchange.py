@@ -212,7 +212,7 @@ class PdoExchange(SyncFollower):
         for pdo in self._event_tpdos:
             data = pdo.source()
             if pdo.cob_id is not None and pdo.event_due(data, t):
-                self._wire.transmit(pdo.cob_id, data, t, True)
+                self._wire.transmit(pdo.cob_id, data, t, data != pdo.sent)  # by the timer alone it is no news
                 pdo.note_sent(data, t)
         self._find_due()
 

@@ -65,6 +65,8 @@ INTERLOCKS: Final[tuple[Interlock, ...]] = (
     # Motion
     Interlock("drive data stale", "no fresh drive data", "age > stale_can_scans periods, or > stale_can",
               _now, FAST, ACK),
+    Interlock("inputs stale", "no fresh input word from the drive with the safety inputs", "age > stale_inputs",
+              _now, FAST, ACK),
     Interlock("drive dropped out", "a drive left operation by itself (local control, torque off)",
               "not OPERATION_ENABLED although wanted", lambda c: c.dropped_delay_s, FAST, ACK),
     Interlock("overspeed", "wheel or belt above its limit", "speed > limit + overspeed_share",

@@ -36,6 +36,7 @@ _LATE: Final = bit("scan late")
 _DELAYED: Final = bit("scan delayed")
 _GUARD: Final = bit("guard open")
 _DATA: Final = bit("drive data stale")
+_INPUTS: Final = bit("inputs stale")
 _DROPPED: Final = bit("drive dropped out")
 _OVERSPEED: Final = bit("overspeed")
 _WHEEL: Final = bit("wheel speed")
@@ -82,6 +83,8 @@ def process_levels(v: View) -> int:
     held = 0
     if not r.safety_chain:
         held |= _CHAIN
+    if not (r.now_s - r.inputs_at_s <= b.stale_inputs_s):
+        held |= _INPUTS
     if r.drive_fault:
         held |= _FAULT
     if r.bus_fault:
@@ -252,7 +255,7 @@ def stop_levels(v: View) -> int:
     held = 0
     if not (r.press_mm <= stop.press_mm + PUSHED_MM) and not unloaded(v):
         held |= _LIFT_FAILED
-    if not (since <= b.heat_off_s) and not (r.heat_percent <= 0.0) and r.contactor_closed:
+    if not (since <= b.heat_off_s) and not (r.heat_percent <= 0.0) and not contactor_open(v):
         held |= _HEAT_ON
     if not stop.creeps and not standing(r):
         axis = v.rig.axes.belt
@@ -284,6 +287,12 @@ def standing(r: Readings) -> bool:
         and -STANDING_M_S < r.wheel_speed_m_s < STANDING_M_S
         and -STANDING_M_S < r.belt_speed_m_s < STANDING_M_S
     )
+
+
+def contactor_open(v: View) -> bool:
+    """Tell whether the heater's contactor is known to be open."""
+    r = v.readings
+    return not r.contactor_closed and r.now_s - r.inputs_at_s <= v.bounds.stale_inputs_s
 
 
 def unloaded(v: View) -> bool:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import isfinite
 from typing import Final
 
-from tester.control.levels import standing, unloaded
+from tester.control.levels import contactor_open, standing, unloaded
 from tester.control.permissives import Bounds
 from tester.control.safe_outputs import mirror_emergency, no_outputs, safe_outputs
 from tester.control.state import ControlState, Mode
@@ -87,8 +87,8 @@ def heat_off(view: View) -> bool:
     r, b = view.readings, view.bounds
     silent = r.jacket_valid and r.now_s - r.jacket_at_s <= b.stale_jacket_s and r.heat_percent <= 0.0
     if view.stopped_s <= b.heat_off_s:
-        return silent and not r.contactor_closed
-    return silent or not r.contactor_closed
+        return silent and contactor_open(view)
+    return silent or contactor_open(view)
 
 
 def after_stop(state: ControlState, view: View) -> None:

@@ -44,6 +44,7 @@ class Thresholds:
     stale_can_s: float
     stale_can_scans: float
     stale_cell_s: float
+    stale_inputs_s: float
     stale_ir_s: float
     stale_jacket_s: float
     stop_margin_s: float

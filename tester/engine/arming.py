@@ -1,7 +1,8 @@
 """What is shown before every run: both drives follow, brake alike, and every drive stops without our heartbeat.
 
 CiA 301 starts watching a heartbeat only with the first one it hears, and a wrong parameter shows only when it is
-needed (safety concept, principle 4): so the watchdog is tried out, unloaded and at creep speed.
+needed (safety concept, principle 4): so the watchdog is tried out, unloaded (``tester.engine.unloaded`` has seen to
+that, and goes on watching) and at creep speed.
 """
 
 from __future__ import annotations
@@ -13,16 +14,12 @@ from drivers.canopen import objects as o
 from drivers.cia402 import Goal, State
 from drivers.servo import ServoDrive
 from tester.engine.devices import Devices
+from tester.engine.unloaded import ENABLE_S
 from tester.rig import RigConfig
 from tester.rig.checks import EQUAL_DECELERATIONS
 
 HEARTBEAT_LOST = 0x8130
 """EMCY code of a heartbeat that stays away (CiA 301, table 26)."""
-ENABLE_S = 5.0
-"""Brake release and power stage [A]."""
-RETRACT_S = 6.0
-"""The press's whole travel at its lifting speed takes 3 s [A]."""
-LIFTED_MM = 0.3
 BUMP_S = 0.3
 """Ramp and lag are over by then: 25 ms at 2 m/s2 to 0.05 m/s [A]."""
 BUMP_SHARE = 0.3
@@ -41,7 +38,6 @@ class Stage(Enum):
     """Where the proof is."""
 
     ENABLE = "enable the drives"
-    RETRACT = "lift the press"
     BUMP_WHEEL = "turn the wheel"
     BUMP_BELT = "turn the belt"
     BUMP_PRESS = "move the press"
@@ -61,7 +57,7 @@ class Proof:
         self.failure = ""
         arming = rig.arming
         self.wanted = arming.bump_test or arming.watchdog_proof
-        self.stage = Stage.ENABLE if self.wanted else Stage.DONE
+        self.stage = Stage.ENABLE if self.wanted else Stage.RESTORE
         self.since_s = float("nan")
         self.pressed_from_mm = 0.0
         self.reset_s = -inf
@@ -78,12 +74,14 @@ class Proof:
     @property
     def provokes(self) -> bool:
         """Drives are made to stop by themselves, or have not been reset yet after that."""
-        return self.stage in (Stage.WITHHOLD, Stage.STILL, Stage.RESTORE)
+        if self.stage is Stage.RESTORE:
+            return self.rig.arming.watchdog_proof
+        return self.stage in (Stage.WITHHOLD, Stage.STILL)
 
     def proven(self) -> str:
         """Return a line for the journal: what was shown, and what was not because the rig file says so."""
         arming = self.rig.arming
-        shown = ["decelerations equal"]
+        shown = ["lifted and unloaded", "decelerations equal"]
         left_out: list[str] = []
         (shown if arming.bump_test else left_out).append("drives follow")
         for drive in self.devices.drives:
@@ -119,8 +117,6 @@ class Proof:
         stage = self.stage
         if stage is Stage.ENABLE:
             self._enable(now, elapsed)
-        elif stage is Stage.RETRACT:
-            self._retract(now, elapsed)
         elif stage is Stage.BUMP_WHEEL or stage is Stage.BUMP_BELT:
             self._bump(now, elapsed)
         elif stage is Stage.BUMP_PRESS:
@@ -143,20 +139,10 @@ class Proof:
             if drive.state is not State.OPERATION_ENABLED:
                 late.append(drive.config.name)
         if not late:
-            self._enter(Stage.RETRACT, now)
-        elif elapsed > ENABLE_S:
-            self.failure = f"not enabled after {ENABLE_S:g} s: {', '.join(late)}"
-
-    def _retract(self, now: float, elapsed: float) -> None:
-        press = self.devices.axes.press
-        if press.actual <= LIFTED_MM:
-            press.target = 0.0
             self._enter(Stage.BUMP_WHEEL, now)
             self._creep(wheel=True, belt=not self.rig.arming.bump_test)
-        elif elapsed > RETRACT_S:
-            self.failure = f"the press is at {press.actual:.1f} mm, not lifted, after {RETRACT_S:g} s"
-        else:
-            press.target = -self.rig.loops.load.lift_speed_mm_s
+        elif elapsed > ENABLE_S:
+            self.failure = f"not enabled after {ENABLE_S:g} s: {', '.join(late)}"
 
     def _creep(self, *, wheel: bool, belt: bool) -> None:
         axes, creep = self.devices.axes, self.rig.arming.creep_m_s
@@ -239,7 +225,7 @@ class Proof:
             self._enter(Stage.DONE, now)
         elif elapsed > RESTORE_S:
             self.failure = f"not reset after the proof: {', '.join(waiting)}"
-        elif elapsed > RESET_EVERY_S and now - self.reset_s > RESET_EVERY_S:
+        elif self.provokes and elapsed > RESET_EVERY_S and now - self.reset_s > RESET_EVERY_S:
             self.reset_s = now
             for drive in devices.drives:
                 drive.reset_fault()

@@ -1,13 +1,18 @@
-"""Bring the rig up: listen, configure every drive, home the position axes, hear every device, show what must hold."""
+"""Bring the rig up: listen, configure the drives, hear every device, lift, home, show what must hold.
+
+Nothing moves before every device is heard, and nothing but the press before the load cell has said that it is unloaded.
+"""
 
 from __future__ import annotations
 
 from enum import Enum
+from math import inf
 
 from drivers.cia402 import State
 from drivers.ports import BusLost
 from tester.engine.arming import Proof
 from tester.engine.devices import INPUT_GUARD, INPUT_SAFETY_CHAIN, Devices
+from tester.engine.unloaded import Unloaded
 from tester.rig import RigConfig
 
 CONNECT_S = 0.01
@@ -23,15 +28,17 @@ class Stage(Enum):
 
     LISTEN = "listen for another master"
     CONFIGURE = "configure drives"
-    HOME = "home position axes"
     HEAR = "hear every device"
+    LIFT = "lift the press and ask the load cell"
+    HOME = "home position axes"
     PROVE = "try out the drives' watchdogs"
     RELEASE = "release the drives"
     READY = "ready"
     FAILED = "failed"
 
 
-_MOVING = frozenset({Stage.HOME, Stage.HEAR, Stage.PROVE})
+_HEARD = frozenset({Stage.LIFT, Stage.HOME, Stage.PROVE})
+_MOVING = _HEARD | {Stage.HEAR}
 """Every drive is configured, and axes move or are about to: slowly, unloaded and cold."""
 _SCANNING = _MOVING | {Stage.RELEASE}
 
@@ -47,7 +54,9 @@ class Connector:
         self.failure = ""
         self.shown = ""
         """What the proof has shown; a line for the journal."""
+        self._unloaded: Unloaded | None = None
         self._proof: Proof | None = None
+        self._configured_s = -inf
         self._started_s: float | None = None
         self._released_s: float | None = None
 
@@ -92,12 +101,16 @@ class Connector:
     def _advance(self, now: float, elapsed: float) -> None:
         devices = self.devices
         refused = devices.refused()
+        unfit = self._unfit(now) if self.stage in _MOVING else ""
+        if self.stage in _HEARD:
+            # The lease of a jacket that a program before us left behind is renewed; it stays in standby.
+            devices.jacket.set_setpoint(self.rig.loops.heat.hub_min_c)
         if refused:
             self._fail(refused)
         elif devices.master.foreign_master:
             self._fail(f"another CANopen master is sending on this bus: {devices.master.foreign_frame}")
-        elif self.stage in _MOVING and self._unfit():
-            self._fail(f"not armed: {self._unfit()}")
+        elif unfit:
+            self._fail(f"not armed: {unfit}")
         elif elapsed > TIMEOUT_S:
             self._fail(f"not up after {TIMEOUT_S:g} s: {self._missing()}")
         elif self.stage is Stage.LISTEN:
@@ -118,21 +131,31 @@ class Connector:
         devices = self.devices
         if self.stage is Stage.CONFIGURE:
             devices.master.sync = True
-            for drive in devices.drives:
-                if drive.config.mode == "position":
-                    devices.master.start(drive, drive.home())
-            self.stage = Stage.HOME
-        elif self.stage is Stage.HOME:
+            self._configured_s = now
             self.stage = Stage.HEAR
-        elif self.stage is Stage.HEAR and devices.answering():
+        elif self.stage is Stage.HEAR and devices.answering() and devices.axes.press.inputs_stamp_s > -inf:
+            self._unloaded = Unloaded(devices, self.rig)
+            self.stage = Stage.LIFT
+        elif self.stage is Stage.LIFT and self._unloaded is not None:
+            self._lift(self._unloaded, now)
+        elif self.stage is Stage.HOME:
             self._proof = Proof(devices, self.rig)
             self.stage = Stage.PROVE
         elif self.stage is Stage.PROVE and self._proof is not None:
             self._prove(self._proof, now)
 
+    def _lift(self, unloaded: Unloaded, now: float) -> None:
+        unloaded.step(now)
+        if unloaded.failure:
+            self._fail(f"not armed: {unloaded.failure}")
+        elif unloaded.done:
+            devices = self.devices
+            for drive in devices.drives:
+                if drive.config.mode == "position":
+                    devices.master.start(drive, drive.home())
+            self.stage = Stage.HOME
+
     def _prove(self, proof: Proof, now: float) -> None:
-        # The lease of a jacket that a program before us left behind is renewed; it stays in standby.
-        self.devices.jacket.set_setpoint(self.rig.loops.heat.hub_min_c)
         if not proof.done:
             proof.step(now)
         if proof.failure:
@@ -141,7 +164,7 @@ class Connector:
             self.shown = proof.proven()
             self.stage = Stage.READY
 
-    def _unfit(self) -> str:
+    def _unfit(self, now: float) -> str:
         """Return why no axis may move, or go on moving; "" while all may."""
         for drive in self.devices.drives:
             name = f"{drive.config.name} drive"
@@ -149,10 +172,15 @@ class Connector:
                 return f"{name} rebooted" if drive.rebooted else f"{name}: heartbeat lost"
             if self.watches_drives and drive.state in (State.FAULT, State.FAULT_REACTION):
                 return f"{name} in fault" + (f": {drive.emergency.text}" if drive.emergency is not None else "")
-        inputs = self.devices.axes.press.inputs
-        if not inputs & INPUT_SAFETY_CHAIN:
+        press = self.devices.axes.press
+        if not press.inputs & INPUT_SAFETY_CHAIN:
             return "safety chain"
-        return "" if inputs & INPUT_GUARD else "guard open"
+        if not press.inputs & INPUT_GUARD:
+            return "guard open"
+        heard_s = max(press.inputs_stamp_s, self._configured_s)
+        if not now - heard_s <= self.rig.interlocks.stale_inputs_s:
+            return f"inputs stale: the {press.config.name} drive sends none"
+        return self._unloaded.trouble(now) if self._unloaded is not None else ""
 
     # -- giving up ------------------------------------------------------------------------------------------
 
@@ -161,6 +189,8 @@ class Connector:
         if self.stage is Stage.LISTEN:
             self.stage = Stage.FAILED
             return
+        if self._unloaded is not None:
+            self._unloaded.stop()
         if self._proof is not None:
             self._proof.stop()
         master = self.devices.master

@@ -72,6 +72,8 @@ class Devices:
     news: bool = True
     """A drive's state, an input or an emergency is new in this scan."""
     _withheld: bool = False
+    _contactor_closed: bool = False
+    """Its feedback, as it was last read."""
     lost: str = ""
     """Why a wire is gone. It is never used again: what waits in its queues must not be sent later."""
     _can_alive: bool = True
@@ -214,6 +216,7 @@ class Devices:
         r.belt_speed_m_s = belt_m_s = belt.actual
         r.belt_at_s = belt.stamp_s
         r.press_mm, r.press_at_s = press.actual, press.stamp_s
+        r.inputs_at_s = press.inputs_stamp_s
         sideslip, camber = axes.sideslip, axes.camber
         reached = True
         if sideslip is not None:
@@ -251,7 +254,7 @@ class Devices:
         inputs = self.axes.press.inputs
         r.safety_chain = inputs & INPUT_SAFETY_CHAIN != 0
         r.guard_closed = inputs & INPUT_GUARD != 0
-        r.contactor_closed = inputs & INPUT_CONTACTOR != 0
+        r.contactor_closed = self._contactor_closed = inputs & INPUT_CONTACTOR != 0
 
     def apply(self, out: Setpoints) -> None:
         """Hand the setpoints to the drivers; the frames leave with ``transmit``."""
@@ -276,6 +279,7 @@ class Devices:
         if camber is not None and out.camber_deg != camber.aimed:
             camber.aim(out.camber_deg)
         press.outputs = OUTPUT_CONTACTOR if out.contactor else 0
+        press.outputs_unanswered = out.contactor is not self._contactor_closed
         if out.power_off is not self._withheld:
             # The last resort reaches a drive that takes no commands, too: each stops without our heartbeat.
             self._withheld = self.master.withhold_heartbeat = out.power_off

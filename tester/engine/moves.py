@@ -11,6 +11,7 @@ from typing import Final
 
 from tester.engine.activity import Activity, MoveFailedError
 from tester.engine.context import Context
+from tester.engine.unloaded import loaded
 from tester.process import Press
 
 SPEED_SHARE: Final = 0.01
@@ -213,7 +214,8 @@ class TakeTare:
     """Average the unloaded load cell over whole turns and make that its zero.
 
     The reference zero (the first of this wheel) is kept: a zero that has wandered off it by more than ``stop_n``
-    is a damaged or touching cell (safety concept: 5 N warn, 20 N stop).
+    is a damaged or touching cell (safety concept: 5 N warn, 20 N stop). The reference itself is no more than an
+    unloaded cell may show (``arming.unloaded``), else it is not taken.
     """
 
     def __init__(self, seconds: float, reference: list[float], warn_n: float, stop_n: float) -> None:
@@ -247,6 +249,11 @@ class TakeTare:
         ox, oy, oz, om = ctx.cell.tare
         sx, sy, sz, sm = self.sums
         new = (ox + sx / self.count, oy + sy / self.count, oz + sz / self.count, om + sm / self.count)
+        if not self.reference:
+            # A tare has nothing to be compared with yet: what it may take off is bounded, or it hides a load.
+            self.failed = loaded(new, ctx.rig)
+            if self.failed:
+                return True
         ctx.cell.set_tare(new)
         self._compare(ctx, new)
         return True

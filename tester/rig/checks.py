@@ -113,6 +113,9 @@ def _units(rig: RigConfig) -> _Found:
             yield ("axes", name, "unit"), f"the {name} axis is in {due[name]}, not {axis.unit}"
     if not rig.axes.press.digital_io:
         yield ("axes", "press", "digital_io"), "the press drive carries the safety chain's inputs (expected true)"
+    if rig.interlocks.stale_inputs_s < 2.0 * rig.axes.press.inputs_period_s:
+        message = "is less than two of axes.press.inputs_period: a single lost frame would stop the rig"
+        yield ("interlocks", "stale_inputs"), message
 
 
 def _temperatures(rig: RigConfig) -> _Found:

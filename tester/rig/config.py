@@ -201,6 +201,7 @@ class InterlocksConfig:
     stale_cell_delay_s: Annotated[float, "s", _NOT_NEGATIVE]
     stale_can_scans: Annotated[float, "1", Range(ge=1.0)]
     stale_can_s: Annotated[float, "s", _POSITIVE]
+    stale_inputs_s: Annotated[float, "s", _POSITIVE]
     stale_ir_s: Annotated[float, "s", _POSITIVE]
     stale_jacket_s: Annotated[float, "s", _POSITIVE]
     stale_delay_s: Annotated[float, "s", _NOT_NEGATIVE]
@@ -273,6 +274,11 @@ class ArmingConfig:
     withhold_s: Annotated[float, "s", _POSITIVE]
     creep_m_s: Annotated[float, "m/s", _POSITIVE]
     """Wheel and belt, unloaded, in the bump test and in the proof."""
+    unloaded_n: Annotated[float, "N", Range(gt=0.0, le=50.0)]
+    """Normal force and friction of an unloaded load cell without tare, at most: at connecting and at a reference tare.
+
+    At most 50 N: a contact firmer than that must not pass for the cell's zero.
+    """
 
 
 @dataclass(frozen=True, slots=True)

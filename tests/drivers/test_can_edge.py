@@ -187,11 +187,11 @@ def test_an_adapter_that_does_not_open_is_a_lost_bus() -> None:
         ([(0x080, ""), (0x701, "05"), (0x581, "60000000")], 0),
         ([(0x081, "3081200000000000")], 1),
         ([(0x701, "00")], 1),
-        ([(0x283, "00000100")], 1),
+        ([(0x283, "00000100"), (0x283, "00000100"), (0x283, "00000300")], 2),
         ([(0x181, "2706000000000000"), (0x181, "0F02000000000000"), (0x182, "2702000000000000")], 3),
         ([(0x181, "2706000000000000"), (0x181, "2706FF0000000000"), (0x181, "A716000000000000")], 1),
     ],
-    ids=["SYNC, heartbeat, SDO", "emergency", "boot-up", "inputs", "states", "speed, warning, target reached"],
+    ids=["SYNC, heartbeat, SDO", "emergency", "boot-up", "changed inputs", "states", "speed, warning, target reached"],
 )
 def test_what_a_scan_should_not_wait_for_is_told_at_once(frames: list[tuple[int, str]], calls: int) -> None:
     told: list[int] = []

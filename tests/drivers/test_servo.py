@@ -86,6 +86,18 @@ def test_tpdo2_is_the_digital_inputs() -> None:
     assert (drive.inputs, drive.inputs_stamp_s) == (0x0007_0000, 2.0)
 
 
+def test_the_same_inputs_again_are_fresh_and_no_news() -> None:
+    drive = joined(wheel(digital_io=True))
+    drive.on_tpdo2(2.0, bytes.fromhex("00 00 07 00"))
+    drive.news = False
+    drive.on_tpdo2(2.1, bytes.fromhex("00 00 07 00"))
+    assert (drive.inputs_stamp_s, drive.news) == (2.1, False)
+
+
+def test_inputs_that_were_never_sent_are_older_than_anything() -> None:
+    assert joined(wheel(digital_io=True)).inputs_stamp_s == -math.inf
+
+
 def test_the_statusword_bits_have_names() -> None:
     drive = joined(wheel())
     report(drive, ENABLED | 0x2880)
@@ -197,18 +209,35 @@ def test_outputs_beyond_32_bits_are_refused(bits: int) -> None:
 
 def test_outputs_are_sent_once_per_change() -> None:
     drive = joined(wheel(digital_io=True))
-    assert drive.emit_outputs() is None
+    assert drive.emit_outputs(1.0) is None
     drive.outputs = 0x0001_0000
-    assert drive.emit_outputs() == bytes.fromhex("00 00 01 00")
-    assert drive.emit_outputs() is None
+    assert drive.emit_outputs(1.0) == bytes.fromhex("00 00 01 00")
+    assert drive.emit_outputs(9.0) is None
+
+
+def test_outputs_without_an_answer_are_sent_again_ten_times_a_second() -> None:
+    drive = joined(wheel(digital_io=True))
+    drive.outputs = 0x0001_0000
+    drive.outputs_unanswered = True
+    sent = [i for i in range(128) if drive.emit_outputs(i / 128) is not None]
+    assert sent == list(range(0, 128, 13))
+
+
+def test_outputs_with_an_answer_are_not_sent_again() -> None:
+    drive = joined(wheel(digital_io=True))
+    drive.outputs = 0x0001_0000
+    drive.emit_outputs(0.0)
+    drive.outputs_unanswered = True
+    drive.outputs_unanswered = False
+    assert drive.emit_outputs(5.0) is None
 
 
 def test_a_lost_drive_is_sent_outputs_off() -> None:
     drive = joined(wheel(digital_io=True))
     drive.outputs = 0x0001_0000
-    drive.emit_outputs()
+    drive.emit_outputs(0.0)
     drive.check_heartbeat(now=10.0)
-    assert drive.emit_outputs() == bytes(4)
+    assert drive.emit_outputs(10.0) == bytes(4)
 
 
 # --- position mode ------------------------------------------------------------------------------------------

@@ -94,6 +94,12 @@ def test_a_press_maps_its_position_and_the_digital_io() -> None:
         assert expected in bench.writes
 
 
+def test_the_digital_inputs_get_the_timer_of_the_configuration() -> None:
+    bench = BenchDrive()
+    _, drive, _ = connect(bench, wheel(digital_io=True, inputs_period_s=0.2))
+    assert bench.objects[(0x1801, 5)] == drive.parameters[(0x1801, 5)] == 200
+
+
 def test_the_digital_inputs_are_read_at_connect() -> None:
     bench = BenchDrive()
     bench.objects[0x60FD, 0] = 0x0003_0000

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import struct
 from itertools import pairwise
 
@@ -344,6 +345,26 @@ def test_inputs_are_sent_at_start_and_on_change() -> None:
     bench.run(0.1)
     words = [int.from_bytes(data, "little") for data in bench.frames(TPDO2)]
     assert words[-2:] == [0x00030000, 0x00010000]
+
+
+def test_inputs_are_sent_again_by_their_timer() -> None:
+    bench = io_bench()
+    bench.write(0x1801, 5, 100, 2)
+    bench.nmt(128)
+    bench.nmt(1)
+    before = len(bench.frames(TPDO2))
+    bench.run(1.05)
+    assert len(bench.frames(TPDO2)) - before in (10, 11)
+
+
+def test_inputs_repeated_by_their_timer_are_not_urgent() -> None:
+    bench = io_bench()
+    bench.write(0x1801, 5, 100, 2)
+    bench.nmt(128)
+    bench.nmt(1)
+    bench.run(0.05)
+    bench.drive.advance(bench.now, bench.now + 0.1)
+    assert bench.wire.urgent_s == math.inf
 
 
 def test_an_input_change_is_urgent() -> None:

@@ -53,6 +53,7 @@ def test_a_rig_that_can_be_faulty_runs_as_a_plain_one_while_it_is_not():
         ("CAN adapter gone", "bus lost"),
         ("second master SYNC", "second master"),
         ("load cell silent", "load cell stale"),
+        ("press drive inputs lost", "inputs stale"),
         ("guard opened", "guard open"),
         ("emergency stop pressed", "safety chain"),
         ("press drive in local mode", "drive fault"),
@@ -64,6 +65,36 @@ def test_a_fault_is_noticed_by_the_row_that_is_for_it(fault: str, cause: str):
     stage = under(f"t={fault}", 1.5)
     assert cause in stage.run.engine.ctx.journal.trips  # type: ignore[attr-defined]
     assert not stage.observer.found
+
+
+def test_inputs_that_are_lost_shortly_are_ridden_through():
+    stage = under("t=press drive inputs lost for 120 ms", 2.0)
+    assert stage.mode == "run"
+
+
+@pytest.mark.parametrize(("fault", "within_s"), [("guard opened", 0.16), ("safety chain opened", 0.16)])
+def test_an_input_whose_frame_is_lost_is_seen_with_the_next(fault: str, within_s: float):
+    stage = started().copy()
+    begin = stage.next_s
+    stage.inject(*parse_script([f"t={begin:.6f} s: press drive inputs lost for 50 ms",
+                                f"t={begin + 0.02:.6f} s: {fault}"]))
+    while stage.mode == "run":
+        stage.tick()
+    assert stage.next_s - begin <= within_s
+
+
+def test_a_contactor_whose_off_is_lost_opens_all_the_same():
+    stage = Stage(SHORT, ("sim.ambient=20 degC",))
+    engine = stage.run.engine
+    while not (engine.ctx.readings.contactor_closed and engine.control.state.setpoints.heat):
+        stage.tick()
+    stage.inject(*parse_script([f"t={stage.next_s:.6f} s: press drive outputs lost shortly"]))
+    stage.tick()
+    begin = stage.next_s
+    stage.run.request_stop("enough", fast=True)
+    while engine.ctx.readings.contactor_closed:
+        stage.tick()
+    assert stage.next_s - begin <= 0.5
 
 
 def test_a_stall_shorter_than_the_limit_is_ridden_through():

@@ -98,6 +98,7 @@ CAUSES: dict[str, list[Break]] = {
     "second master": [_set(foreign_master="NMT 000#0100")],
     "guard open": [_set(guard_closed=False)],
     "drive data stale": [_stale(stamp) for stamp in STAMPS[:5]],
+    "inputs stale": [_stale("inputs_at_s")],
     "drive dropped out": [_dropped],
     "overspeed": [_set(wheel_speed_m_s=1.3), _set(belt_speed_m_s=-1.5), _set(wheel_speed_m_s=NAN)],
     "wheel speed": [_set(wheel_speed_m_s=0.7), _set(wheel_speed_m_s=0.9), _set(wheel_speed_m_s=NAN)],
@@ -136,7 +137,10 @@ OWN_TESTS = {
     "heat not off", "contactor welded", "moving at rest", "loaded at rest",
 }  # fmt: skip
 
-AGES = {"load cell stale": 0.05, "load cell frozen": 0.5, "surface data stale": 1.0, "jacket data stale": 1.0}
+AGES = {
+    "inputs stale": 0.25, "load cell stale": 0.05, "load cell frozen": 0.5, "surface data stale": 1.0,
+    "jacket data stale": 1.0,
+}  # fmt: skip
 """What an age adds to the delay, s."""
 
 CASES = [(name, i) for name, causes in CAUSES.items() for i in range(len(causes))]

@@ -169,7 +169,7 @@ class Bench:
     def _follow(self, r: Readings, d: Demand, dt: float) -> None:
         r.now_s = self.ctx.now
         r.wheel_at_s = r.belt_at_s = r.press_at_s = r.sideslip_at_s = r.camber_at_s = r.now_s
-        r.cell_at_s = r.surface_at_s = r.jacket_at_s = r.now_s
+        r.cell_at_s = r.surface_at_s = r.jacket_at_s = r.inputs_at_s = r.now_s
         r.drives_enabled, r.drives_disabled = d.enabled, not d.enabled
         r.wheel_speed_m_s = d.wheel_speed_m_s if d.enabled else 0.0
         r.belt_speed_m_s = d.belt_speed_m_s if d.enabled else 0.0

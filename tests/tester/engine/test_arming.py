@@ -117,6 +117,18 @@ def test_what_happens_to_a_moving_axis_ends_the_arming_at_once(happens: Happens,
     assert simulation.now - began <= 0.4
 
 
+@pytest.mark.parametrize("stage", [Stage.HEAR, Stage.HOME, Stage.PROVE])
+def test_safety_inputs_that_do_not_come_any_more_end_the_connection(stage: Stage) -> None:
+    simulation = Simulation()
+    simulation.until(lambda s: s.run.connector.stage is stage)
+    press = simulation.world.axes["press"]
+    press.pdos.tpdos[1].cob_id = None
+    began = simulation.now
+    simulation.until(lambda s: s.run.connector.failed)
+    assert simulation.now - began <= 0.27
+    assert simulation.run.connector.failure == "not armed: inputs stale: the press drive sends none"
+
+
 def test_a_failed_connection_releases_the_drives_that_were_configured() -> None:
     simulation = Simulation()
     simulation.world.axes["camber"].power(False)

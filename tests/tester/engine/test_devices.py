@@ -90,6 +90,23 @@ def test_safety_inputs_come_from_the_press_drive(devices: Devices, bit: int, nam
     assert getattr(r, name) and r.safety_chain + r.guard_closed + r.contactor_closed == 1
 
 
+def test_the_inputs_are_as_old_as_their_last_frame(devices: Devices) -> None:
+    assert filled(devices).inputs_at_s == float("-inf")
+    devices.axes.press.inputs_stamp_s = 0.7
+    assert filled(devices).inputs_at_s == 0.7
+
+
+@pytest.mark.parametrize(("closed", "wanted"), [(True, False), (False, True)])
+def test_a_contactor_that_is_not_as_wanted_is_asked_again(devices: Devices, closed: bool, wanted: bool) -> None:
+    press = devices.axes.press
+    press.inputs = closed << 18
+    filled(devices)
+    devices.apply(Setpoints(contactor=closed))
+    assert not press.outputs_unanswered
+    devices.apply(Setpoints(contactor=wanted))
+    assert press.outputs_unanswered
+
+
 def test_setpoints_reach_their_drives(devices: Devices) -> None:
     devices.apply(Setpoints(12.0, 0.5, -3.0, 20.0, 5.0, enable=True, contactor=True))
     axes = devices.axes

@@ -213,6 +213,16 @@ def test_a_wandered_zero_warns_and_then_fails(turning: Bench, drift: float, warn
     assert bool(turning.notes.texts("tare")) is warned and bool(taken.failed) is failed
 
 
+@pytest.mark.parametrize("zero_n", [21.0, -21.0])
+def test_a_reference_tare_beyond_what_an_unloaded_cell_shows_is_not_taken(turning: Bench, zero_n: float) -> None:
+    reference: list[float] = []
+    turning.zero_n = zero_n
+    taken = tare(reference)
+    turning.run(taken)
+    assert "arming.unloaded" in taken.failed
+    assert turning.cell.tare == (0.0, 0.0, 0.0, 0.0) and not reference
+
+
 def test_drift_is_measured_from_the_reference_not_from_the_tare_before(turning: Bench) -> None:
     reference: list[float] = []
     for turning.zero_n in (0.0, 4.0, 8.0):
