@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import json
+import os
 import sys
 from collections.abc import Callable
+from contextlib import suppress
+from errno import EPIPE
 from queue import Empty, SimpleQueue
 from threading import Thread
 from typing import TextIO
@@ -18,6 +21,45 @@ from tester.engine.context import Progress as RunProgress
 from tester.engine.prompts import Prompts
 
 
+class Outlet:
+    """A stream that may go away: its first failure is told, and from then on nothing is written to it."""
+
+    def __init__(self, stream: TextIO) -> None:
+        """Write through a standard stream."""
+        self._stream = stream
+        self.gone = False
+
+    def write(self, text: str) -> None:
+        """Write and flush. Raises OSError for what keeps it from that, once."""
+        if self.gone:
+            return
+        try:
+            self._stream.write(text)
+            self._stream.flush()
+        except OSError:
+            self._leave()
+            raise
+        except ValueError as error:  # a closed file, or characters that it does not take
+            self._leave()
+            raise OSError(str(error)) from error
+
+    def _leave(self) -> None:
+        """Let the interpreter flush into nothing at its end: what is left in the buffer would fail once more."""
+        self.gone = True
+        with suppress(OSError, ValueError):
+            nothing = os.open(os.devnull, os.O_WRONLY)
+            os.dup2(nothing, self._stream.fileno())
+            os.close(nothing)
+
+
+class Terminal(RichConsole):
+    """Rich's console, which otherwise ends the process when nobody reads it."""
+
+    def on_broken_pipe(self) -> None:
+        """Raise BrokenPipeError."""
+        raise BrokenPipeError(EPIPE, "Broken pipe")
+
+
 class Console:
     """Standard output is data (JSON lines, the run's folder), standard error is for people."""
 
@@ -25,7 +67,8 @@ class Console:
         """``answer_yes``: prompts are answered without asking."""
         self.as_json = as_json
         self.answer_yes = answer_yes
-        self._terminal = RichConsole(file=sys.stderr)
+        self._out, self._err = Outlet(sys.stdout), Outlet(sys.stderr)
+        self._terminal = Terminal(file=sys.stderr)
         self._progress: Progress | None = None
         self._tasks: dict[int, TaskID] = {}
         """The progress lines by part."""
@@ -95,19 +138,16 @@ class Console:
         if self._progress is not None:
             self._progress.console.print(Text(text))
         else:
-            sys.stderr.write(text + "\n")
-            sys.stderr.flush()
+            self._err.write(text + "\n")
 
     def emit(self, record: dict[str, object]) -> None:
         """Write one JSON line, if that was asked for."""
         if self.as_json:
-            sys.stdout.write(json.dumps(record, ensure_ascii=False) + "\n")
-            sys.stdout.flush()
+            self._out.write(json.dumps(record, ensure_ascii=False) + "\n")
 
     def result(self, line: str) -> None:
         """Write the last line of standard output."""
-        sys.stdout.write(line + "\n")
-        sys.stdout.flush()
+        self._out.write(line + "\n")
 
     # -- prompts ----------------------------------------------------------------------------------------------
 
