@@ -41,9 +41,9 @@ class NoKeys:
         return ""
 
 
-def keys_of(stream: TextIO) -> Keys:
+def keys_of(stream: TextIO | None) -> Keys:
     """Return the keys of a stream: none unless it is a terminal."""
-    if not stream.isatty():
+    if stream is None or not stream.isatty():
         return NoKeys()
     if sys.platform == "win32":
         return _console_keys()
