@@ -10,11 +10,8 @@ from tester.engine.context import Context
 from tester.engine.moves import Ask, Lift, Move, Power, Sequence, Turn
 from tester.engine.thermal_steps import CoolDown
 from tester.process import NAN
-from tester.recipe.plan import Cool
-from tester.recipe.wheel_change import INSERTED
+from tester.recipe.wheel_change import TOUCH
 
-TOUCH: Final = Cool(INSERTED)
-"""The cool-down to a hub that may be touched: the wheel change's (rulings, 6)."""
 STILL_WARM_K: Final = 5.0
 """A hub that has stopped turning may show this much more than while it turned, K [A]: no reason for a warning."""
 
