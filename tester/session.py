@@ -9,7 +9,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from threading import current_thread, main_thread
 from types import FrameType
-from typing import Protocol, runtime_checkable
 
 from recipes import find
 from tester.campaign.claims import enough_room, hold_rig, hold_run
@@ -20,7 +19,6 @@ from tester.campaign.part_run import run_part
 from tester.campaign.pool import Pool
 from tester.campaign.split import Part
 from tester.campaign.together import put_together, recover
-from tester.engine.context import Progress as RunProgress
 from tester.engine.prompts import Prompts
 from tester.engine.results import condition_records
 from tester.engine.run import Outcome, Run
@@ -32,58 +30,12 @@ from tester.recipe.check import load_checked
 from tester.recipe.loader import LoadedRecipe
 from tester.resume import prepare
 from tester.rig import RigConfig, load_rig
+from tester.screens import LastingScreen, Screen
+from tester.signals import HANG_UP, handled
 from tester.store.catalogue import cut_off
 from tester.store.reader import RunReader
 from tester.store.resume import FINISHED
 from tester.store.writer import RunWriter
-
-
-class Screen(Protocol):
-    """Who shows a run to people."""
-
-    answer_yes: bool
-
-    @property
-    def can_ask(self) -> bool:
-        """A person is there to answer prompts."""
-        ...
-
-    def begin(self, name: str) -> None:
-        """Show that a run has begun."""
-        ...
-
-    def show(self, now_s: float, run: RunProgress, share: float) -> None:
-        """Show where the run is, or one of its parts (``run.part`` of ``run.parts``)."""
-        ...
-
-    def attend(self, prompts: Prompts) -> None:
-        """Ask and answer prompts without blocking."""
-        ...
-
-    def end(self) -> None:
-        """Take the progress away."""
-        ...
-
-    def message(self, text: str) -> None:
-        """Say something to people."""
-        ...
-
-    def emit(self, record: dict[str, object]) -> None:
-        """Write a record for programs."""
-        ...
-
-    def result(self, line: str) -> None:
-        """Write the run's folder."""
-        ...
-
-
-@runtime_checkable
-class Commanding(Protocol):
-    """A screen at which a person can give commands to the run."""
-
-    def commands(self) -> list[str]:
-        """Return the commands given since the last call: hold, release, abort or stop."""
-        ...
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,7 +64,7 @@ class Session:
     def __init__(self, options: SessionOptions, screen: Screen) -> None:
         """Nothing is read or written before ``run``."""
         self.options = options
-        self.screen = screen
+        self.screen = LastingScreen(screen, self._lose_screen)
         self.interrupts = 0
         self.run_: Run | None = None
         """The part that runs in this process, or ran in it last."""
@@ -180,18 +132,24 @@ class Session:
 
     def stop(self, level: Stop) -> None:
         """Stop the run, from a signal handler or another thread too: what is begun ends, and nothing more is begun."""
-        self._level = max(self._level, level)
+        self._level |= level
         if self._pool is not None:
             self._pool.stop(self._level)
         if self.run_ is not None:
             self._level.tell(self.run_)
+
+    def _lose_screen(self, text: str) -> None:
+        """Stop a run that nobody sees any more: it is not left to itself."""
+        if self.run_ is not None:
+            self.run_.reason = self.run_.reason or text
+        self.stop(Stop.UNSEEN)
 
     # -- a watch over the part in this process (tester.campaign.part_run.Watch) -----------------------------------
 
     def begun(self, run: Run) -> None:
         """Take notice of a part's run; a stop that came between two parts is for it."""
         self.run_ = run
-        if self._level is not Stop.NONE:
+        if self._level:
             self.stop(self._level)
 
     def poll(self, now_s: float, run: Run, share: float) -> None:
@@ -199,9 +157,8 @@ class Session:
         ctx = run.engine.ctx
         self.screen.show(now_s, ctx.progress, share)
         self.screen.attend(ctx.prompts)
-        if isinstance(self.screen, Commanding):
-            for command in self.screen.commands():
-                self._command(run, command)
+        for command in self.screen.commands():
+            self._command(run, command)
 
     def _command(self, run: Run, command: str) -> None:
         """Carry out what was asked for at the screen; what has no effect is said."""
@@ -258,18 +215,18 @@ class Session:
     def _record(self, job: Job, work: Work, begin: Begin) -> int:
         """Carry out the work into the folder; write the tables and return the exit code."""
         self.folder = job.folder
-        self.screen.begin(work.plan.name)
-        try:
-            with self._signals():
+        with self._signals():
+            self.screen.begin(work.plan.name)
+            try:
                 if len(work.parts) == 1:
                     end = run_part(job, work, work.parts[0], begin, self, self.prompts)
                     self.ending = ending_of([end], 1)
                 else:
                     ends = self._ends(job, work)
                     self.ending = put_together(job, work, begin, ends, lambda: self._level, self._tell)
-        finally:
-            self.screen.end()
-        return self._report(job.folder, self.ending)
+            finally:
+                self.screen.end()
+            return self._report(job.folder, self.ending)
 
     def _ends(self, job: Job, work: Work) -> Generator[PartEnd]:
         """Yield how the parts ended: one after the other in this process, or side by side in others."""
@@ -290,28 +247,24 @@ class Session:
 
     def _take(self, pool: Pool) -> None:
         self._pool = pool
-        if self._level is not Stop.NONE:
+        if self._level:
             pool.stop(self._level)
 
     # -- signals ----------------------------------------------------------------------------------------------
 
     @contextmanager
     def _signals(self) -> Generator[None]:
-        """Stop on INT and TERM while the block lasts; only the main thread can be told."""
+        """Stop on INT, TERM and HUP while the block lasts; only the main thread can be told."""
         if current_thread() is not main_thread():
             yield
             return
-        previous = {s: signal.signal(s, self._on_signal) for s in (signal.SIGINT, signal.SIGTERM)}
-        try:
+        with handled(self._on_signal):
             yield
-        finally:
-            for number, handler in previous.items():
-                signal.signal(number, handler)
 
     def _on_signal(self, number: int, _frame: FrameType | None) -> None:
-        """Stop: TERM and a first INT in a controlled way, a second INT fast."""
-        if number == signal.SIGTERM:
-            self.stop(Stop.TERMINATED)
+        """Stop: TERM, HUP and a first INT in a controlled way, a second INT fast."""
+        if number != signal.SIGINT:
+            self.stop(Stop.HUNG_UP if number == HANG_UP else Stop.TERMINATED)
             return
         self.interrupts += 1
         self.stop(Stop.FAST if self.interrupts > 1 else Stop.INTERRUPTED)

@@ -70,7 +70,7 @@ def _end_of(future: Future[PartEnd | None], part: int) -> PartEnd | None:
 
 def run_in_worker(job: Job, number: int) -> PartEnd | None:
     """Carry out one part in this process, prompts answered with yes; None where a stop came first."""
-    if stop_level() is not Stop.NONE:
+    if stop_level():
         return None
     work = _work_of(job)
     part = work.parts[number - 1]
@@ -100,6 +100,6 @@ class _Reporting:
 
     def _obey(self, run: Run) -> None:
         level = stop_level()
-        if level > self._heard:
+        if level != self._heard:
             self._heard = level
             level.tell(run)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from enum import IntEnum
+from enum import IntFlag
 
 from tester.engine.run import Outcome, Run
 
@@ -33,31 +33,37 @@ class CannotStartError(Exception):
         self.code = code
 
 
-class Stop(IntEnum):
-    """Who wants a run to stop; the higher one prevails."""
+class Stop(IntFlag):
+    """Who wants a run to stop. Wishes add up: what one has ordered, no other takes back."""
 
     NONE = 0
     OTHER_PART = 1
-    TERMINATED = 2
-    INTERRUPTED = 3
-    FAST = 4
+    UNSEEN = 2
+    """Nothing can be shown any more: screen, pipe or file is gone."""
+    HUNG_UP = 4
+    """The terminal is gone (HUP)."""
+    TERMINATED = 8
+    INTERRUPTED = 16
+    FAST = 32
 
     @property
     def text(self) -> str:
-        """The reason that is recorded."""
-        return _STOP_TEXTS[self]
+        """The reason that is recorded: that of the highest."""
+        return next((text for stop, text in _STOP_TEXTS.items() if stop in self), "")
 
     def tell(self, run: Run) -> None:
-        """Have a run stop. Whoever sends TERM waits for the end: it comes at standstill, without the cool-down."""
-        run.request_stop(self.text, fast=self is Stop.FAST, cool=self is not Stop.TERMINATED)
+        """Have a run stop. Who sends TERM or closes the terminal gets the end at standstill, without the cool-down."""
+        run.request_stop(self.text, fast=Stop.FAST in self, cool=not self & _NOT_COOLED)
 
 
+_NOT_COOLED = Stop.TERMINATED | Stop.HUNG_UP
 _STOP_TEXTS = {
-    Stop.NONE: "",
-    Stop.OTHER_PART: "another part has ended early",
-    Stop.TERMINATED: "terminated",
-    Stop.INTERRUPTED: "interrupted by the operator",
     Stop.FAST: "interrupted by the operator",
+    Stop.INTERRUPTED: "interrupted by the operator",
+    Stop.TERMINATED: "terminated",
+    Stop.HUNG_UP: "the terminal is gone",
+    Stop.UNSEEN: "the run can no longer be shown",
+    Stop.OTHER_PART: "another part has ended early",
 }
 
 

@@ -30,6 +30,8 @@ if TYPE_CHECKING:
 
 KILLED = 137
 """Exit status of a process that a fault script kills: what a shell shows for SIGKILL."""
+INTERRUPTED = "interrupted"
+"""Status of a run that the program broke off."""
 WHEEL_EVERY_S = 1.0
 """The wheel's wear is stored this often of wall time: what an interruption loses of it."""
 
@@ -87,12 +89,51 @@ def run_part(job: Job, work: Work, part: Part, begin: Begin, watch: Watch, promp
     lossless = work.rig.can.interface == "sim"
     writer = open_record(folder / DATABASE, clock=clock.monotonic, utc=clock.utc_now, lossless=lossless)
     try:
-        begin(writer)
-        outcome, reason, seconds = _execute(job, work, part, writer, watch, prompts)
-        writer.finish(outcome.value, reason, seconds)
+        with closed_early(writer):
+            begin(writer)
+            outcome, reason, seconds = _execute(job, work, part, writer, watch, prompts)
+            writer.finish(outcome.value, reason, seconds)
     finally:
         writer.close()
     return PartEnd(part.number, outcome, reason, writer.failed)
+
+
+class closed_early:  # noqa: N801 - reads as a statement
+    """Record what has broken the program off, if anything has: the run is interrupted, and can go on later."""
+
+    def __init__(self, writer: RunWriter) -> None:
+        """``writer``: its record stays open."""
+        self.writer = writer
+
+    def __enter__(self) -> None:
+        """Nothing has happened yet."""
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: object) -> None:
+        """Record the error, if there is one, and let it go on."""
+        if kind is not None:
+            self.writer.finish(INTERRUPTED, _broken_off(kind, error))
+
+
+class left_safe:  # noqa: N801 - reads as a statement
+    """Send safe outputs once if the block is left with the rig still running, whatever the reason."""
+
+    def __init__(self, run: Run) -> None:
+        """``run``: the one that is ticked in the block."""
+        self.run = run
+
+    def __enter__(self) -> None:
+        """Nothing has happened yet."""
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: object) -> None:
+        """Send, write it down, and let the error go on."""
+        if kind is not None and not self.run.finished:
+            self.run.abandon()
+            ctx = self.run.engine.ctx
+            ctx.journal.event(ctx.now, "run", f"{_broken_off(kind, error)}: safe outputs sent", "alarm")
+
+
+def _broken_off(kind: type[BaseException], error: BaseException | None) -> str:
+    return f"the program broke off: {kind.__name__}: {error}"
 
 
 def _execute(
@@ -110,7 +151,8 @@ def _execute(
         watch.begun(run)
         expected_s = max(estimate(part.plan, rig).rig_seconds, 1.0)
         ticked, lives = _with_faults(run, world, faults) if world is not None and faults else (run, world)
-        seconds = _tick(run, ticked, lives, ports.pace, job.lapse, expected_s, writer, watch)
+        with left_safe(run):
+            seconds = _tick(run, ticked, lives, ports.pace, job.lapse, expected_s, writer, watch)
         record_statistics(run.engine.devices, writer, seconds)
         return run.outcome, run.reason, seconds
     except BusLost as lost:

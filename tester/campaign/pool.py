@@ -11,6 +11,7 @@ import os
 import signal
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ProcessPoolExecutor
+from contextlib import nullcontext
 from dataclasses import dataclass
 from multiprocessing.queues import SimpleQueue
 from multiprocessing.sharedctypes import Synchronized
@@ -20,6 +21,7 @@ from typing import ParamSpec, TypeVar
 
 from tester.campaign.endings import EXIT_CODES, Stop
 from tester.engine.run import Outcome
+from tester.signals import leave_to_parent, not_inherited
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -53,17 +55,13 @@ class Pool:
 
     def submit(self, work: Callable[P, R], *args: P.args, **kwargs: P.kwargs) -> Future[R]:
         """Have a call made in a worker: a function of a module, arguments that are plain data."""
-        # A worker that is just starting has no handlers yet; it inherits that interrupts are not for it.
-        previous = signal.signal(signal.SIGINT, signal.SIG_IGN) if current_thread() is main_thread() else None
-        try:
+        # A worker that is just starting has no handlers yet; it inherits that they are not for it.
+        with not_inherited() if current_thread() is main_thread() else nullcontext():
             return self._executor.submit(work, *args, **kwargs)
-        finally:
-            if previous is not None:
-                signal.signal(signal.SIGINT, previous)
 
     def stop(self, level: Stop) -> None:
         """Tell every worker that somebody wants a stop."""
-        self._level.value = max(self._level.value, level)
+        self._level.value |= level
 
     def reports(self) -> Iterator[object]:
         """Yield what workers have said since the last call."""
@@ -87,7 +85,7 @@ def stop_level() -> Stop:
     """Return who wants this worker to stop; NONE where there is no pool."""
     if _worker is None:
         return Stop.NONE
-    return max(_worker.own, Stop(_worker.level.value))
+    return _worker.own | Stop(_worker.level.value)
 
 
 def say(report: object) -> None:
@@ -97,10 +95,10 @@ def say(report: object) -> None:
 
 
 def _enlist(level: Synchronized[int], reports: SimpleQueue[object]) -> None:
-    """Make this process a worker: interrupts are the parent's business, TERM stops it in a controlled way."""
+    """Make this process a worker: interrupts and hang-ups are the parent's, TERM stops it in a controlled way."""
     global _worker
     _worker = _Worker(level, reports)
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    leave_to_parent()
     signal.signal(signal.SIGTERM, _on_term)
     Thread(target=_leave_with_parent, daemon=True).start()
 

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import json
+import os
 import sys
 from collections.abc import Callable
+from contextlib import suppress
+from errno import EBADF
 from queue import Empty, SimpleQueue
 from threading import Thread
-from typing import TextIO
+from typing import TextIO, cast
 
 from rich.console import Console as RichConsole
 from rich.progress import BarColumn, Progress, TaskID, TextColumn
@@ -18,6 +21,70 @@ from tester.engine.context import Progress as RunProgress
 from tester.engine.prompts import Prompts
 
 
+class Outlet:
+    """A standard stream that may go away while it is written to, by another thread too (rich's).
+
+    Writing never fails: the first failure is kept, ``check`` raises it once, and nothing is written from then on. A
+    stream that was closed from the start is nobody's loss.
+    """
+
+    def __init__(self, stream: TextIO | None) -> None:
+        """``stream``: None where the process was started without it."""
+        self._stream = stream
+        self._error: OSError | None = None
+        self._told = False
+        self.encoding = stream.encoding if stream is not None else "utf-8"
+
+    def isatty(self) -> bool:
+        """Tell whether a terminal is there."""
+        return self._stream is not None and self._stream.isatty()
+
+    def fileno(self) -> int:
+        """Return the descriptor. Raises OSError where there is none."""
+        if self._stream is None:
+            raise OSError(EBADF, "no such stream")
+        return self._stream.fileno()
+
+    def write(self, text: str) -> int:
+        """Write as far as anybody is there."""
+        return self._try(lambda stream: stream.write(text)) or len(text)
+
+    def flush(self) -> None:
+        """Flush."""
+        self._try(lambda stream: stream.flush())
+
+    def line(self, text: str) -> None:
+        """Write a line and flush it. Raises OSError for what keeps it from that, once."""
+        self.write(text + "\n")
+        self.flush()
+        self.check()
+
+    def check(self) -> None:
+        """Raise what has kept this stream from being written, once."""
+        if self._error is not None and not self._told:
+            self._told = True
+            raise self._error
+
+    def _try(self, work: Callable[[TextIO], int | None]) -> int | None:
+        if self._stream is None or self._error is not None:
+            return None
+        try:
+            return work(self._stream)
+        except OSError as error:
+            self._leave(error)
+        except ValueError as error:  # a closed file, or characters that it does not take
+            self._leave(OSError(str(error)))
+        return None
+
+    def _leave(self, error: OSError) -> None:
+        """Let the interpreter flush into nothing at its end: what is left in the buffer would fail once more."""
+        self._error = error
+        with suppress(OSError, ValueError):
+            nothing = os.open(os.devnull, os.O_WRONLY)
+            os.dup2(nothing, self.fileno())
+            os.close(nothing)
+
+
 class Console:
     """Standard output is data (JSON lines, the run's folder), standard error is for people."""
 
@@ -25,7 +92,8 @@ class Console:
         """``answer_yes``: prompts are answered without asking."""
         self.as_json = as_json
         self.answer_yes = answer_yes
-        self._terminal = RichConsole(file=sys.stderr)
+        self._out, self._err = Outlet(sys.stdout), Outlet(sys.stderr)
+        self._terminal = RichConsole(file=cast("TextIO", self._err))
         self._progress: Progress | None = None
         self._tasks: dict[int, TaskID] = {}
         """The progress lines by part."""
@@ -37,7 +105,7 @@ class Console:
     @property
     def can_ask(self) -> bool:
         """A person is there to answer."""
-        return sys.stdin.isatty()
+        return _is_terminal(sys.stdin)
 
     # -- during the run ---------------------------------------------------------------------------------------
 
@@ -45,7 +113,7 @@ class Console:
         """Show that a run has begun."""
         self.emit({"event": "begin", "run": name})
         self._keys.begin()
-        if sys.stdin.isatty():
+        if _is_terminal(sys.stdin):
             self.message(HELP)
         if self._terminal.is_terminal:
             self._progress = Progress(
@@ -72,6 +140,7 @@ class Console:
             if run.repeats:
                 text += f"{run.condition}/{run.conditions} repeat {run.repeat}/{run.repeats}  "
             self._show_line(self._progress, run.part, min(share, 1.0), text + run.title)
+            self._err.check()
 
     def _show_line(self, progress: Progress, part: int, share: float, text: str) -> None:
         """Bring a part's line up to date; it gets one when it is first heard of."""
@@ -94,20 +163,18 @@ class Console:
         """Say something to people; text from outside is shown as it is."""
         if self._progress is not None:
             self._progress.console.print(Text(text))
+            self._err.check()
         else:
-            sys.stderr.write(text + "\n")
-            sys.stderr.flush()
+            self._err.line(text)
 
     def emit(self, record: dict[str, object]) -> None:
         """Write one JSON line, if that was asked for."""
         if self.as_json:
-            sys.stdout.write(json.dumps(record, ensure_ascii=False) + "\n")
-            sys.stdout.flush()
+            self._out.line(json.dumps(record, ensure_ascii=False))
 
     def result(self, line: str) -> None:
         """Write the last line of standard output."""
-        sys.stdout.write(line + "\n")
-        sys.stdout.flush()
+        self._out.line(line)
 
     # -- prompts ----------------------------------------------------------------------------------------------
 
@@ -135,6 +202,11 @@ class Console:
         else:
             waiting.answer = answer.strip() or "yes"
             self._keys.begin()
+
+
+def _is_terminal(stream: TextIO | None) -> bool:
+    """Tell whether a person sits at a stream; a process may be started without it (None)."""
+    return stream is not None and stream.isatty()
 
 
 def _read_line(stream: TextIO, put: Callable[[str], None]) -> None:

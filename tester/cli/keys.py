@@ -6,6 +6,8 @@ Tried on Linux; the Windows side follows its documentation and was not tried.
 from __future__ import annotations
 
 import sys
+from collections.abc import Generator
+from contextlib import contextmanager
 from typing import Protocol, TextIO
 
 
@@ -39,9 +41,9 @@ class NoKeys:
         return ""
 
 
-def keys_of(stream: TextIO) -> Keys:
+def keys_of(stream: TextIO | None) -> Keys:
     """Return the keys of a stream: none unless it is a terminal."""
-    if not stream.isatty():
+    if stream is None or not stream.isatty():
         return NoKeys()
     if sys.platform == "win32":
         return _console_keys()
@@ -71,6 +73,14 @@ else:
         import select
         import termios
 
+        @contextmanager
+        def as_os_error() -> Generator[None]:
+            """A terminal that is gone is an OSError like any other: termios has an exception of its own."""
+            try:
+                yield
+            except termios.error as error:
+                raise OSError(*error.args) from error
+
         class TerminalKeys:
             """A POSIX terminal without line mode and echo; Ctrl+C stays a signal."""
 
@@ -80,15 +90,17 @@ else:
             def begin(self) -> None:
                 if self.before is not None:
                     return
-                self.before = termios.tcgetattr(descriptor)
-                changed = termios.tcgetattr(descriptor)
-                changed[3] = int(changed[3]) & ~(termios.ICANON | termios.ECHO)  # pyright: ignore[reportArgumentType]
-                termios.tcsetattr(descriptor, termios.TCSADRAIN, changed)
+                with as_os_error():
+                    self.before = termios.tcgetattr(descriptor)
+                    changed = termios.tcgetattr(descriptor)
+                    changed[3] = int(changed[3]) & ~(termios.ICANON | termios.ECHO)  # pyright: ignore[reportArgumentType]
+                    termios.tcsetattr(descriptor, termios.TCSADRAIN, changed)
 
             def end(self) -> None:
                 if self.before is not None:
-                    termios.tcsetattr(descriptor, termios.TCSADRAIN, self.before)
-                    self.before = None
+                    before, self.before = self.before, None
+                    with as_os_error():
+                        termios.tcsetattr(descriptor, termios.TCSADRAIN, before)
 
             def pressed(self) -> str:
                 if self.before is None or not select.select([descriptor], [], [], 0.0)[0]:

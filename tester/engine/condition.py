@@ -10,7 +10,7 @@ from tester.analysis.results import RepeatStatus
 from tester.engine.activity import Activity
 from tester.engine.bursts import Ending, MeasureRepeat
 from tester.engine.context import Context
-from tester.engine.moves import Ask, Load, Sequence
+from tester.engine.moves import Load, Sequence
 from tester.engine.thermal_steps import SoakTo, roll, soak_within_k
 from tester.recipe.plan import ConditionStep
 from tester.rig import RigConfig
@@ -208,9 +208,7 @@ class MeasureCondition:
 
 
 def wear_check(step: ConditionStep, wheel_speed_m_s: float) -> tuple[Activity, ...]:
-    """Return what checks the wheel's diameter before a condition, as the recipe asks."""
-    if step.wear_check == "prompt":
-        return (Ask("check the wheel's diameter and wear"),)
+    """Return what checks the wheel's diameter before a condition by itself; a person is asked by the executor."""
     if step.wear_check == "each_condition":
         return (Sequence(roll(wheel_speed_m_s, ROLL_CHECK_N), RollCheck()),)
     return ()

@@ -5,6 +5,7 @@ from __future__ import annotations
 from math import inf
 from typing import Final
 
+from tester.control.safe_outputs import safe_outputs
 from tester.control.state import Mode
 from tester.control.step import Control
 from tester.engine.context import Context
@@ -61,6 +62,13 @@ class Engine:
         if deadline >= self.next_scan_s:
             return self.next_scan_s
         return min(self.next_scan_s, max(deadline, now + SOONEST_S))
+
+    def abandon(self) -> None:
+        """Command zero to every axis, lift, quick stop, heat off, contactor open; send that, and nothing after it."""
+        setpoints, now = self.control.state.setpoints, self.ctx.now
+        safe_outputs(setpoints, self.ctx.rig, fast=True)
+        self.devices.apply(setpoints)
+        self.devices.transmit(now, scan=True)
 
     def _urgent(self) -> bool:
         """Tell whether a drive reported a fault or an emergency that the next regular scan should not wait for."""

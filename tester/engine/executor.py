@@ -6,9 +6,9 @@ from collections import deque
 from typing import Final
 
 from tester.engine.activity import Activity, MoveFailedError, Resumable
+from tester.engine.attended import AskAtRest
 from tester.engine.condition import MeasureCondition, Results
 from tester.engine.context import Context
-from tester.engine.moves import Ask
 from tester.engine.thermal_steps import CoolDown, HeatUp, RestStep
 from tester.engine.wheel_steps import InstallWheel, PreGrindStep
 from tester.process import Press
@@ -23,11 +23,12 @@ from tester.recipe.plan import (
     Rest,
     Step,
 )
-from tester.recipe.wheel_change import wheel_change
+from tester.recipe.wheel_change import INSERTED, wheel_change
 
 DEFAULT_SPEED_M_S: Final = 0.8
 """Wheel speed for heating when no condition follows (the paper's)."""
 DEFAULT_LOAD_N: Final = 200.0
+WEAR_CHECK: Final = "check the wheel's diameter and wear"
 
 
 class Executor:
@@ -46,6 +47,8 @@ class Executor:
         self.conditions = sum(1 for _ in plan.conditions())
         self.wheels = max((step.wheel for step in plan.steps if isinstance(step, Install)), default=0)
         """Highest wheel number in use: one that the plan did not foresee gets the next."""
+        self.checked = 0
+        """The last condition before which a person has looked at the wheel."""
         self.measured_wheel = 0
         """The wheel of the last condition. A new one measures at least one condition, else changing never ends."""
 
@@ -82,9 +85,9 @@ class Executor:
                 self.finished = True
 
     def _begin(self, step: Step, ctx: Context) -> Activity:
-        if isinstance(step, ConditionStep) and self._wheel_too_worn(step, ctx):
+        if isinstance(step, ConditionStep) and (before := self._steps_before(step, ctx)):
             self.steps.appendleft(step)
-            self.steps.extendleft(reversed(self._change_steps(step)))
+            self.steps.extendleft(reversed(before))
             step = self.steps.popleft()
         ctx.progress.step += 1
         ctx.progress.steps = ctx.progress.step + len(self.steps)
@@ -111,7 +114,7 @@ class Executor:
             case Cool():
                 return CoolDown(step, ctx.rig.interlocks.cooldown_speed_m_s)
             case Prompt():
-                return Ask(step.text)
+                return AskAtRest(step.text)
 
     def _heat(self, step: Heat, ctx: Context) -> HeatUp:
         """Heat under the load and at the speed of the condition that follows: it soaks there next."""
@@ -125,8 +128,20 @@ class Executor:
     def _end(self, activity: Activity) -> None:
         if isinstance(activity, MeasureCondition | InstallWheel):
             self.failed = activity.failed
+        elif isinstance(activity, AskAtRest) and self.steps and isinstance(follower := self.steps[0], ConditionStep):
+            # A person has been at the wheel, and it has cooled: nothing is measured before it is warm again.
+            self.steps.appendleft(Heat(INSERTED, follower.setpoint.temperature_c))
 
-    # -- wheel changes that the plan did not foresee --------------------------------------------------------
+    # -- what the plan did not foresee ------------------------------------------------------------------------
+
+    def _steps_before(self, step: ConditionStep, ctx: Context) -> list[Step]:
+        """Return what has to be done before a condition can begin: a wheel changed, a look at it."""
+        if self._wheel_too_worn(step, ctx):
+            return self._change_steps(step)
+        if step.wear_check != "prompt" or step.condition == self.checked or self.results.over(step) is not None:
+            return []
+        self.checked = step.condition
+        return [Prompt(INSERTED, WEAR_CHECK)]
 
     def _wheel_too_worn(self, step: ConditionStep, ctx: Context) -> bool:
         """Tell whether what is left of the wheel does not cover this condition's predicted wear."""

@@ -26,6 +26,7 @@ LIFTED_MM: Final = 0.3
 """... or this near to the lifted position: the zero of the cell may have drifted by more than that force [A]."""
 TARE_LEAST: Final = 10
 """Readings that a tare averages at least."""
+GUARD_OPEN: Final = "answered: goes on when the guard is closed"
 CELL_SILENT_S: Final = 5.0
 """A tare that has not got its readings this long after its time is given up, s [A]."""
 
@@ -190,13 +191,18 @@ class Wait:
 
 
 class Ask:
-    """Put a question and wait for its answer."""
+    """Put a question and wait for its answer.
+
+    It moves nothing: whoever asks has brought the rig to where a person may go near. An answer counts once the guard
+    is closed again, so that what follows finds nobody inside.
+    """
 
     def __init__(self, text: str) -> None:
         """The question as a person reads it."""
         self.text = text
         self.number = 0
         self.record = 0
+        self.heard = False
 
     def step(self, ctx: Context) -> bool:
         """Done when it is answered; question and answer are journalled."""
@@ -206,8 +212,13 @@ class Ask:
         prompt = ctx.prompts.asked[self.number - 1]
         if prompt.answer is None:
             return False
-        ctx.journal.prompt_answered(self.record, ctx.now, prompt.answer)
-        return True
+        if not self.heard:
+            self.heard = True
+            ctx.journal.prompt_answered(self.record, ctx.now, prompt.answer)
+        if ctx.readings.guard_closed or ctx.prompts.automatic:
+            return True  # where nobody is asked, an open guard is a fault: it trips with the next drive switched on
+        ctx.progress.phase = GUARD_OPEN
+        return False
 
 
 class TakeTare:

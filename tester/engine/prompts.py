@@ -1,4 +1,4 @@
-"""Questions for a person. A prompt waits, drives standing or rolling as its step left them, until it is answered."""
+"""Questions for a person. A prompt waits, drives off, until it is answered."""
 
 from __future__ import annotations
 

@@ -99,6 +99,13 @@ class Run:
                 drive.reset_fault()
         return refused
 
+    def abandon(self) -> None:
+        """Leave the rig at once, because the program cannot go on: safe outputs are sent once, without looking.
+
+        Nobody scans after that: drives and jacket end by their own watchdogs whatever has not arrived.
+        """
+        self.engine.abandon()
+
     def tick(self, now: float) -> float:
         """Do what is due at ``now``; return when to be called again at the latest (s)."""
         if self._started:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import Final
 
+from tester.engine.attended import AskAtRest
 from tester.engine.context import Context, WheelLife
-from tester.engine.moves import Ask, Lift, Load, Power, Sequence, TakeTare, Turn, speeds_reached
+from tester.engine.moves import Lift, Load, Power, Sequence, TakeTare, Turn, speeds_reached
 from tester.engine.thermal_steps import Straighten
 from tester.recipe.plan import Install, PreGrind, WornState
 from tester.store.records import WheelInfo
@@ -21,29 +22,24 @@ class InstallWheel:
         """``reference_tare``: filled with the new wheel's zero."""
         self.install = step
         self.reference = reference_tare
-        self.before = Sequence(Lift(), Turn(0.0, 0.0), Power(False))
         note = f" ({step.note})" if step.note else ""
         text = f"install wheel {step.wheel}: {step.compound}{note}"
         if step.worn is not None:
             text = f"the run goes on with wheel {step.wheel}: {step.compound}{note}, mounted as it was"
-        self.ask = Ask(text)
-        self.standing = False
+        self.ask = AskAtRest(text)
         self.mounted = False
         self.tare: TakeTare | None = None
         self.after = Sequence()
 
     def resume(self, ctx: Context) -> None:
         """Take the tare anew, where it had begun."""
-        self.before.resume(ctx)
+        self.ask.resume(ctx)
         if self.tare is not None:
             self._begin_tare(ctx)
 
     def step(self, ctx: Context) -> bool:
         """Done when mounted and tared."""
         ctx.demand.surface_c = float("nan")
-        if not self.standing:
-            self.standing = self.before.step(ctx)
-            return False
         if not self.mounted:
             self.mounted = self.ask.step(ctx)
             return False

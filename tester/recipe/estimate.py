@@ -23,6 +23,7 @@ from tester.recipe.plan import (
     Rest,
     Step,
 )
+from tester.recipe.wheel_change import TOUCH
 
 if TYPE_CHECKING:
     from tester.rig import RigConfig
@@ -91,12 +92,21 @@ class Estimator:
         body_c = self.ambient_c
         cold_rubber = False
         last: ConditionStep | None = None
+        prompted = False
         result: list[StepEstimate] = []
         for step in plan.steps:
             if isinstance(step, ConditionStep):
+                one = self.condition(step)
+                looked_at = step.wear_check == "prompt"
+                if looked_at or prompted:
+                    if last is not None:
+                        body_c = self.body.steady_c(last.setpoint.temperature_c)
+                    one = self._after_person(one, step, body_c, asked=looked_at)
+                    prompted = False
                 last = step
-                result.append(self.condition(step))
+                result.append(one)
                 continue
+            prompted = isinstance(step, Prompt)
             if last is not None:
                 body_c = self.body.steady_c(last.setpoint.temperature_c)
                 last = None
@@ -121,6 +131,23 @@ class Estimator:
     def condition(self, step: ConditionStep) -> StepEstimate:
         """Return what a condition takes, without the heating before it."""
         return self.costs.of(step.setpoint, step)
+
+    def _after_person(self, one: StepEstimate, step: ConditionStep, body_c: float, *, asked: bool) -> StepEstimate:
+        """Return a condition's estimate with what a person at the wheel costs: cooling, his time, warming again.
+
+        ``asked``: the cooling and the person are not in a prompt's step before it, but in the condition's own check.
+        """
+        seconds = one.seconds
+        if asked:
+            person, body_c = self._asking(body_c)
+            seconds += person.seconds
+        warmed, _ = self._preparation(Heat(step.index, step.setpoint.temperature_c), "", body_c)
+        return one._replace(seconds=seconds + warmed.seconds)
+
+    def _asking(self, body_c: float) -> tuple[StepEstimate, float]:
+        """Return what a question at the wheel takes: it is cooled, turning, until it may be touched."""
+        cool, body_c = self._preparation(TOUCH, "", body_c)
+        return StepEstimate(cool.seconds + self.person_s), body_c
 
     def pre_grind(self, step: PreGrind, compound: str) -> StepEstimate:
         """Return what grinding a new wheel takes."""
@@ -157,6 +184,6 @@ class Estimator:
                 seconds = self.body.cooling_s(body_c, step.hub_below_c, turning=True)
                 return StepEstimate(seconds), min(body_c, step.hub_below_c)
             case Prompt():
-                return StepEstimate(self.person_s), body_c
+                return self._asking(body_c)
             case ConditionStep():
                 return self.condition(step), body_c

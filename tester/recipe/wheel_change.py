@@ -25,6 +25,9 @@ from tester.recipe.plan import (
 INSERTED = -1
 """``index`` of steps that are not in the plan."""
 
+TOUCH = Cool(INSERTED)
+"""The cool-down to a hub that a person may touch (rulings.md 6): before every question at the wheel."""
+
 READY_AT_MOST_S = 5400.0
 """Longest wait for a new wheel to come to ambient before it is ground (rulings.md 2: 90 min)."""
 

@@ -8,7 +8,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import isfinite
+from pathlib import Path
 
+from tester import clock
+from tester.campaign.folder import make_folder
+from tester.campaign.part_run import Unsampled
 from tester.engine.context import Context
 from tester.engine.executor import Executor
 from tester.engine.moves import TakeTare
@@ -16,10 +20,16 @@ from tester.engine.results import StoredResults
 from tester.engine.run import Run
 from tester.process import Press
 from tester.recipe.plan import Plan
+from tester.rig import RigConfig
 from tester.service.commands import JogAxis
+from tester.store.reader import DATABASE
 from tester.store.recorder import Recorder
-from tester.store.writer import NullRecorder
+from tester.store.records import RunInfo
+from tester.store.writer import RunWriter
 
+NAME = "manual mode"
+MANUAL_RUNS = ".manual"
+"""Folder beside the runs for the journals of manual mode."""
 ARMED_S = 60.0
 """Manual mode disarms after this long without a step."""
 STEPS_PER_S = 5.0
@@ -52,7 +62,7 @@ class ManualExecutor(Executor):
 
     def __init__(self, recorder: Recorder) -> None:
         """Nothing is wanted: drives enabled, standing, lifted."""
-        super().__init__(Plan("manual mode", (), (), (), 0.0, 1), StoredResults(recorder), hardware=False)
+        super().__init__(Plan(NAME, (), (), (), 0.0, 1), StoredResults(recorder), hardware=False)
         self.wanted = Wanted()
         self.taring: TakeTare | None = None
         self.tare_text = ""
@@ -69,7 +79,7 @@ class ManualExecutor(Executor):
         """Demand what is wanted; the run ends when nobody has asked for anything for a minute."""
         if not isfinite(self.used_s):
             self.used_s = ctx.now
-            ctx.progress.title = "manual mode"
+            ctx.progress.title = NAME
         if ctx.now - self.used_s >= ARMED_S:
             self.finished = True
             return
@@ -192,12 +202,20 @@ def take_over(run: Run) -> ManualExecutor:
 
 def empty_plan() -> Plan:
     """Return the plan of a run without a recipe."""
-    return Plan("manual mode", (), (), (), 0.0, 1)
+    return Plan(NAME, (), (), (), 0.0, 1)
 
 
-def no_record() -> NullRecorder:
-    """Return the record of manual mode: it is told to clients, and kept nowhere."""
-    return NullRecorder()
+def open_record(runs: Path, rig: RigConfig, operator: str) -> RunWriter:
+    """Return the journal of one stay in manual mode: a record of its own, without samples, in ``runs/.manual``.
+
+    It is no run: it holds commands, modes, trips and tares, and no listing of runs shows it. Raises OSError,
+    sqlite3.Error, StoreError.
+    """
+    folder = make_folder(runs / MANUAL_RUNS, NAME)
+    writer = Unsampled(folder / DATABASE, clock=clock.monotonic, utc=clock.utc_now)
+    started_utc = clock.utc_now()
+    writer.begin_run(RunInfo(folder.name, NAME, "", rig.text, started_utc, rig.simulated, operator=operator), [], [])
+    return writer
 
 
 def _within(value: float, low: float, high: float) -> float:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import signal
 import sqlite3
 from collections.abc import Callable, Iterator
-from contextlib import suppress
+from contextlib import closing, suppress
 from dataclasses import dataclass, replace
 from hashlib import sha256
 from pathlib import Path
@@ -16,11 +16,11 @@ from recipes import UnknownRecipe
 from tester import clock
 from tester.campaign.claims import hold_rig
 from tester.campaign.endings import CannotStartError
-from tester.campaign.part_run import connect_ports
-from tester.engine.build import build_run
+from tester.campaign.part_run import INTERRUPTED, closed_early, connect_ports, left_safe
+from tester.engine.build import Ports, build_run
 from tester.engine.prompts import Prompts
-from tester.engine.run import Outcome
-from tester.engine.tickers import TickStatistics, run_real_time, run_simulated
+from tester.engine.run import Outcome, Run
+from tester.engine.tickers import TickStatistics, World, run_real_time, run_simulated
 from tester.lock import RUN_LOCK, ExclusiveUse, user_of
 from tester.recipe.estimate import estimate
 from tester.rig import load_rig
@@ -32,7 +32,7 @@ from tester.service.commands import (
 from tester.service.desk import Desk
 from tester.service.hub import Hub
 from tester.service.link import Order
-from tester.service.manual import empty_plan, no_record, take_over
+from tester.service.manual import NAME, empty_plan, open_record, take_over
 from tester.service.orders import Orders
 from tester.service.preflight import past_of
 from tester.service.progress import PlanTrack
@@ -43,6 +43,7 @@ from tester.source import InvalidSource
 from tester.store.catalogue import find_run
 from tester.store.reader import DATABASE, RunReader
 from tester.store.schema import StoreError
+from tester.store.writer import RunWriter
 
 RECIPES = ".recipes"
 """Folder beside the runs for recipes that came as text, named by their content."""
@@ -178,32 +179,44 @@ class Service:
     def _manual(self, order: Order) -> None:
         """Connect the rig and let the client that asked move it."""
         desk, rig = self.desk, self.rig
-        view = RunView("manual mode", "", "", "", "", order.name, None, rig.simulated, 1.0, clock.utc_now(),
+        view = RunView(NAME, "", "", "", "", order.name, None, rig.simulated, 1.0, clock.utc_now(),
                        Outcome.RUNNING.value, "", None, ())  # fmt: skip
         with ExclusiveUse() as use:
             try:
-                hold_rig(use, rig, "manual mode")
-                ports, world, attendant = connect_ports(rig, 0, None)
-            except (CannotStartError, BusLost) as error:
+                hold_rig(use, rig, NAME)
+                record = open_record(self.options.runs, rig, order.name)
+            except REFUSED as error:
                 desk.hub.refuse(order, str(error))
                 return
-            run = build_run(rig, empty_plan(), ports, attendant, no_record(), Prompts())
-            hand = take_over(run)
-            desk.attach(run, PlanTrack(hand.plan, estimate(hand.plan, rig)), view, hand)
-            desk.hub.accept(order)
-            try:
-                if world is not None:
-                    run_simulated(run, world, lapse=MANUAL_LAPSE, poll=self._poll_manual)
-                else:
-                    run_real_time(run, None, poll=self._poll_manual, statistics=TickStatistics(), pace=ports.pace)
-            finally:
-                ports.close()
+            with closing(record), closed_early(record):
+                try:
+                    ports, world, attendant = connect_ports(rig, 0, None)
+                except BusLost as error:
+                    record.finish(Outcome.UNREACHABLE.value, str(error), 0.0)
+                    desk.hub.refuse(order, str(error))
+                    return
+                run = build_run(rig, empty_plan(), ports, attendant, record, Prompts())
+                hand = take_over(run)
+                desk.attach(run, PlanTrack(hand.plan, estimate(hand.plan, rig)), view, hand)
+                desk.hub.accept(order)
+                with closing(ports), left_safe(run):
+                    seconds = self._by_hand(run, world, ports, record)
+                record.finish(run.outcome.value, run.reason, seconds)
         desk.ended(replace(view, outcome=run.outcome.value, reason=run.reason), run.outcome)
 
-    def _poll_manual(self, now_s: float) -> None:
-        if self.orders.ending and self.desk.watch is not None:
-            self.desk.watch.run.request_stop("the service ends", cool=False)
-        self.desk.poll(now_s)
+    def _by_hand(self, run: Run, world: World | None, ports: Ports, record: RunWriter) -> float:
+        """Tick manual mode to its end; return the seconds it took."""
+
+        def poll(now_s: float) -> None:
+            if self.orders.ending:
+                run.request_stop("the service ends", cool=False)
+            if record.failed:
+                run.request_stop(f"manual mode can no longer be recorded: {record.failed}")
+            self.desk.poll(now_s)
+
+        if world is not None:
+            return run_simulated(run, world, lapse=MANUAL_LAPSE, poll=poll)
+        return run_real_time(run, None, poll=poll, statistics=TickStatistics(), pace=ports.pace)
 
 
 class Signals:
@@ -237,5 +250,5 @@ def interrupted_runs(runs: Path) -> Iterator[str]:
         if not (folder / DATABASE).is_file() or user_of(folder / RUN_LOCK) is not None:
             continue
         with suppress(StoreError), RunReader(folder) as reader:
-            if reader.run().status == Outcome.RUNNING.value:
+            if reader.run().status in (Outcome.RUNNING.value, INTERRUPTED):
                 yield folder.name

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from tester.campaign.endings import Stop
 from tester.campaign.pool import stop_level
 from tester.engine.context import Progress
 from tester.engine.prompts import Prompts
@@ -128,7 +127,7 @@ class _Unseen:
     def show(self, now_s: float, run: Progress, share: float) -> None:
         """Look whether somebody wants the sweep to stop."""
         level = stop_level()
-        if level is not Stop.NONE and self.session is not None:
+        if level and self.session is not None:
             self.session.stop(level)
 
     def attend(self, prompts: Prompts) -> None:

@@ -20,6 +20,7 @@ from tester.engine.prompts import Prompts
 from tester.engine.tickers import World
 from tester.rig import RigConfig
 from tester.session import Session, SessionOptions
+from tester.signals import HANG_UP
 from tester.simulated import simulated_ports
 from tester.source import InvalidSource
 from tester.store.reader import RunReader
@@ -71,6 +72,10 @@ class Ended:
     @property
     def folder(self) -> Path:
         return Path(self.screen.results[0])
+
+    def stored(self) -> tuple[str, str]:
+        with RunReader(self.folder / "run.db") as reader:
+            return reader.run().status, reader.run().reason
 
     def status(self) -> str:
         with RunReader(self.folder / "run.db") as reader:
@@ -252,6 +257,46 @@ def test_signals_stop_a_run(
     at_the_rig(lambda _, hands: Interrupting(hands, *signals))
     ended = run(tmp_path)
     assert ended.code == code and ended.status() == "stopped"
+
+
+@pytest.mark.skipif(not HANG_UP, reason="this system has no SIGHUP")
+def test_a_closed_terminal_stops_a_run_as_termination_does(
+    tmp_path: Path, at_the_rig: Callable[[Prepare], None]
+) -> None:
+    at_the_rig(lambda _, hands: Interrupting(hands, HANG_UP))
+    before = signal.signal(HANG_UP, signal.SIG_DFL)
+    try:
+        ended = run(tmp_path)
+    finally:
+        signal.signal(HANG_UP, before)
+    assert ended.code == 5 and ended.stored() == ("stopped", "the terminal is gone")
+
+
+class Breaking(Screen):
+    """Fails when a repeat is shown."""
+
+    def __init__(self, error: Exception) -> None:
+        super().__init__()
+        self.error = error
+
+    def show(self, now_s: float, run: Progress, share: float) -> None:
+        if run.repeat:
+            raise self.error
+
+
+def test_a_run_that_can_no_longer_be_shown_stops_in_a_controlled_way(tmp_path: Path) -> None:
+    ended = run(tmp_path, "interlocks.cooldown_hub=26 degC", screen=Breaking(BrokenPipeError(32, "Broken pipe")))
+    assert ended.code == 5 and ended.stored() == ("stopped", "the run can no longer be shown: Broken pipe")
+
+
+def test_an_unexpected_error_leaves_an_interrupted_run_and_a_safe_rig(tmp_path: Path) -> None:
+    with pytest.raises(KeyError, match="a bug"):
+        run(tmp_path, screen=Breaking(KeyError("a bug")))
+    (folder,) = (tmp_path / "runs").iterdir()
+    with RunReader(folder) as reader:
+        stored, events = reader.run(), [event.text for event in reader.events()]
+    assert (stored.status, stored.reason) == ("interrupted", "the program broke off: KeyError: 'a bug'")
+    assert events[-1] == "the program broke off: KeyError: 'a bug': safe outputs sent"
 
 
 def test_the_handlers_of_before_are_back_after_a_run(done: Ended) -> None:

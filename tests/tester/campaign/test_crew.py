@@ -39,7 +39,7 @@ class Pool:
         return self
 
     def __exit__(self, *_: object) -> None:
-        self.level = max(self.level, Stop.FAST)
+        self.level |= Stop.FAST
 
     def submit(self, work: object, job: Job, number: int) -> Future[PartEnd | None]:
         future: Future[PartEnd | None] = Future()
@@ -51,7 +51,7 @@ class Pool:
         return future
 
     def stop(self, level: Stop) -> None:
-        self.level = max(self.level, level)
+        self.level |= level
 
     def reports(self) -> Iterator[object]:
         yield from self.said

@@ -44,6 +44,34 @@ def test_a_run_of_which_nothing_was_begun_is_stopped() -> None:
     assert ending_of([], 2, Stop.TERMINATED).outcome is STOPPED
 
 
+class Told:
+    """A run that keeps what it was told."""
+
+    def __init__(self) -> None:
+        self.said: list[tuple[str, bool, bool]] = []
+
+    def request_stop(self, why: str, *, fast: bool = False, cool: bool = True) -> None:
+        self.said.append((why, fast, cool))
+
+
+@pytest.mark.parametrize(
+    ("stop", "said"),
+    [
+        (Stop.INTERRUPTED, ("interrupted by the operator", False, True)),
+        (Stop.TERMINATED, ("terminated", False, False)),
+        (Stop.HUNG_UP, ("the terminal is gone", False, False)),
+        (Stop.UNSEEN, ("the run can no longer be shown", False, True)),
+        (Stop.INTERRUPTED | Stop.TERMINATED, ("interrupted by the operator", False, False)),
+        (Stop.TERMINATED | Stop.FAST, ("interrupted by the operator", True, False)),
+        (Stop.INTERRUPTED | Stop.FAST, ("interrupted by the operator", True, True)),
+    ],
+)
+def test_what_one_has_ordered_no_other_takes_back(stop: Stop, said: tuple[str, bool, bool]) -> None:
+    run = Told()
+    stop.tell(run)  # type: ignore[arg-type]
+    assert run.said == [said]
+
+
 @pytest.mark.parametrize(
     ("outcome", "failed", "interrupted_once", "missing", "code"),
     [

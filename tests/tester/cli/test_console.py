@@ -140,3 +140,58 @@ def test_questions_are_answered_in_turn(answers: Callable[[str], None]) -> None:
     prompts.ask(0.0, "clean debris")
     attend(console, prompts, times=6)
     assert [prompt.answer for prompt in prompts.asked] == ["first", "second"]
+
+
+class Broken(io.StringIO):
+    """A pipe that nobody reads."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.tries = 0
+
+    def write(self, text: str) -> int:
+        self.tries += 1
+        raise BrokenPipeError(32, "Broken pipe")
+
+
+def test_what_is_not_read_any_more_is_an_error_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys, "stdout", broken := Broken())
+    console = Console(as_json=True, answer_yes=True)
+    with pytest.raises(BrokenPipeError):
+        console.emit({})
+    console.emit({})
+    assert broken.tries == 1
+
+
+def test_people_are_still_told_when_nobody_reads_the_data(monkeypatch: pytest.MonkeyPatch, capsys: Output) -> None:
+    monkeypatch.setattr(sys, "stdout", Broken())
+    console = Console(as_json=True, answer_yes=True)
+    with pytest.raises(BrokenPipeError):
+        console.emit({})
+    console.message("stopped")
+    assert capsys.readouterr().err == "stopped\n"
+
+
+def test_a_closed_file_is_an_error_like_any_other(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys, "stderr", closed := io.StringIO())
+    console = Console(as_json=False, answer_yes=True)
+    closed.close()
+    with pytest.raises(OSError, match="closed"):
+        console.message("condition 1")
+
+
+def test_an_output_closed_from_the_start_is_missed_by_nobody(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys, "stdout", None)
+    Console(as_json=True, answer_yes=True).result("runs/one")
+
+
+def test_a_broken_progress_line_is_noticed_although_a_thread_draws_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    monkeypatch.setattr(sys, "stderr", Broken())
+    console = Console(as_json=False, answer_yes=True)
+    console.begin("short")
+    try:
+        with pytest.raises(BrokenPipeError):
+            console.show(0.0, Progress(), 0.0)
+    finally:
+        console.end()

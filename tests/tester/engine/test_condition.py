@@ -11,7 +11,6 @@ from tester.analysis.results import RepeatStatus
 from tester.engine.bursts import Ending, MeasureRepeat
 from tester.engine.condition import ConditionEnd, MeasureCondition, RepeatOutcome, RollCheck, wear_check
 from tester.engine.context import Context
-from tester.engine.moves import Ask
 from tester.engine.thermal_steps import roll
 from tester.process import Press
 from tester.recipe.plan import ConditionStep
@@ -162,9 +161,8 @@ def test_an_unchecked_wheel_is_measured_at_once() -> None:
     assert wear_check(STEP, 0.8) == ()
 
 
-def test_a_wear_check_by_a_person_is_a_question() -> None:
-    (check,) = wear_check(replace(STEP, wear_check="prompt"), 0.8)
-    assert isinstance(check, Ask)
+def test_a_wear_check_by_a_person_is_not_the_conditions_business() -> None:
+    assert wear_check(replace(STEP, wear_check="prompt"), 0.8) == ()
 
 
 def test_a_wear_check_comes_before_the_soak(bench: Bench) -> None:

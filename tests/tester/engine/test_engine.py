@@ -184,3 +184,24 @@ def test_drives_are_off_when_a_run_has_ended(quiet_run: Simulation) -> None:
     states = {axis.state for axis in quiet_run.run.engine.devices.drives}
     assert states <= {State.SWITCH_ON_DISABLED, State.READY_TO_SWITCH_ON}
     assert Power(False).step(quiet_run.ctx)
+
+
+def test_a_rig_that_is_abandoned_is_unloaded_by_one_transmission(running: Simulation) -> None:
+    plant, abandoned_s = running.world.plant, running.now
+    assert plant.force_z_n > 150.0
+    running.run.abandon()
+    running.world.advance(abandoned_s + 0.19)  # no drive has missed our heartbeat for its 200 ms yet
+    assert plant.force_z_n < 100.0
+
+
+def test_a_rig_that_is_abandoned_quick_stops_with_the_heat_off(running: Simulation) -> None:
+    running.run.abandon()
+    out = running.run.engine.control.state.setpoints
+    assert out.quick_stop and not out.contactor and not out.heat
+
+
+def test_a_rig_that_is_abandoned_while_it_connects_is_left_without_a_word() -> None:
+    simulation = Simulation()
+    simulation.tick()
+    simulation.run.abandon()
+    assert not simulation.run.connected

@@ -131,6 +131,24 @@ def test_a_condition_that_wears_more_than_a_wheel_has_is_measured_on_a_new_one_a
     assert executor.finished and steps_of(bench).count("install") == 3
 
 
+def test_a_person_looks_at_the_wheel_before_each_condition_which_is_then_warmed_again() -> None:
+    plan = plan_of(LOADS.replace("repeats: 1", "repeats: 1\n  wear_check: prompt"))
+    _, bench = walk(plan, Results())
+    assert steps_of(bench) == ["install", "heat"] + ["check", "heat", "1#:"] * 3
+
+
+def test_a_recipes_prompt_before_a_condition_is_followed_by_heating() -> None:
+    plan = plan_of(LOADS + "steps:\n  - {prompt: clean debris, every: condition}\n")
+    _, bench = walk(plan, Results())
+    assert steps_of(bench) == ["install", "heat"] + ["clean", "heat", "1#:"] * 3
+
+
+def test_a_prompt_before_heating_needs_no_other() -> None:
+    plan = plan_of(LOADS + "steps:\n  - {prompt: clean debris, every: temperature}\n")
+    _, bench = walk(plan, Results())
+    assert steps_of(bench) == ["install", "clean", "heat", "1#:", "1#:", "1#:"]
+
+
 @pytest.mark.parametrize(
     "step, text",
     [

@@ -168,6 +168,11 @@ def test_a_question_and_its_answer_are_journalled(bench: Bench) -> None:
     assert "check wear" in asked and "yes (automatic)" in answered
 
 
+def test_an_open_guard_is_no_reason_to_wait_where_nobody_is_asked(bench: Bench) -> None:
+    bench.ctx.readings.guard_closed = False
+    assert bench.scan(Ask("check wear"))
+
+
 def test_a_question_is_put_once() -> None:
     bench = make_bench(automatic=False)
     bench.hold(Ask("check wear"), 0.5)

@@ -173,3 +173,18 @@ def test_a_time_window_counts_seconds() -> None:
 def test_condition_steps_are_recognised_by_kind() -> None:
     plan, _ = planned(PREPARED)
     assert all((step.kind == "condition") == isinstance(step, ConditionStep) for step in plan.steps)
+
+
+def hot(extra: str) -> Estimate:
+    text = PREPARED.replace("[40 degC, 25 degC]", "85 degC").replace("measure:\n", "measure:\n" + extra)
+    return planned(text)[1]
+
+
+def test_a_person_at_a_hot_wheel_costs_cooling_and_warming_again() -> None:
+    assert hot("  wear_check: prompt\n").rig_seconds > hot("").rig_seconds + 25 * 60
+
+
+def test_a_prompt_costs_what_a_wear_check_does() -> None:
+    text = PREPARED.replace("[40 degC, 25 degC]", "85 degC")
+    prompts = planned(text + "steps:\n  - {prompt: look, every: condition}\n")[1]
+    assert prompts.rig_seconds == pytest.approx(hot("  wear_check: prompt\n").rig_seconds)

@@ -7,6 +7,8 @@ import pytest
 from tester.service.commands import Arm, Jog, Stop, Tare
 from tester.service.link import Presence
 from tester.service.state import StateView
+from tester.store.catalogue import run_folders
+from tester.store.reader import RunReader
 from tests.tester.service.stage import Script, Stage, play
 
 ARMED = Presence("client 1", 1, 0, False)
@@ -145,3 +147,47 @@ def test_it_disarms_when_its_client_loses_control(tmp_path: Path) -> None:
     assert stage.texts("control")[-1] == "nobody has control"
     # Of 60 s: it was not the time that ran out.
     assert min(view.manual.left_s for view in stage.views if view.manual.left_s is not None) > 20.0
+
+
+def journal(home: Path) -> tuple[str, str, list[str]]:
+    """Return status, reason and events of the only stay in manual mode."""
+    (folder,) = (home / "runs" / ".manual").iterdir()
+    with RunReader(folder) as reader:
+        stored = reader.run()
+        return stored.status, stored.reason, [event.text for event in reader.events()]
+
+
+def test_a_stop_in_manual_mode_is_written_down(tmp_path: Path) -> None:
+    def script(stage: Stage) -> Script:
+        yield from armed(stage)
+        yield stage.order(Stop())
+        yield from stage.until(off)
+
+    play(tmp_path, script)
+    status, reason, events = journal(tmp_path)
+    assert status == "stopped" and reason.startswith("stop by")
+    assert any(text.startswith("run -> stopping: stop by") for text in events)
+
+
+def test_a_trip_in_manual_mode_is_written_down(tmp_path: Path) -> None:
+    def script(stage: Stage) -> Script:
+        yield from armed(stage)
+        assert stage.service is not None and stage.service.desk.watch is not None
+        stage.service.desk.watch.run.engine.devices.axes.wheel.lost = True
+        stage.service.desk.watch.run.engine.devices.axes.wheel.news = True
+        yield from stage.until(lambda view: view.mode == "LATCHED")
+
+    play(tmp_path, script)
+    status, reason, events = journal(tmp_path)
+    assert status == "tripped" and reason.startswith("drive fault")
+    assert any(text.startswith("drive fault: ") for text in events)
+
+
+def test_a_journal_of_manual_mode_is_no_run(tmp_path: Path) -> None:
+    def script(stage: Stage) -> Script:
+        yield from armed(stage)
+        yield stage.order(Stop())
+        yield from stage.until(off)
+
+    play(tmp_path, script)
+    assert list(run_folders(tmp_path / "runs")) == []

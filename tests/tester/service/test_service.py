@@ -325,6 +325,22 @@ def test_a_hang_up_is_ignored(tmp_path: Path) -> None:
     assert "stop" in play(tmp_path, script).accepted
 
 
+@pytest.mark.skipif(not hasattr(signal, "SIGHUP"), reason="this system has no SIGHUP")
+def test_a_hang_up_during_a_run_is_ignored(tmp_path: Path) -> None:
+    def script(stage: Stage) -> Script:
+        yield stage.order(RUN)
+        yield from stage.until(running)
+        os.kill(os.getpid(), signal.SIGHUP)
+        for _ in range(20):
+            yield None
+        assert running(stage.views[-1])
+        yield stage.order(Stop())
+        yield from stage.until(over)
+
+    run = play(tmp_path, script).views[-1].run
+    assert run is not None and run.reason.startswith("stop by")
+
+
 def test_an_open_run_is_shown_as_interrupted_until_acknowledged(tmp_path: Path) -> None:
     def cut_off(stage: Stage) -> Script:
         yield stage.order(RUN)

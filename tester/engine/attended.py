@@ -1,0 +1,85 @@
+"""A person at the rig: asked only once he may go near, and left only once he has gone away."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from tester.control.view import STANDING_M_S
+from tester.engine.activity import Activity
+from tester.engine.context import Context
+from tester.engine.moves import Ask, Lift, Move, Power, Sequence, Turn
+from tester.engine.thermal_steps import CoolDown
+from tester.process import NAN
+from tester.recipe.wheel_change import TOUCH
+
+STILL_WARM_K: Final = 5.0
+"""A hub that has stopped turning may show this much more than while it turned, K [A]: no reason for a warning."""
+
+
+class Standing(Move):
+    """Wait until nothing turns, no drive applies torque and the heater's contactor is open."""
+
+    limit_s = 10.0  # [A]; drives that are off come to a stand in far less
+    name = "coming to a stand for a person to go near"
+
+    def step(self, ctx: Context) -> bool:
+        """Done when all of it is measured, not just commanded."""
+        r = ctx.readings
+        ctx.moving = True
+        return (
+            r.drives_disabled
+            and abs(r.wheel_speed_m_s) <= STANDING_M_S
+            and abs(r.belt_speed_m_s) <= STANDING_M_S
+            and not r.contactor_closed
+        )
+
+
+class AskAtRest:
+    """Put a question about the wheel: cool enough to touch, lifted, standing, heat and drives off.
+
+    A hot wheel turns on slowly, unloaded, until its hub may be touched: standing it would bake in one spot. There is
+    no question, and so nothing to be answered, before all of it is reached.
+    """
+
+    def __init__(self, text: str) -> None:
+        """The question as a person reads it."""
+        self.text = text
+        self.cool: CoolDown | None = None
+        self.moves: Activity = Sequence()
+        self.ask: Ask | None = None
+
+    def resume(self, ctx: Context) -> None:
+        """Go on cooling, or coming to a stand."""
+        if isinstance(self.moves, CoolDown | Sequence):
+            self.moves.resume(ctx)
+
+    def step(self, ctx: Context) -> bool:
+        """Done when it is answered, and the person has gone."""
+        ctx.demand.surface_c = NAN
+        if self.ask is None:
+            if not self._at_rest(ctx):
+                return False
+            self.ask = Ask(self._question(ctx))
+        return self.ask.step(ctx)
+
+    def _at_rest(self, ctx: Context) -> bool:
+        if self.cool is None:
+            self.cool = CoolDown(TOUCH, ctx.rig.interlocks.cooldown_speed_m_s)
+            touchable = ctx.readings.hub_c < TOUCH.hub_below_c
+            self.moves = _stand() if touchable else self.cool
+        if not self.moves.step(ctx):
+            return False
+        if self.moves is not self.cool:
+            return True
+        self.moves = _stand()
+        return False
+
+    def _question(self, ctx: Context) -> str:
+        hub_c = ctx.readings.hub_c
+        if hub_c < TOUCH.hub_below_c + STILL_WARM_K:
+            return self.text
+        return f"{self.text} (do not touch: the hub is still at {hub_c:.0f} degC)"
+
+
+def _stand() -> Sequence:
+    return Sequence(Lift(), Turn(0.0, 0.0), Power(False), Standing())
