@@ -88,9 +88,10 @@ def test_a_contactor_whose_off_is_lost_opens_all_the_same():
     engine = stage.run.engine
     while not (engine.ctx.readings.contactor_closed and engine.control.state.setpoints.heat):
         stage.tick()
-    stage.inject(*parse_script([f"t={stage.next_s:.6f} s: press drive outputs lost shortly"]))
+    stage.inject(*parse_script([f"t={stage.next_s:.6f} s: press drive outputs lost shortly for 300 ms"]))
     stage.tick()
     begin = stage.next_s
+    stage.run.stays_latched = True
     stage.run.request_stop("enough", fast=True)
     while stage.next_s < begin + 0.5:
         stage.tick()
