@@ -78,9 +78,9 @@ def test_an_input_whose_frame_is_lost_is_seen_with_the_next(fault: str, within_s
     begin = stage.next_s
     stage.inject(*parse_script([f"t={begin:.6f} s: press drive inputs lost for 50 ms",
                                 f"t={begin + 0.02:.6f} s: {fault}"]))
-    while stage.mode == "run":
+    while stage.next_s < begin + within_s:
         stage.tick()
-    assert stage.next_s - begin <= within_s
+    assert stage.mode in ("fast stop", "emergency stop mirrored")
 
 
 def test_a_contactor_whose_off_is_lost_opens_all_the_same():
@@ -88,13 +88,15 @@ def test_a_contactor_whose_off_is_lost_opens_all_the_same():
     engine = stage.run.engine
     while not (engine.ctx.readings.contactor_closed and engine.control.state.setpoints.heat):
         stage.tick()
-    stage.inject(*parse_script([f"t={stage.next_s:.6f} s: press drive outputs lost shortly"]))
+    stage.inject(*parse_script([f"t={stage.next_s:.6f} s: press drive outputs lost shortly for 300 ms"]))
     stage.tick()
     begin = stage.next_s
+    stage.run.stays_latched = True
     stage.run.request_stop("enough", fast=True)
-    while engine.ctx.readings.contactor_closed:
+    while stage.next_s < begin + 0.5:
         stage.tick()
-    assert stage.next_s - begin <= 0.5
+    io = stage.rig.axes["press"].io
+    assert io is not None and not io.contactor_closed
 
 
 def test_a_stall_shorter_than_the_limit_is_ridden_through():

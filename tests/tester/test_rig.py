@@ -204,3 +204,17 @@ def test_hardware_file_has_every_limit_and_interlock_of_the_packaged_one(tmp_pat
     path.write_text(hardware_text(), encoding="utf-8")
     own = load_rig(path)
     assert (own.limits, own.interlocks, own.loops, own.gates) == (rig.limits, rig.interlocks, rig.loops, rig.gates)
+
+
+def test_inputs_may_not_go_stale_by_a_single_lost_frame() -> None:
+    (problem,) = problems("interlocks.stale_inputs=150 ms")
+    assert "a single lost frame would stop the rig" in problem
+
+
+@pytest.mark.parametrize("value", ["0 N", "51 N"])
+def test_what_an_unloaded_cell_may_show_is_bounded(value: str) -> None:
+    assert problems(f"arming.unloaded={value}")
+
+
+def test_the_file_for_a_real_machine_states_what_an_unloaded_cell_may_show() -> None:
+    assert "  unloaded: 20 N" in hardware_text() and "  stale_inputs: 250 ms" in hardware_text()

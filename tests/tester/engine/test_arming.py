@@ -122,7 +122,8 @@ def test_safety_inputs_that_do_not_come_any_more_end_the_connection(stage: Stage
     simulation = Simulation()
     simulation.until(lambda s: s.run.connector.stage is stage)
     press = simulation.world.axes["press"]
-    press.pdos.tpdos[1].cob_id = None
+    press.store.values[(0x1801, 1)] |= o.COB_INVALID
+    press.pdos.reload()
     began = simulation.now
     simulation.until(lambda s: s.run.connector.failed)
     assert simulation.now - began <= 0.27
