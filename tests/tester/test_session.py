@@ -272,6 +272,16 @@ def test_a_closed_terminal_stops_a_run_as_termination_does(
     assert ended.code == 5 and ended.stored() == ("stopped", "the terminal is gone")
 
 
+@pytest.mark.parametrize("cools, signals", [(True, (signal.SIGINT,)), (False, (signal.SIGINT, signal.SIGTERM))])
+def test_termination_after_an_interrupt_takes_the_cool_down_away(
+    tmp_path: Path, at_the_rig: Callable[[Prepare], None], cools: bool, signals: tuple[int, ...]
+) -> None:
+    at_the_rig(lambda _, hands: Interrupting(hands, *signals))
+    ended = run(tmp_path, "interlocks.cooldown_hub=26 degC", text=SHORT.replace("25 degC", "40 degC"))
+    with RunReader(ended.folder) as reader:
+        assert any("cooldown" in event.text for event in reader.events()) is cools
+
+
 class Breaking(Screen):
     """Fails when a repeat is shown."""
 
