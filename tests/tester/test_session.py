@@ -259,6 +259,13 @@ def test_signals_stop_a_run(
     assert ended.code == code and ended.status() == "stopped"
 
 
+def test_a_run_that_an_error_has_interrupted_can_go_on(tmp_path: Path) -> None:
+    with pytest.raises(KeyError):
+        run(tmp_path, *QUIET, screen=Breaking(KeyError("a bug")))
+    (folder,) = (tmp_path / "runs").iterdir()
+    assert Session(SessionOptions(), Screen()).resume(folder) == 0
+
+
 @pytest.mark.skipif(not HANG_UP, reason="this system has no SIGHUP")
 def test_a_closed_terminal_stops_a_run_as_termination_does(
     tmp_path: Path, at_the_rig: Callable[[Prepare], None]
