@@ -11,7 +11,7 @@ import os
 import signal
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ProcessPoolExecutor
-from contextlib import nullcontext
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from multiprocessing.queues import SimpleQueue
 from multiprocessing.sharedctypes import Synchronized
@@ -33,8 +33,9 @@ class Pool:
     def __init__(self, jobs: int) -> None:
         """Start nothing yet: a process starts with the first call that needs it."""
         context = multiprocessing.get_context("spawn")
-        self._level: Synchronized[int] = context.Value("i", Stop.NONE)
-        self._reports: SimpleQueue[object] = context.SimpleQueue()
+        with _unheard():  # the first of these starts a process that looks after shared memory
+            self._level: Synchronized[int] = context.Value("i", Stop.NONE)
+            self._reports: SimpleQueue[object] = context.SimpleQueue()
         self._executor = ProcessPoolExecutor(jobs, context, _enlist, (self._level, self._reports))
 
     def __enter__(self) -> Pool:
@@ -56,7 +57,7 @@ class Pool:
     def submit(self, work: Callable[P, R], *args: P.args, **kwargs: P.kwargs) -> Future[R]:
         """Have a call made in a worker: a function of a module, arguments that are plain data."""
         # A worker that is just starting has no handlers yet; it inherits that they are not for it.
-        with not_inherited() if current_thread() is main_thread() else nullcontext():
+        with _unheard():
             return self._executor.submit(work, *args, **kwargs)
 
     def stop(self, level: Stop) -> None:
@@ -67,6 +68,11 @@ class Pool:
         """Yield what workers have said since the last call."""
         while not self._reports.empty():
             yield self._reports.get()
+
+
+def _unheard() -> AbstractContextManager[None]:
+    """Start processes that do not hear Ctrl+C and a hang-up, where this thread has a say in signals."""
+    return not_inherited() if current_thread() is main_thread() else nullcontext()
 
 
 @dataclass(slots=True)

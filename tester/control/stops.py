@@ -74,7 +74,7 @@ def stop_ended(state: ControlState, view: View) -> bool:
     if r.now_s - state.mode_since_s > STOP_TIMEOUT_S:
         return True
     lifted = r.press_mm <= state.load.lifted_mm(view.rig.loops.load) + LIFTED_MM
-    if state.mode is Mode.EMERGENCY or state.setpoints.power_off:
+    if state.mode is Mode.EMERGENCY or state.setpoints.power_off or r.drives_disabled:
         lifted = True  # the press has no power: the open contact is what counts
     return standing(r) and lifted and unloaded(view) and heat_off(view)
 

@@ -259,6 +259,13 @@ def test_signals_stop_a_run(
     assert ended.code == code and ended.status() == "stopped"
 
 
+def test_a_run_that_an_error_has_interrupted_can_go_on(tmp_path: Path) -> None:
+    with pytest.raises(KeyError):
+        run(tmp_path, *QUIET, screen=Breaking(KeyError("a bug")))
+    (folder,) = (tmp_path / "runs").iterdir()
+    assert Session(SessionOptions(), Screen()).resume(folder) == 0
+
+
 @pytest.mark.skipif(not HANG_UP, reason="this system has no SIGHUP")
 def test_a_closed_terminal_stops_a_run_as_termination_does(
     tmp_path: Path, at_the_rig: Callable[[Prepare], None]
@@ -270,6 +277,16 @@ def test_a_closed_terminal_stops_a_run_as_termination_does(
     finally:
         signal.signal(HANG_UP, before)
     assert ended.code == 5 and ended.stored() == ("stopped", "the terminal is gone")
+
+
+@pytest.mark.parametrize("cools, signals", [(True, (signal.SIGINT,)), (False, (signal.SIGINT, signal.SIGTERM))])
+def test_termination_after_an_interrupt_takes_the_cool_down_away(
+    tmp_path: Path, at_the_rig: Callable[[Prepare], None], cools: bool, signals: tuple[int, ...]
+) -> None:
+    at_the_rig(lambda _, hands: Interrupting(hands, *signals))
+    ended = run(tmp_path, "interlocks.cooldown_hub=26 degC", text=SHORT.replace("25 degC", "40 degC"))
+    with RunReader(ended.folder) as reader:
+        assert any("cooldown" in event.text for event in reader.events()) is cools
 
 
 class Breaking(Screen):
