@@ -47,6 +47,7 @@ class Ledger(NullRecorder):
         self.committed = 0
         self.trips: list[str] = []
         self.journal: list[str] = []
+        self.warned: set[str] = set()
 
     def commit_repeat(self, key: int, result: RepeatResult, bursts: Iterable[Burst] = ()) -> Ticket:
         """Count a repeat that was committed for good."""
@@ -63,6 +64,8 @@ class Ledger(NullRecorder):
         """Note what changes the state."""
         if kind in ("mode", "trip"):
             self.journal.append(text)
+        elif kind == "warning":
+            self.warned.add(text.partition(":")[0])
 
 
 @cache
