@@ -97,6 +97,7 @@ def left_out() -> list[str]:
 
 def conduct(rows: Iterable[First] = FIRST) -> dict[First, str]:
     """Let the faults of each row happen; return what was the first cause ("" where nothing tripped)."""
+    rows = tuple(rows)
     found: dict[First, str] = {}
     groups: dict[tuple[str, tuple[str, ...]], list[First]] = {}
     for row in rows:

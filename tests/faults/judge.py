@@ -61,6 +61,7 @@ class Verdict:
     ended_after_s: float = inf
     exposed: bool = True
     stayed: bool = False
+    began_running: bool = False
 
     @property
     def only_force(self) -> bool:
@@ -94,6 +95,7 @@ class Judge:
         self._exposed_s = [inf] * len(self.kinds)
         self._unexposed = {i for i, kind in enumerate(self.kinds) if kind.reaction in JUDGED}
         self._was_running = stage.running
+        self.verdict.began_running = stage.running
         self._after_s = inf
         self._acknowledged = False
         self._stays = zlib.crc32(str(case).encode()) % EVERY == 0
