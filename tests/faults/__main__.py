@@ -11,6 +11,7 @@ import sys
 from dataclasses import dataclass, field
 
 from sim.faults import CATALOGUE
+from sim.faults.kinds import Exposure
 from tests.faults import every_scan, first_up, late_scans, second_stops
 from tests.faults.campaign import PAIRS, Tally, all_cases, conduct, faults_of_campaign, pairs, rehearsals, sample
 from tests.faults.hardware import HARDWARE_MUST_HOLD, UNEXPOSED, held_by_hardware, press_must_lift
@@ -24,8 +25,8 @@ SPARSE = 10
 """Emergency stop and hold come at every tenth scan: abort, fast stop and kill at every one."""
 UNNOTICED = 0.25
 """Share of the cases with a budget, begun in a run, in which the fault may never show: no load follows, say."""
-DOUBLES_AT = ("soak", "wait", "measure")
-"""Phases of the heated recipe in whose middle the pairs of hardware's list are tried."""
+DOUBLES_AT = ("1 install install, begin", "2 heat heat, middle", "2 heat soak, middle", "3 3#: measure, middle")
+"""Places of the heated recipe at which the pairs of hardware's list are tried: standing, approaching, hot, sliding."""
 HOLD = "sim.press_on_power_loss=hold"
 """The rig whose press stays where it is without power; sampled beside the one with a spring."""
 
@@ -126,7 +127,7 @@ def grid(report: Report, tally: Tally, cases: int, most: int) -> None:
     report.figure(f"{tally.name}: cases", len(tally.verdicts), f">= {cases}", len(tally.verdicts) >= cases)
     report.figure(f"{tally.name}: unsafe", len(tally.unsafe), "0", not tally.unsafe)
     report.figure(f"{tally.name}: reaction budgets missed", len(tally.late), "0", not tally.late)
-    begun = [v for v in tally.verdicts if v.began_running and _judged(v)]
+    begun = [v for v in tally.verdicts if v.began_running and _judged(v) and not _connecting(v)]
     never = sum(not verdict.exposed for verdict in begun)
     share = never / max(len(begun), 1)
     report.figure(f"{tally.name}: never exposed", f"{never} of {len(begun)} with a budget, begun in a run",
@@ -135,6 +136,10 @@ def grid(report: Report, tally: Tally, cases: int, most: int) -> None:
     report.figure(f"{tally.name}: watched at rest and acknowledged", stayed, ">= 5 %",
                   stayed >= 0.05 * len(tally.verdicts))
     report.causes(tally, most)
+
+
+def _connecting(verdict: Verdict) -> bool:
+    return any(CATALOGUE[name].exposure is Exposure.CONNECTING for name in verdict.case.faults)
 
 
 def _judged(verdict: Verdict) -> bool:
@@ -168,7 +173,7 @@ def again(report: Report, most: int) -> None:
 
 def needed(report: Report, jobs: int) -> None:
     """Print for each row of hardware's list in how many of its cases software alone would not do."""
-    at = [m for m in rehearse("heated")[0] if m.phase == "middle" and m.step.split()[-1] in DOUBLES_AT]
+    at = [m for m in rehearse("heated")[0] if m.place in DOUBLES_AT]
     for row in HARDWARE_MUST_HOLD:
         tally = conduct("doubles", [(moment, pair) for moment in at for pair in row.pairs], jobs, budgets=False)
         name = f"hardware must hold: {row.one} + {row.others[0]}{', ...' if len(row.others) > 1 else ''}"
