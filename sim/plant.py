@@ -38,6 +38,7 @@ class Plant:
         "_deficit_keep",
         "_dt",
         "_flow",
+        "_grip",
         "_noise",
         "_place",
         "_rotating_above",
@@ -84,6 +85,7 @@ class Plant:
         self._arm_m = 0.001 * p.friction.aligning_arm
         self._rotating_above = p.thermal.rotating_above
         self._within = Autoregressive(p.scatter * p.variability.within, p.variability.within_time)
+        self._grip = 1.0
         self._dt, self._deficit_keep = 0.0, 1.0
         self._sideslip_deg, self._cos, self._sin, self._cornering = 0.0, 1.0, 0.0, 1.0
         self.camber_deg = 0.0
@@ -176,8 +178,9 @@ class Plant:
             self.heat.set_all(p.ambient)
             self.load_cell.set_temperature(p.ambient)
         self._mount(p.wheel.outer_diameter if diameter_mm is None else diameter_mm, sliding_m)
-        self.wheel_factor = self._scatter = wheel_factor(p, self._seed, specimen, wheel)
+        self.wheel_factor = wheel_factor(p, self._seed, specimen, wheel)
         self.condition_factor = self.run_factor = 1.0
+        self._scatter = self.wheel_factor * self._grip
         self._place = (specimen, wheel)
         self._key_streams()
 
@@ -192,9 +195,14 @@ class Plant:
         place = (specimen, wheel, condition, repeat, attempt)
         self.condition_factor = condition_factor(self.parameters, self._seed, self._compound, condition)
         self.run_factor = run_factor(self.parameters, self._seed, *place)
-        self._scatter = self.wheel_factor * self.condition_factor * self.run_factor
+        self._scatter = self.wheel_factor * self.condition_factor * self.run_factor * self._grip
         self._place = place
         self._key_streams()
+
+    def set_grip(self, share: float) -> None:
+        """Let the belt transmit this share of the friction from now on: 1 in one piece, 0 torn."""
+        self._grip = share
+        self._scatter = self.wheel_factor * self.condition_factor * self.run_factor * share
 
     def advance(
         self,

@@ -1,7 +1,8 @@
 """The catalogue of faults: one row each. A fault without a row does not exist for language and campaign.
 
 Budgets are those of the safety concept, from the onset (or from when the fault can be noticed) to the safe commands,
-with one scan of 50 ms at the slow rate on top; [A] where the concept gives none.
+with one scan of 50 ms at the slow rate on top; [A] where the concept gives none. A row that MAY trip has none, and says
+why nothing can be asked of it.
 """
 
 from __future__ import annotations
@@ -22,13 +23,26 @@ from sim.faults.kinds import Exposure, FaultKind, Reaction
 
 AXES = ("wheel", "belt", "press", "sideslip", "camber")
 VELOCITY_AXES = ("wheel", "belt", "press")
-OVERCURRENT, OVERHEATED, FOLLOWING_ERROR, ENCODER, CAN_OVERRUN = 0x2310, 0x4310, 0x8611, 0x7305, 0x8110
+OVERCURRENT, OVERHEATING, FOLLOWING_ERROR, ENCODER, CAN_OVERRUN = 0x2310, 0x4310, 0x8611, 0x7305, 0x8110
 SCAN_S = 0.05
 """The slow scan's period: what is noticed by a scan is noticed this much later at most, s."""
+
+POLL_S = 0.2 + SCAN_S
+"""A temperature is polled at 5 Hz (rulings, 11) and judged by the next scan, s."""
+HUB_S = 0.2 + 0.125 + 2.0 * SCAN_S
+"""The same of the hub, which its controller samples every 125 ms, s."""
+FOLLOW_S = 0.1 + 1.1 + SCAN_S
+"""A speed may lag behind a ramp of 0.3 of the rig's (0.6 m/s2) on its way to another: 0.54 m/s and 50 mm/s more, s."""
+NOISY_S = 2.0 + 3.0 + 1.0
+"""A line counts its failures over two seconds, may fail for three, and a slow device is asked once a second [A], s."""
 
 ALWAYS, DRIVES, CONNECTING, ENABLED, TURNING, LOADED, PRESSING, SLIDING, HEATING = (
     Exposure.ALWAYS, Exposure.DRIVES, Exposure.CONNECTING, Exposure.ENABLED, Exposure.TURNING, Exposure.LOADED,
     Exposure.PRESSING, Exposure.SLIDING, Exposure.HEATING,
+)  # fmt: skip
+RUNNING, RUBBING, CHANGED, MISREAD, STARVED, UNASKED, OVERHEATED, HOT, WELDED = (
+    Exposure.RUNNING, Exposure.RUBBING, Exposure.CHANGED, Exposure.MISREAD, Exposure.STARVED, Exposure.UNASKED,
+    Exposure.OVERHEATED, Exposure.HOT, Exposure.WELDED,
 )  # fmt: skip
 TRIP, STOP, HOLD, RIDE, MAY, DEVICES = (
     Reaction.TRIP, Reaction.STOP, Reaction.HOLD, Reaction.RIDE, Reaction.MAY, Reaction.DEVICES
@@ -61,11 +75,11 @@ def _drive_rows() -> Iterator[FaultKind]:
     for axis in VELOCITY_AXES:
         yield FaultKind(f"{axis} drive following error", partial(d.DriveFault, axis, FOLLOWING_ERROR), DRIVES, TRIP,
                         0.02 + SCAN_S)
-        yield FaultKind(f"{axis} drive reports overheating", partial(d.Emergency, axis, OVERHEATED), ALWAYS, MAY, 0.1)
+        yield FaultKind(f"{axis} drive reports overheating", partial(d.Emergency, axis, OVERHEATING), RUNNING, TRIP,
+                        0.02 + SCAN_S)
         yield FaultKind(f"{axis} drive setpoints lost", partial(c.FramesLost, axis, o.RPDO1_BASE), ENABLED, TRIP,
                         0.2 + SCAN_S, note="the drive's own deadline (0x1400:05), or sooner a speed or load error")
-        yield FaultKind(f"{axis} drive feedback frozen", partial(c.FeedbackFrozen, axis), ENABLED, MAY, 1.0,
-                        note="noticed when the other readings contradict it")
+        yield _frozen_feedback(axis)
         yield FaultKind(f"{axis} drive in local mode", partial(d.Local, axis), ENABLED, TRIP, 0.1 + SCAN_S)
         yield FaultKind(f"{axis} drive torque off", partial(d.TorqueOff, axis), ENABLED, TRIP, 0.1 + SCAN_S)
     yield FaultKind("press drive inputs lost", partial(c.FramesLost, "press", o.TPDO2_BASE), DRIVES, TRIP,
@@ -74,21 +88,35 @@ def _drive_rows() -> Iterator[FaultKind]:
                     lasts_s=0.3, note="the request for the contactor is repeated until its feedback answers")
 
 
+def _frozen_feedback(axis: str) -> FaultKind:
+    """Return the row of a drive that repeats its last speed, or its last position."""
+    name, make = f"{axis} drive feedback frozen", partial(c.FeedbackFrozen, axis)
+    if axis == "press":
+        return FaultKind(name, make, ENABLED, MAY, 0.0,
+                         note="its position tells only where to slow down: the force ends pressing and lifting")
+    return FaultKind(name, make, CHANGED, TRIP, FOLLOW_S, axis=axis,
+                     note="seen when the speed is to change: a slow ramp (0.3 of the rig's) is waited for")
+
+
 def _bus_rows() -> Iterator[FaultKind]:
     yield FaultKind("CAN adapter gone", c.AdapterGone, DRIVES, TRIP, SCAN_S)
     yield FaultKind("CAN bus off", c.BusSilent, DRIVES, TRIP, 0.2 + SCAN_S)
-    yield FaultKind("CAN frames lost", c.FrameLoss, ALWAYS, MAY, 0.5, "%", 20.0)
-    yield FaultKind("CAN frames late", c.FramesLate, ENABLED, MAY, 0.5, "ms", 0.1)
+    yield FaultKind("CAN frames lost", c.FrameLoss, ENABLED, TRIP, 10.0, "%", 20.0,
+                    note="by chance: three frames of a drive in a row at 20 Hz")
+    yield FaultKind("CAN frames late", c.FramesLate, ENABLED, MAY, 0.0, "ms", 0.1,
+                    note="all are late alike and count as fresh: a drive does not say when it measured")
     yield FaultKind("CAN frames repeated", c.FramesRepeated, ALWAYS, RIDE, 0.0)
-    yield FaultKind("CAN bus busy", c.BusBusy, ALWAYS, MAY, 0.5, "%", 95.0)
+    yield FaultKind("CAN bus busy", c.BusBusy, ALWAYS, MAY, 0.0, "%", 95.0,
+                    note="the higher-ranking frames of the drives still get through at the slower scans")
     yield FaultKind("second master SYNC", partial(c.SecondMaster, o.SYNC_ID, b""), DRIVES, TRIP, 0.1 + SCAN_S)
     yield FaultKind("second master setpoint", partial(c.SecondMaster, o.RPDO1_BASE, _ENABLE_AND_GO, "belt"), DRIVES,
                     TRIP, 0.1 + SCAN_S)
     yield FaultKind("second master stops nodes", partial(c.SecondMaster, o.NMT_ID, _NMT_STOP_ALL), DRIVES, TRIP,
                     0.2 + SCAN_S)
-    yield FaultKind("belt drive short emergency", partial(d.ShortEmergency, "belt", OVERHEATED, 3), ALWAYS, TRIP,
+    yield FaultKind("belt drive short emergency", partial(d.ShortEmergency, "belt", OVERHEATING, 3), ALWAYS, TRIP,
                     0.02 + SCAN_S, lasts_s=0.3, note="what is missing of it counts as an unknown error")
-    yield FaultKind("belt drive emergency storm", partial(c.EmergencyStorm, "belt", CAN_OVERRUN), ALWAYS, MAY, 0.1)
+    yield FaultKind("belt drive emergency storm", partial(c.EmergencyStorm, "belt", CAN_OVERRUN), ALWAYS, TRIP,
+                    0.02 + SCAN_S)
 
 
 _SILENT_S = {"load cell": 0.1 + SCAN_S, "thermometer": 1.2 + SCAN_S, "jacket": 1.2 + SCAN_S}
@@ -105,14 +133,14 @@ def _modbus_rows() -> Iterator[FaultKind]:
         yield FaultKind(f"{device} reset", partial(m.DeviceReset, device), when, TRIP, budget_s,
                         lasts_s=m.REBOOT_S)
         yield FaultKind(f"{device} CRC errors", partial(m.Impaired, device, "corrupt"), when, TRIP, budget_s)
-        yield FaultKind(f"{device} garbage", partial(m.Impaired, device, "noise"), when, MAY, budget_s,
-                        note="a few bytes before a reply can be told from it by its check sum")
+        yield FaultKind(f"{device} garbage", partial(m.Impaired, device, "noise"), when, TRIP, NOISY_S,
+                        note="bytes before a reply: its time is over before it is told from them")
         yield FaultKind(f"{device} replies cut short", partial(m.Impaired, device, "truncate"), when, TRIP, budget_s)
         yield FaultKind(f"{device} replies of another address", partial(m.Impaired, device, "wrong_id"), when, TRIP,
                         budget_s)
         yield FaultKind(f"{device} replies split", partial(m.Impaired, device, "split", delay_s=0.005), when, MAY,
-                        budget_s, note="a gateway or a slow driver of the line: the second half comes 5 ms later")
-        yield FaultKind(f"{device} replies merged", partial(m.Impaired, device, "merged"), when, MAY, budget_s,
+                        0.0, note="the second half comes 5 ms later, a gateway's way: a reply like any other")
+        yield FaultKind(f"{device} replies merged", partial(m.Impaired, device, "merged"), when, TRIP, NOISY_S,
                         note="a gateway keeps every second reply and sends it with the next, in one piece")
         yield FaultKind(f"{device} replies late", partial(m.LateReply, device), when, TRIP, budget_s + 0.5, "ms", 1.5)
         yield FaultKind(f"{device} reply late once", partial(m.Impaired, device, "late", count=1, delay_s=0.02),
@@ -124,10 +152,11 @@ def _modbus_rows() -> Iterator[FaultKind]:
 
     yield FaultKind("load cell words swapped", partial(m.Impaired, "load cell", "swapped"), LOADED, TRIP, 0.1 + SCAN_S,
                     note="the order of the words of its 32-bit values was changed at the device")
-    yield FaultKind("load cell half updated", partial(m.Impaired, "load cell", "torn"), LOADED, MAY, 0.15,
+    yield FaultKind("load cell half updated", partial(m.Impaired, "load cell", "torn"), LOADED, MAY, 0.0,
                     note="a value of 32 bits is read while the device writes it: off by 3277 N where its sign changes")
-    yield FaultKind("jacket memory worn out", partial(m.MemoryWorn, "jacket"), ALWAYS, MAY, 1.0,
-                    note="what it keeps without supply, standby among it, cannot be changed any more: exception 04")
+    yield FaultKind("jacket memory worn out", partial(m.MemoryWorn, "jacket"), ALWAYS, MAY, 0.0,
+                    note="what it keeps without supply, standby among it, cannot be changed any more (exception 04):"
+                    " seen when that is written, at the end")
 
 
 def _exception(device: str, code: float) -> m.ExceptionReply:
@@ -138,47 +167,68 @@ def _sensor_rows() -> Iterator[FaultKind]:
     yield FaultKind("load cell frozen", partial(s.CellFault, "frozen"), PRESSING, TRIP, 0.5 + 0.1)
     yield FaultKind("load cell open", partial(s.CellFault, "open"), LOADED, TRIP, 0.1 + SCAN_S)
     yield FaultKind("load cell saturated", partial(s.CellFault, "saturated"), LOADED, TRIP, 0.1 + SCAN_S)
-    yield FaultKind("load cell offset", partial(s.CellFault, "offset"), PRESSING, MAY, 1.0, "N", 30.0,
+    yield FaultKind("load cell offset", partial(s.CellFault, "offset"), PRESSING, MAY, 0.0, "N", 30.0,
                     note="seen at the next check of the zero; the force stays inside its limit")
     yield FaultKind("load cell jumps", partial(s.CellFault, "offset"), PRESSING, TRIP, 0.05 + 2.0 * SCAN_S, "N", 150.0,
                     lasts_s=0.3,
                     note="a bolt gives way, an amplifier changes its range: the load reads above its target")
-    yield FaultKind("load cell reads low", partial(s.CellFault, "low"), PRESSING, MAY, 1.0, "%", 50.0,
-                    note="the load loop presses harder: the press position against the contact shows it")
-    yield FaultKind("load cell drift", partial(s.CellFault, "drift"), PRESSING, MAY, 10.0, "N/s", 2.0)
-    yield FaultKind("load cell noisy", partial(s.CellFault, "noise"), PRESSING, MAY, 1.0, "N", 40.0)
-    yield FaultKind("thermometer frozen", partial(s.SurfaceFault, "frozen"), HEATING, MAY, 60.0, slow=True)
+    yield FaultKind("load cell reads low", partial(s.CellFault, "low"), PRESSING, MAY, 0.0, "%", 50.0,
+                    note="nothing contradicts it: the other forces are right, and friction only looks twice as high")
+    yield FaultKind("load cell drift", partial(s.CellFault, "drift"), PRESSING, MAY, 0.0, "N/s", 2.0,
+                    note="seen at the next check of the zero, before each repeat")
+    yield FaultKind("load cell noisy", partial(s.CellFault, "noise"), PRESSING, MAY, 0.0, "N", 40.0,
+                    note="no reading stays beyond a limit for its delay; the load itself hardly moves")
+    yield FaultKind("thermometer frozen", partial(s.SurfaceFault, "frozen"), TURNING, TRIP, 62.0 + POLL_S, slow=True)
     yield FaultKind("thermometer open", partial(s.SurfaceFault, "open"), HEATING, TRIP, 1.2 + SCAN_S)
-    yield FaultKind("thermometer offset", partial(s.SurfaceFault, "offset"), HEATING, MAY, 30.0, "K", -15.0, slow=True)
-    yield FaultKind("thermometer reads low", partial(s.SurfaceFault, "low"), HEATING, MAY, 60.0, "%", 50.0, slow=True,
-                    note="misaligned or dirty")
-    yield FaultKind("thermometer drift", partial(s.SurfaceFault, "drift"), HEATING, MAY, 60.0, "K/s", -0.2, slow=True)
-    yield FaultKind("thermometer noisy", partial(s.SurfaceFault, "noise"), HEATING, MAY, 30.0, "K", 5.0)
+    yield FaultKind("thermometer jumps", partial(s.SurfaceFault, "offset"), HEATING, TRIP, POLL_S, "K", -10.0,
+                    lasts_s=0.6, note="moved, covered or disturbed")
+    yield FaultKind("thermometer offset", partial(s.SurfaceFault, "offset"), MISREAD, TRIP, 30.0 + POLL_S, "K", -15.0,
+                    slow=True, note="seen as a jump where a temperature is wanted")
+    yield FaultKind("thermometer reads low", partial(s.SurfaceFault, "low"), MISREAD, TRIP, 30.0 + POLL_S, "%", 60.0,
+                    slow=True, note="misaligned or dirty")
+    yield FaultKind("thermometer drift", partial(s.SurfaceFault, "drift"), MISREAD, TRIP, 30.0 + POLL_S, "K/s", -0.2,
+                    slow=True)
+    yield FaultKind("thermometer noisy", partial(s.SurfaceFault, "noise"), HEATING, TRIP, 3.0, "K", 5.0,
+                    note="by chance: two readings in a row 5 K apart")
     yield FaultKind("hub sensor open", partial(s.HubFault, "open"), ALWAYS, TRIP, 1.2 + SCAN_S)
-    yield FaultKind("hub sensor frozen", partial(s.HubFault, "frozen"), HEATING, MAY, 60.0, slow=True)
-    yield FaultKind("hub sensor offset", partial(s.HubFault, "offset"), HEATING, MAY, 60.0, "K", -20.0, slow=True)
-    yield FaultKind("hub sensor reads low", partial(s.HubFault, "low"), HEATING, MAY, 60.0, "%", 80.0, slow=True,
-                    note="shorted towards ambient: the controller heats what it does not see")
-    yield FaultKind("hub sensor noisy", partial(s.HubFault, "noise"), ALWAYS, MAY, 1.0, "K", 8.0,
+    yield FaultKind("hub sensor frozen", partial(s.HubFault, "frozen"), STARVED, TRIP, 61.0 + POLL_S, slow=True,
+                    note="seen where the controller asks for heat; at its setpoint it only stops controlling")
+    yield FaultKind("hub sensor jumps", partial(s.HubFault, "offset"), RUNNING, TRIP, HUB_S, "K", -10.0, lasts_s=0.6,
+                    note="slip ring chatter, once")
+    yield FaultKind("hub sensor offset", partial(s.HubFault, "offset"), RUNNING, TRIP, HUB_S, "K", -20.0)
+    yield FaultKind("hub sensor reads low", partial(s.HubFault, "low"), HOT, TRIP, 10.0, "%", 80.0, slow=True,
+                    note="shorted towards ambient: the controller heats what it does not see; by the surface, in time")
+    yield FaultKind("hub sensor noisy", partial(s.HubFault, "noise"), ALWAYS, TRIP, 3.0, "K", 8.0,
                     note="slip ring chatter")
 
 
 def _actuator_rows() -> Iterator[FaultKind]:
-    yield FaultKind("jacket output stuck on", partial(a.JacketOutput, 100.0), HEATING, MAY, 120.0, slow=True)
-    yield FaultKind("jacket output stuck off", partial(a.JacketOutput, 0.0), HEATING, MAY, 120.0, slow=True)
-    yield FaultKind("jacket relay shorted", partial(a.HeaterElement, 100.0), HEATING, MAY, 120.0, slow=True)
-    yield FaultKind("heater line open", partial(a.HeaterElement, 0.0), HEATING, MAY, 120.0, slow=True)
-    yield FaultKind("jacket limiter dead", a.LimiterDead, ALWAYS, MAY, 0.0, slow=True)
-    yield FaultKind("contactor welded", a.ContactorWelded, ALWAYS, MAY, 0.0)
-    yield FaultKind("contactor dead", a.ContactorDead, ALWAYS, MAY, 1.0)
+    yield FaultKind("jacket output stuck on", partial(a.JacketOutput, 100.0), OVERHEATED, TRIP, 2.0 + 1.0 + POLL_S,
+                    slow=True, note="its sensor follows within a second")
+    yield FaultKind("jacket output stuck off", partial(a.JacketOutput, 0.0), HEATING, MAY, 0.0,
+                    note="the wheel gets colder than wanted: the recipe's waits notice, nothing is harmed")
+    yield FaultKind("jacket relay shorted", partial(a.HeaterElement, 100.0), UNASKED, TRIP, 16.0, slow=True,
+                    note="the rate is known 3 s after the output has gone, over 4 to 8 s; 5 and 2 s of the row")
+    yield FaultKind("heater line open", partial(a.HeaterElement, 0.0), STARVED, TRIP, 61.0 + POLL_S, slow=True)
+    yield FaultKind("jacket limiter dead", a.LimiterDead, ALWAYS, MAY, 0.0,
+                    note="a second line: nothing shows that it is gone before it is needed")
+    yield FaultKind("contactor welded", a.ContactorWelded, WELDED, TRIP, 0.5 + 2.0 * SCAN_S,
+                    note="seen when it is to open")
+    yield FaultKind("contactor dead", a.ContactorDead, STARVED, TRIP, 61.0 + POLL_S, slow=True)
     yield FaultKind("press runs away", partial(d.Runaway, "press"), LOADED, TRIP, 0.5, "mm/s", 5.0)
-    yield FaultKind("press stuck", partial(d.Jammed, "press"), PRESSING, MAY, 1.0, force_stays=True,
-                    note="a jammed screw is freed by hand: the rig stands, loaded and without heat")
+    yield FaultKind("wheel runs away", partial(d.Runaway, "wheel"), ENABLED, TRIP, FOLLOW_S, "rad/s", 12.0,
+                    note="0.54 m/s")
+    yield FaultKind("belt runs away", partial(d.Runaway, "belt"), ENABLED, TRIP, FOLLOW_S, "m/s", 0.4)
+    yield FaultKind("press stuck", partial(d.Jammed, "press"), PRESSING, MAY, 0.0, force_stays=True,
+                    note="it holds the load it held: seen when it is to lift, and freed by hand; the rig stands")
     yield FaultKind("belt jammed", partial(d.Jammed, "belt"), LOADED, TRIP, 0.1 + SCAN_S)
     yield FaultKind("wheel jammed", partial(d.Jammed, "wheel"), LOADED, TRIP, 0.1 + SCAN_S)
-    yield FaultKind("belt torn", d.BeltTorn, SLIDING, MAY, 1.0)
-    yield FaultKind("belt slips on its roller", d.BeltSlips, SLIDING, MAY, 1.0, "%", 40.0)
-    yield FaultKind("wheel slips on its shaft", d.WheelSlipsOnShaft, SLIDING, MAY, 1.0)
+    yield FaultKind("belt torn", d.BeltTorn, RUBBING, TRIP, 0.1 + 2.0 * SCAN_S,
+                    note="friction and the wheel's torque are gone")
+    yield FaultKind("belt slips on its roller", d.BeltSlips, SLIDING, MAY, 0.0, "%", 40.0,
+                    note="there is no encoder on the belt itself")
+    yield FaultKind("wheel slips on its shaft", d.WheelSlipsOnShaft, SLIDING, MAY, 0.0,
+                    note="the shaft's encoder turns on, and friction does not vanish: held by the clamping")
     yield FaultKind("safety chain opened", a.ChainOpen, DRIVES, TRIP, SCAN_S)
     yield FaultKind("guard opened", a.GuardOpen, ENABLED, TRIP, SCAN_S)
     yield FaultKind("emergency stop pressed", a.EmergencyStop, DRIVES, TRIP, SCAN_S)

@@ -249,7 +249,10 @@ class BeltSlips(Effect):
 
 
 class BeltTorn(Effect):
-    """The belt is torn: its roller turns on, the belt itself goes with whatever touches it and stands otherwise."""
+    """The belt is torn: its roller turns on, the belt itself goes with whatever touches it and stands otherwise.
+
+    Nothing holds the belt against the wheel any more: no friction, and no torque at either drive.
+    """
 
     __slots__ = ("_factor",)
 
@@ -261,11 +264,15 @@ class BeltTorn(Effect):
 
     def begin(self, scene: Scene, now: float) -> None:
         """Tear."""
-        self._factor = scene.rig.plant.belt_speed.factor
+        plant = scene.rig.plant
+        self._factor = plant.belt_speed.factor
+        plant.set_grip(0.0)
 
     def end(self, scene: Scene, now: float) -> None:
         """Have a new belt."""
-        scene.rig.plant.belt_speed.factor = self._factor
+        plant = scene.rig.plant
+        plant.belt_speed.factor = self._factor
+        plant.set_grip(1.0)
 
     def renew(self, scene: Scene, now: float) -> None:
         """Let the belt go with the wheel where it is touched, through the encoder's scale: no other place is needed."""

@@ -14,6 +14,7 @@ class Exposure(Enum):
     """When a fault can be noticed at all: its budget counts from then on."""
 
     ALWAYS = "at once, once the run has begun"
+    RUNNING = "at once, where it begins in a run and no wheel was just changed"
     DRIVES = "at once, once every drive is configured"
     CONNECTING = "at the next connection"
     ENABLED = "while the drives are on"
@@ -21,7 +22,15 @@ class Exposure(Enum):
     LOADED = "in contact"
     PRESSING = "while a load is held"
     SLIDING = "in contact, with slip"
+    RUBBING = "while a load is held, with slip"
+    CHANGED = "once the axis has changed its speed"
     HEATING = "while the jacket heats"
+    MISREAD = "while the thermometer is off by more than the model allows, turning"
+    STARVED = "while full heat is asked for and the hub stays cold"
+    UNASKED = "while heat flows that the controller does not give"
+    OVERHEATED = "while the hub is hotter than it was ever told to be"
+    HOT = "while the hub is far hotter than any recipe needs"
+    WELDED = "while the contactor is closed without request"
 
 
 class Reaction(Enum):
@@ -44,6 +53,8 @@ class FaultKind:
     ``force_stays`` and ``heat_stays``: the force, or the heat, cannot go by any command (the reason is in ``note``).
     ``lasts_s``: it is over by itself after this time.
     ``slow``: a matter of temperature, watched for two minutes and more.
+    ``axis``: of which drive it is, where its exposure asks for that.
+    A row that MAY trip has no budget, and a ``note`` that says why nothing is asked of it.
     """
 
     phrase: str
@@ -57,6 +68,7 @@ class FaultKind:
     slow: bool = False
     force_stays: bool = False
     heat_stays: bool = False
+    axis: str = ""
     note: str = ""
 
     def effect(self, value: float | None = None) -> Effect:

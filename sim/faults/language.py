@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from difflib import get_close_matches
 from math import inf, isfinite
 
@@ -28,6 +28,8 @@ _FACTORS: dict[str, dict[str, float]] = {
     "K": {"K": 1.0},
     "%": {"%": 1.0},
     "mm/s": {"mm/s": 1.0, "m/s": 1000.0},
+    "m/s": {"m/s": 1.0, "mm/s": 1e-3},
+    "rad/s": {"rad/s": 1.0},
     "K/s": {"K/s": 1.0},
     "N/s": {"N/s": 1.0},
     "": {"": 1.0},
@@ -65,6 +67,11 @@ class Injection:
     value: float | None = None
     lasts_s: float = inf
     text: str = ""
+
+    def shifted(self, by_s: float) -> Injection:
+        """Return the same fault this much later, s; its kind's own end counts where none was written."""
+        lasts_s = min(self.lasts_s, self.kind.lasts_s)
+        return replace(self, when=replace(self.when, at_s=self.when.at_s + by_s), lasts_s=lasts_s)
 
 
 def parse_script(texts: Iterable[str]) -> list[Injection]:

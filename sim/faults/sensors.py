@@ -61,6 +61,12 @@ class SpoiledTemperature:
         """Return the hub temperature in degC as it appears."""
         return self._spoil(cast("HubSource", self.source).hub_measured_c(t), t)
 
+    def off_k(self, true_c: float, t: float) -> float:
+        """Return how far from ``true_c`` degC the sensor shows at ``t`` s, its noise left out, K; NaN: nothing."""
+        if not self.active or self.kind == "noise":
+            return 0.0
+        return self._spoil(true_c, t) - true_c
+
     def _spoil(self, true_c: float, t: float) -> float:
         if not self.active:
             return true_c

@@ -40,6 +40,11 @@ class SafetyIo:
         self.due_s = inf
 
     @property
+    def requested(self) -> bool:
+        """The contactor is asked for."""
+        return self._requested
+
+    @property
     def inputs(self) -> int:
         """The word of 0x60FD."""
         return self._chain * SAFETY_CHAIN | self._guard * GUARD_CLOSED | self.contactor_closed * CONTACTOR

@@ -11,16 +11,22 @@ import sys
 from dataclasses import dataclass, field
 
 from sim.faults import CATALOGUE
-from tests.faults import every_scan, late_scans
+from sim.faults.kinds import Exposure
+from tests.faults import every_scan, first_up, late_scans, second_stops
 from tests.faults.campaign import PAIRS, Tally, all_cases, conduct, faults_of_campaign, pairs, rehearsals, sample
-from tests.faults.hardware import held_by_hardware, press_must_lift
-from tests.faults.judge import Verdict
+from tests.faults.hardware import HARDWARE_MUST_HOLD, UNEXPOSED, held_by_hardware, press_must_lift
+from tests.faults.judge import JUDGED, Verdict
+from tests.faults.moments import rehearse
 
 SAMPLE_CASES = 420
 SAMPLE_CPU_S, FULL_CPU_S = 120.0, 1800.0
 SAMPLE_SCANS = 40
 SPARSE = 10
 """Emergency stop and hold come at every tenth scan: abort, fast stop and kill at every one."""
+UNNOTICED = 0.25
+"""Share of the cases with a budget, begun in a run, in which the fault may never show: no load follows, say."""
+DOUBLES_AT = ("1 install install, begin", "2 heat heat, middle", "2 heat soak, middle", "3 3#: measure, middle")
+"""Places of the heated recipe at which the pairs of hardware's list are tried: standing, approaching, hot, sliding."""
 HOLD = "sim.press_on_power_loss=hold"
 """The rig whose press stays where it is without power; sampled beside the one with a spring."""
 
@@ -83,6 +89,7 @@ def short(report: Report, jobs: int, most: int) -> None:
     for tally in every_scan.conduct(some, jobs=jobs).values():
         scans(report, tally, SAMPLE_SCANS, most)
     late(report, most)
+    again(report, most)
     spent(report, began_s, SAMPLE_CPU_S)
 
 
@@ -92,12 +99,17 @@ def full(report: Report, jobs: int, most: int) -> None:
     moments = rehearsals()
     faults = faults_of_campaign(everything=False)
     report.figure("faults in the catalogue", len(CATALOGUE), ">= 40", len(CATALOGUE) >= 40)
-    grid(report, conduct("grid", all_cases(moments, faults), jobs), 7000, most)
+    tally = conduct("grid", all_cases(moments, faults), jobs)
+    grid(report, tally, 7000, most)
+    everywhere(report, tally)
     spent(report, began_s, FULL_CPU_S)
+    first(report, most)
     doubles(report, conduct("pairs", pairs(moments, faults, PAIRS), jobs, budgets=False), most)
+    needed(report, jobs)
     held = sample(all_cases(moments, faults), SAMPLE_CASES)
     held_press(report, conduct("grid, press held without power", held, jobs, (HOLD,)), most)
     late(report, most)
+    again(report, most)
     ticks = range(every_scan.scans())
     for tally in every_scan.conduct(ticks, every_scan.EVENTS[:3], jobs).values():
         scans(report, tally, every_scan.ASKED_FOR, most)
@@ -115,7 +127,57 @@ def grid(report: Report, tally: Tally, cases: int, most: int) -> None:
     report.figure(f"{tally.name}: cases", len(tally.verdicts), f">= {cases}", len(tally.verdicts) >= cases)
     report.figure(f"{tally.name}: unsafe", len(tally.unsafe), "0", not tally.unsafe)
     report.figure(f"{tally.name}: reaction budgets missed", len(tally.late), "0", not tally.late)
+    begun = [v for v in tally.verdicts if v.began_running and _judged(v) and not _connecting(v)]
+    never = sum(not verdict.exposed for verdict in begun)
+    share = never / max(len(begun), 1)
+    report.figure(f"{tally.name}: never exposed", f"{never} of {len(begun)} with a budget, begun in a run",
+                  f"<= {UNNOTICED:.0%}", share <= UNNOTICED)
+    stayed = sum(verdict.stayed for verdict in tally.verdicts)
+    report.figure(f"{tally.name}: watched at rest and acknowledged", stayed, ">= 5 %",
+                  stayed >= 0.05 * len(tally.verdicts))
     report.causes(tally, most)
+
+
+def _connecting(verdict: Verdict) -> bool:
+    return any(CATALOGUE[name].exposure is Exposure.CONNECTING for name in verdict.case.faults)
+
+
+def _judged(verdict: Verdict) -> bool:
+    return any(CATALOGUE[name].reaction in JUDGED for name in verdict.case.faults)
+
+
+def everywhere(report: Report, tally: Tally) -> None:
+    """Print which faults with a budget could be noticed in no case at all."""
+    seen = {verdict.case.faults[0] for verdict in tally.verdicts if verdict.exposed and _judged(verdict)}
+    never = sorted({v.case.faults[0] for v in tally.verdicts if _judged(v)} - seen - UNEXPOSED.keys())
+    report.figure(f"{tally.name}: faults exposed nowhere", ", ".join(never) or "0", "0 outside the list", not never)
+
+
+def first(report: Report, most: int) -> None:
+    """Print which rows of the interlock table are not the first cause of their faults."""
+    found = first_up.conduct()
+    wrong = [f"{row.interlock}: {cause or 'nothing'} comes first" for row, cause in found.items()
+             if cause != row.interlock]  # fmt: skip
+    report.figure("interlock rows with a fault of their own", len(found), f">= {len(first_up.FIRST)}",
+                  len(found) >= len(first_up.FIRST) and not first_up.left_out())
+    report.figure("interlock rows that are not its first cause", len(wrong), "0", not wrong)
+    for text in wrong[:most]:
+        print(f"       {text}", flush=True)
+
+
+def again(report: Report, most: int) -> None:
+    """Print the figures of second stops."""
+    tally = second_stops.conduct()
+    scans(report, tally, len(second_stops.SECOND), most)
+
+
+def needed(report: Report, jobs: int) -> None:
+    """Print for each row of hardware's list in how many of its cases software alone would not do."""
+    at = [m for m in rehearse("heated")[0] if m.place in DOUBLES_AT]
+    for row in HARDWARE_MUST_HOLD:
+        tally = conduct("doubles", [(moment, pair) for moment in at for pair in row.pairs], jobs, budgets=False)
+        name = f"hardware must hold: {row.one} + {row.others[0]}{', ...' if len(row.others) > 1 else ''}"
+        report.figure(name, f"{len(tally.unsafe)} of {len(tally.verdicts)} unsafe", ">= 1", bool(tally.unsafe))
 
 
 def held_press(report: Report, tally: Tally, most: int) -> None:

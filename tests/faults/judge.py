@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import zlib
 from dataclasses import dataclass, field
 from math import inf
 
@@ -9,7 +10,7 @@ from sim.faults import CATALOGUE, Injection
 from sim.faults.kinds import Exposure, FaultKind, Reaction
 from sim.faults.language import When
 from sim.harm import SAFE_S, Truth
-from tester.process import Press
+from tests.faults.exposure import Exposed
 from tests.faults.stage import Stage
 
 WATCHED_S = 6.0
@@ -23,6 +24,11 @@ SETTLED_S = 0.5
 """An end state counts as reached when it has lasted this long."""
 ROUNDING_S = 0.011
 """Ticks are at most this far apart while something happens; a budget is not missed by a rounding."""
+AFTER_S = 5.0
+"""Every tenth end state is watched this much longer, acknowledged, and watched as long again."""
+EVERY = 10
+JUDGED = frozenset((Reaction.TRIP, Reaction.STOP, Reaction.HOLD))
+"""What has a budget."""
 HEARTBEAT_S = 0.25
 """A drive misses our heartbeat after 200 ms, and we sent the last one up to 50 ms before a kill."""
 
@@ -44,7 +50,8 @@ class Case:
 class Verdict:
     """What has come of a case: failures (empty: safe and in time), who tripped, how long it took.
 
-    ``missing`` is what the safe state lacked in the end.
+    ``missing`` is what the safe state lacked in the end. ``exposed``: every fault with a budget could be noticed at
+    some time; ``stayed``: the end state was watched on, and acknowledged.
     """
 
     case: Case
@@ -52,37 +59,14 @@ class Verdict:
     missing: list[str] = field(default_factory=list[str])
     tripped_by: str = ""
     ended_after_s: float = inf
+    exposed: bool = True
+    stayed: bool = False
+    began_running: bool = False
 
     @property
     def only_force(self) -> bool:
         """Nothing is wrong but that the load stayed on: in time, no harm, no invariant broken, all else safe."""
         return len(self.failures) == 1 and [text.partition(" ")[0] for text in self.missing] == ["force"]
-
-
-def exposed(stage: Stage, exposure: Exposure) -> bool:
-    """Tell whether a fault can be noticed now."""
-    engine = stage.run.engine
-    if exposure is Exposure.ALWAYS:
-        return engine.scans > 0
-    if exposure is Exposure.DRIVES:
-        return engine.scans > 0 or stage.run.connector.watches_drives
-    if exposure is Exposure.CONNECTING:
-        return engine.scans == 0 and stage.ticks < 3
-    demand, truth = engine.ctx.demand, Truth.of(stage.rig)
-    if not stage.running:
-        return False
-    if exposure is Exposure.ENABLED:
-        return demand.enabled and engine.ctx.readings.drives_enabled
-    if exposure is Exposure.TURNING:
-        return truth.wheel_m_s > 0.04
-    if exposure is Exposure.HEATING:
-        return engine.control.state.setpoints.heat
-    if exposure is Exposure.PRESSING:
-        loaded = engine.ctx.contact.loaded and truth.force_n > 20.0
-        return demand.press is Press.LOAD and demand.load_n >= 50.0 and loaded
-    if exposure is Exposure.SLIDING:
-        return truth.force_n > 20.0 and truth.slip_m_s > 0.05
-    return truth.force_n > 20.0
 
 
 def _watched_s(stage: Stage, kinds: tuple[FaultKind, ...]) -> float:
@@ -107,8 +91,16 @@ class Judge:
         self.ended_s = inf
         self.safe_since_s = inf
         self.committed = stage.ledger.committed
+        self._exposures = [Exposed(stage, kind) for kind in self.kinds]
         self._exposed_s = [inf] * len(self.kinds)
+        self._unexposed = {i for i, kind in enumerate(self.kinds) if kind.reaction in JUDGED}
         self._was_running = stage.running
+        self.verdict.began_running = stage.running
+        self._after_s = inf
+        self._acknowledged = False
+        self._stays = zlib.crc32(str(case).encode()) % EVERY == 0
+        if self._stays:
+            stage.run.stays_latched = True
         stage.inject(*(Injection(When(at_s=self.onset_s), kind, text=kind.phrase) for kind in self.kinds))
         self.until_s = self.onset_s + _watched_s(stage, self.kinds)
 
@@ -118,11 +110,11 @@ class Judge:
         while not self._done(stage.tick()):
             pass
         verdict = self.verdict
+        verdict.exposed = not self._unexposed
         verdict.failures += [f"harm: {name}, {text}" for name, text in stage.observer.found.items()]
         verdict.failures += [f"invariant {name}: {text}" for name, text in stage.invariants.broken.items()]
-        trip = stage.run.engine.control.state.trip
-        if trip is not None:
-            verdict.tripped_by = trip.name
+        if stage.trip:
+            verdict.tripped_by = stage.trip
             if not stage.ledger.trips:
                 verdict.failures.append("a trip is not in the journal")
         return verdict
@@ -140,7 +132,14 @@ class Judge:
                 self.verdict.failures.append(late)
                 return True
             return now >= self.until_s
-        return self._safe(now)
+        if self._after_s < inf:
+            return self._after(now)
+        if not self._safe(now):
+            return False
+        if not self._stays or self.verdict.failures:
+            return True
+        self._after_s = now
+        return False
 
     def _end(self, now: float) -> None:
         self.ended_s = now
@@ -154,11 +153,12 @@ class Judge:
     def _late(self, now: float) -> str:
         """Return which budget is missed, or ""."""
         for i, kind in enumerate(self.kinds):
-            if kind.reaction not in (Reaction.TRIP, Reaction.STOP, Reaction.HOLD):
+            if kind.reaction not in JUDGED:
                 continue
-            if now > self.onset_s + kind.lasts_s or not exposed(self.stage, kind.exposure):
+            if now > self.onset_s + kind.lasts_s or not self._exposures[i].now():
                 self._exposed_s[i] = inf
                 continue
+            self._unexposed.discard(i)
             if kind.reaction is Reaction.HOLD and (self.stage.mode == "hold" or not self._was_running):
                 continue  # a rig that is not up refuses to hold
             self._exposed_s[i] = min(self._exposed_s[i], now)
@@ -169,11 +169,7 @@ class Judge:
     def _safe(self, now: float) -> bool:
         """See that the end state is reached in time and stays."""
         stage = self.stage
-        missing = Truth.of(stage.rig).unsafe(
-            creeping=stage.mode == "cooldown",
-            force_stays=any(kind.force_stays for kind in self.kinds),
-            heat_stays=any(kind.heat_stays for kind in self.kinds),
-        )
+        missing = self._missing()
         if stage.ledger.committed > self.committed and stage.ledger.trips:
             self.verdict.failures.append("a repeat was committed after the trip")
             return True
@@ -189,6 +185,29 @@ class Judge:
             return True
         return False
 
+    def _after(self, now: float) -> bool:
+        """See that an end state lasts, and that nothing comes of acknowledging it."""
+        missing = self._missing()
+        if missing:
+            when = "acknowledged" if self._acknowledged else "at rest"
+            self.verdict.failures.append(f"safe no more, {when}: {', '.join(missing)}{self._why()}")
+            return True
+        if now < self._after_s + AFTER_S:
+            return False
+        if self._acknowledged:
+            self.verdict.stayed = True
+            return True
+        self._after_s, self._acknowledged = now, True
+        self.stage.run.request_ack()
+        return False
+
+    def _missing(self) -> list[str]:
+        return Truth.of(self.stage.rig).unsafe(
+            creeping=self.stage.mode == "cooldown",
+            force_stays=any(kind.force_stays for kind in self.kinds),
+            heat_stays=any(kind.heat_stays for kind in self.kinds),
+        )
+
     def _at_rest(self, now: float) -> bool:
         """Tell whether control is through with stopping, or has had long enough."""
         stage = self.stage
@@ -196,5 +215,5 @@ class Judge:
         return settled or now - self.ended_s > LATCHED_S
 
     def _why(self) -> str:
-        trip = self.stage.run.engine.control.state.trip
-        return f" (tripped by {trip.name})" if trip is not None else f" ({self.stage.mode})"
+        trip = self.stage.trip
+        return f" (tripped by {trip})" if trip else f" ({self.stage.mode})"

@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable
 from copy import deepcopy
 from functools import cache
+from math import inf
 
 from sim.faults import FaultScript, Injection
 from sim.faults.can import FaultyCanWire
 from sim.harm import HarmObserver
+from sim.nodes.drive_state import ENERGISED
 from sim.rig import SimRig
 from tester.analysis.results import Burst, RepeatResult, RepeatStatus
 from tester.engine.build import build_run
@@ -45,6 +47,7 @@ class Ledger(NullRecorder):
         self.committed = 0
         self.trips: list[str] = []
         self.journal: list[str] = []
+        self.warned: set[str] = set()
 
     def commit_repeat(self, key: int, result: RepeatResult, bursts: Iterable[Burst] = ()) -> Ticket:
         """Count a repeat that was committed for good."""
@@ -61,6 +64,8 @@ class Ledger(NullRecorder):
         """Note what changes the state."""
         if kind in ("mode", "trip"):
             self.journal.append(text)
+        elif kind == "warning":
+            self.warned.add(text.partition(":")[0])
 
 
 @cache
@@ -94,6 +99,15 @@ class Stage:
         self.ticks = 0
         self.mode = ""
         self.mode_since_s = 0.0
+        self.trip = ""
+        """The first cause of a trip; an acknowledgement takes it from control, not from here."""
+        self._step = 0
+        self.step_since_s = 0.0
+        """Since when the plan's present step is worked off."""
+        self.all_on = False
+        """Every drive has been energised since they were last all off: what is missing now has dropped out."""
+        self.hub_most_c = -inf
+        """The highest setpoint that the jacket's controller ever heated to, degC."""
         self._shared: tuple[object, ...] = (config, self.plan)
 
     def copy(self) -> Stage:
@@ -141,12 +155,27 @@ class Stage:
         else:
             self.next_s = next_tick(now, faulty.tick(now), faulty.urgent_s)
         self.ticks += 1
-        mode = self.run.engine.control.state.mode.value
+        state = self.run.engine.control.state
+        if state.trip is not None and not self.trip:
+            self.trip = state.trip.name
+        mode = state.mode.value
         if mode != self.mode:
             self.mode, self.mode_since_s = mode, now
+        self._note(now)
         self.observer.look(self._must_stand(now))
         self.invariants.look(self)
         return now
+
+    def _note(self, now: float) -> None:
+        """Note of the rig itself, and of the plan, what exposures ask for."""
+        step = self.run.engine.ctx.progress.step
+        if step != self._step:
+            self._step, self.step_since_s = step, now
+        on = [drive.state in ENERGISED for drive in self.rig.axes.values()]
+        self.all_on = all(on) or (self.all_on and any(on))
+        jacket = self.rig.jacket
+        if jacket.running and jacket.setpoint_c > self.hub_most_c:
+            self.hub_most_c = jacket.setpoint_c
 
     def _must_stand(self, now: float) -> bool:
         if self.run.engine.scans == 0:

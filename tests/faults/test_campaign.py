@@ -7,12 +7,20 @@ from functools import cache
 import pytest
 
 from sim.faults import CATALOGUE, Injection
+from sim.faults.kinds import FaultKind, Reaction
 from sim.faults.language import When
-from tests.faults import every_scan, late_scans
+from tests.faults import every_scan, late_scans, second_stops
 from tests.faults.__main__ import main
 from tests.faults.campaign import Tally, all_cases, conduct, faults_of_campaign, pairs, sample
-from tests.faults.hardware import HARDWARE_MUST_HOLD, PRESS_RELEASE, UNLIFTED, held_by_hardware, press_must_lift
-from tests.faults.judge import Case, Verdict
+from tests.faults.hardware import (
+    HARDWARE_MUST_HOLD,
+    PRESS_RELEASE,
+    UNEXPOSED,
+    UNLIFTED,
+    held_by_hardware,
+    press_must_lift,
+)
+from tests.faults.judge import JUDGED, Case, Verdict
 from tests.faults.moments import Moment, rehearse
 from tests.faults.mutants import MUTANTS, ROOT
 from tests.faults.recipes import RECIPES
@@ -100,7 +108,28 @@ def test_the_safety_page_lists_what_hardware_must_hold():
     page = (ROOT / "docs" / "safety.md").read_text(encoding="utf-8")
     shown = page.split("<!-- double faults: begin -->")[1].split("<!-- double faults: end -->")[0]
     for row in HARDWARE_MUST_HOLD:
-        assert f"| {row.one} + {row.other or 'any other'} | {row.device} | {row.why} |" in shown
+        assert f"| {row.one} + {' or '.join(row.others)} | {row.device} | {row.why} |" in shown
+    assert len(shown.splitlines()) == len(HARDWARE_MUST_HOLD) + 3
+
+
+def test_what_hardware_must_hold_are_faults_of_the_catalogue():
+    assert {name for row in HARDWARE_MUST_HOLD for pair in row.pairs for name in pair} <= CATALOGUE.keys()
+    assert UNEXPOSED.keys() <= CATALOGUE.keys()
+
+
+@pytest.mark.parametrize("kind", [k for k in CATALOGUE.values() if k.reaction is Reaction.MAY], ids=lambda k: k.phrase)
+def test_of_a_fault_that_may_trip_nothing_is_asked_and_the_reason_is_written(kind: FaultKind):
+    assert kind.note and kind.budget_s == 0.0
+
+
+def test_a_fault_of_which_something_is_asked_has_a_budget():
+    judged = [kind for kind in CATALOGUE.values() if kind.reaction in JUDGED]
+    assert len(judged) >= 130 and all(kind.budget_s > 0.0 for kind in judged)
+
+
+def test_a_second_stop_in_the_cool_down_ends_safely():
+    tally = second_stops.conduct(("operator stop", "operator fast stop", "process killed", "wheel drive fault"))
+    assert len(tally.verdicts) == 4 and failures(tally) == []
 
 
 def test_the_safety_page_lists_after_which_faults_a_press_without_spring_is_not_lifted():

@@ -136,6 +136,22 @@ def test_braking_slip_turns_friction_and_torque_round() -> None:
     assert plant.drive_torque_nm < -5.0
 
 
+def test_a_belt_that_does_not_grip_carries_no_friction_and_loads_no_drive() -> None:
+    plant = mounted()
+    run(plant, 2.0, 200.0)
+    rubbing_n = plant.force_x_n
+    plant.set_grip(0.0)
+    run(plant, 0.1, 200.0)
+    assert rubbing_n > 50.0 and plant.force_z_n > 150.0
+    assert plant.force_x_n == plant.force_y_n == plant.drive_torque_nm == 0.0
+    plant.begin_repeat(1, 1, 1)
+    run(plant, 0.1, 200.0)
+    assert plant.force_x_n == 0.0
+    plant.set_grip(1.0)
+    run(plant, 0.1, 200.0)
+    assert plant.force_x_n > 50.0
+
+
 def test_drive_torque_is_friction_times_radius() -> None:
     plant = mounted()
     run(plant, 1.0, 200.0)

@@ -1,0 +1,152 @@
+"""When a fault can be noticed: told from the plant, the devices and the plan, never from what control believes.
+
+A fault that keeps control from wanting or knowing something must not switch its own budget off by that.
+"""
+
+from __future__ import annotations
+
+from math import hypot, inf, isfinite, radians, sin
+
+from sim.faults.kinds import Exposure, FaultKind
+from sim.faults.sensors import SpoiledTemperature
+from sim.harm import Truth
+from sim.nodes.safety_io import SafetyIo
+from tester.recipe.plan import ConditionStep, Heat, Install, PreGrind
+from tests.faults.stage import Stage
+
+TURNS_M_S = 0.04
+FITTED_S = 1.1
+"""After a wheel was changed two readings of a temperature are not compared for a second."""
+LOADED_N = 20.0
+"""Below this the contact counts as unloaded (safety concept, "load with a drive stopped")."""
+HELD_SHARE = 0.45
+"""A load is held from this share of the recipe's greatest on: the interlocks of a held load begin at half of it."""
+LIFTS_MM_S = -5.0
+"""A press told to go back faster than this lifts; holding a load it moves by 2 mm/s at most."""
+DRIVEN_M_S = 0.06
+"""The drives make slip: above the 50 mm/s from which "belt torn" is judged."""
+CHANGED_M_S = 0.1
+"""Twice what a speed may be off."""
+MISREAD_K = 9.5
+"""Off the truth by this: the model's 8 K, the bias of a session, and what the model itself is off."""
+OUTPUT_PERCENT, BELOW_K = 82.0, 6.0
+"""More output, and colder, than "heater line open" asks for (80 %, 5 K)."""
+ABOVE_K = 8.5
+"""More than "jacket runaway" asks for (8 K)."""
+HOT_C = 115.0
+"""A hub hotter than any recipe of the campaign needs by 45 K; harm is 155 degC [A]."""
+
+
+class Exposed:
+    """Tells of one fault, from its onset on, whether it can be noticed."""
+
+    def __init__(self, stage: Stage, kind: FaultKind) -> None:
+        """Begin at the onset."""
+        self.stage = stage
+        self.kind = kind
+        self._warm = frozenset(
+            place for place, step in enumerate(stage.plan.steps, 1) if isinstance(step, Heat | ConditionStep)
+        )
+        self._most_n = max(
+            (step.setpoint.load_n if isinstance(step, ConditionStep) else step.load_n)
+            for step in stage.plan.steps
+            if isinstance(step, ConditionStep | PreGrind)
+        )
+        step = stage.place[0]
+        fitted = step > 0 and not isinstance(stage.plan.steps[step - 1], Install)
+        self._settled = stage.running and fitted and stage.next_s - stage.step_since_s > FITTED_S
+        self._speed = stage.rig.axes[kind.axis].axis.value if kind.axis else 0.0
+
+    def now(self) -> bool:
+        """Tell whether the fault can be noticed now."""
+        stage, exposure = self.stage, self.kind.exposure
+        scans = stage.run.engine.scans
+        if exposure is Exposure.ALWAYS:
+            return scans > 0
+        if exposure is Exposure.DRIVES:
+            return scans > 0 or stage.run.connector.watches_drives
+        if exposure is Exposure.CONNECTING:
+            return scans == 0 and stage.ticks < 3
+        if not stage.running:
+            return False
+        if exposure is Exposure.RUNNING:
+            return self._settled
+        if exposure in _THERMAL:
+            return self._thermal(exposure)
+        return self._mechanical(exposure)
+
+    def _mechanical(self, exposure: Exposure) -> bool:
+        stage = self.stage
+        rig, truth = stage.rig, Truth.of(stage.rig)
+        if exposure is Exposure.ENABLED:
+            return stage.all_on
+        if exposure is Exposure.TURNING:
+            return abs(truth.wheel_m_s) > TURNS_M_S
+        if exposure is Exposure.CHANGED:
+            off = abs(rig.axes[self.kind.axis].axis.value - self._speed)
+            return stage.all_on and off * (_radius_m(stage) if self.kind.axis == "wheel" else 1.0) > CHANGED_M_S
+        if exposure is Exposure.LOADED:
+            return truth.force_n > LOADED_N
+        lifts = rig.axes["press"].axis.target < LIFTS_MM_S
+        held = truth.force_n > max(LOADED_N, HELD_SHARE * self._most_n) and not lifts
+        if exposure is Exposure.PRESSING:
+            return held
+        slides = driven_slip_m_s(stage) > DRIVEN_M_S
+        if exposure is Exposure.RUBBING:
+            return held and slides
+        return truth.force_n > LOADED_N and slides
+
+    def _thermal(self, exposure: Exposure) -> bool:
+        stage = self.stage
+        plant, jacket = stage.rig.plant, stage.rig.jacket
+        if exposure is Exposure.HEATING:
+            return stage.run.engine.ctx.progress.step in self._warm
+        if exposure is Exposure.MISREAD:
+            turning = abs(Truth.of(stage.rig).wheel_m_s) > TURNS_M_S
+            return turning and not misread_k(stage) <= MISREAD_K
+        if exposure is Exposure.STARVED:
+            asked = jacket.running and jacket.output >= OUTPUT_PERCENT
+            return asked and jacket.pv_c < jacket.setpoint_c - BELOW_K
+        if exposure is Exposure.OVERHEATED:
+            return plant.heat.hub_c > stage.hub_most_c + ABOVE_K
+        if exposure is Exposure.HOT:
+            return plant.heat.hub_c > HOT_C
+        io = io_of(stage)
+        if exposure is Exposure.UNASKED:
+            return io.contactor_closed and jacket.heater_w > 0.0 and jacket.output <= 0.0
+        return io.contactor_closed and not io.requested
+
+
+_THERMAL = frozenset({
+    Exposure.HEATING, Exposure.MISREAD, Exposure.STARVED, Exposure.OVERHEATED, Exposure.HOT, Exposure.UNASKED,
+    Exposure.WELDED,
+})  # fmt: skip
+
+
+def io_of(stage: Stage) -> SafetyIo:
+    """Return the inputs and outputs at the press drive. Raises LookupError where there are none."""
+    for drive in stage.rig.axes.values():
+        if drive.io is not None:
+            return drive.io
+    raise LookupError("no drive of this rig has digital inputs")
+
+
+def driven_slip_m_s(stage: Stage) -> float:
+    """Return the slip that the drives make, whether or not wheel and belt follow them, m/s."""
+    axes = stage.rig.axes
+    rim_m_s, belt_m_s = axes["wheel"].axis.value * _radius_m(stage), axes["belt"].axis.value
+    yaw = axes["sideslip"].axis.position if "sideslip" in axes else 0.0
+    return hypot(rim_m_s - belt_m_s, belt_m_s * sin(radians(yaw)))
+
+
+def misread_k(stage: Stage) -> float:
+    """Return how far the thermometer shows off the true surface, K; infinite where it shows nothing."""
+    source = stage.rig.ir.source
+    if not isinstance(source, SpoiledTemperature):
+        return 0.0
+    off = abs(source.off_k(stage.rig.plant.surface_c, stage.rig.now_s))
+    return off if isfinite(off) else inf
+
+
+def _radius_m(stage: Stage) -> float:
+    return 0.0005 * stage.rig.plant.diameter_mm

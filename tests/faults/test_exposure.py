@@ -1,0 +1,65 @@
+"""Whether a fault can be noticed is told from the rig and the plan, whatever control believes."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import pytest
+
+from sim.faults import CATALOGUE
+from sim.faults.kinds import Exposure, FaultKind, Reaction
+from tester.process import Press
+from tests.faults.exposure import Exposed
+from tests.faults.moments import Moment, Twins, rehearse, visit
+from tests.faults.stage import Stage
+
+
+@cache
+def sliding() -> Stage:
+    moment = next(m for m in rehearse("short")[0] if m.step.endswith(" measure") and m.phase == "middle")
+    found: list[Stage] = []
+
+    def keep(moment: Moment, twins: Twins) -> None:
+        found.append(twins())
+
+    visit("short", [moment], keep)
+    return found[0]
+
+
+def kind(exposure: Exposure) -> FaultKind:
+    return FaultKind("it", CATALOGUE["belt torn"].make, exposure, Reaction.TRIP, 1.0)
+
+
+@pytest.mark.parametrize(
+    "exposure", [Exposure.ENABLED, Exposure.TURNING, Exposure.LOADED, Exposure.PRESSING, Exposure.SLIDING,
+                 Exposure.RUBBING, Exposure.HEATING, Exposure.RUNNING],
+)  # fmt: skip
+def test_what_control_wants_and_knows_switches_no_budget_off(exposure: Exposure):
+    stage = sliding().copy()
+    exposed = Exposed(stage, kind(exposure))
+    assert exposed.now()
+    engine = stage.run.engine
+    demand, readings, state = engine.ctx.demand, engine.ctx.readings, engine.control.state
+    demand.enabled, demand.press, demand.load_n = False, Press.LIFT, 0.0
+    readings.drives_enabled = False
+    state.setpoints.heat, engine.ctx.contact.loaded, state.load.loaded = False, False, False
+    assert exposed.now()
+
+
+def test_a_torn_belt_is_exposed_although_nothing_slides_on_it():
+    stage = sliding().copy()
+    stage.rig.plant.slip_m_s = 0.0
+    assert Exposed(stage, kind(Exposure.RUBBING)).now()
+
+
+def test_a_press_told_to_lift_holds_no_load():
+    stage = sliding().copy()
+    exposed = Exposed(stage, kind(Exposure.PRESSING))
+    stage.rig.axes["press"].axis.aim(-10.0)  # type: ignore[union-attr]
+    assert not exposed.now()
+
+
+@pytest.mark.parametrize("exposure", [Exposure.MISREAD, Exposure.STARVED, Exposure.UNASKED, Exposure.OVERHEATED,
+                                      Exposure.HOT, Exposure.WELDED, Exposure.CONNECTING])  # fmt: skip
+def test_a_sound_rig_shows_no_fault_of_the_heat(exposure: Exposure):
+    assert not Exposed(sliding().copy(), kind(exposure)).now()
