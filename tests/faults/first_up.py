@@ -42,6 +42,7 @@ FIRST: tuple[First, ...] = (
     First("scan late", ("t=0 s: scan stalled while sliding",), overrides=PATIENT),
     First("guard open", ("t=0 s: guard opened",)),
     First("drive data stale", ("t=0 s: wheel drive data lost",)),
+    First("inputs stale", ("t=0 s: press drive inputs lost",)),
     First("drive dropped out", ("t=0 s: belt drive torque off",)),
     First("overspeed", ("t=0 s: wheel runs away 27 rad/s", "t=0.1 s: operator stop"), HEAT),
     First("wheel speed", ("t=0 s: wheel runs away",)),
@@ -81,9 +82,12 @@ FIRST: tuple[First, ...] = (
 
 NEVER_FIRST: dict[str, str] = {
     "clock jump": "a scan waits for its time on the same clock: one that goes back delays it, and that shows first",
+    "press travel": "a wheel is pressed flat long before 18 mm: force and press speed come first",
     "slip power": "the speeds' own rows are as quick, and friction alone cannot reach 350 W at the speeds of the rig",
     "heating at standstill": "a wheel that stands against its command trips its own row in the same time",
     "heat not off": "needs contactor and output stuck together: the contactor's row sees them half a second sooner",
+    "moving at rest": "the catalogue's drives that obey nothing turn only with power, and at rest none has any",
+    "loaded at rest": "it stops nothing: it refuses to arm and to acknowledge",
     "wheel worn": "no fault wears a wheel: the diameter is counted down over hours, and the wheel is changed before",
 }
 """Rows without a fault that trips them first; their levels and delays are shown in tests/tester/control."""
