@@ -23,7 +23,7 @@ SAMPLE_CPU_S, FULL_CPU_S = 120.0, 1800.0
 SAMPLE_SCANS = 40
 SPARSE = 10
 """Emergency stop and hold come at every tenth scan: abort, fast stop and kill at every one."""
-UNNOTICED = 0.25
+UNNOTICED = 0.2
 """Share of the cases with a budget, begun in a run, in which the fault may never show: no load follows, say."""
 DOUBLES_AT = ("1 install install, begin", "2 heat heat, middle", "2 heat soak, middle", "3 3#: measure, middle")
 """Places of the heated recipe at which the pairs of hardware's list are tried: standing, approaching, hot, sliding."""

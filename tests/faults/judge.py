@@ -146,6 +146,8 @@ class Judge:
         self.verdict.ended_after_s = now - self.onset_s
         self.committed = self.stage.ledger.committed
         normal = self.stage.run.engine.executor.finished
+        if not normal:
+            self._unexposed.clear()  # it was noticed: nothing else ends a run
         rides = [kind.phrase for kind in self.kinds if kind.reaction is Reaction.RIDE]
         if self.budgets and len(rides) == len(self.kinds) and not normal and self._was_running:
             self.verdict.failures.append(f"ended by a fault it should ride through{self._why()}")
