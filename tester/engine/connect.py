@@ -8,7 +8,7 @@ from __future__ import annotations
 from enum import Enum
 from math import inf
 
-from drivers.cia402 import State
+from drivers.cia402 import Goal, State
 from drivers.ports import BusLost
 from tester.engine.arming import Proof
 from tester.engine.devices import INPUT_GUARD, INPUT_SAFETY_CHAIN, Devices
@@ -19,6 +19,8 @@ CONNECT_S = 0.01
 """Period of the ticks while connecting, s: an SDO exchange takes half a millisecond on the wire."""
 TIMEOUT_S = 90.0
 """Everything must be up by then; homing of a slow axis takes the most [A]."""
+RAMP_S = 0.5
+"""After a failure every axis stands by then: the ramp from creep speed takes 25 ms, that of homing 0.2 s [A]."""
 RELEASE_S = 3.0
 """After a failure, drives that were configured are released by then [A]."""
 
@@ -209,6 +211,10 @@ class Connector:
                     master.start(drive, drive.release())
         elif not any(master.busy(drive) for drive in devices.drives) or now - self._released_s > RELEASE_S:
             self.stage = Stage.FAILED
+        elif now - self._released_s > RAMP_S:
+            for drive in devices.drives:
+                if drive.state is State.OPERATION_ENABLED:
+                    drive.goal = Goal.FREE  # it does not come to its standstill
 
     def _missing(self) -> str:
         """Name what has not answered."""

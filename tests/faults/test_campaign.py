@@ -62,6 +62,12 @@ def test_a_run_spares_the_memory_of_the_jackets_controller():
     assert wear and max(wear.values()) <= 20, "100 000 writes are 5 000 such runs and more"
 
 
+@pytest.mark.parametrize("fault", ["wheel runs away", "belt runs away"])
+def test_an_axis_that_runs_away_while_connecting_loses_its_power(fault: str):
+    connecting = [moment for moment in moments() if moment.place.startswith("0 connect")]
+    assert failures(conduct("connecting", [(moment, (fault,)) for moment in connecting])) == []
+
+
 def test_a_few_faults_at_a_few_moments_end_safely_and_in_time():
     cases = sample(all_cases(moments(), faults_of_campaign(everything=True)), FEW)
     tally = conduct("few", cases)
