@@ -88,7 +88,7 @@ class Proof:
             proven = drive.config.name in self.reported
             (shown if proven else left_out).append(f"{drive.config.name} stops without our heartbeat")
         lease = self.devices.jacket.has_lease
-        (shown if lease else left_out).append("jacket holds a lease")
+        (shown if lease else left_out).append("jacket's lease set and read back")
         text = "shown: " + ", ".join(shown)
         return f"{text}; NOT shown: {', '.join(left_out)}" if left_out else text
 
