@@ -93,6 +93,7 @@ UNLIFTED: tuple[tuple[str, str], ...] = (
     ("CAN adapter gone", "no command reaches any drive"),
     ("CAN bus off", "no command reaches any drive"),
     ("CAN bus busy", "commands and positions come too late to lift by"),
+    ("CAN frames lost", "a drive that gets no setpoints for its deadline stops by itself, the press too"),
     ("second master stops nodes", "no command reaches a stopped node"),
     ("scan stalled", "every drive has stopped by itself without our heartbeat, and none starts by itself"),
     ("clock jump", "every drive's heartbeat looks lost: a drive that may be dead is not commanded"),

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable
 from copy import deepcopy
 from functools import cache
-from math import inf
 
 from sim.faults import FaultScript, Injection
 from sim.faults.can import FaultyCanWire
@@ -106,8 +105,8 @@ class Stage:
         """Since when the plan's present step is worked off."""
         self.all_on = False
         """Every drive has been energised since they were last all off: what is missing now has dropped out."""
-        self.hub_most_c = -inf
-        """The highest setpoint that the jacket's controller ever heated to, degC."""
+        self.hub_most_c = self.rig.plant.heat.hub_c
+        """The highest setpoint that the jacket's controller ever heated to, at first the hub as it is found, degC."""
         self._shared: tuple[object, ...] = (config, self.plan)
 
     def copy(self) -> Stage:
