@@ -57,6 +57,7 @@ HOT = (
     "sim/wear.py",
     "tester/analysis/blocks.py",
     "tester/control/*.py",
+    "tester/engine/attended.py",
     "tester/engine/bursts.py",
     "tester/engine/condition.py",
     "tester/engine/context.py",
@@ -72,6 +73,7 @@ HOT = (
     "tester/engine/tickers.py",
     "tester/engine/wheel_steps.py",
     "tester/process.py",
+    "tester/service/manual.py",
 )
 """What runs in every scan, and nothing that reads its own annotations."""
 
