@@ -169,7 +169,7 @@ class ManualExecutor(Executor):
         if not isfinite(wanted.surface_c):
             if sign < 0.0 or not isfinite(surface):
                 return "the heating is off"
-            wanted.surface_c = round(surface)
+            wanted.surface_c = float(round(surface))
         wanted.surface_c = min(wanted.surface_c + sign * HEAT_STEP_K, ctx.rig.limits.surface_c)
         if wanted.surface_c < ctx.rig.ambient_c:
             wanted.surface_c = float("nan")
