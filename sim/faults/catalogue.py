@@ -40,9 +40,9 @@ ALWAYS, DRIVES, CONNECTING, ENABLED, TURNING, LOADED, PRESSING, SLIDING, HEATING
     Exposure.ALWAYS, Exposure.DRIVES, Exposure.CONNECTING, Exposure.ENABLED, Exposure.TURNING, Exposure.LOADED,
     Exposure.PRESSING, Exposure.SLIDING, Exposure.HEATING,
 )  # fmt: skip
-RUNNING, RUBBING, CHANGED, MISREAD, STARVED, UNASKED, OVERHEATED, HOT, WELDED = (
-    Exposure.RUNNING, Exposure.RUBBING, Exposure.CHANGED, Exposure.MISREAD, Exposure.STARVED, Exposure.UNASKED,
-    Exposure.OVERHEATED, Exposure.HOT, Exposure.WELDED,
+RUNNING, RUBBING, CHANGED, MISWEIGHED, MISREAD, STARVED, UNASKED, OVERHEATED, HOT, WELDED = (
+    Exposure.RUNNING, Exposure.RUBBING, Exposure.CHANGED, Exposure.MISWEIGHED, Exposure.MISREAD, Exposure.STARVED,
+    Exposure.UNASKED, Exposure.OVERHEATED, Exposure.HOT, Exposure.WELDED,
 )  # fmt: skip
 TRIP, STOP, HOLD, RIDE, MAY, DEVICES = (
     Reaction.TRIP, Reaction.STOP, Reaction.HOLD, Reaction.RIDE, Reaction.MAY, Reaction.DEVICES
@@ -172,8 +172,8 @@ def _sensor_rows() -> Iterator[FaultKind]:
     yield FaultKind("load cell jumps", partial(s.CellFault, "offset"), PRESSING, TRIP, 0.05 + 2.0 * SCAN_S, "N", 150.0,
                     lasts_s=0.3,
                     note="a bolt gives way, an amplifier changes its range: the load reads above its target")
-    yield FaultKind("load cell reads low", partial(s.CellFault, "low"), PRESSING, MAY, 0.0, "%", 50.0,
-                    note="nothing contradicts it: the other forces are right, and friction only looks twice as high")
+    yield FaultKind("load cell reads low", partial(s.CellFault, "low"), MISWEIGHED, TRIP, 0.05 + 2.0 * SCAN_S, "%",
+                    50.0, note="the press goes on beyond what the load shown needs")
     yield FaultKind("load cell drift", partial(s.CellFault, "drift"), PRESSING, MAY, 0.0, "N/s", 2.0,
                     note="seen at the next check of the zero, before each repeat")
     yield FaultKind("load cell noisy", partial(s.CellFault, "noise"), PRESSING, MAY, 0.0, "N", 40.0,

@@ -25,6 +25,7 @@ class Exposure(Enum):
     RUBBING = "while a load is held, with slip"
     CHANGED = "once the axis has changed its speed"
     HEATING = "while the jacket heats"
+    MISWEIGHED = "while the press is further than the load shown can need"
     MISREAD = "while the thermometer is off by more than the model allows, turning"
     STARVED = "while full heat is asked for and the hub stays cold"
     UNASKED = "while heat flows that the controller does not give"

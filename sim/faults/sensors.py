@@ -39,6 +39,12 @@ class SpoiledForces:
             return x, y, z, m
         return x, y, spoiled(self.kind, z, self.value, t - self.since_s, self.noise, 0.0), m
 
+    def shown_n(self, true_n: float, t: float) -> float:
+        """Return what it makes of a normal force of ``true_n`` at ``t`` s, noise left out, N; NaN: nothing."""
+        if not self.active or self.kind == "noise":
+            return true_n
+        return spoiled(self.kind, true_n, self.value, t - self.since_s, self.noise, 0.0)
+
 
 @dataclass(slots=True)
 class SpoiledTemperature:

@@ -10,6 +10,7 @@ from math import inf, isfinite
 from typing import Final
 
 from tester.control.interlocks import bit
+from tester.control.load_loop import depth_mm
 from tester.control.view import STANDING_M_S, UNLOADED_N, View
 from tester.process import Readings
 
@@ -22,6 +23,9 @@ PRESSED_N: Final = 50.0
 """A contact that nobody wants gets no firmer by more than this, N [A]: runout and noise are 10 N."""
 PUSHED_MM: Final = 0.3
 """A press that was told to lift has gone on beyond its ramp by this at most, mm [A]: 50 N at 200 N of load."""
+TOUCH_MARGIN_MM: Final = 1.5
+"""The wheel is touched at most this much later than where it was touched last, or its diameter says, mm [A]: about
+160 N of force (physics, section 5) that a frozen load cell would not show."""
 APART_M_S: Final = 0.1
 """One drive standing, the other faster than this, is no rounding of two equal ramps [A]."""
 CLEAR_MM: Final = 0.5
@@ -49,6 +53,7 @@ _CELL_BAD: Final = bit("load cell saturated")
 _CELL_FROZEN: Final = bit("load cell frozen")
 _OVERLOAD: Final = bit("overload")
 _OVERSHOOT: Final = bit("load overshoot")
+_DEEP: Final = bit("contact too deep")
 _CONTACT: Final = bit("contact lost")
 _POWER: Final = bit("slip power")
 _SURFACE_HOT: Final = bit("surface hot")
@@ -178,8 +183,13 @@ def load_levels(v: View) -> int:
         if not (fz <= v.least_n + PRESSED_N):
             held |= _OVERSHOOT
     else:
-        if not (fz >= UNLOADED_N) and not (r.press_mm <= v.touch_most_mm):
+        beyond_mm = r.press_mm - v.contact_mm
+        if not (fz >= UNLOADED_N) and not (beyond_mm <= TOUCH_MARGIN_MM):
             held |= _CELL_FROZEN
+        if load.in_contact:
+            needed_mm = depth_mm(fz, b.stiffness_n_per_mm)
+            if not (beyond_mm <= b.depth_factor * needed_mm + b.depth_margin_mm):
+                held |= _DEEP
         wanted = v.demand.load_n
         highest = load.highest_n if load.highest_n > wanted else wanted
         if not (fz <= b.overload_factor * highest + b.overload_margin_n):

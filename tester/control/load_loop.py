@@ -22,6 +22,7 @@ UNLOADED_N: Final = 20.0
 """Below this the contact counts as unloaded (safety concept, "load with a drive stopped")."""
 STIFFNESS_EXPONENT: Final = 0.23
 """Tangent stiffness of the line contact grows with load to this power: 125 to 172 N/mm from 100 to 400 N [A]."""
+_DEPTH_SHARE: Final = 1.0 / (1.0 - STIFFNESS_EXPONENT)
 DECELERATION_SHARE: Final = 0.6
 """Share of the press's acceleration limit that approach profiles use, so that the drive can follow them."""
 POSITION_GAIN_PER_S: Final = 6.0
@@ -133,6 +134,14 @@ class LoadLoop:
             self.integral_mm_s += gain * self.error_n * dt / loop.integral_s
             self.integral_mm_s = min(max(self.integral_mm_s, -0.1 * limit), 0.1 * limit)
         return min(max(gain * error + self.integral_mm_s, -limit), limit)
+
+
+def depth_mm(force_n: float, stiffness_n_per_mm: float) -> float:
+    """Return how far beyond the first touch the press stands under ``force_n``, mm: the integral of dF over the tangent
+    stiffness, which is ``stiffness_n_per_mm`` at 200 N (physics, section 5); 0 where there is no force."""
+    if not force_n > 0.0:
+        return 0.0
+    return _DEPTH_SHARE * force_n / (stiffness_n_per_mm * math.pow(force_n / 200.0, STIFFNESS_EXPONENT))
 
 
 def _gain(loop: LoadLoopConfig, bandwidth_hz: float, force_n: float) -> float:

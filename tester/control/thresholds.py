@@ -14,10 +14,12 @@ from tester.rig import RigConfig
 
 @dataclass(slots=True)
 class Thresholds:
-    """Names, units and meaning are the rig file's: its sections ``interlocks``, ``limits`` and ``loops.heat``."""
+    """Names, units and meaning are the rig file's: its sections ``interlocks``, ``limits`` and ``loops``."""
 
     # interlocks
     contact_share: float
+    depth_factor: float
+    depth_margin_mm: float
     frozen_cell_s: float
     frozen_model_k: float
     frozen_surface_s: float
@@ -59,14 +61,16 @@ class Thresholds:
     surface_c: float
     # loops.heat
     hub_min_c: float
+    # loops.load
+    stiffness_n_per_mm: float
     # axes.press: its software limits, mm
     press_low_mm: float
     press_high_mm: float
 
 
 def thresholds_of(rig: RigConfig) -> Thresholds:
-    """Take the numbers over from a rig's configuration; every other name is in one of the three sections."""
-    sections = (rig.interlocks, rig.limits, rig.loops.heat)
+    """Take the numbers over from a rig's configuration; every other name is in one of these sections."""
+    sections = (rig.interlocks, rig.limits, rig.loops.heat, rig.loops.load)
     low_mm, high_mm = rig.axes.press.software_limits or (-inf, inf)
     known = {"press_low_mm": low_mm, "press_high_mm": high_mm}
     for field in fields(Thresholds):

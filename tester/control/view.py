@@ -17,10 +17,6 @@ from tester.rig import RigConfig
 _INF: Final = inf
 STANDING_M_S: Final = 0.02
 """Below this a drive counts as standing [A]."""
-TOUCH_MARGIN_MM: Final = 1.5
-"""The wheel is touched at most this much later than where it was touched last, or its diameter says, mm [A]: about
-160 N of force (physics, section 5) that a frozen load cell would not show."""
-
 # Bound once: a look-up on the enum class costs several times as much in every scan (CPython 3.11).
 _LOAD: Final = Press.LOAD
 _RUN: Final = Mode.RUN
@@ -58,8 +54,8 @@ class View:
     """Every drive has been in operation since they were last wanted to be."""
     least_n: float = inf
     """The least force since contact was last wanted: what is lifting does not get firmer."""
-    touch_most_mm: float = inf
-    """A press beyond this has touched, whatever the load cell shows."""
+    contact_mm: float = inf
+    """Where the press touches the wheel: as it was touched last, or as its diameter says."""
     friction_n: float = 0.0
     friction_w: float = 0.0
     """Resultant friction force and its power (NaN where a part is unknown); 0 while unloaded."""
@@ -99,7 +95,7 @@ class View:
             contact_mm = state.load.contact_mm
             if not -_INF < contact_mm < _INF:
                 contact_mm = self.rig.geometry.touch_mm + 0.5 * (self.rig.geometry.wheel_diameter_mm - r.diameter_mm)
-            self.touch_most_mm = contact_mm + TOUCH_MARGIN_MM
+            self.contact_mm = contact_mm
         elif r.force_z_n < self.least_n:
             self.least_n = r.force_z_n
         wheel_m_s = r.wheel_speed_m_s

@@ -7,8 +7,9 @@ from __future__ import annotations
 
 from math import hypot, inf, isfinite, radians, sin
 
+from sim.contact import ContactModel
 from sim.faults.kinds import Exposure, FaultKind
-from sim.faults.sensors import SpoiledTemperature
+from sim.faults.sensors import SpoiledForces, SpoiledTemperature
 from sim.harm import Truth
 from sim.nodes.safety_io import SafetyIo
 from tester.recipe.plan import ConditionStep, Heat, Install, PreGrind
@@ -27,6 +28,8 @@ DRIVEN_M_S = 0.06
 """The drives make slip: above the 50 mm/s from which "belt torn" is judged."""
 CHANGED_M_S = 0.1
 """Twice what a speed may be off."""
+DEPTH_SHARE, DEPTH_MM = 1.3, 0.55
+"""What "contact too deep" leaves (1.3 times, 0.2 mm), and what a touch may be noted late where the cell reads half."""
 MISREAD_K = 9.5
 """Off the truth by this: the model's 8 K, the bias of a session, and what the model itself is off."""
 OUTPUT_PERCENT, BELOW_K = 82.0, 6.0
@@ -91,6 +94,8 @@ class Exposed:
         held = truth.force_n > max(LOADED_N, HELD_SHARE * self._most_n) and not lifts
         if exposure is Exposure.PRESSING:
             return held
+        if exposure is Exposure.MISWEIGHED:
+            return held and not excess_mm(stage) <= DEPTH_MM
         slides = driven_slip_m_s(stage) > DRIVEN_M_S
         if exposure is Exposure.RUBBING:
             return held and slides
@@ -137,6 +142,16 @@ def driven_slip_m_s(stage: Stage) -> float:
     rim_m_s, belt_m_s = axes["wheel"].axis.value * _radius_m(stage), axes["belt"].axis.value
     yaw = axes["sideslip"].axis.position if "sideslip" in axes else 0.0
     return hypot(rim_m_s - belt_m_s, belt_m_s * sin(radians(yaw)))
+
+
+def excess_mm(stage: Stage) -> float:
+    """Return how much deeper the press is than DEPTH_SHARE of what the load shown needs, mm."""
+    source, plant = stage.rig.cell.source, stage.rig.plant
+    shown_n = true_n = plant.force_z_n
+    if isinstance(source, SpoiledForces):
+        shown_n = source.shown_n(true_n, stage.rig.now_s)
+    contact = ContactModel(plant.parameters.contact)
+    return contact.depth_mm(true_n) - DEPTH_SHARE * contact.depth_mm(max(0.0, shown_n))
 
 
 def misread_k(stage: Stage) -> float:

@@ -104,6 +104,7 @@ MUTANTS: tuple[Mutant, ...] = (
     _masked("surface off model", "_MODEL"),
     _masked("hub sensor jump", "_HUB_JUMP"),
     _masked("belt torn", "_TORN"),
+    _masked("contact too deep", "_DEEP"),
     _masked("contactor welded", "_WELDED"),
     _masked("overspeed", "_OVERSPEED"),
     _masked("not lifted", "_NOT_LIFTED"),

@@ -8,6 +8,7 @@ import pytest
 
 from sim.faults import CATALOGUE
 from sim.faults.kinds import Exposure, FaultKind, Reaction
+from sim.faults.language import parse
 from tester.process import Press
 from tests.faults.exposure import Exposed
 from tests.faults.moments import Moment, Twins, rehearse, visit
@@ -59,7 +60,18 @@ def test_a_press_told_to_lift_holds_no_load():
     assert not exposed.now()
 
 
+def test_a_cell_that_shows_half_of_it_is_exposed_once_its_load_is_brought():
+    stage = sliding().copy()
+    stage.inject(parse("t=0 s: load cell reads low").shifted(stage.next_s))
+    stage.tick()
+    exposed = Exposed(stage, kind(Exposure.MISWEIGHED))
+    assert not exposed.now()
+    stage.rig.plant.force_z_n = 400.0
+    assert exposed.now()
+
+
 @pytest.mark.parametrize("exposure", [Exposure.MISREAD, Exposure.STARVED, Exposure.UNASKED, Exposure.OVERHEATED,
-                                      Exposure.HOT, Exposure.WELDED, Exposure.CONNECTING])  # fmt: skip
-def test_a_sound_rig_shows_no_fault_of_the_heat(exposure: Exposure):
+                                      Exposure.HOT, Exposure.WELDED, Exposure.CONNECTING,
+                                      Exposure.MISWEIGHED])  # fmt: skip
+def test_a_sound_rig_shows_no_fault_of_a_sensor_or_of_the_heat(exposure: Exposure):
     assert not Exposed(sliding().copy(), kind(exposure)).now()

@@ -8,6 +8,7 @@ from collections.abc import Callable
 import pytest
 
 from tester.control.interlocks import INTERLOCKS, bit
+from tester.control.load_loop import depth_mm
 from tester.control.state import Mode, Reaction
 from tester.process import Press
 from tests.tester.control.conftest import STAMPS, Bench
@@ -87,6 +88,15 @@ def _torn(bench: Bench) -> None:
     bench.readings.force_x_n = bench.readings.drive_torque_nm = 0.0
 
 
+def _touched(press_mm: float) -> Break:
+    """Say that the wheel was touched here."""
+
+    def apply(bench: Bench) -> None:
+        bench.state.load.contact_mm = press_mm
+
+    return apply
+
+
 def _dropped(bench: Bench) -> None:
     bench.readings.drives_enabled = False
 
@@ -112,6 +122,7 @@ CAUSES: dict[str, list[Break]] = {
     "load cell frozen": [_stale("cell_changed_s")],
     "overload": [_set(force_z_n=451.0), _set(force_z_n=NAN)],
     "load overshoot": [_set(force_z_n=231.0), _set(force_z_n=NAN)],
+    "contact too deep": [_touched(11.8 - 2.6), _set(press_mm=NAN)],
     "contact lost": [_set(force_z_n=15.0), _set(force_z_n=NAN)],
     "slip power": [_set(force_x_n=1200.0), _set(slip_m_s=NAN), _set(force_y_n=NAN)],
     "surface hot": [_set(surface_c=95.5), _set(surface_c=NAN)],
@@ -310,22 +321,43 @@ def test_a_stale_load_cell_does_not_matter_while_lifted(bench: Bench) -> None:
     assert bench.state.trip is None
 
 
+def _press(bench: Bench, force_n: float) -> None:
+    """Bring the load to a value, and the press to where it needs to be for it."""
+    rig = bench.control.rig
+    bench.readings.force_z_n = force_n
+    bench.readings.press_mm = rig.geometry.touch_mm + depth_mm(force_n, rig.loops.load.stiffness_n_per_mm)
+
+
 def test_a_lower_load_is_not_an_overshoot_while_the_press_follows(bench: Bench) -> None:
     bench.demand.load_n = 50.0
     for i in range(100):
-        bench.readings.force_z_n = max(50.0, 200.0 - 2.0 * i)
+        _press(bench, max(50.0, 200.0 - 2.0 * i))
         bench.scan()
+    assert bench.state.trip is None
+
+
+def test_a_softer_rubber_is_not_too_deep(bench: Bench) -> None:
+    _touched(11.8 - 2.4)(bench)
+    bench.scans(1.0)
+    assert bench.state.trip is None
+
+
+def test_how_deep_is_judged_only_once_the_wheel_was_touched(bench: Bench) -> None:
+    bench.state.load.in_contact = bench.state.load.loaded = False
+    bench.readings.force_z_n = bench.readings.slip_m_s = 0.0
+    _touched(11.8 - 1.4)(bench)
+    bench.scans(1.0)
     assert bench.state.trip is None
 
 
 def test_a_higher_load_is_not_a_lost_contact_while_the_press_follows(bench: Bench) -> None:
     bench.demand.load_n = 50.0
     for _ in range(700):
-        bench.readings.force_z_n = max(50.0, bench.readings.force_z_n - 2.0)
+        _press(bench, max(50.0, bench.readings.force_z_n - 2.0))
         bench.scan()
     bench.demand.load_n = 400.0
     for _ in range(300):
-        bench.readings.force_z_n = min(400.0, bench.readings.force_z_n + 2.0)
+        _press(bench, min(400.0, bench.readings.force_z_n + 2.0))
         bench.scan()
     assert bench.state.trip is None
 

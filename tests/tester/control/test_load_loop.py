@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from tester.control.load_loop import LoadLoop
+from tester.control.load_loop import STIFFNESS_EXPONENT, LoadLoop, depth_mm
 from tester.process import Demand, Press, Readings
 from tester.rig import RigConfig
 
@@ -107,3 +107,14 @@ def test_a_press_at_its_clearance_goes_back_further_while_the_cell_shows_a_load(
     loop = LoadLoop(contact_mm=10.0)
     at_clearance = Readings(force_z_n=95.0, press_mm=8.0)
     assert loop.velocity(Demand(), at_clearance, 0.01, rig.loops.load, rig.axes.press) < 0.0
+
+
+@pytest.mark.parametrize("force", [100.0, 200.0, 400.0])
+def test_the_depth_grows_with_the_load_by_the_tangent_stiffness(force: float) -> None:
+    slope = 2.0 / (depth_mm(force + 1.0, 145.0) - depth_mm(force - 1.0, 145.0))
+    assert slope == pytest.approx(145.0 * (force / 200.0) ** STIFFNESS_EXPONENT, rel=1e-4)
+
+
+@pytest.mark.parametrize("force", [0.0, -3.0, math.nan])
+def test_no_force_or_an_unknown_one_needs_no_depth(force: float) -> None:
+    assert depth_mm(force, 145.0) == 0.0
