@@ -150,6 +150,8 @@ class Demand:
     """Surface temperature to hold; NaN = heat off."""
     freeze_heat: bool = False
     """Keep the hub setpoint as it is: friction heat of a slip pulse is not the jacket's to correct."""
+    attended: bool = False
+    """A person has been asked to come near: hands are at wheel, plug and thermometer."""
 
 
 @dataclass(slots=True)

@@ -28,6 +28,8 @@ TOUCH_MARGIN_MM: Final = 1.5
 160 N of force (physics, section 5) that a frozen load cell would not show."""
 APART_M_S: Final = 0.1
 """One drive standing, the other faster than this, is no rounding of two equal ramps [A]."""
+STOP_TIMEOUT_S: Final = 10.0
+"""A stop that has not reached standstill by then takes the power off, and latches where it is [A]."""
 CLEAR_MM: Final = 0.5
 """The press stands this far off the known contact: open, whatever the cell shows [A] (runout 0.05 mm, wear)."""
 
@@ -76,6 +78,8 @@ _LIFT_FAILED: Final = bit("lift failed")
 _NOT_STOPPING: Final = bit("not stopping")
 _QUICK_FAILED: Final = bit("quick stop failed")
 _HEAT_ON: Final = bit("heat not off")
+_OUTPUT: Final = bit("output not off")
+_ENDLESS: Final = bit("stop not ended")
 _WELDED: Final = bit("contactor welded")
 _TRAVEL: Final = bit("press travel")
 _MOVING: Final = bit("moving at rest")
@@ -150,7 +154,7 @@ def motion_levels(v: View) -> int:
             held |= _BELT
         if not (v.press.ahead_mm <= b.press_error_mm):
             held |= _PRESS
-    if not (r.force_z_n < UNLOADED_N):
+    if not (r.force_z_n < UNLOADED_N) and not v.unpowered:
         belt_moves = belt > STANDING_M_S or belt < -STANDING_M_S
         # While they come down together one may stand a moment before the other: that is no wheel on a stopped belt.
         slow = -APART_M_S <= wheel <= APART_M_S and -APART_M_S <= belt <= APART_M_S
@@ -163,8 +167,8 @@ def motion_levels(v: View) -> int:
 
 
 def load_levels(v: View) -> int:
-    """Return the levels of load and friction; unloaded there is nothing to watch."""
-    if not v.loaded:
+    """Return the levels of load and friction; unloaded, or with the drives off, there is nothing to watch."""
+    if not v.loaded or v.unpowered:
         return 0
     r, b, load = v.readings, v.bounds, v.state.load
     fz = r.force_z_n
@@ -210,25 +214,14 @@ def heat_levels(v: View) -> int:
     r, b, jacket = v.readings, v.bounds, v.jacket
     held = 0
     heats = not (r.heat_percent <= 0.0)
-    if not (r.jacket_valid and r.now_s - r.jacket_at_s <= b.stale_jacket_s):
-        held |= _JACKET_STALE
-    if r.jacket_valid:
-        if not (r.hub_c <= b.jacket_c + b.jacket_margin_k):
-            held |= _HUB_HOT
-        ceiling = v.state.hub_ceiling
-        # A hub that was hot takes longer to cool than the window is: then it must not get hotter again.
-        if ceiling:
-            highest = max(ceiling[0][1], b.hub_min_c, jacket.coolest_c)
-            if not (r.hub_c <= highest + b.runaway_k):
-                held |= _RUNAWAY
-        if not (jacket.rate_k_s <= b.stuck_rate_k_s) and r.now_s - jacket.off_since_s >= b.stuck_off_s:
-            held |= _STUCK
-    if r.now_s - jacket.weak_since_s >= b.open_s and not (jacket.rise_k >= b.open_rise_k):
-        held |= _OPEN
     if heats and r.contactor_closed and not v.turning:
         held |= _STANDSTILL
-    if not (jacket.jump_k <= b.jump_k):
-        held |= _HUB_JUMP
+    if r.jacket_valid and not (r.hub_c <= b.jacket_c + b.jacket_margin_k):
+        held |= _HUB_HOT
+    if not v.attended:
+        held |= _hub_levels(v)
+    if r.now_s - jacket.weak_since_s >= b.open_s and not (jacket.rise_k >= b.open_rise_k):
+        held |= _OPEN
     if v.pressing or -_INF < v.demand.surface_c < _INF:
         if not (r.surface_valid and r.now_s - r.surface_at_s <= b.stale_ir_s):
             held |= _SURFACE_STALE
@@ -245,6 +238,29 @@ def heat_levels(v: View) -> int:
                 -b.frozen_model_k <= model - v.surface.model_c <= b.frozen_model_k
             ):
                 held |= _FROZEN
+    return held
+
+
+def _hub_levels(v: View) -> int:
+    """Return the levels that compare the hub's readings; while a person is at its plug they say nothing."""
+    r, b, jacket = v.readings, v.bounds, v.jacket
+    held = 0
+    if not (r.jacket_valid and r.now_s - r.jacket_at_s <= b.stale_jacket_s):
+        held |= _JACKET_STALE
+    if r.jacket_valid:
+        ceiling = v.state.hub_ceiling
+        # A hub that was hot takes longer to cool than the window is: then it must not get hotter again, except by a
+        # rubber that friction has made hotter than itself.
+        if ceiling:
+            highest = max(ceiling[0][1], b.hub_min_c, jacket.coolest_c)
+            if r.surface_valid and r.surface_c > highest:
+                highest = r.surface_c
+            if not (r.hub_c <= highest + b.runaway_k):
+                held |= _RUNAWAY
+        if not (jacket.rate_k_s <= b.stuck_rate_k_s) and r.now_s - jacket.off_since_s >= b.stuck_off_s:
+            held |= _STUCK
+    if not (jacket.jump_k <= b.jump_k):
+        held |= _HUB_JUMP
     return held
 
 
@@ -265,8 +281,12 @@ def stop_levels(v: View) -> int:
     held = 0
     if not (r.press_mm <= stop.press_mm + PUSHED_MM) and not unloaded(v):
         held |= _LIFT_FAILED
-    if not (since <= b.heat_off_s) and not (r.heat_percent <= 0.0) and not contactor_open(v):
-        held |= _HEAT_ON
+    if not (since <= b.heat_off_s) and not (r.heat_percent <= 0.0):
+        held |= _OUTPUT
+        if not contactor_open(v):
+            held |= _HEAT_ON
+    if not stop.creeps and not (r.now_s - v.state.mode_since_s <= STOP_TIMEOUT_S):
+        held |= _ENDLESS
     if not stop.creeps and not standing(r):
         axis = v.rig.axes.belt
         # Slip is taken out first (half a second at most), then both come down on the ramp.
@@ -285,6 +305,37 @@ def rest_levels(v: View) -> int:
         held |= _MOVING
     if not unloaded(v):
         held |= _LOADED
+    if not (r.heat_percent <= 0.0):
+        held |= _OUTPUT
+    return held
+
+
+def unpowered_levels(v: View) -> int:
+    """Return the levels of a run whose drives are off, or on their way to operation: a person may be near.
+
+    What a hand turns has no power; what nobody has said anything of for a while may have.
+    """
+    r = v.readings
+    if v.demand.enabled:
+        still = standing(r) and r.press_mm <= v.rest_mm + PUSHED_MM
+    else:
+        since = r.now_s - SPEEDS_OLD_S
+        still = r.drives_disabled and r.wheel_at_s >= since and r.belt_at_s >= since and r.press_at_s >= since
+    return 0 if still else _MOVING
+
+
+def unseen_levels(v: View) -> int:
+    """Return levels that are watched only while drives, load or heat are wanted, as if they were: is a cause gone?"""
+    r, since = v.readings, v.readings.now_s - SPEEDS_OLD_S
+    held = 0
+    if not r.guard_closed:
+        held |= _GUARD
+    if not (r.cell_at_s >= since):
+        held |= _CELL_STALE
+    if not r.cell_valid:
+        held |= _CELL_BAD
+    if not (r.surface_valid and r.now_s - r.surface_at_s <= v.bounds.stale_ir_s):
+        held |= _SURFACE_STALE
     return held
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from math import exp, inf, isfinite, pi, sqrt
+from math import exp, inf, isfinite, nan, pi, sqrt
 from typing import Final
 
 from tester.process import Demand, Press, Readings
@@ -39,8 +39,10 @@ HELD_BAND: Final = 0.03
 class LoadLoop:
     """State of the press control."""
 
-    contact_mm: float = float("nan")
+    contact_mm: float = nan
     """Press position at the last first touch; NaN until the wheel has been touched since its installation."""
+    diameter_mm: float = nan
+    """The wheel's diameter then: since then it has worn."""
     in_contact: bool = False
     seen_open: bool = False
     """The contact was open since it was touched last: where it is touched again is where the rubber begins."""
@@ -56,7 +58,7 @@ class LoadLoop:
 
     def forget_contact(self) -> None:
         """Forget where the wheel was touched: another wheel is installed."""
-        self.contact_mm = float("nan")
+        self.contact_mm = nan
 
     def velocity(self, demand: Demand, readings: Readings, dt: float, loop: LoadLoopConfig, press: AxisConfig) -> float:
         """Return the press velocity in mm/s (positive = towards the wheel) for this scan.
@@ -68,7 +70,7 @@ class LoadLoop:
             return self._lift(force, position, loop, press)
         self.highest_n = max(demand.load_n, self.highest_n - LOAD_RATE_N_S * dt)
         self.lowest_n = min(demand.load_n, self.lowest_n + LOAD_RATE_N_S * dt)
-        self._track_contact(force, position, loop)
+        self._track_contact(force, readings, loop)
         self.loaded = self.in_contact and (self.loaded or force >= 0.5 * demand.load_n)
         if not self.in_contact:
             self.integral_mm_s = 0.0
@@ -97,13 +99,18 @@ class LoadLoop:
         if force < OPEN_SHARE * loop.touch_load_n:
             self.seen_open = True
 
-    def _track_contact(self, force: float, position: float, loop: LoadLoopConfig) -> None:
+    def worn_to_mm(self, diameter_mm: float) -> float:
+        """Return where a wheel of this diameter would be touched now, mm; NaN where it has not been touched yet."""
+        worn = 0.5 * (self.diameter_mm - diameter_mm)
+        return self.contact_mm + worn if worn > 0.0 else self.contact_mm
+
+    def _track_contact(self, force: float, readings: Readings, loop: LoadLoopConfig) -> None:
         """Note touching; a load that comes again before the contact was open says nothing about where it begins."""
         self._look_open(force, loop)
         if not self.in_contact and force > loop.touch_load_n:
             self.in_contact = True
             if self.seen_open:
-                self.contact_mm = position
+                self.contact_mm, self.diameter_mm = readings.press_mm, readings.diameter_mm
             self.seen_open = False
         elif self.in_contact and not self.loaded and force < 0.3 * loop.touch_load_n:
             self.in_contact = False

@@ -14,6 +14,8 @@ from tester.control.levels import (
     process_levels,
     rest_levels,
     stop_levels,
+    unpowered_levels,
+    unseen_levels,
 )
 from tester.control.permissives import CONFIRMED_M_S, Bounds, may_heat, may_load, may_move, rig_bounds
 from tester.control.safe_outputs import no_outputs, withdraw_escalation
@@ -38,7 +40,7 @@ CEILING_STEP_S: Final = 1.0
 """How exactly it knows when a setpoint was left, s."""
 ACK_WAIT_S: Final = 1.0
 """An acknowledged drive has reset its fault by then, s [A]; a cause that still holds refuses the acknowledgement."""
-_HEATING: Final = bit("heat not off") | bit("contactor welded") | bit("heating at standstill")
+_HEATING: Final = bit("heat not off") | bit("output not off") | bit("contactor welded") | bit("heating at standstill")
 """Rows after which a heat that is still on leaves the jacket's lease to run out."""
 _MOVING: Final = bit("moving at rest")
 COLD_K: Final = 3.0
@@ -169,6 +171,7 @@ class Control:
         held.wheel_speed_m_s = held.belt_speed_m_s = demand.wheel_speed_m_s
         held.sideslip_deg, held.camber_deg = demand.sideslip_deg, demand.camber_deg
         held.surface_c, held.freeze_heat = demand.surface_c, False
+        held.attended = demand.attended
         state.enter(_HOLD, now, why)
         return ""
 
@@ -214,7 +217,7 @@ class Control:
     def _acknowledge(self, now: float) -> None:
         """Leave LATCHED where nothing holds any more; refuse when something still does after a while."""
         state = self.state
-        holding = state.held & ~WARNINGS
+        holding = (state.held | unseen_levels(self.view) & state.tripped) & ~WARNINGS
         if not holding:
             state.ack_until_s = -inf
             state.trip = None
@@ -245,6 +248,8 @@ class Control:
                 held |= stop_levels(view)
         if view.resting:
             held |= rest_levels(view)
+        elif view.unpowered:
+            held |= unpowered_levels(view)
         return held
 
     def _time(self, held: int, readings: Readings) -> None:

@@ -5,14 +5,12 @@ from __future__ import annotations
 from math import isfinite
 from typing import Final
 
-from tester.control.levels import contactor_open, standing, unloaded
+from tester.control.levels import STOP_TIMEOUT_S, contactor_open, standing, unloaded
 from tester.control.permissives import Bounds
 from tester.control.safe_outputs import mirror_emergency, no_outputs, safe_outputs
 from tester.control.state import ControlState, Mode
 from tester.control.view import STANDING_M_S, UNLOADED_N, View
 
-STOP_TIMEOUT_S: Final = 10.0
-"""A stop that has not reached standstill by then latches where it is, power off [A]."""
 SLIP_OUT_S: Final = 0.5
 """Slip is taken out under load for this long at most before both drives come down [A]."""
 LAG_S: Final = 0.05
@@ -69,7 +67,7 @@ def stop_outputs(state: ControlState, view: View) -> None:
 
 
 def stop_ended(state: ControlState, view: View) -> bool:
-    """Tell whether the rig stands, lifted, unloaded and without heat, or the time for it is over."""
+    """Tell whether the rig stands, lifted, unloaded and without heat, or the time for it is over ("stop not ended")."""
     r = view.readings
     if r.now_s - state.mode_since_s > STOP_TIMEOUT_S:
         return True

@@ -55,7 +55,7 @@ class View:
     least_n: float = inf
     """The least force since contact was last wanted: what is lifting does not get firmer."""
     contact_mm: float = inf
-    """Where the press touches the wheel: as it was touched last, or as its diameter says."""
+    """Where the press touches the wheel: as it was touched last, less its wear since, or as its diameter says."""
     friction_n: float = 0.0
     friction_w: float = 0.0
     """Resultant friction force and its power (NaN where a part is unknown); 0 while unloaded."""
@@ -65,6 +65,12 @@ class View:
     """How long a stop or a hold has been lifting; -inf while neither is."""
     resting: bool = True
     """Everything is to rest: idle, armed or latched."""
+    unpowered: bool = False
+    """A run that wants no drives has seen them without power: until all are in operation again, nothing may move."""
+    rest_mm: float = inf
+    """How far back the press has been since then."""
+    attended: bool = False
+    """A person was asked to come near; what hands do to sensors is nobody's fault."""
     wheel_most_m_s: float = field(init=False)
     belt_most_m_s: float = field(init=False)
     """Overspeed begins here."""
@@ -92,7 +98,7 @@ class View:
         self.loaded = loaded = pressing or not (r.force_z_n < UNLOADED_N)
         if pressing:
             self.least_n = inf
-            contact_mm = state.load.contact_mm
+            contact_mm = state.load.worn_to_mm(r.diameter_mm)
             if not -_INF < contact_mm < _INF:
                 contact_mm = self.rig.geometry.touch_mm + 0.5 * (self.rig.geometry.wheel_diameter_mm - r.diameter_mm)
             self.contact_mm = contact_mm
@@ -106,6 +112,10 @@ class View:
             self.lifting_s = r.now_s - state.mode_since_s
         self.resting = mode is _IDLE or mode is _LATCHED or mode is _ARMED
         self._follow_speeds(demand, r, dt)
+        self._note_rest(demand, r)
+        if self.attended is not demand.attended:
+            self.attended = demand.attended
+            self._forget_readings(r.now_s)
         observer = self.observer
         if loaded:
             fx, fy = r.force_x_n, r.force_y_n
@@ -144,8 +154,22 @@ class View:
         self.belt.follow(out.belt_m_s, dt)
         self.press.follow(out.press_mm_s, dt, r)
 
+    def _note_rest(self, demand: Demand, r: Readings) -> None:
+        """Note when a run has its drives off, and where the press stood at most since."""
+        mode = self.state.mode
+        if self.confirmed or not (mode is _RUN or mode is _HOLD):
+            self.unpowered = False
+        elif self.unpowered or (not demand.enabled and r.drives_disabled):
+            if not self.unpowered or r.press_mm < self.rest_mm:
+                self.rest_mm = r.press_mm
+            self.unpowered = True
+
     def wheel_changed(self, now: float) -> None:
         """Begin anew with a wheel at ambient temperature: nothing is compared with the one before."""
         self.observer.new_wheel()
+        self._forget_readings(now)
+
+    def _forget_readings(self, now: float) -> None:
+        """Compare no temperature with the one before."""
         self.surface.forget(now)
         self.jacket.forget(now)

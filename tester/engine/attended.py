@@ -9,9 +9,12 @@ from tester.engine.activity import Activity
 from tester.engine.context import Context
 from tester.engine.moves import Ask, Lift, Move, Power, Sequence, Turn
 from tester.engine.thermal_steps import CoolDown
+from tester.engine.unloaded import loaded
 from tester.process import NAN
 from tester.recipe.wheel_change import TOUCH
 
+FRESH_S: Final = 0.5
+"""At rest the cell is read ten times a second [A]."""
 STILL_WARM_K: Final = 5.0
 """A hub that has stopped turning may show this much more than while it turned, K [A]: no reason for a warning."""
 
@@ -34,6 +37,19 @@ class Standing(Move):
         )
 
 
+class Free(Move):
+    """Wait until the load cell shows a free wheel, without tare: whoever was at it may have left it on the belt."""
+
+    limit_s = 30.0  # [A]; a hand that is still at the wheel
+    name = "waiting for a load cell that shows a free wheel"
+
+    def step(self, ctx: Context) -> bool:
+        """Done when a fresh reading shows no more than an unloaded cell may."""
+        r, (ox, oy, oz, om) = ctx.readings, ctx.cell.tare
+        fresh = r.cell_valid and r.now_s - r.cell_at_s <= FRESH_S
+        return fresh and not loaded((r.force_x_n + ox, r.force_y_n + oy, r.force_z_n + oz, r.moment_z_nm + om), ctx.rig)
+
+
 class AskAtRest:
     """Put a question about the wheel: cool enough to touch, lifted, standing, heat and drives off.
 
@@ -47,20 +63,24 @@ class AskAtRest:
         self.cool: CoolDown | None = None
         self.moves: Activity = Sequence()
         self.ask: Ask | None = None
+        self.answered = False
+        self.free = Sequence(Free())
 
     def resume(self, ctx: Context) -> None:
         """Go on cooling, or coming to a stand."""
+        self.free.resume(ctx)
         if isinstance(self.moves, CoolDown | Sequence):
             self.moves.resume(ctx)
 
     def step(self, ctx: Context) -> bool:
-        """Done when it is answered, and the person has gone."""
+        """Done when it is answered, the person has gone and the wheel is free."""
         ctx.demand.surface_c = NAN
         if self.ask is None:
             if not self._at_rest(ctx):
                 return False
             self.ask = Ask(self._question(ctx))
-        return self.ask.step(ctx)
+        self.answered = self.answered or self.ask.step(ctx)
+        return self.answered and self.free.step(ctx)
 
     def _at_rest(self, ctx: Context) -> bool:
         if self.cool is None:

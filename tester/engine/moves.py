@@ -26,7 +26,8 @@ LIFTED_MM: Final = 0.3
 """... or this near to the lifted position: the zero of the cell may have drifted by more than that force [A]."""
 TARE_LEAST: Final = 10
 """Readings that a tare averages at least."""
-GUARD_OPEN: Final = "answered: goes on when the guard is closed"
+GUARD_OPEN: Final = "answered with the guard open: close it, then the question is put again"
+AGAIN: Final = "the guard is closed now, go on?"
 CELL_SILENT_S: Final = 5.0
 """A tare that has not got its readings this long after its time is given up, s [A]."""
 
@@ -193,8 +194,8 @@ class Wait:
 class Ask:
     """Put a question and wait for its answer.
 
-    It moves nothing: whoever asks has brought the rig to where a person may go near. An answer counts once the guard
-    is closed again, so that what follows finds nobody inside.
+    It moves nothing: whoever asks has brought the rig to where a person may go near. An answer counts with the guard
+    closed; one that was given with the guard open is asked for again then, so that closing it starts nothing.
     """
 
     def __init__(self, text: str) -> None:
@@ -207,18 +208,28 @@ class Ask:
     def step(self, ctx: Context) -> bool:
         """Done when it is answered; question and answer are journalled."""
         if not self.number:
-            self.number = ctx.prompts.ask(ctx.now, self.text).number
-            self.record = ctx.journal.prompt(ctx.now, self.text)
-        prompt = ctx.prompts.asked[self.number - 1]
-        if prompt.answer is None:
+            self._put(ctx, self.text)
+        answer = ctx.prompts.asked[self.number - 1].answer
+        ctx.demand.attended = not ctx.prompts.automatic
+        if answer is None:
             return False
+        # Where nobody is asked, an open guard is a fault: it trips with the next drive switched on.
+        closed = ctx.readings.guard_closed or ctx.prompts.automatic
         if not self.heard:
             self.heard = True
-            ctx.journal.prompt_answered(self.record, ctx.now, prompt.answer)
-        if ctx.readings.guard_closed or ctx.prompts.automatic:
-            return True  # where nobody is asked, an open guard is a fault: it trips with the next drive switched on
-        ctx.progress.phase = GUARD_OPEN
+            ctx.journal.prompt_answered(self.record, ctx.now, answer)
+            if closed:
+                ctx.demand.attended = False
+                return True
+            ctx.progress.phase = GUARD_OPEN
+        elif closed:
+            self._put(ctx, f"{self.text}: {AGAIN}")
         return False
+
+    def _put(self, ctx: Context, text: str) -> None:
+        self.number = ctx.prompts.ask(ctx.now, text).number
+        self.record = ctx.journal.prompt(ctx.now, text)
+        self.heard = False
 
 
 class TakeTare:

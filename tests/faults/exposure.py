@@ -113,7 +113,7 @@ class Exposed:
             asked = jacket.running and jacket.output >= OUTPUT_PERCENT
             return asked and jacket.pv_c < jacket.setpoint_c - BELOW_K
         if exposure is Exposure.OVERHEATED:
-            return plant.heat.hub_c > stage.hub_most_c + ABOVE_K
+            return plant.heat.hub_c > max(stage.hub_most_c, plant.surface_c) + ABOVE_K
         if exposure is Exposure.HOT:
             return plant.heat.hub_c > HOT_C
         io = io_of(stage)

@@ -77,6 +77,8 @@ FIRST: tuple[First, ...] = (
     First("lift failed", ("t=0 s: operator stop", "t=0.01 s: press runs away")),
     First("not stopping", ("t=0 s: operator stop", "t=0.1 s: wheel runs away")),
     First("quick stop failed", ("t=0 s: operator fast stop", "t=0.02 s: wheel runs away")),
+    First("output not off", ("t=0 s: jacket output stuck on", "t=0.1 s: operator stop"), WARM),
+    First("stop not ended", ("t=0 s: press drive feedback frozen", "t=0.1 s: operator stop")),
     First("contactor welded", ("t=0 s: contactor welded", "t=0.1 s: operator stop"), WARM),
     First("scan delayed", ("t=0 s: scan stalled 80 ms",), ROLL),
 )  # fmt: skip

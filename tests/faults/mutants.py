@@ -79,7 +79,8 @@ MUTANTS: tuple[Mutant, ...] = (
     Mutant("not a number passes: hub", _LEVELS,
            "if not (r.jacket_valid and r.now_s - r.jacket_at_s <= b.stale_jacket_s):",
            "if r.jacket_valid and r.now_s - r.jacket_at_s > b.stale_jacket_s:"),
-    Mutant("acknowledged without the cause gone", _STEP, "        holding = state.held & ~WARNINGS\n        if not",
+    Mutant("acknowledged without the cause gone", _STEP,
+           "        holding = (state.held | unseen_levels(self.view) & state.tripped) & ~WARNINGS\n        if not",
            "        holding = 0\n        if not"),
     Mutant("the drives do not watch our heartbeat", "drivers/servo_setup.py",
            "    watched = heartbeat.consumer_entry(pc_node_id, config.consumer_heartbeat_s)\n", "    watched = 0\n"),
@@ -108,6 +109,7 @@ MUTANTS: tuple[Mutant, ...] = (
     _masked("contactor welded", "_WELDED"),
     _masked("overspeed", "_OVERSPEED"),
     _masked("not lifted", "_NOT_LIFTED"),
+    _masked("stop not ended", "_ENDLESS"),
     _masked("not stopping", "_NOT_STOPPING"),
     _masked("quick stop failed", "_QUICK_FAILED"),
 )  # fmt: skip

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from math import nan
+
 import pytest
 
 from tester.control.state import Mode
+from tester.process import Press
 from tests.tester.control.conftest import Bench
 from tests.tester.control.test_stops import cool, lift, stand
 
@@ -137,3 +140,84 @@ def test_a_contactor_that_closes_by_itself_at_rest_is_latched(bench: Bench, sign
     out = bench.scans(1.0)
     assert bench.state.mode is Mode.LATCHED and bench.state.trip is not None
     assert out.jacket_silent is (percent > 0.0)
+
+
+# -- in a run that has its drives off -----------------------------------------------------------------------------
+
+
+def rest_in_run(bench: Bench, *, attended: bool = False) -> None:
+    """Begin a run that does not want its drives yet; ``attended``: with a question."""
+    rest(bench)
+    demand = bench.demand
+    demand.press, demand.load_n, demand.surface_c = Press.LIFT, 0.0, nan
+    demand.wheel_speed_m_s = demand.belt_speed_m_s = 0.0
+    demand.enabled, demand.attended = False, attended
+    assert bench.control.start(bench.readings) == ""
+    bench.scans(0.5, 0.1)
+    assert bench.state.mode is Mode.RUN and bench.state.trip is None
+
+
+def test_a_drive_that_takes_power_by_itself_in_a_run_at_rest_loses_it(bench: Bench) -> None:
+    rest_in_run(bench)
+    bench.readings.drives_disabled = False
+    out = bench.scans(0.2, 0.1)
+    assert out.power_off and bench.state.trip is not None and bench.state.trip.name == "moving at rest"
+
+
+@pytest.mark.parametrize("stamp", ["wheel_at_s", "belt_at_s", "press_at_s"])
+def test_a_drive_of_which_nothing_is_known_in_a_run_at_rest_trips(bench: Bench, stamp: str) -> None:
+    rest_in_run(bench)
+    bench.stale.add(stamp)
+    bench.scans(1.0, 0.1)
+    assert bench.state.trip is not None and bench.state.trip.name == "moving at rest"
+
+
+@pytest.mark.parametrize(("signal", "value"), [("wheel_speed_m_s", 0.3), ("belt_speed_m_s", -0.1), ("press_mm", 0.5)])
+def test_what_moves_while_the_drives_come_up_trips(bench: Bench, signal: str, value: float) -> None:
+    rest_in_run(bench)
+    bench.demand.enabled = True
+    bench.readings.drives_disabled = False
+    bench.scans(1.0, 0.05)
+    assert bench.state.trip is None
+    setattr(bench.readings, signal, value)
+    bench.scans(0.2, 0.05)
+    assert bench.state.trip is not None and bench.state.trip.name == "moving at rest"
+
+
+@pytest.mark.parametrize(
+    ("signal", "value"),
+    [("force_z_n", 90.0), ("force_z_n", -40.0), ("wheel_speed_m_s", 0.15), ("belt_speed_m_s", 0.3),
+     ("cell_valid", False), ("hub_c", 62.0), ("jacket_valid", False), ("surface_valid", False)],
+)  # fmt: skip
+def test_hands_at_the_wheel_trip_nothing(bench: Bench, signal: str, value: float) -> None:
+    rest_in_run(bench, attended=True)
+    before = getattr(bench.readings, signal)
+    setattr(bench.readings, signal, value)
+    if signal == "wheel_speed_m_s":
+        bench.readings.force_z_n = 25.0
+    bench.scans(3.0, 0.1)
+    assert bench.state.trip is None
+    setattr(bench.readings, signal, before)
+    bench.readings.force_z_n = 0.0
+    bench.scans(0.3, 0.1)
+    bench.demand.attended = False
+    bench.scans(0.3, 0.1)
+    bench.demand.enabled, bench.readings.drives_disabled, bench.readings.drives_enabled = True, False, True
+    bench.scans(3.0)
+    assert bench.state.trip is None
+
+
+def test_the_hub_is_watched_again_once_the_person_has_gone(bench: Bench) -> None:
+    rest_in_run(bench, attended=True)
+    bench.readings.jacket_valid = False
+    bench.scans(3.0, 0.1)
+    bench.demand.attended = False
+    bench.scans(0.5, 0.1)
+    assert bench.state.trip is not None and bench.state.trip.name == "jacket data stale"
+
+
+def test_an_output_that_is_on_at_rest_is_not_armed(bench: Bench) -> None:
+    rest(bench)
+    bench.readings.heat_percent = 40.0
+    bench.scans(0.2)
+    assert "output not off" in bench.control.start(bench.readings)

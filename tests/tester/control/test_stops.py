@@ -245,3 +245,46 @@ def test_no_hold_and_no_release_out_of_a_stop(bench: Bench) -> None:
     assert "stopping" in bench.control.request_hold(bench.demand, bench.readings.now_s, "test")
     assert "stopping" in bench.control.request_release(bench.readings.now_s, "test")
     assert bench.state.mode is Mode.STOPPING
+
+
+def test_a_stop_that_cannot_end_takes_the_power_off_and_latches(bench: Bench) -> None:
+    stop(bench)
+    lift(bench)
+    stand(bench)
+    cool(bench)
+    bench.readings.press_mm = 9.0  # it never gets back to where lifted is
+    bench.scans(9.9)
+    assert bench.state.mode is Mode.STOPPING and bench.state.trip is None
+    out = bench.scans(0.2)
+    assert out.power_off and bench.state.trip is not None and bench.state.trip.name == "stop not ended"
+    bench.scans(11.0)
+    assert bench.state.mode is Mode.LATCHED
+
+
+def test_a_fast_stop_that_cannot_end_says_so_and_latches(bench: Bench) -> None:
+    bench.control.request_stop(bench.readings.now_s, "test", fast=True)
+    stand(bench)
+    lift(bench)
+    bench.scans(10.2)
+    assert bench.state.mode is Mode.LATCHED and bench.state.trip is not None
+
+
+def test_a_stop_with_a_hot_hub_that_cannot_end_does_not_creep(bench: Bench) -> None:
+    bench.control.view.jacket.forget(bench.readings.now_s)
+    bench.readings.hub_c = 110.0
+    bench.control.request_stop(bench.readings.now_s, "test")
+    stand(bench)
+    cool(bench)
+    bench.readings.force_z_n, bench.readings.press_mm = 18.0, 11.0
+    bench.scans(12.0)
+    assert bench.state.mode is not Mode.COOLDOWN and bench.state.setpoints.wheel_rad_s == 0.0
+
+
+def test_an_output_that_stays_on_trips_although_the_contactor_is_open(bench: Bench) -> None:
+    stop(bench)
+    lift(bench)
+    stand(bench)
+    bench.readings.contactor_closed = False
+    bench.scans(1.2)
+    assert bench.state.trip is not None and bench.state.trip.name == "output not off"
+    assert bench.state.setpoints.jacket_silent and bench.state.mode is Mode.LATCHED

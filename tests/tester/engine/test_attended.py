@@ -75,13 +75,46 @@ def test_a_wheel_that_does_not_come_to_a_stand_fails_the_step(bench: Bench) -> N
         bench.run(ask)
 
 
-def test_an_answer_waits_for_the_guard_to_be_closed(bench: Bench) -> None:
+def test_closing_the_guard_starts_nothing_the_question_is_put_again(bench: Bench) -> None:
     ask = AskAtRest("check wear")
     asked(bench, ask).answer = "yes"
     bench.ctx.readings.guard_closed = False
     bench.hold(ask, 5.0)
     assert not bench.ctx.demand.enabled and "guard" in bench.ctx.progress.phase
     bench.ctx.readings.guard_closed = True
+    bench.hold(ask, 5.0)
+    again = bench.ctx.prompts.waiting
+    assert again is not None and again.text == "check wear: the guard is closed now, go on?"
+    again.answer = "yes"
+    assert bench.scan(ask)
+
+
+def test_control_is_told_that_a_person_is_at_the_wheel_until_the_answer(bench: Bench) -> None:
+    ask = AskAtRest("check wear")
+    question = asked(bench, ask)
+    bench.scan(ask)
+    assert bench.ctx.demand.attended
+    question.answer = "yes"
+    assert bench.scan(ask)
+    assert not bench.ctx.demand.attended
+
+
+def test_a_wheel_that_was_left_on_the_belt_is_waited_for_and_then_fails_the_step(bench: Bench) -> None:
+    ask = AskAtRest("check wear")
+    asked(bench, ask).answer = "yes"
+    bench.zero_n = 60.0
+    with pytest.raises(MoveFailedError, match="free wheel"):
+        bench.hold(ask, 40.0)
+
+
+def test_a_tare_hides_no_load_from_the_look_after_a_person(bench: Bench) -> None:
+    ask = AskAtRest("check wear")
+    asked(bench, ask).answer = "yes"
+    bench.zero_n = 60.0
+    bench.cell.set_tare((0.0, 0.0, 60.0, 0.0))
+    bench.hold(ask, 5.0)
+    bench.zero_n = 0.0
+    bench.cell.set_tare((0.0, 0.0, 0.0, 0.0))
     assert bench.scan(ask)
 
 
@@ -106,5 +139,10 @@ def test_a_guard_opened_while_the_question_stands_trips_nothing() -> None:
     waiting.answer = "yes"
     simulation.until(lambda s: s.now > asked_s + 6.0)
     guard.set_guard(True)
+    simulation.until(lambda s: s.run.waiting)
+    simulation.until(lambda s: s.now > asked_s + 9.0)
+    again = simulation.ctx.prompts.waiting
+    assert again is not None and simulation.ctx.readings.drives_disabled
+    again.answer = "yes"
     simulation.until(lambda s: s.ctx.readings.drives_enabled)
     assert simulation.run.engine.control.state.trip is None

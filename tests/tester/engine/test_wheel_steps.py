@@ -6,7 +6,7 @@ from math import isnan
 
 import pytest
 
-from tester.engine.moves import Power, Sequence, Turn
+from tester.engine.moves import MoveFailedError, Power, Sequence, Turn
 from tester.engine.thermal_steps import roll
 from tester.engine.wheel_steps import Grind, InstallWheel, PreGrindStep
 from tester.process import Press
@@ -88,9 +88,17 @@ def test_a_new_wheel_gets_a_reference_tare(bench: Bench) -> None:
     assert reference == pytest.approx([0.0, 0.0, 2.0, 0.0])
 
 
-def test_a_wheel_whose_cell_is_silent_fails(bench: Bench) -> None:
+def test_a_wheel_whose_cell_is_silent_is_not_moved(bench: Bench) -> None:
     bench.ctx.readings.cell_valid = False
+    with pytest.raises(MoveFailedError, match="load cell"):
+        bench.run(InstallWheel(INSTALL, []))
+    assert not bench.ctx.demand.enabled
+
+
+def test_a_wheel_whose_cell_falls_silent_in_its_tare_fails(bench: Bench) -> None:
     step = InstallWheel(INSTALL, [])
+    bench.until(step, lambda: step.tare is not None and bench.ctx.demand.enabled)
+    bench.ctx.readings.cell_valid = False
     bench.run(step)
     assert "load cell" in step.failed
 
