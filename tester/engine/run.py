@@ -143,7 +143,10 @@ class Run:
             ctx.journal.event(now, "arming", refused, "alarm")
 
     def _lose(self, lost: BusLost) -> None:
-        """End: the rig has not come up, and without a wire it will not."""
+        """End: nothing reaches the drives any more, and those that move stop without our heartbeat.
+
+        A lost serial line does not come here: the connector fails by it, and stops them.
+        """
         self.outcome, self.finished = Outcome.UNREACHABLE, True
         self.reason = f"bus lost: {lost}" if "lost" not in str(lost) else str(lost)
 
