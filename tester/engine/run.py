@@ -102,7 +102,8 @@ class Run:
     def abandon(self) -> None:
         """Leave the rig at once, because the program cannot go on: safe outputs are sent once, without looking.
 
-        Nobody scans after that: drives and jacket end by their own watchdogs whatever has not arrived.
+        Nobody scans after that: drives and jacket end by their own watchdogs whatever has not arrived. The heater's
+        contactor opens at once; the jacket's own output mostly ends by its lease (``Engine.abandon``).
         """
         self.engine.abandon()
 
