@@ -78,7 +78,7 @@ class Connector:
         return self.stage in _MOVING and not (self._proof is not None and self._proof.provokes)
 
     def tick(self, now: float) -> float:
-        """Do what is due at ``now``; return when to be called again (s). Raises BusLost."""
+        """Do what is due at ``now``; return when to be called again (s). Raises BusLost: the drives hear no more."""
         devices = self.devices
         if self._started_s is None:
             self._started_s = now
@@ -87,11 +87,11 @@ class Connector:
             self._release(now)
         else:
             self._advance(now, now - self._started_s)
-        if self.stage is Stage.LISTEN:
-            devices.transmit_lines(now)
+        if self.stage is Stage.LISTEN or self.stage is Stage.FAILED:
+            devices.transmit_lines(now)  # who gave up while listening has not spoken on the CAN bus
         else:
             devices.transmit(now, scan=self.stage in _SCANNING)
-        if devices.lost:
+        if devices.lost and not devices.can_alive():
             raise BusLost(devices.lost)
         return now + CONNECT_S
 
@@ -107,7 +107,9 @@ class Connector:
         if self.stage in _HEARD:
             # The lease of a jacket that a program before us left behind is renewed; it stays in standby.
             devices.jacket.set_setpoint(self.rig.loops.heat.hub_min_c)
-        if refused:
+        if devices.lost:
+            self._fail(devices.lost)
+        elif refused:
             self._fail(refused)
         elif devices.master.foreign_master:
             self._fail(f"another CANopen master is sending on this bus: {devices.master.foreign_frame}")

@@ -314,6 +314,10 @@ class Devices:
         """Tell whether no drive's power stage is on."""
         return all(drive.state <= State.READY_TO_SWITCH_ON or drive.lost for drive in self.drives)
 
+    def can_alive(self) -> bool:
+        """Tell whether drives can still be told anything."""
+        return self._can_alive
+
     def answering(self) -> bool:
         """Tell whether every Modbus device has reported a valid value."""
         devices = (self.cell, self.thermometer, self.jacket)

@@ -64,7 +64,11 @@ class Engine:
         return min(self.next_scan_s, max(deadline, now + SOONEST_S))
 
     def abandon(self) -> None:
-        """Command zero to every axis, lift, quick stop, heat off, contactor open; send that, and nothing after it."""
+        """Command zero to every axis, lift, quick stop, heat off, contactor open; send that, and nothing after it.
+
+        What goes over CAN leaves at once, the contactor's request among it. The jacket's standby leaves only where its
+        line is free: a request into a reply under way would spoil both. Otherwise its output ends by its lease.
+        """
         setpoints, now = self.control.state.setpoints, self.ctx.now
         safe_outputs(setpoints, self.ctx.rig, fast=True)
         self.devices.apply(setpoints)

@@ -102,7 +102,8 @@ class Run:
     def abandon(self) -> None:
         """Leave the rig at once, because the program cannot go on: safe outputs are sent once, without looking.
 
-        Nobody scans after that: drives and jacket end by their own watchdogs whatever has not arrived.
+        Nobody scans after that: drives and jacket end by their own watchdogs whatever has not arrived. The heater's
+        contactor opens at once; the jacket's own output mostly ends by its lease (``Engine.abandon``).
         """
         self.engine.abandon()
 
@@ -143,7 +144,10 @@ class Run:
             ctx.journal.event(now, "arming", refused, "alarm")
 
     def _lose(self, lost: BusLost) -> None:
-        """End: the rig has not come up, and without a wire it will not."""
+        """End: nothing reaches the drives any more, and those that move stop without our heartbeat.
+
+        A lost serial line does not come here: the connector fails by it, and stops them.
+        """
         self.outcome, self.finished = Outcome.UNREACHABLE, True
         self.reason = f"bus lost: {lost}" if "lost" not in str(lost) else str(lost)
 

@@ -59,6 +59,22 @@ def test_drives_that_do_not_stop_are_stopped_fast_and_then_lose_their_power(benc
     assert bench.state.mode is Mode.LATCHED
 
 
+@pytest.mark.parametrize(("belt_m_s", "after_s"), [(0.8, 2.0), (1.1, 2.19), (1.3, 2.31)])
+def test_a_drive_that_goes_on_turning_loses_its_power_the_later_the_faster_it_turns(
+    bench: Bench, belt_m_s: float, after_s: float
+) -> None:
+    r = bench.readings
+    r.belt_speed_m_s, r.wheel_speed_m_s = belt_m_s, min(belt_m_s, 1.1)
+    stop(bench)
+    lift(bench)
+    cool(bench)
+    began_s = r.now_s - 0.01
+    while not bench.state.setpoints.power_off:
+        bench.scan()
+        assert r.now_s - began_s < 2.5, "docs/safety.md: 1.5 s + v / deceleration + v / quick-stop deceleration"
+    assert r.now_s - began_s == pytest.approx(after_s, abs=0.03)
+
+
 def test_a_fast_stop_is_safe_or_escalated_within_three_seconds(bench: Bench) -> None:
     bench.control.request_stop(bench.readings.now_s, "test", fast=True)
     out = bench.scans(3.0)

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import pytest
 
+from drivers.cia402 import State
 from sim.modbus_wire import Impairment
+from tester.engine import arming
 from tester.engine.connect import TIMEOUT_S, Connector, Stage
+from tester.engine.run import Outcome
 from tests.tester.engine.bench import Simulation
 
 
@@ -70,5 +73,60 @@ def test_a_second_master_is_refused(simulation: Simulation) -> None:
     assert connector.failure == "another CANopen master is sending on this bus: SYNC 080#"
 
 
+def test_a_bus_with_a_second_master_is_left_without_a_word(simulation: Simulation) -> None:
+    simulation.world.advance(0.0)
+    simulation.now = simulation.run.connector.tick(0.0)
+    simulation.world.can.inject(0x080, b"", 0.005)
+    simulation.world.advance(0.009)
+    before_s = simulation.world.can.occupied_s
+    connect(simulation)
+    simulation.world.advance(simulation.now)
+    assert simulation.world.can.occupied_s == before_s
+
+
 def test_nothing_is_sent_before_the_first_tick(simulation: Simulation) -> None:
     assert simulation.world.can.occupied_s == 0.0
+
+
+def creeping(simulation: Simulation) -> Simulation:
+    """Tick until the belt creeps in the proof."""
+    axis = simulation.world.axes["belt"].axis
+
+    def creeps(_: Simulation) -> bool:
+        proof = simulation.run.connector._proof  # pyright: ignore[reportPrivateUsage]
+        return proof is not None and proof.stage is arming.Stage.BUMP_BELT and axis.value > 0.04
+
+    return simulation.until(creeps, TIMEOUT_S)
+
+
+@pytest.mark.parametrize("line", ["load_cell", "heat"])
+def test_a_line_that_is_lost_while_the_belt_creeps_leaves_no_drive_turning_or_with_power(
+    simulation: Simulation, line: str
+) -> None:
+    creeping(simulation).world.lines[line].disconnect()
+    simulation.to_the_end(TIMEOUT_S)
+    axes = simulation.world.axes
+    assert axes["belt"].axis.value == axes["wheel"].axis.value == 0.0
+    assert all(axis.state is State.SWITCH_ON_DISABLED for axis in axes.values())
+
+
+def test_a_line_that_is_lost_while_connecting_makes_the_rig_unreachable(simulation: Simulation) -> None:
+    creeping(simulation).world.lines["load_cell"].disconnect()
+    simulation.to_the_end(TIMEOUT_S)
+    assert simulation.run.outcome is Outcome.UNREACHABLE and simulation.run.reason.startswith("line lost")
+
+
+def test_a_line_that_is_lost_before_anything_is_sent_ends_at_once(simulation: Simulation) -> None:
+    simulation.tick()
+    simulation.world.lines["load_cell"].disconnect()
+    simulation.to_the_end(0.1)
+    assert simulation.run.outcome is Outcome.UNREACHABLE and simulation.world.can.occupied_s == 0.0
+
+
+def test_an_adapter_that_goes_after_the_line_ends_at_once(simulation: Simulation) -> None:
+    creeping(simulation).world.lines["load_cell"].disconnect()
+    simulation.tick()
+    assert not simulation.run.finished
+    simulation.world.can.disconnect()
+    simulation.to_the_end(simulation.now + 0.1)
+    assert simulation.run.outcome is Outcome.UNREACHABLE and simulation.run.reason.startswith("line lost")

@@ -9,12 +9,13 @@ from itertools import pairwise
 import pytest
 
 from drivers.cia402 import State
+from drivers.jacket import LEASE_S
 from tester.control.state import Mode
 from tester.engine.devices import Devices
 from tester.engine.engine import Engine
 from tester.engine.moves import Power
 from tester.process import Press, Setpoints
-from tests.tester.engine.bench import Scan, Simulation
+from tests.tester.engine.bench import SHORT, Scan, Simulation
 
 OVERCURRENT = 0x2310
 """Error code of a drive: continuous over current (CiA 402)."""
@@ -198,6 +199,27 @@ def test_a_rig_that_is_abandoned_quick_stops_with_the_heat_off(running: Simulati
     running.run.abandon()
     out = running.run.engine.control.state.setpoints
     assert out.quick_stop and not out.contactor and not out.heat
+
+
+def test_a_rig_that_is_abandoned_loses_its_heat_by_the_contactor_and_its_jackets_output_by_the_lease() -> None:
+    heating = Simulation(SHORT.replace("25 degC", "60 degC"), seed=1)
+    heating.until(lambda s: s.ctx.readings.heat_percent > 20.0 and s.ctx.readings.contactor_closed)
+    latest_s = 0.0
+    for _ in range(10):  # in some of them the serial line is free, and standby gets through at once
+        heating.until(lambda s, since_s=heating.now: s.now > since_s + 0.037)
+        left = deepcopy(heating)
+        assert left.world.jacket.heater_w > 0.0
+        left.run.abandon()
+        left.world.advance(left.now + 0.05)
+        io = left.world.axes["press"].io
+        assert io is not None and not io.contactor_closed
+        after_s = 0.05
+        while left.world.jacket.heater_w > 0.0:
+            after_s += 0.05
+            left.world.advance(left.now + after_s)
+            assert after_s < LEASE_S + 0.2
+        latest_s = max(latest_s, after_s)
+    assert latest_s > 0.5, "it was the lease"
 
 
 def test_a_rig_that_is_abandoned_while_it_connects_is_left_without_a_word() -> None:

@@ -45,3 +45,8 @@ def test_a_heated_run_with_beliefs_off_by_30_percent_has_no_trip() -> None:
     text = SHORT.replace("25 degC", "35 degC")
     run = Simulation(text, OFF[1], seed=4).to_the_end(4000.0)
     assert run.notes.written("INSERT INTO trip") == [] and run.run.outcome is Outcome.DONE
+
+
+def test_the_least_load_that_a_recipe_may_ask_for_has_no_trip() -> None:
+    run = Simulation(SHORT.replace("200 N", "15 N"), seed=2).to_the_end(4000.0)
+    assert run.notes.written("INSERT INTO trip") == [] and run.run.outcome is Outcome.DONE

@@ -118,6 +118,30 @@ def test_pre_grinding_has_the_same_limits() -> None:
     assert all(line.startswith("r.yaml:11:") for line in found)
 
 
+def test_a_load_too_near_to_touching_is_reported_with_the_least_and_its_source() -> None:
+    assert problems(with_line("[100 N, 200 N]", "[5 N, 14.9 N, 15 N]")) == [
+        f"r.yaml:9:{column}: load: {load} is too near to touching, which is 10 N, to be held"
+        f" (expected at least 15 N: 1.5 x loops.load.touch_load {FROM_RIG}"
+        for column, load in ((12, "5 N"), (17, "14.9 N"))
+    ]
+
+
+def test_the_least_load_is_that_of_the_rig() -> None:
+    (problem,) = problems(SMALL, "loops.load.touch_load=80 N")
+    assert problem.startswith("r.yaml:9:12: load: 100 N is too near to touching") and "at least 120 N" in problem
+
+
+def test_pre_grinding_has_the_same_least_load() -> None:
+    (problem,) = problems(PREPARED.replace("load: 200 N", "load: 10 N"))
+    assert problem.startswith("r.yaml:11:62: load: 10 N is too near to touching")
+
+
+@pytest.mark.parametrize("load", ["0 N", "-10 N"])
+def test_what_is_no_load_is_said_once(load: str) -> None:
+    (problem,) = problems(with_line("[100 N, 200 N]", load))
+    assert "expected more than 0 N" in problem
+
+
 def test_a_rest_that_ambient_never_lets_end_is_reported() -> None:
     (problem,) = problems(PREPARED, "sim.ambient=27")
     assert problem.startswith("r.yaml:12:33: until: a wheel at rest does not cool to 27 degC (27 degC: ambient of rig")
