@@ -80,8 +80,8 @@ class ManualExecutor(Executor):
         if not isfinite(self.used_s):
             self.used_s = ctx.now
             ctx.progress.title = NAME
-        if ctx.now - self.used_s >= ARMED_S:
-            self.finished = True
+        self.expire(ctx.now)
+        if self.finished:
             return
         demand, wanted = ctx.demand, self.wanted
         demand.enabled = True
@@ -93,6 +93,11 @@ class ManualExecutor(Executor):
         ctx.moving = ctx.now - self.moved_s < MOVING_S
         if self.taring is not None and self.taring.step(ctx):
             self._tared(ctx, self.taring)
+
+    def expire(self, now: float) -> None:
+        """End the mode when nobody has asked for anything for a minute: in every mode, a hold does not stop the time."""
+        if self.left_s(now) <= 0.0:
+            self.disarm()
 
     def disarm(self) -> None:
         """End the mode: a controlled stop follows."""

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from tester.service.commands import Arm, Jog, Stop, Tare
+from tester.service.commands import Arm, Hold, Jog, Stop, Tare
 from tester.service.link import Presence
 from tester.service.state import StateView
 from tester.store.catalogue import run_folders
@@ -147,6 +147,45 @@ def test_it_disarms_when_its_client_loses_control(tmp_path: Path) -> None:
     assert stage.texts("control")[-1] == "nobody has control"
     # Of 60 s: it was not the time that ran out.
     assert min(view.manual.left_s for view in stage.views if view.manual.left_s is not None) > 20.0
+
+
+def held(stage: Stage) -> Script:
+    """Hold the rig while it is moved by hand."""
+    yield from armed(stage)
+    yield from jog(stage, Jog("both", 1))
+    yield stage.order(Hold())
+    yield from stage.until(lambda view: view.mode == "HOLD" and view.mode_since_s > 5.0)
+
+
+def test_it_can_be_disarmed_in_a_hold(tmp_path: Path) -> None:
+    def script(stage: Stage) -> Script:
+        yield from held(stage)
+        yield stage.order(Arm(on=False))
+        yield from stage.until(off)
+
+    stage = play(tmp_path, script)
+    assert min(view.manual.left_s for view in stage.views if view.manual.left_s is not None) > 20.0
+    assert journal(tmp_path)[0] == "done"
+
+
+def test_it_disarms_in_a_hold_when_its_client_loses_control(tmp_path: Path) -> None:
+    def script(stage: Stage) -> Script:
+        yield from held(stage)
+        yield Presence("", 0, 0, False)
+        yield from stage.until(off)
+
+    stage = play(tmp_path, script)
+    assert min(view.manual.left_s for view in stage.views if view.manual.left_s is not None) > 20.0
+
+
+def test_a_hold_does_not_stop_its_minute(tmp_path: Path) -> None:
+    def script(stage: Stage) -> Script:
+        yield from held(stage)
+        yield from stage.until(off)
+
+    stage = play(tmp_path, script)
+    assert stage.views[-1].run is not None and stage.views[-1].run.outcome == "done"
+    assert max(view.t_s for view in stage.views) < 80.0
 
 
 def journal(home: Path) -> tuple[str, str, list[str]]:
