@@ -13,6 +13,7 @@ from pathlib import Path
 from tester import clock
 from tester.campaign.folder import make_folder
 from tester.campaign.part_run import Unsampled
+from tester.control.permissives import Bounds, rig_bounds
 from tester.engine.context import Context
 from tester.engine.executor import Executor
 from tester.engine.moves import TakeTare
@@ -39,6 +40,8 @@ LOAD_STEP_N = 10.0
 ANGLE_STEP_DEG = 1.0
 HEAT_STEP_K = 1.0
 UNLOADED_N = 5.0
+PRESSED_N = 20.0
+"""From this force on the interlocks want wheel and belt turning (safety concept, "load with a drive stopped")."""
 STANDING_M_S = 0.02
 TARE_S = 2.0
 MOVING_S = 2.0
@@ -60,10 +63,11 @@ class Wanted:
 class ManualExecutor(Executor):
     """Stands in the executor's place: what it demands is what a person asked for."""
 
-    def __init__(self, recorder: Recorder) -> None:
-        """Nothing is wanted: drives enabled, standing, lifted."""
+    def __init__(self, recorder: Recorder, bounds: Bounds) -> None:
+        """Nothing is wanted: drives enabled, standing, lifted. ``bounds``: how far a person may go, as control has it."""
         super().__init__(Plan(NAME, (), (), (), 0.0, 1), StoredResults(recorder), hardware=False)
         self.wanted = Wanted()
+        self.bounds = bounds
         self.taring: TakeTare | None = None
         self.tare_text = ""
         self.used_s = float("nan")
@@ -139,32 +143,45 @@ class ManualExecutor(Executor):
         return "the load cell is being tared" if self.taring is not None else ""
 
     def _step(self, ctx: Context, axis: JogAxis, sign: float) -> str:
-        wanted, limits, r = self.wanted, ctx.rig.limits, ctx.readings
+        wanted, bounds, r = self.wanted, self.bounds, ctx.readings
         loaded = wanted.load_n > 0.0 or not r.force_z_n < UNLOADED_N
         if axis in ("sideslip", "camber", "wheel", "belt") and loaded:
             return f"{axis} moves only with the wheel lifted; under load use both speeds together"
-        if axis in ("wheel", "both"):
-            wanted.wheel_m_s = _within(wanted.wheel_m_s + sign * SPEED_STEP_M_S, 0.0, limits.wheel_speed_m_s)
-        if axis in ("belt", "both"):
-            wanted.belt_m_s = _within(wanted.belt_m_s + sign * SPEED_STEP_M_S, 0.0, limits.belt_speed_m_s)
-        if axis == "sideslip":
+        if axis == "wheel":
+            wanted.wheel_m_s = _within(wanted.wheel_m_s + sign * SPEED_STEP_M_S, 0.0, bounds.wheel_speed_m_s)
+        elif axis == "belt":
+            wanted.belt_m_s = _within(wanted.belt_m_s + sign * SPEED_STEP_M_S, 0.0, bounds.belt_speed_m_s)
+        elif axis == "both":
+            return self._turn(ctx, sign)
+        elif axis == "sideslip":
             sideslip_deg = wanted.sideslip_deg + sign * ANGLE_STEP_DEG
-            wanted.sideslip_deg = _within(sideslip_deg, -limits.sideslip_deg, limits.sideslip_deg)
+            wanted.sideslip_deg = _within(sideslip_deg, -bounds.sideslip_deg, bounds.sideslip_deg)
         elif axis == "camber":
-            wanted.camber_deg = _within(
-                wanted.camber_deg + sign * ANGLE_STEP_DEG, -limits.camber_deg, limits.camber_deg
-            )
+            camber_deg = wanted.camber_deg + sign * ANGLE_STEP_DEG
+            wanted.camber_deg = _within(camber_deg, -bounds.camber_deg, bounds.camber_deg)
         elif axis == "press":
-            return self._load(ctx, sign)
+            return self._load(sign)
         elif axis == "heat":
             return self._warm(ctx, sign)
         return ""
 
-    def _load(self, ctx: Context, sign: float) -> str:
+    def _turn(self, ctx: Context, sign: float) -> str:
+        """Take wheel and belt to another speed together, neither beyond what both can do."""
+        wanted, bounds = self.wanted, self.bounds
+        step = sign * SPEED_STEP_M_S
+        pressed = wanted.load_n > 0.0 or not ctx.readings.force_z_n < PRESSED_N
+        if pressed and min(wanted.wheel_m_s, wanted.belt_m_s) + step < SPEED_STEP_M_S - 1e-9:
+            return f"under load wheel and belt turn at {SPEED_STEP_M_S:g} m/s at least: lift the wheel first"
+        most = min(bounds.wheel_speed_m_s, bounds.belt_speed_m_s)
+        wanted.wheel_m_s = _within(wanted.wheel_m_s + step, 0.0, max(most, wanted.wheel_m_s))
+        wanted.belt_m_s = _within(wanted.belt_m_s + step, 0.0, max(most, wanted.belt_m_s))
+        return ""
+
+    def _load(self, sign: float) -> str:
         wanted = self.wanted
         if sign > 0.0 and (wanted.wheel_m_s < 2.0 * STANDING_M_S or wanted.wheel_m_s != wanted.belt_m_s):
             return "load only with wheel and belt turning at the same speed"
-        wanted.load_n = _within(wanted.load_n + sign * LOAD_STEP_N, 0.0, ctx.rig.limits.load_n)
+        wanted.load_n = _within(wanted.load_n + sign * LOAD_STEP_N, 0.0, self.bounds.load_n)
         return ""
 
     def _warm(self, ctx: Context, sign: float) -> str:
@@ -175,7 +192,7 @@ class ManualExecutor(Executor):
             if sign < 0.0 or not isfinite(surface):
                 return "the heating is off"
             wanted.surface_c = float(round(surface))
-        wanted.surface_c = min(wanted.surface_c + sign * HEAT_STEP_K, ctx.rig.limits.surface_c)
+        wanted.surface_c = min(wanted.surface_c + sign * HEAT_STEP_K, self.bounds.surface_c)
         if wanted.surface_c < ctx.rig.ambient_c:
             wanted.surface_c = float("nan")
         return ""
@@ -197,9 +214,10 @@ class ManualExecutor(Executor):
 
 
 def take_over(run: Run) -> ManualExecutor:
-    """Put a person in the place of the run's recipe, and a wheel on a simulated rig."""
-    ctx = run.engine.ctx
-    hand = ManualExecutor(ctx.journal)
+    """Put a person in the place of the run's recipe, bounded by the rig alone, and a wheel on a simulated rig."""
+    ctx, control = run.engine.ctx, run.engine.control
+    control.bounds = rig_bounds(ctx.rig)
+    hand = ManualExecutor(ctx.journal, control.bounds)
     run.engine.executor = hand
     ctx.attendant.install(1, 1, "1#", new_specimen=True)
     return hand

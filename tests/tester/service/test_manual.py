@@ -113,6 +113,87 @@ def test_under_load_the_speeds_move_only_together_and_no_tare_is_taken(tmp_path:
     play(tmp_path, script)
 
 
+def test_both_speeds_go_as_far_as_the_rig_lets_both(tmp_path: Path) -> None:
+    def script(stage: Stage) -> Script:
+        yield from armed(stage)
+        yield from jog(stage, *[Jog("both", 1)] * 24)
+        at_s = stage.views[-1].t_s
+        yield from stage.until(lambda view: view.t_s > at_s + 3.0)
+        assert value(stage.views[-1], "wheel_speed") == pytest.approx(1.1, abs=0.01)
+        assert value(stage.views[-1], "belt_speed") == pytest.approx(1.1, abs=0.01)
+        yield stage.order(Stop())
+        yield from stage.until(off)
+
+    assert play(tmp_path, script).refused == {}
+
+
+def test_an_angle_is_reached(tmp_path: Path) -> None:
+    def script(stage: Stage) -> Script:
+        yield from armed(stage)
+        yield from jog(stage, *[Jog("sideslip", -1)] * 5)
+        at_s = stage.views[-1].t_s
+        yield from stage.until(lambda view: view.t_s > at_s + 3.0)
+        assert value(stage.views[-1], "sideslip") == pytest.approx(-5.0, abs=0.1)
+        yield stage.order(Stop())
+        yield from stage.until(off)
+
+    assert play(tmp_path, script).refused == {}
+
+
+def test_a_load_above_that_of_a_roll_check_is_reached(tmp_path: Path) -> None:
+    def script(stage: Stage) -> Script:
+        yield from armed(stage)
+        yield from jog(stage, *[Jog("both", 1)] * 4, *[Jog("press", 1)] * 10)
+        at_s = stage.views[-1].t_s
+        yield from stage.until(lambda view: view.t_s > at_s + 30.0 or not manual(view))
+        assert stage.views[-1].mode == "MANUAL"
+        assert value(stage.views[-1], "load") == pytest.approx(100.0, abs=10.0)
+        yield stage.order(Stop())
+        yield from stage.until(off)
+
+    assert play(tmp_path, script).refused == {}
+
+
+def test_a_temperature_above_that_of_the_air_is_heated_for(tmp_path: Path) -> None:
+    def script(stage: Stage) -> Script:
+        yield from armed(stage)
+        yield from jog(stage, *[Jog("both", 1)] * 4, *[Jog("heat", 1)] * 12)
+        at_s = stage.views[-1].t_s
+        yield from stage.until(lambda view: view.t_s > at_s + 20.0 or not manual(view))
+        hub = stage.views[-1].value("hub")
+        assert stage.views[-1].mode == "MANUAL"
+        assert hub is not None and hub.setpoint is not None and hub.setpoint > 40.0
+        yield stage.order(Stop())
+        yield from stage.until(off)
+
+    assert play(tmp_path, script).refused == {}
+
+
+def test_under_load_wheel_and_belt_keep_turning(tmp_path: Path) -> None:
+    def script(stage: Stage) -> Script:
+        yield from armed(stage)
+        yield from jog(stage, *[Jog("both", 1)] * 2, *[Jog("press", 1)] * 4)
+        yield from stage.until(lambda view: value(view, "load") > 30.0)
+        yield from jog(stage, Jog("both", -1))
+        assert "jog" not in stage.refused
+        yield from jog(stage, Jog("both", -1))
+        at_s = stage.views[-1].t_s
+        yield from stage.until(lambda view: view.t_s > at_s + 2.0)
+        assert "lift the wheel first" in stage.refused["jog"]
+        assert stage.views[-1].mode == "MANUAL"
+        assert value(stage.views[-1], "wheel_speed") == pytest.approx(0.05, abs=0.01)
+        yield from jog(stage, *[Jog("press", -1)] * 4)
+        yield from stage.until(lambda view: value(view, "load") < 5.0)
+        stage.refused.clear()
+        yield from jog(stage, Jog("both", -1))
+        yield from stage.until(lambda view: abs(value(view, "wheel_speed")) < 0.01)
+        assert stage.refused == {}
+        yield stage.order(Stop())
+        yield from stage.until(off)
+
+    play(tmp_path, script)
+
+
 def test_a_tare_tells_the_new_zero(tmp_path: Path) -> None:
     def script(stage: Stage) -> Script:
         yield from armed(stage)
