@@ -64,7 +64,7 @@ class ManualExecutor(Executor):
     """Stands in the executor's place: what it demands is what a person asked for."""
 
     def __init__(self, recorder: Recorder, bounds: Bounds) -> None:
-        """Nothing is wanted: drives enabled, standing, lifted. ``bounds``: how far a person may go, as control has it."""
+        """Nothing is wanted: drives enabled, standing, lifted. ``bounds``: how far a person may go, control's too."""
         super().__init__(Plan(NAME, (), (), (), 0.0, 1), StoredResults(recorder), hardware=False)
         self.wanted = Wanted()
         self.bounds = bounds
@@ -99,7 +99,7 @@ class ManualExecutor(Executor):
             self._tared(ctx, self.taring)
 
     def expire(self, now: float) -> None:
-        """End the mode when nobody has asked for anything for a minute: in every mode, a hold does not stop the time."""
+        """End the mode when nobody has asked for anything for a minute, in a hold as well."""
         if self.left_s(now) <= 0.0:
             self.disarm()
 
@@ -133,7 +133,8 @@ class ManualExecutor(Executor):
             return "the rig moves: stop wheel and belt first"
         limits = ctx.rig.interlocks
         self.old = ctx.cell.tare
-        self.taring = TakeTare(TARE_S, list(self.reference_tare), limits.zero_warn_n, limits.zero_stop_n)
+        reference = list(self.reference_tare)
+        self.taring = TakeTare(TARE_S, reference, limits.zero_warn_n, limits.zero_stop_n, ends_run=False)
         self.used_s = ctx.now
         return ""
 
@@ -200,7 +201,7 @@ class ManualExecutor(Executor):
     def _tared(self, ctx: Context, tare: TakeTare) -> None:
         """Say what the tare has changed."""
         if tare.failed:
-            self.tare_text = tare.failed
+            self.tare_text = f"not taken: {tare.failed}"
         else:
             new = ctx.cell.tare
             self.reference_tare = list(new)

@@ -204,9 +204,7 @@ class Service:
                 record.finish(run.outcome.value, run.reason, seconds)
         desk.ended(replace(view, outcome=run.outcome.value, reason=run.reason), run.outcome)
 
-    def _by_hand(
-        self, run: Run, hand: ManualExecutor, world: World | None, ports: Ports, record: RunWriter
-    ) -> float:
+    def _by_hand(self, run: Run, hand: ManualExecutor, world: World | None, ports: Ports, record: RunWriter) -> float:
         """Tick manual mode to its end; return the seconds it took."""
 
         def poll(now_s: float) -> None:

@@ -206,6 +206,25 @@ def test_a_tare_tells_the_new_zero(tmp_path: Path) -> None:
     assert "tare" in play(tmp_path, script).accepted
 
 
+def test_a_zero_that_is_refused_changes_nothing(tmp_path: Path) -> None:
+    def script(stage: Stage) -> Script:
+        yield from armed(stage)
+        yield stage.order(Tare())
+        yield from stage.until(lambda view: bool(view.manual.tare))
+        assert stage.service is not None and stage.service.desk.watch is not None
+        ctx, hand = stage.service.desk.watch.run.engine.ctx, stage.service.desk.hand
+        assert hand is not None
+        before = ctx.cell.tare
+        hand.reference_tare[2] -= 45.0
+        yield stage.order(Tare())
+        yield from stage.until(lambda view: view.manual.tare.startswith("not taken: load cell zero drifted by 45"))
+        assert ctx.cell.tare == before
+        yield stage.order(Stop())
+        yield from stage.until(off)
+
+    play(tmp_path, script)
+
+
 def test_it_disarms_a_minute_after_the_last_step(tmp_path: Path) -> None:
     def script(stage: Stage) -> Script:
         yield from armed(stage)
