@@ -25,7 +25,7 @@ from tester.rig import RigConfig
 from tester.service.commands import JogAxis
 from tester.store.reader import DATABASE
 from tester.store.recorder import Recorder
-from tester.store.records import RunInfo
+from tester.store.records import RunInfo, WheelInfo
 from tester.store.writer import RunWriter
 
 NAME = "manual mode"
@@ -214,13 +214,22 @@ class ManualExecutor(Executor):
         self.taring = None
 
 
-def take_over(run: Run) -> ManualExecutor:
-    """Put a person in the place of the run's recipe, bounded by the rig alone, and a wheel on a simulated rig."""
+def take_over(run: Run, worn: WheelInfo | None = None) -> ManualExecutor:
+    """Put a person in the place of the run's recipe, bounded by the rig alone; ``worn``: the wheel, None for a new one.
+
+    A simulated rig gets such a wheel.
+    """
     ctx, control = run.engine.ctx, run.engine.control
     control.bounds = rig_bounds(ctx.rig)
     hand = ManualExecutor(ctx.journal, control.bounds)
     run.engine.executor = hand
-    ctx.attendant.install(1, 1, "1#", new_specimen=True)
+    if worn is None:
+        ctx.attendant.install(1, 1, "1#", new_specimen=True)
+    else:
+        ctx.attendant.remount(1, 1, "1#", worn.diameter_mm, worn.sliding_m)
+        ctx.wheel.installed_mm = worn.installed_diameter_mm
+        ctx.wheel.loss_mm = worn.installed_diameter_mm - worn.diameter_mm
+        ctx.wheel.sliding_m = worn.sliding_m
     return hand
 
 

@@ -33,6 +33,7 @@ from tester.service.desk import Desk
 from tester.service.hub import Hub
 from tester.service.link import Order
 from tester.service.manual import NAME, ManualExecutor, empty_plan, open_record, take_over
+from tester.service.mounted import mounted_wheel, taken_for
 from tester.service.orders import Orders
 from tester.service.preflight import past_of
 from tester.service.progress import PlanTrack
@@ -196,8 +197,10 @@ class Service:
                     desk.hub.refuse(order, str(error))
                     return
                 run = build_run(rig, empty_plan(), ports, attendant, record, Prompts())
-                hand = take_over(run)
+                mounted = mounted_wheel(self.options.runs, rig)
+                hand = take_over(run, mounted.wheel if mounted is not None else None)
                 desk.attach(run, PlanTrack(hand.plan, estimate(hand.plan, rig)), view, hand)
+                record.event(0.0, "wheel", taken_for(mounted, run.engine.ctx.wheel.diameter_mm))
                 desk.hub.accept(order)
                 with closing(ports), left_safe(run):
                     seconds = self._by_hand(run, hand, world, ports, record)

@@ -1,15 +1,19 @@
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
+from tester.rig import load_rig
 from tester.service.commands import Arm, Hold, Jog, Stop, Tare
 from tester.service.link import Presence
 from tester.service.state import StateView
 from tester.store.catalogue import run_folders
 from tester.store.reader import RunReader
+from tester.store.records import WheelInfo
 from tests.tester.service.stage import Script, Stage, play
+from tests.tester.store.build import CONDITION, RUN, SPECIMENS, open_writer
 
 ARMED = Presence("client 1", 1, 0, False)
 
@@ -167,6 +171,27 @@ def test_a_temperature_above_that_of_the_air_is_heated_for(tmp_path: Path) -> No
         yield from stage.until(off)
 
     assert play(tmp_path, script).refused == {}
+
+
+def test_the_wheel_that_the_last_run_left_worn_is_touched_and_loaded(tmp_path: Path) -> None:
+    folder = tmp_path / "runs" / "2024-02-21T14-05-09-worn"
+    folder.mkdir(parents=True)
+    writer = open_writer(folder)
+    writer.begin_run(replace(RUN, rig_text=load_rig("sim").text), SPECIMENS, [CONDITION])
+    writer.wheel_installed(WheelInfo(1, 1, 1, "1#", 60.0, 90.0, 85.0, 812.0))
+    writer.finish("done", "", rig_seconds=80.0)
+    writer.close()
+
+    def script(stage: Stage) -> Script:
+        yield from armed(stage)
+        yield from jog(stage, *[Jog("both", 1)] * 2, *[Jog("press", 1)] * 3)
+        yield from stage.until(lambda view: value(view, "load") > 25.0 or not manual(view))
+        assert stage.views[-1].mode == "MANUAL"
+        yield stage.order(Stop())
+        yield from stage.until(off)
+
+    stage = play(tmp_path, script)
+    assert stage.texts("wheel") == [f"the wheel is taken to have 85.00 mm, as {folder.name} left it"]
 
 
 def test_under_load_wheel_and_belt_keep_turning(tmp_path: Path) -> None:
