@@ -240,12 +240,19 @@ class TakeTare:
     unloaded cell may show (``arming.unloaded``), else it is not taken.
     """
 
-    def __init__(self, seconds: float, reference: list[float], warn_n: float, stop_n: float) -> None:
-        """``reference``: shared list, empty until the first tare fills it."""
+    def __init__(
+        self, seconds: float, reference: list[float], warn_n: float, stop_n: float, *, ends_run: bool = True
+    ) -> None:
+        """``reference``: shared list, empty until the first tare fills it.
+
+        ``ends_run``: a zero that has wandered too far ends the run, which comes to its standstill with that zero: with
+        the one before, its stop would take the cell's drift for a load. Where work goes on, such a zero is not taken.
+        """
         self.seconds = seconds
         self.reference = reference
         self.warn_n = warn_n
         self.stop_n = stop_n
+        self.ends_run = ends_run
         self.began_s = float("nan")
         self.stamp_s = float("-inf")
         self.sums = [0.0, 0.0, 0.0, 0.0]
@@ -274,23 +281,26 @@ class TakeTare:
         if not self.reference:
             # A tare has nothing to be compared with yet: what it may take off is bounded, or it hides a load.
             self.failed = loaded(new, ctx.rig)
-            if self.failed:
-                return True
-        ctx.cell.set_tare(new)
-        self._compare(ctx, new)
+            if not self.failed:
+                self.reference.extend(new)
+                self._take(ctx, "reference", new)
+            return True
+        self.failed = self._wandered(ctx, new)
+        if self.ends_run or not self.failed:
+            self._take(ctx, "repeat", new)
         return True
 
-    def _compare(self, ctx: Context, new: Zero) -> None:
-        first = not self.reference
-        if first:
-            self.reference.extend(new)
-        ctx.journal.tare(ctx.now, "reference" if first else "repeat", new, ctx.repeat_key)
+    def _take(self, ctx: Context, kind: str, new: Zero) -> None:
+        ctx.cell.set_tare(new)
+        ctx.journal.tare(ctx.now, kind, new, ctx.repeat_key)
+
+    def _wandered(self, ctx: Context, new: Zero) -> str:
+        """Return "" or how far a zero is off the reference; one that is worth a warning is written down."""
         drift = max(abs(n - r) for n, r in zip(new[:3], self.reference[:3], strict=True))
         text = f"load cell zero drifted by {drift:.1f} N since the wheel's reference tare"
-        if drift > self.stop_n:
-            self.failed = text
         if drift > self.warn_n:
             ctx.journal.event(ctx.now, "tare", text, "warning")
+        return text if drift > self.stop_n else ""
 
 
 class Settle:

@@ -155,7 +155,8 @@ class Run:
         engine = self.engine
         state = engine.control.state
         self._trip = state.trip or self._trip
-        if state.mode is Mode.RUN:
+        if state.mode is Mode.RUN or state.mode is Mode.HOLD:
+            # In a hold no recipe comes to its end, but whoever moves the rig by hand may have ended it.
             if engine.executor.finished:
                 engine.control.request_stop(now, engine.executor.failed or "recipe finished")
             return

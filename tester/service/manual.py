@@ -13,6 +13,7 @@ from pathlib import Path
 from tester import clock
 from tester.campaign.folder import make_folder
 from tester.campaign.part_run import Unsampled
+from tester.control.permissives import Bounds, rig_bounds
 from tester.engine.context import Context
 from tester.engine.executor import Executor
 from tester.engine.moves import TakeTare
@@ -24,7 +25,7 @@ from tester.rig import RigConfig
 from tester.service.commands import JogAxis
 from tester.store.reader import DATABASE
 from tester.store.recorder import Recorder
-from tester.store.records import RunInfo
+from tester.store.records import RunInfo, WheelInfo
 from tester.store.writer import RunWriter
 
 NAME = "manual mode"
@@ -39,6 +40,8 @@ LOAD_STEP_N = 10.0
 ANGLE_STEP_DEG = 1.0
 HEAT_STEP_K = 1.0
 UNLOADED_N = 5.0
+PRESSED_N = 20.0
+"""From this force on the interlocks want wheel and belt turning (safety concept, "load with a drive stopped")."""
 STANDING_M_S = 0.02
 TARE_S = 2.0
 MOVING_S = 2.0
@@ -60,10 +63,11 @@ class Wanted:
 class ManualExecutor(Executor):
     """Stands in the executor's place: what it demands is what a person asked for."""
 
-    def __init__(self, recorder: Recorder) -> None:
-        """Nothing is wanted: drives enabled, standing, lifted."""
+    def __init__(self, recorder: Recorder, bounds: Bounds) -> None:
+        """Nothing is wanted: drives enabled, standing, lifted. ``bounds``: how far a person may go, control's too."""
         super().__init__(Plan(NAME, (), (), (), 0.0, 1), StoredResults(recorder), hardware=False)
         self.wanted = Wanted()
+        self.bounds = bounds
         self.taring: TakeTare | None = None
         self.tare_text = ""
         self.used_s = float("nan")
@@ -80,8 +84,8 @@ class ManualExecutor(Executor):
         if not isfinite(self.used_s):
             self.used_s = ctx.now
             ctx.progress.title = NAME
-        if ctx.now - self.used_s >= ARMED_S:
-            self.finished = True
+        self.expire(ctx.now)
+        if self.finished:
             return
         demand, wanted = ctx.demand, self.wanted
         demand.enabled = True
@@ -93,6 +97,11 @@ class ManualExecutor(Executor):
         ctx.moving = ctx.now - self.moved_s < MOVING_S
         if self.taring is not None and self.taring.step(ctx):
             self._tared(ctx, self.taring)
+
+    def expire(self, now: float) -> None:
+        """End the mode when nobody has asked for anything for a minute, in a hold as well."""
+        if self.left_s(now) <= 0.0:
+            self.disarm()
 
     def disarm(self) -> None:
         """End the mode: a controlled stop follows."""
@@ -124,7 +133,8 @@ class ManualExecutor(Executor):
             return "the rig moves: stop wheel and belt first"
         limits = ctx.rig.interlocks
         self.old = ctx.cell.tare
-        self.taring = TakeTare(TARE_S, list(self.reference_tare), limits.zero_warn_n, limits.zero_stop_n)
+        reference = list(self.reference_tare)
+        self.taring = TakeTare(TARE_S, reference, limits.zero_warn_n, limits.zero_stop_n, ends_run=False)
         self.used_s = ctx.now
         return ""
 
@@ -134,32 +144,45 @@ class ManualExecutor(Executor):
         return "the load cell is being tared" if self.taring is not None else ""
 
     def _step(self, ctx: Context, axis: JogAxis, sign: float) -> str:
-        wanted, limits, r = self.wanted, ctx.rig.limits, ctx.readings
+        wanted, bounds, r = self.wanted, self.bounds, ctx.readings
         loaded = wanted.load_n > 0.0 or not r.force_z_n < UNLOADED_N
         if axis in ("sideslip", "camber", "wheel", "belt") and loaded:
             return f"{axis} moves only with the wheel lifted; under load use both speeds together"
-        if axis in ("wheel", "both"):
-            wanted.wheel_m_s = _within(wanted.wheel_m_s + sign * SPEED_STEP_M_S, 0.0, limits.wheel_speed_m_s)
-        if axis in ("belt", "both"):
-            wanted.belt_m_s = _within(wanted.belt_m_s + sign * SPEED_STEP_M_S, 0.0, limits.belt_speed_m_s)
-        if axis == "sideslip":
+        if axis == "wheel":
+            wanted.wheel_m_s = _within(wanted.wheel_m_s + sign * SPEED_STEP_M_S, 0.0, bounds.wheel_speed_m_s)
+        elif axis == "belt":
+            wanted.belt_m_s = _within(wanted.belt_m_s + sign * SPEED_STEP_M_S, 0.0, bounds.belt_speed_m_s)
+        elif axis == "both":
+            return self._turn(ctx, sign)
+        elif axis == "sideslip":
             sideslip_deg = wanted.sideslip_deg + sign * ANGLE_STEP_DEG
-            wanted.sideslip_deg = _within(sideslip_deg, -limits.sideslip_deg, limits.sideslip_deg)
+            wanted.sideslip_deg = _within(sideslip_deg, -bounds.sideslip_deg, bounds.sideslip_deg)
         elif axis == "camber":
-            wanted.camber_deg = _within(
-                wanted.camber_deg + sign * ANGLE_STEP_DEG, -limits.camber_deg, limits.camber_deg
-            )
+            camber_deg = wanted.camber_deg + sign * ANGLE_STEP_DEG
+            wanted.camber_deg = _within(camber_deg, -bounds.camber_deg, bounds.camber_deg)
         elif axis == "press":
-            return self._load(ctx, sign)
+            return self._load(sign)
         elif axis == "heat":
             return self._warm(ctx, sign)
         return ""
 
-    def _load(self, ctx: Context, sign: float) -> str:
+    def _turn(self, ctx: Context, sign: float) -> str:
+        """Take wheel and belt to another speed together, neither beyond what both can do."""
+        wanted, bounds = self.wanted, self.bounds
+        step = sign * SPEED_STEP_M_S
+        pressed = wanted.load_n > 0.0 or not ctx.readings.force_z_n < PRESSED_N
+        if pressed and min(wanted.wheel_m_s, wanted.belt_m_s) + step < SPEED_STEP_M_S - 1e-9:
+            return f"under load wheel and belt turn at {SPEED_STEP_M_S:g} m/s at least: lift the wheel first"
+        most = min(bounds.wheel_speed_m_s, bounds.belt_speed_m_s)
+        wanted.wheel_m_s = _within(wanted.wheel_m_s + step, 0.0, max(most, wanted.wheel_m_s))
+        wanted.belt_m_s = _within(wanted.belt_m_s + step, 0.0, max(most, wanted.belt_m_s))
+        return ""
+
+    def _load(self, sign: float) -> str:
         wanted = self.wanted
         if sign > 0.0 and (wanted.wheel_m_s < 2.0 * STANDING_M_S or wanted.wheel_m_s != wanted.belt_m_s):
             return "load only with wheel and belt turning at the same speed"
-        wanted.load_n = _within(wanted.load_n + sign * LOAD_STEP_N, 0.0, ctx.rig.limits.load_n)
+        wanted.load_n = _within(wanted.load_n + sign * LOAD_STEP_N, 0.0, self.bounds.load_n)
         return ""
 
     def _warm(self, ctx: Context, sign: float) -> str:
@@ -170,7 +193,7 @@ class ManualExecutor(Executor):
             if sign < 0.0 or not isfinite(surface):
                 return "the heating is off"
             wanted.surface_c = float(round(surface))
-        wanted.surface_c = min(wanted.surface_c + sign * HEAT_STEP_K, ctx.rig.limits.surface_c)
+        wanted.surface_c = min(wanted.surface_c + sign * HEAT_STEP_K, self.bounds.surface_c)
         if wanted.surface_c < ctx.rig.ambient_c:
             wanted.surface_c = float("nan")
         return ""
@@ -178,7 +201,7 @@ class ManualExecutor(Executor):
     def _tared(self, ctx: Context, tare: TakeTare) -> None:
         """Say what the tare has changed."""
         if tare.failed:
-            self.tare_text = tare.failed
+            self.tare_text = f"not taken: {tare.failed}"
         else:
             new = ctx.cell.tare
             self.reference_tare = list(new)
@@ -191,12 +214,22 @@ class ManualExecutor(Executor):
         self.taring = None
 
 
-def take_over(run: Run) -> ManualExecutor:
-    """Put a person in the place of the run's recipe, and a wheel on a simulated rig."""
-    ctx = run.engine.ctx
-    hand = ManualExecutor(ctx.journal)
+def take_over(run: Run, worn: WheelInfo | None = None) -> ManualExecutor:
+    """Put a person in the place of the run's recipe, bounded by the rig alone; ``worn``: the wheel, None for a new one.
+
+    A simulated rig gets such a wheel.
+    """
+    ctx, control = run.engine.ctx, run.engine.control
+    control.bounds = rig_bounds(ctx.rig)
+    hand = ManualExecutor(ctx.journal, control.bounds)
     run.engine.executor = hand
-    ctx.attendant.install(1, 1, "1#", new_specimen=True)
+    if worn is None:
+        ctx.attendant.install(1, 1, "1#", new_specimen=True)
+    else:
+        ctx.attendant.remount(1, 1, "1#", worn.diameter_mm, worn.sliding_m)
+        ctx.wheel.installed_mm = worn.installed_diameter_mm
+        ctx.wheel.loss_mm = worn.installed_diameter_mm - worn.diameter_mm
+        ctx.wheel.sliding_m = worn.sliding_m
     return hand
 
 

@@ -84,16 +84,20 @@ class Orders:
         return run.request_release(f"released by {order.name}")
 
     def _acknowledge(self, order: Order, action: Acknowledge) -> None:
-        """Acknowledge alarms, a latched rig, and what was found at the start. Nothing moves by it."""
-        desk = self.desk
-        trip = next((alarm.number for alarm in desk.alarms.listed() if alarm.name == desk.tripped), 0)
+        """Acknowledge alarms, a latched rig, and what was found at the start. Nothing moves by it.
+
+        A latched rig is acknowledged with all alarms, or by the alarm of its trip: another one's number leaves it so.
+        """
+        desk, watch = self.desk, self.desk.watch
+        tripped = watch.tripped if watch is not None else desk.tripped
+        trip = next((alarm.number for alarm in desk.alarms.listed() if alarm.name == tripped), 0)
         count = desk.alarms.acknowledge(action.number, order.name)
         refusal = "" if count or desk.latched or desk.interrupted else "nothing to acknowledge"
-        run = desk.watch.run if desk.watch is not None else None
-        if run is None and action.number in (0, trip):
-            desk.unlatch(order.name)
-        elif run is not None and run.engine.control.state.mode is Mode.LATCHED:
-            refusal = run.request_ack()
+        if action.number in (0, trip):
+            if watch is None:
+                desk.unlatch(order.name)
+            elif watch.run.engine.control.state.mode is Mode.LATCHED:
+                refusal = watch.run.request_ack()
         self._reply(order, refusal)
 
     def _answer(self, order: Order, action: Answer) -> str:

@@ -32,7 +32,8 @@ from tester.service.commands import (
 from tester.service.desk import Desk
 from tester.service.hub import Hub
 from tester.service.link import Order
-from tester.service.manual import NAME, empty_plan, open_record, take_over
+from tester.service.manual import NAME, ManualExecutor, empty_plan, open_record, take_over
+from tester.service.mounted import mounted_wheel, taken_for
 from tester.service.orders import Orders
 from tester.service.preflight import past_of
 from tester.service.progress import PlanTrack
@@ -196,18 +197,21 @@ class Service:
                     desk.hub.refuse(order, str(error))
                     return
                 run = build_run(rig, empty_plan(), ports, attendant, record, Prompts())
-                hand = take_over(run)
+                mounted = mounted_wheel(self.options.runs, rig)
+                hand = take_over(run, mounted.wheel if mounted is not None else None)
                 desk.attach(run, PlanTrack(hand.plan, estimate(hand.plan, rig)), view, hand)
+                record.event(0.0, "wheel", taken_for(mounted, run.engine.ctx.wheel.diameter_mm))
                 desk.hub.accept(order)
                 with closing(ports), left_safe(run):
-                    seconds = self._by_hand(run, world, ports, record)
+                    seconds = self._by_hand(run, hand, world, ports, record)
                 record.finish(run.outcome.value, run.reason, seconds)
         desk.ended(replace(view, outcome=run.outcome.value, reason=run.reason), run.outcome)
 
-    def _by_hand(self, run: Run, world: World | None, ports: Ports, record: RunWriter) -> float:
+    def _by_hand(self, run: Run, hand: ManualExecutor, world: World | None, ports: Ports, record: RunWriter) -> float:
         """Tick manual mode to its end; return the seconds it took."""
 
         def poll(now_s: float) -> None:
+            hand.expire(now_s)
             if self.orders.ending:
                 run.request_stop("the service ends", cool=False)
             if record.failed:

@@ -218,6 +218,21 @@ def test_a_wandered_zero_warns_and_then_fails(turning: Bench, drift: float, warn
     assert bool(turning.notes.texts("tare")) is warned and bool(taken.failed) is failed
 
 
+@pytest.mark.parametrize(("ends_run", "zero_n", "taken"), [(True, 40.0, 2), (False, 3.0, 1)])
+def test_a_zero_that_has_wandered_too_far_is_taken_only_where_it_ends_the_run(
+    turning: Bench, ends_run: bool, zero_n: float, taken: int
+) -> None:
+    reference: list[float] = []
+    turning.zero_n = 3.0
+    turning.run(tare(reference))
+    turning.zero_n = 40.0
+    second = TakeTare(1.0, reference, 5.0, 20.0, ends_run=ends_run)
+    turning.run(second)
+    assert "drifted by 37.0 N" in second.failed
+    assert turning.cell.tare[2] == pytest.approx(zero_n) and reference[2] == pytest.approx(3.0)
+    assert len(turning.notes.written("INSERT INTO tare")) == taken
+
+
 @pytest.mark.parametrize("zero_n", [21.0, -21.0])
 def test_a_reference_tare_beyond_what_an_unloaded_cell_shows_is_not_taken(turning: Bench, zero_n: float) -> None:
     reference: list[float] = []

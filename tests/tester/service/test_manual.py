@@ -1,15 +1,19 @@
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
-from tester.service.commands import Arm, Jog, Stop, Tare
+from tester.rig import load_rig
+from tester.service.commands import Arm, Hold, Jog, Stop, Tare
 from tester.service.link import Presence
 from tester.service.state import StateView
 from tester.store.catalogue import run_folders
 from tester.store.reader import RunReader
+from tester.store.records import WheelInfo
 from tests.tester.service.stage import Script, Stage, play
+from tests.tester.store.build import CONDITION, RUN, SPECIMENS, open_writer
 
 ARMED = Presence("client 1", 1, 0, False)
 
@@ -113,6 +117,108 @@ def test_under_load_the_speeds_move_only_together_and_no_tare_is_taken(tmp_path:
     play(tmp_path, script)
 
 
+def test_both_speeds_go_as_far_as_the_rig_lets_both(tmp_path: Path) -> None:
+    def script(stage: Stage) -> Script:
+        yield from armed(stage)
+        yield from jog(stage, *[Jog("both", 1)] * 24)
+        at_s = stage.views[-1].t_s
+        yield from stage.until(lambda view: view.t_s > at_s + 3.0)
+        assert value(stage.views[-1], "wheel_speed") == pytest.approx(1.1, abs=0.01)
+        assert value(stage.views[-1], "belt_speed") == pytest.approx(1.1, abs=0.01)
+        yield stage.order(Stop())
+        yield from stage.until(off)
+
+    assert play(tmp_path, script).refused == {}
+
+
+def test_an_angle_is_reached(tmp_path: Path) -> None:
+    def script(stage: Stage) -> Script:
+        yield from armed(stage)
+        yield from jog(stage, *[Jog("sideslip", -1)] * 5)
+        at_s = stage.views[-1].t_s
+        yield from stage.until(lambda view: view.t_s > at_s + 3.0)
+        assert value(stage.views[-1], "sideslip") == pytest.approx(-5.0, abs=0.1)
+        yield stage.order(Stop())
+        yield from stage.until(off)
+
+    assert play(tmp_path, script).refused == {}
+
+
+def test_a_load_above_that_of_a_roll_check_is_reached(tmp_path: Path) -> None:
+    def script(stage: Stage) -> Script:
+        yield from armed(stage)
+        yield from jog(stage, *[Jog("both", 1)] * 4, *[Jog("press", 1)] * 10)
+        at_s = stage.views[-1].t_s
+        yield from stage.until(lambda view: view.t_s > at_s + 30.0 or not manual(view))
+        assert stage.views[-1].mode == "MANUAL"
+        assert value(stage.views[-1], "load") == pytest.approx(100.0, abs=10.0)
+        yield stage.order(Stop())
+        yield from stage.until(off)
+
+    assert play(tmp_path, script).refused == {}
+
+
+def test_a_temperature_above_that_of_the_air_is_heated_for(tmp_path: Path) -> None:
+    def script(stage: Stage) -> Script:
+        yield from armed(stage)
+        yield from jog(stage, *[Jog("both", 1)] * 4, *[Jog("heat", 1)] * 12)
+        at_s = stage.views[-1].t_s
+        yield from stage.until(lambda view: view.t_s > at_s + 20.0 or not manual(view))
+        hub = stage.views[-1].value("hub")
+        assert stage.views[-1].mode == "MANUAL"
+        assert hub is not None and hub.setpoint is not None and hub.setpoint > 40.0
+        yield stage.order(Stop())
+        yield from stage.until(off)
+
+    assert play(tmp_path, script).refused == {}
+
+
+def test_the_wheel_that_the_last_run_left_worn_is_touched_and_loaded(tmp_path: Path) -> None:
+    folder = tmp_path / "runs" / "2024-02-21T14-05-09-worn"
+    folder.mkdir(parents=True)
+    writer = open_writer(folder)
+    writer.begin_run(replace(RUN, rig_text=load_rig("sim").text), SPECIMENS, [CONDITION])
+    writer.wheel_installed(WheelInfo(1, 1, 1, "1#", 60.0, 90.0, 85.0, 812.0))
+    writer.finish("done", "", rig_seconds=80.0)
+    writer.close()
+
+    def script(stage: Stage) -> Script:
+        yield from armed(stage)
+        yield from jog(stage, *[Jog("both", 1)] * 2, *[Jog("press", 1)] * 3)
+        yield from stage.until(lambda view: value(view, "load") > 25.0 or not manual(view))
+        assert stage.views[-1].mode == "MANUAL"
+        yield stage.order(Stop())
+        yield from stage.until(off)
+
+    stage = play(tmp_path, script)
+    assert stage.texts("wheel") == [f"the wheel is taken to have 85.00 mm, as {folder.name} left it"]
+
+
+def test_under_load_wheel_and_belt_keep_turning(tmp_path: Path) -> None:
+    def script(stage: Stage) -> Script:
+        yield from armed(stage)
+        yield from jog(stage, *[Jog("both", 1)] * 2, *[Jog("press", 1)] * 4)
+        yield from stage.until(lambda view: value(view, "load") > 30.0)
+        yield from jog(stage, Jog("both", -1))
+        assert "jog" not in stage.refused
+        yield from jog(stage, Jog("both", -1))
+        at_s = stage.views[-1].t_s
+        yield from stage.until(lambda view: view.t_s > at_s + 2.0)
+        assert "lift the wheel first" in stage.refused["jog"]
+        assert stage.views[-1].mode == "MANUAL"
+        assert value(stage.views[-1], "wheel_speed") == pytest.approx(0.05, abs=0.01)
+        yield from jog(stage, *[Jog("press", -1)] * 4)
+        yield from stage.until(lambda view: value(view, "load") < 5.0)
+        stage.refused.clear()
+        yield from jog(stage, Jog("both", -1))
+        yield from stage.until(lambda view: abs(value(view, "wheel_speed")) < 0.01)
+        assert stage.refused == {}
+        yield stage.order(Stop())
+        yield from stage.until(off)
+
+    play(tmp_path, script)
+
+
 def test_a_tare_tells_the_new_zero(tmp_path: Path) -> None:
     def script(stage: Stage) -> Script:
         yield from armed(stage)
@@ -123,6 +229,25 @@ def test_a_tare_tells_the_new_zero(tmp_path: Path) -> None:
         yield from stage.until(off)
 
     assert "tare" in play(tmp_path, script).accepted
+
+
+def test_a_zero_that_is_refused_changes_nothing(tmp_path: Path) -> None:
+    def script(stage: Stage) -> Script:
+        yield from armed(stage)
+        yield stage.order(Tare())
+        yield from stage.until(lambda view: bool(view.manual.tare))
+        assert stage.service is not None and stage.service.desk.watch is not None
+        ctx, hand = stage.service.desk.watch.run.engine.ctx, stage.service.desk.hand
+        assert hand is not None
+        before = ctx.cell.tare
+        hand.reference_tare[2] -= 45.0
+        yield stage.order(Tare())
+        yield from stage.until(lambda view: view.manual.tare.startswith("not taken: load cell zero drifted by 45"))
+        assert ctx.cell.tare == before
+        yield stage.order(Stop())
+        yield from stage.until(off)
+
+    play(tmp_path, script)
 
 
 def test_it_disarms_a_minute_after_the_last_step(tmp_path: Path) -> None:
@@ -147,6 +272,45 @@ def test_it_disarms_when_its_client_loses_control(tmp_path: Path) -> None:
     assert stage.texts("control")[-1] == "nobody has control"
     # Of 60 s: it was not the time that ran out.
     assert min(view.manual.left_s for view in stage.views if view.manual.left_s is not None) > 20.0
+
+
+def held(stage: Stage) -> Script:
+    """Hold the rig while it is moved by hand."""
+    yield from armed(stage)
+    yield from jog(stage, Jog("both", 1))
+    yield stage.order(Hold())
+    yield from stage.until(lambda view: view.mode == "HOLD" and view.mode_since_s > 5.0)
+
+
+def test_it_can_be_disarmed_in_a_hold(tmp_path: Path) -> None:
+    def script(stage: Stage) -> Script:
+        yield from held(stage)
+        yield stage.order(Arm(on=False))
+        yield from stage.until(off)
+
+    stage = play(tmp_path, script)
+    assert min(view.manual.left_s for view in stage.views if view.manual.left_s is not None) > 20.0
+    assert journal(tmp_path)[0] == "done"
+
+
+def test_it_disarms_in_a_hold_when_its_client_loses_control(tmp_path: Path) -> None:
+    def script(stage: Stage) -> Script:
+        yield from held(stage)
+        yield Presence("", 0, 0, False)
+        yield from stage.until(off)
+
+    stage = play(tmp_path, script)
+    assert min(view.manual.left_s for view in stage.views if view.manual.left_s is not None) > 20.0
+
+
+def test_a_hold_does_not_stop_its_minute(tmp_path: Path) -> None:
+    def script(stage: Stage) -> Script:
+        yield from held(stage)
+        yield from stage.until(off)
+
+    stage = play(tmp_path, script)
+    assert stage.views[-1].run is not None and stage.views[-1].run.outcome == "done"
+    assert max(view.t_s for view in stage.views) < 80.0
 
 
 def journal(home: Path) -> tuple[str, str, list[str]]:

@@ -10,6 +10,7 @@ import pytest
 
 from sim.rig import SimRig
 from tester.lock import RUN_LOCK, ExclusiveUse
+from tester.service.alarms import Cause
 from tester.service.commands import (
     Acknowledge,
     Answer,
@@ -258,6 +259,38 @@ def test_a_trip_latches_until_it_is_acknowledged(tmp_path: Path) -> None:
     assert any(name == "trip" for name, _ in stage.notes)
     run = stage.views[-1].run
     assert run is not None and run.outcome == "tripped"
+
+
+def test_another_alarm_s_acknowledgement_leaves_the_rig_latched(tmp_path: Path) -> None:
+    other = Cause("cabinet warm", 2, "48 degC")
+
+    def alarm(stage: Stage, name: str) -> int:
+        return next(alarm.number for alarm in stage.views[-1].alarms if alarm.name == name)
+
+    def script(stage: Stage) -> Script:
+        yield stage.order(RUN)
+        yield from stage.until(running)
+        assert stage.service is not None and stage.service.desk.watch is not None
+        watch = stage.service.desk.watch
+        rig = watch.run.engine.ctx.attendant
+        assert isinstance(rig, SimRig)
+        rig.axes["belt"].fault(0x2310)
+        yield from stage.until(lambda view: view.mode == "LATCHED")
+        stage.service.desk.alarms.raise_(other, 1.0)
+        yield None
+        yield stage.order(Acknowledge(alarm(stage, other.name)))
+        at_s = stage.views[-1].t_s
+        yield from stage.until(lambda view: view.t_s > at_s + 3.0 or view.mode == "OFFLINE")
+        assert stage.views[-1].mode == "LATCHED" and not watch.acknowledged
+        assert {one.name: one.state for one in stage.views[-1].alarms} == {
+            "drive fault": "active",
+            other.name: "acknowledged",
+        }
+        yield stage.order(Acknowledge(alarm(stage, "drive fault")))
+        yield from stage.until(lambda view: view.mode == "OFFLINE")
+        assert watch.acknowledged
+
+    assert set(play(tmp_path, script).accepted) >= {"ack"}
 
 
 def test_stop_ends_a_tripped_run_whose_cause_stays_and_the_rig_stays_latched(tmp_path: Path) -> None:
