@@ -26,6 +26,11 @@ TOUCHES = 1.5
 on top, some 12 N. On the simulated rig 10 N trip "load overshoot", 12 N sometimes do, 15 N do not."""
 
 
+def least_load_n(rig: RigConfig) -> float:
+    """Return the least load that a rig can hold, N."""
+    return TOUCHES * rig.loops.load.touch_load_n
+
+
 class Given(NamedTuple):
     """A quantity of the file: its value in the unit asked for, and where it stands."""
 
@@ -124,7 +129,7 @@ class _Limits:
     def _too_light(self, given: Given) -> Iterator[Problem]:
         """Yield a problem for a load too near to touching to be held; what is no load at all is the schema's to say."""
         touch_n = self.rig.loops.load.touch_load_n
-        least_n = TOUCHES * touch_n
+        least_n = least_load_n(self.rig)
         if 0.0 < given.value < least_n:
             asked, touching = show(given.value, "N"), show(touch_n, "N")
             message = f"load: {asked} is too near to touching, which is {touching}, to be held"

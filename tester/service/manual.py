@@ -7,7 +7,7 @@ itself when nobody has pressed a key for a minute, and when the client that arme
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import isfinite
+from math import ceil, isfinite
 from pathlib import Path
 
 from tester import clock
@@ -20,6 +20,7 @@ from tester.engine.moves import TakeTare
 from tester.engine.results import StoredResults
 from tester.engine.run import Run
 from tester.process import Press
+from tester.recipe.limits import least_load_n
 from tester.recipe.plan import Plan
 from tester.rig import RigConfig
 from tester.service.commands import JogAxis
@@ -161,7 +162,7 @@ class ManualExecutor(Executor):
             camber_deg = wanted.camber_deg + sign * ANGLE_STEP_DEG
             wanted.camber_deg = _within(camber_deg, -bounds.camber_deg, bounds.camber_deg)
         elif axis == "press":
-            return self._load(sign)
+            return self._load(ctx, sign)
         elif axis == "heat":
             return self._warm(ctx, sign)
         return ""
@@ -178,11 +179,15 @@ class ManualExecutor(Executor):
         wanted.belt_m_s = _within(wanted.belt_m_s + step, 0.0, max(most, wanted.belt_m_s))
         return ""
 
-    def _load(self, sign: float) -> str:
-        wanted = self.wanted
+    def _load(self, ctx: Context, sign: float) -> str:
+        """Take another load; from none to the first step that can be held, and from that to none."""
+        wanted, least_n = self.wanted, least_load_n(ctx.rig)
         if sign > 0.0 and (wanted.wheel_m_s < 2.0 * STANDING_M_S or wanted.wheel_m_s != wanted.belt_m_s):
             return "load only with wheel and belt turning at the same speed"
-        wanted.load_n = _within(wanted.load_n + sign * LOAD_STEP_N, 0.0, self.bounds.load_n)
+        load_n = wanted.load_n + sign * LOAD_STEP_N
+        if 0.0 < load_n < least_n:
+            load_n = ceil(least_n / LOAD_STEP_N) * LOAD_STEP_N if sign > 0.0 else 0.0
+        wanted.load_n = _within(load_n, 0.0, self.bounds.load_n)
         return ""
 
     def _warm(self, ctx: Context, sign: float) -> str:

@@ -147,11 +147,28 @@ def test_an_angle_is_reached(tmp_path: Path) -> None:
 def test_a_load_above_that_of_a_roll_check_is_reached(tmp_path: Path) -> None:
     def script(stage: Stage) -> Script:
         yield from armed(stage)
-        yield from jog(stage, *[Jog("both", 1)] * 4, *[Jog("press", 1)] * 10)
+        yield from jog(stage, *[Jog("both", 1)] * 4, *[Jog("press", 1)] * 9)
         at_s = stage.views[-1].t_s
         yield from stage.until(lambda view: view.t_s > at_s + 30.0 or not manual(view))
         assert stage.views[-1].mode == "MANUAL"
         assert value(stage.views[-1], "load") == pytest.approx(100.0, abs=10.0)
+        yield stage.order(Stop())
+        yield from stage.until(off)
+
+    assert play(tmp_path, script).refused == {}
+
+
+def test_the_first_load_is_one_that_can_be_held(tmp_path: Path) -> None:
+    def script(stage: Stage) -> Script:
+        yield from armed(stage)
+        yield from jog(stage, *[Jog("both", 1)] * 4, Jog("press", 1))
+        at_s = stage.views[-1].t_s
+        yield from stage.until(lambda view: view.t_s > at_s + 30.0 or not manual(view))
+        assert stage.views[-1].mode == "MANUAL"
+        assert value(stage.views[-1], "load") == pytest.approx(20.0, abs=10.0)
+        yield from jog(stage, Jog("press", -1))
+        yield from stage.until(lambda view: view.t_s > at_s + 40.0 or not manual(view))
+        assert value(stage.views[-1], "load") == pytest.approx(0.0, abs=2.0)
         yield stage.order(Stop())
         yield from stage.until(off)
 
