@@ -249,11 +249,12 @@ def _hub_levels(v: View) -> int:
         held |= _JACKET_STALE
     if r.jacket_valid:
         ceiling = v.state.hub_ceiling
-        # A hub that was hot takes longer to cool than the window is: then it must not get hotter again, except by a
-        # rubber that friction has made hotter than itself.
+        # A hub that was hot takes longer to cool than the window is: without output it must not get hotter again,
+        # except by a rubber that friction has made hotter than itself.
         if ceiling:
-            highest = max(ceiling[0][1], b.hub_min_c, jacket.coolest_c)
-            if r.surface_valid and r.surface_c > highest:
+            coolest = jacket.coolest_c
+            highest = max(ceiling[0][1], b.hub_min_c, coolest)
+            if coolest > -_INF and r.surface_valid and r.surface_c > highest:
                 highest = r.surface_c
             if not (r.hub_c <= highest + b.runaway_k):
                 held |= _RUNAWAY

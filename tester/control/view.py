@@ -17,6 +17,7 @@ from tester.rig import RigConfig
 _INF: Final = inf
 STANDING_M_S: Final = 0.02
 """Below this a drive counts as standing [A]."""
+
 # Bound once: a look-up on the enum class costs several times as much in every scan (CPython 3.11).
 _LOAD: Final = Press.LOAD
 _RUN: Final = Mode.RUN

@@ -420,6 +420,18 @@ def test_a_hub_that_a_hotter_rubber_warms_is_no_runaway(bench: Bench) -> None:
     assert bench.state.trip is None and bench.readings.hub_c < bench.readings.surface_c
 
 
+def test_a_hotter_rubber_excuses_no_hub_that_is_given_output(bench: Bench) -> None:
+    bench.control.view.jacket.forget(bench.readings.now_s)
+    bench.readings.surface_c = 60.0
+    _model(0.0)(bench)
+    bench.control.view.surface.forget(bench.readings.now_s)
+    highest_c = bench.state.hub_ceiling[0][1]
+    bench.readings.hub_c = highest_c + bench.control.rig.interlocks.runaway_k + 1.0
+    bench.scans(2.5)
+    assert bench.readings.hub_c < bench.readings.surface_c + bench.control.rig.interlocks.runaway_k
+    assert bench.state.trip is not None and bench.state.trip.name == "jacket runaway"
+
+
 def test_a_hub_that_gets_hotter_without_output_is_a_runaway_however_slowly(bench: Bench) -> None:
     _long_off(bench, 60.0)
     for _ in range(9000):
