@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
+from tester.control.levels import SPEEDS_OLD_S
 from tester.control.view import STANDING_M_S
 from tester.engine.activity import Activity
 from tester.engine.context import Context
@@ -13,8 +14,6 @@ from tester.engine.unloaded import loaded
 from tester.process import NAN
 from tester.recipe.wheel_change import TOUCH
 
-FRESH_S: Final = 0.5
-"""At rest the cell is read ten times a second [A]."""
 STILL_WARM_K: Final = 5.0
 """A hub that has stopped turning may show this much more than while it turned, K [A]: no reason for a warning."""
 
@@ -46,7 +45,7 @@ class Free(Move):
     def step(self, ctx: Context) -> bool:
         """Done when a fresh reading shows no more than an unloaded cell may."""
         r, (ox, oy, oz, om) = ctx.readings, ctx.cell.tare
-        fresh = r.cell_valid and r.now_s - r.cell_at_s <= FRESH_S
+        fresh = r.cell_valid and r.now_s - r.cell_at_s <= SPEEDS_OLD_S
         return fresh and not loaded((r.force_x_n + ox, r.force_y_n + oy, r.force_z_n + oz, r.moment_z_nm + om), ctx.rig)
 
 

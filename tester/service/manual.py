@@ -13,6 +13,7 @@ from pathlib import Path
 from tester import clock
 from tester.campaign.folder import make_folder
 from tester.campaign.part_run import Unsampled
+from tester.control.load_loop import UNLOADED_N as STANDING_LOAD_N
 from tester.control.permissives import Bounds, rig_bounds
 from tester.engine.context import Context
 from tester.engine.executor import Executor
@@ -41,8 +42,6 @@ LOAD_STEP_N = 10.0
 ANGLE_STEP_DEG = 1.0
 HEAT_STEP_K = 1.0
 UNLOADED_N = 5.0
-PRESSED_N = 20.0
-"""From this force on the interlocks want wheel and belt turning (safety concept, "load with a drive stopped")."""
 STANDING_M_S = 0.02
 TARE_S = 2.0
 MOVING_S = 2.0
@@ -171,7 +170,7 @@ class ManualExecutor(Executor):
         """Take wheel and belt to another speed together, neither beyond what both can do."""
         wanted, bounds = self.wanted, self.bounds
         step = sign * SPEED_STEP_M_S
-        pressed = wanted.load_n > 0.0 or not ctx.readings.force_z_n < PRESSED_N
+        pressed = wanted.load_n > 0.0 or not ctx.readings.force_z_n < STANDING_LOAD_N
         if pressed and min(wanted.wheel_m_s, wanted.belt_m_s) + step < SPEED_STEP_M_S - 1e-9:
             return f"under load wheel and belt turn at {SPEED_STEP_M_S:g} m/s at least: lift the wheel first"
         most = min(bounds.wheel_speed_m_s, bounds.belt_speed_m_s)

@@ -51,6 +51,13 @@ def jog(stage: Stage, *steps: Jog) -> Script:
         yield stage.order(step)
 
 
+def stays_manual(stage: Stage, seconds: float) -> Script:
+    """Let time pass, and see that nothing has ended the mode."""
+    due_s = stage.views[-1].t_s + seconds
+    yield from stage.until(lambda view: view.t_s > due_s or not manual(view))
+    assert stage.views[-1].mode == "MANUAL"
+
+
 def value(view: StateView, key: str) -> float:
     found = view.value(key)
     assert found is not None and found.value is not None
@@ -148,9 +155,7 @@ def test_a_load_above_that_of_a_roll_check_is_reached(tmp_path: Path) -> None:
     def script(stage: Stage) -> Script:
         yield from armed(stage)
         yield from jog(stage, *[Jog("both", 1)] * 4, *[Jog("press", 1)] * 9)
-        at_s = stage.views[-1].t_s
-        yield from stage.until(lambda view: view.t_s > at_s + 30.0 or not manual(view))
-        assert stage.views[-1].mode == "MANUAL"
+        yield from stays_manual(stage, 30.0)
         assert value(stage.views[-1], "load") == pytest.approx(100.0, abs=10.0)
         yield stage.order(Stop())
         yield from stage.until(off)
@@ -162,12 +167,10 @@ def test_the_first_load_is_one_that_can_be_held(tmp_path: Path) -> None:
     def script(stage: Stage) -> Script:
         yield from armed(stage)
         yield from jog(stage, *[Jog("both", 1)] * 4, Jog("press", 1))
-        at_s = stage.views[-1].t_s
-        yield from stage.until(lambda view: view.t_s > at_s + 30.0 or not manual(view))
-        assert stage.views[-1].mode == "MANUAL"
+        yield from stays_manual(stage, 30.0)
         assert value(stage.views[-1], "load") == pytest.approx(20.0, abs=10.0)
         yield from jog(stage, Jog("press", -1))
-        yield from stage.until(lambda view: view.t_s > at_s + 40.0 or not manual(view))
+        yield from stays_manual(stage, 10.0)
         assert value(stage.views[-1], "load") == pytest.approx(0.0, abs=2.0)
         yield stage.order(Stop())
         yield from stage.until(off)
@@ -179,10 +182,8 @@ def test_a_temperature_above_that_of_the_air_is_heated_for(tmp_path: Path) -> No
     def script(stage: Stage) -> Script:
         yield from armed(stage)
         yield from jog(stage, *[Jog("both", 1)] * 4, *[Jog("heat", 1)] * 12)
-        at_s = stage.views[-1].t_s
-        yield from stage.until(lambda view: view.t_s > at_s + 20.0 or not manual(view))
+        yield from stays_manual(stage, 20.0)
         hub = stage.views[-1].value("hub")
-        assert stage.views[-1].mode == "MANUAL"
         assert hub is not None and hub.setpoint is not None and hub.setpoint > 40.0
         yield stage.order(Stop())
         yield from stage.until(off)
