@@ -13,7 +13,6 @@ from tests.install.__main__ import main
 from tests.install.place import carry_out, fresh_copy, readme_command
 from tests.install.topics import TOPICS, differing, interpreter
 
-
 posix = pytest.mark.skipif(os.name != "posix", reason="the README's POSIX commands are measured, by bash")
 
 
