@@ -192,6 +192,7 @@ def export(run: str, kind: str, out: Path | None, decimals: int) -> None:
 
     Conditions without a value that can be trusted are not in the appendix and are named on stderr.
     """
+    from tester.extras import MissingExtraError
     from tester.store.reader import RunReader
     from tester.store.schema import StoreError
 
@@ -201,6 +202,8 @@ def export(run: str, kind: str, out: Path | None, decimals: int) -> None:
     try:
         with RunReader(folder) as reader:
             _export(reader, kind, out, decimals)
+    except MissingExtraError as error:
+        raise click.UsageError(str(error)) from error
     except (StoreError, OSError) as error:
         if isinstance(error, BrokenPipeError):
             raise

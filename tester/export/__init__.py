@@ -57,7 +57,7 @@ def write_file(path: Path, chunks: Iterable[bytes]) -> None:
 
 
 def write_parquet_file(path: Path, reader: RunReader) -> None:
-    """Write the samples as a Parquet file, whole or not at all; raises OSError, StoreError."""
+    """Write the samples as a Parquet file, whole or not at all; raises OSError, StoreError, MissingExtraError."""
     from tester.export.parquet import write_parquet
 
     def fill(part: Path) -> None:

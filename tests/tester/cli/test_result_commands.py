@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import sys
 from pathlib import Path
 
 import pytest
@@ -89,6 +90,16 @@ def test_parquet_needs_a_file(home: Path) -> None:
 def test_parquet_goes_to_its_file(home: Path) -> None:
     assert invoke(export, "one", "--format", "parquet", "--out", "s.parquet").exit_code == 0
     assert (home / "s.parquet").read_bytes()[:4] == b"PAR1"
+
+
+def test_parquet_without_pyarrow_names_the_command_that_installs_it(
+    home: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, "pyarrow", None)
+    result = invoke(export, "one", "--format", "parquet", "--out", "s.parquet")
+    assert result.exit_code == 2
+    assert 'the format parquet needs pyarrow: pip install "friction-tester[parquet]"' in result.stderr
+    assert [path.name for path in home.iterdir()] == ["runs"]
 
 
 @pytest.mark.parametrize("command", [[show, "nothing"], [export, "nothing", "--format", "appendix"]])

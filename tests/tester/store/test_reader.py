@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sqlite3
+import sys
 from dataclasses import replace
 from hashlib import sha256
 from math import isnan
@@ -12,6 +13,7 @@ import numpy as np
 import pytest
 
 from tester.analysis.results import ConditionStatus, RepeatStatus
+from tester.extras import MissingExtraError
 from tester.process import SAMPLE_COLUMNS
 from tester.store.reader import RunReader
 from tester.store.records import WheelInfo
@@ -266,3 +268,14 @@ def test_samples_come_as_an_arrow_table(tmp_path: Path) -> None:
     with RunReader(small_run(tmp_path / "run")) as reader:
         table = sample_table(reader, 1, 2)
         assert table.num_rows == 5 and table.column_names == list(SAMPLE_COLUMNS)
+
+
+def test_without_pyarrow_a_table_names_what_to_install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from tester.store.arrow import sample_table
+
+    monkeypatch.setitem(sys.modules, "pyarrow", None)
+    with (
+        RunReader(small_run(tmp_path / "run")) as reader,
+        pytest.raises(MissingExtraError, match=r"pip install .friction-tester\[parquet\]"),
+    ):
+        sample_table(reader)
