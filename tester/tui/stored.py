@@ -64,7 +64,7 @@ def read(name: str, runs: Path) -> Stored:
     folder = find_run(name, runs)
     with RunReader(folder) as reader:
         results = results_of(reader)
-    return Stored(folder.name, folder, results.run.info.recipe_name, results.run.status, tuple(_rows(results)))
+    return Stored(folder.name, folder, results.run.info.recipe_name, results.status.value, tuple(_rows(results)))
 
 
 def _rows(results: RunResults) -> list[Row]:

@@ -398,6 +398,31 @@ def test_an_open_run_is_shown_as_interrupted_until_acknowledged(tmp_path: Path) 
     assert stage.views[-1].interrupted == ()
 
 
+def test_a_run_that_was_resumed_to_its_end_is_interrupted_no_longer(tmp_path: Path) -> None:
+    def cut_off(stage: Stage) -> Script:
+        yield stage.order(RUN)
+        yield from stage.until(running)
+        yield stage.order(Stop())
+        yield from stage.until(over)
+
+    run = play(tmp_path, cut_off, *QUIET).views[-1].run
+    assert run is not None
+    import sqlite3
+
+    with sqlite3.connect(Path(run.folder) / "run.db") as database:
+        database.execute("UPDATE run SET status = 'running'")
+
+    def script(stage: Stage) -> Script:
+        yield from stage.until(lambda view: view.mode == "INTERRUPTED")
+        yield stage.order(ResumeRun(run.name, speed=None, yes=True))
+        yield from stage.until(running)
+        yield from stage.until(lambda view: view.run is not None and view.run.outcome != "running")
+        yield from stage.until(lambda view: view.mode == "OFFLINE")
+
+    last = play(tmp_path, script, *QUIET).views[-1]
+    assert last.run is not None and (last.run.outcome, last.interrupted) == ("done", ())
+
+
 def test_a_run_that_somebody_is_at_work_on_is_not_interrupted(tmp_path: Path) -> None:
     def script(stage: Stage) -> Script:
         yield stage.order(RUN)
