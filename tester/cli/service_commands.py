@@ -136,7 +136,8 @@ def _command(address: str, action: Action, take: bool, *, control: bool = True, 
         click.echo(NO_SERVICE, err=True)
         return EXIT_UNREACHABLE
     except (RefusedError, LostError, TimeoutError) as error:
-        hint = ": `--take` takes control" if "has control" in str(error) and not take else ""
+        may_take = control and not take and not show_folder
+        hint = ": `--take` takes control" if may_take and "has control" in str(error) else ""
         click.echo(f"refused: {error}{hint}" if isinstance(error, RefusedError) else f"no answer: {error}", err=True)
         return EXIT_REFUSED
     return 0
