@@ -169,12 +169,15 @@ def _lines(name: str, results: RunResults) -> Iterator[str]:
 
 
 def _row(row: TableRow) -> str:
+    from tester.analysis.trust import mark_of
+
     r = row.result
     if not r.ok:
         return f"  {row.describe()}"
     setpoints = row.describe().removesuffix(f": {r.reason}").removesuffix(f": {r.status.value}")
     spread = f" ± {r.expanded:.3f}" if isfinite(r.expanded) else ""
-    return f"  {setpoints}: {r.mu_resultant:.3f}{spread} (n {r.n_valid} of {r.n}) {r.flags}".rstrip()
+    mu = f"{r.mu_resultant:.3f}{mark_of(r.status, r.flags)}"
+    return f"  {setpoints}: {mu}{spread} (n {r.n_valid} of {r.n}) {r.flags}".rstrip()
 
 
 # tester export

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import sqlite3
 from contextlib import nullcontext
 from pathlib import Path
 
@@ -89,3 +90,13 @@ def test_a_kill_is_seen_although_no_file_changes(home: Path, capsys: pytest.Capt
         assert capsys.readouterr().out.startswith("one  running, process ")
     invoke(["runs"])
     assert capsys.readouterr().out.startswith("one  interrupted, 6 of 6 repeats committed")
+
+
+def test_compare_marks_a_number_that_is_not_to_be_trusted(home: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = stored(home, "")
+    with sqlite3.connect(folder / "run.db") as database:
+        database.execute("DELETE FROM repeat WHERE condition = 1 AND repeat > 1")
+        database.execute("UPDATE condition SET status = 'not measured', ended_s = NULL WHERE condition = 1")
+    invoke(["compare", "one", "one", "--json"])
+    marks = [(row["mark_1"], row["mark_2"]) for row in json.loads(capsys.readouterr().out)]
+    assert marks[0] == ("!", "!") and set(marks[1:]) == {("", "")}
