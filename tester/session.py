@@ -32,9 +32,9 @@ from tester.resume import prepare
 from tester.rig import RigConfig, load_rig
 from tester.screens import LastingScreen, Screen
 from tester.signals import HANG_UP, handled
-from tester.store.catalogue import cut_off
+from tester.store.catalogue import MANIFEST, cut_off
 from tester.store.reader import RunReader
-from tester.store.resume import FINISHED
+from tester.store.status import WENT_THROUGH
 from tester.store.writer import RunWriter
 
 
@@ -108,13 +108,15 @@ class Session:
         Raises CannotStartError, StoreError, InvalidSource.
         """
         with RunReader(folder) as reader:
-            finished = reader.run().status == FINISHED
-        if finished:
+            finished = reader.run().status == WENT_THROUGH
+        if finished and (folder / MANIFEST).is_file():
             self.screen.message(f"{folder.name} is complete: nothing is left to do")
             self.screen.result(str(folder))
             return 0
         with ExclusiveUse() as use:
             hold_run(use, folder)
+            if finished:  # cut off between its end and its tables
+                return self._report(folder, Ending(Outcome.DONE, "", None))
             recover(folder)
             resumed = prepare(folder, reason, self.options.operator)
             if isinstance(resumed, str):

@@ -10,10 +10,12 @@ from math import isfinite
 from tester.analysis.repeats import ConditionResult, combine_repeats, combine_replicates
 from tester.analysis.uncertainty import Instruments, instruments_of
 from tester.export.cells import nominal
+from tester.store.catalogue import under_way
 from tester.store.exclusions import standing
 from tester.store.reader import RunReader
 from tester.store.records import ConditionInfo, StoredCondition, StoredExclusion, StoredRepeat, StoredRun
 from tester.store.schema import StoreError
+from tester.store.status import RunStatus, run_status
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,6 +76,8 @@ class RunResults:
 
     run: StoredRun
     rows: tuple[TableRow, ...]
+    status: RunStatus
+    """How the run stood when this was read."""
 
     def conditions(self) -> Iterator[Measured]:
         """Yield the conditions, in recipe order, replicates one after the other."""
@@ -106,7 +110,9 @@ def results_of(reader: RunReader) -> RunResults:
         else:
             combined = combine_replicates([m.result for m in replicates], instruments=instruments)
             rows.append(TableRow(replicates, combined))
-    return RunResults(run, tuple(rows))
+    missing = any(not row.result.ok for row in rows)
+    held = under_way(reader.path.parent) is not None
+    return RunResults(run, tuple(rows), run_status(run.status, held=held, missing=missing))
 
 
 def _measured(

@@ -10,12 +10,10 @@ from tester.analysis.results import ConditionStatus, RepeatResult, RepeatStatus
 from tester.recipe.remaining import Stand, WornWheel
 from tester.store.reader import RunReader
 from tester.store.records import NAN, StoredRepeat, WheelInfo
+from tester.store.status import WENT_THROUGH
 
 ENDS_A_CONDITION = (RepeatStatus.CANNOT_HOLD, RepeatStatus.NOT_REACHED)
 """A repeat with one of these is its condition's last."""
-
-FINISHED = "done"
-"""Status of a run that went through its whole plan."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,7 +74,7 @@ def resume_point(reader: RunReader) -> ResumePoint:
             open_[number] = _so_far(repeats[number], stored.warming_k_s, stored.holdable_band_k)
     sessions = reader.sessions()
     return ResumePoint(
-        finished=run.status == FINISHED,
+        finished=run.status == WENT_THROUGH,
         origin_s=run.rig_seconds if isfinite(run.rig_seconds) else 0.0,
         stand=Stand(frozenset(ended), frozenset(repeats), tuple(_wheels(reader.wheels(), repeats))),
         conditions=open_,

@@ -29,7 +29,7 @@ def invoke(command: object, *arguments: str) -> Result:
 def test_show_tells_status_rig_time_and_values(home: Path) -> None:
     lines = invoke(show, "one").stdout.splitlines()
     assert lines[0] == "one: Small, two loads"
-    assert lines[1] == "status   finished"
+    assert lines[1] == "status   done"
     assert lines[2].startswith("rig time 0:45:00")
     assert lines[3] == "values   2 of 2 conditions"
     assert lines[4].startswith("  1#, 300 mm/s, 100 N, 0°, 25 °C: 0.900 ± ")
@@ -38,7 +38,7 @@ def test_show_tells_status_rig_time_and_values(home: Path) -> None:
 
 def test_show_as_json(home: Path) -> None:
     shown = json.loads(invoke(show, "one", "--json").stdout)
-    assert (shown["rig_seconds"], shown["status"], shown["seed"]) == (2700.5, "finished", 1)
+    assert (shown["rig_seconds"], shown["status"], shown["seed"]) == (2700.5, "done", 1)
     assert [condition["mu"] for condition in shown["conditions"]] == pytest.approx([0.9, 0.73])
     assert len(shown["conditions"][0]["repeats"]) == 3
     assert shown["missing"] == []

@@ -30,7 +30,7 @@ def test_the_run_comes_back(folder: Path) -> None:
     with RunReader(folder) as reader:
         run = reader.run()
         assert run.info == RUN
-        assert (run.status, run.rig_seconds, run.overruns) == ("finished", 2700.5, 0)
+        assert (run.status, run.rig_seconds, run.overruns) == ("done", 2700.5, 0)
         assert run.recipe_sha256 == sha256(RUN.recipe_text.encode()).hexdigest()
         assert run.ended_utc == "2024-02-21T14:06:00.000Z"
 
@@ -226,7 +226,7 @@ def test_reading_does_not_change_the_file(folder: Path) -> None:
 
 def test_a_name_with_spaces_and_marks_is_just_a_name(tmp_path: Path) -> None:
     with RunReader(small_run(tmp_path / "a run? 100% #1")) as reader:
-        assert reader.run().status == "finished"
+        assert reader.run().status == "done"
 
 
 def test_a_record_of_an_older_schema_is_read_and_left_as_it_is(tmp_path: Path) -> None:
@@ -245,7 +245,7 @@ def test_a_record_of_an_older_schema_is_read_and_left_as_it_is(tmp_path: Path) -
     database.close()
     before = (folder / "run.db").read_bytes()
     with RunReader(folder) as reader:
-        assert len(reader.repeats()) == 6 and reader.sessions() == [] and reader.run().status == "finished"
+        assert len(reader.repeats()) == 6 and reader.sessions() == [] and reader.run().status == "done"
     assert (folder / "run.db").read_bytes() == before
 
 
