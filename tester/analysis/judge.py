@@ -3,8 +3,8 @@
 Make-up repeats must not launder a run-in: a coefficient that settles while it is measured loses its first repeats to
 the drift test, and what is left looks steady at a value that depends on when it was looked at. Such a condition
 carries ``carry-over``: when two or more repeats were refused for drift of the same sign, when the means fall or rise
-with the sliding distance, or when the drift itself dies away along it (both at 1 %). The tests of the trend look at
-all repeats, the refused ones too.
+with the sliding distance, or when the drift itself dies away along it (both at 1 %), or when what stays is shown to
+drift (5 %) the way of those that were refused. The tests of the trend look at all repeats, the refused ones too.
 """
 
 from __future__ import annotations
@@ -99,6 +99,7 @@ def _judgement(
     seconds: float | None,
 ) -> Judgement:
     trend, carries = trend_of(results, found.per_kelvin_percent)
+    carries |= _go_the_same_way(results, found)
     flags = [word for word, on in ((NOT_SHOWN, not found.stable), (CARRY_OVER, carries)) if on]
     return Judgement(
         drift_percent=found.drift_percent,
@@ -109,6 +110,14 @@ def _judgement(
         trend_percent=trend,
         flags=joined(flags),
     )
+
+
+def _go_the_same_way(results: Sequence[RepeatResult], found: Drift) -> bool:
+    """Tell whether those that stay are shown to drift, too, the way of those that were refused."""
+    margin = found.bound_percent - abs(found.drift_percent)
+    shown = abs(found.drift_percent) > margin
+    refused = [r.drift_percent * found.drift_percent > 0.0 for r in results if r.drifts]
+    return shown and bool(refused) and all(refused)
 
 
 def _left_with_refused(
@@ -203,7 +212,9 @@ def _dies_away(x: Sequence[float], results: Sequence[RepeatResult]) -> bool:
     squares = sum(a * a for a in x)
     mean = sum(drifts) / len(drifts)
     per_m = sum(a * b for a, b in zip(x, drifts, strict=True)) / squares
-    error = sqrt(sum(a * a * e * e for a, e in zip(x, errors, strict=True))) / squares
+    # What scatters about the line, too: one odd repeat among steady ones is no drift that dies away.
+    rest = sum((d - mean - per_m * a) ** 2 for a, d in zip(x, drifts, strict=True)) / max(len(x) - 2, 1)
+    error = sqrt(sum(a * a * max(e * e, rest) for a, e in zip(x, errors, strict=True))) / squares
     first, last = mean + per_m * x[0], mean + per_m * x[-1]
     if abs(first) <= abs(last) or abs(last - first) <= LEAST_CHANGE_PERCENT:
         return False

@@ -7,6 +7,7 @@ from math import isfinite
 from typing import Final, Protocol
 
 from tester.analysis.results import RepeatStatus
+from tester.analysis.stability import REPEAT_WINDOWS
 from tester.engine.activity import Activity
 from tester.engine.bursts import Ending, MeasureRepeat
 from tester.engine.context import Context
@@ -180,7 +181,7 @@ class MeasureCondition:
         self.key = self.results.begin_repeat(ctx, self.condition, self.repeat, attempt)
         ctx.repeat_key = self.key
         self.measuring = MeasureRepeat(self.condition, self.reference_tare, self.offset_k)
-        ctx.progress.revolutions_wanted = self.condition.window.revolutions or 0.0
+        ctx.progress.revolutions_wanted = REPEAT_WINDOWS * (self.condition.window.revolutions or 0.0)
 
     def _finish(self, ctx: Context, measured: MeasureRepeat) -> None:
         self.offset_k = measured.offset_k

@@ -188,7 +188,8 @@ class StoredResults:
         window = step.window
         found = earlier.blocks if earlier is not None else ()
         self.blocks = [counted(blocks, window.revolutions, window.seconds) for blocks in found]
-        self.judgement, self.judged = NOT_JUDGED, 0
+        self.judgement = earlier.judged if earlier is not None else NOT_JUDGED
+        self.judged = len(self.repeats) if self.judgement.made else 0
         if self._enough_to_judge(step):
             self._judge(step)
 

@@ -9,7 +9,7 @@ from math import isfinite
 from tester.analysis.blocks import Block, blocks_from_samples
 from tester.analysis.repeatability import NOTHING_POOLED, Pool
 from tester.analysis.repeats import counting
-from tester.analysis.results import ConditionStatus, RepeatResult, RepeatStatus
+from tester.analysis.results import NOT_JUDGED, ConditionStatus, Judgement, RepeatResult, RepeatStatus
 from tester.recipe.remaining import Stand, WornWheel
 from tester.store.reader import RunReader
 from tester.store.records import NAN, StoredCondition, StoredRepeat, WheelInfo
@@ -35,6 +35,8 @@ class ConditionSoFar:
     """Of the results' repeats."""
     blocks: tuple[tuple[Block, ...], ...] = ()
     """Of the results' repeats, from their samples: what a condition is judged by."""
+    judged: Judgement = NOT_JUDGED
+    """How it was judged when the last of them was committed."""
 
     @property
     def over(self) -> RepeatStatus | None:
@@ -110,6 +112,7 @@ def _so_far(reader: RunReader, attempts: list[StoredRepeat], stored: StoredCondi
         stored.holdable_band_k,
         tuple(r.key for r in found),
         tuple(tuple(blocks_from_samples(reader.samples(r.condition, r.repeat, r.attempt))) for r in found),
+        stored.judged,
     )
 
 
