@@ -57,7 +57,7 @@ def synthetic(count: int) -> Iterator[Figure]:
         kept = sum(not case.refused(1) for case in one)
         yield at_most(f"{of.name}: 4 % a window in one repeat, kept, of {count}", kept, 5 * share, digits=0)
         for size, blocks in ((0.10, 94.0), (0.06, 150.0), (0.15, 60.0)):
-            laundered = [c for c in cases(of, count, settling(size, blocks)) if any(not r.valid for r in c.results)]
+            laundered = [c for c in cases(of, count, settling(size, blocks)) if any(r.drifts for r in c.results)]
             carried = 100.0 * sum(c.carries for c in laundered) / max(len(laundered), 1)
             name = f"{of.name}: run-in of {100 * size:g} % in {blocks:g} revolutions, {len(laundered)} with make-ups"
             yield at_least(f"{name}, carry-over", carried, 95.0, "%", digits=1)
@@ -67,7 +67,7 @@ def synthetic(count: int) -> Iterator[Figure]:
 
 def _refused(found: Sequence[Case]) -> float:
     made = sum(len(case.results) for case in found)
-    return 100.0 * sum(not r.valid for case in found for r in case.results) / made
+    return 100.0 * sum(r.drifts for case in found for r in case.results) / made
 
 
 def _stable(of: Pattern, number: int, drift: float, found: Sequence[Case]) -> Iterator[Figure]:
