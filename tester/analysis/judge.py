@@ -35,7 +35,7 @@ ALONE = 2
 """Up to this many repeats are judged each alone: there is nothing to pool."""
 
 TREND_LEVEL = 0.01
-"""Level, two-sided, of the tests for a trend over the repeats."""
+"""Level of the tests for a trend over the repeats."""
 HISTORY_DF = 8.0
 """Weight of the historic standard deviation between repeats beside the condition's own, degrees of freedom [A]."""
 LEAST_CHANGE_PERCENT = 1.0
@@ -202,7 +202,10 @@ def trend_of(results: Sequence[RepeatResult], per_kelvin_percent: float) -> tupl
         df = len(seen) - 2 + HISTORY_DF
         s = sqrt((rest + HISTORY_DF * (100.0 * REPEATABILITY) ** 2) / df)
         error = s / sqrt(sum(a * a for a in x))
-        carries |= abs(per_m) > t_quantile(1.0 - 0.5 * TREND_LEVEL, df) * error
+        # One-sided where the drift within the repeats goes the same way.
+        drifts = [results[i].drift_percent for i in seen if isfinite(results[i].drift_percent)]
+        sides = 1.0 if sum(drifts) * per_m > 0.0 else 2.0
+        carries |= abs(per_m) > t_quantile(1.0 - TREND_LEVEL / sides, df) * error
         carries |= _dies_away(x, [results[i] for i in seen])
     return per_m * span, carries
 
