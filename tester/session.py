@@ -23,7 +23,7 @@ from tester.engine.prompts import Prompts
 from tester.engine.results import condition_records
 from tester.engine.run import Outcome, Run
 from tester.engine.tickers import TickStatistics
-from tester.export import write_all
+from tester.export import doubtful, write_all
 from tester.lock import ExclusiveUse
 from tester.provenance import recipe_source, rig_source, run_info, session_info
 from tester.recipe.check import load_checked
@@ -275,9 +275,10 @@ class Session:
 
     def _report(self, folder: Path, ending: Ending) -> int:
         """Write the tables, name what is missing in them, and return the exit code."""
-        missing = [row.describe() for row in write_all(folder)]
-        for line in missing:
-            self.screen.message(line)
+        lost = write_all(folder)
+        missing = [row.describe() for row in lost]
+        for row in [*lost, *doubtful(folder)]:
+            self.screen.message(row.advise())
         if ending.reason:
             self.screen.message(f"{ending.outcome.value}: {ending.reason}")
         code = ending.exit_code(interrupted_once=self.interrupts == 1, missing=bool(missing))

@@ -79,3 +79,9 @@ def write_all(run_dir: Path) -> list[TableRow]:
     write_file(run_dir / "repeats.csv", repeats(results))
     write_file(run_dir / MANIFEST, [manifest_text(run_dir).encode()])
     return results.missing()
+
+
+def doubtful(run_dir: Path) -> list[TableRow]:
+    """Return the rows whose value is to be taken with care; raises StoreError."""
+    with RunReader(run_dir) as reader:
+        return results_of(reader).doubtful()

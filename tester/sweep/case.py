@@ -83,7 +83,7 @@ def run_case(task: Task) -> CaseResult:
         recipe, rig = folder / "recipe.yaml", folder / "rig.yaml"
         recipe.write_text(task.recipe_text, encoding="utf-8", newline="\n")
         rig.write_text(task.rig_text, encoding="utf-8", newline="\n")
-        screen = _Unseen()
+        screen = Unseen()
         options = SessionOptions(str(recipe), str(rig), out=folder / "runs", seed=task.seed, samples=False)
         session = screen.session = Session(options, screen)
         code = session.run()
@@ -114,7 +114,7 @@ def _row(row: TableRow) -> RowResult:
     return RowResult(i.row, i.compound, *setpoints, r.status.value, mu, s, r.n_valid, u, r.flags, r.reason)
 
 
-class _Unseen:
+class Unseen:
     """A screen that nobody looks at; a stop that is ordered of the pool reaches the session through it."""
 
     answer_yes = True
