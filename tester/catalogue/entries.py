@@ -68,6 +68,11 @@ class ConditionEntry:
     n_valid: int
     n: int
 
+    @property
+    def slip_velocity_m_s(self) -> float:
+        """Return the slip velocity in m/s."""
+        return 1e-3 * self.slip_velocity_mm_s
+
 
 @dataclass(frozen=True, slots=True)
 class Wanted:

@@ -8,6 +8,7 @@ from math import isfinite
 from tester.analysis.reduce import bursts_of, reduce_repeat, without_value
 from tester.analysis.repeats import combine_repeats
 from tester.analysis.results import ConditionStatus, RepeatResult, RepeatStatus
+from tester.axes import condition_words
 from tester.engine.bursts import Ending, MeasureRepeat
 from tester.engine.condition import ConditionEnd, RepeatOutcome
 from tester.engine.context import Context
@@ -108,7 +109,7 @@ class StoredResults:
         self.recorder.end_condition(
             step.condition, left, reason, ctx.now, warming_k_s=end.warming_k_s, holdable_band_k=end.holdable_band_k
         )
-        name = f"condition {step.condition} ({_setpoint(step)})"
+        name = f"condition {step.condition} ({condition_words(step.setpoint)})"
         if left is ConditionStatus.OK:
             return f"{name}: mu {found.mu_resultant:.4f}, s {found.s:.4f}, {found.n_valid} of {found.n}"
         return f"{name}: {left.value}: {reason}"
@@ -148,10 +149,3 @@ def _line(result: RepeatResult) -> str:
     if result.status is RepeatStatus.VALID:
         return f"mu {result.mu_resultant:.4f}, {result.revolutions} revolutions, {result.bursts} bursts"
     return f"{result.status.value}: {result.reason}"
-
-
-def _setpoint(step: ConditionStep) -> str:
-    sp = step.setpoint
-    text = f"{sp.compound}, {sp.slip_velocity_m_s * 1000:g} mm/s, {sp.load_n:g} N, {sp.temperature_c:g} degC"
-    text += f", sideslip {sp.sideslip_deg:g} deg" if sp.sideslip_deg else ""
-    return text + (f", camber {sp.camber_deg:g} deg" if sp.camber_deg else "")

@@ -9,7 +9,7 @@ from math import isfinite
 
 from tester.analysis.repeats import ConditionResult, combine_repeats, combine_replicates
 from tester.analysis.uncertainty import Instruments, instruments_of
-from tester.export.cells import nominal
+from tester.axes import condition_words
 from tester.store.exclusions import standing
 from tester.store.reader import RunReader
 from tester.store.records import ConditionInfo, StoredCondition, StoredExclusion, StoredRepeat, StoredRun
@@ -55,17 +55,12 @@ class TableRow:
 
     def describe(self) -> str:
         """Return the row's setpoints and why it has no value, in a line for people."""
-        i = self.info
-        setpoints = (
-            f"{i.compound}, {nominal(1e3 * i.slip_velocity_m_s)} mm/s, {nominal(i.load_n)} N, "
-            f"{nominal(i.sideslip_deg)}°, {nominal(i.temperature_c)} °C"
-        )
         parts = [self.result.status.value, self.result.reason]
         for measured in self.replicates:
             c = measured.condition
             if not measured.result.ok and isfinite(c.warming_k_s) and not c.reason:
                 parts.append(f"warming {c.warming_k_s:.2g} K/s; {c.holdable_band_k:.2g} K of band would do")
-        return ": ".join([setpoints, *[part for part in parts if part]])
+        return ": ".join([condition_words(self.info), *[part for part in parts if part]])
 
 
 @dataclass(frozen=True, slots=True)

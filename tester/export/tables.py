@@ -11,20 +11,12 @@ from math import isnan
 
 from tester.analysis.blocks import AVERAGED
 from tester.analysis.repeats import ConditionResult
+from tester.axes import AXES, columns
 from tester.export.cells import Cell, Number, exact, nominal
 from tester.export.results import Measured, RunResults
 from tester.process import SAMPLE_COLUMNS
 from tester.store.reader import RunReader
 from tester.store.records import ConditionInfo, StoredRepeat
-
-APPENDIX_HEADER: tuple[Cell, ...] = (
-    "Formula",
-    "Slip Velocity /mm·s⁻¹",
-    "Load /N",
-    "Sideslip Angle /°",
-    "Temperature /°C",
-    "Friction Coefficient",
-)
 
 _SETPOINTS = (
     "specimen",
@@ -32,12 +24,7 @@ _SETPOINTS = (
     "grid",
     "compound",
     "note",
-    "slip_velocity_mm_s",
-    "load_n",
-    "sideslip_deg",
-    "camber_deg",
-    "temperature_c",
-    "wheel_speed_m_s",
+    *(axis.column for axis in AXES),
 )
 
 _CONDITION = (
@@ -88,17 +75,17 @@ SAMPLE_HEADER: tuple[str, ...] = (*SAMPLE_COLUMNS, "condition", "repeat", "attem
 
 
 def appendix_rows(results: RunResults, decimals: int = 2) -> Iterator[tuple[Cell, ...]]:
-    """Yield the paper's table: nominal setpoints, one row for each condition that has a value to be trusted."""
-    yield APPENDIX_HEADER
+    """Yield the paper's table: nominal setpoints, one row for each condition that has a value to be trusted.
+
+    The paper's six columns, and one more for every axis that is off its default in any condition of the recipe.
+    """
+    axes = columns(row.info for row in results.rows)
+    yield ("Formula", *(axis.header for axis in axes), "Friction Coefficient")
     for row in results.rows:
         if row.result.ok:
-            i = row.info
             yield (
-                i.compound,
-                nominal(1e3 * i.slip_velocity_m_s),
-                nominal(i.load_n),
-                nominal(i.sideslip_deg),
-                nominal(i.temperature_c),
+                row.info.compound,
+                *(nominal(axis.of(row.info)) for axis in axes),
                 Number(f"{row.result.mu_resultant:.{decimals}f}"),
             )
 
@@ -166,12 +153,7 @@ def _setpoints(i: ConditionInfo, replicate: int | None) -> tuple[Cell, ...]:
         i.grid,
         i.compound,
         i.note,
-        nominal(1e3 * i.slip_velocity_m_s),
-        nominal(i.load_n),
-        nominal(i.sideslip_deg),
-        nominal(i.camber_deg),
-        nominal(i.temperature_c),
-        nominal(i.wheel_speed_m_s),
+        *(nominal(axis.of(i)) for axis in AXES),
     )
 
 

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from tester.axes import ListWords
 from tester.engine.context import Progress
 from tester.engine.executor import title
 from tester.recipe.estimate import Estimate
-from tester.recipe.plan import Plan, Step
+from tester.recipe.plan import ConditionStep, Plan, Step
 from tester.service.state import PlanStep, PlanView, StepState
 
 LISTED = 400
@@ -25,6 +26,7 @@ class PlanTrack:
         """Begin before the first step."""
         self.plan = plan
         self.estimated = [one.seconds for one in estimate.steps]
+        self._words = ListWords(step.setpoint for step in plan.conditions())
         self.total_s = max(estimate.rig_seconds, 1.0)
         self._ahead_s = [0.0] * (len(self.estimated) + 1)
         for i in range(len(self.estimated) - 1, -1, -1):
@@ -102,10 +104,13 @@ class PlanTrack:
         steps = self.plan.steps
         first = max(min(self.position - BEFORE, len(steps) - LISTED), 0)
         listed = tuple(
-            PlanStep(i + 1, steps[i].kind, title(steps[i]), self._state(i), self.estimated[i], self._measured.get(i))
-            for i in range(first, min(first + LISTED, len(steps)))
+            PlanStep(i + 1, one.kind, self._title(one), self._state(i), self.estimated[i], self._measured.get(i))
+            for i, one in enumerate(steps[first : first + LISTED], first)
         )
         return PlanView(self.plan.name, len(steps), first + 1, listed, self.total_s)
+
+    def _title(self, step: Step) -> str:
+        return self._words.of(step.setpoint) if isinstance(step, ConditionStep) else title(step)
 
     def _state(self, index: int) -> StepState:
         return "done" if index < self.position else "now" if index == self.position else "later"

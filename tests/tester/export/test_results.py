@@ -27,7 +27,7 @@ def test_every_condition_has_a_row_with_its_mean(tmp_path: Path) -> None:
 
 def test_a_condition_without_enough_repeats_is_missing_and_says_why(tmp_path: Path) -> None:
     (row,) = results(small_run(tmp_path, ([0.9, 0.91], [0.73, 0.74, 0.72]))).missing()
-    assert row.describe() == "1#, 300 mm/s, 100 N, 0°, 25 °C: insufficient: 2 of 3 valid, 3 needed"
+    assert row.describe() == "1#, 300 mm/s, 100 N, 25 degC: insufficient: 2 of 3 valid, 3 needed"
 
 
 def test_a_temperature_that_cannot_be_held_is_named_with_rate_and_band(tmp_path: Path) -> None:
