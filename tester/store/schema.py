@@ -260,8 +260,36 @@ CREATE TRIGGER exclusion_is_not_deleted BEFORE DELETE ON exclusion
 """Repeats that a person has left out of a mean, or taken in again (``excluded`` 0): who, when, why. Rows are only ever
 added. ``manifest_before``: the folder's manifest as it was before, with the hashes of the record without this row."""
 
-MIGRATIONS: tuple[str, ...] = (_VERSION_1, _VERSION_2, _VERSION_3)
+_WEAR_CHECK = """
+CREATE {temporary}TABLE wear_check (
+    id INTEGER PRIMARY KEY,
+    wheel INTEGER NOT NULL,
+    method TEXT NOT NULL,
+    t_s REAL,
+    reference_s REAL,
+    before INTEGER NOT NULL,
+    after INTEGER NOT NULL,
+    diameter_mm REAL,
+    u_mm REAL,
+    rubber_c REAL,
+    u_growth_mm_k REAL,
+    press_mm REAL,
+    load_n REAL,
+    sliding_m REAL,
+    exposure_n_m REAL,
+    width_mm REAL,
+    u_rate_percent REAL,
+    used INTEGER NOT NULL CHECK (used IN (0, 1))
+);
+"""
+"""Checks of a wheel's diameter between its conditions (``before`` and ``after``: their numbers, 0 for none), held
+against the first of their series at ``reference_s``; what their uncertainty comes from is in the row."""
+
+MIGRATIONS: tuple[str, ...] = (_VERSION_1, _VERSION_2, _VERSION_3, _WEAR_CHECK.format(temporary=""))
 """Migration n leads from schema n to n + 1."""
+
+_ADDED: dict[int, str] = {3: _EXCLUSION, 4: _WEAR_CHECK}
+"""Versions that have only added a table, empty at first: what a reader of an older record can have for itself."""
 
 VERSION = len(MIGRATIONS)
 
@@ -288,13 +316,13 @@ def _empty(connection: sqlite3.Connection) -> bool:
 def reads_as_present(connection: sqlite3.Connection, version: int) -> bool:
     """Let an older database be read as one of the present schema without writing it; False where that cannot be.
 
-    What version 3 has added is an empty table, which a connection can have for itself.
+    Where the versions since have only added empty tables, the connection has them for itself.
     """
-    if version == VERSION:
-        return True
-    if version != 2:
+    since = range(version + 1, VERSION + 1)
+    if any(number not in _ADDED for number in since):
         return False
-    connection.execute(_EXCLUSION.format(temporary="TEMP "))
+    for number in since:
+        connection.execute(_ADDED[number].format(temporary="TEMP "))
     return True
 
 

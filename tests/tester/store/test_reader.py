@@ -230,7 +230,7 @@ def test_a_name_with_spaces_and_marks_is_just_a_name(tmp_path: Path) -> None:
 def test_a_record_of_an_older_schema_is_read_and_left_as_it_is(tmp_path: Path) -> None:
     folder = small_run(tmp_path / "run")
     with sqlite3.connect(folder / "run.db") as database:
-        for table in ("session", "change", "calibration", "exclusion"):
+        for table in ("session", "change", "calibration", "exclusion", "wear_check"):
             database.execute(f"DROP TABLE {table}")
         for table, column in (
             ("wheel", "ground_s"),
@@ -251,6 +251,7 @@ def test_a_record_without_exclusions_is_read_in_place(tmp_path: Path, monkeypatc
     folder = small_run(tmp_path / "run")
     with sqlite3.connect(folder / "run.db") as database:
         database.execute("DROP TABLE exclusion")
+        database.execute("DROP TABLE wear_check")
         database.execute("PRAGMA user_version = 2")
     database.close()
     before = (folder / "run.db").read_bytes()
