@@ -15,12 +15,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import hypot, pi, sqrt
-
-import numpy as np
-from numpy.typing import NDArray
+from typing import TYPE_CHECKING
 
 from tester.analysis.results import NAN
 from tester.analysis.wear_check import NO_CONDITION, WearCheck
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
 
 COVERAGE = 2.0
 """Coverage factor for 95 %: most contributions are estimates of limits, taken as known (GUM G.6.4)."""
@@ -66,6 +68,8 @@ def wheel_wear(checks: Sequence[WearCheck]) -> WearRate:
     count, unknown = len(used), len(references) + 1
     if count < unknown or len({one.exposure_n_m for one in used}) < 2:
         return WearRate(checks=count)
+    import numpy as np  # only runs with checks pay for it
+
     first = [next(one for one in used if one.reference_s == at) for at in references]
     volumes, covariance = _volumes(used, {one.reference_s: one for one in first})
     design = np.zeros((count, unknown))
@@ -115,6 +119,8 @@ def _volumes(
     checks: Sequence[WearCheck], first: dict[float, WearCheck]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return the volume that each has lost since the first of its series, mm3, and the covariance of them all."""
+    import numpy as np
+
     lost: list[float] = []
     alone: list[float] = []
     growth: list[float] = []

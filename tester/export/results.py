@@ -9,10 +9,12 @@ from math import isfinite
 
 from tester.analysis.repeats import ConditionResult, combine_repeats, combine_replicates
 from tester.analysis.uncertainty import Instruments, instruments_of
+from tester.analysis.wear import ConditionWear, WearRate, condition_wear, wheel_wear
+from tester.analysis.wear_check import WearCheck
 from tester.axes import condition_words
 from tester.store.exclusions import standing
 from tester.store.reader import RunReader
-from tester.store.records import ConditionInfo, StoredCondition, StoredExclusion, StoredRepeat, StoredRun
+from tester.store.records import ConditionInfo, StoredCondition, StoredExclusion, StoredRepeat, StoredRun, WheelInfo
 from tester.store.schema import StoreError
 
 
@@ -69,6 +71,30 @@ class RunResults:
 
     run: StoredRun
     rows: tuple[TableRow, ...]
+    wheels: tuple[WheelInfo, ...] = ()
+    checks: tuple[WearCheck, ...] = ()
+    """Of the wheels' diameters, in the order in which they were made."""
+
+    def wear_of(self, wheel: int) -> WearRate:
+        """Return the wear rate over a wheel's life."""
+        return wheel_wear([one for one in self.checks if one.wheel == wheel])
+
+    def condition_wear(self, condition: int) -> ConditionWear | None:
+        """Return what a condition took off its wheel; None where no check says."""
+        return condition_wear(self.checks, condition) if self.checks else None
+
+    def wear_lines(self) -> Iterator[str]:
+        """Yield, for every wheel that was checked, its diameter and its wear rate in a line for people."""
+        for wheel in self.wheels:
+            checks = [one for one in self.checks if one.wheel == wheel.wheel]
+            if not checks:
+                continue
+            found = wheel_wear(checks)
+            text = f"wheel {wheel.wheel} ({wheel.compound}): {wheel.diameter_mm:.3f} mm after {len(checks)} checks"
+            if isfinite(found.rate):
+                text += f", wear {found.rate:.3g} ± {found.expanded:.2g} mm3/(N m)"
+                text += "" if found.resolved else ", not resolved from 0"
+            yield text
 
     def conditions(self) -> Iterator[Measured]:
         """Yield the conditions, in recipe order, replicates one after the other."""
@@ -101,7 +127,7 @@ def results_of(reader: RunReader) -> RunResults:
         else:
             combined = combine_replicates([m.result for m in replicates], instruments=instruments)
             rows.append(TableRow(replicates, combined))
-    return RunResults(run, tuple(rows))
+    return RunResults(run, tuple(rows), tuple(reader.wheels()), tuple(reader.wear_checks()))
 
 
 def _measured(
