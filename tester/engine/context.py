@@ -86,6 +86,8 @@ class WheelLife:
     loss_mm: float = 0.0
     """Estimated loss of diameter since installation, mm."""
     sliding_m: float = 0.0
+    rate_mm3_per_n_m: float = 0.0
+    """Wear rate that checks of this wheel have shown; 0: none has, the rig file's is reckoned with."""
     exposure_n_m: float = 0.0
     """Normal force times distance slid since installation: what wear is proportional to."""
     condition: int = 0
@@ -106,6 +108,7 @@ class WheelLife:
         distance = slip_m_s * dt
         self.sliding_m += distance
         self.exposure_n_m += force_n * distance
+        rate_mm3_per_n_m = self.rate_mm3_per_n_m or rate_mm3_per_n_m
         self.loss_mm += 2.0 * rate_mm3_per_n_m * force_n * distance / (pi * self.diameter_mm * self.width_mm)
 
 

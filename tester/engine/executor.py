@@ -145,6 +145,8 @@ class Executor:
             self.unchecked = None
         if isinstance(activity, MeasureCondition | InstallWheel):
             self.failed = activity.failed
+        if isinstance(activity, InstallWheel) and not self.failed:
+            self._mounted(activity, ctx)
         if isinstance(activity, MeasureCondition):
             self._measured(activity.condition, ctx)
         elif isinstance(activity, AskAtRest | CheckByPerson) and self.steps:
@@ -154,6 +156,14 @@ class Executor:
                 self.steps.appendleft(Heat(INSERTED, follower.setpoint.temperature_c))
 
     # -- checks of the wheel -----------------------------------------------------------------------------------
+
+    def _mounted(self, activity: InstallWheel, ctx: Context) -> None:
+        """Check a new wheel as it is mounted, before it is ground in: then its diameter is known."""
+        first = next((one for one in self.steps if isinstance(one, ConditionStep | Install)), None)
+        new = activity.install.worn is None
+        if new and isinstance(first, ConditionStep) and first.wear_check == "each_condition":
+            self._announced(WEAR_CHECK, ctx)
+            self.activity = CheckByRolling(first.setpoint.wheel_speed_m_s, self.reference_tare)
 
     def _measured(self, step: ConditionStep, ctx: Context) -> None:
         """Note that a condition is over; check the wheel where no check of the next condition will."""

@@ -10,13 +10,13 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
-from math import hypot, isfinite
+from math import hypot, isfinite, pi
 from typing import Final, NamedTuple
 
 from tester.analysis.wear_check import NO_CONDITION, WearCheck
 from tester.control.load_loop import depth_mm
 from tester.engine.attended import AskAtRest
-from tester.engine.context import CheckReference, Context
+from tester.engine.context import CheckReference, Context, WheelLife
 from tester.engine.moves import Lift, Load, Power, Sequence, Settle, TakeTare, Turn
 from tester.engine.thermal_steps import Straighten
 from tester.process import NAN
@@ -32,6 +32,8 @@ TARE_S: Final = 1.0
 LARGER_BY: Final = 3.0
 """A wheel that measures larger than at the check before by more than this many standard uncertainties has not grown:
 that check is not believed [A]."""
+CLEAR_BY: Final = 4.0
+"""A loss of this many standard uncertainties tells the wheel's rate well enough to reckon with it [A]: to 25 %."""
 QUESTION: Final = "measure the wheel's diameter and answer with it, such as 89.62 mm (yes: not measured)"
 
 
@@ -212,9 +214,26 @@ def conclude(ctx: Context, before: int, taken: Taken) -> None:
         ctx.journal.event(ctx.now, "wear", f"{text}; not used: {doubt}", "warning")
         return
     ctx.journal.event(ctx.now, "wear", text)
+    _learn_rate(wheel, check)
     wheel.last_check = check
     wheel.loss_mm = max(loss_mm, 0.0)
     ctx.journal.wheel_state(wheel.wheel, wheel.diameter_mm, wheel.sliding_m, ctx.now)
+
+
+def _learn_rate(wheel: WheelLife, check: WearCheck) -> None:
+    """Reckon with the rate that two checks have shown, where it is clear of their uncertainty.
+
+    A wrong rate makes the wheel slip unseen where its speed is to match the belt's: the line speed is reckoned with
+    the estimated diameter.
+    """
+    last = wheel.last_check
+    if last is None or last.reference_s != check.reference_s or check.exposure_n_m <= last.exposure_n_m:
+        return
+    lost_mm = last.diameter_mm - check.diameter_mm
+    u_mm = hypot(check.u_mm, last.u_mm, check.u_growth_mm_k * (check.rubber_c - last.rubber_c))
+    if lost_mm > CLEAR_BY * u_mm:
+        volume_mm3 = 0.25 * pi * check.width_mm * (last.diameter_mm**2 - check.diameter_mm**2)
+        wheel.rate_mm3_per_n_m = volume_mm3 / (check.exposure_n_m - last.exposure_n_m)
 
 
 def _doubt(ctx: Context, check: WearCheck) -> str:

@@ -126,6 +126,26 @@ def test_a_check_that_was_held_begins_anew(bench: Bench) -> None:
     assert bench.run(check) > 3.0 and len(checks(bench)) == 1
 
 
+def test_a_wheel_s_own_rate_is_reckoned_with_once_checks_have_shown_it(rolled: Bench) -> None:
+    wheel = rolled.ctx.wheel
+    wheel.exposure_n_m += 9000.0
+    rolled.pressed_mm += 0.25
+    roll(rolled)
+    volume = 0.25 * 3.141592653589793 * wheel.width_mm * (89.8**2 - 89.3**2)
+    assert wheel.rate_mm3_per_n_m == pytest.approx(volume / 9000.0, rel=1e-3)
+    before = wheel.loss_mm
+    wheel.slide(200.0, 0.3, 10.0, 0.08)
+    expected = 2.0 * wheel.rate_mm3_per_n_m * 600.0 / (3.14159 * 89.3 * 30.0)
+    assert wheel.loss_mm - before == pytest.approx(expected, rel=1e-3)
+
+
+def test_a_loss_below_the_resolution_teaches_no_rate(rolled: Bench) -> None:
+    rolled.ctx.wheel.exposure_n_m += 100.0
+    rolled.pressed_mm += 0.01
+    roll(rolled)
+    assert rolled.ctx.wheel.rate_mm3_per_n_m == 0.0
+
+
 # -- by a person ----------------------------------------------------------------------------------------------
 
 
@@ -184,19 +204,19 @@ def between(plan: Plan, results: Results | None = None, worn_mm: float = 0.0) ->
 
 def test_a_wheel_is_checked_before_every_condition_and_after_its_last() -> None:
     made, bench = between(plan_of(CHECKED))
-    assert made == [(1, 0, 1), (1, 1, 2), (1, 2, 3), (1, 3, 0)]
-    assert steps_of(bench) == ["install", "heat", "1#,", "1#,", "1#,", "check"]
+    assert made == [(1, 0, 0), (1, 0, 1), (1, 1, 2), (1, 2, 3), (1, 3, 0)]
+    assert steps_of(bench) == ["install", "check", "heat", "1#,", "1#,", "1#,", "check"]
 
 
 def test_a_worn_wheel_is_checked_before_it_is_changed() -> None:
     made, _ = between(replace(plan_of(CHECKED), replace_after_mm=1.2), Wearing(), worn_mm=0.5)
-    assert made == [(1, 0, 1), (1, 1, 2), (1, 2, 0), (2, 0, 3), (2, 3, 0)]
+    assert made == [(1, 0, 0), (1, 0, 1), (1, 1, 2), (1, 2, 0), (2, 0, 0), (2, 0, 3), (2, 3, 0)]
 
 
 def test_a_wheel_that_the_plan_changes_is_checked_before() -> None:
     text = CHECKED.replace('  - compound: "1#"\n', '  - compound: "1#"\n  - compound: "2#"\n')
     made, _ = between(plan_of(text))
-    assert [one for one in made if one[2] == 0] == [(1, 3, 0), (2, 6, 0)]
+    assert [one for one in made if one[1] and one[2] == 0] == [(1, 3, 0), (2, 6, 0)]
 
 
 def test_a_grid_without_checks_leaves_the_wheel_unchecked() -> None:
@@ -206,7 +226,7 @@ def test_a_grid_without_checks_leaves_the_wheel_unchecked() -> None:
 def test_a_condition_without_a_check_does_not_take_that_of_the_one_before() -> None:
     grid = SHORT[SHORT.index("  - name: one") :].replace("one", "two").replace("200 N", "300 N")
     text = SHORT.replace("repeats: 1", "repeats: 1\n  wear_check: each_condition") + grid + "    wear_check: never\n"
-    assert between(plan_of(text))[0] == [(1, 0, 1), (1, 1, 0)]
+    assert between(plan_of(text))[0] == [(1, 0, 0), (1, 0, 1), (1, 1, 0)]
 
 
 def test_a_person_is_asked_after_the_last_condition_too() -> None:
