@@ -15,8 +15,8 @@ from tester.axes import Axis, columns, plain
 from tester.cli.showing import shown
 from tester.export.results import RunResults, TableRow, results_of
 from tester.store.reader import RunReader
-from tester.store.status import RunStatus
 from tester.store.schema import StoreError
+from tester.store.status import RunStatus
 
 ROWS_AT_MOST = 200
 """A longer table is for a spreadsheet: its beginning is shown, with the file that has it all."""
