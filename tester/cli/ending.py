@@ -11,12 +11,12 @@ from textwrap import wrap
 
 from rich.cells import cell_len
 
+from tester.axes import Axis, columns, plain
 from tester.cli.showing import shown
-from tester.export.cells import nominal
 from tester.export.results import RunResults, TableRow, results_of
 from tester.store.reader import RunReader
-from tester.store.resume import FINISHED
 from tester.store.schema import StoreError
+from tester.store.status import RunStatus
 
 ROWS_AT_MOST = 200
 """A longer table is for a spreadsheet: its beginning is shown, with the file that has it all."""
@@ -45,8 +45,9 @@ def table_lines(results: RunResults, folder: Path) -> Iterator[str]:
     tried = [row for row in results.rows if any(measured.repeats for measured in row.replicates)]
     listed = tried[:ROWS_AT_MOST]
     if listed:
-        camber = any(row.info.camber_deg for row in listed)
-        lines = [(_header(camber), ""), *((_cells(row, camber), _remarks(row)) for row in listed)]
+        axes = columns(row.info for row in listed)
+        header = ("compound", *(axis.title for axis in axes), "mu", "U (95 %)", "valid")
+        lines: list[tuple[Sequence[str], str]] = [(header, ""), *((_cells(row, axes), _remarks(row)) for row in listed)]
         widths = [max(map(cell_len, column)) for column in zip(*(cells for cells, _ in lines), strict=True)]
         for cells, remarks in lines:
             yield from _line(cells, widths, remarks)
@@ -56,19 +57,11 @@ def table_lines(results: RunResults, folder: Path) -> Iterator[str]:
         yield f"{len(results.rows) - len(tried)} of {len(results.rows)} conditions not measured"
 
 
-def _header(camber: bool) -> Sequence[str]:
-    return ("compound", "mm/s", "N", "sideslip", *(["camber"] if camber else []), "degC", "mu", "U (95 %)", "valid")
-
-
-def _cells(row: TableRow, camber: bool) -> Sequence[str]:
+def _cells(row: TableRow, axes: Sequence[Axis]) -> Sequence[str]:
     i, r = row.info, row.result
     return (
         _cut(shown(i.compound)),
-        nominal(1e3 * i.slip_velocity_m_s),
-        nominal(i.load_n),
-        nominal(i.sideslip_deg),
-        *([nominal(i.camber_deg)] if camber else []),
-        nominal(i.temperature_c),
+        *(plain(axis.of(i)) for axis in axes),
         f"{r.mu_resultant:.3f}" if r.ok else "-",
         f"{r.expanded:.3f}" if r.ok and isfinite(r.expanded) else "-",
         f"{r.n_valid} of {r.n}",
@@ -107,7 +100,7 @@ def _next_lines(results: RunResults, folder: Path) -> Iterator[str]:
     called = sys.argv[0] if program in ("tester", "tester.exe") and Path(sys.argv[0]).parent != Path() else "tester"
     where = shlex.quote(str(folder))
     yield ""
-    if results.run.status == FINISHED or not results.missing():
+    if results.status in (RunStatus.DONE, RunStatus.INCOMPLETE):
         yield f"next: {_near(called)} show {where}"
     else:
         yield f"next: {_near(called)} resume {where}"

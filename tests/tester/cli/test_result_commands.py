@@ -32,7 +32,7 @@ def test_show_tells_status_rig_time_and_values(home: Path) -> None:
     assert lines[1] == "status   done"
     assert lines[2].startswith("rig time 0:45:00")
     assert lines[3] == "values   2 of 2 conditions"
-    assert lines[4].startswith("  1#, 300 mm/s, 100 N, 0°, 25 °C: 0.900 ± ")
+    assert lines[4].startswith("  1#, 300 mm/s, 100 N, 25 degC: 0.900 ± ")
     assert lines[4].endswith("(n 3 of 3) extended")
 
 
@@ -48,7 +48,7 @@ def test_show_names_what_has_no_value(home: Path) -> None:
     small_run(home / "runs" / "two", ([0.9], [0.73, 0.74, 0.72]))
     shown = invoke(show, "two").stdout
     assert "values   1 of 2 conditions" in shown
-    assert "  1#, 300 mm/s, 100 N, 0°, 25 °C: insufficient: 1 of 3 valid, 3 needed" in shown
+    assert "  1#, 300 mm/s, 100 N, 25 degC: insufficient: 1 of 3 valid, 3 needed" in shown
     assert json.loads(invoke(show, "two", "--json").stdout)["conditions"][0]["s"] is None
 
 
@@ -77,7 +77,7 @@ def test_export_names_missing_conditions_on_stderr(home: Path) -> None:
     small_run(home / "runs" / "two", ([0.9], [0.73, 0.74, 0.72]))
     result = invoke(export, "two", "--format", "appendix")
     assert result.exit_code == 0
-    assert result.stderr.startswith("not in the appendix: 1#, 300 mm/s, 100 N, 0°, 25 °C: insufficient")
+    assert result.stderr.startswith("not in the appendix: 1#, 300 mm/s, 100 N, 25 degC: insufficient")
     assert len(result.stdout.splitlines()) == 2
 
 
