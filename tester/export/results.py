@@ -123,6 +123,7 @@ def _measured(
         min_valid=info.min_valid,
         ended=stored.status,
         reason=stored.reason,
+        judged=stored.judged,
         by_hand={i: one.reason for i, one in by_hand.items()},
         instruments=instruments,
     )

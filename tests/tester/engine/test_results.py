@@ -105,12 +105,20 @@ def test_enough_valid_repeats_make_a_value(door: Door) -> None:
     assert line.startswith("condition 1 (1#, 300 mm/s, 200 N, 25 degC): mu 0.6999") and line.endswith("3 of 3")
 
 
-def test_too_few_valid_repeats_make_none(door: Door) -> None:
+def test_too_few_valid_repeats_make_a_flagged_value(door: Door) -> None:
     for number in (1, 2, 3):
         door.repeat(number, Ending.COMPLETE if number == 1 else Ending.INCOMPLETE, blocks=16 if number == 1 else 7)
     line, written = door.end()
+    assert written[0] == ConditionStatus.OK.value
+    assert line.endswith("1 of 3 (short)")
+
+
+def test_no_valid_repeat_makes_no_value(door: Door) -> None:
+    for number in (1, 2, 3):
+        door.repeat(number, Ending.INCOMPLETE, blocks=7)
+    line, written = door.end()
     assert written[0] == ConditionStatus.INSUFFICIENT.value
-    assert "insufficient: 1 of 3 valid, 2 needed" in line
+    assert "insufficient: none of 3 repeats is valid" in line
 
 
 def test_a_condition_that_cannot_be_held_says_so_with_rate_and_band(door: Door) -> None:

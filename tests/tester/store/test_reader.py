@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sqlite3
-from dataclasses import replace
+from dataclasses import fields, replace
 from hashlib import sha256
 from math import isnan
 from pathlib import Path
@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tester.analysis.results import ConditionStatus, RepeatStatus
+from tester.analysis.results import ConditionStatus, Judgement, RepeatStatus
 from tester.process import SAMPLE_COLUMNS
 from tester.store.reader import RunReader
 from tester.store.records import WheelInfo
@@ -227,6 +227,12 @@ def test_a_name_with_spaces_and_marks_is_just_a_name(tmp_path: Path) -> None:
         assert reader.run().status == "finished"
 
 
+def without_judgements(database: sqlite3.Connection) -> None:
+    """Take out of a record what version 4 has added."""
+    for column in ("at_most", "until_percent", *(field.name for field in fields(Judgement))):
+        database.execute(f"ALTER TABLE condition DROP COLUMN {column}")
+
+
 def test_a_record_of_an_older_schema_is_read_and_left_as_it_is(tmp_path: Path) -> None:
     folder = small_run(tmp_path / "run")
     with sqlite3.connect(folder / "run.db") as database:
@@ -239,6 +245,7 @@ def test_a_record_of_an_older_schema_is_read_and_left_as_it_is(tmp_path: Path) -
             ("run", "calibration_sha256"),
         ):
             database.execute(f"ALTER TABLE {table} DROP COLUMN {column}")
+        without_judgements(database)
         database.execute("PRAGMA user_version = 1")
     database.close()
     before = (folder / "run.db").read_bytes()
@@ -251,12 +258,28 @@ def test_a_record_without_exclusions_is_read_in_place(tmp_path: Path, monkeypatc
     folder = small_run(tmp_path / "run")
     with sqlite3.connect(folder / "run.db") as database:
         database.execute("DROP TABLE exclusion")
+        without_judgements(database)
         database.execute("PRAGMA user_version = 2")
     database.close()
     before = (folder / "run.db").read_bytes()
     monkeypatch.delattr("tester.store.reader.TemporaryDirectory")  # no copy of it is made
     with RunReader(folder) as reader:
         assert reader.exclusions() == [] and len(reader.repeats()) == 6
+    assert (folder / "run.db").read_bytes() == before
+
+
+def test_a_record_without_judgements_is_read_in_place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    folder = small_run(tmp_path / "run")
+    with sqlite3.connect(folder / "run.db") as database:
+        without_judgements(database)
+        database.execute("PRAGMA user_version = 3")
+    database.close()
+    before = (folder / "run.db").read_bytes()
+    monkeypatch.delattr("tester.store.reader.TemporaryDirectory")  # no copy of it is made
+    with RunReader(folder) as reader:
+        (first, _) = reader.conditions()
+    assert (first.info.at_most, first.info.until_percent) == (2 * first.info.repeats, None)
+    assert isnan(first.judged.drift_percent) and first.judged.flags == ""
     assert (folder / "run.db").read_bytes() == before
 
 
