@@ -1,6 +1,6 @@
 """Constants of the estimate: how long the executor's moves take. Calibrate here, against simulated runs.
 
-`python -m tests.seeds steps` shows what they take, step by step.
+`python -m tests.seeds.steps RUN ...` shows what they take, step by step.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ class EstimateConstants:
     near_k: float = 12.0
     near_shift_k: float = 2.0
     """Near ambient cooling is slow: by the factor 1 + near_k / (kelvin above ambient + near_shift_k)."""
-    near_carried_wk: float = 0.84
+    near_carried_wk: float = 1.1
     """What more is carried near ambient while the wheel's body still warms: W K, over kelvin above ambient."""
     hot_w: float = 4.8
     hot_share: float = 0.5
@@ -69,8 +69,8 @@ class EstimateConstants:
     """Equilibrium in contact after heating up from ambient by so many kelvin: the hub leads, and has to come down."""
     settle_from: float = 0.45
     """Rise over kelvin above ambient from which on the surface overshoots; 1: from ambient."""
-    settled_share: float = 1.3
-    settled_s: float = 600.0
+    settled_share: float = 1.35
+    settled_s: float = 500.0
     """The first condition after heating waits this share of its usual time, less the settling over ``settled_s``."""
     rolling_settle: float = 0.5
     """Without slip the surface has to stand within 0.4 K of the setpoint itself: share of the settling."""

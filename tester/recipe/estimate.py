@@ -99,7 +99,7 @@ class Estimator:
         self.ambient_c = rig.ambient_c
         self.cool_c, self.cool_at_most_s = rig.interlocks.cooldown_hub_c, rig.interlocks.cooldown_at_most_s
         self.parts = rig.simulated
-        """Each specimen is a part of the run, on a rig of its own."""
+        """Each specimen, and each replicate of it, is a part of the run, on a rig of its own."""
         self.person_s = 0.0 if rig.simulated else constants.person_s
         self.body = Body(rig)
         self.costs = ConditionCosts(rig, constants, self.body, repeatability)
@@ -107,7 +107,8 @@ class Estimator:
 
     def walk(self, plan: Plan) -> list[StepEstimate]:
         """Return an estimate for every step; the wheel's temperature is carried from one to the next."""
-        compound, specimen = "", 0
+        compound = ""
+        part = (0, 0)
         body_c = self.ambient_c
         cold_rubber = False
         last: ConditionStep | None = None
@@ -133,13 +134,13 @@ class Estimator:
             if last is not None:
                 body_c = self.body.steady_c(last.setpoint.temperature_c)
                 last = None
-            if self._begins_part(plan, place, specimen):
+            if self._begins_part(plan, place, part):
                 body_c, before = self.ambient_c, Before(self.ambient_c)
             if cold_rubber and isinstance(step, Rest):
                 one = StepEstimate(step.at_least_s)  # new rubber is at ambient, whatever the hub below it
             else:
                 if isinstance(step, Install):
-                    compound, specimen = step.compound, step.specimen
+                    compound, part = step.compound, (step.specimen, step.replicate)
                 cold_rubber = isinstance(step, Install) or (cold_rubber and isinstance(step, Prompt))
                 if isinstance(step, Heat):
                     before.heat(self.body.surface_c(body_c))
@@ -147,17 +148,17 @@ class Estimator:
             result.append(one)
         return result
 
-    def _begins_part(self, plan: Plan, place: int, specimen: int) -> bool:
-        """Tell whether a step is the first of a further specimen on a rig of its own: its wheel, or a cool-down before.
+    def _begins_part(self, plan: Plan, place: int, part: tuple[int, int]) -> bool:
+        """Tell whether a step is the first of a further part on a rig of its own: its wheel, or a cool-down before.
 
-        ``specimen`` is the one before (0: none). A rig of its own is at ambient; a cool-down has nothing to do there.
+        ``part``: specimen and replicate before, zeros for none. A rig of its own is at ambient, with nothing to cool.
         """
-        if not self.parts or not specimen:
+        if not self.parts or part == (0, 0):
             return False
         step = plan.steps[place]
         if isinstance(step, Cool) and place + 1 < len(plan.steps):
             step = plan.steps[place + 1]
-        return isinstance(step, Install) and step.specimen != specimen
+        return isinstance(step, Install) and (step.specimen, step.replicate) != part
 
     def _until(self, before: Before, step: ConditionStep, one: StepEstimate) -> StepEstimate:
         """Return an estimate with the repeats that a precision takes so early in a run: little is pooled yet."""
@@ -202,13 +203,14 @@ class Estimator:
 
     def shut_down_s(self, plan: Plan) -> float:
         """Return the seconds from the last step to standstill: a hot jacket is cooled turning."""
-        last: dict[int, ConditionStep] = {}
+        last: dict[tuple[int, int], ConditionStep] = {}
         for step in plan.steps:
             if isinstance(step, ConditionStep):
-                last[step.specimen if self.parts else 0] = step
+                last[(step.specimen, step.replicate) if self.parts else (0, 0)] = step
+        cool_c = self.body.mean_at_hub_c(self.cool_c)
         return math.fsum(
             min(
-                self.body.cooling_s(self.body.steady_c(step.setpoint.temperature_c), self.cool_c, turning=True),
+                self.body.cooling_s(self.body.steady_c(step.setpoint.temperature_c), cool_c, turning=True),
                 self.cool_at_most_s,
             )
             for step in last.values()

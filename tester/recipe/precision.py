@@ -64,10 +64,10 @@ def until_for_total(total_percent: float, plan: Plan, estimator: Estimator) -> f
     if total_percent <= highest.percent:
         sp = highest.step.setpoint
         where = f"{sp.compound}, {1e3 * sp.slip_velocity_m_s:g} mm/s, {sp.load_n:g} N, {sp.temperature_c:g} degC"
+        largest = f"{highest.largest} {highest.largest_percent:.2f} %"
         raise PrecisionError(
             f"a total uncertainty of {total_percent:g} % cannot be reached: {where} has {highest.percent:.2f} % from "
-            f"the instruments alone (95 %), of which {highest.largest} {highest.largest_percent:.2f} %; repeating does not "
-            "lower it"
+            f"the instruments alone (95 %), of which {largest}; repeating does not lower it"
         )
     return sqrt(total_percent**2 - highest.percent**2)
 
