@@ -3,8 +3,9 @@
 Make-up repeats must not launder a run-in: a coefficient that settles while it is measured loses its first repeats to
 the drift test, and what is left looks steady at a value that depends on when it was looked at. Such a condition
 carries ``carry-over``: when two or more repeats were refused for drift of the same sign, when the means fall or rise
-with the sliding distance, or when the drift itself dies away along it (both at 1 %). The tests of the trend look at
-all repeats, the refused ones too.
+with the sliding distance, or when the drift itself dies away along it (both at 1 %), or when what stays drifts the way
+of those that were refused (5 %; 16 % where the first repeat is one of them). The tests of the trend look at all
+repeats, the refused ones too.
 """
 
 from __future__ import annotations
@@ -34,7 +35,7 @@ ALONE = 2
 """Up to this many repeats are judged each alone: there is nothing to pool."""
 
 TREND_LEVEL = 0.01
-"""Level, two-sided, of the tests for a trend over the repeats."""
+"""Level of the tests for a trend over the repeats."""
 HISTORY_DF = 8.0
 """Weight of the historic standard deviation between repeats beside the condition's own, degrees of freedom [A]."""
 LEAST_CHANGE_PERCENT = 1.0
@@ -99,6 +100,7 @@ def _judgement(
     seconds: float | None,
 ) -> Judgement:
     trend, carries = trend_of(results, found.per_kelvin_percent)
+    carries |= _go_the_same_way(results, found)
     flags = [word for word, on in ((NOT_SHOWN, not found.stable), (CARRY_OVER, carries)) if on]
     return Judgement(
         drift_percent=found.drift_percent,
@@ -109,6 +111,18 @@ def _judgement(
         trend_percent=trend,
         flags=joined(flags),
     )
+
+
+def _go_the_same_way(results: Sequence[RepeatResult], found: Drift) -> bool:
+    """Tell whether those that stay drift, too, the way of those that were refused.
+
+    A run-in is at its worst in the first repeat: where that was refused, more than one standard error will do.
+    """
+    first = next((r for r in results if r.valid or r.drifts), None)
+    margin = found.bound_percent - abs(found.drift_percent)
+    shown = abs(found.drift_percent) > (found.error_percent if first is not None and first.drifts else margin)
+    refused = [r.drift_percent * found.drift_percent > 0.0 for r in results if r.drifts]
+    return shown and bool(refused) and all(refused)
 
 
 def _left_with_refused(
@@ -188,7 +202,10 @@ def trend_of(results: Sequence[RepeatResult], per_kelvin_percent: float) -> tupl
         df = len(seen) - 2 + HISTORY_DF
         s = sqrt((rest + HISTORY_DF * (100.0 * REPEATABILITY) ** 2) / df)
         error = s / sqrt(sum(a * a for a in x))
-        carries |= abs(per_m) > t_quantile(1.0 - 0.5 * TREND_LEVEL, df) * error
+        # One-sided where the drift within the repeats goes the same way.
+        drifts = [results[i].drift_percent for i in seen if isfinite(results[i].drift_percent)]
+        sides = 1.0 if sum(drifts) * per_m > 0.0 else 2.0
+        carries |= abs(per_m) > t_quantile(1.0 - TREND_LEVEL / sides, df) * error
         carries |= _dies_away(x, [results[i] for i in seen])
     return per_m * span, carries
 
@@ -203,7 +220,9 @@ def _dies_away(x: Sequence[float], results: Sequence[RepeatResult]) -> bool:
     squares = sum(a * a for a in x)
     mean = sum(drifts) / len(drifts)
     per_m = sum(a * b for a, b in zip(x, drifts, strict=True)) / squares
-    error = sqrt(sum(a * a * e * e for a, e in zip(x, errors, strict=True))) / squares
+    # What scatters about the line, too: one odd repeat among steady ones is no drift that dies away.
+    rest = sum((d - mean - per_m * a) ** 2 for a, d in zip(x, drifts, strict=True)) / max(len(x) - 2, 1)
+    error = sqrt(sum(a * a * max(e * e, rest) for a, e in zip(x, errors, strict=True))) / squares
     first, last = mean + per_m * x[0], mean + per_m * x[-1]
     if abs(first) <= abs(last) or abs(last - first) <= LEAST_CHANGE_PERCENT:
         return False

@@ -148,6 +148,11 @@ class Judgement:
     trend_percent: float = NAN
     flags: str = ""
 
+    @property
+    def made(self) -> bool:
+        """Return whether there is one."""
+        return isfinite(self.drift_percent)
+
 
 NOT_JUDGED: Final = Judgement()
 

@@ -9,16 +9,14 @@ from math import isfinite
 from tester.analysis.blocks import Block, blocks_from_samples
 from tester.analysis.repeatability import NOTHING_POOLED, Pool
 from tester.analysis.repeats import counting
-from tester.analysis.results import ConditionStatus, RepeatResult, RepeatStatus
+from tester.analysis.results import NOT_JUDGED, ConditionStatus, Judgement, RepeatResult, RepeatStatus
 from tester.recipe.remaining import Stand, WornWheel
 from tester.store.reader import RunReader
 from tester.store.records import NAN, StoredCondition, StoredRepeat, WheelInfo
+from tester.store.status import WENT_THROUGH
 
 ENDS_A_CONDITION = (RepeatStatus.CANNOT_HOLD, RepeatStatus.NOT_REACHED)
 """A repeat with one of these is its condition's last."""
-
-FINISHED = "done"
-"""Status of a run that went through its whole plan."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,6 +33,8 @@ class ConditionSoFar:
     """Of the results' repeats."""
     blocks: tuple[tuple[Block, ...], ...] = ()
     """Of the results' repeats, from their samples: what a condition is judged by."""
+    judged: Judgement = NOT_JUDGED
+    """How it was judged when the last of them was committed."""
 
     @property
     def over(self) -> RepeatStatus | None:
@@ -85,7 +85,7 @@ def resume_point(reader: RunReader) -> ResumePoint:
             open_[number] = _so_far(reader, repeats[number], stored)
     sessions = reader.sessions()
     return ResumePoint(
-        finished=run.status == FINISHED,
+        finished=run.status == WENT_THROUGH,
         origin_s=run.rig_seconds if isfinite(run.rig_seconds) else 0.0,
         stand=Stand(frozenset(ended), frozenset(repeats), tuple(_wheels(reader.wheels(), repeats))),
         conditions=open_,
@@ -110,6 +110,7 @@ def _so_far(reader: RunReader, attempts: list[StoredRepeat], stored: StoredCondi
         stored.holdable_band_k,
         tuple(r.key for r in found),
         tuple(tuple(blocks_from_samples(reader.samples(r.condition, r.repeat, r.attempt))) for r in found),
+        stored.judged,
     )
 
 

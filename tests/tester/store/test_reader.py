@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sqlite3
+import sys
 from dataclasses import fields, replace
 from hashlib import sha256
 from math import isnan
@@ -12,6 +13,7 @@ import numpy as np
 import pytest
 
 from tester.analysis.results import ConditionStatus, Judgement, RepeatStatus
+from tester.extras import MissingExtraError
 from tester.process import SAMPLE_COLUMNS
 from tester.store.reader import RunReader
 from tester.store.records import WheelInfo
@@ -28,7 +30,7 @@ def test_the_run_comes_back(folder: Path) -> None:
     with RunReader(folder) as reader:
         run = reader.run()
         assert run.info == RUN
-        assert (run.status, run.rig_seconds, run.overruns) == ("finished", 2700.5, 0)
+        assert (run.status, run.rig_seconds, run.overruns) == ("done", 2700.5, 0)
         assert run.recipe_sha256 == sha256(RUN.recipe_text.encode()).hexdigest()
         assert run.ended_utc == "2024-02-21T14:06:00.000Z"
 
@@ -224,7 +226,7 @@ def test_reading_does_not_change_the_file(folder: Path) -> None:
 
 def test_a_name_with_spaces_and_marks_is_just_a_name(tmp_path: Path) -> None:
     with RunReader(small_run(tmp_path / "a run? 100% #1")) as reader:
-        assert reader.run().status == "finished"
+        assert reader.run().status == "done"
 
 
 def without_judgements(database: sqlite3.Connection) -> None:
@@ -236,7 +238,7 @@ def without_judgements(database: sqlite3.Connection) -> None:
 def test_a_record_of_an_older_schema_is_read_and_left_as_it_is(tmp_path: Path) -> None:
     folder = small_run(tmp_path / "run")
     with sqlite3.connect(folder / "run.db") as database:
-        for table in ("session", "change", "calibration", "exclusion"):
+        for table in ("session", "change", "calibration", "exclusion", "wear_check"):
             database.execute(f"DROP TABLE {table}")
         for table, column in (
             ("wheel", "ground_s"),
@@ -250,7 +252,7 @@ def test_a_record_of_an_older_schema_is_read_and_left_as_it_is(tmp_path: Path) -
     database.close()
     before = (folder / "run.db").read_bytes()
     with RunReader(folder) as reader:
-        assert len(reader.repeats()) == 6 and reader.sessions() == [] and reader.run().status == "finished"
+        assert len(reader.repeats()) == 6 and reader.sessions() == [] and reader.run().status == "done"
     assert (folder / "run.db").read_bytes() == before
 
 
@@ -258,6 +260,7 @@ def test_a_record_without_exclusions_is_read_in_place(tmp_path: Path, monkeypatc
     folder = small_run(tmp_path / "run")
     with sqlite3.connect(folder / "run.db") as database:
         database.execute("DROP TABLE exclusion")
+        database.execute("DROP TABLE wear_check")
         without_judgements(database)
         database.execute("PRAGMA user_version = 2")
     database.close()
@@ -289,3 +292,14 @@ def test_samples_come_as_an_arrow_table(tmp_path: Path) -> None:
     with RunReader(small_run(tmp_path / "run")) as reader:
         table = sample_table(reader, 1, 2)
         assert table.num_rows == 5 and table.column_names == list(SAMPLE_COLUMNS)
+
+
+def test_without_pyarrow_a_table_names_what_to_install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from tester.store.arrow import sample_table
+
+    monkeypatch.setitem(sys.modules, "pyarrow", None)
+    with (
+        RunReader(small_run(tmp_path / "run")) as reader,
+        pytest.raises(MissingExtraError, match=r"pip install .friction-tester\[parquet\]"),
+    ):
+        sample_table(reader)
