@@ -86,8 +86,9 @@ class OrderCosts:
             return one
         # Not _replace, which takes three times as long: plans have 100,000 conditions.
         seconds, sliding_m, loss_mm, friction_j, peak_c, bursts, held, waited_s, _, repeats = one
+        seconds, waited_s = seconds + waiting_s, waited_s + waiting_s
         return StepEstimate(
-            seconds + waiting_s, sliding_m, loss_mm, friction_j, peak_c, bursts, held, waited_s + waiting_s, heat_w, repeats
+            seconds, sliding_m, loss_mm, friction_j, peak_c, bursts, held, waited_s, heat_w, repeats
         )  # fmt: skip
 
     def _settle_s(self, from_c: float, to_c: float) -> float:
