@@ -52,7 +52,8 @@ def totals(plan: Plan, estimate: Estimate) -> Iterator[str]:
     conditions = list(plan.conditions())
     repeats = sum(step.repeats for step in conditions)
     yield f"conditions        {len(conditions)}, {repeats} repeats"
-    yield f"rig time          {duration(estimate.rig_seconds)}"
+    least, most = duration(estimate.rig_seconds_low), duration(estimate.rig_seconds_high)
+    yield f"rig time          {duration(estimate.rig_seconds)} ({least} to {most} in 95 % of runs)"
     yield f"sliding distance  {estimate.sliding_m:.0f} m"
     wheels = "wheel" if estimate.wheels == 1 else "wheels"
     yield f"wear              {estimate.loss_mm:.2f} mm of diameter on {estimate.wheels} {wheels}"
@@ -90,7 +91,7 @@ def words(step: Step, one: StepEstimate) -> str:
 
 def repeats_words(step: ConditionStep) -> str:
     """Return how many repeats are to count, and until what precision where the recipe says so: 4 (until 2 %)."""
-    return f"{step.repeats}" + (f" (until {step.until_percent:g} %)" if step.until_percent is not None else "")
+    return f"{step.repeats}" + (f" (until {step.until_percent:.3g} %)" if step.until_percent is not None else "")
 
 
 def window_words(window: Window) -> str:
