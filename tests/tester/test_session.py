@@ -25,7 +25,7 @@ from tester.simulated import simulated_ports
 from tester.source import InvalidSource
 from tester.store.reader import RunReader
 from tester.store.writer import RunWriter
-from tests.tester.engine.bench import QUIET, SHORT
+from tests.tester.engine.bench import HOT, QUIET, SHORT
 
 TABLES = ("appendix.csv", "conditions.csv", "repeats.csv")
 
@@ -100,8 +100,15 @@ def done(tmp_path_factory: pytest.TempPathFactory) -> Ended:
 
 @pytest.fixture(scope="module")
 def incomplete(tmp_path_factory: pytest.TempPathFactory) -> Ended:
+    """A run whose only condition cannot be held: on the hot rig 3# at 400 N leaves the band within one turn."""
+    text = SHORT.replace("1#", "3#").replace("200 N", "400 N")
+    return run(tmp_path_factory.mktemp("incomplete"), *HOT, text=text)
+
+
+@pytest.fixture(scope="module")
+def undecided(tmp_path_factory: pytest.TempPathFactory) -> Ended:
     """A run on the default rig, whose window is too short to show that the coefficient stands still."""
-    return run(tmp_path_factory.mktemp("incomplete"), seed=1)
+    return run(tmp_path_factory.mktemp("undecided"), seed=1)
 
 
 Prepare = Callable[[World, Attendant], Attendant]
@@ -193,8 +200,14 @@ def test_two_runs_of_one_second_have_two_folders(tmp_path: Path, monkeypatch: py
 
 def test_missing_conditions_exit_6_and_are_named(incomplete: Ended) -> None:
     assert incomplete.code == 6
-    assert any("200 N" in text and "not stabilised" in text for text in incomplete.screen.messages)
+    assert any("400 N" in text and "temperature cannot be held" in text for text in incomplete.screen.messages)
     assert len((incomplete.folder / "appendix.csv").read_text(encoding="utf-8-sig").splitlines()) == 1
+
+
+def test_a_drift_that_is_not_shown_is_a_row_with_a_flag(undecided: Ended) -> None:
+    assert undecided.code == 0
+    assert "drift not shown" in (undecided.folder / "conditions.csv").read_text(encoding="utf-8-sig")
+    assert len((undecided.folder / "appendix.csv").read_text(encoding="utf-8-sig").splitlines()) == 2
 
 
 def test_nobody_to_ask_is_a_usage_error_without_a_trace(tmp_path: Path) -> None:
@@ -341,9 +354,9 @@ def tables(ended: Ended) -> dict[str, bytes]:
     return {name: (ended.folder / name).read_bytes() for name in TABLES}
 
 
-def test_the_same_seed_gives_the_same_tables_byte_for_byte(tmp_path: Path, incomplete: Ended) -> None:
-    assert tables(run(tmp_path, seed=1)) == tables(incomplete)
+def test_the_same_seed_gives_the_same_tables_byte_for_byte(tmp_path: Path, undecided: Ended) -> None:
+    assert tables(run(tmp_path, seed=1)) == tables(undecided)
 
 
-def test_another_seed_gives_other_repeats(tmp_path: Path, incomplete: Ended) -> None:
-    assert tables(run(tmp_path, seed=2))["repeats.csv"] != tables(incomplete)["repeats.csv"]
+def test_another_seed_gives_other_repeats(tmp_path: Path, undecided: Ended) -> None:
+    assert tables(run(tmp_path, seed=2))["repeats.csv"] != tables(undecided)["repeats.csv"]

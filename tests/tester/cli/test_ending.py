@@ -11,7 +11,7 @@ from rich.cells import cell_len
 
 from tester.cli.console import Console
 from tester.cli.ending import ROWS_AT_MOST, ending_lines
-from tests.tester.store.build import CONDITION, RUN, SPECIMENS, open_writer, record, small_run
+from tests.tester.store.build import CONDITION, RUN, SPECIMENS, lacking_run, open_writer, record, small_run
 
 
 def test_every_condition_has_its_coefficient_and_its_uncertainty(tmp_path: Path) -> None:
@@ -29,9 +29,9 @@ def test_numbers_stand_below_each_other(tmp_path: Path) -> None:
 
 
 def test_a_condition_without_a_value_has_a_dash_and_its_status(tmp_path: Path) -> None:
-    row, below = ending_lines(small_run(tmp_path, ([0.9], [0.73, 0.74, 0.72])))[2:4]
-    assert row.split()[5:] == ["-", "-", "1", "of", "3"]
-    assert below == "    insufficient, extended"
+    row, below = ending_lines(lacking_run(tmp_path))[2:4]
+    assert row.split()[5:10] == ["-", "-", "0", "of", "3"]
+    assert "insufficient" in f"{row}{below}"
 
 
 def test_camber_is_a_column_where_a_condition_has_it(tmp_path: Path) -> None:

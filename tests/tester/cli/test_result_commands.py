@@ -11,7 +11,7 @@ from click.testing import CliRunner, Result
 
 from tester.cli.result_commands import export, show
 from tester.cli.runs_command import runs
-from tests.tester.store.build import CONDITIONS, RUN, SPECIMENS, open_writer, small_run
+from tests.tester.store.build import CONDITIONS, RUN, SPECIMENS, lacking_run, open_writer, small_run
 
 
 @pytest.fixture
@@ -45,10 +45,10 @@ def test_show_as_json(home: Path) -> None:
 
 
 def test_show_names_what_has_no_value(home: Path) -> None:
-    small_run(home / "runs" / "two", ([0.9], [0.73, 0.74, 0.72]))
+    lacking_run(home / "runs" / "two")
     shown = invoke(show, "two").stdout
     assert "values   1 of 2 conditions" in shown
-    assert "  1#, 300 mm/s, 100 N, 25 degC: insufficient: 1 of 3 valid, 3 needed" in shown
+    assert "  1#, 300 mm/s, 100 N, 25 degC: insufficient: none of 1 repeats is valid: repeat 1 too few" in shown
     assert json.loads(invoke(show, "two", "--json").stdout)["conditions"][0]["s"] is None
 
 
@@ -74,7 +74,7 @@ def test_export_to_a_file_leaves_stdout_empty(home: Path) -> None:
 
 
 def test_export_names_missing_conditions_on_stderr(home: Path) -> None:
-    small_run(home / "runs" / "two", ([0.9], [0.73, 0.74, 0.72]))
+    lacking_run(home / "runs" / "two")
     result = invoke(export, "two", "--format", "appendix")
     assert result.exit_code == 0
     assert result.stderr.startswith("not in the appendix: 1#, 300 mm/s, 100 N, 25 degC: insufficient")

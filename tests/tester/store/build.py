@@ -142,3 +142,16 @@ def small_run(folder: Path, values: tuple[list[float], ...] = ([0.90, 0.91, 0.89
     writer.finish("done", rig_seconds=2700.5)
     writer.close()
     return folder
+
+
+def lacking_run(folder: Path) -> Path:
+    """Write a finished run of 100 and 200 N whose first condition has one repeat, which did not fill its window."""
+    folder.mkdir(parents=True, exist_ok=True)
+    writer = open_writer(folder)
+    conditions = [replace(CONDITION, load_n=100.0), replace(CONDITION, condition=2, row=2, load_n=200.0)]
+    writer.begin_run(RUN, SPECIMENS, conditions)
+    record(writer, 1, [0.9], status=RepeatStatus.TOO_FEW)
+    record(writer, 2, [0.73, 0.74, 0.72])
+    writer.finish("done", rig_seconds=2700.5)
+    writer.close()
+    return folder
