@@ -15,7 +15,6 @@ from tester.cli.showing import shown
 from tester.export.cells import nominal
 from tester.export.results import RunResults, TableRow, results_of
 from tester.store.reader import RunReader
-from tester.store.resume import FINISHED
 from tester.store.schema import StoreError
 
 ROWS_AT_MOST = 200
@@ -107,7 +106,7 @@ def _next_lines(results: RunResults, folder: Path) -> Iterator[str]:
     called = sys.argv[0] if program in ("tester", "tester.exe") and Path(sys.argv[0]).parent != Path() else "tester"
     where = shlex.quote(str(folder))
     yield ""
-    if results.run.status == FINISHED or not results.missing():
+    if results.status.over or not results.missing():
         yield f"next: {_near(called)} show {where}"
     else:
         yield f"next: {_near(called)} resume {where}"
