@@ -11,6 +11,7 @@ from textwrap import wrap
 
 from rich.cells import cell_len
 
+from tester.analysis.trust import mark_of
 from tester.cli.showing import shown
 from tester.export.cells import nominal
 from tester.export.results import RunResults, TableRow, results_of
@@ -39,13 +40,15 @@ def table_lines(results: RunResults, folder: Path) -> Iterator[str]:
     """Yield the table, 80 columns wide: a row for each condition of which something was tried.
 
     Setpoints are nominal, the coefficient is the resultant; U is its expanded uncertainty (coverage 95 %). A row
-    without a value that can be trusted has a dash and its status.
+    without a value that can be trusted has a dash and its status, a value to be taken with care the mark ``?``.
+    Conditions that the run did not come to are one line.
     """
-    tried = [row for row in results.rows if any(measured.repeats for measured in row.replicates)]
+    tried = [row for row in results.rows if row.tried]
     listed = tried[:ROWS_AT_MOST]
     if listed:
         camber = any(row.info.camber_deg for row in listed)
-        lines = [(_header(camber), ""), *((_cells(row, camber), _remarks(row)) for row in listed)]
+        pad = " " if any(row.result.doubts for row in listed) else ""
+        lines = [(_header(camber, pad), ""), *((_cells(row, camber, pad), _remarks(row)) for row in listed)]
         widths = [max(map(cell_len, column)) for column in zip(*(cells for cells, _ in lines), strict=True)]
         for cells, remarks in lines:
             yield from _line(cells, widths, remarks)
@@ -55,11 +58,13 @@ def table_lines(results: RunResults, folder: Path) -> Iterator[str]:
         yield f"{len(results.rows) - len(tried)} of {len(results.rows)} conditions not measured"
 
 
-def _header(camber: bool) -> Sequence[str]:
-    return ("compound", "mm/s", "N", "sideslip", *(["camber"] if camber else []), "degC", "mu", "U (95 %)", "valid")
+def _header(camber: bool, pad: str) -> Sequence[str]:
+    mu = f"mu{pad}"
+    return ("compound", "mm/s", "N", "sideslip", *(["camber"] if camber else []), "degC", mu, "U (95 %)", "valid")
 
 
-def _cells(row: TableRow, camber: bool) -> Sequence[str]:
+def _cells(row: TableRow, camber: bool, pad: str) -> Sequence[str]:
+    """Return a row's cells; ``pad`` stands behind a coefficient where others have a mark."""
     i, r = row.info, row.result
     return (
         _cut(shown(i.compound)),
@@ -68,7 +73,7 @@ def _cells(row: TableRow, camber: bool) -> Sequence[str]:
         nominal(i.sideslip_deg),
         *([nominal(i.camber_deg)] if camber else []),
         nominal(i.temperature_c),
-        f"{r.mu_resultant:.3f}" if r.ok else "-",
+        f"{r.mu_resultant:.3f}{mark_of(r.status, r.flags) or pad}" if r.ok else f"-{pad}",
         f"{r.expanded:.3f}" if r.ok and isfinite(r.expanded) else "-",
         f"{r.n_valid} of {r.n}",
     )

@@ -197,7 +197,7 @@ class RepeatsModel(_Strict):
 
 def _repeats(value: object) -> object:
     """Take a single number for the repeats that count."""
-    return value if isinstance(value, dict | RepeatsModel) else {"at_least": value}
+    return cast("object", value) if isinstance(value, dict | RepeatsModel) else {"at_least": value}
 
 
 Repeats: TypeAlias = Annotated[

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from tester.analysis.trust import WITH_CARE, mark_of
 from tester.campaign.pool import stop_level
 from tester.engine.context import Progress
 from tester.engine.prompts import Prompts
@@ -74,6 +75,11 @@ class CaseResult:
     def missing(self) -> int:
         """Rows without a value to be trusted."""
         return sum(1 for row in self.rows if row.status != "ok")
+
+    @property
+    def with_care(self) -> int:
+        """Rows whose value carries a doubt."""
+        return sum(mark_of(row.status, row.flags) == WITH_CARE for row in self.rows)
 
 
 def run_case(task: Task) -> CaseResult:

@@ -6,10 +6,12 @@ import re
 import signal
 import sqlite3
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
+from tester.analysis.results import CARRY_OVER
 from tester.bus_log import BusLog
 from tester.campaign import folder as folder_module
 from tester.campaign import part_run
@@ -26,6 +28,7 @@ from tester.source import InvalidSource
 from tester.store.reader import RunReader
 from tester.store.writer import RunWriter
 from tests.tester.engine.bench import QUIET, SHORT
+from tests.tester.store.build import CONDITION, RUN, SPECIMENS, open_writer, record
 
 TABLES = ("appendix.csv", "conditions.csv", "repeats.csv")
 
@@ -195,6 +198,23 @@ def test_missing_conditions_exit_6_and_are_named(incomplete: Ended) -> None:
     assert incomplete.code == 6
     assert any("200 N" in text and "not stabilised" in text for text in incomplete.screen.messages)
     assert len((incomplete.folder / "appendix.csv").read_text(encoding="utf-8-sig").splitlines()) == 1
+
+
+def test_conditions_that_were_tried_are_told_and_the_others_are_no_line_each(tmp_path: Path) -> None:
+    writer = open_writer(tmp_path)
+    writer.begin_run(RUN, SPECIMENS, [replace(CONDITION, condition=i, row=i) for i in range(1, 166)])
+    record(writer, 1, [0.9] * 3)
+    record(writer, 2, [float("nan")])
+    record(writer, 3, [0.9] * 3, flags=CARRY_OVER)
+    writer.finish("done", rig_seconds=60.0)  # cut off before its tables
+    writer.close()
+    screen = Screen()
+    Session(SessionOptions(), screen).resume(tmp_path)
+    lost, doubted = screen.messages
+    assert "none of 1 repeats is valid" in lost and "max_bursts" in lost
+    assert "carry-over" in doubted and "pre_grind" in doubted
+    (end,) = (event for event in screen.records if event["event"] == "end")
+    assert len(end["missing"]) == 163  # type: ignore[arg-type]
 
 
 def test_nobody_to_ask_is_a_usage_error_without_a_trace(tmp_path: Path) -> None:

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 from rich.cells import cell_len
 
+from tester.analysis.results import CARRY_OVER, ConditionStatus
 from tester.cli.console import Console
 from tester.cli.ending import ROWS_AT_MOST, ending_lines
 from tests.tester.store.build import CONDITION, RUN, SPECIMENS, open_writer, record, small_run
@@ -42,6 +43,27 @@ def test_camber_is_a_column_where_a_condition_has_it(tmp_path: Path) -> None:
     writer.close()
     header, first, second = ending_lines(tmp_path)[1:4]
     assert header.split()[4] == "camber" and (first.split()[4], second.split()[4]) == ("-2", "0")
+
+
+def test_a_value_to_be_taken_with_care_is_marked_and_the_digits_stay_in_line(tmp_path: Path) -> None:
+    writer = open_writer(tmp_path)
+    writer.begin_run(RUN, SPECIMENS, [CONDITION, replace(CONDITION, condition=2, row=2)])
+    record(writer, 1, [0.9] * 3)
+    record(writer, 2, [0.8] * 3, flags=CARRY_OVER)
+    writer.close()
+    _, plain, doubtful = ending_lines(tmp_path)[1:4]
+    assert "0.900 " in plain and "0.800?" in doubtful and "carry-over" in doubtful
+    assert plain.index("0.900") == doubtful.index("0.800")
+
+
+def test_a_condition_that_was_tried_without_a_repeat_is_a_row_of_its_own(tmp_path: Path) -> None:
+    writer = open_writer(tmp_path)
+    writer.begin_run(RUN, SPECIMENS, [replace(CONDITION, condition=i, row=i) for i in (1, 2, 3)])
+    writer.begin_condition(1, 5.0)
+    writer.end_condition(1, ConditionStatus.NOT_REACHED, "the surface stays at 31 degC", t_s=60.0)
+    writer.close()
+    lines = ending_lines(tmp_path)
+    assert "not reached" in lines[2] and "2 of 3 conditions not measured" in lines
 
 
 def test_no_line_is_wider_than_a_terminal(tmp_path: Path) -> None:
