@@ -24,6 +24,7 @@ from tester.engine.results import condition_records
 from tester.engine.run import Outcome, Run
 from tester.engine.tickers import TickStatistics
 from tester.export import doubtful, write_all
+from tester.export.results import results_of
 from tester.lock import ExclusiveUse
 from tester.provenance import recipe_source, rig_source, run_info, session_info
 from tester.recipe.check import load_checked
@@ -282,6 +283,9 @@ class Session:
         missing = [row.describe() for row in lost]
         for row in [*(row for row in lost if row.tried), *doubtful(folder)]:
             self.screen.message(row.advise())
+        with RunReader(folder) as reader:
+            for line in results_of(reader).wear_lines():
+                self.screen.message(line)
         if ending.reason:
             self.screen.message(f"{ending.outcome.value}: {ending.reason}")
         code = ending.exit_code(interrupted_once=self.interrupts == 1, missing=bool(missing))

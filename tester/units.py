@@ -67,6 +67,7 @@ _KINDS: tuple[_Kind, ...] = (
     _Kind("a stiffness", "125 N/mm", {"N/mm": _ONE, "N/m": _MILLI}),
     _Kind("a damping", "400 N s/m", {"N s/m": _ONE}),
     _Kind("a wear rate", "0.08 mm3/(N m)", {"mm3/(N m)": _ONE}),
+    _Kind("a growth with temperature", "0.006 mm/K", {"mm/K": _ONE, "um/K": _MILLI}),
     _Kind("a rate of temperature", "0.05 K/s", {"K/s": _ONE, "K/min": Fraction(1, 60)}),
     _Kind("a drift with temperature", "0.1 N/K", {"N/K": _ONE}),
     _Kind("a bit rate", "500 kbit/s", {"bit/s": _ONE, "kbit/s": _K, "Mbit/s": Fraction(10**6)}),

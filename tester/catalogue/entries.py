@@ -75,6 +75,11 @@ class ConditionEntry:
     flags: str = ""
     """With ``status`` says how far the coefficient can be trusted (tester.analysis.trust)."""
 
+    @property
+    def slip_velocity_m_s(self) -> float:
+        """Return the slip velocity in m/s."""
+        return 1e-3 * self.slip_velocity_mm_s
+
 
 @dataclass(frozen=True, slots=True)
 class Wanted:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from tester.axes import ListWords
 from tester.cli.finding import run_folder
 from tester.cli.showing import Json, dump, shown
 
@@ -36,19 +37,30 @@ def compare(run1: str, run2: str, as_json: bool) -> None:
             raise click.ClickException(entry.problem)
         sides.append({_setpoints(one): one for one in conditions})
     first, second = sides
-    rows = [_row(first.get(key), second.get(key)) for key in dict.fromkeys([*first, *second])]
+    keys = list(dict.fromkeys([*first, *second]))
+    rows = [_row(first.get(key), second.get(key)) for key in keys]
     if as_json:
         dump([*rows])
         return
-    click.echo("compound  mm/s  N  deg  degC    mu 1    mu 2    diff    u       z")
-    for row in rows:
-        setpoints = f"{shown(str(row['compound']))}  {row['slip_velocity_mm_s']:g}  {row['load_n']:g}"
-        setpoints += f"  {row['sideslip_deg']:g}  {row['temperature_c']:g}"
+    either = [first.get(key) or second[key] for key in keys]
+    words = ListWords(either)
+    if words.common:
+        click.echo(f"all at {shown(words.common)}")
+    told = [_words(one, words) for one in either]
+    width = max(map(len, [*told, "condition"]))
+    click.echo(f"{'condition':<{width}}  mu 1    mu 2    diff    u       z")
+    for text, row in zip(told, rows, strict=True):
         figures = (f"{_cell(row[name], digits)}{row.get(f'mark_{name[-1]}') or ''}" for name, digits in _FIGURES)
-        click.echo(f"{setpoints}  {'  '.join(figures)}")
+        click.echo(f"{text:<{width}}  {'  '.join(figures)}")
 
 
 _FIGURES = (("mu_1", 4), ("mu_2", 4), ("difference", 4), ("u_difference", 4), ("z", 2))
+
+
+def _words(one: ConditionEntry, words: ListWords) -> str:
+    """Return what tells a condition from the others; replicates of one are told apart."""
+    replicate = f" (replicate {one.replicate})" if one.replicate > 1 else ""
+    return f"{shown(words.of(one))}{replicate}"
 
 
 def _cell(value: Json, digits: int) -> str:

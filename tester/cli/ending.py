@@ -12,15 +12,15 @@ from textwrap import wrap
 from rich.cells import cell_len
 
 from tester.analysis.trust import mark_of
+from tester.axes import Axis, columns, plain
 from tester.cli.showing import shown
-from tester.export.cells import nominal
 from tester.export.results import RunResults, TableRow, results_of
 from tester.store.reader import RunReader
 from tester.store.schema import StoreError
 
 ROWS_AT_MOST = 200
 """A longer table is for a spreadsheet: its beginning is shown, with the file that has it all."""
-_COMPOUND_AT_MOST = 16
+_COMPOUND_AT_MOST = 12
 """Cells of a compound's name; what is longer is cut and ends in an ellipsis."""
 _WIDTH = 80
 """Columns of a terminal; remarks that do not fit get a line of their own."""
@@ -46,9 +46,14 @@ def table_lines(results: RunResults, folder: Path) -> Iterator[str]:
     tried = [row for row in results.rows if row.tried]
     listed = tried[:ROWS_AT_MOST]
     if listed:
-        camber = any(row.info.camber_deg for row in listed)
+        axes = columns(row.info for row in listed)
         pad = " " if any(row.result.doubts for row in listed) else ""
-        lines = [(_header(camber, pad), ""), *((_cells(row, camber, pad), _remarks(row)) for row in listed)]
+        titles = [axis.title.rpartition(" ") for axis in axes]
+        lines: list[tuple[Sequence[str], str]] = [
+            (("compound", *(name for name, _, _ in titles), f"mu{pad}", "U", "valid"), ""),
+            (("", *(unit for _, _, unit in titles), "", "(95 %)", ""), ""),
+            *((_cells(row, axes, pad), _remarks(row)) for row in listed),
+        ]
         widths = [max(map(cell_len, column)) for column in zip(*(cells for cells, _ in lines), strict=True)]
         for cells, remarks in lines:
             yield from _line(cells, widths, remarks)
@@ -58,21 +63,12 @@ def table_lines(results: RunResults, folder: Path) -> Iterator[str]:
         yield f"{len(results.rows) - len(tried)} of {len(results.rows)} conditions not measured"
 
 
-def _header(camber: bool, pad: str) -> Sequence[str]:
-    mu = f"mu{pad}"
-    return ("compound", "mm/s", "N", "sideslip", *(["camber"] if camber else []), "degC", mu, "U (95 %)", "valid")
-
-
-def _cells(row: TableRow, camber: bool, pad: str) -> Sequence[str]:
+def _cells(row: TableRow, axes: Sequence[Axis], pad: str) -> Sequence[str]:
     """Return a row's cells; ``pad`` stands behind a coefficient where others have a mark."""
     i, r = row.info, row.result
     return (
         _cut(shown(i.compound)),
-        nominal(1e3 * i.slip_velocity_m_s),
-        nominal(i.load_n),
-        nominal(i.sideslip_deg),
-        *([nominal(i.camber_deg)] if camber else []),
-        nominal(i.temperature_c),
+        *(plain(axis.of(i)) for axis in axes),
         f"{r.mu_resultant:.3f}{mark_of(r.status, r.flags) or pad}" if r.ok else f"-{pad}",
         f"{r.expanded:.3f}" if r.ok and isfinite(r.expanded) else "-",
         f"{r.n_valid} of {r.n}",

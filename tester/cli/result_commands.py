@@ -14,11 +14,12 @@ from tester.cli.finding import run_folder
 from tester.cli.showing import Json, dump, duration, number, shown
 
 if TYPE_CHECKING:
+    from tester.analysis.wear import WearRate
     from tester.export.results import Measured, RunResults, TableRow
     from tester.store.reader import RunReader
-    from tester.store.records import Change, SessionInfo, StoredExclusion
+    from tester.store.records import Change, SessionInfo, StoredExclusion, WheelInfo
 
-FORMATS = ("appendix", "conditions", "repeats", "samples", "parquet")
+FORMATS = ("appendix", "conditions", "repeats", "wheel", "wear", "samples", "parquet")
 
 
 # tester show
@@ -116,15 +117,32 @@ def _summary(name: str, results: RunResults) -> dict[str, Json]:
         "metadata": dict(run.info.metadata),
         "rows": len(results.rows) - len(results.missing()),
         "missing": [row.describe() for row in results.missing()],
-        "conditions": [_condition(measured) for measured in results.conditions()],
+        "conditions": [_condition(measured, results) for measured in results.conditions()],
+        "wheels": [_wheel(wheel, results) for wheel in results.wheels],
     }
 
 
-def _condition(measured: Measured) -> Json:
+def _rate(found: WearRate) -> dict[str, Json]:
+    return {"wear_mm3_n_m": number(found.rate), "wear_u_expanded": number(found.expanded), "checks": found.checks}
+
+
+def _wheel(wheel: WheelInfo, results: RunResults) -> Json:
+    return {
+        "wheel": wheel.wheel,
+        "compound": wheel.compound,
+        "installed_diameter_mm": number(wheel.installed_diameter_mm),
+        "diameter_mm": number(wheel.diameter_mm),
+        "sliding_m": number(wheel.sliding_m),
+        **_rate(results.wear_of(wheel.wheel)),
+    }
+
+
+def _condition(measured: Measured, results: RunResults) -> Json:
     from tester.analysis.results import flags_in
     from tester.analysis.trust import mark_of
 
     i, r = measured.info, measured.result
+    worn = results.condition_wear(i.condition)
     return {
         "condition": i.condition,
         "specimen": i.specimen,
@@ -145,6 +163,9 @@ def _condition(measured: Measured) -> Json:
         "u_expanded": number(r.expanded),
         "n_valid": r.n_valid,
         "n": r.n,
+        "diameter_before_mm": number(worn.before_mm) if worn is not None else None,
+        "diameter_after_mm": number(worn.after_mm) if worn is not None else None,
+        "wear": _rate(worn.rate) if worn is not None else None,
         "measured": {name: number(value) for name, value in r.measured.items()},
         "repeats": [
             {
@@ -172,9 +193,22 @@ def _lines(name: str, results: RunResults) -> Iterator[str]:
     for row in results.rows:
         if row.tried:
             yield shown(_row(row))
+            yield from _worn(row, results)
     left = sum(not row.tried for row in results.rows)
     if left:
         yield f"  {left} of {len(results.rows)} conditions not measured"
+    for line in results.wear_lines():
+        yield shown(line)
+
+
+def _worn(row: TableRow, results: RunResults) -> Iterator[str]:
+    """Yield what each replicate of a condition took off its wheel, where the wheel was checked."""
+    for measured in row.replicates:
+        found = results.condition_wear(measured.info.condition)
+        if found is not None and isfinite(found.rate.rate):
+            rate = f"{found.rate.rate:.3g} ± {found.rate.expanded:.2g} mm3/(N m)"
+            below = "" if found.rate.resolved else ", below what the checks resolve"
+            yield f"    {found.before_mm:.3f} mm to {found.after_mm:.3f} mm, wear {rate}{below}"
 
 
 def _row(row: TableRow) -> str:
@@ -237,6 +271,10 @@ def _export(reader: RunReader, kind: str, out: Path | None, decimals: int) -> No
         _deliver(tables.conditions(results), out)
     elif kind == "repeats":
         _deliver(tables.repeats(results), out)
+    elif kind == "wheel":
+        _deliver(tables.wheels(results), out)
+    elif kind == "wear":
+        _deliver(tables.wear(results), out)
     else:
         _deliver(tables.appendix(results, decimals), out)
         for row in results.missing():

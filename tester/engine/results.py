@@ -21,6 +21,7 @@ from tester.analysis.results import (
     flags_in,
     joined,
 )
+from tester.axes import condition_words
 from tester.engine.bursts import Ending, MeasureRepeat
 from tester.engine.condition import ConditionEnd, RepeatOutcome
 from tester.engine.context import Context
@@ -169,7 +170,7 @@ class StoredResults:
             judged=self._for_the_record(),
         )
         self.condition = 0
-        name = f"condition {step.condition} ({_setpoint(step)})"
+        name = f"condition {step.condition} ({condition_words(step.setpoint)})"
         if not found.ok:
             return f"{name}: {left.value}: {found.reason}"
         flags = f" ({found.flags})" if found.doubts else ""
@@ -256,10 +257,3 @@ def _line(result: RepeatResult) -> str:
     if result.status is RepeatStatus.VALID:
         return f"mu {result.mu_resultant:.4f}, {result.revolutions} revolutions, {result.bursts} bursts"
     return f"{result.status.value}: {result.reason}"
-
-
-def _setpoint(step: ConditionStep) -> str:
-    sp = step.setpoint
-    text = f"{sp.compound}, {sp.slip_velocity_m_s * 1000:g} mm/s, {sp.load_n:g} N, {sp.temperature_c:g} degC"
-    text += f", sideslip {sp.sideslip_deg:g} deg" if sp.sideslip_deg else ""
-    return text + (f", camber {sp.camber_deg:g} deg" if sp.camber_deg else "")

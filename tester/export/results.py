@@ -10,11 +10,13 @@ from math import isfinite
 from tester.analysis.repeats import ConditionResult, combine_repeats, combine_replicates
 from tester.analysis.results import CARRY_OVER, IMPRECISE, NOT_SHOWN, SHORT, ConditionStatus
 from tester.analysis.uncertainty import Instruments, instruments_of
-from tester.export.cells import nominal
+from tester.analysis.wear import ConditionWear, WearRate, condition_wear, wheel_wear
+from tester.analysis.wear_check import WearCheck
+from tester.axes import condition_words
 from tester.store.catalogue import under_way
 from tester.store.exclusions import standing
 from tester.store.reader import RunReader
-from tester.store.records import ConditionInfo, StoredCondition, StoredExclusion, StoredRepeat, StoredRun
+from tester.store.records import ConditionInfo, StoredCondition, StoredExclusion, StoredRepeat, StoredRun, WheelInfo
 from tester.store.schema import StoreError
 from tester.store.status import RunStatus, run_status
 
@@ -63,17 +65,12 @@ class TableRow:
 
     def describe(self) -> str:
         """Return the row's setpoints and why it has no value, in a line for people."""
-        i = self.info
-        setpoints = (
-            f"{i.compound}, {nominal(1e3 * i.slip_velocity_m_s)} mm/s, {nominal(i.load_n)} N, "
-            f"{nominal(i.sideslip_deg)}°, {nominal(i.temperature_c)} °C"
-        )
         parts = [self.result.status.value, self.result.reason]
         for measured in self.replicates:
             c = measured.condition
             if not measured.result.ok and isfinite(c.warming_k_s) and not c.reason:
                 parts.append(f"warming {c.warming_k_s:.2g} K/s; {c.holdable_band_k:.2g} K of band would do")
-        return ": ".join([setpoints, *[part for part in parts if part]])
+        return ": ".join([condition_words(self.info), *[part for part in parts if part]])
 
     def advise(self) -> str:
         """Return what is wrong with the row, or to be taken with care, and what to do about it, for people."""
@@ -113,6 +110,30 @@ class RunResults:
     rows: tuple[TableRow, ...]
     status: RunStatus
     """How the run stood when this was read."""
+    wheels: tuple[WheelInfo, ...] = ()
+    checks: tuple[WearCheck, ...] = ()
+    """Of the wheels' diameters, in the order in which they were made."""
+
+    def wear_of(self, wheel: int) -> WearRate:
+        """Return the wear rate over a wheel's life."""
+        return wheel_wear([one for one in self.checks if one.wheel == wheel])
+
+    def condition_wear(self, condition: int) -> ConditionWear | None:
+        """Return what a condition took off its wheel; None where no check says."""
+        return condition_wear(self.checks, condition) if self.checks else None
+
+    def wear_lines(self) -> Iterator[str]:
+        """Yield, for every wheel that was checked, its diameter and its wear rate in a line for people."""
+        for wheel in self.wheels:
+            checks = [one for one in self.checks if one.wheel == wheel.wheel]
+            if not checks:
+                continue
+            found = wheel_wear(checks)
+            text = f"wheel {wheel.wheel} ({wheel.compound}): {wheel.diameter_mm:.3f} mm after {len(checks)} checks"
+            if isfinite(found.rate):
+                text += f", wear {found.rate:.3g} ± {found.expanded:.2g} mm3/(N m)"
+                text += "" if found.resolved else ", not resolved from 0"
+            yield text
 
     def conditions(self) -> Iterator[Measured]:
         """Yield the conditions, in recipe order, replicates one after the other."""
@@ -151,7 +172,8 @@ def results_of(reader: RunReader) -> RunResults:
             rows.append(TableRow(replicates, combined))
     missing = any(not row.result.ok for row in rows)
     held = under_way(reader.path.parent) is not None
-    return RunResults(run, tuple(rows), run_status(run.status, held=held, missing=missing))
+    status = run_status(run.status, held=held, missing=missing)
+    return RunResults(run, tuple(rows), status, tuple(reader.wheels()), tuple(reader.wear_checks()))
 
 
 def _measured(

@@ -9,6 +9,7 @@ from typing import NamedTuple, TypeVar
 
 from pydantic import BaseModel, ValidationError
 
+from tester.axes import axis
 from tester.recipe.schema import LEAST_SPEED_M_S, MAX_CONDITIONS, GridModel, MeasureModel, Recipe
 from tester.recipe.settings import (
     DEFAULT_MIN_VALID,
@@ -23,15 +24,11 @@ from tester.units import show, shown
 
 Part = TypeVar("Part", bound=BaseModel)
 
-AXES: tuple[tuple[str, str], ...] = (
-    ("slip_velocity", "m/s"),
-    ("load", "N"),
-    ("sideslip", "deg"),
-    ("camber", "deg"),
-    ("wheel_speed", "m/s"),
-    ("temperature", "degC"),
+AXES: tuple[tuple[str, str], ...] = tuple(
+    (name, axis(name).recipe_unit)
+    for name in ("slip_velocity", "load", "sideslip", "camber", "wheel_speed", "temperature")
 )
-"""The axes of a grid with their units, in the order in which they nest: the columns of the paper's table."""
+"""The axes of a grid with their units, in the order in which they nest: temperature innermost."""
 
 
 class Parts(NamedTuple):

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from tester.axes import ListWords
 from tester.engine.executor import title
 from tester.engine.time_left import TimeLeft
 from tester.recipe.estimate import Estimate
-from tester.recipe.plan import Plan
+from tester.recipe.plan import ConditionStep, Plan, Step
 from tester.service.state import PlanStep, PlanView, StepState
 
 LISTED = 400
@@ -21,16 +22,20 @@ class PlanTrack(TimeLeft):
         """Begin before the first step."""
         super().__init__(plan, estimate)
         self.plan = plan
+        self._words = ListWords(step.setpoint for step in plan.conditions())
 
     def view(self) -> PlanView:
         """Return the steps around the present one."""
         steps = self.plan.steps
         first = max(min(self.position - BEFORE, len(steps) - LISTED), 0)
         listed = tuple(
-            PlanStep(i + 1, steps[i].kind, title(steps[i]), self._state(i), self.estimated[i], self.measured.get(i))
-            for i in range(first, min(first + LISTED, len(steps)))
+            PlanStep(i + 1, one.kind, self._title(one), self._state(i), self.estimated[i], self.measured.get(i))
+            for i, one in enumerate(steps[first : first + LISTED], first)
         )
         return PlanView(self.plan.name, len(steps), first + 1, listed, self.total_s)
+
+    def _title(self, step: Step) -> str:
+        return self._words.of(step.setpoint) if isinstance(step, ConditionStep) else title(step)
 
     def _state(self, index: int) -> StepState:
         return "done" if index < self.position else "now" if index == self.position else "later"

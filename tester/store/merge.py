@@ -45,6 +45,7 @@ TABLES: dict[str, Merged] = {
     "event": Merged(times=("t_s",), key="sequence"),
     "prompt": Merged(times=("asked_s", "answered_s"), key="id"),
     "tare": Merged(times=("t_s",), key="id", repeat="repeat_id"),
+    "wear_check": Merged(times=("t_s", "reference_s"), key="id"),
     "trip": Merged(times=("t_s", "acknowledged_s"), key="id"),
     "bus_statistic": Merged(times=("t_s",), key="id"),
     "device_parameter": Merged(times=("t_s",), key="id"),
@@ -118,8 +119,10 @@ class Merge:
         with closing(sqlite3.connect(f"{(part / DATABASE).absolute().as_uri()}?mode=ro", uri=True)) as source:
             bases = {table: self._last(table) for table, kind in TABLES.items() if kind.key is not None}
             with self._transaction():
+                there = {name for (name,) in source.execute("SELECT name FROM sqlite_master WHERE type = 'table'")}
                 for table in TABLES:
-                    self._copy(source, table, bases)
+                    if table in there:  # a part that an older version has finished lacks the newest
+                        self._copy(source, table, bases)
                 self._update_conditions(source)
                 self._connection.execute("UPDATE run SET overruns = overruns + ?", (run.overruns,))
         self.rig_seconds = self._later(self.rig_seconds, run.rig_seconds)

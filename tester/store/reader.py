@@ -15,6 +15,7 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Literal, TypeVar
 
 from tester.analysis.results import Burst, ConditionStatus, Judgement, RepeatResult, RepeatStatus
+from tester.analysis.wear_check import WearCheck
 from tester.store.records import (
     NAN,
     BusStatistic,
@@ -201,6 +202,10 @@ class RunReader:
     def wheels(self) -> list[WheelInfo]:
         """Return the wheels that were installed, with their last known wear."""
         return [_record(WheelInfo, row) for row in self._rows("SELECT * FROM wheel ORDER BY wheel")]
+
+    def wear_checks(self) -> list[WearCheck]:
+        """Return the checks of the wheels' diameters in the order in which they were made."""
+        return [_record(WearCheck, row) for row in self._rows("SELECT * FROM wear_check ORDER BY id")]
 
     def conditions(self) -> list[StoredCondition]:
         """Return the plan's conditions in the recipe's order, replicates one after the other."""

@@ -11,6 +11,7 @@ from dataclasses import dataclass, fields, replace
 from hashlib import sha256
 
 from tester.analysis.results import Burst, ConditionStatus, Judgement, RepeatResult, RepeatStatus
+from tester.analysis.wear_check import WearCheck
 from tester.store.records import (
     NAN,
     Calibration,
@@ -33,6 +34,7 @@ _BURST_FIELDS = tuple(field.name for field in fields(Burst))
 _CONDITION_FIELDS = tuple(field.name for field in fields(ConditionInfo))
 _JUDGEMENT_FIELDS = tuple(field.name for field in fields(Judgement))
 _WHEEL_FIELDS = tuple(field.name for field in fields(WheelInfo))
+_CHECK_FIELDS = tuple(field.name for field in fields(WearCheck))
 _SESSION_FIELDS = tuple(field.name for field in fields(SessionInfo))
 _CHANGE_FIELDS = tuple(field.name for field in fields(Change))
 
@@ -249,6 +251,11 @@ class Recorder:
         at_s = t_s + self.origin_s
         sql = "UPDATE wheel SET diameter_mm = ?, sliding_m = ?, updated_s = ?, ground_s = ? WHERE wheel = ?"
         self._write((sql, (diameter_mm, sliding_m, at_s, at_s, wheel)), urgent=True)
+
+    def wear_check(self, check: WearCheck) -> None:
+        """Record a check of a wheel's diameter."""
+        times = {name: getattr(check, name) + self.origin_s for name in ("t_s", "reference_s")}
+        self._write(insert("wear_check", _columns(check, _CHECK_FIELDS) | times), urgent=True)
 
     # Conditions and repeats
 

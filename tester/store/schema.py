@@ -278,8 +278,36 @@ _AS_VERSION_4 = (
     + " FROM main.condition"
 )
 
-MIGRATIONS: tuple[str, ...] = (_VERSION_1, _VERSION_2, _VERSION_3, _VERSION_4)
+_WEAR_CHECK = """
+CREATE {temporary}TABLE wear_check (
+    id INTEGER PRIMARY KEY,
+    wheel INTEGER NOT NULL,
+    method TEXT NOT NULL,
+    t_s REAL,
+    reference_s REAL,
+    before INTEGER NOT NULL,
+    after INTEGER NOT NULL,
+    diameter_mm REAL,
+    u_mm REAL,
+    rubber_c REAL,
+    u_growth_mm_k REAL,
+    press_mm REAL,
+    load_n REAL,
+    sliding_m REAL,
+    exposure_n_m REAL,
+    width_mm REAL,
+    u_rate_percent REAL,
+    used INTEGER NOT NULL CHECK (used IN (0, 1))
+);
+"""
+"""Checks of a wheel's diameter between its conditions (``before`` and ``after``: their numbers, 0 for none), held
+against the first of their series at ``reference_s``; what their uncertainty comes from is in the row."""
+
+MIGRATIONS: tuple[str, ...] = (_VERSION_1, _VERSION_2, _VERSION_3, _VERSION_4, _WEAR_CHECK.format(temporary=""))
 """Migration n leads from schema n to n + 1."""
+
+_ADDED: dict[int, str] = {3: _EXCLUSION, 4: _AS_VERSION_4, 5: _WEAR_CHECK}
+"""What versions have added, by version: what a connection to an older record can have for itself."""
 
 VERSION = len(MIGRATIONS)
 
@@ -306,15 +334,14 @@ def _empty(connection: sqlite3.Connection) -> bool:
 def reads_as_present(connection: sqlite3.Connection, version: int) -> bool:
     """Let an older database be read as one of the present schema without writing it; False where that cannot be.
 
-    What version 3 has added is an empty table, and what version 4 has added are columns without values, which a
-    connection can have for itself: a temporary table, and a temporary view in front of the table.
+    What a version has added, an empty table or columns without values, a connection can have for itself: as a temporary
+    table, or as a temporary view in front of the table.
     """
-    if version < 2:
+    since = range(version + 1, VERSION + 1)
+    if any(number not in _ADDED for number in since):
         return False
-    if version < 3:
-        connection.execute(_EXCLUSION.format(temporary="TEMP "))
-    if version < 4:
-        connection.execute(_AS_VERSION_4)
+    for number in since:
+        connection.execute(_ADDED[number].format(temporary="TEMP "))
     return True
 
 

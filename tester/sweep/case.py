@@ -7,6 +7,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from tester.analysis.trust import WITH_CARE, mark_of
+from tester.axes import AXES
 from tester.campaign.pool import stop_level
 from tester.engine.context import Progress
 from tester.engine.prompts import Prompts
@@ -48,6 +49,7 @@ class RowResult:
     sideslip_deg: float
     camber_deg: float
     temperature_c: float
+    wheel_speed_m_s: float
     status: str
     mu: float
     s: float
@@ -115,9 +117,11 @@ def not_run(task: Task, error: BaseException) -> CaseResult:
 def _row(row: TableRow) -> RowResult:
     i, r = row.info, row.result
     mu, s, u = (r.mu_resultant, r.s, r.standard) if r.ok else (NAN, NAN, NAN)
-    slip_mm_s = round(1e3 * i.slip_velocity_m_s, 6)
-    setpoints = (slip_mm_s, i.load_n, i.sideslip_deg, i.camber_deg, i.temperature_c)
-    return RowResult(i.row, i.compound, *setpoints, r.status.value, mu, s, r.n_valid, u, r.flags, r.reason)
+    held: dict[str, float] = {axis.column: axis.of(i) for axis in AXES}
+    return RowResult(
+        i.row, i.compound, **held, status=r.status.value, mu=mu, s=s, n_valid=r.n_valid, u_standard=u, flags=r.flags,
+        reason=r.reason,
+    )  # fmt: skip
 
 
 class Unseen:

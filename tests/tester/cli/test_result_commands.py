@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import sys
 from dataclasses import replace
+from math import nan
 from pathlib import Path
 
 import pytest
@@ -34,7 +35,7 @@ def test_show_tells_status_rig_time_and_values(home: Path) -> None:
     assert lines[1] == "status   done"
     assert lines[2].startswith("rig time 0:45:00")
     assert lines[3] == "values   2 of 2 conditions"
-    assert lines[4].startswith("  1#, 300 mm/s, 100 N, 0°, 25 °C: 0.900 ± ")
+    assert lines[4].startswith("  1#, 300 mm/s, 100 N, 25 degC: 0.900 ± ")
     assert lines[4].endswith("(n 3 of 3) extended")
 
 
@@ -47,10 +48,10 @@ def test_show_as_json(home: Path) -> None:
 
 
 def test_show_names_what_has_no_value(home: Path) -> None:
-    small_run(home / "runs" / "two", ([0.9], [0.73, 0.74, 0.72]))
+    small_run(home / "runs" / "two", ([nan] * 3, [0.73, 0.74, 0.72]))
     shown = invoke(show, "two").stdout
     assert "values   1 of 2 conditions" in shown
-    assert "  1#, 300 mm/s, 100 N, 0°, 25 °C: insufficient: 1 of 3 valid, 3 needed" in shown
+    assert "  1#, 300 mm/s, 100 N, 25 degC: insufficient: none of 3 repeats is valid" in shown
     assert json.loads(invoke(show, "two", "--json").stdout)["conditions"][0]["s"] is None
 
 
@@ -104,10 +105,10 @@ def test_export_to_a_file_leaves_stdout_empty(home: Path) -> None:
 
 
 def test_export_names_missing_conditions_on_stderr(home: Path) -> None:
-    small_run(home / "runs" / "two", ([0.9], [0.73, 0.74, 0.72]))
+    small_run(home / "runs" / "two", ([nan] * 3, [0.73, 0.74, 0.72]))
     result = invoke(export, "two", "--format", "appendix")
     assert result.exit_code == 0
-    assert result.stderr.startswith("not in the appendix: 1#, 300 mm/s, 100 N, 0°, 25 °C: insufficient")
+    assert result.stderr.startswith("not in the appendix: 1#, 300 mm/s, 100 N, 25 degC: insufficient")
     assert len(result.stdout.splitlines()) == 2
 
 

@@ -27,7 +27,7 @@ def test_every_condition_has_a_row_with_its_mean(tmp_path: Path) -> None:
 
 def test_a_condition_without_a_valid_repeat_is_missing_and_says_why(tmp_path: Path) -> None:
     (row,) = results(small_run(tmp_path, ([], [0.73, 0.74, 0.72]))).missing()
-    assert row.describe() == "1#, 300 mm/s, 100 N, 0°, 25 °C: insufficient: none of 0 repeats is valid"
+    assert row.describe() == "1#, 300 mm/s, 100 N, 25 degC: insufficient: none of 0 repeats is valid"
 
 
 def test_a_condition_of_too_few_repeats_has_a_value_and_a_flag(tmp_path: Path) -> None:

@@ -204,7 +204,7 @@ def test_the_manifest_lists_every_file_with_its_hash(tmp_path: Path) -> None:
     (tmp_path / "recipe.yaml").write_text("recipe: x\n", "utf-8")
     export.write_all(tmp_path)
     files = json.loads((tmp_path / "manifest.json").read_text("utf-8"))["files"]
-    assert sorted(files) == ["appendix.csv", "conditions.csv", "recipe.yaml", "repeats.csv", "run.db"]
+    assert sorted(files) == ["appendix.csv", "conditions.csv", "recipe.yaml", "repeats.csv", "run.db", "wheel.csv"]
     assert files["recipe.yaml"] == {"bytes": 10, "sha256": sha256(b"recipe: x\n").hexdigest()}
     assert manifest_problems(tmp_path) == []
 
