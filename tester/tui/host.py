@@ -124,7 +124,8 @@ class HostApp(App[str]):
         try:
             result = await self.link.command(action)
         except RefusedError as error:
-            self.say(f"refused: {error}", problem=True)
+            hint = ": Ctrl+P, Take control" if "has control" in str(error) else ""
+            self.say(f"refused: {error}{hint}", problem=True)
         except (LostError, TimeoutError) as error:
             self.say(f"no answer from the service: {error}", problem=True)
         else:
