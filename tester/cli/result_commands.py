@@ -251,9 +251,7 @@ def export(run: str, kind: str, out: Path | None, decimals: int) -> None:
             _export(reader, kind, out, decimals)
     except MissingExtraError as error:
         raise click.UsageError(str(error)) from error
-    except (StoreError, OSError) as error:
-        if isinstance(error, BrokenPipeError):
-            raise
+    except StoreError as error:
         raise click.ClickException(str(error)) from error
 
 

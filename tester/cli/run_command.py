@@ -130,7 +130,8 @@ def _detached(
 
 
 def carried_out(work: Callable[[], int]) -> int:
-    """Do the work and return its exit code; what keeps it from beginning goes to stderr."""
+    """Do the work and return its exit code; what keeps it from beginning goes to stderr. Raises OSError."""
+    from recipes import UnknownRecipe
     from tester.session import CannotStartError
     from tester.store.schema import StoreError
 
@@ -139,9 +140,9 @@ def carried_out(work: Callable[[], int]) -> int:
     except CannotStartError as error:
         click.echo(str(error), err=True)
         return error.code
-    except FileNotFoundError as error:
+    except UnknownRecipe as error:
         raise click.UsageError(str(error)) from error
-    except (StoreError, OSError) as error:
+    except StoreError as error:
         raise click.ClickException(str(error)) from error
 
 

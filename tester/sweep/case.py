@@ -14,6 +14,7 @@ from tester.engine.prompts import Prompts
 from tester.export.results import TableRow, results_of
 from tester.session import Session, SessionOptions
 from tester.store.reader import RunReader
+from tester.trouble import in_words
 
 NAN = float("nan")
 NOT_RUN = "not run"
@@ -110,7 +111,7 @@ def run_case(task: Task) -> CaseResult:
 
 def not_run(task: Task, error: BaseException) -> CaseResult:
     """Return the result of a case that raised instead of returning one."""
-    reason = f"{type(error).__name__}: {error}".strip(": ")
+    reason = f"{type(error).__name__}: {in_words(error)}".strip(": ")
     return CaseResult(task.case, task.point, task.seed, NOT_RUN, reason, 1)
 
 

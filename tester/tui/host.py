@@ -20,6 +20,7 @@ from tester.service.address import Address
 from tester.service.client import Client, Link, Lost, LostError, NoServiceError, RefusedError
 from tester.service.commands import Action, Stop
 from tester.service.protocol import Event
+from tester.trouble import in_words
 from tester.tui.scene import Scene
 from tester.tui.starting import start_service
 from tester.tui.stop_line import KEYS, NotTakenError, StopLine, stopping
@@ -108,7 +109,7 @@ class HostApp(App[str]):
         try:
             start_service(self.options.rig, self.options.runs)
         except OSError as error:
-            self.say(f"the service cannot be started: {error}", problem=True, lasting=True)
+            self.say(f"the service cannot be started: {in_words(error)}", problem=True, lasting=True)
 
     # -- orders -----------------------------------------------------------------------------------------------
 

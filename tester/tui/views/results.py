@@ -16,6 +16,7 @@ from textual.widgets import DataTable
 from tester.axes import AXES
 from tester.service.commands import ListRuns
 from tester.store.schema import StoreError
+from tester.trouble import in_words
 from tester.tui.dialogs.export import ExportDialog
 from tester.tui.dialogs.plot import PlotDialog
 from tester.tui.dialogs.repeats import RepeatsDialog
@@ -152,7 +153,7 @@ class ResultsView(View):
             stored = await asyncio.to_thread(read, name, self.host.options.runs)
         except MISSING as error:
             self.conditions_table.border_title = "Conditions"
-            self.host.say(f"{name} cannot be read: {error}", problem=True)
+            self.host.say(f"{name} cannot be read: {in_words(error)}", problem=True)
             return
         if self.is_attached:
             self.open(stored)
