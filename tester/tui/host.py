@@ -20,6 +20,7 @@ from tester.service.address import Address
 from tester.service.client import Client, Link, Lost, LostError, NoServiceError, RefusedError
 from tester.service.commands import Action, Stop
 from tester.service.protocol import Event
+from tester.service.state import RunView
 from tester.trouble import in_words
 from tester.tui.scene import Scene
 from tester.tui.starting import start_service
@@ -77,6 +78,9 @@ class HostApp(App[str]):
 
     def go_to(self, name: str) -> None:
         """Show another screen, by its id."""
+
+    def show_results(self, run: RunView) -> None:
+        """Show what a run has measured."""
 
     def say(self, text: str, *, problem: bool = False, lasting: bool = False) -> None:
         """Tell the operator something, as it is."""

@@ -125,8 +125,7 @@ class ResultsView(View):
         event.stop()
         if self.runs_table.has_focus:
             if event.cursor_row < len(self.names):
-                name = self.names[event.cursor_row]
-                self.run_worker(partial(self._open, name), group="open", exclusive=True, exit_on_error=False)
+                self.open_run(self.names[event.cursor_row])
         elif self.stored is not None and (row := self.chosen) is not None:
             self.host.push_screen(RepeatsDialog(self.stored, row, self._read_again))
 
@@ -144,8 +143,11 @@ class ResultsView(View):
     def _read_again(self) -> None:
         """Read the run again: somebody has left out a repeat."""
         if self.stored is not None:
-            work = partial(self._open, str(self.stored.folder))
-            self.run_worker(work, group="open", exclusive=True, exit_on_error=False)
+            self.open_run(str(self.stored.folder))
+
+    def open_run(self, name: str) -> None:
+        """Read a run, by its name or folder, and show its conditions."""
+        self.run_worker(partial(self._open, name), group="open", exclusive=True, exit_on_error=False)
 
     async def _open(self, name: str) -> None:
         self.conditions_table.border_title = "reading …"
