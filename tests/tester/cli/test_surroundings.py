@@ -142,3 +142,24 @@ def test_closed_streams_are_no_trouble(home: Path, arguments: list[str]) -> None
             os.close(number)
 
     assert tester(*arguments, preexec_fn=close).returncode == 0
+
+
+# -- terminals ----------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("arguments", [["tui"], ["replay", "one"]])
+def test_a_screen_without_a_terminal_is_refused_with_what_needs_none(home: Path, arguments: list[str]) -> None:
+    done = tester(*arguments, capture_output=True, stdin=subprocess.DEVNULL)
+    assert done.returncode == 2 and "needs a terminal, and there is none here; `tester s" in done.stderr
+    assert "\x1b" not in done.stdout + done.stderr
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no pseudo-terminals")
+def test_a_terminal_that_places_no_text_is_refused(home: Path) -> None:
+    outer, inner = os.openpty()
+    try:
+        done = tester("tui", stdin=inner, stdout=subprocess.PIPE, stderr=inner, env=os.environ | {"TERM": "dumb"})
+        assert done.returncode == 2 and b"TERM is dumb" in os.read(outer, 10_000)
+    finally:
+        os.close(inner)
+        os.close(outer)
