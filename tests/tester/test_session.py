@@ -6,10 +6,12 @@ import re
 import signal
 import sqlite3
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
+from tester.analysis.results import CARRY_OVER
 from tester.bus_log import BusLog
 from tester.campaign import folder as folder_module
 from tester.campaign import part_run
@@ -26,6 +28,7 @@ from tester.source import InvalidSource
 from tester.store.reader import RunReader
 from tester.store.writer import RunWriter
 from tests.tester.engine.bench import HOT, QUIET, SHORT
+from tests.tester.store.build import CONDITION, RUN, SPECIMENS, open_writer, record
 
 TABLES = ("appendix.csv", "conditions.csv", "repeats.csv")
 
@@ -210,6 +213,23 @@ def test_a_drift_that_is_not_shown_is_a_row_with_a_flag(undecided: Ended) -> Non
     assert len((undecided.folder / "appendix.csv").read_text(encoding="utf-8-sig").splitlines()) == 2
 
 
+def test_conditions_that_were_tried_are_told_and_the_others_are_no_line_each(tmp_path: Path) -> None:
+    writer = open_writer(tmp_path)
+    writer.begin_run(RUN, SPECIMENS, [replace(CONDITION, condition=i, row=i) for i in range(1, 166)])
+    record(writer, 1, [0.9] * 3)
+    record(writer, 2, [float("nan")])
+    record(writer, 3, [0.9] * 3, flags=CARRY_OVER)
+    writer.finish("done", rig_seconds=60.0)  # cut off before its tables
+    writer.close()
+    screen = Screen()
+    Session(SessionOptions(), screen).resume(tmp_path)
+    lost, doubted = screen.messages
+    assert "none of 1 repeats is valid" in lost and "max_bursts" in lost
+    assert "carry-over" in doubted and "pre_grind" in doubted
+    (end,) = (event for event in screen.records if event["event"] == "end")
+    assert len(end["missing"]) == 163  # type: ignore[arg-type]
+
+
 def test_nobody_to_ask_is_a_usage_error_without_a_trace(tmp_path: Path) -> None:
     ended = run(tmp_path, screen=Screen(answer_yes=False))
     assert ended.code == 2 and not ended.out.exists()
@@ -316,7 +336,7 @@ class Breaking(Screen):
 
 def test_a_run_that_can_no_longer_be_shown_stops_in_a_controlled_way(tmp_path: Path) -> None:
     ended = run(tmp_path, "interlocks.cooldown_hub=26 degC", screen=Breaking(BrokenPipeError(32, "Broken pipe")))
-    assert ended.code == 5 and ended.stored() == ("stopped", "the run can no longer be shown: Broken pipe")
+    assert ended.code == 5 and ended.stored() == ("stopped", "the run can no longer be shown: its reader is gone")
 
 
 def test_an_unexpected_error_leaves_an_interrupted_run_and_a_safe_rig(tmp_path: Path) -> None:
