@@ -133,6 +133,9 @@ class Interrupting:
     def install(self, specimen: int, wheel: int, compound: str, *, new_specimen: bool) -> None:
         self.hands.install(specimen, wheel, compound, new_specimen=new_specimen)
 
+    def remount(self, specimen: int, wheel: int, compound: str, diameter_mm: float, sliding_m: float) -> None:
+        self.hands.remount(specimen, wheel, compound, diameter_mm, sliding_m)
+
     def begin_repeat(self, condition: int, repeat: int, attempt: int) -> None:
         self.hands.begin_repeat(condition, repeat, attempt)
         for number in self.signals:
@@ -323,7 +326,7 @@ class Breaking(Screen):
 
 def test_a_run_that_can_no_longer_be_shown_stops_in_a_controlled_way(tmp_path: Path) -> None:
     ended = run(tmp_path, "interlocks.cooldown_hub=26 degC", screen=Breaking(BrokenPipeError(32, "Broken pipe")))
-    assert ended.code == 5 and ended.stored() == ("stopped", "the run can no longer be shown: Broken pipe")
+    assert ended.code == 5 and ended.stored() == ("stopped", "the run can no longer be shown: its reader is gone")
 
 
 def test_an_unexpected_error_leaves_an_interrupted_run_and_a_safe_rig(tmp_path: Path) -> None:
