@@ -26,6 +26,10 @@ def init(file: Path, force: bool) -> None:
             stream.write(hardware_text())
     except FileExistsError as error:
         raise click.UsageError(f"{file} exists already; --force replaces it") from error
+    except OSError as error:
+        from tester.trouble import in_words
+
+        raise click.UsageError(f"the rig file cannot be written: {in_words(error)}") from error
     click.echo(str(file))
 
 

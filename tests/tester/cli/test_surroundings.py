@@ -49,7 +49,7 @@ def told(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, str]
         (["check", "none.yaml"], 2, 'no recipe "none.yaml"'),
         (["plan", "quickstart", "--rig", "none.yaml"], 3, "no such file"),
         (["plan", "quickstart", "--rig", "runs"], 3, "not a file"),
-        (["rig", "init", "none/rig.yaml"], 1, "there is no such file or folder"),
+        (["rig", "init", "none/rig.yaml"], 2, "there is no such file or folder"),
         (["rig", "init", "file"], 2, "--force replaces it"),
         (["resume", "none"], 2, "no run none"),
         (["verify", "file"], 2, "no run file"),
