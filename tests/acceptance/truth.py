@@ -14,30 +14,28 @@ from tests.acceptance.topic import Topic
 
 CONDITIONS = 2
 RECIPE = "quickstart"
-SEEDS = (0, 2, 1, 3, 4)
-"""0 is the default; the short form takes the first, or the first two."""
+SEEDS = (0, 1, 2, 3, 4)
+"""Results are judged over all of them, in the short form too: one seed that suits proves nothing."""
 QUIET = ("sim.noise=0", "sim.scatter=0")
 NOISY = ("sim.scatter=0",)
 
 SHARED = RunSpec(RECIPE, SEEDS[0], bus_log=True)
 """The run with everything on that the buses are looked at in, too."""
-OTHER_SEED = RunSpec(RECIPE, SEEDS[1])
 
 
 def exact_runs(bench: Bench) -> list[RunSpec]:
-    """Name the runs with neither noise nor scatter."""
-    return [RunSpec(RECIPE, seed, QUIET) for seed in (SEEDS[:2] if bench.full else SEEDS[:1])]
+    """Name the runs with neither noise nor scatter: nothing is drawn in them, one seed is all of them."""
+    return [RunSpec(RECIPE, seed, QUIET) for seed in (SEEDS if bench.full else SEEDS[:1])]
 
 
 def noisy_runs(bench: Bench) -> list[RunSpec]:
     """Name the runs with noise and no scatter."""
-    return [RunSpec(RECIPE, seed, NOISY) for seed in (SEEDS if bench.full else SEEDS[:1])]
+    return [RunSpec(RECIPE, seed, NOISY) for seed in SEEDS]
 
 
 def scattered_runs(bench: Bench) -> list[RunSpec]:
     """Name the runs with noise and scatter."""
-    more = [RunSpec(RECIPE, seed) for seed in SEEDS[2:]] if bench.full else []
-    return [SHARED, OTHER_SEED, *more]
+    return [SHARED, *(RunSpec(RECIPE, seed) for seed in SEEDS[1:])]
 
 
 def all_runs(bench: Bench) -> list[RunSpec]:
@@ -106,10 +104,11 @@ def _within_sigmas(run: Run, kind: str) -> Iterator[Figure]:
 
 
 def exact_figures(bench: Bench) -> Iterator[Figure]:
-    """Measure with neither noise nor scatter only: the short form for the default tests."""
+    """Measure without the runs with noise and no scatter: the short form for the default tests."""
     for spec in exact_runs(bench):
         yield from _within(bench.run(spec), f"noise 0, scatter 0, seed {spec.seed}", 1.0)
-    yield from _within_sigmas(bench.run(SHARED), f"noise 1, scatter 1, seed {SHARED.seed}")
+    for spec in scattered_runs(bench):
+        yield from _within_sigmas(bench.run(spec), f"noise 1, scatter 1, seed {spec.seed}")
 
 
 TOPIC = Topic("truth", "the quickstart's coefficients against the model at what was measured", figures, all_runs)
