@@ -7,7 +7,8 @@ there, not even STOP (docs/decisions/0023).
 from __future__ import annotations
 
 import shlex
-import sys
+
+from tester.children import tester_command
 
 HOST = "127.0.0.1"
 
@@ -19,7 +20,7 @@ def serve(port: int, address: str) -> None:
     """
     from textual_serve.server import Server
 
-    command = [sys.executable, "-c", "from tester.cli.main import main; main()", "tui", "--view"]
+    command = tester_command("tui", "--view")
     if address:
         command += ["--connect", address]
     Server(shlex.join(command), host=HOST, port=port, title="friction-tester").serve()
