@@ -27,6 +27,7 @@ from tester.export import write_all
 from tester.lock import ExclusiveUse
 from tester.provenance import recipe_source, rig_source, run_info, session_info
 from tester.recipe.check import load_checked
+from tester.recipe.estimate import Estimate, estimate
 from tester.recipe.loader import LoadedRecipe
 from tester.resume import prepare
 from tester.rig import RigConfig, load_rig
@@ -58,6 +59,25 @@ class SessionOptions:
     """Lines of a fault script (sim.faults.language), beside those of the rig file."""
 
 
+@dataclass(frozen=True, slots=True)
+class Prepared:
+    """A recipe on a rig: what is to be done, and what it takes."""
+
+    path: Path
+    recipe: LoadedRecipe
+    work: Work
+    expected: Estimate
+
+
+def prepared(recipe: str, rig_name: str, overrides: tuple[str, ...]) -> Prepared:
+    """Read and plan a recipe. Raises InvalidSource, UnknownRecipe."""
+    rig = load_rig(rig_name, overrides)
+    path = find(recipe)
+    loaded = load_checked(path, rig)
+    work = work_of(loaded.recipe, rig)
+    return Prepared(path, loaded, work, estimate(work.plan, rig))
+
+
 class Session:
     """Prepares, runs and closes one run."""
 
@@ -80,13 +100,11 @@ class Session:
         """Run to the end; return the exit code. Raises InvalidSource for an invalid recipe or rig file,
         FileNotFoundError where there is no such recipe, CannotStartError."""
         options = self.options
-        rig = load_rig(options.rig, options.overrides)
+        found = self.prepare()
+        work, rig, recipe = found.work, found.work.rig, found.recipe
         faults = rig.sim.faults + options.faults
         if faults:
             _check_faults(faults, rig)
-        path = find(options.recipe)
-        recipe = load_checked(path, rig)
-        work = work_of(recipe.recipe, rig)
         refusal = self._refusal(work.rig)
         if refusal:
             self.screen.message(refusal)
@@ -94,13 +112,18 @@ class Session:
         options.out.mkdir(parents=True, exist_ok=True)
         for left in cut_off(options.out):
             self.screen.message(f"{left.name} was cut off: tester resume {left} goes on with it")
-        enough_room(options.out, work.plan, rig)
+        enough_room(options.out, work.plan, rig, found.expected)
         with ExclusiveUse() as use:
             hold_rig(use, rig, work.plan.name)
             folder = make_folder(options.out, work.plan.name)
             hold_run(use, folder)
             write_sources(folder, recipe.tree.text, rig)
-            return self._record(self._job(folder, options.seed), work, self._beginning(folder, path, recipe, work))
+            begin = self._beginning(folder, found.path, recipe, work)
+            return self._record(self._job(folder, options.seed), work, begin)
+
+    def prepare(self) -> Prepared:
+        """Read and plan the recipe; raises as ``run`` does."""
+        return prepared(self.options.recipe, self.options.rig, self.options.overrides)
 
     def resume(self, folder: Path, reason: str = "") -> int:
         """Go on with an interrupted run; return the exit code. ``reason``: why it may although something changed.

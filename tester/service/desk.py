@@ -24,6 +24,8 @@ from tester.store.space import MARGIN
 
 UNWATCHED_S = 1.0
 """Period of states while nobody is connected, s: the gateway's trend goes on, at a rate that costs nothing."""
+SOONEST_S = 0.05
+"""What a client has done is not shown sooner than this after what was shown last, s: nobody makes states by talking."""
 DISK_EVERY_S = 10.0
 LOW_BYTES = 500_000_000
 """Less than this is low whatever the run needs [A]: one compound of Table 2 takes some tens of MB."""
@@ -38,6 +40,10 @@ NOTIFIED = frozenset({"trip"})
 
 def nobody_obeys(order: Order) -> None:
     """Leave an order undone: nobody has taken the desk yet."""
+
+
+def nothing_stops(name: str, fast: bool) -> None:
+    """Let STOP pass: nobody has taken the desk yet."""
 
 
 def nobody_minds() -> None:
@@ -57,6 +63,8 @@ class Desk:
     rig: RigConfig
     runs: Path
     obey: Callable[[Order], None] = field(default=nobody_obeys)
+    stop: Callable[[str, bool], None] = field(default=nothing_stops)
+    """Called with who wants STOP, and whether a fast one."""
     lost_control: Callable[[], None] = field(default=nobody_minds)
     stop_rest: Callable[[bool], None] = field(default=nothing_rests)
     """Called with STOP (fast or not) for what the run under way has not begun yet."""
@@ -76,6 +84,7 @@ class Desk:
     now_s: float = 0.0
     """Rig time of the run."""
     _due_s: float = float("-inf")
+    _shown_s: float = float("-inf")
     _mode: str = ""
     _mode_since_s: float = 0.0
     _asked: int = 0
@@ -96,6 +105,7 @@ class Desk:
         """Look after a run from now on."""
         self.watch, self.hand, self.run = RunWatch(run, track), hand, view
         run.engine.ctx.journal.heard = self.heard
+        self.hub.lane.begin_ticking()
         self.now_s = 0.0
         self._asked = 0
         self.hub.plan(None if hand is not None else self.watch.track.view())
@@ -109,6 +119,7 @@ class Desk:
 
     def detach(self, view: RunView | None) -> None:
         """The run is over."""
+        self.hub.lane.end_ticking()
         if self.watch is not None:
             self.watch.run.engine.ctx.journal.heard = None
             for name in self.watch.watched:
@@ -124,14 +135,15 @@ class Desk:
         self.run = view
         self.tell("run", text, "info" if outcome is Outcome.DONE else "warning")
         self.notify("finished", text)
-        if outcome is Outcome.TRIPPED and self.watch is not None and not self.watch.acknowledged:
-            self._latch(view.reason or view.outcome, self.watch)
+        watch = self.watch
+        if watch is not None and not watch.acknowledged and (outcome is Outcome.TRIPPED or watch.latched):
+            self._latch(view.reason or view.outcome, watch)
         self.detach(view)
 
     def _latch(self, reason: str, watch: RunWatch) -> None:
         """Let nothing begin before somebody has acknowledged."""
         watch.watch_trip(self.alarms, self.now_s)
-        if not watch.tripped:  # the wire is gone: control has had nothing to decide
+        if not watch.tripped and not watch.latched:  # the wire is gone: control has had nothing to decide
             watch.tripped = "rig lost"
             self.alarms.raise_(Cause(watch.tripped, 1, reason, "the drives stop by their own watchdogs"), self.now_s)
         self.latched, self.tripped = reason, watch.tripped
@@ -168,17 +180,26 @@ class Desk:
     def poll(self, now_s: float) -> None:
         """Hear what clients want, and show the state when its time has come. ``now_s``: rig time."""
         self.now_s = now_s
+        self.stop_first()
         for heard in self.hub.hear():
             if isinstance(heard, Order):
                 self.obey(heard)
-            self._due_s = float("-inf")  # what has changed is seen at once
+            self._due_s = min(self._due_s, self._shown_s + SOONEST_S)  # what has changed is seen soon
         self._notice_control()
         wall_s = clock.monotonic()
         if wall_s >= self._due_s:
             period_s = SNAPSHOT_S if self.hub.watched else UNWATCHED_S
             late_s = wall_s - self._due_s
             self._due_s = wall_s + (period_s - late_s if late_s < period_s else period_s)
+            self._shown_s = wall_s
             self.show()
+
+    def stop_first(self) -> None:
+        """Carry out what came through STOP's own lane; the rest waits."""
+        for wish in self.hub.lane.taken():
+            self.stop(wish.name, wish.fast)
+            self.hub.lane.answer(wish)
+            self._due_s = float("-inf")
 
     def wait(self) -> None:
         """Wait, while no run ticks, until there is something to do."""

@@ -17,6 +17,7 @@ from tester.service.gateway import Gateway
 from tester.service.hook import Hook
 from tester.service.link import MOST_QUEUED
 from tester.service.listening import CLOSE_S, listening
+from tester.service.manners import sparse_logger
 from tester.service.pair import link_of
 from tester.service.queries import Queries
 
@@ -33,6 +34,7 @@ class Settings:
     notify: str
     token: str = ""
     port: int = 0
+    stop_port: int = 0
 
 
 SETTINGS: TypeAdapter[Settings] = TypeAdapter(Settings)
@@ -47,7 +49,8 @@ async def _serve(reader: asyncio.StreamReader, writer: asyncio.StreamWriter, set
 
     gateway = Gateway(tell, settings.service, settings.software, queries, Hook(settings.notify))
     path = Path(settings.path)
-    address = TcpAddress("127.0.0.1", settings.port, settings.token) if settings.token else UnixAddress(path)
+    tcp = TcpAddress("127.0.0.1", settings.port, settings.token, settings.stop_port)
+    address = tcp if settings.token else UnixAddress(path)
     async with listening(gateway, address) as listens:
         if isinstance(listens, TcpAddress):
             write_card(listens, path)
@@ -73,4 +76,5 @@ if __name__ == "__main__":
         signal.signal(number, signal.SIG_IGN)  # it ends with its owner, who comes to a standstill first
     if hasattr(signal, "SIGHUP"):
         signal.signal(signal.SIGHUP, signal.SIG_IGN)
+    sparse_logger("asyncio")
     asyncio.run(serve_link(link_of(sys.argv[1])))

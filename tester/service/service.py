@@ -160,14 +160,21 @@ class Service:
                 desk.watch.run.engine.ctx.journal.event(0.0, "note", notes)
 
         screen = RunScreen(desk, view, answer_yes=yes)
-        session = ServiceSession(options, screen, self.end, begun)
+        def meanwhile() -> str:
+            desk.poll(0.0)
+            if self.orders.ending:
+                return "the service ends"
+            return "" if self.orders.job is order else "stopped while it was planned"
+
+        session = ServiceSession(options, screen, self.end, begun, meanwhile)
         problem, code = "", None
         try:
             code = work(session)
         except REFUSED as error:
             problem = str(error)
         if not session.view.name:
-            desk.hub.refuse(order, problem or "; ".join(screen.messages) or "the run has ended before it began")
+            if self.orders.job is order:  # else STOP has refused it already
+                desk.hub.refuse(order, problem or "; ".join(screen.messages) or "the run has ended before it began")
             desk.detach(None)
             return
         outcome = session.ending.outcome if session.ending is not None else Outcome.FAILED

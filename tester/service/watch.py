@@ -66,6 +66,11 @@ class RunWatch:
         why = state.trip.text if state.trip is not None else state.stop_requested
         return name, why, max(run.engine.ctx.now - state.mode_since_s, 0.0)
 
+    @property
+    def latched(self) -> bool:
+        """A trip or a fast stop waits for its acknowledgement."""
+        return self.run.engine.control.state.mode is Mode.LATCHED
+
     def progress(self, now: float, lapse: float | None) -> ProgressView:
         """Return where the run is; ``lapse``: rig seconds per second, None where nobody knows."""
         p = self.run.engine.ctx.progress

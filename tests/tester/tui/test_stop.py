@@ -32,7 +32,7 @@ PLACES: dict[str, list[str]] = {
 
 
 @pytest.mark.parametrize("place", PLACES)
-def test_both_stop_keys_reach_the_service_from(place: str, house: House) -> None:
+def test_the_keys_of_both_stops_reach_the_service_from(place: str, house: House) -> None:
     async def act(on: Stage) -> None:
         await on.show(with_prompt(a_state("HOLD" if place == "resume dialog" else "RUN")))
         await on.until(lambda: on.checked(), "the recipes are checked")
@@ -42,10 +42,10 @@ def test_both_stop_keys_reach_the_service_from(place: str, house: House) -> None
             assert len(on.app.screen_stack) == 2, on.text()
         if any(word in place for word in ("word", "answer", "operator", "filter")):
             assert isinstance(on.app.focused, Input), on.text()
-        for key in ("f12", "ctrl+x"):
+        for key, fast in (("f12", False), ("ctrl+x", False), ("f9", True), ("ctrl+f", True)):
             on.fake.orders.clear()
             await on.pilot.press(key)
-            assert await on.ordered(Stop) == Stop()
+            assert await on.ordered(Stop) == Stop(fast)
 
     house.play(act)
 
