@@ -31,16 +31,20 @@ MEANINGS: Final = (STOP, FAST_STOP, HOLD, RELEASE)
 HELP: Final = "   ".join(f"{one.shown} {one.does}" for one in MEANINGS)
 
 
-def commands_of(typed: str) -> list[str]:
-    """Return the commands in what a terminal has sent; other keys mean nothing, whatever they send."""
-    found: list[str] = []
+def pieces_of(typed: str) -> list[tuple[str, Meaning | None]]:
+    """Return what a terminal has sent key by key, each with its meaning, None where it has none."""
+    found: list[tuple[str, Meaning | None]] = []
     at = 0
     while at < len(typed):
         meaning, length = _first(typed[at:])
-        if meaning is not None:
-            found.append(meaning.command)
+        found.append((typed[at : at + length], meaning))
         at += length
     return found
+
+
+def commands_of(typed: str) -> list[str]:
+    """Return the commands in what a terminal has sent; other keys mean nothing, whatever they send."""
+    return [meaning.command for _, meaning in pieces_of(typed) if meaning is not None]
 
 
 def _first(typed: str) -> tuple[Meaning | None, int]:

@@ -32,7 +32,7 @@ from tester.recipe.loader import LoadedRecipe
 from tester.resume import prepare
 from tester.rig import RigConfig, load_rig
 from tester.screens import LastingScreen, Screen
-from tester.signals import HANG_UP, handled
+from tester.signals import HANG_UP, QUIT, handled
 from tester.store.catalogue import cut_off
 from tester.store.reader import RunReader
 from tester.store.resume import FINISHED
@@ -190,9 +190,9 @@ class Session:
             refused = run.request_hold()
         elif command == "release":
             refused = run.request_release()
-        elif command == "abort":
-            run.request_abort()
         elif command == "stop":
+            run.request_stop("stopped by the operator")
+        elif command == "fast stop":
             run.request_stop("stopped by the operator", fast=True)
         self.screen.message(refused or command)
 
@@ -285,7 +285,10 @@ class Session:
             yield
 
     def _on_signal(self, number: int, _frame: FrameType | None) -> None:
-        """Stop: TERM, HUP and a first INT in a controlled way, a second INT fast."""
+        """Stop: TERM, HUP and a first INT in a controlled way, a second INT and QUIT fast."""
+        if number == QUIT:
+            self.stop(Stop.FAST)
+            return
         if number != signal.SIGINT:
             self.stop(Stop.HUNG_UP if number == HANG_UP else Stop.TERMINATED)
             return

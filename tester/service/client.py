@@ -24,7 +24,7 @@ from websockets.exceptions import ConnectionClosed, InvalidHandshake
 
 from tester import clock
 from tester.service.address import Address, AddressError, UnixAddress, default_address
-from tester.service.commands import Action, Command, Join, Stop
+from tester.service.commands import Action, Attend, Command, Join, Stop
 from tester.service.protocol import (
     EVENTS_KEPT,
     TREND_ROWS,
@@ -92,6 +92,7 @@ class Client:
         """Why the connection has ended, "" while it stands."""
         self._goodbye = ""
         self._ids = 0
+        self._sending: set[asyncio.Task[None]] = set()
         self._answers: dict[int, asyncio.Future[Accepted]] = {}
         self._events_due: deque[Event] = deque()
         self._newest: dict[type, Hello | Snapshot | PlanMessage | Frames] = {Hello: hello}
@@ -158,6 +159,18 @@ class Client:
             raise LostError(str(error)) from error
         finally:
             del self._answers[number]
+
+    def attend(self) -> None:
+        """Give a sign of life, which manual mode needs every second of who controls; no answer is awaited."""
+        self._ids += 1
+        text = encode(Command(self._ids, Attend()))
+        task = asyncio.create_task(self._send(text))
+        self._sending.add(task)
+        task.add_done_callback(self._sending.discard)
+
+    async def _send(self, text: bytes) -> None:
+        with suppress(ConnectionClosed):
+            await self._connection.send(text, text=True)
 
     async def stop(self, *, fast: bool = False) -> None:
         """STOP: works for every client, whoever has control."""

@@ -107,11 +107,11 @@ class Stop:
 
 @dataclass(frozen=True, slots=True)
 class Answer:
-    """Answer the prompt with this number; the answer is recorded. "no" leaves it waiting."""
+    """Answer the prompt with this number, by its word; the answer is recorded. "no" leaves it waiting."""
 
     __pydantic_config__: ClassVar[ConfigDict] = _STRICT
     number: int
-    answer: Note = "yes"
+    answer: Literal["yes", "no"] = "yes"
     command: Literal["answer"] = "answer"
 
 
@@ -122,6 +122,14 @@ class Arm:
     __pydantic_config__: ClassVar[ConfigDict] = _STRICT
     on: bool = True
     command: Literal["arm"] = "arm"
+
+
+@dataclass(frozen=True, slots=True)
+class Attend:
+    """A sign of life of the screen that moves the rig by hand: a second without one ends manual mode."""
+
+    __pydantic_config__: ClassVar[ConfigDict] = _STRICT
+    command: Literal["attend"] = "attend"
 
 
 JogAxis = Literal["wheel", "belt", "both", "press", "sideslip", "camber", "heat"]
@@ -208,7 +216,7 @@ RigAction: TypeAlias = RunRecipe | ResumeRun | Hold | Release | Acknowledge | St
 """What the rig's owner does; everything but ``stop`` is for the controller alone."""
 Query: TypeAlias = CheckRecipe | ShowPlan | ListRecipes | ListRuns
 """What is worked out beside the rig, by a process of its own."""
-Action: TypeAlias = Annotated[RigAction | Control | WatchFrames | Query, Field(discriminator="command")]
+Action: TypeAlias = Annotated[RigAction | Control | WatchFrames | Attend | Query, Field(discriminator="command")]
 
 
 @dataclass(frozen=True, slots=True)

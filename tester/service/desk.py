@@ -199,7 +199,7 @@ class Desk:
         for wish in self.hub.lane.taken():
             self.stop(wish.name, wish.fast)
             self.hub.lane.answer(wish)
-            self._due_s = float("-inf")
+            self._due_s = min(self._due_s, self._shown_s + SOONEST_S)
 
     def wait(self) -> None:
         """Wait, while no run ticks, until there is something to do."""

@@ -18,6 +18,7 @@ from websockets.exceptions import ConnectionClosed
 
 from tester.service.commands import (
     VERSION,
+    Attend,
     CheckRecipe,
     Control,
     Join,
@@ -91,6 +92,7 @@ class Gateway:
         self.hook = hook
         self.guests: dict[int, Guest] = {}
         self.controller = 0
+        self._signs = 0
         self._next = 1
         self._state = b""
         self._plan = b"null"
@@ -261,6 +263,8 @@ class Gateway:
             guest.frames = action.on
             self._tell_presence()
             self._reply(guest, encode(Accepted(message.id)))
+        elif isinstance(action, Attend):
+            self._attend(guest, message.id)
         elif isinstance(action, CheckRecipe | ShowPlan | ListRecipes | ListRuns):
             self._ask(guest, message.id, action)
         else:
@@ -293,6 +297,13 @@ class Gateway:
         self._tell_presence()
         self._reply(guest, encode(Accepted(number)))
 
+    def _attend(self, guest: Guest, number: int) -> None:
+        """Pass on a sign of life of the one that controls; of others it is none."""
+        if self.controller == guest.number:
+            self._signs += 1
+            self._tell_presence()
+        self._reply(guest, encode(Accepted(number)))
+
     def _ask(self, guest: Guest, number: int, question: Query) -> None:
         """Have a question worked out, some at a time."""
         if guest.questions >= QUESTIONS:
@@ -317,7 +328,7 @@ class Gateway:
         frames = any(guest.frames for guest in self.guests.values())
         viewers = len(self.guests) - (holder is not None)
         name = holder.name if holder is not None else ""
-        self.owner.presence(Presence(name, self.controller, viewers, frames))
+        self.owner.presence(Presence(name, self.controller, viewers, frames, self._signs))
 
 
 def _id_of(text: str | bytes) -> int:

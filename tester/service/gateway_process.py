@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import os
 import signal
 import socket
 import sys
@@ -20,6 +21,9 @@ from tester.service.listening import CLOSE_S, listening
 from tester.service.manners import sparse_logger
 from tester.service.pair import link_of
 from tester.service.queries import Queries
+
+NICE = 5
+"""The process that ticks comes first, and STOP's door: the gateway may be kept busy by whoever talks to it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,4 +81,6 @@ if __name__ == "__main__":
     if hasattr(signal, "SIGHUP"):
         signal.signal(signal.SIGHUP, signal.SIG_IGN)
     sparse_logger("asyncio")
+    if hasattr(os, "nice"):
+        os.nice(NICE)
     asyncio.run(serve_link(link_of(sys.argv[1])))

@@ -49,6 +49,8 @@ class Hub:
     service: str = field(default_factory=lambda: secrets.token_hex(8))
     began_s: float = field(default_factory=clock.monotonic)
     presence: Presence = field(default_factory=lambda: Presence("", 0, 0, False))
+    sign_s: float = float("-inf")
+    """When whoever controls gave the newest sign of life (tester.clock.monotonic)."""
     sequence: int = 0
     restarts: int = 0
     lane: StopLane = field(default_factory=StopLane)
@@ -133,6 +135,8 @@ class Hub:
             return []
         for one in heard:
             if isinstance(one, Presence):
+                if one.signs != self.presence.signs:
+                    self.sign_s = clock.monotonic()
                 self.presence = one
         return heard
 

@@ -55,6 +55,8 @@ class Presence:
     controller_id: int
     viewers: int
     frames: bool
+    signs: int = 0
+    """Signs of life of whoever controls, counted."""
     type: Literal["presence"] = "presence"
 
 

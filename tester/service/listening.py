@@ -42,7 +42,10 @@ class Door:
                 return connection.respond(HTTPStatus.UNAUTHORIZED, "a token is needed\n")
             return None
         found = cast("socket.socket | None", connection.transport.get_extra_info("socket"))
-        uid = peer_of(found)[1] if found is not None else None
+        try:
+            uid = peer_of(found)[1] if found is not None else None
+        except OSError:  # gone already
+            return connection.respond(HTTPStatus.FORBIDDEN, "\n")
         if uid is not None and uid != self.uid:
             return connection.respond(HTTPStatus.FORBIDDEN, "this service belongs to another user\n")
         return None

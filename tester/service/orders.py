@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from tester.control.state import Mode
+from tester.engine.prompts import DONE
 from tester.service.commands import (
     Acknowledge,
     Answer,
@@ -107,8 +108,8 @@ class Orders:
         if waiting is None or waiting.number != action.number:
             return f"prompt {action.number} does not wait for an answer"
         self.desk.tell("prompt", f"{order.name} answers: {action.answer}")
-        if action.answer.strip().lower() not in ("n", "no"):
-            waiting.answer = action.answer.strip() or "yes"
+        if action.answer == DONE:
+            waiting.answer = DONE
         return ""
 
     def _by_hand(self, action: Jog | Tare) -> str:

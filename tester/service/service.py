@@ -40,6 +40,7 @@ from tester.service.progress import PlanTrack
 from tester.service.running import RunScreen, ServiceSession
 from tester.service.state import RunView
 from tester.session import SessionOptions
+from tester.signals import HANG_UP, QUIT, SUSPENDING
 from tester.source import InvalidSource
 from tester.store.catalogue import find_run
 from tester.store.reader import DATABASE, RunReader
@@ -50,6 +51,8 @@ RECIPES = ".recipes"
 """Folder beside the runs for recipes that came as text, named by their content."""
 NEWEST_RUNS = 200
 """So many runs are looked at for one that was cut off, the newest first."""
+SILENT_S = 1.0
+"""Manual mode ends when the screen that moves the rig has given no sign of life for so long, s."""
 MANUAL_LAPSE = 1.0
 """A person moves a simulated rig in real time."""
 REFUSED = (CannotStartError, InvalidSource, UnknownRecipe, StoreError, OSError, sqlite3.Error)
@@ -217,8 +220,13 @@ class Service:
     def _by_hand(self, run: Run, hand: ManualExecutor, world: World | None, ports: Ports, record: RunWriter) -> float:
         """Tick manual mode to its end; return the seconds it took."""
 
+        began_s = clock.monotonic()
+
         def poll(now_s: float) -> None:
             hand.expire(now_s)
+            if clock.monotonic() - max(self.desk.hub.sign_s, began_s) > SILENT_S and not hand.finished:
+                self.desk.tell("mode", f"manual mode ends: no sign of its screen for {SILENT_S:g} s", "warning")
+                hand.disarm()
             if self.orders.ending:
                 run.request_stop("the service ends", cool=False)
             if record.failed:
@@ -231,7 +239,7 @@ class Service:
 
 
 class Signals:
-    """TERM and INT end the service, HUP is ignored, while the block lasts."""
+    """TERM, INT and QUIT end the service, HUP and what would suspend it are ignored, while the block lasts."""
 
     def __init__(self, end: Callable[[], None]) -> None:
         """``end``: what to call."""
@@ -240,10 +248,12 @@ class Signals:
 
     def __enter__(self) -> None:
         """Take over."""
-        for number in (signal.SIGINT, signal.SIGTERM):
-            self._before[number] = signal.signal(number, self._on_signal)
-        if hasattr(signal, "SIGHUP"):
-            self._before[signal.SIGHUP] = signal.signal(signal.SIGHUP, signal.SIG_IGN)
+        for number in (int(signal.SIGINT), int(signal.SIGTERM), QUIT):
+            if number:
+                self._before[number] = signal.signal(number, self._on_signal)
+        for number in (HANG_UP, *SUSPENDING):
+            if number:
+                self._before[number] = signal.signal(number, signal.SIG_IGN)
 
     def __exit__(self, *_: object) -> None:
         """Give back."""

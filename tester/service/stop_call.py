@@ -29,7 +29,7 @@ class StopCall:
     def __init__(self, address: Address | None, name: str) -> None:
         """Nothing is connected. ``address``: of the service, None = the user's own; ``name``: who stops, on record."""
         self._address = address
-        self._name = "".join(c for c in name if c.isprintable())
+        self.name = name
         self._connection: socket.socket | None = None
 
     def __enter__(self) -> StopCall:
@@ -88,7 +88,8 @@ class StopCall:
             self._connection = None
 
     def _say(self, connection: socket.socket, fast: bool) -> None:
-        connection.sendall(f"{'fast' if fast else 'stop'} {self._name}\n".encode())
+        name = "".join(c for c in self.name if c.isprintable())
+        connection.sendall(f"{'fast' if fast else 'stop'} {name}\n".encode())
         end_s = clock.monotonic() + WITHIN_S
         said = b""
         while not said.endswith(TAKEN):

@@ -25,16 +25,20 @@ from pathlib import Path
 
 from pydantic import TypeAdapter
 
+from tester import clock
 from tester.service.address import peer_of, unlink_socket
 from tester.service.pair import link_of
 
 MOST_CALLERS = 256
 """Connections kept; one more, and the process that has the most of them loses its oldest."""
-ACCEPTED_AT_ONCE = 8
+ACCEPTED_AT_ONCE = 16
 """New connections between two looks at those that are there."""
+PAUSE_S = 0.03
+"""... after which nobody new is let in for so long: who comes and goes without end gets no more of a core than that."""
 LONGEST = 512
 """A line is shorter, bytes."""
-NAME_LENGTH = 200
+NAME_LENGTH, NAMES_LENGTH = 100, 400
+"""Of one caller's name, and of all that one line gives, characters."""
 TAKEN = b"taken\n"
 BACKLOG = 128
 
@@ -63,11 +67,17 @@ class Caller:
 
 @dataclass(slots=True)
 class Wish:
-    """What all who wait want: the name of the first, fast if any of them wants it."""
+    """What all who wait want: their names as far as they fit, fast if any of them wants it."""
 
     name: str
     fast: bool
     callers: list[Caller] = field(default_factory=list[Caller])
+
+    def join(self, name: str, fast: bool) -> None:
+        """Take in another one's."""
+        self.fast = self.fast or fast
+        if len(self.name) + len(name) < NAMES_LENGTH and name not in self.name.split(", "):
+            self.name += f", {name}"
 
 
 class StopDoor:
@@ -85,6 +95,8 @@ class StopDoor:
             one.setblocking(False)
             self._selector.register(one, selectors.EVENT_READ)
         self._number = os.getpid() << 16  # another life of the door has other numbers
+        self._admits_s: float | None = None
+        """When somebody new is let in again (tester.clock.monotonic); None: now."""
         self._asked: Wish | None = None
         self._next: Wish | None = None
         self._answers = b""
@@ -96,6 +108,13 @@ class StopDoor:
 
     def turn(self, within_s: float | None) -> None:
         """Wait for something and do it: the owner first, then those that are there, then who comes."""
+        if self._admits_s is not None:
+            left_s = self._admits_s - clock.monotonic()
+            if left_s <= 0.0:
+                self._admits_s = None
+                self._selector.register(self._listener, selectors.EVENT_READ)
+            else:
+                within_s = left_s if within_s is None else min(within_s, left_s)
         ready = {id(key.fileobj): key.data for key, _ in self._selector.select(within_s)}
         if id(self.owner) in ready:
             self._hear_owner()
@@ -123,6 +142,8 @@ class StopDoor:
             self._selector.register(connection, selectors.EVENT_READ, caller)
             if len(self.callers) > MOST_CALLERS:
                 self._make_room()
+        self._selector.unregister(self._listener)
+        self._admits_s = clock.monotonic() + PAUSE_S
 
     def _make_room(self) -> None:
         """Let go of the oldest connection of the process that has the most."""
@@ -168,8 +189,8 @@ class StopDoor:
     def _want(self, caller: Caller, fast: bool, name: str) -> None:
         if self._next is None:
             self._next = Wish(name, fast)
-        elif fast and not self._next.fast:
-            self._next.fast, self._next.name = True, name
+        else:
+            self._next.join(name, fast)
         if caller not in self._next.callers:
             self._next.callers.append(caller)
         self._ask()

@@ -1,13 +1,14 @@
 """The owner's end of STOP's own lane: what the door's process says is heard by a thread that does nothing else.
 
-While something ticks, the thread only keeps the wish and rings: the next poll, 20 ms away at most, carries it out
-before anything else a client has said, and answers. While nothing ticks - a recipe is being planned, tables are
-written - the thread answers itself: what is being prepared does not begin any more, which whoever prepares it asks
-(``wanted``).
+While something ticks, the next poll, 20 ms away at most, carries out what is there before anything else a client has
+said, and answers; it looks itself, so that it need not wait for the thread's turn. While nothing ticks - a recipe is
+being planned, tables are written - the thread answers: what is being prepared does not begin any more, which whoever
+prepares it asks (``wanted``).
 """
 
 from __future__ import annotations
 
+import select
 import socket
 import subprocess
 from contextlib import suppress
@@ -53,6 +54,7 @@ class StopLane:
         self._wishes: list[StopWish] = []
         self._settings: DoorSettings | None = None
         self._link: socket.socket | None = None
+        self._said = b""
         self._process: subprocess.Popen[bytes] | None = None
         self._again_s = float("-inf")
 
@@ -112,39 +114,50 @@ class StopLane:
         return link
 
     def _listen(self, link: socket.socket) -> None:
+        link.setblocking(False)
         self._link = link
         Thread(target=self._hear, args=(link,), name="stop lane", daemon=True).start()
 
     # -- what is heard ----------------------------------------------------------------------------------------
 
     def _hear(self, link: socket.socket) -> None:
-        """Hear the door until it is gone."""
-        said = b""
-        while True:
-            try:
-                data = link.recv(4096)
-            except OSError:
-                data = b""
-            if not data:
-                break
-            *lines, said = (said + data).split(b"\n")
-            for line in lines:
-                self._take(line.decode("utf-8", "replace"))
+        """Hear the door until it is gone; whoever ticks may have been quicker."""
+        while self._link is link:
+            select.select([link], [], [])
+            with self._lock:
+                self._read()
         link.close()
-        self._link = None
+
+    def _read(self) -> None:
+        """Take in what the door has said (locked)."""
+        link = self._link
+        if link is None:
+            return
+        try:
+            data = link.recv(4096)
+        except BlockingIOError:
+            return
+        except OSError:
+            data = b""
+        if not data:
+            self._link, self._said = None, b""
+            return
+        *lines, self._said = (self._said + data).split(b"\n")
+        for line in lines:
+            self._take(line.decode("utf-8", "replace"))
 
     def _take(self, line: str) -> None:
+        """Keep a wish; answer it where nothing ticks (locked)."""
         mark, _, rest = line.partition(" ")
         if mark != "s":
             return  # the port of a door that was opened again
         number, kind, name = rest.split(" ", 2)
-        with self._lock:
-            wish = StopWish(name, kind == "fast", int(number))
-            if not self.ticking:
-                self._answer(wish)
-                wish = StopWish(name, wish.fast, 0)
-            if not self._wishes or wish.fast > self._wishes[-1].fast or wish.number:
-                self._wishes.append(wish)
+        wish = StopWish(name, kind == "fast", int(number))
+        if not self.ticking:
+            self._answer(wish)
+            wish = StopWish(name, wish.fast, 0)
+        if not self._wishes or wish.fast > self._wishes[-1].fast or wish.number:
+            self._wishes.append(wish)
         with suppress(OSError):  # full: it has been rung already
             self._rope.send(b"!")
 
@@ -155,12 +168,12 @@ class StopLane:
 
     def taken(self) -> list[StopWish]:
         """Return the wishes that are to be carried out now, oldest first; ``answer`` each afterwards."""
-        if not self._wishes:
-            return []
-        with suppress(OSError):
-            self.bell.recv(4096)
         with self._lock:
+            self._read()
             wishes, self._wishes = self._wishes, []
+        if wishes:
+            with suppress(OSError):
+                self.bell.recv(4096)
         return wishes
 
     def answer(self, wish: StopWish) -> None:

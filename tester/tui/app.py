@@ -37,7 +37,8 @@ HUGE = (180, 46)
 EVERYWHERE = """\
 
 On every screen
-F12, Ctrl+X  STOP: software stop, at once, no question. Not an emergency stop: that is hardware.
+F12, Ctrl+X  STOP: controlled software stop, at once, no question. Not an emergency stop: that is hardware.
+F9, Ctrl+F   FAST STOP: quick stop of both drives, the same way; latched until acknowledged.
 F2 … F6      the screens.   Ctrl+P  all commands.   F1  this help.   Esc  closes a dialog.
 space  HOLD    r  resume    x  abort…    a  acknowledge
 q, Ctrl+C    detach: the run goes on; `tester tui` comes back.
@@ -229,6 +230,7 @@ class TesterApp(HostApp):
     def get_system_commands(self, screen: Screen[object]) -> Iterable[SystemCommand]:
         """Return what the palette (Ctrl+P) offers."""
         yield SystemCommand("STOP", "Software stop, at once (F12, Ctrl+X)", self.action_stop)
+        yield SystemCommand("FAST STOP", "Quick stop of both drives, at once (F9, Ctrl+F)", self.action_fast_stop)
         yield SystemCommand("HOLD", "Lift and wait, keep the temperature (space)", self.action_hold)
         yield SystemCommand("Resume", "End HOLD, or go on with a run that was cut off (r)", self.action_resume)
         yield SystemCommand("Abort…", "Controlled stop of the run (x)", self.action_abort)

@@ -17,6 +17,7 @@ import pytest
 from pydantic import JsonValue
 
 from recipes import UnknownRecipe
+from tester import clock
 from tester.campaign.endings import CannotStartError
 from tester.service.address import UnixAddress
 from tester.service.commands import RigAction
@@ -47,6 +48,8 @@ class Stage(Hub):
         self.refused: dict[str, str] = {}
         self.notes: list[tuple[str, str]] = []
         self.polls = 0
+        self.silent = False
+        """The screen that controls gives no sign of life."""
         self.service: Service | None = None
         self._script = script(self)
         self._orders = 0
@@ -96,6 +99,8 @@ class Stage(Hub):
     def hear(self) -> list[Order | Presence]:
         assert self.service is not None
         self.polls += 1
+        if not self.silent:
+            self.sign_s = clock.monotonic()
         assert self.polls < MOST_POLLS, "the script does not come to its end"
         try:
             heard = next(self._script)

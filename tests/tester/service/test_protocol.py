@@ -66,7 +66,7 @@ def test_a_message_of_the_service_comes_back_as_it_was(message: ServerMessage) -
 
 @pytest.mark.parametrize(
     "action",
-    [RunRecipe("quickstart", speed=None), Hold(), Stop(fast=True), Jog("press", -1), Answer(2, HOSTILE),
+    [RunRecipe("quickstart", speed=None), Hold(), Stop(fast=True), Jog("press", -1), Answer(2, "no"),
      Acknowledge(3), Control(force=True)],
     ids=lambda action: action.command,
 )  # fmt: skip
