@@ -109,6 +109,11 @@ class HeatFlow:
             self._due_s = CALM_STEP_S - SAME_STEP_S
             self._sensor.retime(CALM_STEP_S)
 
+    @property
+    def rubber_excess_k(self) -> float:
+        """The rubber's mean temperature over ambient, K."""
+        return self._model.mean_c(self.state) - self._ambient_c
+
     def _disturb(self) -> None:
         """End the calm: what has not flowed yet flows now, as it was until now."""
         pending_s = self._pending_s

@@ -109,10 +109,12 @@ class ContactParameters:
     exponent: Annotated[float, "1"] = 1.30  # stiffness then goes with F^(1 - 1/n) = F^0.23
     damping: Annotated[float, "N s/m"] = 400.0
     runout: Annotated[float, "mm"] = 0.05  # total indicator reading: the tread's swing, peak to peak
+    growth: Annotated[float, "mm/K"] = 0.0058  # of the diameter with the rubber's mean temperature, off ambient:
+    # 8 mm of rubber bonded to metal, linear expansion 1.8e-4/K, between free and held in two directions
 
     def __post_init__(self) -> None:
         """Raise ValueError for values out of range."""
-        _refuse_below_zero(self, frozenset({"damping", "runout", "gap"}))
+        _refuse_below_zero(self, frozenset({"damping", "runout", "gap", "growth"}))
         if self.exponent < 1.0:
             raise ValueError("ContactParameters.exponent must be at least 1")
 

@@ -22,6 +22,8 @@ from sim.slip import cornering_factor, traction_direction
 from sim.thermal import ThermalModel, ThermalState
 
 _TURN: Final = 2.0 * pi
+_NEAR_MM: Final = 1.0
+"""Nearer than this to the cold tread, growth is looked at: more than 100 K of heat and the runout make."""
 _RUNNING_IN_LASTS: Final = 37.0
 """Running-in distances after which its factor is 1 to the last bit: exp(-37) is less than 2^-53."""
 
@@ -41,6 +43,7 @@ class Plant:
         "_grip",
         "_noise",
         "_place",
+        "_radius_mm_k",
         "_rotating_above",
         "_rubbing",
         "_run_in_m",
@@ -82,6 +85,7 @@ class Plant:
         contact = ContactModel(p.contact)
         self._stiffness = (contact.factor, contact.exponent, contact.damping_n_s_mm)
         self._swing_mm = 0.5 * p.contact.runout
+        self._radius_mm_k = 0.5 * p.contact.growth
         self._arm_m = 0.001 * p.friction.aligning_arm
         self._rotating_above = p.thermal.rotating_above
         self._within = Autoregressive(p.scatter * p.variability.within, p.variability.within_time)
@@ -233,6 +237,8 @@ class Plant:
 
         power_w = load_n = 0.0
         depth_mm, swing = press_mm - self._touch_mm, self._swing_mm
+        if self._radius_mm_k and depth_mm > -_NEAR_MM:
+            depth_mm += self._radius_mm_k * self._flow.rubber_excess_k
         if depth_mm > -swing:
             angle = _TURN * turns
             depth_mm += swing * sin(angle)

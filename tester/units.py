@@ -67,6 +67,7 @@ _KINDS: tuple[_Kind, ...] = (
     _Kind("a stiffness", "125 N/mm", {"N/mm": _ONE, "N/m": _MILLI}),
     _Kind("a damping", "400 N s/m", {"N s/m": _ONE}),
     _Kind("a wear rate", "0.08 mm3/(N m)", {"mm3/(N m)": _ONE}),
+    _Kind("a growth with temperature", "0.006 mm/K", {"mm/K": _ONE, "um/K": _MILLI}),
     _Kind("a rate of temperature", "0.05 K/s", {"K/s": _ONE, "K/min": Fraction(1, 60)}),
     _Kind("a drift with temperature", "0.1 N/K", {"N/K": _ONE}),
     _Kind("a bit rate", "500 kbit/s", {"bit/s": _ONE, "kbit/s": _K, "Mbit/s": Fraction(10**6)}),
@@ -106,6 +107,8 @@ _TYPOGRAPHY = str.maketrans(
 )
 _NUMBER = r"[+\-−]?([0-9]+(\.[0-9]*)?|\.[0-9]+)([eE][+\-]?[0-9]{1,2})?"
 _QUANTITY = re.compile(rf"\s*(?P<number>{_NUMBER})\s*(?P<unit>.*?)\s*", re.DOTALL)
+_HUGE = re.compile(r"\s*[+\-−]?[0-9.]+[eE][+\-]?[0-9]{3}")
+"""A number with more digits in its exponent than any quantity has."""
 _DECIMAL_COMMA = re.compile(r"\s*[+\-−]?[0-9]+,[0-9]")
 _LONGEST = 80
 """Longest text that is looked at, in characters: any real quantity is a quarter of this."""
@@ -159,6 +162,9 @@ def _parsed(text: str, units: tuple[str, ...]) -> tuple[float, str]:
     hint = expected(*units)
     if _DECIMAL_COMMA.match(text):
         raise UnitError(f"{shown(text)} has a decimal comma, write a point (expected {hint})")
+    if huge := _HUGE.match(text):
+        how = "small" if "-" in huge[0].lstrip().lstrip("-") else "large"
+        raise UnitError(f"{shown(text)} is too {how} (expected {hint})")
     match = _QUANTITY.fullmatch(text)
     if match is None:
         raise UnitError(f"{shown(text)} is not a number with a unit (expected {hint})")

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from tests import wear
 from tests.acceptance import truth
 from tests.acceptance.__main__ import main
 from tests.acceptance.bench import Bench
@@ -91,3 +92,8 @@ def test_what_cannot_be_measured_misses_after_what_could(tmp_path: Path) -> None
 
     first, second = Topic("broken", "", broken).measured(Bench(tmp_path))
     assert first.ok and not second.ok and "no such thing" in second.value
+
+
+@pytest.mark.campaign
+def test_wear_sample() -> None:
+    assert wear.main(["--sample"]) == 0

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from tester.axes import ListWords
 from tester.cli.finding import run_folder
 from tester.cli.showing import Json, dump, shown
 
@@ -24,6 +25,7 @@ def compare(run1: str, run2: str, as_json: bool) -> None:
     """Hold the conditions of RUN1 and RUN2 against each other: coefficients, difference, uncertainty, z.
 
     z is the difference over its standard uncertainty (both runs' combined); beyond 2 it is not chance alone.
+    Behind a coefficient ! says that it is not to be trusted, ? that it carries a doubt (`tester show` says which).
     """
     from tester.catalogue.entries import fingerprint, read_entries
 
@@ -35,23 +37,40 @@ def compare(run1: str, run2: str, as_json: bool) -> None:
             raise click.ClickException(entry.problem)
         sides.append({_setpoints(one): one for one in conditions})
     first, second = sides
-    rows = [_row(first.get(key), second.get(key)) for key in dict.fromkeys([*first, *second])]
+    keys = list(dict.fromkeys([*first, *second]))
+    rows = [_row(first.get(key), second.get(key)) for key in keys]
     if as_json:
         dump([*rows])
         return
-    click.echo("compound  mm/s  N  deg  degC    mu 1    mu 2    diff    u       z")
-    for row in rows:
-        setpoints = f"{shown(str(row['compound']))}  {row['slip_velocity_mm_s']:g}  {row['load_n']:g}"
-        setpoints += f"  {row['sideslip_deg']:g}  {row['temperature_c']:g}"
-        figures = (_cell(row[name], digits) for name, digits in _FIGURES)
-        click.echo(f"{setpoints}  {'  '.join(figures)}")
+    either = [first.get(key) or second[key] for key in keys]
+    words = ListWords(either)
+    if words.common:
+        click.echo(f"all at {shown(words.common)}")
+    told = [_words(one, words) for one in either]
+    width = max(map(len, [*told, "condition"]))
+    click.echo(f"{'condition':<{width}}  mu 1    mu 2    diff    u       z")
+    for text, row in zip(told, rows, strict=True):
+        figures = (f"{_cell(row[name], digits)}{row.get(f'mark_{name[-1]}') or ''}" for name, digits in _FIGURES)
+        click.echo(f"{text:<{width}}  {'  '.join(figures)}")
 
 
 _FIGURES = (("mu_1", 4), ("mu_2", 4), ("difference", 4), ("u_difference", 4), ("z", 2))
 
 
+def _words(one: ConditionEntry, words: ListWords) -> str:
+    """Return what tells a condition from the others; replicates of one are told apart."""
+    replicate = f" (replicate {one.replicate})" if one.replicate > 1 else ""
+    return f"{shown(words.of(one))}{replicate}"
+
+
 def _cell(value: Json, digits: int) -> str:
     return f"{value:+.{digits}f}" if isinstance(value, float) else "-"
+
+
+def _mark(side: ConditionEntry | None) -> str:
+    from tester.analysis.trust import mark_of
+
+    return mark_of(side.status, side.flags) if side is not None and side.mu is not None else ""
 
 
 def _setpoints(one: ConditionEntry) -> Setpoints:
@@ -85,6 +104,8 @@ def _row(first: ConditionEntry | None, second: ConditionEntry | None) -> dict[st
         "wheel_speed_m_s": one.wheel_speed_m_s,
         "mu_1": mu_1,
         "mu_2": mu_2,
+        "mark_1": _mark(first),
+        "mark_2": _mark(second),
         "difference": difference,
         "u_difference": u,
         "z": difference / u if difference is not None and u else None,

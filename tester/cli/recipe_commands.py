@@ -12,9 +12,11 @@ from typing import TYPE_CHECKING
 import click
 
 import recipes
-from tester.cli.options import json_option, print_json, rig_option, set_option
+from tester.cli.options import QuantityType, json_option, print_json, rig_option, set_option
 
 if TYPE_CHECKING:
+    from tester.analysis.repeatability import Pool
+    from tester.recipe.schema import Recipe
     from tester.source import Problem
 
 EXIT_INVALID = 3
@@ -68,26 +70,76 @@ def check(recipe: str, rig_name: str, overrides: tuple[str, ...], as_json: bool)
 @rig_option
 @set_option
 @json_option
-def plan(recipe: str, rig_name: str, overrides: tuple[str, ...], as_json: bool) -> None:
+@click.option(
+    "--precision",
+    type=QuantityType("%"),
+    metavar="PERCENT",
+    help="What this expanded repeatability (type A, 95 %) takes, e.g. 2%, by what is stored of the compounds.",
+)
+@click.option(
+    "--total",
+    type=QuantityType("%"),
+    metavar="PERCENT",
+    help="What this total uncertainty (95 %) takes, e.g. 4%; refused where the instruments alone have more.",
+)
+@click.option(
+    "--out", type=click.Path(file_okay=False, path_type=Path), default=None, help="Folder of the stored runs (runs)."
+)
+def plan(
+    recipe: str,
+    rig_name: str,
+    overrides: tuple[str, ...],
+    as_json: bool,
+    precision: float | None,
+    total: float | None,
+    out: Path | None,
+) -> None:
     """List the steps of RECIPE (a file, or the name of a packaged recipe) with durations and totals."""
     from tester.recipe.check import load_checked
     from tester.recipe.describe import lines
     from tester.recipe.estimate import Estimator, estimate
     from tester.recipe.expand import expand
     from tester.recipe.plan_json import json_chunks
+    from tester.recipe.precision import PrecisionError, precision_lines, s_percents, until_for_total, with_precision
     from tester.rig import load_rig
 
+    if precision is not None and total is not None:
+        raise click.UsageError("--precision and --total exclude each other")
+    for option, percent in (("--precision", precision), ("--total", total)):
+        if percent is not None and not 0.1 <= percent <= 50.0:
+            raise click.BadParameter(f"{percent:g} % is not within 0.1 % to 50 %", param_hint=option)
     path, name = recipe_file(recipe)
     rig = load_rig(rig_name, list(overrides))
-    loaded = load_checked(path, rig, name)
-    estimator = Estimator(rig)
+    wanted = load_checked(path, rig, name).recipe
+    if total is not None:
+        try:
+            precision = until_for_total(total, expand(wanted, rig), Estimator(rig))
+        except PrecisionError as error:
+            raise click.UsageError(str(error)) from error
+    if precision is not None:
+        wanted = with_precision(wanted, precision)
+    pools: dict[str, Pool] = {}
+    if _asks_precision(wanted):
+        from tester.cli.history import repeatability
+        from tester.store.catalogue import RUNS
+
+        compounds = dict.fromkeys(one.compound for one in wanted.specimens)
+        pools = repeatability(out or RUNS, compounds, simulated=rig.simulated)
+    estimator = Estimator(rig, repeatability=s_percents(pools))
     with _nothing_collected():
-        steps = expand(loaded.recipe, rig, estimator)
+        steps = expand(wanted, rig, estimator)
         figures = estimate(steps, rig, estimator)
         if as_json:
             sys.stdout.writelines(json_chunks(steps, figures))
-        else:
-            sys.stdout.writelines(f"{line}\n" for line in lines(steps, figures))
+            return
+        sys.stdout.writelines(f"{line}\n" for line in lines(steps, figures))
+        sys.stdout.writelines(f"{line}\n" for line in precision_lines(steps, figures, estimator, pools))
+
+
+def _asks_precision(recipe: Recipe) -> bool:
+    """Tell whether a recipe repeats until a repeatability is reached."""
+    asked = [grid.until for grid in recipe.grids]
+    return any(asked) or (recipe.measure is not None and recipe.measure.until is not None)
 
 
 @contextmanager

@@ -14,11 +14,12 @@ from tester.cli.finding import run_folder
 from tester.cli.showing import Json, dump, duration, number, shown
 
 if TYPE_CHECKING:
+    from tester.analysis.wear import WearRate
     from tester.export.results import Measured, RunResults, TableRow
     from tester.store.reader import RunReader
-    from tester.store.records import Change, SessionInfo, StoredExclusion
+    from tester.store.records import Change, SessionInfo, StoredExclusion, WheelInfo
 
-FORMATS = ("appendix", "conditions", "repeats", "samples", "parquet")
+FORMATS = ("appendix", "conditions", "repeats", "wheel", "wear", "samples", "parquet")
 
 
 # tester show
@@ -28,7 +29,7 @@ FORMATS = ("appendix", "conditions", "repeats", "samples", "parquet")
 @click.argument("run")
 @click.option("--json", "as_json", is_flag=True, help="As JSON.")
 def show(run: str, as_json: bool) -> None:
-    """Show what RUN holds: a run's folder, or its name under runs."""
+    """Show what RUN holds: a run's folder, its name under runs, or latest."""
     from tester.export.results import results_of
     from tester.store.reader import RunReader
     from tester.store.schema import StoreError
@@ -98,7 +99,7 @@ def _summary(name: str, results: RunResults) -> dict[str, Json]:
     run = results.run
     return {
         "run": name,
-        "status": run.status,
+        "status": results.status.value,
         "reason": run.reason,
         "recipe": run.info.recipe_name,
         "recipe_sha256": run.recipe_sha256,
@@ -116,12 +117,29 @@ def _summary(name: str, results: RunResults) -> dict[str, Json]:
         "metadata": dict(run.info.metadata),
         "rows": len(results.rows) - len(results.missing()),
         "missing": [row.describe() for row in results.missing()],
-        "conditions": [_condition(measured) for measured in results.conditions()],
+        "conditions": [_condition(measured, results) for measured in results.conditions()],
+        "wheels": [_wheel(wheel, results) for wheel in results.wheels],
     }
 
 
-def _condition(measured: Measured) -> Json:
+def _rate(found: WearRate) -> dict[str, Json]:
+    return {"wear_mm3_n_m": number(found.rate), "wear_u_expanded": number(found.expanded), "checks": found.checks}
+
+
+def _wheel(wheel: WheelInfo, results: RunResults) -> Json:
+    return {
+        "wheel": wheel.wheel,
+        "compound": wheel.compound,
+        "installed_diameter_mm": number(wheel.installed_diameter_mm),
+        "diameter_mm": number(wheel.diameter_mm),
+        "sliding_m": number(wheel.sliding_m),
+        **_rate(results.wear_of(wheel.wheel)),
+    }
+
+
+def _condition(measured: Measured, results: RunResults) -> Json:
     i, r = measured.info, measured.result
+    worn = results.condition_wear(i.condition)
     return {
         "condition": i.condition,
         "specimen": i.specimen,
@@ -140,6 +158,9 @@ def _condition(measured: Measured) -> Json:
         "u_expanded": number(r.expanded),
         "n_valid": r.n_valid,
         "n": r.n,
+        "diameter_before_mm": number(worn.before_mm) if worn is not None else None,
+        "diameter_after_mm": number(worn.after_mm) if worn is not None else None,
+        "wear": _rate(worn.rate) if worn is not None else None,
         "measured": {name: number(value) for name, value in r.measured.items()},
         "repeats": [
             {
@@ -158,7 +179,7 @@ def _condition(measured: Measured) -> Json:
 def _lines(name: str, results: RunResults) -> Iterator[str]:
     run = results.run
     yield f"{name}: {shown(run.info.recipe_name)}"
-    yield f"status   {run.status}{': ' + shown(run.reason) if run.reason else ''}"
+    yield f"status   {results.status}{': ' + shown(run.reason) if run.reason else ''}"
     ended = f", ended {run.ended_utc}" if run.ended_utc else ""
     yield f"rig time {duration(run.rig_seconds)}, started {run.info.started_utc}{ended}"
     if run.overruns:
@@ -166,15 +187,31 @@ def _lines(name: str, results: RunResults) -> Iterator[str]:
     yield f"values   {len(results.rows) - len(results.missing())} of {len(results.rows)} conditions"
     for row in results.rows:
         yield shown(_row(row))
+        yield from _worn(row, results)
+    for line in results.wear_lines():
+        yield shown(line)
+
+
+def _worn(row: TableRow, results: RunResults) -> Iterator[str]:
+    """Yield what each replicate of a condition took off its wheel, where the wheel was checked."""
+    for measured in row.replicates:
+        found = results.condition_wear(measured.info.condition)
+        if found is not None and isfinite(found.rate.rate):
+            rate = f"{found.rate.rate:.3g} ± {found.rate.expanded:.2g} mm3/(N m)"
+            below = "" if found.rate.resolved else ", below what the checks resolve"
+            yield f"    {found.before_mm:.3f} mm to {found.after_mm:.3f} mm, wear {rate}{below}"
 
 
 def _row(row: TableRow) -> str:
+    from tester.analysis.trust import mark_of
+
     r = row.result
     if not r.ok:
         return f"  {row.describe()}"
     setpoints = row.describe().removesuffix(f": {r.reason}").removesuffix(f": {r.status.value}")
     spread = f" ± {r.expanded:.3f}" if isfinite(r.expanded) else ""
-    return f"  {setpoints}: {r.mu_resultant:.3f}{spread} (n {r.n_valid} of {r.n}) {r.flags}".rstrip()
+    mu = f"{r.mu_resultant:.3f}{mark_of(r.status, r.flags)}"
+    return f"  {setpoints}: {mu}{spread} (n {r.n_valid} of {r.n}) {r.flags}".rstrip()
 
 
 # tester export
@@ -188,10 +225,11 @@ def _row(row: TableRow) -> str:
     "--decimals", type=click.IntRange(0, 10), default=2, show_default=True, help="Of the appendix's coefficient."
 )
 def export(run: str, kind: str, out: Path | None, decimals: int) -> None:
-    """Write a table of RUN: a run's folder, or its name under runs.
+    """Write a table of RUN: a run's folder, its name under runs, or latest.
 
     Conditions without a value that can be trusted are not in the appendix and are named on stderr.
     """
+    from tester.extras import MissingExtraError
     from tester.store.reader import RunReader
     from tester.store.schema import StoreError
 
@@ -201,6 +239,8 @@ def export(run: str, kind: str, out: Path | None, decimals: int) -> None:
     try:
         with RunReader(folder) as reader:
             _export(reader, kind, out, decimals)
+    except MissingExtraError as error:
+        raise click.UsageError(str(error)) from error
     except (StoreError, OSError) as error:
         if isinstance(error, BrokenPipeError):
             raise
@@ -221,6 +261,10 @@ def _export(reader: RunReader, kind: str, out: Path | None, decimals: int) -> No
         _deliver(tables.conditions(results), out)
     elif kind == "repeats":
         _deliver(tables.repeats(results), out)
+    elif kind == "wheel":
+        _deliver(tables.wheels(results), out)
+    elif kind == "wear":
+        _deliver(tables.wear(results), out)
     else:
         _deliver(tables.appendix(results, decimals), out)
         for row in results.missing():

@@ -68,6 +68,8 @@ def run(
 ) -> int:
     """Run RECIPE (a file, or the name of a shipped recipe) and print the run's folder as the last line.
 
+    What was measured comes before it, with the expanded uncertainty (95 %), on stderr; stdout is the folder alone.
+
     Ctrl+C stops in a controlled way; a second one stops fast. On a terminal: F12 or Ctrl+X stops in a controlled
     way, F9 or Ctrl+F fast, space holds (lifts, keeps the heat), r goes on.
     """
@@ -77,6 +79,10 @@ def run(
             raise click.UsageError(f"not with --detach, the service would not do it: {', '.join(kept)}")
         rig = rig_name if "rig_name" in given else ""
         return _detached(recipe, rig, overrides, seed, time_lapse(speed), yes, operator)
+
+    if not as_json:
+        # What the run needs takes a moment to load: say what has been begun before that.
+        click.echo(f"{recipe} on rig {rig_name}", err=True)
 
     from pathlib import Path
 

@@ -4,21 +4,17 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import isfinite
-from typing import Final, Protocol
+from typing import Protocol
 
 from tester.analysis.results import RepeatStatus
-from tester.engine.activity import Activity
+from tester.analysis.stability import REPEAT_WINDOWS
 from tester.engine.bursts import Ending, MeasureRepeat
 from tester.engine.context import Context
-from tester.engine.moves import Load, Sequence
+from tester.engine.moves import Sequence
 from tester.engine.thermal_steps import SoakTo, roll, soak_within_k
+from tester.engine.wear_check import CheckByRolling
 from tester.recipe.plan import ConditionStep
 from tester.rig import RigConfig
-
-ROLL_CHECK_N: Final = 50.0
-"""Load of the automatic diameter check, N [A]: little penetration, and above the press's friction."""
-ROLL_CHECK_TURNS: Final = 3.0
-"""Whole turns averaged by the check: runout drops out."""
 
 
 class Ticket(Protocol):
@@ -41,7 +37,7 @@ class RepeatOutcome:
 
 @dataclass(frozen=True, slots=True)
 class ConditionEnd:
-    """How a condition was left: None = all repeats were made."""
+    """How a condition was left: None = no further repeat was wanted."""
 
     ending: Ending | None = None
     detail: str = ""
@@ -58,6 +54,10 @@ class Results(Protocol):
 
     def over(self, step: ConditionStep) -> ConditionEnd | None:
         """Return how the last of these ended the condition; None where it goes on."""
+        ...
+
+    def another(self, step: ConditionStep) -> bool:
+        """Tell whether a further repeat is to be made, after those committed so far."""
         ...
 
     def attempt(self, step: ConditionStep, repeat: int) -> int:
@@ -125,7 +125,7 @@ class MeasureCondition:
         """Advance by one scan; done when the condition is committed."""
         progress = ctx.progress
         progress.condition, progress.repeat = self.condition.condition, self.repeat
-        progress.repeats = self.condition.repeats
+        progress.repeats = max(self.condition.repeats, self.repeat)
         if not self.soaked:
             return self._soak(ctx)
         if self.outcome is not None:
@@ -152,8 +152,10 @@ class MeasureCondition:
             within = soak_within_k(step.soak, sp.temperature_c, ctx.ambient_c, step.temperature_band_k)
             self.soak = SoakTo(target, within, step.soak.for_s, step.soak.at_most_s)
             # A condition that goes on after a hold has had its check.
-            check = wear_check(step, sp.wheel_speed_m_s) if self.repeat == self.done_before and not self.voided else ()
-            self.before = Sequence(*check, roll(sp.wheel_speed_m_s, sp.load_n))
+            self.before = Sequence(roll(sp.wheel_speed_m_s, sp.load_n))
+            if step.wear_check == "each_condition" and self.repeat == self.done_before and not self.voided:
+                check = CheckByRolling(sp.wheel_speed_m_s, self.reference_tare, step.condition)
+                self.before = Sequence(check, roll(sp.wheel_speed_m_s, sp.load_n))
         ctx.demand.surface_c = self.soak.target_c
         ctx.demand.freeze_heat = False
         if self.before.parts:
@@ -176,7 +178,7 @@ class MeasureCondition:
         self.key = self.results.begin_repeat(ctx, self.condition, self.repeat, attempt)
         ctx.repeat_key = self.key
         self.measuring = MeasureRepeat(self.condition, self.reference_tare, self.offset_k)
-        ctx.progress.revolutions_wanted = self.condition.window.revolutions or 0.0
+        ctx.progress.revolutions_wanted = REPEAT_WINDOWS * (self.condition.window.revolutions or 0.0)
 
     def _finish(self, ctx: Context, measured: MeasureRepeat) -> None:
         self.offset_k = measured.offset_k
@@ -197,57 +199,11 @@ class MeasureCondition:
         if measured.ending in (Ending.ZERO_DRIFT, Ending.CANNOT_HOLD, Ending.NOT_REACHED):
             end = ConditionEnd(measured.ending, measured.detail, measured.warming_k_s, measured.holdable_band_k)
             return self._close(ctx, end)
-        if self.repeat < self.condition.repeats:
+        if self.results.another(self.condition):
             return False
         return self._close(ctx, ConditionEnd())
 
     def _close(self, ctx: Context, end: ConditionEnd) -> bool:
         text = self.results.finish_condition(ctx, self.condition, end)
         ctx.journal.event(ctx.now, "condition", text)
-        return True
-
-
-def wear_check(step: ConditionStep, wheel_speed_m_s: float) -> tuple[Activity, ...]:
-    """Return what checks the wheel's diameter before a condition by itself; a person is asked by the executor."""
-    if step.wear_check == "each_condition":
-        return (Sequence(roll(wheel_speed_m_s, ROLL_CHECK_N), RollCheck()),)
-    return ()
-
-
-class RollCheck:
-    """Measure the loss of diameter by rolling: at equal load the press stands deeper by the lost radius.
-
-    The wheel's first check is its reference. Heat makes the rubber grow, so the figure is a check of the wear
-    estimate, at the temperature of its moment, not a gauge reading.
-    """
-
-    def __init__(self) -> None:
-        """Nothing is averaged yet."""
-        self.hold = Load(ROLL_CHECK_N, for_s=1.0)
-        self.held = False
-        self.angle_rev = float("nan")
-        self.sum_mm = 0.0
-        self.count = 0
-
-    def step(self, ctx: Context) -> bool:
-        """Done after whole turns; corrects the wheel's estimated loss and journals both."""
-        if not self.held:
-            self.held = self.hold.step(ctx)
-            return False
-        r = ctx.readings
-        ctx.moving = True
-        if not isfinite(self.angle_rev):
-            self.angle_rev = r.wheel_angle_rev
-        self.sum_mm += r.press_mm
-        self.count += 1
-        if r.wheel_angle_rev - self.angle_rev < ROLL_CHECK_TURNS:
-            return False
-        press_mm, wheel = self.sum_mm / self.count, ctx.wheel
-        if not isfinite(wheel.check_press_mm):
-            wheel.check_press_mm, wheel.check_loss_mm = press_mm, wheel.loss_mm
-        measured = wheel.check_loss_mm + 2.0 * (press_mm - wheel.check_press_mm)
-        ctx.journal.event(
-            ctx.now, "wear", f"loss of diameter {measured:.3f} mm by roll check, {wheel.loss_mm:.3f} mm estimated"
-        )
-        wheel.loss_mm = max(measured, 0.0)
         return True

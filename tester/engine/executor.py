@@ -5,11 +5,14 @@ from __future__ import annotations
 from collections import deque
 from typing import Final
 
+from tester.analysis.wear_check import NO_CONDITION
+from tester.axes import condition_words
 from tester.engine.activity import Activity, MoveFailedError, Resumable
 from tester.engine.attended import AskAtRest
 from tester.engine.condition import MeasureCondition, Results
 from tester.engine.context import Context
 from tester.engine.thermal_steps import CoolDown, HeatUp, RestStep
+from tester.engine.wear_check import CheckByPerson, CheckByRolling
 from tester.engine.wheel_steps import InstallWheel, PreGrindStep
 from tester.process import Press
 from tester.recipe.plan import (
@@ -47,6 +50,8 @@ class Executor:
         self.conditions = sum(1 for _ in plan.conditions())
         self.wheels = max((step.wheel for step in plan.steps if isinstance(step, Install)), default=0)
         """Highest wheel number in use: one that the plan did not foresee gets the next."""
+        self.unchecked: ConditionStep | None = None
+        """A condition whose wear nothing has measured yet, though its recipe asks for it."""
         self.checked = 0
         """The last condition before which a person has looked at the wheel."""
         self.measured_wheel = 0
@@ -79,24 +84,31 @@ class Executor:
                 self.failed = f"{ctx.progress.title}: {failed}"
                 self.finished = True
                 return
-            self._end(self.activity)
-            self.activity = None
+            ended, self.activity = self.activity, None
+            self._end(ended, ctx)
             if self.failed:
                 self.finished = True
 
     def _begin(self, step: Step, ctx: Context) -> Activity:
+        if isinstance(step, ConditionStep) and self._wheel_too_worn(step, ctx) and self.unchecked is not None:
+            self.steps.appendleft(step)
+            return self._last_check(self.unchecked, ctx)
         if isinstance(step, ConditionStep) and (before := self._steps_before(step, ctx)):
             self.steps.appendleft(step)
             self.steps.extendleft(reversed(before))
             step = self.steps.popleft()
+        self._announced(title(step), ctx)
+        return self._activity(step, ctx)
+
+    def _announced(self, text: str, ctx: Context) -> None:
+        """Tell what is done next."""
         ctx.progress.step += 1
         ctx.progress.steps = ctx.progress.step + len(self.steps)
         ctx.progress.conditions = self.conditions
         ctx.progress.repeat = ctx.progress.repeats = 0
-        ctx.progress.title = title(step)
+        ctx.progress.title = text
         ctx.journal.event(ctx.now, "step", ctx.progress.title)
         ctx.journal.flush()
-        return self._activity(step, ctx)
 
     def _activity(self, step: Step, ctx: Context) -> Activity:
         match step:
@@ -113,6 +125,9 @@ class Executor:
                 return MeasureCondition(step, self.results, self.reference_tare)
             case Cool():
                 return CoolDown(step, ctx.rig.interlocks.cooldown_speed_m_s)
+            case Prompt() if step.text == WEAR_CHECK:
+                follower = self.steps[0] if self.steps else None
+                return CheckByPerson(follower.condition if isinstance(follower, ConditionStep) else NO_CONDITION)
             case Prompt():
                 return AskAtRest(step.text)
 
@@ -125,12 +140,51 @@ class Executor:
                 return HeatUp(step, sp.wheel_speed_m_s, sp.load_n, follower.soak.within_k, loop.rolling_offset_k)
         return HeatUp(step, DEFAULT_SPEED_M_S, DEFAULT_LOAD_N, 1.0, loop.rolling_offset_k)
 
-    def _end(self, activity: Activity) -> None:
+    def _end(self, activity: Activity, ctx: Context) -> None:
+        if isinstance(activity, CheckByRolling | CheckByPerson):
+            self.unchecked = None
         if isinstance(activity, MeasureCondition | InstallWheel):
             self.failed = activity.failed
-        elif isinstance(activity, AskAtRest) and self.steps and isinstance(follower := self.steps[0], ConditionStep):
-            # A person has been at the wheel, and it has cooled: nothing is measured before it is warm again.
-            self.steps.appendleft(Heat(INSERTED, follower.setpoint.temperature_c))
+        if isinstance(activity, InstallWheel) and not self.failed:
+            self._mounted(activity, ctx)
+        if isinstance(activity, MeasureCondition):
+            self._measured(activity.condition, ctx)
+        elif isinstance(activity, AskAtRest | CheckByPerson) and self.steps:
+            follower = self.steps[0]
+            if isinstance(follower, ConditionStep):
+                # A person has been at the wheel, and it has cooled: nothing is measured before it is warm again.
+                self.steps.appendleft(Heat(INSERTED, follower.setpoint.temperature_c))
+
+    # -- checks of the wheel -----------------------------------------------------------------------------------
+
+    def _mounted(self, activity: InstallWheel, ctx: Context) -> None:
+        """Check a new wheel as it is mounted, before it is ground in: then its diameter is known."""
+        first = next((one for one in self.steps if isinstance(one, ConditionStep | Install)), None)
+        new = activity.install.worn is None
+        if new and isinstance(first, ConditionStep) and first.wear_check == "each_condition":
+            self._announced(WEAR_CHECK, ctx)
+            self.activity = CheckByRolling(first.setpoint.wheel_speed_m_s, self.reference_tare)
+
+    def _measured(self, step: ConditionStep, ctx: Context) -> None:
+        """Note that a condition is over; check the wheel where no check of the next condition will."""
+        ctx.wheel.condition = step.condition
+        self.unchecked = step if step.wear_check != "never" else None
+        follower = next((one for one in self.steps if isinstance(one, ConditionStep | Install)), None)
+        checked_next = isinstance(follower, ConditionStep) and follower.wear_check == step.wear_check
+        if self.unchecked is None or self.failed or checked_next:
+            return
+        if step.wear_check == "prompt":
+            self.steps.appendleft(Prompt(INSERTED, WEAR_CHECK))
+        else:
+            self.activity = self._last_check(step, ctx)
+
+    def _last_check(self, step: ConditionStep, ctx: Context) -> Activity:
+        """Return the check after a wheel's last condition."""
+        self.unchecked = None
+        self._announced(WEAR_CHECK, ctx)
+        if step.wear_check == "prompt":
+            return CheckByPerson()
+        return CheckByRolling(step.setpoint.wheel_speed_m_s, self.reference_tare)
 
     # -- what the plan did not foresee ------------------------------------------------------------------------
 
@@ -166,10 +220,7 @@ def title(step: Step) -> str:
         case Heat():
             return f"heat to {step.temperature_c:g} degC"
         case ConditionStep():
-            sp = step.setpoint
-            text = f"{sp.compound}: {sp.slip_velocity_m_s * 1000:g} mm/s, {sp.load_n:g} N, {sp.temperature_c:g} degC"
-            text += f", sideslip {sp.sideslip_deg:g} deg" if sp.sideslip_deg else ""
-            return text + (f", camber {sp.camber_deg:g} deg" if sp.camber_deg else "")
+            return condition_words(step.setpoint)
         case Cool():
             return f"cool the hub to {step.hub_below_c:g} degC"
         case Prompt():

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from tester.control.permissives import Bounds, rig_bounds
-from tester.engine.condition import ROLL_CHECK_N
 from tester.engine.executor import DEFAULT_LOAD_N, DEFAULT_SPEED_M_S
+from tester.engine.wear_check import ROLL_CHECK_N
 from tester.recipe.plan import ConditionStep, Heat, Plan, PreGrind
 from tester.rig import RigConfig
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from tester.export.cells import encode
 from tester.export.manifest import MANIFEST, manifest_text
 from tester.export.results import RunResults, TableRow, results_of
-from tester.export.tables import appendix_rows, condition_rows, repeat_rows, sample_rows
+from tester.export.tables import appendix_rows, check_rows, condition_rows, repeat_rows, sample_rows, wheel_rows
 from tester.store.files import write_whole
 from tester.store.reader import RunReader
 
@@ -20,6 +20,8 @@ __all__ = [
     "repeats",
     "results_of",
     "samples",
+    "wear",
+    "wheels",
     "write_all",
     "write_file",
     "write_parquet_file",
@@ -41,6 +43,16 @@ def repeats(results: RunResults) -> Iterator[bytes]:
     return encode(repeat_rows(results))
 
 
+def wheels(results: RunResults) -> Iterator[bytes]:
+    """Yield wheel.csv."""
+    return encode(wheel_rows(results))
+
+
+def wear(results: RunResults) -> Iterator[bytes]:
+    """Yield wear.csv: the checks of the wheels' diameters."""
+    return encode(check_rows(results))
+
+
 def samples(reader: RunReader) -> Iterator[bytes]:
     """Yield samples.csv in bounded memory."""
     return encode(sample_rows(reader))
@@ -57,7 +69,7 @@ def write_file(path: Path, chunks: Iterable[bytes]) -> None:
 
 
 def write_parquet_file(path: Path, reader: RunReader) -> None:
-    """Write the samples as a Parquet file, whole or not at all; raises OSError, StoreError."""
+    """Write the samples as a Parquet file, whole or not at all; raises OSError, StoreError, MissingExtraError."""
     from tester.export.parquet import write_parquet
 
     def fill(part: Path) -> None:
@@ -67,15 +79,24 @@ def write_parquet_file(path: Path, reader: RunReader) -> None:
 
 
 def write_all(run_dir: Path) -> list[TableRow]:
-    """Write appendix.csv, conditions.csv, repeats.csv and manifest.json into a run's folder.
+    """Write appendix.csv, conditions.csv, repeats.csv, wheel.csv and manifest.json into a run's folder.
 
-    The run's writer has to be closed. Returns the rows that are not in the appendix because they have no
-    value to be trusted (``describe`` says why). Raises StoreError, OSError.
+    And wear.csv where a wheel's diameter was checked. The run's writer has to be closed. Returns the rows that are not
+    in the appendix because they have no value to be trusted (``describe`` says why). Raises StoreError, OSError.
     """
     with RunReader(run_dir) as reader:
         results = results_of(reader)
     write_file(run_dir / "appendix.csv", appendix(results))
     write_file(run_dir / "conditions.csv", conditions(results))
     write_file(run_dir / "repeats.csv", repeats(results))
+    write_file(run_dir / "wheel.csv", wheels(results))
+    if results.checks:
+        write_file(run_dir / "wear.csv", wear(results))
     write_file(run_dir / MANIFEST, [manifest_text(run_dir).encode()])
     return results.missing()
+
+
+def doubtful(run_dir: Path) -> list[TableRow]:
+    """Return the rows whose value is to be taken with care; raises StoreError."""
+    with RunReader(run_dir) as reader:
+        return results_of(reader).doubtful()

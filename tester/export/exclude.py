@@ -14,7 +14,7 @@ from tester.store.exclusions import add_exclusion, standing
 from tester.store.reader import RunReader
 from tester.store.records import StoredExclusion, StoredRepeat
 
-MADE_ANEW = frozenset({"run.db", "appendix.csv", "conditions.csv", "repeats.csv"})
+MADE_ANEW = frozenset({"run.db", "appendix.csv", "conditions.csv", "repeats.csv", "wheel.csv", "wear.csv"})
 """Files of a run's folder that an exclusion changes, beside the manifest."""
 LONGEST = 2000
 """Characters of a reason."""

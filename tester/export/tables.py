@@ -7,24 +7,19 @@ same bytes.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import fields
 from math import isnan
 
 from tester.analysis.blocks import AVERAGED
 from tester.analysis.repeats import ConditionResult
+from tester.analysis.wear import ConditionWear
+from tester.analysis.wear_check import WearCheck
+from tester.axes import AXES, columns
 from tester.export.cells import Cell, Number, exact, nominal
 from tester.export.results import Measured, RunResults
 from tester.process import SAMPLE_COLUMNS
 from tester.store.reader import RunReader
 from tester.store.records import ConditionInfo, StoredRepeat
-
-APPENDIX_HEADER: tuple[Cell, ...] = (
-    "Formula",
-    "Slip Velocity /mm·s⁻¹",
-    "Load /N",
-    "Sideslip Angle /°",
-    "Temperature /°C",
-    "Friction Coefficient",
-)
 
 _SETPOINTS = (
     "specimen",
@@ -32,12 +27,7 @@ _SETPOINTS = (
     "grid",
     "compound",
     "note",
-    "slip_velocity_mm_s",
-    "load_n",
-    "sideslip_deg",
-    "camber_deg",
-    "temperature_c",
-    "wheel_speed_m_s",
+    *(axis.column for axis in AXES),
 )
 
 _CONDITION = (
@@ -56,6 +46,9 @@ _CONDITION = (
     "u_standard",
     "u_expanded",
     "coverage_factor",
+    "drift_percent",
+    "drift_bound_percent",
+    "trend_percent",
 )
 
 _REPEAT = (
@@ -81,6 +74,11 @@ _REPEAT = (
 
 _MEASURED = tuple("measured_slip_mm_s" if name == "slip_m_s" else f"measured_{name}" for name in AVERAGED)
 
+_WEAR = ("diameter_before_mm", "diameter_after_mm", "u_worn_mm", "wear_mm3_n_m", "wear_u_expanded")
+"""Of a condition that lies between two checks of its wheel. ``u_worn_mm``: standard, of the difference."""
+
+_CHECK = tuple(field.name for field in fields(WearCheck))
+
 WHOLE_COLUMNS = frozenset({"gate", "burst", "repeat_key"})
 """Columns of a sample whose values are whole numbers."""
 
@@ -88,17 +86,17 @@ SAMPLE_HEADER: tuple[str, ...] = (*SAMPLE_COLUMNS, "condition", "repeat", "attem
 
 
 def appendix_rows(results: RunResults, decimals: int = 2) -> Iterator[tuple[Cell, ...]]:
-    """Yield the paper's table: nominal setpoints, one row for each condition that has a value to be trusted."""
-    yield APPENDIX_HEADER
+    """Yield the paper's table: nominal setpoints, one row for each condition that has a value to be trusted.
+
+    The paper's six columns, and one more for every axis that is off its default in any condition of the recipe.
+    """
+    axes = columns(row.info for row in results.rows)
+    yield ("Formula", *(axis.header for axis in axes), "Friction Coefficient")
     for row in results.rows:
         if row.result.ok:
-            i = row.info
             yield (
-                i.compound,
-                nominal(1e3 * i.slip_velocity_m_s),
-                nominal(i.load_n),
-                nominal(i.sideslip_deg),
-                nominal(i.temperature_c),
+                row.info.compound,
+                *(nominal(axis.of(row.info)) for axis in axes),
                 Number(f"{row.result.mu_resultant:.{decimals}f}"),
             )
 
@@ -109,18 +107,20 @@ def condition_rows(results: RunResults) -> Iterator[tuple[Cell, ...]]:
     ``level`` is ``condition`` or ``combined``; what the recipe says of the test comes last, a column each.
     """
     metadata = dict(sorted(results.run.info.metadata.items()))
-    own = ("level", "condition", *_SETPOINTS, *_CONDITION, "warming_k_s", "holdable_band_k", *_MEASURED)
+    own = ("level", "condition", *_SETPOINTS, *_CONDITION, "warming_k_s", "holdable_band_k", *_MEASURED, *_WEAR)
     yield (*own, *(key if key not in own else f"recipe_{key}" for key in metadata))
     for row in results.rows:
         for measured in row.replicates:
             rate = (measured.condition.warming_k_s, measured.condition.holdable_band_k)
             setpoints = _setpoints(measured.info, measured.info.replicate)
             result = _condition(measured.result)
-            yield ("condition", measured.info.condition, *setpoints, *result[0], *rate, *result[1], *metadata.values())
+            wear = _wear(results.condition_wear(measured.info.condition))
+            cells = (*setpoints, *result[0], *rate, *result[1], *wear)
+            yield ("condition", measured.info.condition, *cells, *metadata.values())
         if len(row.replicates) > 1:
             result = _condition(row.result)
             setpoints = _setpoints(row.info, None)
-            yield ("combined", None, *setpoints, *result[0], None, None, *result[1], *metadata.values())
+            yield ("combined", None, *setpoints, *result[0], None, None, *result[1], *_wear(None), *metadata.values())
 
 
 def repeat_rows(results: RunResults) -> Iterator[tuple[Cell, ...]]:
@@ -136,6 +136,32 @@ def repeat_rows(results: RunResults) -> Iterator[tuple[Cell, ...]]:
                 *_setpoints(measured.info, measured.info.replicate),
                 *_repeat(measured, repeat),
             )
+
+
+def wheel_rows(results: RunResults) -> Iterator[tuple[Cell, ...]]:
+    """Yield one row for each wheel: what it was and is, and its wear rate over all its checks (95 % interval)."""
+    own = ("wheel", "specimen", "replicate", "compound", "installed_diameter_mm", "diameter_mm", "sliding_m")
+    yield (*own, "checks", "wear_mm3_n_m", "wear_u_standard", "wear_u_expanded")
+    for wheel in results.wheels:
+        found = results.wear_of(wheel.wheel)
+        yield (*(getattr(wheel, name) for name in own), found.checks, found.rate, found.standard, found.expanded)
+
+
+def check_rows(results: RunResults) -> Iterator[tuple[Cell, ...]]:
+    """Yield one row for each check of a wheel's diameter; ``before`` and ``after`` are conditions, empty for none."""
+    yield _CHECK
+    for check in results.checks:
+        yield tuple(None if name in ("before", "after") and not value else value for name, value in _cells(check))
+
+
+def _cells(check: WearCheck) -> Iterator[tuple[str, Cell]]:
+    return ((name, getattr(check, name)) for name in _CHECK)
+
+
+def _wear(found: ConditionWear | None) -> tuple[Cell, ...]:
+    if found is None:
+        return (None,) * len(_WEAR)
+    return found.before_mm, found.after_mm, found.u_mm, found.rate.rate, found.rate.expanded
 
 
 def sample_rows(reader: RunReader) -> Iterator[tuple[Cell, ...]]:
@@ -166,12 +192,7 @@ def _setpoints(i: ConditionInfo, replicate: int | None) -> tuple[Cell, ...]:
         i.grid,
         i.compound,
         i.note,
-        nominal(1e3 * i.slip_velocity_m_s),
-        nominal(i.load_n),
-        nominal(i.sideslip_deg),
-        nominal(i.camber_deg),
-        nominal(i.temperature_c),
-        nominal(i.wheel_speed_m_s),
+        *(nominal(axis.of(i)) for axis in AXES),
     )
 
 
@@ -193,6 +214,9 @@ def _condition(r: ConditionResult) -> tuple[tuple[Cell, ...], tuple[Cell, ...]]:
         r.standard,
         r.expanded,
         r.coverage,
+        r.drift_percent,
+        r.drift_bound_percent,
+        r.trend_percent,
     )
     return found, tuple(_scaled(name, r.measured.get(name)) for name in AVERAGED)
 

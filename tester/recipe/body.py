@@ -34,6 +34,7 @@ class Body:
         self.rolling_w_k = self.turning_w_k + believed.belt_conductance
         # Mean of hub and rubber above ambient, per kelvin of surface above ambient, in rolling contact.
         hub_ratio = 1.0 + self.resistance_k_w * surface_w_k
+        self.hub_ratio = hub_ratio
         rubber = 0.5 * (1.0 + hub_ratio)
         total = self.hub_j_k + self.rubber_j_k
         self.mean_ratio = (self.hub_j_k * hub_ratio + self.rubber_j_k * rubber) / total
@@ -45,6 +46,10 @@ class Body:
     def surface_c(self, mean_c: float) -> float:
         """Return the surface temperature that belongs to a mean temperature."""
         return self.ambient_c + (mean_c - self.ambient_c) / self.mean_ratio
+
+    def mean_at_hub_c(self, hub_c: float) -> float:
+        """Return the mean temperature at which the hub, the warmest part, has come down to a temperature."""
+        return self.ambient_c + (hub_c - self.ambient_c) * self.mean_ratio / self.hub_ratio
 
     def with_new_rubber(self, mean_c: float) -> float:
         """Return the mean after new rubber, at ambient, came onto the hub."""

@@ -1,4 +1,7 @@
-"""Constants of the estimate: how long the executor's moves take. Calibrate here, against simulated runs."""
+"""Constants of the estimate: how long the executor's moves take. Calibrate here, against simulated runs.
+
+`python -m tests.seeds.steps RUN ...` shows what they take, step by step.
+"""
 
 from __future__ import annotations
 
@@ -11,48 +14,83 @@ class EstimateConstants:
 
     person_s: float = 600.0
     """A person mounts a wheel or does what a prompt asks; nobody waits on a simulated rig."""
-    install_s: float = 5.0
+    install_s: float = 2.1
     """Standstill, drives off and on, reference tare."""
-    pre_grind_moves_s: float = 12.0
+    pre_grind_moves_s: float = 10.0
     """Turn, load, bring slip in, take it out, lift."""
-    repeat_moves_s: float = 12.0
-    """Lift 2, settle and tare 1.5, touch and load to within 2 % for 1 s 6, commit and lift 2.5."""
-    burst_edge_s: float = 0.9
+    repeat_moves_s: float = 4.8
+    """Lift, settle and tare 2, touch and load to within 2 % for 1 s 2.3, commit and lift 0.5."""
+    burst_edge_s: float = 0.45
     """Sliding before the first sample of a pulse counts: belt ramp, speed and slip gates; and the ramp out."""
-    split_turns: float = 0.5
+    split_turns: float = 0.0
     """Revolutions lost in a pulse that ends within one."""
-    yawed_moves_s: float = 14.0
-    """With sideslip or camber, per burst: lift, yaw, touch, load; lift, yaw back, touch, load; yaw time is extra."""
+    half_rise_k: float = 0.25
+    """A pulse that warms by this much ends at half the window, any other at a whole one."""
+    yawed_moves_s: float = 7.7
+    """With sideslip or camber, per burst, in place of a repeat's moves: lift, yaw, touch, load; and back; without the
+    time of yawing, and of sliding."""
     yaw_deg_s: float = 20.0
     yawed_slide_s: float = 1.8
     """With sideslip: sliding at full load that does not count, per burst, while load and friction settle."""
-    extension: float = 1.3
-    """Windows collected per window asked for: some repeats go on until their drift is shown to be small."""
-    cooling_ratio: float = 2.0
-    """Rolling between pulses, at least: lengths of a pulse in which the heat of the surface spreads inward."""
-    cooling_least_s: float = 5.0
-    cooling_most_s: float = 180.0
-    """Rolling between pulses: what a pulse brought in must leave, slowly near ambient; after this it is lifted."""
-    cooling_floor_k: float = 0.7
-    """Surface above ambient that drives the cooling, at least: the jacket cools with the hub below the surface."""
+    surplus: float = 1.01
+    """Collected a repeat, of what it asks for: revolutions that are cut off at its beginning come on top."""
+    alone: float = 1.8
+    """Windows collected by a repeat that is judged alone, up to its ``extend_to``."""
+    cooling_per_j: float = 1.8
+    """Waiting between pulses, s per J of friction heat in the rubber (beyond ``carried_w``)."""
+    carried_w: float = 0.5
+    """Friction heat that costs no waiting: rolling loses as much, and the jacket gives less."""
+    near_k: float = 12.0
+    near_shift_k: float = 2.0
+    """Near ambient cooling is slow: by the factor 1 + near_k / (kelvin above ambient + near_shift_k)."""
+    near_carried_wk: float = 1.1
+    """What more is carried near ambient while the wheel's body still warms: W K, over kelvin above ambient."""
+    hot_w: float = 4.8
+    hot_share: float = 0.5
+    """Beyond this much heat pulses start below the band: the rest costs this share of the waiting."""
+    sink_from_w: float = 3.6
+    sink_s_w: float = 50.0
+    """The hub has to cool before there is room for more heat than this: seconds per W, once a condition."""
     few_turns: float = 4.0
     below_band_k: float = 1.5
     """A pulse with fewer turns than this starts lower, at most this far below the band."""
     bursts_tried: int = 8
     """Pulses after which a temperature that cannot be held is given up; the condition ends with it."""
-    heat_lag_s: float = 500.0
-    """From hub to surface, heat takes minutes to pass 8 mm of rubber; then equilibrium in contact, minutes again."""
-    heat_per_k_s: float = 5.7
-    """Per kelvin of surface, with the hub's lead and the approach to the band."""
-    rolling_settle_s: float = 190.0
-    """Without slip: rolling until what the condition before left in the rubber has gone."""
-    next_condition_s: float = 5.0
-    """Rolling into the soak of the next condition at a temperature that already stands."""
+    heat_s: float = 180.0
+    """From hub to surface, heat takes minutes to pass 8 mm of rubber."""
+    heat_per_k_s: float = 6.4
+    """Per kelvin of surface."""
+    heat_level_s: float = 1.7
+    """Per kelvin above ambient at which heating begins: the hub's 200 W also feed the losses."""
+    heat_near_s: float = 30.0
+    """Rolling to a temperature that is nearly there."""
+    settle_k: tuple[float, ...] = (0.0, 2.0, 7.0, 12.0, 17.0, 32.0, 37.0, 47.0, 57.0, 67.0)
+    settle_s: tuple[float, ...] = (20.0, 37.0, 280.0, 600.0, 590.0, 540.0, 370.0, 200.0, 90.0, 20.0)
+    """Equilibrium in contact after heating up from ambient by so many kelvin: the hub leads, and has to come down."""
+    settle_from: float = 0.45
+    """Rise over kelvin above ambient from which on the surface overshoots; 1: from ambient."""
+    settled_share: float = 1.35
+    settled_s: float = 500.0
+    """The first condition after heating waits this share of its usual time, less the settling over ``settled_s``."""
+    rolling_settle: float = 0.5
+    """Without slip the surface has to stand within 0.4 K of the setpoint itself: share of the settling."""
+    roll_at_most_s: float = 200.0
+    """From rolling at the temperature to pulses that begin below it, at most."""
+    rolling_after_s: float = 60.0
+    """From pulses to rolling: until what they left in the rubber has gone."""
+    after_hotter: float = 0.6
+    """Share of the waiting after a condition with more friction heat: it leaves the hub colder."""
+    sunk_from_w: float = 5.5
+    sunk_s_w: float = 40.0
+    sunk_most_s: float = 700.0
+    """After one with more heat than this the hub is too cold, and has to come up again: seconds per W."""
+    next_condition_s: float = 3.0
+    """Rolling into the soak of the next condition."""
+    waits_least: float = 0.45
+    waits_most: float = 2.1
+    """Range of what waits for temperatures, 95 % of runs, over what is expected: a thermometer off by +-1 K."""
     unknown_mu: float = 1.0
     """Coefficient of a compound without a friction model."""
 
 
 CONSTANTS = EstimateConstants()
-
-NEAR_K = 2.0
-"""Nearer than this to its temperature the wheel needs no heating: the soak of the first condition does."""

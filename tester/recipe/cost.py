@@ -7,12 +7,16 @@ Carslaw, J. C. Jaeger, Conduction of Heat in Solids, 2nd ed., 2.9: rise = 2 q sq
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 from sim.friction import KNOWN, FrictionModel
 from sim.slip import cornering_factor, slip_velocity
+from tester.analysis.judge import ALONE
+from tester.analysis.stability import REPEAT_WINDOWS
 from tester.recipe.body import Body
 from tester.recipe.plan import Setpoint, Soak, Window
+from tester.recipe.repeats import HISTORIC_PERCENT, expected
 
 if TYPE_CHECKING:
     from tester.recipe.constants import EstimateConstants
@@ -25,7 +29,9 @@ ROLLING_M_S = 1e-9
 class StepEstimate(NamedTuple):
     """What one step takes: rig time s, sliding m, loss of diameter mm, friction heat J, surface peak degC.
 
-    ``bursts`` a repeat; ``held`` is False where not one revolution fits into the temperature band.
+    ``bursts`` a repeat; ``held`` is False where not one revolution fits into the temperature band. ``waiting_s``: what
+    of the time waits for a temperature, and spreads with it. ``heat_w``: friction heat in the rubber during a pulse.
+    ``repeats``: expected, with those made up for.
     """
 
     seconds: float
@@ -35,6 +41,9 @@ class StepEstimate(NamedTuple):
     peak_c: float = -math.inf
     bursts: int = 0
     held: bool = True
+    waiting_s: float = 0.0
+    heat_w: float = 0.0
+    repeats: float = 0.0
 
 
 class Procedure(Protocol):
@@ -43,6 +52,16 @@ class Procedure(Protocol):
     @property
     def repeats(self) -> int:
         """Repeats."""
+        ...
+
+    @property
+    def at_most(self) -> int:
+        """Repeats made in all, at most."""
+        ...
+
+    @property
+    def until_percent(self) -> float | None:
+        """Expanded repeatability to be reached, per cent; None where the number of repeats is what counts."""
         ...
 
     @property
@@ -81,6 +100,8 @@ class Motion(NamedTuple):
     """Collected a repeat, with what some of them go on."""
     edge_s: float
     """Sliding in a pulse that does not count."""
+    repeat_s: float
+    """Moves around a repeat."""
     moves_s: float
     """Moves around a pulse, beyond those around a repeat."""
     swing_k: float
@@ -90,8 +111,11 @@ class Motion(NamedTuple):
 class ConditionCosts:
     """Costs of conditions on one rig; whole grids are measured alike, so they are looked up by setpoint."""
 
-    def __init__(self, rig: RigConfig, constants: EstimateConstants, body: Body) -> None:
-        """Work out what depends on the rig alone."""
+    def __init__(
+        self, rig: RigConfig, constants: EstimateConstants, body: Body, repeatability: Mapping[str, float] | None = None
+    ) -> None:
+        """Work out what depends on the rig alone. ``repeatability``: s between repeats, per cent, by compound."""
+        self.repeatability = repeatability or {}
         believed = rig.observer
         thermal = believed.thermal
         diameter_m = 1e-3 * rig.geometry.wheel_diameter_mm
@@ -123,13 +147,19 @@ class ConditionCosts:
             return self.constants.unknown_mu
         return model.mu(temperature_c, load_n, slip_m_s) * cornering_factor(compound, sideslip_deg)
 
+    def s_percent(self, compound: str) -> float:
+        """Return the standard deviation between repeats that is expected, per cent of the coefficient."""
+        return self.repeatability.get(compound, HISTORIC_PERCENT)
+
     def ground_mm(self, load_n: float, sliding_m: float) -> float:
         """Return the loss of diameter, mm, of sliding a distance (m) under a load (N)."""
         return self.loss_mm_per_nm * load_n * sliding_m
 
     def of(self, setpoint: Setpoint, how: Procedure) -> StepEstimate:
         """Return what holding a setpoint takes when it is measured like this."""
-        key = (how.repeats, how.window, how.temperature_band_k, how.soak, how.max_bursts)
+        key = (
+            how.repeats, how.at_most, how.until_percent, how.window, how.temperature_band_k, how.soak, how.max_bursts
+        )  # fmt: skip
         if key != self._procedure:
             self._procedure = key
             self._costs, self._motions = self._remembered.setdefault(key, ({}, {}))
@@ -145,31 +175,38 @@ class ConditionCosts:
         motion = self._motions.get(key)
         if motion is None:
             motion = self._motions[key] = self._motion(sp, how)
-        model, cornering, slip_m_s, _, soak_s, window_s, edge_s, moves_s, _ = motion
+        model, cornering, slip_m_s, _, soak_s, window_s, edge_s, repeat_s, moves_s, _ = motion
         c = self.constants
+        repeats = expected(how, self.s_percent(compound))
         if slip_m_s < ROLLING_M_S:
-            seconds = soak_s + c.rolling_settle_s + how.repeats * (c.repeat_moves_s + window_s)
-            return StepEstimate(seconds, 0.0, 0.0, 0.0, temperature_c, 1)
+            seconds = soak_s + repeats * (repeat_s + window_s)
+            return StepEstimate(seconds, 0.0, 0.0, 0.0, temperature_c, 1, repeats=repeats)
         mu = c.unknown_mu if model is None else model.mu(temperature_c, load_n, slip_m_s) * cornering
         power_w = mu * load_n * slip_m_s
         rise_k = self.rise_k * power_w
         bursts, counted_s, held = self._bursts(motion, how, rise_k)
-        repeats = how.repeats if held else 1
+        if not held:
+            repeats = 1.0
         slide_s = counted_s + bursts * edge_s
-        burst_s = slide_s / bursts
         sliding_m = repeats * slip_m_s * slide_s
-        cooling_s = self._cooling_s(temperature_c, burst_s, power_w)
-        above_k, most_k = rise_k * math.sqrt(burst_s), how.temperature_band_k
+        heat_w = self.rubber_share * power_w
+        waiting_s = repeats * slide_s * self._cooling(temperature_c, heat_w)
+        if heat_w > c.sink_from_w:
+            waiting_s += c.sink_s_w * (heat_w - c.sink_from_w)
+        above_k, most_k = rise_k * math.sqrt(slide_s / bursts), how.temperature_band_k
         if self.offset_k < most_k:
             most_k = self.offset_k
         return StepEstimate(
-            soak_s + repeats * (c.repeat_moves_s + slide_s + bursts * (moves_s + cooling_s)),
+            soak_s + repeats * (repeat_s + slide_s + bursts * moves_s) + waiting_s,
             sliding_m,
             self.loss_mm_per_nm * load_n * sliding_m,
             repeats * power_w * slide_s,
             temperature_c + (above_k if above_k < most_k else most_k),
             bursts,
             held,
+            waiting_s,
+            heat_w,
+            repeats,
         )
 
     def _motion(self, sp: Setpoint, how: Procedure) -> Motion:
@@ -177,37 +214,39 @@ class ConditionCosts:
         turn_s = self.turn_m / sp.wheel_speed_m_s
         yawed = sp.sideslip_deg != 0.0 or sp.camber_deg != 0.0
         model = self.models.get(sp.compound)
+        collected = REPEAT_WINDOWS * c.surplus if how.repeats > ALONE else c.alone
         return Motion(
             model=model,
             cornering=1.0 if model is None else cornering_factor(sp.compound, sp.sideslip_deg),
             slip_m_s=slip_velocity(sp.wheel_speed_m_s, sp.belt_speed_m_s, sp.sideslip_deg)[2],
             turn_s=turn_s,
             soak_s=how.soak.for_s + c.next_condition_s,
-            window_s=c.extension * how.window.duration_s(1.0 / turn_s),
+            window_s=collected * how.window.duration_s(1.0 / turn_s),
             edge_s=(c.yawed_slide_s if yawed else c.burst_edge_s) + c.split_turns * turn_s,
+            repeat_s=0.0 if yawed else c.repeat_moves_s,
             moves_s=c.yawed_moves_s + 2.0 * abs(sp.sideslip_deg) / c.yaw_deg_s if yawed else 0.0,
             swing_k=self.offset_k + min(how.temperature_band_k, self.offset_k),
         )
 
-    def _cooling_s(self, temperature_c: float, slide_s: float, power_w: float) -> float:
-        """Return the seconds between pulses in which the surface comes back below the setpoint."""
+    def _cooling(self, temperature_c: float, heat_w: float) -> float:
+        """Return the seconds of waiting per second of sliding, in which the surface comes back below the setpoint."""
         c = self.constants
         above_k = temperature_c - self.offset_k - self.ambient_c
-        if above_k < c.cooling_floor_k:
-            above_k = c.cooling_floor_k
-        leaves_s = self.rubber_share * power_w * slide_s / (self.body.rolling_w_k * above_k)
-        least_s = c.cooling_ratio * slide_s
-        if least_s < c.cooling_least_s:
-            least_s = c.cooling_least_s
-        seconds = leaves_s if leaves_s > least_s else least_s
-        return seconds if seconds < c.cooling_most_s else c.cooling_most_s
+        if above_k < 1.0:
+            above_k = 1.0
+        heat_w -= c.carried_w + c.near_carried_wk / above_k
+        if heat_w <= 0.0:
+            return 0.0
+        if heat_w > c.hot_w:
+            heat_w = c.hot_w + c.hot_share * (heat_w - c.hot_w)
+        return c.cooling_per_j * heat_w * (1.0 + c.near_k / (above_k + c.near_shift_k))
 
     def _bursts(self, motion: Motion, how: Procedure, rise_k: float) -> tuple[int, float, bool]:
         """Return bursts a repeat, seconds counted a repeat, and whether the temperature holds for a revolution.
 
         ``rise_k`` is the surface's rise in K per square root of a second.
         """
-        _, _, _, turn_s, _, window_s, edge_s, _, swing_k = motion
+        _, _, _, turn_s, _, window_s, edge_s, _, _, swing_k = motion
         if rise_k <= 0.0:
             return 1, window_s, True
         c = self.constants
@@ -221,7 +260,12 @@ class ConditionCosts:
             each_s = max(each_s, min(counted_s, few_s))
         if each_s < turn_s:
             return c.bursts_tried, 0.0, False
-        bursts = math.ceil(window_s / each_s)
+        # A pulse that warms ends at half the window, so that a second rise tells temperature from time.
+        least_s = window_s / REPEAT_WINDOWS
+        if rise_k * math.sqrt(0.5 * least_s) > c.half_rise_k:
+            least_s *= 0.5
+        bursts = math.ceil(window_s / min(each_s, least_s) - 0.1)
+        each_s = max(each_s, window_s / bursts)
         if bursts > how.max_bursts:
             bursts = how.max_bursts
         counted_s = bursts * each_s

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
+from tester.axes import condition_words
 from tester.recipe.cost import StepEstimate
 from tester.recipe.estimate import Estimate
 from tester.recipe.plan import (
@@ -51,7 +52,8 @@ def totals(plan: Plan, estimate: Estimate) -> Iterator[str]:
     conditions = list(plan.conditions())
     repeats = sum(step.repeats for step in conditions)
     yield f"conditions        {len(conditions)}, {repeats} repeats"
-    yield f"rig time          {duration(estimate.rig_seconds)}"
+    least, most = duration(estimate.rig_seconds_low), duration(estimate.rig_seconds_high)
+    yield f"rig time          {duration(estimate.rig_seconds)} ({least} to {most} in 95 % of runs)"
     yield f"sliding distance  {estimate.sliding_m:.0f} m"
     wheels = "wheel" if estimate.wheels == 1 else "wheels"
     yield f"wear              {estimate.loss_mm:.2f} mm of diameter on {estimate.wheels} {wheels}"
@@ -78,22 +80,18 @@ def words(step: Step, one: StepEstimate) -> str:
         case Heat():
             return f"heat to {step.temperature_c:g} degC"
         case ConditionStep():
-            return f"{step.condition:>4}  {setpoint_words(step)}  {step.repeats} x {window_words(step.window)}" + (
-                f", {one.bursts} bursts" if one.bursts > 1 else ""
-            )
+            held = condition_words(step.setpoint, compound=False)
+            bursts = f", {one.bursts} bursts" if one.bursts > 1 else ""
+            return f"{step.condition:>4}  {held}  {repeats_words(step)} x {window_words(step.window)}{bursts}"
         case Cool():
             return f"cool the hub below {step.hub_below_c:g} degC"
         case Prompt():
             return f"ask: {step.text}"
 
 
-def setpoint_words(step: ConditionStep) -> str:
-    """Return what is held, angles only where there are any: 300 mm/s  200 N  25 degC."""
-    sp = step.setpoint
-    text = f"{1000.0 * sp.slip_velocity_m_s:g} mm/s  {sp.load_n:g} N"
-    text += f"  sideslip {sp.sideslip_deg:g} deg" if sp.sideslip_deg else ""
-    text += f"  camber {sp.camber_deg:g} deg" if sp.camber_deg else ""
-    return f"{text}  {sp.temperature_c:g} degC"
+def repeats_words(step: ConditionStep) -> str:
+    """Return how many repeats are to count, and until what precision where the recipe says so: 4 (until 2 %)."""
+    return f"{step.repeats}" + (f" (until {step.until_percent:.3g} %)" if step.until_percent is not None else "")
 
 
 def window_words(window: Window) -> str:

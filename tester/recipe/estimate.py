@@ -6,12 +6,14 @@ The times are sums of the moves that the executor makes; those of a condition ar
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from tester.recipe.body import Body
-from tester.recipe.constants import CONSTANTS, NEAR_K, EstimateConstants
+from tester.recipe.constants import CONSTANTS, EstimateConstants
 from tester.recipe.cost import ConditionCosts, StepEstimate
+from tester.recipe.order import Before, OrderCosts
 from tester.recipe.plan import (
     ConditionStep,
     Cool,
@@ -23,6 +25,7 @@ from tester.recipe.plan import (
     Rest,
     Step,
 )
+from tester.recipe.repeats import MADE_UP, POOLED_DF, SURE, expected
 from tester.recipe.wheel_change import TOUCH
 
 if TYPE_CHECKING:
@@ -38,6 +41,9 @@ class Estimate:
 
     steps: tuple[StepEstimate, ...]
     rig_seconds: float
+    rig_seconds_low: float
+    rig_seconds_high: float
+    """Range of the rig time, 95 % of runs."""
     sliding_m: float
     loss_mm: float
     """Loss of diameter, summed over all wheels."""
@@ -57,9 +63,14 @@ def estimate(plan: Plan, rig: RigConfig, estimator: Estimator | None = None) -> 
         for step, one in zip(plan.steps, steps, strict=True)
         if not one.held and isinstance(step, ConditionStep)
     ]
+    down_s = estimator.shut_down_s(plan)
+    seconds = math.fsum(one.seconds for one in steps) + down_s
+    low, high = estimator.range_s(plan, steps, down_s)
     return Estimate(
         steps=tuple(steps),
-        rig_seconds=math.fsum(one.seconds for one in steps) + estimator.shut_down_s(plan),
+        rig_seconds=seconds,
+        rig_seconds_low=low,
+        rig_seconds_high=high,
         sliding_m=math.fsum(one.sliding_m for one in steps),
         loss_mm=math.fsum(one.loss_mm for one in steps),
         friction_j=math.fsum(one.friction_j for one in steps),
@@ -77,24 +88,34 @@ def predicted_loss_mm(step: ConditionStep, rig: RigConfig) -> float:
 class Estimator:
     """Estimates for one rig; the costs of conditions are remembered."""
 
-    def __init__(self, rig: RigConfig, constants: EstimateConstants = CONSTANTS) -> None:
-        """Work out what depends on the rig alone."""
+    def __init__(
+        self,
+        rig: RigConfig,
+        constants: EstimateConstants = CONSTANTS,
+        repeatability: Mapping[str, float] | None = None,
+    ) -> None:
+        """Work out what depends on the rig alone. ``repeatability``: s between repeats, per cent, by compound."""
         self.constants = constants
         self.ambient_c = rig.ambient_c
         self.cool_c, self.cool_at_most_s = rig.interlocks.cooldown_hub_c, rig.interlocks.cooldown_at_most_s
+        self.parts = rig.simulated
+        """Each specimen, and each replicate of it, is a part of the run, on a rig of its own."""
         self.person_s = 0.0 if rig.simulated else constants.person_s
         self.body = Body(rig)
-        self.costs = ConditionCosts(rig, constants, self.body)
+        self.costs = ConditionCosts(rig, constants, self.body, repeatability)
+        self.order = OrderCosts(rig, constants, self.body)
 
     def walk(self, plan: Plan) -> list[StepEstimate]:
         """Return an estimate for every step; the wheel's temperature is carried from one to the next."""
         compound = ""
+        part = (0, 0)
         body_c = self.ambient_c
         cold_rubber = False
         last: ConditionStep | None = None
+        before = Before(self.ambient_c)
         prompted = False
         result: list[StepEstimate] = []
-        for step in plan.steps:
+        for place, step in enumerate(plan.steps):
             if isinstance(step, ConditionStep):
                 one = self.condition(step)
                 looked_at = step.wear_check == "prompt"
@@ -103,6 +124,9 @@ class Estimator:
                         body_c = self.body.steady_c(last.setpoint.temperature_c)
                     one = self._after_person(one, step, body_c, asked=looked_at)
                     prompted = False
+                if step.until_percent is not None:
+                    one = self._until(before, step, one)
+                one = self.order.after(before, step.setpoint, one)
                 last = step
                 result.append(one)
                 continue
@@ -110,23 +134,87 @@ class Estimator:
             if last is not None:
                 body_c = self.body.steady_c(last.setpoint.temperature_c)
                 last = None
+            if self._begins_part(plan, place, part):
+                body_c, before = self.ambient_c, Before(self.ambient_c)
             if cold_rubber and isinstance(step, Rest):
                 one = StepEstimate(step.at_least_s)  # new rubber is at ambient, whatever the hub below it
             else:
                 if isinstance(step, Install):
-                    compound = step.compound
+                    compound, part = step.compound, (step.specimen, step.replicate)
                 cold_rubber = isinstance(step, Install) or (cold_rubber and isinstance(step, Prompt))
+                if isinstance(step, Heat):
+                    before.heat(self.body.surface_c(body_c))
                 one, body_c = self._preparation(step, compound, body_c)
             result.append(one)
         return result
 
+    def _begins_part(self, plan: Plan, place: int, part: tuple[int, int]) -> bool:
+        """Tell whether a step is the first of a further part on a rig of its own: its wheel, or a cool-down before.
+
+        ``part``: specimen and replicate before, zeros for none. A rig of its own is at ambient, with nothing to cool.
+        """
+        if not self.parts or part == (0, 0):
+            return False
+        step = plan.steps[place]
+        if isinstance(step, Cool) and place + 1 < len(plan.steps):
+            step = plan.steps[place + 1]
+        return isinstance(step, Install) and (step.specimen, step.replicate) != part
+
+    def _until(self, before: Before, step: ConditionStep, one: StepEstimate) -> StepEstimate:
+        """Return an estimate with the repeats that a precision takes so early in a run: little is pooled yet."""
+        repeats = one.repeats
+        if one.held and before.pooled < POOLED_DF:
+            repeats = expected(step, self.costs.s_percent(step.setpoint.compound), before.pooled)
+        before.pooled += int(repeats) - 1
+        if repeats == one.repeats:
+            return one
+        share = repeats / one.repeats
+        soak_s = step.soak.for_s + self.constants.next_condition_s
+        return one._replace(
+            seconds=soak_s + share * (one.seconds - soak_s),
+            sliding_m=share * one.sliding_m,
+            loss_mm=share * one.loss_mm,
+            friction_j=share * one.friction_j,
+            waiting_s=share * one.waiting_s,
+            repeats=repeats,
+        )
+
+    def range_s(self, plan: Plan, steps: Sequence[StepEstimate], down_s: float) -> tuple[float, float]:
+        """Return the range of the rig time, s, that is to hold 95 % of runs.
+
+        What waits for temperatures follows the thermometer's bias, one for all of a session, hence adds up;
+        repeats that are made up for come one by one (Poisson); a precision's repeats follow the run's own deviation.
+        """
+        c = self.constants
+        fixed = low = high = scattered = 0.0
+        for step, one in zip(plan.steps, steps, strict=True):
+            moves_s = one.seconds - one.waiting_s
+            if isinstance(step, ConditionStep) and one.repeats > 0.0:
+                a_repeat_s = one.seconds / one.repeats
+                scattered += MADE_UP * one.repeats * a_repeat_s * a_repeat_s
+                if step.until_percent is not None:
+                    least, most = SURE
+                    low += max(least * least, step.repeats / one.repeats) * moves_s - moves_s
+                    high += min(most * most, step.at_most / one.repeats) * moves_s - moves_s
+            fixed += moves_s
+            low += c.waits_least * one.waiting_s
+            high += c.waits_most * one.waiting_s
+        return fixed + low + c.waits_least * down_s, fixed + high + 2.0 * math.sqrt(scattered) + c.waits_most * down_s
+
     def shut_down_s(self, plan: Plan) -> float:
         """Return the seconds from the last step to standstill: a hot jacket is cooled turning."""
-        last = next((step for step in reversed(plan.steps) if isinstance(step, ConditionStep)), None)
-        if last is None:
-            return 0.0
-        body_c = self.body.steady_c(last.setpoint.temperature_c)
-        return min(self.body.cooling_s(body_c, self.cool_c, turning=True), self.cool_at_most_s)
+        last: dict[tuple[int, int], ConditionStep] = {}
+        for step in plan.steps:
+            if isinstance(step, ConditionStep):
+                last[(step.specimen, step.replicate) if self.parts else (0, 0)] = step
+        cool_c = self.body.mean_at_hub_c(self.cool_c)
+        return math.fsum(
+            min(
+                self.body.cooling_s(self.body.steady_c(step.setpoint.temperature_c), cool_c, turning=True),
+                self.cool_at_most_s,
+            )
+            for step in last.values()
+        )
 
     def condition(self, step: ConditionStep) -> StepEstimate:
         """Return what a condition takes, without the heating before it."""
@@ -177,9 +265,9 @@ class Estimator:
                 wait = min(wait, step.at_most_s)
                 return StepEstimate(wait), self.body.after_c(body_c, wait)
             case Heat():
-                rise = step.temperature_c - self.costs.offset_k - self.body.surface_c(body_c)
-                seconds = c.heat_lag_s + c.heat_per_k_s * rise if rise > NEAR_K else 0.0
-                return StepEstimate(seconds, peak_c=step.temperature_c), self.body.steady_c(step.temperature_c)
+                seconds = self.order.heat_s(self.body.surface_c(body_c), step.temperature_c)
+                heated = StepEstimate(seconds, peak_c=step.temperature_c, waiting_s=seconds)
+                return heated, self.body.steady_c(step.temperature_c)
             case Cool():
                 seconds = self.body.cooling_s(body_c, step.hub_below_c, turning=True)
                 return StepEstimate(seconds), min(body_c, step.hub_below_c)

@@ -286,9 +286,27 @@ class ArmingConfig:
 
 @dataclass(frozen=True, slots=True)
 class WearConfig:
-    """Wear law V = k F s: what the plan predicts and the current diameter is estimated with."""
+    """Wear law V = k F s: what the plan predicts and the current diameter is estimated with.
+
+    Then what a check of the diameter reckons with (tester.engine.wear_check); uncertainties are standard ones.
+    """
 
     rate_mm3_per_n_m: Annotated[float, "mm3/(N m)", _NOT_NEGATIVE]
+    growth_mm_per_k: Annotated[float, "mm/K", _NOT_NEGATIVE] = 0.0058
+    """The diameter grows by this per K of the rubber's mean temperature."""
+    growth_uncertainty_mm_per_k: Annotated[float, "mm/K", _NOT_NEGATIVE] = 0.0017
+    check_press_mm: Annotated[float, "mm", _NOT_NEGATIVE] = 0.002
+    """Of where the press stands in a roll check, beside what load and heat do."""
+    check_load_n: Annotated[float, "N", _NOT_NEGATIVE] = 0.2
+    """Of the mean load in a roll check, from one check to another."""
+    check_stiffness_percent: Annotated[float, "%", _NOT_NEGATIVE] = 30.0
+    """Of the contact's stiffness, with which a load off its nominal value is corrected."""
+    check_rubber_k: Annotated[float, "K", _NOT_NEGATIVE] = 1.0
+    """Of the rubber's mean temperature, taken as that of hub and surface by halves."""
+    gauge_mm: Annotated[float, "mm", _NOT_NEGATIVE] = 0.05
+    """Of a diameter that a person measures on rubber."""
+    rate_uncertainty_percent: Annotated[float, "%", _NOT_NEGATIVE] = 1.5
+    """Of a wear rate from load, slip and width of the tread."""
 
 
 @dataclass(frozen=True, slots=True)

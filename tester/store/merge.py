@@ -11,12 +11,13 @@ import sqlite3
 import zlib
 from collections.abc import Iterator
 from contextlib import closing
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from pathlib import Path
 from types import TracebackType
 
 import numpy as np
 
+from tester.analysis.results import Judgement
 from tester.process import SAMPLE_COLUMNS
 from tester.store.reader import DATABASE, RunReader
 from tester.store.sample_blocks import unpack_array
@@ -44,6 +45,7 @@ TABLES: dict[str, Merged] = {
     "event": Merged(times=("t_s",), key="sequence"),
     "prompt": Merged(times=("asked_s", "answered_s"), key="id"),
     "tare": Merged(times=("t_s",), key="id", repeat="repeat_id"),
+    "wear_check": Merged(times=("t_s", "reference_s"), key="id"),
     "trip": Merged(times=("t_s", "acknowledged_s"), key="id"),
     "bus_statistic": Merged(times=("t_s",), key="id"),
     "device_parameter": Merged(times=("t_s",), key="id"),
@@ -66,7 +68,7 @@ HEADER = frozenset(
 )
 """Tables of the whole run, which parts do not fill. ``condition`` is brought up to date."""
 
-LEFT = ("status", "reason", "warming_k_s", "holdable_band_k")
+LEFT = ("status", "reason", "warming_k_s", "holdable_band_k", *(field.name for field in fields(Judgement)))
 """How a condition was left; ``started_s`` and ``ended_s`` are times."""
 
 _COLUMNS = len(SAMPLE_COLUMNS)
@@ -117,8 +119,10 @@ class Merge:
         with closing(sqlite3.connect(f"{(part / DATABASE).absolute().as_uri()}?mode=ro", uri=True)) as source:
             bases = {table: self._last(table) for table, kind in TABLES.items() if kind.key is not None}
             with self._transaction():
+                there = {name for (name,) in source.execute("SELECT name FROM sqlite_master WHERE type = 'table'")}
                 for table in TABLES:
-                    self._copy(source, table, bases)
+                    if table in there:  # a part that an older version has finished lacks the newest
+                        self._copy(source, table, bases)
                 self._update_conditions(source)
                 self._connection.execute("UPDATE run SET overruns = overruns + ?", (run.overruns,))
         self.rig_seconds = self._later(self.rig_seconds, run.rig_seconds)

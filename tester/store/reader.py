@@ -14,7 +14,8 @@ from tempfile import TemporaryDirectory
 from types import TracebackType
 from typing import TYPE_CHECKING, Literal, TypeVar
 
-from tester.analysis.results import Burst, ConditionStatus, RepeatResult, RepeatStatus
+from tester.analysis.results import Burst, ConditionStatus, Judgement, RepeatResult, RepeatStatus
+from tester.analysis.wear_check import WearCheck
 from tester.store.records import (
     NAN,
     BusStatistic,
@@ -202,13 +203,18 @@ class RunReader:
         """Return the wheels that were installed, with their last known wear."""
         return [_record(WheelInfo, row) for row in self._rows("SELECT * FROM wheel ORDER BY wheel")]
 
+    def wear_checks(self) -> list[WearCheck]:
+        """Return the checks of the wheels' diameters in the order in which they were made."""
+        return [_record(WearCheck, row) for row in self._rows("SELECT * FROM wear_check ORDER BY id")]
+
     def conditions(self) -> list[StoredCondition]:
         """Return the plan's conditions in the recipe's order, replicates one after the other."""
         found: list[StoredCondition] = []
         for row in self._rows("SELECT * FROM condition ORDER BY row, replicate, condition"):
             status = ConditionStatus(_text(row, "status"))
             left = status if row["ended_s"] is not None or status is not ConditionStatus.PENDING else None
-            found.append(_record(StoredCondition, row, info=_record(ConditionInfo, row), status=left))
+            info, judged = _record(ConditionInfo, row), _record(Judgement, row)
+            found.append(_record(StoredCondition, row, info=info, status=left, judged=judged))
         return found
 
     def repeats(self, condition: int | None = None, *, attempts: bool = False) -> list[StoredRepeat]:

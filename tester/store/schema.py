@@ -260,8 +260,54 @@ CREATE TRIGGER exclusion_is_not_deleted BEFORE DELETE ON exclusion
 """Repeats that a person has left out of a mean, or taken in again (``excluded`` 0): who, when, why. Rows are only ever
 added. ``manifest_before``: the folder's manifest as it was before, with the hashes of the record without this row."""
 
-MIGRATIONS: tuple[str, ...] = (_VERSION_1, _VERSION_2, _VERSION_3)
+_JUDGEMENT = ("drift_percent", "drift_error_percent", "drift_bound_percent", "per_kelvin_percent", "repeat_windows",
+              "trend_percent")  # fmt: skip
+
+_VERSION_4 = """
+ALTER TABLE condition ADD COLUMN at_most INTEGER NOT NULL DEFAULT 0;
+ALTER TABLE condition ADD COLUMN until_percent REAL;
+ALTER TABLE condition ADD COLUMN flags TEXT NOT NULL DEFAULT '';
+UPDATE condition SET at_most = 2 * repeats;
+""" + "".join(f"ALTER TABLE condition ADD COLUMN {name} REAL;\n" for name in _JUDGEMENT)
+"""A condition's repeats are judged together: how many are made at most, until what precision, and what they say of its
+drift. Before, a repeat was judged by itself, and ``at_most`` is what the same recipe means now."""
+
+_AS_VERSION_4 = (
+    "CREATE TEMP VIEW condition AS SELECT *, 2 * repeats AS at_most, NULL AS until_percent, '' AS flags, "
+    + ", ".join(f"NULL AS {name}" for name in _JUDGEMENT)
+    + " FROM main.condition"
+)
+
+_WEAR_CHECK = """
+CREATE {temporary}TABLE wear_check (
+    id INTEGER PRIMARY KEY,
+    wheel INTEGER NOT NULL,
+    method TEXT NOT NULL,
+    t_s REAL,
+    reference_s REAL,
+    before INTEGER NOT NULL,
+    after INTEGER NOT NULL,
+    diameter_mm REAL,
+    u_mm REAL,
+    rubber_c REAL,
+    u_growth_mm_k REAL,
+    press_mm REAL,
+    load_n REAL,
+    sliding_m REAL,
+    exposure_n_m REAL,
+    width_mm REAL,
+    u_rate_percent REAL,
+    used INTEGER NOT NULL CHECK (used IN (0, 1))
+);
+"""
+"""Checks of a wheel's diameter between its conditions (``before`` and ``after``: their numbers, 0 for none), held
+against the first of their series at ``reference_s``; what their uncertainty comes from is in the row."""
+
+MIGRATIONS: tuple[str, ...] = (_VERSION_1, _VERSION_2, _VERSION_3, _VERSION_4, _WEAR_CHECK.format(temporary=""))
 """Migration n leads from schema n to n + 1."""
+
+_ADDED: dict[int, str] = {3: _EXCLUSION, 4: _AS_VERSION_4, 5: _WEAR_CHECK}
+"""What versions have added, by version: what a connection to an older record can have for itself."""
 
 VERSION = len(MIGRATIONS)
 
@@ -288,13 +334,14 @@ def _empty(connection: sqlite3.Connection) -> bool:
 def reads_as_present(connection: sqlite3.Connection, version: int) -> bool:
     """Let an older database be read as one of the present schema without writing it; False where that cannot be.
 
-    What version 3 has added is an empty table, which a connection can have for itself.
+    What a version has added, an empty table or columns without values, a connection can have for itself: as a temporary
+    table, or as a temporary view in front of the table.
     """
-    if version == VERSION:
-        return True
-    if version != 2:
+    since = range(version + 1, VERSION + 1)
+    if any(number not in _ADDED for number in since):
         return False
-    connection.execute(_EXCLUSION.format(temporary="TEMP "))
+    for number in since:
+        connection.execute(_ADDED[number].format(temporary="TEMP "))
     return True
 
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from tester.axes import AXES
 from tester.campaign.pool import stop_level
 from tester.engine.context import Progress
 from tester.engine.prompts import Prompts
@@ -36,7 +37,8 @@ class Task:
 class RowResult:
     """One row of the recipe's table: its nominal setpoints, its status, and what was measured (NaN without a value).
 
-    ``s`` is the standard deviation between repeats, ``u_standard`` the stated standard uncertainty of ``mu``.
+    ``s`` is the standard deviation between repeats, ``u_standard`` the stated standard uncertainty of ``mu``;
+    ``reason`` says why there is no value.
     """
 
     row: int
@@ -46,11 +48,14 @@ class RowResult:
     sideslip_deg: float
     camber_deg: float
     temperature_c: float
+    wheel_speed_m_s: float
     status: str
     mu: float
     s: float
     n_valid: int
     u_standard: float
+    flags: str
+    reason: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,7 +85,7 @@ def run_case(task: Task) -> CaseResult:
         recipe, rig = folder / "recipe.yaml", folder / "rig.yaml"
         recipe.write_text(task.recipe_text, encoding="utf-8", newline="\n")
         rig.write_text(task.rig_text, encoding="utf-8", newline="\n")
-        screen = _Unseen()
+        screen = Unseen()
         options = SessionOptions(str(recipe), str(rig), out=folder / "runs", seed=task.seed, samples=False)
         session = screen.session = Session(options, screen)
         code = session.run()
@@ -106,12 +111,14 @@ def not_run(task: Task, error: BaseException) -> CaseResult:
 def _row(row: TableRow) -> RowResult:
     i, r = row.info, row.result
     mu, s, u = (r.mu_resultant, r.s, r.standard) if r.ok else (NAN, NAN, NAN)
-    slip_mm_s = round(1e3 * i.slip_velocity_m_s, 6)
-    setpoints = (slip_mm_s, i.load_n, i.sideslip_deg, i.camber_deg, i.temperature_c)
-    return RowResult(i.row, i.compound, *setpoints, r.status.value, mu, s, r.n_valid, u)
+    held: dict[str, float] = {axis.column: axis.of(i) for axis in AXES}
+    return RowResult(
+        i.row, i.compound, **held, status=r.status.value, mu=mu, s=s, n_valid=r.n_valid, u_standard=u, flags=r.flags,
+        reason=r.reason,
+    )  # fmt: skip
 
 
-class _Unseen:
+class Unseen:
     """A screen that nobody looks at; a stop that is ordered of the pool reaches the session through it."""
 
     answer_yes = True

@@ -10,14 +10,15 @@ from dataclasses import astuple, fields
 from math import isfinite, sqrt
 from statistics import fmean, stdev
 
+from tester.axes import AXES
 from tester.export.cells import Cell, nominal
 from tester.sweep.case import CaseResult, RowResult
 from tester.sweep.grid import Axis
 
 Row = tuple[Cell, ...]
 
-_SETPOINTS = ("row", "compound", "slip_velocity_mm_s", "load_n", "sideslip_deg", "camber_deg", "temperature_c")
-_MEASURED = ("status", "mu", "s", "n_valid", "u_standard")
+_SETPOINTS = ("row", "compound", *(axis.column for axis in AXES))
+_MEASURED = ("status", "mu", "s", "n_valid", "u_standard", "flags", "reason")
 _STATISTICS = ("n", "mean", "sd", "min", "max")
 
 

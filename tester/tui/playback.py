@@ -9,6 +9,8 @@ from math import isfinite
 from pathlib import Path
 
 from tester.analysis.results import Burst
+from tester.axes import ListWords, condition_words
+from tester.export.results import results_of
 from tester.rig.load import load_rig_text
 from tester.service.protocol import Event
 from tester.service.state import (
@@ -49,6 +51,8 @@ class Playback:
     """A run's record: samples by column, in order of rig time; conditions, repeats, journal."""
 
     run: StoredRun
+    status: str
+    """A word of RunStatus."""
     rig_name: str
     specs: tuple[Spec, ...]
     samples: dict[str, array[float]]
@@ -85,12 +89,12 @@ class Playback:
         compound = condition.info.compound if condition is not None else ""
         note = condition.info.note if condition is not None else ""
         return StateView(
-            mode="RUN" if not over else run.status,
+            mode="RUN" if not over else self.status,
             mode_text="" if not over else run.reason,
             mode_since_s=at_s, t_s=at_s, wall_s=at_s, utc=info.started_utc, rig=self.rig_name,
             simulated=info.simulated,
             run=RunView(info.name, "", info.recipe_name, compound, note, info.operator, info.seed, info.simulated, None,
-                        info.started_utc, run.status, run.reason, None, ()),
+                        info.started_utc, self.status, run.reason, None, ()),
             progress=self._progress(at_s, condition),
             values=self._values(at_s, index, condition.info if condition is not None else None),
             gates=(), soak=None, alarms=(), prompt=None, manual=ManualView(None, ""), devices=(), buses=(),
@@ -107,7 +111,7 @@ class Playback:
         wanted = condition.info.window_revolutions if condition is not None else None
         return ProgressView(
             step=len(begun), steps=max(len(self.conditions), 1),
-            title=_title(condition.info) if condition is not None else "between conditions",
+            title=condition_words(condition.info) if condition is not None else "between conditions",
             condition=len(begun), conditions=len(self.conditions),
             repeat=last.repeat if last is not None else 0,
             repeats=condition.info.repeats if condition is not None else 0,
@@ -129,6 +133,8 @@ class Playback:
             wanted["slip"] = (1e3 * info.slip_velocity_m_s, None)
             wanted["surface"] = (info.temperature_c, info.temperature_band_k)
             wanted["sideslip"] = (info.sideslip_deg, None)
+            wanted["camber"] = (info.camber_deg, None)
+            wanted["wheel_speed"] = (info.wheel_speed_m_s, None)
         measured = {key: row[name] for key, name in COLUMNS.items()}
         measured["slip"] = 1e3 * row["slip_m_s"]
         measured["friction"] = friction(row["force_x_n"], row["force_y_n"], row["force_z_n"])
@@ -139,9 +145,10 @@ class Playback:
         )
 
     def _plan(self, at_s: float) -> PlanView:
+        words = ListWords(c.info for c in self.conditions)
         steps = tuple(
             PlanStep(
-                number, "condition", _title(c.info),
+                number, "condition", words.of(c.info),
                 "done" if _end(c, self.length_s) <= at_s else "now" if c.started_s <= at_s else "later",
                 _end(c, self.length_s) - c.started_s if isfinite(c.started_s) else 0.0,
                 _end(c, self.length_s) - c.started_s if _end(c, self.length_s) <= at_s else None,
@@ -181,23 +188,18 @@ def _end(condition: StoredCondition, length_s: float) -> float:
     return condition.ended_s if isfinite(condition.ended_s) else length_s
 
 
-def _title(i: ConditionInfo) -> str:
-    angle = f", {i.sideslip_deg:g}°" if i.sideslip_deg else ""
-    slip_mm_s = round(1e3 * i.slip_velocity_m_s, 3)
-    return f"{i.compound}: {slip_mm_s:g} mm/s, {i.load_n:g} N, {i.temperature_c:g} °C{angle}"
-
-
 def load(folder: Path) -> Playback:
     """Read a run; raises StoreError, InvalidSource (its rig file), sqlite3.Error."""
     with RunReader(folder) as reader:
-        run = reader.run()
+        results = results_of(reader)
+        run = results.run
         rig = load_rig_text(run.info.rig_text)
         events = tuple(
             Event(e.sequence, e.t_s, e.utc, e.kind, e.severity, e.text, run.info.name) for e in reader.events()
         )
         repeats = tuple(reader.repeats(attempts=True))
         return Playback(
-            run, rig.name, specs(rig), _thinned(reader, max(SPACING_S, run.rig_seconds / MOST)),
+            run, results.status.value, rig.name, specs(rig), _thinned(reader, max(SPACING_S, run.rig_seconds / MOST)),
             tuple(reader.conditions()), repeats, {one.key: tuple(reader.bursts(one.key)) for one in repeats}, events,
             tuple(event.t_s for event in events),
         )  # fmt: skip

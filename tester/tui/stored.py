@@ -2,37 +2,36 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import isfinite
 from pathlib import Path
 
-from tester.export.cells import nominal
+from tester.analysis.trust import mark_of
+from tester.axes import AXES, Axis, Held, ListWords, axis, columns, condition_words, differing, plain
 from tester.export.results import Measured, RunResults, results_of
 from tester.store.catalogue import find_run
 from tester.store.reader import RunReader
 from tester.store.records import StoredExclusion
 from tester.tui.plot import OTHER, SERIES, Bin, Point
 
-AXES = (
-    ("load", "N"),
-    ("slip", "mm/s"),
-    ("temperature", "°C"),
-    ("sideslip", "°"),
-)
+PLOTTED = (axis("load"), axis("slip_velocity"), axis("temperature"), axis("sideslip"), axis("camber"),
+           axis("wheel_speed"))  # fmt: skip
 """What the coefficient is plotted against, in turn."""
-HEADER = ("Formula", "Slip mm/s", "Load N", "Angle °", "Temp °C", "mu", "s", "n", "Status")
-"""The export's columns, and s and n."""
+FIGURES = ("mu", "s", "n", "Status")
 
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """One condition: cells of HEADER, the values of AXES, mu (None: none), its number in the store."""
+    """One condition: cells of ``Stored.header``, what is held, mu (None: none), its number in the store."""
 
     cells: tuple[str, ...]
-    at: tuple[float, ...]
+    held: Held
     compound: str
     mu: float | None
     condition: int
+    mark: str = ""
+    """Of mu (tester.analysis.trust): "" where it is trusted."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,7 +55,17 @@ class Stored:
     folder: Path
     recipe: str
     status: str
+    header: tuple[str, ...]
+    """The paper's columns, one for each further axis that is off its default, mu, s, n, status; what all rows share is
+    in ``common`` instead where there are more axes than the paper's."""
+    common: str
     rows: tuple[Row, ...]
+
+    @property
+    def plotted(self) -> tuple[Axis, ...]:
+        """What the coefficient can be plotted against: the paper's axes, and others that differ here."""
+        more = differing(row.held for row in self.rows)
+        return tuple(one for one in PLOTTED if one.paper or one in more)
 
 
 def read(name: str, runs: Path) -> Stored:
@@ -64,21 +73,32 @@ def read(name: str, runs: Path) -> Stored:
     folder = find_run(name, runs)
     with RunReader(folder) as reader:
         results = results_of(reader)
-    return Stored(folder.name, folder, results.run.info.recipe_name, results.run.status, tuple(_rows(results)))
+    return stored_of(folder, results)
 
 
-def _rows(results: RunResults) -> list[Row]:
-    return [_row(measured) for measured in results.conditions()]
+def stored_of(folder: Path, results: RunResults) -> Stored:
+    """Return a run's table."""
+    conditions = list(results.conditions())
+    infos = [measured.info for measured in conditions]
+    shown, common = columns(infos), ""
+    if len(infos) > 1 and any(not one.paper for one in shown):
+        # A narrow screen has room for the axes that differ; what all conditions share is told once, above.
+        words = ListWords(infos)
+        shown, common = words.axes, words.common
+    header = ("Formula", *(one.title for one in shown), *FIGURES)
+    rows = tuple(_row(measured, shown) for measured in conditions)
+    run = results.run
+    return Stored(folder.name, folder, run.info.recipe_name, results.status.value, header, common, rows)
 
 
-def _row(measured: Measured) -> Row:
+def _row(measured: Measured, shown: Sequence[Axis]) -> Row:
     i, r = measured.info, measured.result
-    at = (i.load_n, 1e3 * i.slip_velocity_m_s, i.temperature_c, i.sideslip_deg)
-    setpoints = (nominal(at[1]), nominal(at[0]), nominal(at[3]), nominal(at[2]))
-    found = (_number(r.mu_resultant, 3), _number(r.s, 4), f"{r.n_valid}/{r.n}")
+    setpoints = [plain(one.of(i)) for one in shown]
+    mark = mark_of(r.status, r.flags) if isfinite(r.mu_resultant) else ""
+    found = (_number(r.mu_resultant, 3) + mark, _number(r.s, 4), f"{r.n_valid}/{r.n}")
     status = f"{r.status.value}{': ' + r.reason if r.reason else ''} {r.flags}".strip()
     mu = r.mu_resultant if isfinite(r.mu_resultant) else None
-    return Row((i.compound, *map(str, setpoints), *found, status), at, i.compound, mu, i.condition)
+    return Row((i.compound, *setpoints, *found, status), i, i.compound, mu, i.condition, mark)
 
 
 def _number(value: float, decimals: int) -> str:
@@ -89,7 +109,7 @@ def condition(folder: Path, number: int, columns: int) -> tuple[Row, tuple[Repea
     """Read a condition and its repeats with traces of ``columns`` columns; raises StoreError, sqlite3.Error."""
     with RunReader(folder) as reader:
         measured = next(one for one in results_of(reader).conditions() if one.info.condition == number)
-        return _row(measured), tuple(
+        return _row(measured, ()), tuple(
             RepeatRow(
                 one.repeat,
                 one.result.mu_resultant if isfinite(one.result.mu_resultant) else None,
@@ -122,27 +142,30 @@ def _trace(reader: RunReader, condition: int, repeat: int, columns: int) -> tupl
 
 def row_words(row: Row) -> str:
     """Return a condition's setpoints in words."""
-    load_n, slip_mm_s, temperature_c, sideslip_deg = row.at
-    return f"{row.compound}: {slip_mm_s:g} mm/s, {load_n:g} N, {sideslip_deg:g}°, {temperature_c:g} °C"
+    return condition_words(row.held)
 
 
-def series(stored: Stored, row: Row, axis: int) -> list[Row]:
+def series(stored: Stored, row: Row, along: Axis) -> list[Row]:
     """Return the conditions with a value that differ from ``row`` along one axis at most."""
 
     def others(one: Row) -> tuple[object, ...]:
-        return one.compound, *one.at[:axis], *one.at[axis + 1 :]
+        return one.compound, *(other.of(one.held) for other in AXES if other is not along)
 
     return [one for one in stored.rows if one.mu is not None and others(one) == others(row)]
 
 
-def points(stored: Stored, axis: int, chosen: Row | None = None) -> list[Point]:
+def points(stored: Stored, along: Axis, chosen: Row | None = None) -> list[Point]:
     """Return the conditions as points of mu against an axis; the sign is the compound's first letter or digit.
 
     Where a ``chosen`` row has a series along the axis, that is drawn as ``●`` and everything else as ``·``.
     """
-    marked = series(stored, chosen, axis) if chosen is not None else []
+    marked = series(stored, chosen, along) if chosen is not None else []
+
+    def own(row: Row) -> str:
+        return _sign(row) if len(marked) < 2 else SERIES
+
     return [
-        Point(row.at[axis], row.mu, _sign(row) if len(marked) < 2 else SERIES if row in marked else OTHER)
+        Point(along.of(row.held), row.mu, OTHER if len(marked) > 1 and row not in marked else row.mark or own(row))
         for row in stored.rows
         if row.mu is not None
     ]

@@ -17,7 +17,8 @@ from sim.slip import cornering_factor, predict, predict_forces, slip_velocity, t
 from sim.wear import radius_loss_mm, running_in_factor
 
 EXACT = SimParameters(noise=0.0, scatter=0.0, running_in=0.0, ambient=25.0)
-ROUND = replace(EXACT, contact=ContactParameters(runout=0.0))
+ROUND = replace(EXACT, contact=ContactParameters(runout=0.0, growth=0.0))
+"""A round wheel that heat does not make larger: a press that stands still keeps its load."""
 WHEEL_RAD_S = 0.8 / 0.045
 
 
@@ -221,6 +222,16 @@ def test_a_minute_at_200_n_wears_34_um_off_the_radius() -> None:
         plant.advance(0.01, rad_s, 0.5, press_mm + lost_mm, 0.0, 0.0, 0.0, 0.0)
     assert 0.5 * (90.0 - plant.diameter_mm) == pytest.approx(0.034, abs=2e-4)
     assert plant.force_z_n == pytest.approx(200.0, rel=1e-3)
+
+
+def test_a_tread_that_heat_makes_larger_is_pressed_harder() -> None:
+    cold, warm = mounted(), mounted(replace(ROUND, contact=ContactParameters(runout=0.0, growth=0.01)))
+    for plant in (cold, warm):
+        plant.heat.set_rubber(plant.parameters.ambient + 10.0)
+        plant.advance(0.001, WHEEL_RAD_S, 0.8, press_for(200.0), 0.0, 0.0, 0.0, 0.0)
+    deeper = ContactModel(ContactParameters()).depth_mm(200.0) + 0.5 * 10.0 * 0.01
+    assert cold.force_z_n == pytest.approx(200.0, rel=1e-3)
+    assert warm.force_z_n == pytest.approx(ContactModel(ContactParameters()).load_n(deeper, 0.0), rel=2e-3)
 
 
 def test_worn_wheel_touches_later_and_runs_slower() -> None:

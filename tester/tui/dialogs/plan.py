@@ -8,6 +8,8 @@ from pydantic import JsonValue
 from textual.widget import Widget
 from textual.widgets import Static
 
+from tester.axes import condition_words
+from tester.recipe.plan import Setpoint
 from tester.service.commands import ShowPlan
 from tester.tui.dialogs.dialog import Dialog, line
 from tester.tui.dialogs.start import totals
@@ -67,12 +69,8 @@ def _words(step: dict[str, JsonValue]) -> str:
     kind = clean(str(step.get("kind", "")))
     match kind:
         case "condition":
-            angles = f", {_number(step, 'sideslip_deg'):g}°" if _number(step, "sideslip_deg") else ""
-            return (
-                f"condition {_number(step, 'condition'):g}  {clean(str(step.get('compound', '')))}: "
-                f"{1e3 * _number(step, 'slip_velocity_m_s'):g} mm/s, {_number(step, 'load_n'):g} N, "
-                f"{_number(step, 'temperature_c'):g} °C{angles}"
-            )
+            held = Setpoint(clean(str(step.get("compound", ""))), *(_number(step, one) for one in Setpoint._fields[1:]))
+            return f"condition {_number(step, 'condition'):g}  {condition_words(held)}"
         case "install":
             return f"install wheel {_number(step, 'wheel'):g}: {clean(str(step.get('compound', '')))}"
         case "pre_grind":

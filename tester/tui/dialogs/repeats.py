@@ -16,7 +16,7 @@ from tester.store.schema import StoreError
 from tester.tui.dialogs.dialog import Dialog, line
 from tester.tui.dialogs.exclude import ExcludeDialog
 from tester.tui.plot import Canvas, Range
-from tester.tui.stored import RepeatRow, Row, Stored, condition, row_words
+from tester.tui.stored import FIGURES, RepeatRow, Row, Stored, condition, row_words
 from tester.tui.widgets.panel import FAINT, Parts, rows
 from tester.tui.words import clean, fit, number
 
@@ -48,7 +48,7 @@ class RepeatsDialog(Dialog):
             yield line("reading …", id="repeats")
 
     def _heading(self) -> Parts:
-        mu, s, n, status = self.row.cells[5:]
+        mu, s, n, status = self.row.cells[-len(FIGURES) :]
         return [(clean(f"{row_words(self.row)}  mu {mu}  s {s}  n {n}  {status}"), "bold")]
 
     def on_mount(self) -> None:

@@ -13,26 +13,30 @@ from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.widgets import DataTable
 
+from tester.axes import AXES
 from tester.service.commands import ListRuns
 from tester.store.schema import StoreError
 from tester.tui.dialogs.export import ExportDialog
 from tester.tui.dialogs.plot import PlotDialog
 from tester.tui.dialogs.repeats import RepeatsDialog
-from tester.tui.stored import HEADER, Row, Stored, read
+from tester.tui.stored import FIGURES, Row, Stored, read
 from tester.tui.views.view import Keys, View
 from tester.tui.widgets.scatter import PlotPanel
 from tester.tui.words import clean, minutes
 
 RUN_HEADER = ("Run", "Recipe", "Status", "Values", "Rig time", "Started")
+EMPTY = ("Formula", *(one.title for one in AXES if one.paper), *FIGURES)
+"""Columns of the conditions while no run is chosen."""
 MISSING = (StoreError, OSError, sqlite3.Error)
 HELP = """\
 Above the stored runs, below the conditions of the chosen one in the export's columns, with s (between repeats) and
-n (valid of planned). The plot is mu against one setpoint; a point's sign is its compound, + is several. What differs
+n (valid of planned). Behind mu, and as a point's sign, ! is a number that is not to be trusted, ? one with a doubt that
+its status names. The plot is mu against one setpoint; a point's sign is its compound, + is several. What differs
 from the chosen condition in more than that setpoint is a faint dot.
 
 Enter   on a run: read it. On a condition: its repeats, with traces, and why one is not in the mean; Enter there
         leaves a repeat out, or takes it in again, with a reason that goes on record. Nothing is ever deleted.
-p       plot against load, slip, temperature, angle.
+p       plot against load, slip, temperature, angle, and camber or wheel speed where they differ.
 e       export a table to a file.
 g       look for runs again.
 """
@@ -65,7 +69,7 @@ class ResultsView(View):
         runs = TextTable(id="runs", cursor_type="row", zebra_stripes=False)
         runs.add_columns(*(Text(title) for title in RUN_HEADER))
         conditions = TextTable(id="conditions", cursor_type="row")
-        conditions.add_columns(*(Text(title) for title in HEADER))
+        conditions.add_columns(*(Text(title) for title in EMPTY))
         runs.border_title, conditions.border_title = "Runs", "Conditions"
         yield runs
         yield conditions
@@ -161,10 +165,12 @@ class ResultsView(View):
         again = self.stored is not None and self.stored.folder == stored.folder
         at, axis = (table.cursor_row, self.query_one(PlotPanel).axis) if again else (0, 0)
         self.stored = stored
-        table.clear()
+        table.clear(columns=True)
+        table.add_columns(*(Text(title) for title in stored.header))
         for row in stored.rows:
             table.add_row(*(Text(clean(cell, 80)) for cell in row.cells))
         table.border_title = Text(f"{clean(stored.name)}: {clean(stored.recipe)}, {clean(stored.status)}")
+        table.border_subtitle = Text(f"all: {clean(stored.common)}" if stored.common else "")
         table.move_cursor(row=at)
         self._plot(axis)
 

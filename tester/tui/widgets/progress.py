@@ -23,7 +23,8 @@ class ProgressPanel(Panel):
         if not progress.steps:
             return idle_words(scene, width)
         share = min(max(progress.share, 0.0), 1.0)
-        whole = _line("Campaign", share, f"{100 * share:3.0f} %   {hours(progress.left_s)} h left", width)
+        left = f"   {hours(progress.left_s)} h left" if progress.left_s is not None else ""
+        whole = _line("Campaign", share, f"{100 * share:3.0f} %{left}", width)
         return rows([whole, _repeat(progress, width), _step(progress, state.soak, state.gates, width)])
 
 
@@ -67,13 +68,18 @@ def _step(progress: ProgressView, soak: SoakView | None, gates: tuple[Gate, ...]
         text += f": {clean(progress.phase)}"
     if soak is not None:
         words = soak_words(soak)
+        if len(text) + 3 + len(words) > width:  # the condition comes first
+            words = soak_words(soak, short=True)
         return [fit(text, max(width - len(words) - 3, 0)), "   ", fit(words, width)]
     if progress.burst and (closed := [clean(gate.key) for gate in gates if not gate.open]):
         text += f"   waits for {', '.join(closed)}"
     return [fit(text, width)]
 
 
-def soak_words(soak: SoakView) -> str:
-    """Return a soak in words: 39.6 of 40.0 ± 1.0 °C, in band 3:10 of 10:00."""
+def soak_words(soak: SoakView, *, short: bool = False) -> str:
+    """Return a soak in words: 39.6 of 40.0 ± 1.0 °C, in band 3:10 of 10:00; ``short``: 39.6 of 40.0 °C 3:10/10:00."""
+    if short:
+        at = f"{number(soak.surface_c, 1)} of {soak.target_c:.1f} °C"
+        return f"{at} {minutes(soak.in_band_s)}/{minutes(soak.for_s)}"
     band = f"{number(soak.surface_c, 1)} of {soak.target_c:.1f} ± {soak.within_k:.1f} °C"
     return f"{band}, in band {minutes(soak.in_band_s)} of {minutes(soak.for_s)}"

@@ -26,7 +26,7 @@ def said(*arguments: str) -> int:
 def test_it_says_what_the_condition_has_become(home: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert said("exclude", "one", "2/1", "--reason", "debris") == 0
     captured = capsys.readouterr()
-    assert captured.out == "" and captured.err.startswith("2/1 excluded: 1#, 300 mm/s, 200 N, 0°, 25 °C: ok")
+    assert captured.out == "" and captured.err.startswith("2/1 excluded: 1#, 300 mm/s, 200 N, 25 degC: ok")
     assert captured.err.endswith("n 3 of 3\n")
 
 

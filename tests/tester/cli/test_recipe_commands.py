@@ -88,3 +88,30 @@ def test_schema_prints_the_packaged_schema(folder: Path, capsys: pytest.CaptureF
     assert invoke(["schema"]) == 0
     schema = json.loads(capsys.readouterr().out)
     assert schema["required"] == ["recipe", "specimens"]
+
+
+def test_plan_says_what_a_precision_takes(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert invoke(["plan", "quickstart", "--precision", "2%"]) == 0
+    out = capsys.readouterr().out
+    assert "repeatability     2 % (type A, expanded, 95 %)" in out
+    assert "nothing is stored" in out
+
+
+def test_plan_gives_the_rig_time_with_its_range(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert invoke(["plan", "quickstart", "--json"]) == 0
+    data = json.loads(capsys.readouterr().out)
+    assert data["rig_seconds_low"] < data["rig_seconds"] < data["rig_seconds_high"]
+
+
+def test_plan_refuses_a_total_below_what_the_instruments_have(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert invoke(["plan", "quickstart", "--total", "0.5%"]) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert "from the instruments alone (95 %), of which" in err
+
+
+@pytest.mark.parametrize("arguments", [["--precision", "0%"], ["--precision", "2%", "--total", "5%"]])
+def test_a_precision_that_makes_no_sense_is_a_usage_error(folder: Path, arguments: list[str]) -> None:
+    assert invoke(["plan", "quickstart", *arguments]) == 2

@@ -116,6 +116,8 @@ class Bench:
     follow: bool = True
     zero_n: float = 0.0
     """What the unloaded cell shows of the normal force without a tare, N."""
+    pressed_mm: float = 11.0
+    """Where the press stands in contact, mm."""
     off_n: float = 0.0
     """How far the load in contact is off its demand, N."""
     warming_k_s: float = 0.0
@@ -179,7 +181,7 @@ class Bench:
         r.wheel_angle_rev += r.wheel_speed_m_s * dt / (r.diameter_mm * 3.141592653589793e-3)
         touching = d.press is Press.LOAD and d.enabled
         self.ctx.contact.in_contact = touching
-        r.press_mm = 11.0 if touching else 0.0
+        r.press_mm = self.pressed_mm if touching else 0.0
         r.force_z_n = d.load_n + self.off_n if touching else self.zero_n - self.cell.tare[2]
         r.force_x_n = self.mu * r.force_z_n if touching else 0.0
         if touching and r.slip_m_s > 0.1:

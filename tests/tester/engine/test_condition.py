@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from math import isnan
 
 import pytest
 
 from tester.analysis.results import RepeatStatus
 from tester.engine.bursts import Ending, MeasureRepeat
-from tester.engine.condition import ConditionEnd, MeasureCondition, RepeatOutcome, RollCheck, wear_check
+from tester.engine.condition import ConditionEnd, MeasureCondition, RepeatOutcome
 from tester.engine.context import Context
-from tester.engine.thermal_steps import roll
 from tester.process import Press
 from tester.recipe.plan import ConditionStep
 from tester.rig import RigConfig
@@ -40,6 +38,9 @@ class Results:
 
     def over(self, step: ConditionStep) -> ConditionEnd | None:
         return None
+
+    def another(self, step: ConditionStep) -> bool:
+        return sum(one.condition.condition == step.condition for one in self.finished) < step.repeats
 
     def attempt(self, step: ConditionStep, repeat: int) -> int:
         return 1
@@ -157,46 +158,12 @@ def test_what_one_repeat_has_learned_the_next_one_begins_with(bench: Bench) -> N
     assert first.offset_k > 1.0 and second.offset_k >= first.offset_k
 
 
-def test_an_unchecked_wheel_is_measured_at_once() -> None:
-    assert wear_check(STEP, 0.8) == ()
-
-
-def test_a_wear_check_by_a_person_is_not_the_conditions_business() -> None:
-    assert wear_check(replace(STEP, wear_check="prompt"), 0.8) == ()
-
-
 def test_a_wear_check_comes_before_the_soak(bench: Bench) -> None:
     condition = MeasureCondition(replace(STEP, wear_check="each_condition"), Results(), [])
     bench.run(condition, 4000.0)
     loads = [demand.load_n for demand in bench.demands if demand.press is Press.LOAD]
     assert loads[0] == 50.0 and loads[-1] == 200.0
     assert len(bench.notes.texts("wear")) == 1
-
-
-def roll_check(bench: Bench) -> None:
-    bench.run(roll(0.8, 50.0))
-    bench.run(RollCheck())
-
-
-def test_the_first_roll_check_is_the_wheel_s_reference(bench: Bench) -> None:
-    bench.ctx.wheel.loss_mm = 0.2
-    roll_check(bench)
-    wheel = bench.ctx.wheel
-    assert not isnan(wheel.check_press_mm) and wheel.loss_mm == pytest.approx(0.2)
-
-
-def test_a_press_that_stands_deeper_tells_the_loss_of_diameter(bench: Bench) -> None:
-    wheel = bench.ctx.wheel
-    wheel.loss_mm, wheel.check_press_mm, wheel.check_loss_mm = 0.3, 10.9, 0.1
-    roll_check(bench)
-    assert wheel.loss_mm == pytest.approx(0.1 + 2.0 * 0.1)
-
-
-def test_a_roll_check_never_makes_a_wheel_larger_than_new(bench: Bench) -> None:
-    wheel = bench.ctx.wheel
-    wheel.check_press_mm, wheel.check_loss_mm = 11.5, 0.1
-    roll_check(bench)
-    assert wheel.loss_mm == 0.0
 
 
 def test_on_a_rig_the_wheel_is_lifted_when_the_next_repeat_begins(noisy_run: Simulation) -> None:

@@ -31,7 +31,7 @@ def test_the_plan_lists_wheels_steps_and_totals() -> None:
     assert "wheel 1: 1#, 4 conditions, " in text
     assert "pre-grind 4 min, 200 N, wheel / belt 0.8 / 0.6 m/s" in text
     assert "rest at least 20 min, to 25 degC +- 2 K" in text
-    assert "   1  300 mm/s  100 N  25 degC  5 x 30 rev" in text
+    assert "   1  300 mm/s, 100 N, 25 degC  5 x 30 rev" in text
     assert "conditions        4, 20 repeats" in text
     assert "sliding distance" in text
     assert "peak temperature" in text
@@ -39,7 +39,7 @@ def test_the_plan_lists_wheels_steps_and_totals() -> None:
 
 def test_angles_are_named_where_there_are_any() -> None:
     text = "\n".join(described(SMALL.replace("name: load", "name: load\n    sideslip: 10 deg\n    camber: -2 deg")))
-    assert "300 mm/s  100 N  sideslip 10 deg  camber -2 deg  25 degC" in text
+    assert "300 mm/s, 100 N, sideslip 10 deg, camber -2 deg, 25 degC" in text
 
 
 def test_json_is_one_object_with_a_step_a_line() -> None:

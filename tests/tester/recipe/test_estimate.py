@@ -74,8 +74,8 @@ def test_friction_heats_the_surface_with_the_square_root_of_time() -> None:
 
 def test_more_friction_needs_more_bursts() -> None:
     mild, hard = condition(MILD), condition(HARD)
-    assert mild.bursts == 1
-    assert hard.bursts > 3
+    assert mild.bursts == 3  # each warms, and ends at half the window of 30 revolutions
+    assert hard.bursts > 4
     assert hard.seconds > mild.seconds
 
 
@@ -108,7 +108,7 @@ def test_braking_slides_as_far_as_driving() -> None:
 
 def test_camber_alone_does_not_change_the_friction() -> None:
     straight, tilted = condition(MILD), condition(MILD._replace(camber_deg=5.0))
-    assert tilted.friction_j == pytest.approx(straight.friction_j, rel=0.2)
+    assert tilted.friction_j / tilted.sliding_m == pytest.approx(straight.friction_j / straight.sliding_m, rel=1e-9)
 
 
 def test_a_compound_without_a_model_is_estimated_with_a_round_coefficient() -> None:
@@ -137,7 +137,8 @@ def test_cooling_a_hub_from_85_degrees_takes_most_of_an_hour() -> None:
     text = PREPARED.replace("[40 degC, 25 degC]", "85 degC").replace(
         '- compound: "1#"', '- compound: "1#"\n  - compound: "2#"'
     )
-    plan, figures = planned(text)
+    plan = expand(recipe(text), real_rig())
+    figures = estimate(plan, real_rig())
     (cool,) = [one for step, one in zip(plan.steps, figures.steps, strict=True) if step.kind == "cool"]
     assert 25 * 60 < cool.seconds < 90 * 60
 

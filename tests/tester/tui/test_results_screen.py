@@ -9,6 +9,8 @@ import pytest
 from textual.widgets import Input
 
 from tester import export
+from tester.axes import axis
+from tester.recipe.plan import Setpoint
 from tester.service.commands import Stop
 from tester.store.reader import RunReader
 from tester.tui.dialogs.exclude import ExcludeDialog
@@ -18,15 +20,17 @@ from tester.tui.views.results import ResultsView
 from tests.tester.store.build import small_run
 from tests.tester.tui.stage import Stage, play
 
-ROW = Row((), (200.0, 300.0, 25.0, 0.0), "1#", 0.7, 1)
+HELD = Setpoint("1#", 0.3, 200.0, 0.0, 0.0, 25.0, 0.8)
+ROW = Row((), HELD, "1#", 0.7, 1)
 ROWS = (
     ROW,
-    replace(ROW, at=(300.0, 300.0, 25.0, 0.0), condition=2),
-    replace(ROW, at=(200.0, 300.0, 40.0, 0.0), condition=3),
-    replace(ROW, at=(300.0, 300.0, 25.0, 0.0), compound="2#", condition=4),
-    replace(ROW, at=(400.0, 300.0, 25.0, 0.0), mu=None, condition=5),
+    replace(ROW, held=HELD._replace(load_n=300.0), condition=2),
+    replace(ROW, held=HELD._replace(temperature_c=40.0), condition=3),
+    replace(ROW, held=HELD._replace(load_n=300.0, compound="2#"), compound="2#", condition=4),
+    replace(ROW, held=HELD._replace(load_n=400.0), mu=None, condition=5),
+    replace(ROW, held=HELD._replace(load_n=500.0, camber_deg=5.0), condition=6),
 )
-STORED = Stored("run", Path(), "some recipe", "finished", ROWS)
+STORED = Stored("run", Path(), "some recipe", "finished", (), "", ROWS)
 
 
 def a_run(folder: Path) -> Path:
@@ -47,16 +51,21 @@ async def at_repeats(on: Stage, run: Path) -> None:
 
 
 def test_the_series_of_a_condition_is_what_differs_along_one_axis_alone() -> None:
-    assert [row.condition for row in series(STORED, ROW, 0)] == [1, 2]
-    assert [row.condition for row in series(STORED, ROW, 2)] == [1, 3]
+    assert [row.condition for row in series(STORED, ROW, axis("load"))] == [1, 2]
+    assert [row.condition for row in series(STORED, ROW, axis("temperature"))] == [1, 3]
+
+
+def test_what_differs_in_camber_is_of_another_series_and_camber_can_be_plotted_against() -> None:
+    assert 6 not in [row.condition for row in series(STORED, ROW, axis("load"))]
+    assert [one.name for one in STORED.plotted] == ["load", "slip_velocity", "temperature", "sideslip", "camber"]
 
 
 def test_what_is_not_of_the_series_is_a_faint_dot() -> None:
-    assert [point.sign for point in points(STORED, 0, ROW)] == ["●", "●", "·", "·"]
+    assert [point.sign for point in points(STORED, axis("load"), ROW)] == ["●", "●", "·", "·", "·"]
 
 
 def test_a_condition_without_a_series_leaves_every_sign_as_it_is() -> None:
-    assert [point.sign for point in points(STORED, 1, ROW)] == ["1", "1", "1", "2"]
+    assert [point.sign for point in points(STORED, axis("slip_velocity"), ROW)] == ["1", "1", "1", "2", "1"]
 
 
 @pytest.mark.parametrize("size", [(80, 24), (120, 40)])
@@ -66,9 +75,9 @@ def test_the_plot_is_reached_at_every_size_and_names_its_series(size: tuple[int,
     async def act(on: Stage) -> None:
         await at_repeats(on, run)
         await on.pilot.press("escape", *(["p"] if size[0] < 110 else []))
-        assert "mu against load (N): ● 1#, 300 mm/s, 25 °C, 0 °   · others" in on.text()
+        assert "mu against load (N): ● 1#, 300 mm/s, 25 degC   · others" in on.text()
         await on.pilot.press("p")
-        assert "mu against slip (mm/s)" in on.text()
+        assert "mu against slip velocity (mm/s)" in on.text()
 
     play(act, tmp_path, size)
 

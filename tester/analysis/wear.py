@@ -1,0 +1,140 @@
+"""Wear of a wheel from checks of its diameter: the rate k = V / (F s), with its uncertainty, after the GUM.
+
+V is the volume worn off, F the normal load, s the distance slid; the product F s is summed up as it slides. A roll
+check is held against the first one of its series (the press's place has no zero of its own), so all checks of a
+series share what that one was off by: they are fitted together with an offset (generalised least squares), and what
+two of them give alone uses the same covariance.
+
+Contributions (JCGM 100:2008, 5.2): of every check by itself, the place of the press and the load in it, and the
+rubber's mean temperature (``u_mm``); of all together, how much the tread grows per kelvin (``u_growth_mm_k``); of the
+rate, load, slip and the tread's width (``u_rate_percent``).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import hypot, pi, sqrt
+from typing import TYPE_CHECKING
+
+from tester.analysis.results import NAN
+from tester.analysis.wear_check import NO_CONDITION, WearCheck
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+COVERAGE = 2.0
+"""Coverage factor for 95 %: most contributions are estimates of limits, taken as known (GUM G.6.4)."""
+
+
+@dataclass(frozen=True, slots=True)
+class WearRate:
+    """A wear rate in mm3/(N m) with its standard and expanded (95 %) uncertainty; NaN without two checks."""
+
+    rate: float = NAN
+    standard: float = NAN
+    checks: int = 0
+
+    @property
+    def expanded(self) -> float:
+        """Half the width of the interval that covers the rate with 95 %."""
+        return COVERAGE * self.standard
+
+    @property
+    def resolved(self) -> bool:
+        """Tell whether the interval leaves out 0: the checks have seen wear."""
+        return self.rate > self.expanded
+
+
+@dataclass(frozen=True, slots=True)
+class ConditionWear:
+    """What one condition took off: the diameter before and after, mm, its standard uncertainty, and the rate."""
+
+    before_mm: float
+    after_mm: float
+    u_mm: float
+    rate: WearRate
+
+
+def wheel_wear(checks: Sequence[WearCheck]) -> WearRate:
+    """Return the rate over a wheel's life: a line through the volume worn off against load times distance.
+
+    A rate that is not the same in all conditions scatters the checks about the line by more than they state; the
+    uncertainty of their mean is then widened by that scatter (Birge ratio).
+    """
+    used = [one for one in checks if one.used]
+    references = sorted({one.reference_s for one in used})
+    count, unknown = len(used), len(references) + 1
+    if count < unknown or len({one.exposure_n_m for one in used}) < 2:
+        return WearRate(checks=count)
+    import numpy as np  # only runs with checks pay for it
+
+    first = [next(one for one in used if one.reference_s == at) for at in references]
+    volumes, covariance = _volumes(used, {one.reference_s: one for one in first})
+    design = np.zeros((count, unknown))
+    for i, one in enumerate(used):
+        design[i, references.index(one.reference_s)] = 1.0
+        design[i, -1] = one.exposure_n_m - used[0].exposure_n_m
+    if np.linalg.matrix_rank(design) < unknown:
+        return WearRate(checks=count)
+    weights = np.linalg.inv(covariance)
+    spread = np.linalg.inv(design.T @ weights @ design)
+    found = spread @ design.T @ weights @ volumes
+    off = volumes - design @ found
+    rate, variance = float(found[-1]), float(spread[-1, -1])
+    if count > unknown:
+        variance *= max(float(off @ weights @ off) / (count - unknown), 1.0)
+    relative = 0.01 * max(one.u_rate_percent for one in used)
+    return WearRate(rate, hypot(sqrt(variance), relative * rate), count)
+
+
+def condition_wear(checks: Sequence[WearCheck], condition: int) -> ConditionWear | None:
+    """Return what a condition took off, from the check before it and the one after; None without both."""
+    used = [one for one in checks if one.used]
+    after = next((one for one in used if one.after == condition), None)
+    if condition == NO_CONDITION or after is None:
+        return None
+    earlier = [
+        one for one in used
+        if one.before == condition and one.reference_s == after.reference_s and one.wheel == after.wheel
+    ]  # fmt: skip
+    if not earlier:
+        return None
+    before = earlier[0]
+    exposure = after.exposure_n_m - before.exposure_n_m
+    pair = [before, after]
+    volumes, covariance = _volumes(pair, {after.reference_s: before})
+    variance = float(covariance[0, 0] + covariance[1, 1] - 2.0 * covariance[0, 1])
+    u_mm = sqrt(variance) / _volume_per_mm(before)
+    if not exposure > 0.0:
+        return ConditionWear(before.diameter_mm, after.diameter_mm, u_mm, WearRate(checks=2))
+    rate = float(volumes[1] - volumes[0]) / exposure
+    relative = 0.01 * max(one.u_rate_percent for one in pair)
+    standard = hypot(sqrt(variance) / exposure, relative * rate)
+    return ConditionWear(before.diameter_mm, after.diameter_mm, u_mm, WearRate(rate, standard, 2))
+
+
+def _volumes(
+    checks: Sequence[WearCheck], first: dict[float, WearCheck]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return the volume that each has lost since the first of its series, mm3, and the covariance of them all."""
+    import numpy as np
+
+    lost: list[float] = []
+    alone: list[float] = []
+    growth: list[float] = []
+    for one in checks:
+        start = first[one.reference_s]
+        per_mm = _volume_per_mm(one)
+        lost.append(0.25 * pi * one.width_mm * (start.diameter_mm**2 - one.diameter_mm**2))
+        alone.append((per_mm * one.u_mm) ** 2)
+        growth.append(per_mm * one.u_growth_mm_k * (one.rubber_c - start.rubber_c))
+    shared = np.array(growth)
+    return np.array(lost), np.diag(alone) + np.outer(shared, shared)
+
+
+def _volume_per_mm(check: WearCheck) -> float:
+    """Return dV/dD in mm2: half the tread's surface."""
+    return 0.5 * pi * check.width_mm * check.diameter_mm
+

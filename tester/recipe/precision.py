@@ -1,0 +1,126 @@
+"""What a precision takes, and what no number of repeats can reach.
+
+``until`` is type A alone: the expanded repeatability of a mean. What the instruments add does not average out; a total
+uncertainty below that floor is refused.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from math import inf, sqrt
+
+from sim.slip import slip_velocity
+from tester.analysis.repeatability import Pool
+from tester.analysis.uncertainty import Contribution, friction_budget
+from tester.recipe.cost import ROLLING_M_S
+from tester.recipe.estimate import Estimate, Estimator
+from tester.recipe.plan import ConditionStep, Plan
+from tester.recipe.repeats import HISTORIC_PERCENT, needed, reached_percent
+from tester.recipe.schema import MAX_REPEATS, Recipe, RepeatsModel
+
+
+class PrecisionError(Exception):
+    """A total uncertainty that cannot be reached; the message names the floor and its largest term."""
+
+
+@dataclass(frozen=True, slots=True)
+class Floor:
+    """Expanded uncertainty (95 %) that repeating does not lower, per cent of the coefficient, and its largest term."""
+
+    percent: float
+    largest: str
+    largest_percent: float
+    """Expanded, as the floor is."""
+    step: ConditionStep
+
+
+def floors(plan: Plan, estimator: Estimator) -> Iterator[Floor]:
+    """Yield the floor of every condition that slips."""
+    known: dict[tuple[str, float, float, float, float, float], Floor] = {}
+    for step in plan.conditions():
+        sp = step.setpoint
+        slip_m_s = slip_velocity(sp.wheel_speed_m_s, sp.belt_speed_m_s, sp.sideslip_deg)[2]
+        if slip_m_s < ROLLING_M_S:
+            continue
+        key = (sp.compound, sp.temperature_c, sp.load_n, slip_m_s, sp.sideslip_deg, sp.camber_deg)
+        if key not in known:
+            mu = estimator.costs.mu(sp.compound, sp.temperature_c, sp.load_n, slip_m_s, sp.sideslip_deg)
+            found = friction_budget(mu, sp.load_n, slip_m_s, Contribution("repeatability", 0.0))
+            worst = max(found.contributions, key=lambda one: one.standard)
+            share = 100.0 * found.coverage / mu
+            known[key] = Floor(share * found.standard, worst.name, share * worst.standard, step)
+        yield known[key]
+
+
+def until_for_total(total_percent: float, plan: Plan, estimator: Estimator) -> float:
+    """Return the repeatability (expanded, per cent) with which every condition has this total uncertainty.
+
+    Raises PrecisionError where the instruments alone have more.
+    """
+    highest = max(floors(plan, estimator), key=lambda one: one.percent, default=None)
+    if highest is None:
+        return total_percent
+    if total_percent <= highest.percent:
+        sp = highest.step.setpoint
+        where = f"{sp.compound}, {1e3 * sp.slip_velocity_m_s:g} mm/s, {sp.load_n:g} N, {sp.temperature_c:g} degC"
+        largest = f"{highest.largest} {highest.largest_percent:.2f} %"
+        raise PrecisionError(
+            f"a total uncertainty of {total_percent:g} % cannot be reached: {where} has {highest.percent:.2f} % from "
+            f"the instruments alone (95 %), of which {largest}; repeating does not lower it"
+        )
+    return sqrt(total_percent**2 - highest.percent**2)
+
+
+def with_precision(recipe: Recipe, percent: float) -> Recipe:
+    """Return a recipe that repeats each condition until its expanded repeatability is this, however often it takes."""
+
+    def unbounded(repeats: RepeatsModel) -> RepeatsModel:
+        return repeats.model_copy(update={"at_most": MAX_REPEATS})
+
+    if recipe.measure is None:
+        return recipe
+    measure = recipe.measure.model_copy(update={"until": percent, "repeats": unbounded(recipe.measure.repeats)})
+    grids = [
+        grid.model_copy(update={"until": None, "repeats": None if grid.repeats is None else unbounded(grid.repeats)})
+        for grid in recipe.grids
+    ]
+    return recipe.model_copy(update={"measure": measure, "grids": grids})
+
+
+def precision_lines(plan: Plan, estimate: Estimate, estimator: Estimator, pools: Mapping[str, Pool]) -> Iterator[str]:
+    """Yield what the precision takes, where a plan asks for one: repeats, where s is from, what stands beside it."""
+    asked = [step for step in plan.conditions() if step.until_percent is not None]
+    if not asked:
+        return
+    made = [
+        one.repeats
+        for step, one in zip(plan.steps, estimate.steps, strict=True)
+        if isinstance(step, ConditionStep) and step.until_percent is not None
+    ]
+    wanted = sorted({step.until_percent for step in asked if step.until_percent is not None})
+    words = ", ".join(f"{percent:.3g} %" for percent in wanted)
+    yield f"repeatability     {words} (type A, expanded, 95 %): {min(made):.0f} to {max(made):.0f} repeats a condition"
+    for compound in dict.fromkeys(step.setpoint.compound for step in asked):
+        pool = pools.get(compound)
+        source = f"{pool.df} degrees of freedom in stored runs" if pool else "assumed: nothing is stored"
+        yield f"                  {compound}: s = {estimator.costs.s_percent(compound):.2g} % between repeats, {source}"
+    short = [step for step in asked if _short(step, estimator)]
+    if short:
+        step = short[0]
+        most = reached_percent(step, estimator.costs.s_percent(step.setpoint.compound))
+        yield f"                  at_most {step.at_most} repeats reach {most:.2g} % only, in {len(short)} conditions"
+    highest = max(floors(plan, estimator), key=lambda one: one.percent, default=None)
+    if highest is not None:
+        least = min(one.percent for one in floors(plan, estimator))
+        part = f"largest: {highest.largest}, {highest.largest_percent:.2g} %"
+        yield f"                  the instruments add {least:.2g} to {highest.percent:.2g} % ({part})"
+
+
+def _short(step: ConditionStep, estimator: Estimator) -> bool:
+    return needed(step.until_percent or inf, estimator.costs.s_percent(step.setpoint.compound)) > step.at_most
+
+
+def s_percents(pools: Mapping[str, Pool]) -> dict[str, float]:
+    """Return the standard deviation between repeats to be expected of each compound, per cent."""
+    return {compound: pool.s_percent if pool.df else HISTORIC_PERCENT for compound, pool in pools.items()}

@@ -1,0 +1,56 @@
+"""How many repeats a condition is expected to take: refused ones are made up for, ``until`` goes on to a precision."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from math import inf, sqrt
+from typing import TYPE_CHECKING, Final
+
+from tester.analysis.judge import ALONE
+from tester.analysis.quantiles import t_quantile
+from tester.analysis.repeats import REPEATABILITY
+from tester.analysis.uncertainty import CONFIDENCE
+from tester.recipe.schema import MAX_REPEATS
+from tester.recipe.settings import LEAST_REPEATS
+
+if TYPE_CHECKING:
+    from tester.recipe.cost import Procedure
+
+MADE_UP: Final = 0.01
+"""Share of good repeats that is refused and made up for, where the coefficient stands still [A]; show it with
+`python -m tests.repeats`."""
+HISTORIC_PERCENT: Final = 100.0 * REPEATABILITY
+"""Standard deviation between repeats where nothing is stored, per cent of the coefficient [A]."""
+POOLED_DF: Final = 30
+"""Degrees of freedom from which on a run's pooled standard deviation counts as known: t is within 5 % of its limit."""
+SURE: Final = (0.75, 1.3)
+"""A run's own standard deviation over the one expected, 95 % of runs: chi-square with the degrees of freedom above."""
+
+
+@lru_cache(maxsize=1024)
+def needed(until_percent: float, s_percent: float, df: int = POOLED_DF) -> int:
+    """Return the repeats after which the expanded repeatability (95 %) is reached, at most MAX_REPEATS.
+
+    ``s_percent``: standard deviation between repeats, per cent; ``df``: its degrees of freedom before this condition.
+    The mean of n repeats has t(0.975, df + n - 1) s / sqrt(n); fewer than LEAST_REPEATS never count.
+    """
+    for n in range(LEAST_REPEATS, MAX_REPEATS):
+        if t_quantile(0.5 + 0.5 * CONFIDENCE, float(df + n - 1)) * s_percent <= until_percent * sqrt(n):
+            return n
+    return MAX_REPEATS
+
+
+def expected(how: Procedure, s_percent: float, df: int = POOLED_DF) -> float:
+    """Return the repeats that are expected to be made, up to ``at_most``."""
+    n = float(how.repeats)
+    if how.until_percent is not None:
+        n = max(n, float(needed(how.until_percent, s_percent, df)))
+    if how.repeats > ALONE:
+        n *= 1.0 + MADE_UP
+    return min(n, float(how.at_most))
+
+
+def reached_percent(how: Procedure, s_percent: float) -> float:
+    """Return the expanded repeatability (95 %) expected of ``at_most`` repeats, per cent; inf for a single one."""
+    n = how.at_most
+    return t_quantile(0.5 + 0.5 * CONFIDENCE, float(POOLED_DF)) * s_percent / sqrt(n) if n > 1 else inf
