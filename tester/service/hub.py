@@ -68,6 +68,15 @@ class Hub:
         return clock.monotonic() - self.began_s
 
     @property
+    def silent_s(self) -> float:
+        """Seconds without a sign of life of whoever controls."""
+        return clock.monotonic() - self.sign_s
+
+    def attended(self) -> None:
+        """Take a sign of life of whoever controls: silence counts from now on."""
+        self.sign_s = clock.monotonic()
+
+    @property
     def clients(self) -> ClientsView:
         """Who is connected."""
         return ClientsView(self.presence.controller, self.presence.controller_id, self.presence.viewers)
@@ -136,7 +145,7 @@ class Hub:
         for one in heard:
             if isinstance(one, Presence):
                 if one.signs != self.presence.signs:
-                    self.sign_s = clock.monotonic()
+                    self.attended()
                 self.presence = one
         return heard
 

@@ -231,19 +231,20 @@ class Service:
 
     def _by_hand(self, run: Run, hand: ManualExecutor, world: World | None, ports: Ports, record: RunWriter) -> float:
         """Tick manual mode to its end; return the seconds it took."""
-
-        began_s = clock.monotonic()
+        hub = self.desk.hub
+        hub.attended()  # whoever armed is there
 
         def poll(now_s: float) -> None:
             hand.expire(now_s)
-            if clock.monotonic() - max(self.desk.hub.sign_s, began_s) > SILENT_S and not hand.finished:
-                self.desk.tell("mode", f"manual mode ends: no sign of its screen for {SILENT_S:g} s", "warning")
-                hand.disarm()
             if self.orders.ending:
                 run.request_stop("the service ends", cool=False)
             if record.failed:
                 run.request_stop(f"manual mode can no longer be recorded: {record.failed}")
             self.desk.poll(now_s)
+            # Only now: signs that came while this process itself was held up have been heard.
+            if hub.silent_s > SILENT_S and not hand.finished:
+                self.desk.tell("mode", f"manual mode ends: no sign of its screen for {SILENT_S:g} s", "warning")
+                hand.disarm()
 
         if world is not None:
             return run_simulated(run, world, lapse=MANUAL_LAPSE, poll=poll)

@@ -17,7 +17,6 @@ import pytest
 from pydantic import JsonValue
 
 from recipes import UnknownRecipe
-from tester import clock
 from tester.campaign.endings import CannotStartError
 from tester.service.address import UnixAddress
 from tester.service.commands import RigAction
@@ -74,6 +73,10 @@ class Stage(Hub):
     def watched(self) -> bool:
         return True
 
+    @property
+    def silent_s(self) -> float:
+        return 1.1 if self.silent else 0.0
+
     def event(self, kind: str, text: str, severity: str = "info", t_s: float = 0.0, run: str = "") -> None:
         self.sequence += 1
         self.events.append(Event(self.sequence, t_s, "", kind, severity, text, run))
@@ -99,8 +102,6 @@ class Stage(Hub):
     def hear(self) -> list[Order | Presence]:
         assert self.service is not None
         self.polls += 1
-        if not self.silent:
-            self.sign_s = clock.monotonic()
         assert self.polls < MOST_POLLS, "the script does not come to its end"
         try:
             heard = next(self._script)

@@ -159,3 +159,20 @@ def test_a_client_that_is_killed_leaves_the_run_alone_and_term_leaves_at_standst
         process.kill()
         process.wait()
     assert not address.path.exists()
+
+
+@posix
+def test_a_sign_of_life_of_whoever_controls_ends_the_silence(hub: Hub) -> None:
+    async def story() -> None:
+        client = await connected(hub)
+        assert hub.silent_s == float("inf")
+        client.attend()
+        for _ in range(1000):
+            hub.hear()
+            if hub.silent_s < float("inf"):
+                break
+            await asyncio.sleep(0.01)
+        assert hub.silent_s < 10.0
+        await client.close()
+
+    asyncio.run(story())

@@ -375,11 +375,7 @@ def test_a_journal_of_manual_mode_is_no_run(tmp_path: Path) -> None:
     assert list(run_folders(tmp_path / "runs")) == []
 
 
-def test_a_screen_that_gives_no_sign_of_life_for_a_second_ends_the_mode(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("tester.service.service.SILENT_S", 0.1)
-
+def test_a_screen_that_gives_no_sign_of_life_for_a_second_ends_the_mode(tmp_path: Path) -> None:
     def script(stage: Stage) -> Script:
         yield from armed(stage)
         yield from jog(stage, Jog("both", 1))
