@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -20,13 +19,15 @@ from tester.service.protocol import SNAPSHOT_S
 from tester.service.state import DiskView, ManualView, ProgressView, RunView, StateView, TickView, Value
 from tester.service.values import unknown_values
 from tester.service.watch import RunWatch
-from tester.store.space import MARGIN
+from tester.store.space import MARGIN, FreeRoom
 
 UNWATCHED_S = 1.0
 """Period of states while nobody is connected, s: the gateway's trend goes on, at a rate that costs nothing."""
 SOONEST_S = 0.05
 """What a client has done is not shown sooner than this after what was shown last, s: nobody makes states by talking."""
 DISK_EVERY_S = 10.0
+DISK_FIRST_S = 1.0
+"""The first answer about the disk is waited for so long: the service is only beginning, s."""
 LOW_BYTES = 500_000_000
 """Less than this is low whatever the run needs [A]: one compound of Table 2 takes some tens of MB."""
 TREND = (
@@ -89,8 +90,9 @@ class Desk:
     _mode_since_s: float = 0.0
     _asked: int = 0
     _controller: int = 0
-    _disk: DiskView = field(default_factory=lambda: DiskView(0, 0, False))
+    _low: bool = False
     _disk_due_s: float = float("-inf")
+    _room: FreeRoom = field(init=False)
     _unknown: tuple[Value, ...] = ()
     alarms: AlarmList = field(init=False)
 
@@ -98,6 +100,9 @@ class Desk:
         """Begin with no alarm."""
         self.alarms = AlarmList(clock.utc_now, self._alarm_changed)
         self._unknown = unknown_values(self.rig)
+        self._room = FreeRoom(self.runs)
+        self._look_at_disk()
+        self._room.wait(DISK_FIRST_S)
 
     # -- runs -------------------------------------------------------------------------------------------------
 
@@ -306,21 +311,27 @@ class Desk:
             return TickView(0.0, 0.0, 0)
         return replace(self.tick, rate_hz=round(1.0 / self.watch.run.engine.period_s, 1))
 
+    def _look_at_disk(self) -> None:
+        self._disk_due_s = clock.monotonic() + DISK_EVERY_S
+        self._room.look()
+
     def _disk_view(self) -> DiskView:
-        wall_s = clock.monotonic()
-        if wall_s >= self._disk_due_s:
-            self._disk_due_s = wall_s + DISK_EVERY_S
-            where = self.runs if self.runs.is_dir() else Path()
-            free = shutil.disk_usage(where).free
-            was_low, low = self._disk.low, free < max(LOW_BYTES, MARGIN * self.needed)
-            self._disk = DiskView(free, self.needed, low)
-            text = f"{free / 1e6:.0f} MB free"
-            cause = Cause("disk nearly full", 2, text, "a run that cannot be recorded is stopped", "ack", free / 1e6,
-                          max(LOW_BYTES, MARGIN * self.needed) / 1e6, "MB")  # fmt: skip
-            self.alarms.set(low, cause, self.now_s)
-            if low and not was_low:
-                self.notify("disk", text)
-        return self._disk
+        if clock.monotonic() >= self._disk_due_s:
+            self._look_at_disk()
+        silent = Cause("disk silent", 2, f"{self.runs} does not say how much room is left",
+                       "a run that cannot be recorded is stopped")  # fmt: skip
+        self.alarms.set(self._room.hangs, silent, self.now_s)
+        free, least = self._room.free, max(LOW_BYTES, MARGIN * self.needed)
+        if free is None:
+            return DiskView(None, self.needed, self._low)
+        was_low, self._low = self._low, free < least
+        text = f"{free / 1e6:.0f} MB free"
+        cause = Cause("disk nearly full", 2, text, "a run that cannot be recorded is stopped", "ack", free / 1e6,
+                      least / 1e6, "MB")  # fmt: skip
+        self.alarms.set(self._low, cause, self.now_s)
+        if self._low and not was_low:
+            self.notify("disk", text)
+        return DiskView(free, self.needed, self._low)
 
     def _row(self, view: StateView) -> tuple[float | None, ...]:
         found = {value.key: value for value in view.values}

@@ -193,9 +193,12 @@ class BusView:
 
 @dataclass(frozen=True, slots=True)
 class DiskView:
-    """Space where runs are stored, in bytes. ``needed``: the estimate of the run under way, 0 without one."""
+    """Space where runs are stored, in bytes. ``needed``: the estimate of the run under way, 0 without one.
 
-    free: int
+    ``free`` is None where the disk does not say.
+    """
+
+    free: int | None
     needed: int
     low: bool
 
