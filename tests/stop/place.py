@@ -16,12 +16,15 @@ from tester import clock
 from tester.service.address import UnixAddress
 from tester.service.client import Client, NoServiceError
 from tester.service.commands import Control
+from tester.service.gateway_process import NICE as GATEWAY_NICE
 from tester.service.state import StateView
 from tester.service.stop_call import NotTakenError, StopCall
 from tests.stop.hostile import ALL_KINDS
 from tests.stop.owner import OPERATOR, SCANS, STOPS
 
 LOOK_S = 0.02
+START_S = 180.0
+"""The service is there by then: on a machine that is busy it was seen to take one minute."""
 ROLLING = 500
 """Scans over which the difference of both clocks is taken for constant."""
 
@@ -41,6 +44,8 @@ class Try:
 
 NICE = 10
 """Of hostile clients."""
+LOOP, NICED_LOOP = "loop.txt", "niced.txt"
+"""What the bare loops write: one that comes as the owner does, one as the gateway."""
 
 
 def started(*words: str, nice: int = 0) -> subprocess.Popen[bytes]:
@@ -68,20 +73,20 @@ class Place:
         self.address = UnixAddress(folder / "service.sock")
         self._owner = started("tests.stop.owner", str(folder))
         stack.callback(ended, self._owner)
-        loop = started("tests.stop.loop", str(folder / "loop.txt"))
-        stack.callback(ended, loop)
+        for file, nice in ((LOOP, 0), (NICED_LOOP, GATEWAY_NICE)):
+            stack.callback(ended, started("tests.stop.loop", str(folder / file), nice=nice))
         self._probes = 0
         self._random = Random(7)
 
     async def operator(self) -> Client:
         """Connect once the service is there, and control. Raises NotReachedError."""
-        end_s = clock.monotonic() + 30.0
+        end_s = clock.monotonic() + START_S
         while clock.monotonic() < end_s:
             try:
                 return await Client.connect(self.address, name="operator at the screen", control=True)
             except NoServiceError:
                 await asyncio.sleep(LOOK_S)
-        raise NotReachedError("no service")
+        raise NotReachedError(f"no service within {START_S:g} s")
 
     @contextmanager
     def attack(self) -> Iterator[None]:
@@ -159,9 +164,9 @@ class Place:
 
     # -- what was noted ---------------------------------------------------------------------------------------
 
-    def loop_late_s(self, from_s: float, to_s: float) -> float:
-        """Return the worst lateness of the bare loop in a time."""
-        rows = [line.split() for line in (self.folder / "loop.txt").read_text(encoding="utf-8").splitlines()]
+    def loop_late_s(self, from_s: float, to_s: float, file: str = LOOP) -> float:
+        """Return the worst lateness of a bare loop in a time."""
+        rows = [line.split() for line in (self.folder / file).read_text(encoding="utf-8").splitlines()]
         return max((float(row[1]) for row in rows if len(row) == 2 and from_s <= float(row[0]) <= to_s), default=0.0)
 
     def scans(self) -> list[tuple[float, float]]:
