@@ -26,6 +26,7 @@ from tester.engine.tickers import TickStatistics
 from tester.export import doubtful, write_all
 from tester.export.results import results_of
 from tester.lock import ExclusiveUse
+from tester.plain import plain_text
 from tester.provenance import recipe_source, rig_source, run_info, session_info
 from tester.recipe.check import load_checked
 from tester.recipe.estimate import Estimate, estimate
@@ -70,6 +71,15 @@ class Prepared:
     expected: Estimate
 
 
+def only_plain(**texts: str) -> None:
+    """Raise CannotStartError for a text of a person's that holds more than a line of characters, with its name."""
+    try:
+        for where, text in texts.items():
+            plain_text(text, where)
+    except ValueError as error:
+        raise CannotStartError(str(error), EXIT_USAGE) from error
+
+
 def prepared(recipe: str, rig_name: str, overrides: tuple[str, ...]) -> Prepared:
     """Read and plan a recipe. Raises InvalidSource, UnknownRecipe."""
     rig = load_rig(rig_name, overrides)
@@ -101,6 +111,7 @@ class Session:
         """Run to the end; return the exit code. Raises InvalidSource for an invalid recipe or rig file,
         FileNotFoundError where there is no such recipe, CannotStartError."""
         options = self.options
+        only_plain(operator=options.operator, recipe=options.recipe, rig=options.rig)
         found = self.prepare()
         work, rig, recipe = found.work, found.work.rig, found.recipe
         faults = rig.sim.faults + options.faults
@@ -131,6 +142,7 @@ class Session:
 
         Raises CannotStartError, StoreError, InvalidSource.
         """
+        only_plain(operator=self.options.operator, reason=reason)
         with RunReader(folder) as reader:
             finished = reader.run().status == WENT_THROUGH
         if finished and (folder / MANIFEST).is_file():

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Annotated, ClassVar, Literal, TypeAlias
 
-from pydantic import ConfigDict, Field
+from pydantic import AfterValidator, ConfigDict, Field
+
+from tester.plain import plain_text
 
 VERSION = 1
 """Of this protocol. A change that an older client cannot ignore raises it."""
@@ -15,9 +18,10 @@ MAX_MESSAGE = 400_000
 _STRICT = ConfigDict(extra="forbid")
 """Commands with a key that nobody knows are refused: a misspelt option must not be ignored."""
 
-Name = Annotated[str, Field(max_length=200)]
-PathText = Annotated[str, Field(max_length=4096)]
-Note = Annotated[str, Field(max_length=2000)]
+_PLAIN = AfterValidator(partial(plain_text, where=""))
+Name = Annotated[str, Field(max_length=200), _PLAIN]
+PathText = Annotated[str, Field(max_length=4096), _PLAIN]
+Note = Annotated[str, Field(max_length=2000), _PLAIN]
 RecipeText = Annotated[str, Field(max_length=262_144)]
 
 

@@ -175,17 +175,26 @@ def test_events_no_longer_kept_are_said_to_be_missing(tmp_path: Path) -> None:
     play(tmp_path, story)
 
 
+def test_a_name_that_could_steer_a_terminal_is_refused_with_the_reason(tmp_path: Path) -> None:
+    async def story(fake: FakeService) -> None:
+        with pytest.raises(NoServiceError, match=r"join.name: the character U\+001B, number 7, is not accepted"):
+            await Client.connect(fake.address, name="screen\x1b[2J")
+        assert not fake.gateway.guests
+
+    play(tmp_path, story)
+
+
 def test_hostile_text_comes_through_as_it_is(tmp_path: Path) -> None:
     async def story(fake: FakeService) -> None:
         fake.event("step", HOSTILE)
-        async with await Client.connect(fake.address, name=HOSTILE, control=True) as client:
+        async with await Client.connect(fake.address, name="[/x] $(rm) <b>", control=True) as client:
             fake.show(hostile(state()))
             messages = aiter(client)
             while not isinstance(await anext(messages), Snapshot):
                 pass
             assert client.state.prompt is not None and client.state.prompt.text == HOSTILE
             assert client.events[-1].text == HOSTILE
-            assert fake.presence.controller == HOSTILE
+            assert fake.presence.controller == "[/x] $(rm) <b>"
 
     play(tmp_path, story)
 
