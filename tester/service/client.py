@@ -17,6 +17,7 @@ from collections.abc import AsyncIterator
 from contextlib import suppress
 from dataclasses import dataclass
 from types import TracebackType
+from typing import Literal, TypeAlias
 
 from pydantic import JsonValue
 from websockets.asyncio.client import ClientConnection, connect, unix_connect
@@ -42,6 +43,7 @@ from tester.service.protocol import (
     from_server,
 )
 from tester.service.state import PlanView, StateView
+from tester.service.stop_call import takes_stop
 
 MAX_INCOMING = 64 * 1024 * 1024
 """Longest message taken from the service, bytes: a hello holds ten minutes and two thousand events."""
@@ -64,11 +66,16 @@ class LostError(Exception):
     """The connection has ended; the message says why, as far as anybody said."""
 
 
+Gone: TypeAlias = Literal["", "ended", "died"]
+"""What became of the service: nobody knows, it was told to end, it is no longer there although nobody told it to."""
+
+
 @dataclass(frozen=True, slots=True)
 class Lost:
     """Given by a ``Link`` in the place of a message: the connection is gone, and is tried again."""
 
     reason: str
+    gone: Gone = ""
 
 
 class Client:
@@ -90,6 +97,8 @@ class Client:
         """When the newest state came (tester.clock.monotonic)."""
         self.lost = ""
         """Why the connection has ended, "" while it stands."""
+        self.ended = False
+        """The service has said that it was told to end."""
         self._goodbye = ""
         self._ids = 0
         self._sending: set[asyncio.Task[None]] = set()
@@ -218,7 +227,7 @@ class Client:
                 waiting.set_exception(RefusedError(message.reason))
             return
         if isinstance(message, Goodbye):
-            self._goodbye = message.reason
+            self._goodbye, self.ended = message.reason, message.ended
             return
         if isinstance(message, Event):
             self.events.append(message)
@@ -270,16 +279,17 @@ class Link:
         Each new connection begins with a ``Hello``; where its ``complete`` is False, or its ``service`` another, events
         in between are not to be had.
         """
-        service, since, reason = "", 0, ""
+        service, since, told = "", 0, Lost("")
         while True:
             try:
                 self.client = await Client.connect(
                     self.address, name=self.name, control=self.control, service=service, since=since
                 )
             except NoServiceError as error:
-                if str(error) != reason:
-                    reason = str(error)
-                    yield Lost(reason)
+                lost = Lost(str(error), told.gone or await self._gone(service))
+                if lost != told:
+                    told = lost
+                    yield lost
                 await asyncio.sleep(AGAIN_S)
                 continue
             client = self.client
@@ -287,12 +297,17 @@ class Link:
             try:
                 async for message in client:
                     yield message
-                since, reason = client.last_seq or since, client.lost
+                since, told = client.last_seq or since, Lost(client.lost, "ended" if client.ended else "")
             finally:
                 self.client = None
                 await client.close()
-            yield Lost(reason)
+            yield told
             await asyncio.sleep(AGAIN_S)
+
+    async def _gone(self, service: str) -> Gone:
+        """Tell a service that has died from one whose gateway is being started anew: that one takes STOP."""
+        there = not service or await asyncio.to_thread(takes_stop, self.address)
+        return "" if there else "died"
 
     async def command(self, action: Action) -> JsonValue:
         """As of ``Client.command``; raises LostError while there is no connection."""

@@ -10,6 +10,7 @@ from tester import clock
 from tester.engine.run import Outcome, Run
 from tester.rig import RigConfig
 from tester.service.alarms import AlarmList, Cause
+from tester.service.alone import left_alone
 from tester.service.hub import Hub
 from tester.service.link import Order
 from tester.service.manual import ManualExecutor
@@ -94,12 +95,14 @@ class Desk:
     _disk_due_s: float = float("-inf")
     _room: FreeRoom = field(init=False)
     _unknown: tuple[Value, ...] = ()
+    _alone: str = ""
     alarms: AlarmList = field(init=False)
 
     def __post_init__(self) -> None:
         """Begin with no alarm."""
         self.alarms = AlarmList(clock.utc_now, self._alarm_changed)
         self._unknown = unknown_values(self.rig)
+        self._alone = left_alone(self.rig)
         self._room = FreeRoom(self.runs)
         self._look_at_disk()
         self._room.wait(DISK_FIRST_S)
@@ -281,6 +284,7 @@ class Desk:
             clients=hub.clients,
             interrupted=self.interrupted,
             preflight=(*(check for check in known if check.name not in said), *own),
+            alone=watch.alone if watch is not None else self._alone,
         )
 
     def _situation(self) -> tuple[str, str, float]:

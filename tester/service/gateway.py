@@ -93,6 +93,7 @@ class Gateway:
         self.guests: dict[int, Guest] = {}
         self.controller = 0
         self._signs = 0
+        self._ended = False
         self._next = 1
         self._state = b""
         self._plan = b"null"
@@ -126,6 +127,8 @@ class Gateway:
             number, _, reply = rest.partition(b" ")
             if (asker := self.guests.get(int(number))) is not None:
                 self._reply(asker, reply)
+        elif kind == b"b":
+            self._ended = True
         elif kind == b"k":
             self.owner.looked_at(int(rest))
         elif kind == b"t":
@@ -137,10 +140,11 @@ class Gateway:
                 if guest.frames:
                     guest.outbox.newest("frames", rest)
 
-    def farewell(self, reason: str) -> None:
-        """Tell everybody that the service ends."""
+    def farewell(self) -> None:
+        """Tell everybody that the owner has ended, or died: it said goodbye, or not."""
+        last = Goodbye("the service has ended", ended=True) if self._ended else Goodbye("the service has died")
         for guest in self.guests.values():
-            guest.outbox.reply(encode(Goodbye(reason)))
+            guest.outbox.reply(encode(last))
 
     async def all_told(self) -> None:
         """Wait until every client has been sent what is due to it."""

@@ -58,9 +58,10 @@ async def _serve(reader: asyncio.StreamReader, writer: asyncio.StreamWriter, set
     async with listening(gateway, address) as listens:
         if isinstance(listens, TcpAddress):
             write_card(listens, path)
-        while line := await reader.readline():
-            gateway.take(line[:-1])
-        gateway.farewell("the service has ended")
+        with suppress(ConnectionError):  # an owner that dies with something unread resets the link
+            while line := await reader.readline():
+                gateway.take(line[:-1])
+        gateway.farewell()
         with suppress(TimeoutError):
             async with asyncio.timeout(CLOSE_S):
                 await gateway.all_told()

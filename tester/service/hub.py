@@ -186,16 +186,18 @@ class Hub:
 
     def close(self) -> None:
         """End the gateway; it says goodbye to everybody. STOP is taken until then."""
+        self._say(b"b")
         if self._end is not None:
             self._end.drain(END_S)
-            self._end.close()
-            self._end = None
         if self._process is not None:
             try:
                 self._process.wait(END_S)
             except subprocess.TimeoutExpired:
                 self._process.kill()
                 self._process.wait()
+        if self._end is not None:
+            self._end.close()
+            self._end = None
         self.lane.close()
         if isinstance(self.config.address, UnixAddress):
             for path in (self.config.address.path, stop_path(self.config.address.path)):

@@ -9,6 +9,7 @@ The owner's side never waits. What it says: a letter, then JSON; the gateway pas
     f FRAMES          a frames message
     t ROW             a row of the trend alone: the past, told to a gateway that was started anew
     n NOTE            something for the notify hook
+    b                 goodbye: the owner was told to end, and has; without it, it has died
     k COUNT           so many of the gateway's lines have been looked at: it may say as many more
 
 What the gateway says: one JSON object a line, an ``Order`` or a ``Presence``. No more than ``LINES_AT_ONCE`` of them
@@ -154,11 +155,15 @@ class OwnerEnd:
             raise LinkLost("the gateway's line does not end")
 
     def drain(self, seconds: float) -> None:
-        """Send what waits, at the end; give up after a time (s)."""
+        """Send what waits, and that nothing more will come; give up after a time (s).
+
+        Not closed yet: with something of the gateway's unread that would reset the link, and lose what was sent.
+        """
         self.socket.settimeout(seconds)
         try:
             self.flush()
-        except (LinkLost, TimeoutError):
+            self.socket.shutdown(socket.SHUT_WR)
+        except (LinkLost, OSError):  # TimeoutError is one
             return
 
     def close(self) -> None:

@@ -297,6 +297,8 @@ class StateView:
     clients: ClientsView
     interrupted: tuple[str, ...]
     preflight: tuple[Check, ...]
+    alone: str = ""
+    """What the rig's devices do by themselves once the service is gone."""
 
     def value(self, key: str) -> Value | None:
         """Return the value with this key, None where the rig has none."""

@@ -100,6 +100,16 @@ class StopCall:
             said += data
 
 
+def takes_stop(address: Address | None) -> bool:
+    """Return whether STOP can be said to a service; nothing is said."""
+    with StopCall(address, "") as call:
+        try:
+            call.connect()
+        except NotTakenError:
+            return False
+    return True
+
+
 def _connected(address: Address) -> socket.socket:
     if isinstance(address, UnixAddress):
         connection = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)

@@ -12,6 +12,7 @@ from tester.engine.run import Run
 from tester.engine.thermal_steps import HeatUp, SoakTo
 from tester.process import GATE_LOAD, GATE_SETTLING, GATE_SLIP, GATE_SPEED, GATE_TEMPERATURE
 from tester.service.alarms import AlarmList, Cause
+from tester.service.alone import left_alone
 from tester.service.buses import BusWatch
 from tester.service.frames import FrameLog
 from tester.service.progress import PlanTrack
@@ -43,6 +44,7 @@ class RunWatch:
         self.values = ValueView(engine)
         self.buses = BusWatch(engine.devices, self.rig)
         self.frames = FrameLog(engine.devices, tuple(self.rig.lines))
+        self.alone = left_alone(self.rig)
         self.track = track
         track.begin_part(engine.executor.plan)
         self.watched: set[str] = set()

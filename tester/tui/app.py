@@ -19,6 +19,7 @@ from tester.tui.dialogs.confirm import AbortDialog, GoOnDialog
 from tester.tui.dialogs.dialog import Dialog
 from tester.tui.dialogs.log import TextDialog
 from tester.tui.filters import AsciiOnly, Colourless
+from tester.tui.gone import TITLE, death_text
 from tester.tui.host import HostApp, TuiOptions
 from tester.tui.scene import UNDER_WAY
 from tester.tui.theme import CSS, DARK, THEMES
@@ -158,6 +159,10 @@ class TesterApp(HostApp):
             panel.show(self.scene)
         base.query_one(SmallPanel).show(self.scene)
         self.view.show(self.scene)
+
+    def service_died(self) -> None:
+        """Say so, what the devices do by themselves, and what to do, over whatever is shown."""
+        self.push_screen(TextDialog(TITLE, death_text(self.scene)))
 
     # -- keys -------------------------------------------------------------------------------------------------
 

@@ -21,6 +21,7 @@ from tester.service.client import Client, Link, Lost, LostError, NoServiceError,
 from tester.service.commands import Action, Stop
 from tester.service.protocol import Event
 from tester.service.stop_call import NotTakenError
+from tester.tui.gone import farewell, stop_failed
 from tester.tui.scene import Scene
 from tester.tui.starting import start_service
 from tester.tui.stop_line import StopLine, stopping
@@ -76,6 +77,9 @@ class HostApp(App[str]):
     def scene_changed(self) -> None:
         """Called after each change of the scene."""
 
+    def service_died(self) -> None:
+        """Called when the service turns out to be gone without having been told to end."""
+
     def go_to(self, name: str) -> None:
         """Show another screen, by its id."""
 
@@ -97,7 +101,10 @@ class HostApp(App[str]):
 
     async def _listen(self, link: Link) -> None:
         async for message in link.messages():
+            before = self.scene.gone
             self.scene.take(message, link.client)
+            if self.scene.gone == "died" != before:
+                self.service_died()
             if isinstance(message, Lost) and self.scene.state is None:
                 self._begin_service()
             if isinstance(message, Event) and message.kind == "acknowledgement" and message.text.startswith("refused"):
@@ -171,14 +178,13 @@ class HostApp(App[str]):
                 async with await Client.connect(link.address, name=link.name) as client:
                     await client.stop(fast=fast)
         except (LostError, NoServiceError, RefusedError, TimeoutError) as error:
-            self.say(f"STOP has not reached the service: {error}. Use the machine's own stop.", problem=True,
-                     lasting=True)  # fmt: skip
+            self.say(stop_failed(self.scene, str(error)), problem=True, lasting=True)
             return
         self.say(taken)
 
     def action_detach(self) -> None:
         """Leave the screen; the run goes on."""
-        self.exit("detached: the service and its run go on. `tester tui` comes back, `tester stop` stops the rig")
+        self.exit(farewell(self.scene))
 
 
 def client_name() -> str:
