@@ -47,6 +47,7 @@ from tester.store.reader import DATABASE, RunReader
 from tester.store.schema import StoreError
 from tester.store.status import RunStatus, run_status
 from tester.store.writer import RunWriter
+from tester.trouble import in_words
 
 RECIPES = ".recipes"
 """Folder beside the runs for recipes that came as text, named by their content."""
@@ -187,7 +188,7 @@ class Service:
         try:
             code = work(session)
         except REFUSED as error:
-            problem = str(error)
+            problem = in_words(error)
         if not session.view.name:
             if self.orders.job is order:  # else STOP has refused it already
                 desk.hub.refuse(order, problem or "; ".join(screen.messages) or "the run has ended before it began")
@@ -209,7 +210,7 @@ class Service:
                 hold_rig(use, rig, NAME)
                 record = open_record(self.options.runs, rig, order.name)
             except REFUSED as error:
-                desk.hub.refuse(order, str(error))
+                desk.hub.refuse(order, in_words(error))
                 return
             with closing(record), closed_early(record):
                 try:

@@ -14,6 +14,7 @@ from contextlib import suppress
 from tester import clock
 from tester.service.address import Address, AddressError, UnixAddress, default_address, stop_path
 from tester.service.stop_door import TAKEN
+from tester.trouble import in_words
 
 WITHIN_S = 3.0
 """Without an answer by then STOP was not taken, s."""
@@ -64,7 +65,7 @@ class StopCall:
         try:
             self._connection = _connected(self._address or default_address())
         except (OSError, AddressError) as error:
-            raise NotTakenError(str(error)) from error
+            raise NotTakenError(in_words(error)) from error
 
     def stop(self, *, fast: bool = False) -> None:
         """Say STOP and wait until it is in control; a connection that is gone is renewed. Raises NotTakenError."""
@@ -79,7 +80,7 @@ class StopCall:
             self._say(self._connection, fast)
         except OSError as error:  # TimeoutError is one
             self.close()
-            raise NotTakenError(str(error) or "no answer") from error
+            raise NotTakenError(in_words(error) or "no answer") from error
 
     def close(self) -> None:
         """Hang up."""
