@@ -55,7 +55,7 @@ class Commanding(Protocol):
     """A screen at which a person can give commands to the run."""
 
     def commands(self) -> list[str]:
-        """Return the commands given since the last call: hold, release, abort or stop."""
+        """Return the commands given since the last call: those of ``tester.keys``."""
         ...
 
 

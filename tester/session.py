@@ -26,13 +26,15 @@ from tester.engine.tickers import TickStatistics
 from tester.export import doubtful, write_all
 from tester.export.results import results_of
 from tester.lock import ExclusiveUse
+from tester.plain import plain_text
 from tester.provenance import recipe_source, rig_source, run_info, session_info
 from tester.recipe.check import load_checked
+from tester.recipe.estimate import Estimate, estimate
 from tester.recipe.loader import LoadedRecipe
 from tester.resume import prepare
 from tester.rig import RigConfig, load_rig
 from tester.screens import LastingScreen, Screen
-from tester.signals import HANG_UP, handled
+from tester.signals import HANG_UP, QUIT, handled
 from tester.store.catalogue import MANIFEST, cut_off
 from tester.store.reader import RunReader
 from tester.store.status import WENT_THROUGH
@@ -59,6 +61,34 @@ class SessionOptions:
     """Lines of a fault script (sim.faults.language), beside those of the rig file."""
 
 
+@dataclass(frozen=True, slots=True)
+class Prepared:
+    """A recipe on a rig: what is to be done, and what it takes."""
+
+    path: Path
+    recipe: LoadedRecipe
+    work: Work
+    expected: Estimate
+
+
+def only_plain(**texts: str) -> None:
+    """Raise CannotStartError for a text of a person's that holds more than a line of characters, with its name."""
+    try:
+        for where, text in texts.items():
+            plain_text(text, where)
+    except ValueError as error:
+        raise CannotStartError(str(error), EXIT_USAGE) from error
+
+
+def prepared(recipe: str, rig_name: str, overrides: tuple[str, ...]) -> Prepared:
+    """Read and plan a recipe. Raises InvalidSource, UnknownRecipe."""
+    rig = load_rig(rig_name, overrides)
+    path = find(recipe)
+    loaded = load_checked(path, rig)
+    work = work_of(loaded.recipe, rig)
+    return Prepared(path, loaded, work, estimate(work.plan, rig))
+
+
 class Session:
     """Prepares, runs and closes one run."""
 
@@ -81,13 +111,12 @@ class Session:
         """Run to the end; return the exit code. Raises InvalidSource for an invalid recipe or rig file,
         FileNotFoundError where there is no such recipe, CannotStartError."""
         options = self.options
-        rig = load_rig(options.rig, options.overrides)
+        only_plain(operator=options.operator, recipe=options.recipe, rig=options.rig)
+        found = self.prepare()
+        work, rig, recipe = found.work, found.work.rig, found.recipe
         faults = rig.sim.faults + options.faults
         if faults:
             _check_faults(faults, rig)
-        path = find(options.recipe)
-        recipe = load_checked(path, rig)
-        work = work_of(recipe.recipe, rig)
         refusal = self._refusal(work.rig)
         if refusal:
             self.screen.message(refusal)
@@ -95,19 +124,25 @@ class Session:
         options.out.mkdir(parents=True, exist_ok=True)
         for left in cut_off(options.out):
             self.screen.message(f"{left.name} was cut off: tester resume {left} goes on with it")
-        enough_room(options.out, work.plan, rig)
+        enough_room(options.out, work.plan, rig, found.expected)
         with ExclusiveUse() as use:
             hold_rig(use, rig, work.plan.name)
             folder = make_folder(options.out, work.plan.name)
             hold_run(use, folder)
             write_sources(folder, recipe.tree.text, rig)
-            return self._record(self._job(folder, options.seed), work, self._beginning(folder, path, recipe, work))
+            begin = self._beginning(folder, found.path, recipe, work)
+            return self._record(self._job(folder, options.seed), work, begin)
+
+    def prepare(self) -> Prepared:
+        """Read and plan the recipe; raises as ``run`` does."""
+        return prepared(self.options.recipe, self.options.rig, self.options.overrides)
 
     def resume(self, folder: Path, reason: str = "") -> int:
         """Go on with an interrupted run; return the exit code. ``reason``: why it may although something changed.
 
         Raises CannotStartError, StoreError, InvalidSource.
         """
+        only_plain(operator=self.options.operator, reason=reason)
         with RunReader(folder) as reader:
             finished = reader.run().status == WENT_THROUGH
         if finished and (folder / MANIFEST).is_file():
@@ -170,9 +205,9 @@ class Session:
             refused = run.request_hold()
         elif command == "release":
             refused = run.request_release()
-        elif command == "abort":
-            run.request_abort()
         elif command == "stop":
+            run.request_stop("stopped by the operator")
+        elif command == "fast stop":
             run.request_stop("stopped by the operator", fast=True)
         self.screen.message(refused or command)
 
@@ -265,7 +300,10 @@ class Session:
             yield
 
     def _on_signal(self, number: int, _frame: FrameType | None) -> None:
-        """Stop: TERM, HUP and a first INT in a controlled way, a second INT fast."""
+        """Stop: TERM, HUP and a first INT in a controlled way, a second INT and QUIT fast."""
+        if number == QUIT:
+            self.stop(Stop.FAST)
+            return
         if number != signal.SIGINT:
             self.stop(Stop.HUNG_UP if number == HANG_UP else Stop.TERMINATED)
             return

@@ -20,6 +20,7 @@ import yaml.events as ev
 from yaml.error import Mark, MarkedYAMLError
 from yaml.scanner import ScannerError
 
+from tester.plain import FORBIDDEN, harmless
 from tester.trouble import in_words
 from tester.units import shown
 from tester.yaml_events import Events
@@ -35,12 +36,6 @@ MAX_PROBLEMS = 100
 Value: TypeAlias = "bool | int | float | str | list[Value] | dict[str, Value] | None"
 Location: TypeAlias = tuple[str | int, ...]
 """Where something is in the tree: keys and list indices from the top."""
-
-_FORBIDDEN = re.compile(
-    "[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200b\u200e\u200f\u2028-\u202e\u2060-\u2069\ufeff\ufff9-\ufffb"
-    "\ud800-\udfff\ufffe\uffff\U000e0000-\U000e007f]"
-)
-"""Control, bidirectional and invisible characters, and what is no character at all."""
 
 _NULL = frozenset({"", "~", "null", "Null", "NULL"})
 _BOOL = {"true": True, "True": True, "TRUE": True, "false": False, "False": False, "FALSE": False}
@@ -132,7 +127,7 @@ def read_tree(source: Path | str, name: str | None = None) -> tuple[Tree, list[P
 
 def printable(text: str) -> str:
     """Return a text that can go to a terminal: everything that could steer one is a question mark."""
-    return _FORBIDDEN.sub("?", text).replace("\n", "?").replace("\t", "?")
+    return harmless(text).replace("\n", "?").replace("\t", "?")
 
 
 def problems_from_validation(error: ValidationError, tree: Tree, model: type[BaseModel] | None = None) -> list[Problem]:
@@ -175,7 +170,7 @@ def _refuse_characters(text: str, called: str) -> None:
             match.start() - text.rfind("\n", 0, match.start()),
             f"the character U+{ord(match.group()):04X} is not accepted (control, bidirectional or invisible)",
         )
-        for _, match in zip(range(MAX_PROBLEMS), _FORBIDDEN.finditer(text), strict=False)
+        for _, match in zip(range(MAX_PROBLEMS), FORBIDDEN.finditer(text), strict=False)
     ]
     if problems:
         raise InvalidSource(problems)
@@ -297,7 +292,7 @@ class _Builder:
 
     def _refuse_escaped(self, event: ev.ScalarEvent) -> None:
         """Refuse by their code what a quoted text brings in by an escape such as "\\u202e"."""
-        found = _FORBIDDEN.search(event.value)
+        found = FORBIDDEN.search(event.value)
         if found is not None:
             self._refuse(event, f"the character U+{ord(found.group()):04X} is not accepted, even as an escape")
 

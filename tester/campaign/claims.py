@@ -7,15 +7,15 @@ from pathlib import Path
 from tester.campaign.endings import EXIT_CODES, CannotStartError
 from tester.engine.run import Outcome
 from tester.lock import RUN_LOCK, ExclusiveUse, RigInUseError
-from tester.recipe.estimate import estimate
+from tester.recipe.estimate import Estimate, estimate
 from tester.recipe.plan import Plan
 from tester.rig import RigConfig
 from tester.store.space import expected_bytes, too_little_room
 
 
-def enough_room(folder: Path, plan: Plan, rig: RigConfig) -> None:
-    """Raise CannotStartError unless twice what the run will take is free."""
-    missing = too_little_room(folder, expected_bytes(plan, estimate(plan, rig)))
+def enough_room(folder: Path, plan: Plan, rig: RigConfig, expected: Estimate | None = None) -> None:
+    """Raise CannotStartError unless twice what the run will take is free; ``expected``: its estimate."""
+    missing = too_little_room(folder, expected_bytes(plan, expected or estimate(plan, rig)))
     if missing:
         raise CannotStartError(missing, EXIT_CODES[Outcome.FAILED])
 

@@ -9,8 +9,6 @@ from collections.abc import Callable
 from contextlib import suppress
 from errno import EBADF
 from pathlib import Path
-from queue import Empty, SimpleQueue
-from threading import Thread
 from typing import TextIO, cast
 
 from rich.console import Console as RichConsole
@@ -18,9 +16,15 @@ from rich.progress import BarColumn, Progress, TaskID, TextColumn
 from rich.text import Text
 
 from tester.cli.ending import ending_lines
-from tester.cli.keys import HELP, commands_of, keys_of
+from tester.cli.keys import keys_of
 from tester.engine.context import Progress as RunProgress
-from tester.engine.prompts import Prompts
+from tester.engine.prompts import DONE, Prompt, Prompts
+from tester.keys import FAST_STOP, HELP, HOLD, STOP, commands_of, pieces_of
+
+ASKED = f'type "{DONE}" and Enter when it is done'
+MOST_TYPED = 20
+END_OF_INPUT = "\x04"
+"""Ctrl+D."""
 
 
 class Outlet:
@@ -99,8 +103,9 @@ class Console:
         self._progress: Progress | None = None
         self._tasks: dict[int, TaskID] = {}
         """The progress lines by part."""
-        self._answers: SimpleQueue[str] = SimpleQueue()
-        self._asked = 0
+        self._question: Prompt | None = None
+        """The newest that was put."""
+        self._typed = ""
         self._titles: dict[int, str] = {}
         self._keys = keys_of(sys.stdin)
 
@@ -151,8 +156,23 @@ class Console:
         progress.update(self._tasks[part], completed=share, description=text)
 
     def commands(self) -> list[str]:
-        """Return what a person asked for by a key; none while a prompt takes a line."""
-        return commands_of(self._keys.pressed())
+        """Return what a person asked for by a key; while a question stands letters are for its answer."""
+        pressed = self._keys.pressed()
+        if self._question is None or self._question.answer is not None:
+            return commands_of(pressed)
+        found: list[str] = []
+        for piece, meaning in pieces_of(pressed):
+            if meaning in (STOP, FAST_STOP, HOLD):
+                found.append(meaning.command)
+            elif piece in ("\r", "\n"):
+                self._answer(self._question)
+            elif piece in ("\b", "\x7f"):
+                self._typed = self._typed[:-1]
+            elif piece == END_OF_INPUT:
+                self.message("that is no answer: Ctrl+C stops the run")
+            else:
+                self._typed = (self._typed + piece)[:MOST_TYPED]
+        return found
 
     def end(self) -> None:
         """Take the progress line away, and give the keyboard back."""
@@ -184,39 +204,29 @@ class Console:
     # -- prompts ----------------------------------------------------------------------------------------------
 
     def attend(self, prompts: Prompts) -> None:
-        """Ask what waits to be asked, and pass answers on; never blocks the scan."""
+        """Put the question that waits; never blocks the scan. What was typed before it stood is no answer to it."""
         waiting = prompts.waiting
-        if waiting is None:
+        if waiting is None or waiting is self._question:
             return
-        if waiting.number != self._asked:
-            self._asked = waiting.number
-            self.emit({"event": "prompt", "number": waiting.number, "text": waiting.text})
-            self.message(f"{waiting.text} - done? [Enter] ")
-            self._keys.end()  # a line is typed, with echo
-            Thread(target=_read_line, args=(sys.stdin, self._answers.put), daemon=True).start()
-            return
-        try:
-            answer = self._answers.get_nowait()
-        except Empty:
-            return
-        if not answer:
-            # End of input (a closed terminal, Ctrl+D) is nobody's consent.
-            self.message("no answer can be read here any more: Ctrl+C stops the run")
-        elif answer.strip().lower() in ("n", "no"):
-            self._asked = 0
+        self._question = waiting
+        self._keys.pressed()
+        self._typed = ""
+        self.emit({"event": "prompt", "number": waiting.number, "text": waiting.text})
+        self.message(f"{waiting.text} - {ASKED}")
+
+    def _answer(self, question: Prompt) -> None:
+        """Take the word that was typed, if it is the one."""
+        typed, self._typed = self._typed, ""
+        if typed == DONE:
+            question.answer = DONE
+            self.message(f"answered: {DONE}")
         else:
-            waiting.answer = answer.strip() or "yes"
-            self._keys.begin()
+            self.message(f"{question.text} - {ASKED}")
 
 
 def _is_terminal(stream: TextIO | None) -> bool:
     """Tell whether a person sits at a stream; a process may be started without it (None)."""
     return stream is not None and stream.isatty()
-
-
-def _read_line(stream: TextIO, put: Callable[[str], None]) -> None:
-    """Wait for one line and hand it over (a thread of its own: a terminal read cannot be polled portably)."""
-    put(stream.readline())
 
 
 def _hours(seconds: float) -> str:

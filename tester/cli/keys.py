@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Generator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import Protocol, TextIO
 
 
@@ -105,16 +105,8 @@ else:
             def pressed(self) -> str:
                 if self.before is None or not select.select([descriptor], [], [], 0.0)[0]:
                     return ""
-                return os.read(descriptor, 64).decode("utf-8", "replace")
+                with suppress(OSError):  # the shell has the terminal: this process was put into the background
+                    return os.read(descriptor, 64).decode("utf-8", "replace")
+                return ""
 
         return TerminalKeys()
-
-
-COMMANDS = {"h": "hold", "r": "release", "a": "abort", "s": "stop", "\x18": "stop"}
-"""What a key means while a recipe runs; Ctrl+X is the second key of STOP (rulings, 34)."""
-HELP = "h hold   r release   a abort   s or Ctrl+X stop fast"
-
-
-def commands_of(pressed: str) -> list[str]:
-    """Return the commands among keys pressed; others mean nothing."""
-    return [COMMANDS[key] for key in pressed.lower() if key in COMMANDS]

@@ -9,6 +9,11 @@ from click.core import ParameterSource
 
 from tester.cli.options import json_option, rig_option, set_option
 
+NOT_DETACHED = {
+    "out": "--out", "bus_log": "--bus-log", "faults": "--fault", "jobs": "--jobs", "as_json": "--json",
+}  # fmt: skip
+"""What the service has no command for, or chooses itself."""
+
 
 @click.command("run", short_help="Run a recipe on a rig, simulated unless told.")
 @click.argument("recipe")
@@ -67,13 +72,13 @@ def run(
 
     What was measured comes before it, with the expanded uncertainty (95 %), on stderr; stdout is the folder alone.
 
-    Ctrl+C stops in a controlled way; a second one stops fast. On a terminal: h holds (lifts, keeps the heat), r
-    releases, a aborts, s or Ctrl+X stops fast.
+    Ctrl+C stops in a controlled way; a second one stops fast. On a terminal: F12 or Ctrl+X stops in a controlled
+    way, F9 or Ctrl+F fast, space holds (lifts, keeps the heat), r goes on.
     """
     if detach:
         given = {name for name in context.params if context.get_parameter_source(name) is ParameterSource.COMMANDLINE}
-        if given & {"out", "bus_log"}:
-            raise click.UsageError("--out and --bus-log are the service's to choose: not with --detach")
+        if kept := [option for name, option in NOT_DETACHED.items() if name in given]:
+            raise click.UsageError(f"not with --detach, the service would not do it: {', '.join(kept)}")
         rig = rig_name if "rig_name" in given else ""
         return _detached(recipe, rig, overrides, seed, time_lapse(speed), yes, operator, take)
     if take:

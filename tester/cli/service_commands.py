@@ -10,6 +10,7 @@ import click
 from tester.cli.options import json_option, print_json, rig_option, set_option
 
 if TYPE_CHECKING:
+    from tester.service.address import Address
     from tester.service.client import Client
     from tester.service.commands import Action
     from tester.service.state import StateView
@@ -109,7 +110,15 @@ def ack(address: str, take: bool) -> int:
 def stop(address: str, fast: bool) -> int:
     """STOP: heat off, lift, both drives to standstill. From any shell, whoever has control. No emergency stop."""
     from tester.service.commands import Stop
+    from tester.service.stop_call import NotTakenError, StopCall
 
+    try:
+        with StopCall(_address(address), _name()) as call:
+            call.stop(fast=fast)
+    except NotTakenError:
+        pass  # its lane is not there: as any other command then
+    else:
+        return 0
     return _command(address, Stop(fast=fast), take=False, control=False)
 
 
@@ -146,21 +155,31 @@ def _command(address: str, action: Action, take: bool, *, control: bool = True, 
 def _with_client(address: str, work: Callable[[Client], Awaitable[None]], *, control: bool) -> None:
     """Connect, do something, hang up. Raises NoServiceError and what the work raises."""
     import asyncio
-    import os
 
-    from tester.service.address import AddressError, address_of
     from tester.service.client import Client
 
     async def session() -> None:
-        try:
-            where = address_of(address) if address else None
-        except AddressError as error:
-            raise click.UsageError(str(error)) from error
-        name = f"command of process {os.getpid()}"
-        async with await Client.connect(where, name=name, control=control) as client:
+        async with await Client.connect(_address(address), name=_name(), control=control) as client:
             await work(client)
 
     asyncio.run(session())
+
+
+def _address(text: str) -> Address | None:
+    """Return the address that was typed, None for the user's own service. Raises UsageError."""
+    from tester.service.address import AddressError, address_of
+
+    try:
+        return address_of(text) if text else None
+    except AddressError as error:
+        raise click.UsageError(str(error)) from error
+
+
+def _name() -> str:
+    """Return how a command is called at the service."""
+    import os
+
+    return f"command of process {os.getpid()}"
 
 
 def _show(state: StateView, as_json: bool) -> None:

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+DONE, NOT_YET = "yes", "no"
+"""The words that answer a question, exactly; the second leaves it waiting."""
+
 
 @dataclass(slots=True)
 class Prompt:

@@ -1,13 +1,15 @@
 """Cells of a CSV file: numbers stay numbers, text is never a formula, and both read back as they were meant.
 
 RFC 4180 with LF line ends and UTF-8. A text cell that a spreadsheet could take for a formula gets an
-apostrophe in front (so does one that begins with an apostrophe, which makes it reversible: ``plain_text``).
+apostrophe in front (so does one that begins with an apostrophe, which makes it reversible: ``unescaped``).
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from math import isfinite
+
+from tester.plain import harmless
 
 BOM = b"\xef\xbb\xbf"
 
@@ -26,12 +28,13 @@ class Number(str):
 
 
 def text(value: str) -> str:
-    """Return a text cell, escaped where it could be taken for a formula."""
+    """Return a text cell, escaped where it could be taken for a formula; what could steer a terminal is a ``?``."""
+    value = harmless(value)
     return f"'{value}" if value[:1] in _FORMULA and value else value
 
 
-def plain_text(cell: str) -> str:
-    """Return what ``text`` was given."""
+def unescaped(cell: str) -> str:
+    """Return what ``text`` was given, as far as it was harmless."""
     return cell[1:] if cell[:1] == "'" else cell
 
 

@@ -10,6 +10,7 @@ from tester import __version__, clock
 from tester.export import write_all
 from tester.export.manifest import MANIFEST, manifest_problems
 from tester.lock import RUN_LOCK, ExclusiveUse, RigInUseError
+from tester.plain import plain_text
 from tester.store.exclusions import add_exclusion, standing
 from tester.store.reader import RunReader
 from tester.store.records import StoredExclusion, StoredRepeat
@@ -52,6 +53,11 @@ def record_word(folder: Path, word: Word) -> None:
     """
     if not word.reason.strip() or len(word.reason) > LONGEST:
         raise CannotExcludeError(f"a reason is needed, of at most {LONGEST} characters: it goes on record")
+    try:
+        plain_text(word.reason, "reason")
+        plain_text(word.operator, "operator")
+    except ValueError as error:
+        raise CannotExcludeError(str(error)) from error
     with ExclusiveUse() as use:
         try:
             use.lock_file(folder.name, folder / RUN_LOCK, folder.name, lasting=False)

@@ -10,6 +10,7 @@ import json
 import os
 import secrets
 import socket
+import stat
 import struct
 import tempfile
 from dataclasses import dataclass
@@ -21,6 +22,10 @@ SOCKET = "service.sock"
 CARD = "service.json"
 CREDENTIALS = struct.Struct("iII")
 """struct ucred of Linux: pid, uid, gid."""
+
+
+STOP_SUFFIX = ".stop"
+"""The socket for STOP lies beside the service's: its name with this."""
 
 
 class AddressError(Exception):
@@ -45,6 +50,8 @@ class TcpAddress:
     host: str
     port: int
     token: str
+    stop_port: int = 0
+    """Where STOP is taken; 0 where nobody knows yet."""
 
     def __str__(self) -> str:
         """Return it without its token."""
@@ -91,7 +98,7 @@ def address_of(text: str) -> Address:
         host, _, port = text.removeprefix("ws://").rstrip("/").rpartition(":")
         if not port.isdigit():
             raise AddressError(f"{text}: expected ws://HOST:PORT")
-        return TcpAddress(host, int(port), card.token)
+        return TcpAddress(host, int(port), card.token, card.stop_port)
     return UnixAddress(Path(text.removeprefix("unix:")))
 
 
@@ -105,7 +112,8 @@ def write_card(address: TcpAddress, path: Path) -> None:
     path.unlink(missing_ok=True)
     descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
     with os.fdopen(descriptor, "w", encoding="utf-8") as file:
-        json.dump({"host": address.host, "port": address.port, "token": address.token}, file)
+        card = {"host": address.host, "port": address.port, "token": address.token, "stop_port": address.stop_port}
+        json.dump(card, file)
 
 
 def read_card(path: Path) -> TcpAddress:
@@ -115,20 +123,36 @@ def read_card(path: Path) -> TcpAddress:
     except (OSError, ValueError) as error:
         raise AddressError(f"no service has left its address here: {path}") from error
     match card:
-        case {"host": str(host), "port": int(port), "token": str(token)}:
-            return TcpAddress(host, port, token)
+        case {"host": str(host), "port": int(port), "token": str(token), "stop_port": int(stop_port)}:
+            return TcpAddress(host, port, token, stop_port)
         case _:
             raise AddressError(f"{path} is not the card of a service")
 
 
-def peer_uid(connection: socket.socket) -> int | None:
-    """Return the user id of the process at the other end of a Unix socket; None where the system does not tell.
+def stop_path(service: Path) -> Path:
+    """Return where STOP is taken for a service at this socket."""
+    return service.with_name(service.name + STOP_SUFFIX)
+
+
+def unlink_socket(path: Path) -> None:
+    """Remove a socket that an earlier service has left. Raises AddressError for what is none."""
+    try:
+        found = path.lstat()
+    except FileNotFoundError:
+        return
+    if not stat.S_ISSOCK(found.st_mode):
+        raise AddressError(f"{path} is there and is no socket: nothing is put in its place")
+    path.unlink(missing_ok=True)
+
+
+def peer_of(connection: socket.socket) -> tuple[int, int | None]:
+    """Return process and user id at the other end of a Unix socket; 0 and None where the system does not tell.
 
     Linux: SO_PEERCRED (unix(7)), three ints pid, uid, gid. Elsewhere the folder's and the socket's modes protect.
     """
     option = cast("int | None", getattr(socket, "SO_PEERCRED", None))
-    if option is None:
-        return None
+    if option is None or connection.family != getattr(socket, "AF_UNIX", None):
+        return 0, None
     raw = connection.getsockopt(socket.SOL_SOCKET, option, CREDENTIALS.size)
-    _, uid, _ = CREDENTIALS.unpack(raw)
-    return int(uid)
+    pid, uid, _ = CREDENTIALS.unpack(raw)
+    return int(pid), int(uid)

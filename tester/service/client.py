@@ -17,6 +17,7 @@ from collections.abc import AsyncIterator
 from contextlib import suppress
 from dataclasses import dataclass
 from types import TracebackType
+from typing import Literal, TypeAlias
 
 from pydantic import JsonValue
 from websockets.asyncio.client import ClientConnection, connect, unix_connect
@@ -24,7 +25,7 @@ from websockets.exceptions import ConnectionClosed, InvalidHandshake
 
 from tester import clock
 from tester.service.address import Address, AddressError, UnixAddress, default_address
-from tester.service.commands import Action, Command, Join, Stop
+from tester.service.commands import Action, Attend, Command, Join, Stop
 from tester.service.protocol import (
     EVENTS_KEPT,
     TREND_ROWS,
@@ -42,6 +43,7 @@ from tester.service.protocol import (
     from_server,
 )
 from tester.service.state import PlanView, StateView
+from tester.service.stop_call import takes_stop
 from tester.trouble import in_words
 
 MAX_INCOMING = 64 * 1024 * 1024
@@ -65,11 +67,16 @@ class LostError(Exception):
     """The connection has ended; the message says why, as far as anybody said."""
 
 
+Gone: TypeAlias = Literal["", "ended", "died"]
+"""What became of the service: nobody knows, it was told to end, it is no longer there although nobody told it to."""
+
+
 @dataclass(frozen=True, slots=True)
 class Lost:
     """Given by a ``Link`` in the place of a message: the connection is gone, and is tried again."""
 
     reason: str
+    gone: Gone = ""
 
 
 class Client:
@@ -91,8 +98,11 @@ class Client:
         """When the newest state came (tester.clock.monotonic)."""
         self.lost = ""
         """Why the connection has ended, "" while it stands."""
+        self.ended = False
+        """The service has said that it was told to end."""
         self._goodbye = ""
         self._ids = 0
+        self._sending: set[asyncio.Task[None]] = set()
         self._answers: dict[int, asyncio.Future[Accepted]] = {}
         self._events_due: deque[Event] = deque()
         self._newest: dict[type, Hello | Snapshot | PlanMessage | Frames] = {Hello: hello}
@@ -161,6 +171,18 @@ class Client:
         finally:
             del self._answers[number]
 
+    def attend(self) -> None:
+        """Give a sign of life, which manual mode needs every second of who controls; no answer is awaited."""
+        self._ids += 1
+        text = encode(Command(self._ids, Attend()))
+        task = asyncio.create_task(self._send(text))
+        self._sending.add(task)
+        task.add_done_callback(self._sending.discard)
+
+    async def _send(self, text: bytes) -> None:
+        with suppress(ConnectionClosed):
+            await self._connection.send(text, text=True)
+
     async def stop(self, *, fast: bool = False) -> None:
         """STOP: works for every client, whoever has control."""
         await self.command(Stop(fast))
@@ -206,7 +228,7 @@ class Client:
                 waiting.set_exception(RefusedError(message.reason))
             return
         if isinstance(message, Goodbye):
-            self._goodbye = message.reason
+            self._goodbye, self.ended = message.reason, message.ended
             return
         if isinstance(message, Event):
             self.events.append(message)
@@ -258,16 +280,17 @@ class Link:
         Each new connection begins with a ``Hello``; where its ``complete`` is False, or its ``service`` another, events
         in between are not to be had.
         """
-        service, since, reason = "", 0, ""
+        service, since, told = "", 0, Lost("")
         while True:
             try:
                 self.client = await Client.connect(
                     self.address, name=self.name, control=self.control, service=service, since=since
                 )
             except NoServiceError as error:
-                if str(error) != reason:
-                    reason = str(error)
-                    yield Lost(reason)
+                lost = Lost(str(error), told.gone or await self._gone(service))
+                if lost != told:
+                    told = lost
+                    yield lost
                 await asyncio.sleep(AGAIN_S)
                 continue
             client = self.client
@@ -275,12 +298,17 @@ class Link:
             try:
                 async for message in client:
                     yield message
-                since, reason = client.last_seq or since, client.lost
+                since, told = client.last_seq or since, Lost(client.lost, "ended" if client.ended else "")
             finally:
                 self.client = None
                 await client.close()
-            yield Lost(reason)
+            yield told
             await asyncio.sleep(AGAIN_S)
+
+    async def _gone(self, service: str) -> Gone:
+        """Tell a service that has died from one whose gateway is being started anew: that one takes STOP."""
+        there = not service or await asyncio.to_thread(takes_stop, self.address)
+        return "" if there else "died"
 
     async def command(self, action: Action) -> JsonValue:
         """As of ``Client.command``; raises LostError while there is no connection."""

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Annotated, ClassVar, Literal, TypeAlias
 
-from pydantic import ConfigDict, Field
+from pydantic import AfterValidator, ConfigDict, Field
+
+from tester.plain import plain_text
 
 VERSION = 1
 """Of this protocol. A change that an older client cannot ignore raises it."""
@@ -15,9 +18,10 @@ MAX_MESSAGE = 400_000
 _STRICT = ConfigDict(extra="forbid")
 """Commands with a key that nobody knows are refused: a misspelt option must not be ignored."""
 
-Name = Annotated[str, Field(max_length=200)]
-PathText = Annotated[str, Field(max_length=4096)]
-Note = Annotated[str, Field(max_length=2000)]
+_PLAIN = AfterValidator(partial(plain_text, where=""))
+Name = Annotated[str, Field(max_length=200), _PLAIN]
+PathText = Annotated[str, Field(max_length=4096), _PLAIN]
+Note = Annotated[str, Field(max_length=2000), _PLAIN]
 RecipeText = Annotated[str, Field(max_length=262_144)]
 
 
@@ -107,11 +111,11 @@ class Stop:
 
 @dataclass(frozen=True, slots=True)
 class Answer:
-    """Answer the prompt with this number; the answer is recorded. "no" leaves it waiting."""
+    """Answer the prompt with this number, by its word; the answer is recorded. "no" leaves it waiting."""
 
     __pydantic_config__: ClassVar[ConfigDict] = _STRICT
     number: int
-    answer: Note = "yes"
+    answer: Literal["yes", "no"] = "yes"
     command: Literal["answer"] = "answer"
 
 
@@ -122,6 +126,14 @@ class Arm:
     __pydantic_config__: ClassVar[ConfigDict] = _STRICT
     on: bool = True
     command: Literal["arm"] = "arm"
+
+
+@dataclass(frozen=True, slots=True)
+class Attend:
+    """A sign of life of the screen that moves the rig by hand: a second without one ends manual mode."""
+
+    __pydantic_config__: ClassVar[ConfigDict] = _STRICT
+    command: Literal["attend"] = "attend"
 
 
 JogAxis = Literal["wheel", "belt", "both", "press", "sideslip", "camber", "heat"]
@@ -208,7 +220,7 @@ RigAction: TypeAlias = RunRecipe | ResumeRun | Hold | Release | Acknowledge | St
 """What the rig's owner does; everything but ``stop`` is for the controller alone."""
 Query: TypeAlias = CheckRecipe | ShowPlan | ListRecipes | ListRuns
 """What is worked out beside the rig, by a process of its own."""
-Action: TypeAlias = Annotated[RigAction | Control | WatchFrames | Query, Field(discriminator="command")]
+Action: TypeAlias = Annotated[RigAction | Control | WatchFrames | Attend | Query, Field(discriminator="command")]
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -11,6 +10,7 @@ from tester import clock
 from tester.engine.run import Outcome, Run
 from tester.rig import RigConfig
 from tester.service.alarms import AlarmList, Cause
+from tester.service.alone import left_alone
 from tester.service.hub import Hub
 from tester.service.link import Order
 from tester.service.manual import ManualExecutor
@@ -20,11 +20,15 @@ from tester.service.protocol import SNAPSHOT_S
 from tester.service.state import DiskView, ManualView, ProgressView, RunView, StateView, TickView, Value
 from tester.service.values import unknown_values
 from tester.service.watch import RunWatch
-from tester.store.space import MARGIN
+from tester.store.space import MARGIN, FreeRoom
 
 UNWATCHED_S = 1.0
 """Period of states while nobody is connected, s: the gateway's trend goes on, at a rate that costs nothing."""
+SOONEST_S = 0.05
+"""What a client has done is not shown sooner than this after what was shown last, s: nobody makes states by talking."""
 DISK_EVERY_S = 10.0
+DISK_FIRST_S = 1.0
+"""The first answer about the disk is waited for so long: the service is only beginning, s."""
 LOW_BYTES = 500_000_000
 """Less than this is low whatever the run needs [A]: one compound of Table 2 takes some tens of MB."""
 TREND = (
@@ -38,6 +42,10 @@ NOTIFIED = frozenset({"trip"})
 
 def nobody_obeys(order: Order) -> None:
     """Leave an order undone: nobody has taken the desk yet."""
+
+
+def nothing_stops(name: str, fast: bool) -> None:
+    """Let STOP pass: nobody has taken the desk yet."""
 
 
 def nobody_minds() -> None:
@@ -57,6 +65,8 @@ class Desk:
     rig: RigConfig
     runs: Path
     obey: Callable[[Order], None] = field(default=nobody_obeys)
+    stop: Callable[[str, bool], None] = field(default=nothing_stops)
+    """Called with who wants STOP, and whether a fast one."""
     lost_control: Callable[[], None] = field(default=nobody_minds)
     stop_rest: Callable[[bool], None] = field(default=nothing_rests)
     """Called with STOP (fast or not) for what the run under way has not begun yet."""
@@ -76,19 +86,26 @@ class Desk:
     now_s: float = 0.0
     """Rig time of the run."""
     _due_s: float = float("-inf")
+    _shown_s: float = float("-inf")
     _mode: str = ""
     _mode_since_s: float = 0.0
     _asked: int = 0
     _controller: int = 0
-    _disk: DiskView = field(default_factory=lambda: DiskView(0, 0, False))
+    _low: bool = False
     _disk_due_s: float = float("-inf")
+    _room: FreeRoom = field(init=False)
     _unknown: tuple[Value, ...] = ()
+    _alone: str = ""
     alarms: AlarmList = field(init=False)
 
     def __post_init__(self) -> None:
         """Begin with no alarm."""
         self.alarms = AlarmList(clock.utc_now, self._alarm_changed)
         self._unknown = unknown_values(self.rig)
+        self._alone = left_alone(self.rig)
+        self._room = FreeRoom(self.runs)
+        self._look_at_disk()
+        self._room.wait(DISK_FIRST_S)
 
     # -- runs -------------------------------------------------------------------------------------------------
 
@@ -96,6 +113,7 @@ class Desk:
         """Look after a run from now on."""
         self.watch, self.hand, self.run = RunWatch(run, track), hand, view
         run.engine.ctx.journal.heard = self.heard
+        self.hub.lane.begin_ticking()
         self.now_s = 0.0
         self._asked = 0
         self.hub.plan(None if hand is not None else self.watch.track.view())
@@ -109,6 +127,7 @@ class Desk:
 
     def detach(self, view: RunView | None) -> None:
         """The run is over."""
+        self.hub.lane.end_ticking()
         if self.watch is not None:
             self.watch.run.engine.ctx.journal.heard = None
             for name in self.watch.watched:
@@ -124,14 +143,15 @@ class Desk:
         self.run = view
         self.tell("run", text, "info" if outcome is Outcome.DONE else "warning")
         self.notify("finished", text)
-        if outcome is Outcome.TRIPPED and self.watch is not None and not self.watch.acknowledged:
-            self._latch(view.reason or view.outcome, self.watch)
+        watch = self.watch
+        if watch is not None and not watch.acknowledged and (outcome is Outcome.TRIPPED or watch.latched):
+            self._latch(view.reason or view.outcome, watch)
         self.detach(view)
 
     def _latch(self, reason: str, watch: RunWatch) -> None:
         """Let nothing begin before somebody has acknowledged."""
         watch.watch_trip(self.alarms, self.now_s)
-        if not watch.tripped:  # the wire is gone: control has had nothing to decide
+        if not watch.tripped and not watch.latched:  # the wire is gone: control has had nothing to decide
             watch.tripped = "rig lost"
             self.alarms.raise_(Cause(watch.tripped, 1, reason, "the drives stop by their own watchdogs"), self.now_s)
         self.latched, self.tripped = reason, watch.tripped
@@ -168,17 +188,26 @@ class Desk:
     def poll(self, now_s: float) -> None:
         """Hear what clients want, and show the state when its time has come. ``now_s``: rig time."""
         self.now_s = now_s
+        self.stop_first()
         for heard in self.hub.hear():
             if isinstance(heard, Order):
                 self.obey(heard)
-            self._due_s = float("-inf")  # what has changed is seen at once
+            self._due_s = min(self._due_s, self._shown_s + SOONEST_S)  # what has changed is seen soon
         self._notice_control()
         wall_s = clock.monotonic()
         if wall_s >= self._due_s:
             period_s = SNAPSHOT_S if self.hub.watched else UNWATCHED_S
             late_s = wall_s - self._due_s
             self._due_s = wall_s + (period_s - late_s if late_s < period_s else period_s)
+            self._shown_s = wall_s
             self.show()
+
+    def stop_first(self) -> None:
+        """Carry out what came through STOP's own lane; the rest waits."""
+        for wish in self.hub.lane.taken():
+            self.stop(wish.name, wish.fast)
+            self.hub.lane.answer(wish)
+            self._due_s = min(self._due_s, self._shown_s + SOONEST_S)
 
     def wait(self) -> None:
         """Wait, while no run ticks, until there is something to do."""
@@ -255,6 +284,7 @@ class Desk:
             clients=hub.clients,
             interrupted=self.interrupted,
             preflight=(*(check for check in known if check.name not in said), *own),
+            alone=watch.alone if watch is not None else self._alone,
         )
 
     def _situation(self) -> tuple[str, str, float]:
@@ -285,21 +315,27 @@ class Desk:
             return TickView(0.0, 0.0, 0)
         return replace(self.tick, rate_hz=round(1.0 / self.watch.run.engine.period_s, 1))
 
+    def _look_at_disk(self) -> None:
+        self._disk_due_s = clock.monotonic() + DISK_EVERY_S
+        self._room.look()
+
     def _disk_view(self) -> DiskView:
-        wall_s = clock.monotonic()
-        if wall_s >= self._disk_due_s:
-            self._disk_due_s = wall_s + DISK_EVERY_S
-            where = self.runs if self.runs.is_dir() else Path()
-            free = shutil.disk_usage(where).free
-            was_low, low = self._disk.low, free < max(LOW_BYTES, MARGIN * self.needed)
-            self._disk = DiskView(free, self.needed, low)
-            text = f"{free / 1e6:.0f} MB free"
-            cause = Cause("disk nearly full", 2, text, "a run that cannot be recorded is stopped", "ack", free / 1e6,
-                          max(LOW_BYTES, MARGIN * self.needed) / 1e6, "MB")  # fmt: skip
-            self.alarms.set(low, cause, self.now_s)
-            if low and not was_low:
-                self.notify("disk", text)
-        return self._disk
+        if clock.monotonic() >= self._disk_due_s:
+            self._look_at_disk()
+        silent = Cause("disk silent", 2, f"{self.runs} does not say how much room is left",
+                       "a run that cannot be recorded is stopped")  # fmt: skip
+        self.alarms.set(self._room.hangs, silent, self.now_s)
+        free, least = self._room.free, max(LOW_BYTES, MARGIN * self.needed)
+        if free is None:
+            return DiskView(None, self.needed, self._low)
+        was_low, self._low = self._low, free < least
+        text = f"{free / 1e6:.0f} MB free"
+        cause = Cause("disk nearly full", 2, text, "a run that cannot be recorded is stopped", "ack", free / 1e6,
+                      least / 1e6, "MB")  # fmt: skip
+        self.alarms.set(self._low, cause, self.now_s)
+        if self._low and not was_low:
+            self.notify("disk", text)
+        return DiskView(free, self.needed, self._low)
 
     def _row(self, view: StateView) -> tuple[float | None, ...]:
         found = {value.key: value for value in view.values}

@@ -1,6 +1,6 @@
 """The gateway: the WebSocket side of the service. It owns no rig: it passes on, and says who may command.
 
-One process beside the one that ticks (docs/decisions/0015), so that a slow, stalled or hostile client costs the scan
+One process beside the one that ticks (docs/decisions/0021), so that a slow, stalled or hostile client costs the scan
 nothing. It keeps what a new client must be told: newest state, plan, events, ten minutes of trend, all as JSON of
 which it reads the mode alone.
 """
@@ -19,6 +19,7 @@ from websockets.exceptions import ConnectionClosed
 
 from tester.service.commands import (
     VERSION,
+    Attend,
     CheckRecipe,
     Control,
     Join,
@@ -31,7 +32,8 @@ from tester.service.commands import (
     WatchFrames,
 )
 from tester.service.hook import Hook
-from tester.service.link import FROM_GATEWAY, Order, Presence
+from tester.service.link import GatewayEnd, Order, Presence
+from tester.service.manners import MOST_CLIENTS, Bucket, Strangers
 from tester.service.outbox import Outbox
 from tester.service.protocol import (
     EVENTS_KEPT,
@@ -52,6 +54,10 @@ FELL_BEHIND = 4001
 """Close code for a client that does not read its events."""
 JOIN_WITHIN_S = 10.0
 """A connection that has not said ``join`` by then is closed."""
+QUESTIONS = 4
+"""Questions of one client that may be worked out, or wait for that."""
+FULL = 1013
+"""Close code for a client that finds no place (try again later)."""
 GREETED_WITHIN_S = 30.0
 """The owner's first state is there by then, s."""
 AT_REST = frozenset({"OFFLINE", "INTERRUPTED"})
@@ -73,6 +79,9 @@ class Guest:
     frames: bool = False
     leaving: asyncio.Task[None] | None = None
     """It fell behind and is being sent away."""
+    bucket: Bucket = field(default_factory=Bucket)
+    questions: int = 0
+    """Those that are being worked out."""
 
 
 class Gateway:
@@ -82,13 +91,16 @@ class Gateway:
         self, tell: Callable[[bytes], None], service: str, software: str, queries: Queries, hook: Hook
     ) -> None:
         """``tell`` takes a line for the owner; ``service`` identifies this life of the service."""
-        self.tell = tell
+        self.owner = GatewayEnd(tell)
+        self.strangers = Strangers()
         self.service = service
         self.software = software
         self.queries = queries
         self.hook = hook
         self.guests: dict[int, Guest] = {}
         self.controller = 0
+        self._signs = 0
+        self._ended = False
         self._lender = 0
         """The client that had control before an idle rig's command borrowed it; it gets it back."""
         self._mode = ""
@@ -118,8 +130,7 @@ class Gateway:
             self._events.append((int(number), event))
             for guest in self.guests.values():
                 guest.outbox.event(event)
-                if guest.outbox.behind and not guest.leaving:
-                    guest.leaving = asyncio.create_task(self._drop(guest))
+                self._keep(guest)
         elif kind == b"p":
             self._plan = rest
             for guest in self.guests.values():
@@ -127,7 +138,11 @@ class Gateway:
         elif kind == b"a":
             number, _, reply = rest.partition(b" ")
             if (asker := self.guests.get(int(number))) is not None:
-                asker.outbox.reply(reply)
+                self._reply(asker, reply)
+        elif kind == b"b":
+            self._ended = True
+        elif kind == b"k":
+            self.owner.looked_at(int(rest))
         elif kind == b"t":
             self._rows.append(rest)
         elif kind == b"n":
@@ -137,10 +152,11 @@ class Gateway:
                 if guest.frames:
                     guest.outbox.newest("frames", rest)
 
-    def farewell(self, reason: str) -> None:
-        """Tell everybody that the service ends."""
+    def farewell(self) -> None:
+        """Tell everybody that the owner has ended, or died: it said goodbye, or not."""
+        last = Goodbye("the service has ended", ended=True) if self._ended else Goodbye("the service has died")
         for guest in self.guests.values():
-            guest.outbox.reply(encode(Goodbye(reason)))
+            guest.outbox.reply(encode(last))
 
     async def all_told(self) -> None:
         """Wait until every client has been sent what is due to it."""
@@ -156,6 +172,10 @@ class Gateway:
         except (ConnectionClosed, TimeoutError, BadMessageError) as error:
             await self._turn_away(connection, str(error) or "no join")
             return
+        self.strangers.known(connection)
+        if len(self.guests) >= MOST_CLIENTS:
+            await self._turn_away(connection, f"{MOST_CLIENTS} clients are here already", FULL)
+            return
         guest = Guest(connection, self._next, joined.name, joined.control)
         self._next += 1
         guest.outbox.reply(self._hello(joined, guest))
@@ -164,7 +184,9 @@ class Gateway:
         sending = asyncio.create_task(self._send(guest))
         try:
             async for text in connection:
-                await self._obey(guest, text)
+                if (wait_s := guest.bucket.spend(len(text))) > 0.0:
+                    await asyncio.sleep(wait_s)  # meanwhile nothing more is read of it
+                self._obey(guest, text)
         except ConnectionClosed:
             pass  # a client that just disappears is no error of the service's
         finally:
@@ -186,10 +208,10 @@ class Gateway:
             await self._greeted.wait()
         return message
 
-    async def _turn_away(self, connection: ServerConnection, reason: str) -> None:
+    async def _turn_away(self, connection: ServerConnection, reason: str, code: int = 1008) -> None:
         try:
             await connection.send(encode(Goodbye(reason)), text=True)
-            await connection.close(1008, reason[:100])
+            await connection.close(code, reason[:100])
         except ConnectionClosed:
             return
 
@@ -228,18 +250,28 @@ class Gateway:
 
     async def _drop(self, guest: Guest) -> None:
         """Send away a client that does not keep up: an event is never left out, so there is nothing else to do."""
-        await guest.connection.close(FELL_BEHIND, f"{guest.outbox.behind} events behind: come back with since")
+        await guest.connection.close(FELL_BEHIND, f"{guest.outbox.behind} messages behind: come back with since")
+
+    def _reply(self, guest: Guest, message: bytes) -> None:
+        """Answer a client."""
+        guest.outbox.reply(message)
+        self._keep(guest)
+
+    def _keep(self, guest: Guest) -> None:
+        """Keep a client that reads what it is sent."""
+        if guest.outbox.behind and not guest.leaving:
+            guest.leaving = asyncio.create_task(self._drop(guest))
 
     # -- commands ---------------------------------------------------------------------------------------------
 
-    async def _obey(self, guest: Guest, text: str | bytes) -> None:
+    def _obey(self, guest: Guest, text: str | bytes) -> None:
         try:
             message = to_server(text)
         except BadMessageError as error:
-            guest.outbox.reply(encode(Refused(_id_of(text), str(error))))
+            self._reply(guest, encode(Refused(_id_of(text), str(error))))
             return
         if isinstance(message, Join):
-            guest.outbox.reply(encode(Goodbye("joined already")))
+            self._reply(guest, encode(Goodbye("joined already")))
             return
         action = message.action
         if isinstance(action, Control):
@@ -247,9 +279,11 @@ class Gateway:
         elif isinstance(action, WatchFrames):
             guest.frames = action.on
             self._tell_presence()
-            guest.outbox.reply(encode(Accepted(message.id)))
+            self._reply(guest, encode(Accepted(message.id)))
+        elif isinstance(action, Attend):
+            self._attend(guest, message.id)
         elif isinstance(action, CheckRecipe | ShowPlan | ListRecipes | ListRuns):
-            self.queries.start(self._query(guest, message.id, action))
+            self._ask(guest, message.id, action)
         else:
             self._order(guest, message.id, action)
 
@@ -258,11 +292,15 @@ class Gateway:
         if not isinstance(action, Stop) and self.controller != guest.number and not self._borrows(guest):
             holder = self.guests.get(self.controller)
             who = f"{holder.name} has control" if holder is not None else "nobody has control: take it first"
-            guest.outbox.reply(encode(Refused(number, who)))
+            self._reply(guest, encode(Refused(number, who)))
             return
         self._mode = ""  # what the order makes of it is known with the next state
         order = Order(guest.number, guest.name, number, action)
-        self.tell(FROM_GATEWAY.dump_json(order))
+        if isinstance(action, Stop):
+            if (stood_for := self.owner.stop(order)) is not None:
+                self._reply(guest, encode(Accepted(stood_for.id)))
+        elif not self.owner.order(order):
+            self._reply(guest, encode(Refused(number, "too many commands at once: wait for their answers")))
 
     def _borrows(self, guest: Guest) -> bool:
         """Give control to a client that asked for it when it joined, for as long as it stays, from one that is idle.
@@ -283,27 +321,45 @@ class Gateway:
             if self.controller == guest.number:
                 self.controller = 0
         elif holder is not None and holder is not guest and not action.force:
-            guest.outbox.reply(encode(Refused(number, f"{holder.name} has control")))
+            self._reply(guest, encode(Refused(number, f"{holder.name} has control")))
             return
         else:
             self.controller = guest.number
         self._tell_presence()
-        guest.outbox.reply(encode(Accepted(number)))
+        self._reply(guest, encode(Accepted(number)))
+
+    def _attend(self, guest: Guest, number: int) -> None:
+        """Pass on a sign of life of the one that controls; of others it is none."""
+        if self.controller == guest.number:
+            self._signs += 1
+            self._tell_presence()
+        self._reply(guest, encode(Accepted(number)))
+
+    def _ask(self, guest: Guest, number: int, question: Query) -> None:
+        """Have a question worked out, some at a time."""
+        if guest.questions >= QUESTIONS:
+            reason = f"{QUESTIONS} questions are being worked out already: wait for their answers"
+            self._reply(guest, encode(Refused(number, reason)))
+            return
+        guest.questions += 1
+        self.queries.start(self._query(guest, number, question))
 
     async def _query(self, guest: Guest, number: int, question: Query) -> None:
         try:
             result = await self.queries.answer(question)
         except QueryError as error:
-            guest.outbox.reply(encode(Refused(number, str(error))))
+            self._reply(guest, encode(Refused(number, str(error))))
         else:
-            guest.outbox.reply(encode(Accepted(number, result)))
+            self._reply(guest, encode(Accepted(number, result)))
+        finally:
+            guest.questions -= 1
 
     def _tell_presence(self) -> None:
         holder = self.guests.get(self.controller)
         frames = any(guest.frames for guest in self.guests.values())
         viewers = len(self.guests) - (holder is not None)
         name = holder.name if holder is not None else ""
-        self.tell(FROM_GATEWAY.dump_json(Presence(name, self.controller, viewers, frames)))
+        self.owner.presence(Presence(name, self.controller, viewers, frames, self._signs))
 
 
 def _mode_of(state: bytes) -> str:

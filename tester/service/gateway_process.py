@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import os
 import signal
 import socket
 import sys
@@ -17,8 +18,12 @@ from tester.service.gateway import Gateway
 from tester.service.hook import Hook
 from tester.service.link import MOST_QUEUED
 from tester.service.listening import CLOSE_S, listening
+from tester.service.manners import sparse_logger
 from tester.service.pair import link_of
 from tester.service.queries import Queries
+
+NICE = 5
+"""The process that ticks comes first, and STOP's door: the gateway may be kept busy by whoever talks to it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,6 +38,7 @@ class Settings:
     notify: str
     token: str = ""
     port: int = 0
+    stop_port: int = 0
 
 
 SETTINGS: TypeAdapter[Settings] = TypeAdapter(Settings)
@@ -47,13 +53,15 @@ async def _serve(reader: asyncio.StreamReader, writer: asyncio.StreamWriter, set
 
     gateway = Gateway(tell, settings.service, settings.software, queries, Hook(settings.notify))
     path = Path(settings.path)
-    address = TcpAddress("127.0.0.1", settings.port, settings.token) if settings.token else UnixAddress(path)
+    tcp = TcpAddress("127.0.0.1", settings.port, settings.token, settings.stop_port)
+    address = tcp if settings.token else UnixAddress(path)
     async with listening(gateway, address) as listens:
         if isinstance(listens, TcpAddress):
             write_card(listens, path)
-        while line := await reader.readline():
-            gateway.take(line[:-1])
-        gateway.farewell("the service has ended")
+        with suppress(ConnectionError):  # an owner that dies with something unread resets the link
+            while line := await reader.readline():
+                gateway.take(line[:-1])
+        gateway.farewell()
         with suppress(TimeoutError):
             async with asyncio.timeout(CLOSE_S):
                 await gateway.all_told()
@@ -73,4 +81,7 @@ if __name__ == "__main__":
         signal.signal(number, signal.SIG_IGN)  # it ends with its owner, who comes to a standstill first
     if hasattr(signal, "SIGHUP"):
         signal.signal(signal.SIGHUP, signal.SIG_IGN)
+    sparse_logger("asyncio")
+    if hasattr(os, "nice"):
+        os.nice(NICE)
     asyncio.run(serve_link(link_of(sys.argv[1])))

@@ -16,12 +16,13 @@ from pydantic import JsonValue
 from pydantic_core import to_json
 
 from tester import __version__, clock
-from tester.service.address import Address, TcpAddress, UnixAddress
+from tester.service.address import Address, TcpAddress, UnixAddress, stop_path, unlink_socket
 from tester.service.gateway_process import SETTINGS, Settings
 from tester.service.link import LinkLost, Order, OwnerEnd, Presence
 from tester.service.pair import spawn
 from tester.service.protocol import EVENTS_KEPT, TREND_ROWS, Accepted, Event, Frames, Refused, encode
 from tester.service.state import ClientsView, PlanView, StateView
+from tester.service.stop_lane import StopLane
 
 AGAIN_S = 1.0
 """A gateway is started anew at most this often, s."""
@@ -48,8 +49,12 @@ class Hub:
     service: str = field(default_factory=lambda: secrets.token_hex(8))
     began_s: float = field(default_factory=clock.monotonic)
     presence: Presence = field(default_factory=lambda: Presence("", 0, 0, False))
+    sign_s: float = float("-inf")
+    """When whoever controls gave the newest sign of life (tester.clock.monotonic)."""
     sequence: int = 0
     restarts: int = 0
+    lane: StopLane = field(default_factory=StopLane)
+    """STOP's own way here, past the gateway."""
     _end: OwnerEnd | None = None
     _process: subprocess.Popen[bytes] | None = None
     _events: deque[bytes] = field(default_factory=lambda: deque[bytes](maxlen=EVENTS_KEPT))
@@ -61,6 +66,15 @@ class Hub:
     def wall_s(self) -> float:
         """Seconds since the service began."""
         return clock.monotonic() - self.began_s
+
+    @property
+    def silent_s(self) -> float:
+        """Seconds without a sign of life of whoever controls."""
+        return clock.monotonic() - self.sign_s
+
+    def attended(self) -> None:
+        """Take a sign of life of whoever controls: silence counts from now on."""
+        self.sign_s = clock.monotonic()
 
     @property
     def clients(self) -> ClientsView:
@@ -117,6 +131,7 @@ class Hub:
 
     def hear(self) -> list[Order | Presence]:
         """Return what clients want, a bounded piece of it; starts a gateway where there is none."""
+        self.lane.look()
         if self._end is None:
             self._revive()
         if self._end is None:
@@ -129,6 +144,8 @@ class Hub:
             return []
         for one in heard:
             if isinstance(one, Presence):
+                if one.signs != self.presence.signs:
+                    self.attended()
                 self.presence = one
         return heard
 
@@ -137,12 +154,16 @@ class Hub:
         if self._end is None:
             clock.sleep_until(clock.monotonic() + seconds)
         elif not self._end.heard:
-            select.select([self._end.socket], [], [], max(seconds, 0.0))
+            select.select([self._end.socket, self.lane.bell], [], [], max(seconds, 0.0))
 
     # -- the gateway ------------------------------------------------------------------------------------------
 
     def open(self) -> None:
-        """Start the gateway. Raises OSError."""
+        """Open the lane for STOP, then start the gateway. Raises OSError."""
+        self.lane.open(self.config.address)
+        self._open_gateway()
+
+    def _open_gateway(self) -> None:
         self._process, ours = spawn("tester.service.gateway_process", ())
         self.adopt(OwnerEnd(ours))
 
@@ -154,7 +175,7 @@ class Hub:
         path = self.config.card if isinstance(address, TcpAddress) else address.path
         settings = Settings(
             self.service, __version__, str(path), str(self.config.runs), self.config.rig, self.config.notify,
-            address.token if tcp else "", address.port if tcp else 0,
+            address.token if tcp else "", address.port if tcp else 0, self.lane.port,
         )  # fmt: skip
         self._say(SETTINGS.dump_json(settings))
         for row in self._rows:
@@ -164,19 +185,23 @@ class Hub:
         self._say(self._plan)
 
     def close(self) -> None:
-        """End the gateway; it says goodbye to everybody."""
+        """End the gateway; it says goodbye to everybody. STOP is taken until then."""
+        self._say(b"b")
         if self._end is not None:
             self._end.drain(END_S)
-            self._end.close()
-            self._end = None
         if self._process is not None:
             try:
                 self._process.wait(END_S)
             except subprocess.TimeoutExpired:
                 self._process.kill()
                 self._process.wait()
+        if self._end is not None:
+            self._end.close()
+            self._end = None
+        self.lane.close()
         if isinstance(self.config.address, UnixAddress):
-            self.config.address.path.unlink(missing_ok=True)
+            for path in (self.config.address.path, stop_path(self.config.address.path)):
+                unlink_socket(path)
         self.config.card.unlink(missing_ok=True)
 
     def _say(self, line: bytes) -> None:
@@ -205,4 +230,4 @@ class Hub:
             return
         self.restarts += 1
         self._again_s = clock.monotonic() + AGAIN_S
-        self.open()
+        self._open_gateway()

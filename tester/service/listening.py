@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import hmac
 import os
 import socket
@@ -13,12 +14,14 @@ from typing import cast
 from websockets.asyncio.server import Server, ServerConnection, serve, unix_serve
 from websockets.http11 import Request, Response
 
-from tester.service.address import Address, TcpAddress, UnixAddress, peer_uid
+from tester.service.address import Address, TcpAddress, UnixAddress, peer_of, unlink_socket
 from tester.service.commands import MAX_MESSAGE
 from tester.service.gateway import Gateway
+from tester.service.manners import sparse_logger
 
 BACKLOG_BYTES = 65_536
 """A client that leaves more than this unread waits for its next message."""
+LOG = "tester.gateway"
 CLOSE_S = 2.0
 """A client has this long to say goodbye."""
 
@@ -39,7 +42,10 @@ class Door:
                 return connection.respond(HTTPStatus.UNAUTHORIZED, "a token is needed\n")
             return None
         found = cast("socket.socket | None", connection.transport.get_extra_info("socket"))
-        uid = peer_uid(found) if found is not None else None
+        try:
+            uid = peer_of(found)[1] if found is not None else None
+        except OSError:  # gone already
+            return connection.respond(HTTPStatus.FORBIDDEN, "\n")
         if uid is not None and uid != self.uid:
             return connection.respond(HTTPStatus.FORBIDDEN, "this service belongs to another user\n")
         return None
@@ -52,26 +58,45 @@ async def listening(gateway: Gateway, address: Address, uid: int | None = None) 
     ``uid``: who may come in through a Unix socket, by default the user of this process.
     """
     if isinstance(address, UnixAddress):
-        address.path.unlink(missing_ok=True)
+        unlink_socket(address.path)
         before = os.umask(0o177)
         try:
             door = Door(os.getuid() if uid is None else uid, "")
             server = await unix_serve(
                 gateway.serve, str(address.path), process_request=door, origins=[None], compression=None,
                 max_size=MAX_MESSAGE, write_limit=BACKLOG_BYTES, close_timeout=CLOSE_S, server_header=None,
+                create_connection=_counted(gateway), logger=sparse_logger(LOG),
             )  # fmt: skip
         finally:
             os.umask(before)
         async with server:
             yield address
-        address.path.unlink(missing_ok=True)
+        unlink_socket(address.path)
         return
     server = await serve(
         gateway.serve, address.host, address.port, process_request=Door(None, address.token), origins=[None],
         compression=None, max_size=MAX_MESSAGE, write_limit=BACKLOG_BYTES, close_timeout=CLOSE_S, server_header=None,
+        create_connection=_counted(gateway), logger=sparse_logger(LOG),
     )  # fmt: skip
     async with server:
-        yield TcpAddress(address.host, _port(server), address.token)
+        yield TcpAddress(address.host, _port(server), address.token, address.stop_port)
+
+
+def _counted(gateway: Gateway) -> type[ServerConnection]:
+    """Return what a connection is made of: the gateway knows of it from its first byte on."""
+
+    class Counted(ServerConnection):
+        """A connection that cannot be one of any number of strangers."""
+
+        def connection_made(self, transport: asyncio.BaseTransport) -> None:
+            gateway.strangers.came(self, cast("asyncio.Transport", transport))
+            super().connection_made(transport)
+
+        def connection_lost(self, exc: Exception | None) -> None:
+            gateway.strangers.known(self)
+            super().connection_lost(exc)
+
+    return Counted
 
 
 def _port(server: Server) -> int:

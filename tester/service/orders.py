@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from tester.control.state import Mode
+from tester.engine.prompts import DONE
 from tester.service.commands import (
     Acknowledge,
     Answer,
@@ -29,13 +30,14 @@ class Orders:
         self.armed_by = 0
         """The client that armed manual mode."""
         self.ending = False
-        desk.obey, desk.lost_control = self.obey, self.lost_control
+        desk.obey, desk.stop, desk.lost_control = self.obey, self.stop, self.lost_control
 
     def obey(self, order: Order) -> None:
         """Carry out an order, or say why not."""
         action = order.action
         if isinstance(action, Stop):
-            self._stop(order, action)
+            self.stop(order.name, action.fast)
+            self.desk.hub.accept(order)
         elif isinstance(action, RunRecipe | ResumeRun):
             self._begin(order)
         elif isinstance(action, Arm):
@@ -56,20 +58,19 @@ class Orders:
         else:
             hub.accept(order)
 
-    def _stop(self, order: Order, action: Stop) -> None:
+    def stop(self, name: str, fast: bool) -> None:
         """STOP: whoever says it, whatever is under way."""
         desk = self.desk
-        kind = "fast stop" if action.fast else "stop"
-        desk.tell("command", f"{kind} by {order.name}", "warning")
+        kind = "fast stop" if fast else "stop"
+        desk.tell("command", f"{kind} by {name}", "warning")
         if desk.watch is not None:
             if desk.watch.run.engine.control.state.mode is Mode.LATCHED:
                 desk.watch.run.stays_latched = False  # its cause may never go; the desk stays latched until it is
-            desk.watch.run.request_stop(f"{kind} by {order.name}", fast=action.fast)
-            desk.stop_rest(action.fast)
+            desk.watch.run.request_stop(f"{kind} by {name}", fast=fast)
+            desk.stop_rest(fast)
         elif self.job is not None:
-            desk.hub.refuse(self.job, f"{kind} by {order.name}")
+            desk.hub.refuse(self.job, f"{kind} by {name}")
             self.job = None
-        desk.hub.accept(order)
 
     def _hold(self, order: Order, action: Hold | Release) -> str:
         """Hold or release a run; return "" or why not."""
@@ -107,8 +108,8 @@ class Orders:
         if waiting is None or waiting.number != action.number:
             return f"prompt {action.number} does not wait for an answer"
         self.desk.tell("prompt", f"{order.name} answers: {action.answer}")
-        if action.answer.strip().lower() not in ("n", "no"):
-            waiting.answer = action.answer.strip() or "yes"
+        if action.answer == DONE:
+            waiting.answer = DONE
         return ""
 
     def _by_hand(self, action: Jog | Tare) -> str:

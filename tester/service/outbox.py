@@ -7,6 +7,8 @@ from collections import deque
 
 MOST_BEHIND = 1000
 """Events that may wait for a client; one more and it is disconnected. A run makes some hundred an hour."""
+MOST_REPLIES = 128
+"""Answers that may wait for a client; one more and it is disconnected: it does not read."""
 
 
 class Outbox:
@@ -19,15 +21,18 @@ class Outbox:
         self._newest: dict[str, bytes] = {}
         self._something = asyncio.Event()
         self.behind = 0
-        """Events that waited when there were too many; 0 while the client keeps up."""
+        """Events or answers that waited when there were too many; 0 while the client keeps up."""
 
     def __len__(self) -> int:
         """Return how many messages wait."""
         return len(self._replies) + len(self._events) + len(self._newest)
 
     def reply(self, message: bytes) -> None:
-        """Queue an answer."""
-        self._replies.append(message)
+        """Queue an answer; a client that leaves too many unread gets none of them any more."""
+        if len(self._replies) >= MOST_REPLIES:
+            self.behind = len(self._replies) + 1
+        else:
+            self._replies.append(message)
         self._something.set()
 
     def event(self, message: bytes) -> None:

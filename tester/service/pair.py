@@ -10,8 +10,9 @@ import os
 import secrets
 import socket
 import subprocess
-import sys
 from collections.abc import Sequence
+
+from tester.children import module_command
 
 INHERITS = os.name == "posix"
 BACK_S = 20.0
@@ -25,7 +26,7 @@ def spawn(module: str, arguments: Sequence[str]) -> tuple[subprocess.Popen[bytes
         ours, theirs = socket.socketpair()
         with theirs:
             process = subprocess.Popen(
-                [sys.executable, "-m", module, f"fd:{theirs.fileno()}", *arguments],
+                module_command(module, f"fd:{theirs.fileno()}", *arguments),
                 pass_fds=[theirs.fileno()],
                 stdin=subprocess.DEVNULL,
                 start_new_session=True,  # Ctrl+C at the terminal is for the owner alone
@@ -35,7 +36,7 @@ def spawn(module: str, arguments: Sequence[str]) -> tuple[subprocess.Popen[bytes
     with socket.create_server(("127.0.0.1", 0), backlog=1) as door:
         door.settimeout(BACK_S)
         process = subprocess.Popen(
-            [sys.executable, "-m", module, f"port:{door.getsockname()[1]}", *arguments],
+            module_command(module, f"port:{door.getsockname()[1]}", *arguments),
             stdin=subprocess.DEVNULL,
             env=os.environ | {SECRET: secret},
         )

@@ -65,13 +65,20 @@ def known_checks(
 ) -> tuple[Check, ...]:
     """Return the list without the rig's own part. ``latched``: why nothing may start; ``now_utc``: the wall clock."""
     return (
-        Check("disk space", not disk.low, f"{disk.free / 1e9:.1f} GB free"),
+        disk_check(disk),
         alarms_check(alarms),
         last_run_check(past, latched),
         calibration_check(rig.calibration, now_utc, simulated=rig.simulated),
         wheel_check(past),
         zero_check(past, now_utc),
     )
+
+
+def disk_check(disk: DiskView) -> Check:
+    """Return whether there is room to record a run."""
+    if disk.free is None:
+        return Check("disk space", None, "the disk does not say how much is free")
+    return Check("disk space", not disk.low, f"{disk.free / 1e9:.1f} GB free")
 
 
 def alarms_check(alarms: Iterable[Alarm]) -> Check:

@@ -131,9 +131,10 @@ class Refused:
 
 @dataclass(frozen=True, slots=True)
 class Goodbye:
-    """The last message: why the service closes the connection."""
+    """The last message: why the service closes the connection. ``ended``: it was told to end, and has left in order."""
 
     reason: str
+    ended: bool = False
     type: Literal["goodbye"] = "goodbye"
 
 
@@ -191,4 +192,5 @@ def _words(error: ValidationError) -> str:
     """Say what is wrong with a message, where, in one line; what was sent is not repeated."""
     first = error.errors(include_url=False, include_input=False, include_context=False)[0]
     at = ".".join(str(piece) for piece in first["loc"])
-    return f"{at}: {first['msg']}" if at else str(first["msg"])
+    said = str(first["msg"]).removeprefix("Value error, ")
+    return f"{at}: {said}" if at else said

@@ -8,7 +8,6 @@ from __future__ import annotations
 import asyncio
 import os
 import subprocess
-import sys
 import tempfile
 from collections.abc import Coroutine
 from dataclasses import dataclass, field
@@ -18,6 +17,7 @@ from pydantic import JsonValue
 from pydantic_core import from_json
 
 import recipes
+from tester.children import tester_command
 from tester.service.commands import CheckRecipe, ListRecipes, ListRuns, Query, ShowPlan
 
 AT_ONCE = 2
@@ -29,7 +29,6 @@ MOST = 32_000_000
 NICE = 10
 """The scan comes first."""
 EXIT_INVALID = 3
-COMMAND = "import sys; from tester.cli.main import main; main()"
 
 
 class QueryError(Exception):
@@ -87,7 +86,7 @@ def _recipes() -> JsonValue:
 async def _ask(arguments: list[str]) -> JsonValue:
     """Return what `tester ARGUMENTS` prints as JSON; raises QueryError with what it says is wrong."""
     process = await asyncio.create_subprocess_exec(
-        sys.executable, "-c", COMMAND, *arguments,
+        *tester_command(*arguments),
         stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
     )  # fmt: skip
     if hasattr(os, "setpriority"):

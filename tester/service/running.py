@@ -14,11 +14,12 @@ from tester.engine.context import Progress as RunProgress
 from tester.engine.prompts import Prompts
 from tester.engine.run import Run
 from tester.engine.tickers import TickStatistics
-from tester.recipe.estimate import estimate
+from tester.recipe.estimate import Estimate, estimate
 from tester.service.desk import Desk
+from tester.service.planning import Task, planned
 from tester.service.progress import PlanTrack
 from tester.service.state import RunView, TickView
-from tester.session import Session, SessionOptions
+from tester.session import Prepared, Session, SessionOptions
 from tester.store.space import expected_bytes
 
 RECENT_S = 1.0
@@ -34,16 +35,27 @@ class ServiceSession(Session):
         screen: RunScreen,
         on_signal: Callable[[], None],
         begun: Callable[[RunView], None],
+        meanwhile: Callable[[], str],
     ) -> None:
-        """``on_signal``: called when the process is asked to end."""
+        """``on_signal``: called when the process is asked to end; ``meanwhile``: while the recipe is planned, it
+        returns why it is to be given up, or ""."""
         super().__init__(options, screen)
         self.desk = screen.desk
         self.view = screen.view
         self._screen = screen
         self._tell_signal = on_signal
         self._tell_begun = begun
+        self._meanwhile = meanwhile
+        self._expected: Estimate | None = None
         self._track: PlanTrack | None = None
         self._punctual = Punctuality()
+
+    def prepare(self) -> Prepared:
+        """Have the recipe planned by a process of its own, and go on looking after clients; STOP ends it."""
+        o = self.options
+        found = planned(Task(o.recipe, o.rig, o.overrides), self._meanwhile)
+        self._expected = found.expected
+        return found
 
     def begun(self, run: Run) -> None:
         """Look after a part's run; the first one begins the whole."""
@@ -60,6 +72,7 @@ class ServiceSession(Session):
         run.stays_latched = True
         self.desk.attach(run, self._track, self.view)
         self.desk.stop_rest = self._stop_rest
+        self.desk.stop_first()  # one that came while it was prepared
         if first:
             self._tell_begun(self.view)
 
@@ -71,7 +84,7 @@ class ServiceSession(Session):
 
     def _record(self, job: Job, work: Work, begin: Begin) -> int:
         """Estimate the plan before anything moves, then go on as ever."""
-        expected = estimate(work.plan, work.rig)
+        expected = self._expected or estimate(work.plan, work.rig)
         self._track = PlanTrack(work.plan, expected)
         self.desk.needed = round(expected_bytes(work.plan, expected))
         return super()._record(job, work, begin)
@@ -134,8 +147,9 @@ class RunScreen:
         """Nothing: clients answer by command."""
 
     def end(self) -> None:
-        """The last state is shown before the tables are written."""
+        """The last state is shown before the tables are written; nothing ticks from now on."""
         self.desk.show()
+        self.desk.hub.lane.end_ticking()
 
     def message(self, text: str) -> None:
         """Tell every client."""

@@ -40,6 +40,7 @@ from tester.service.progress import PlanTrack
 from tester.service.running import RunScreen, ServiceSession
 from tester.service.state import RunView
 from tester.session import SessionOptions
+from tester.signals import HANG_UP, QUIT, SUSPENDING
 from tester.source import InvalidSource
 from tester.store.catalogue import find_run, under_way
 from tester.store.reader import DATABASE, RunReader
@@ -54,6 +55,8 @@ NEWEST_RUNS = 200
 """So many runs are looked at for one that was cut off, the newest first."""
 LOOK_EVERY_S = 10.0
 """While nothing is under way, runs that were cut off are looked at again this often, s."""
+SILENT_S = 1.0
+"""Manual mode ends when the screen that moves the rig has given no sign of life for so long, s."""
 MANUAL_LAPSE = 1.0
 """A person moves a simulated rig in real time."""
 REFUSED = (CannotStartError, InvalidSource, UnknownRecipe, StoreError, OSError, sqlite3.Error)
@@ -174,14 +177,21 @@ class Service:
                 desk.watch.run.engine.ctx.journal.event(0.0, "note", notes)
 
         screen = RunScreen(desk, view, answer_yes=yes)
-        session = ServiceSession(options, screen, self.end, begun)
+        def meanwhile() -> str:
+            desk.poll(0.0)
+            if self.orders.ending:
+                return "the service ends"
+            return "" if self.orders.job is order else "stopped while it was planned"
+
+        session = ServiceSession(options, screen, self.end, begun, meanwhile)
         problem, code = "", None
         try:
             code = work(session)
         except REFUSED as error:
             problem = in_words(error)
         if not session.view.name:
-            desk.hub.refuse(order, problem or "; ".join(screen.messages) or "the run has ended before it began")
+            if self.orders.job is order:  # else STOP has refused it already
+                desk.hub.refuse(order, problem or "; ".join(screen.messages) or "the run has ended before it began")
             desk.detach(None)
             return
         outcome = session.ending.outcome if session.ending is not None else Outcome.FAILED
@@ -222,6 +232,8 @@ class Service:
 
     def _by_hand(self, run: Run, hand: ManualExecutor, world: World | None, ports: Ports, record: RunWriter) -> float:
         """Tick manual mode to its end; return the seconds it took."""
+        hub = self.desk.hub
+        hub.attended()  # whoever armed is there
 
         def poll(now_s: float) -> None:
             hand.expire(now_s)
@@ -230,6 +242,10 @@ class Service:
             if record.failed:
                 run.request_stop(f"manual mode can no longer be recorded: {record.failed}")
             self.desk.poll(now_s)
+            # Only now: signs that came while this process itself was held up have been heard.
+            if hub.silent_s > SILENT_S and not hand.finished:
+                self.desk.tell("mode", f"manual mode ends: no sign of its screen for {SILENT_S:g} s", "warning")
+                hand.disarm()
 
         if world is not None:
             return run_simulated(run, world, lapse=MANUAL_LAPSE, poll=poll)
@@ -237,7 +253,7 @@ class Service:
 
 
 class Signals:
-    """TERM and INT end the service, HUP is ignored, while the block lasts."""
+    """TERM, INT and QUIT end the service, HUP and what would suspend it are ignored, while the block lasts."""
 
     def __init__(self, end: Callable[[], None]) -> None:
         """``end``: what to call."""
@@ -246,10 +262,12 @@ class Signals:
 
     def __enter__(self) -> None:
         """Take over."""
-        for number in (signal.SIGINT, signal.SIGTERM):
-            self._before[number] = signal.signal(number, self._on_signal)
-        if hasattr(signal, "SIGHUP"):
-            self._before[signal.SIGHUP] = signal.signal(signal.SIGHUP, signal.SIG_IGN)
+        for number in (int(signal.SIGINT), int(signal.SIGTERM), QUIT):
+            if number:
+                self._before[number] = signal.signal(number, self._on_signal)
+        for number in (HANG_UP, *SUSPENDING):
+            if number:
+                self._before[number] = signal.signal(number, signal.SIG_IGN)
 
     def __exit__(self, *_: object) -> None:
         """Give back."""

@@ -193,9 +193,12 @@ class BusView:
 
 @dataclass(frozen=True, slots=True)
 class DiskView:
-    """Space where runs are stored, in bytes. ``needed``: the estimate of the run under way, 0 without one."""
+    """Space where runs are stored, in bytes. ``needed``: the estimate of the run under way, 0 without one.
 
-    free: int
+    ``free`` is None where the disk does not say.
+    """
+
+    free: int | None
     needed: int
     low: bool
 
@@ -294,6 +297,8 @@ class StateView:
     clients: ClientsView
     interrupted: tuple[str, ...]
     preflight: tuple[Check, ...]
+    alone: str = ""
+    """What the rig's devices do by themselves once the service is gone."""
 
     def value(self, key: str) -> Value | None:
         """Return the value with this key, None where the rig has none."""

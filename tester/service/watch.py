@@ -12,6 +12,7 @@ from tester.engine.run import Run
 from tester.engine.thermal_steps import HeatUp, SoakTo
 from tester.process import GATE_LOAD, GATE_SETTLING, GATE_SLIP, GATE_SPEED, GATE_TEMPERATURE
 from tester.service.alarms import AlarmList, Cause
+from tester.service.alone import left_alone
 from tester.service.buses import BusWatch
 from tester.service.frames import FrameLog
 from tester.service.progress import PlanTrack
@@ -43,6 +44,7 @@ class RunWatch:
         self.values = ValueView(engine)
         self.buses = BusWatch(engine.devices, self.rig)
         self.frames = FrameLog(engine.devices, tuple(self.rig.lines))
+        self.alone = left_alone(self.rig)
         self.track = track
         track.begin_part(engine.executor.plan)
         self.watched: set[str] = set()
@@ -65,6 +67,11 @@ class RunWatch:
         name = MODES.get(state.mode, state.mode.value.upper())
         why = state.trip.text if state.trip is not None else state.stop_requested
         return name, why, max(run.engine.ctx.now - state.mode_since_s, 0.0)
+
+    @property
+    def latched(self) -> bool:
+        """A trip or a fast stop waits for its acknowledgement."""
+        return self.run.engine.control.state.mode is Mode.LATCHED
 
     def progress(self, now: float, lapse: float | None) -> ProgressView:
         """Return where the run is; ``lapse``: rig seconds per second, None where nobody knows."""

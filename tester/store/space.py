@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import shutil
+from collections.abc import Callable
 from pathlib import Path
+from threading import Thread
 
 from tester.recipe.estimate import Estimate
 from tester.recipe.plan import ConditionStep, Heat, Plan, PreGrind
@@ -20,6 +22,47 @@ MARGIN = 2.0
 """Free room is to be this many times the estimate (safety concept: PC)."""
 
 
+def free_bytes(folder: Path) -> int:
+    """Return the room that is free under a folder, bytes; on a network share this may take for ever. Raises OSError."""
+    return shutil.disk_usage(folder).free
+
+
+class FreeRoom:
+    """The room under a folder as it was told last. A thread asks: whoever looks never waits for a disk that hangs."""
+
+    def __init__(self, folder: Path, ask: Callable[[Path], int] = free_bytes) -> None:
+        """``folder``: the working folder stands in until it is there; ``ask`` as ``free_bytes``."""
+        self.folder = folder
+        self.hangs = False
+        """A question was still waiting for its answer when the next one was due."""
+        self._told: int | None = None
+        self._ask = ask
+        self._asking: Thread | None = None
+
+    @property
+    def free(self) -> int | None:
+        """Bytes; None where nothing was told yet, an error was, or the disk hangs."""
+        return None if self.hangs else self._told
+
+    def look(self) -> None:
+        """Have it asked for anew, unless an answer is still due; never waits."""
+        self.hangs = self._asking is not None and self._asking.is_alive()
+        if not self.hangs:
+            self._asking = Thread(target=self._work, name="free room", daemon=True)
+            self._asking.start()
+
+    def wait(self, seconds: float) -> None:
+        """Wait so long at most for the answer; for a moment when nothing is under control."""
+        if self._asking is not None:
+            self._asking.join(seconds)
+
+    def _work(self) -> None:
+        try:
+            self._told = self._ask(self.folder if self.folder.is_dir() else Path())
+        except OSError:
+            self._told = None
+
+
 def expected_bytes(plan: Plan, expected: Estimate) -> float:
     """Return what a run of the plan will take on disk, bytes; ``expected`` is the plan's estimate."""
     rows = 0.0
@@ -31,7 +74,7 @@ def expected_bytes(plan: Plan, expected: Estimate) -> float:
 
 def too_little_room(folder: Path, needed: float) -> str:
     """Return why there is not room for ``needed`` bytes under a folder, with the numbers; empty where there is."""
-    free = shutil.disk_usage(folder).free
+    free = free_bytes(folder)
     if free >= MARGIN * needed:
         return ""
     return (

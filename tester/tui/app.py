@@ -20,6 +20,7 @@ from tester.tui.dialogs.confirm import AbortDialog, GoOnDialog
 from tester.tui.dialogs.dialog import Dialog
 from tester.tui.dialogs.log import TextDialog
 from tester.tui.filters import AsciiOnly, Colourless
+from tester.tui.gone import TITLE, death_text
 from tester.tui.host import HostApp, TuiOptions
 from tester.tui.scene import UNDER_WAY
 from tester.tui.theme import CSS, DARK, THEMES
@@ -37,7 +38,8 @@ HUGE = (180, 46)
 EVERYWHERE = """\
 
 On every screen
-F12, Ctrl+X  STOP: software stop, at once, no question. Not an emergency stop: that is hardware.
+F12, Ctrl+X  STOP: controlled software stop, at once, no question. Not an emergency stop: that is hardware.
+F9, Ctrl+F   FAST STOP: quick stop of both drives, the same way; latched until acknowledged.
 F2 … F6      the screens.   Ctrl+P  all commands.   F1  this help.   Esc  closes a dialog.
 space  HOLD    r  resume    x  abort…    a  acknowledge
 q, Ctrl+C    detach: the run goes on; `tester tui` comes back.
@@ -158,6 +160,10 @@ class TesterApp(HostApp):
         base.query_one(SmallPanel).show(self.scene)
         self.view.show(self.scene)
 
+    def service_died(self) -> None:
+        """Say so, what the devices do by themselves, and what to do, over whatever is shown."""
+        self.push_screen(TextDialog(TITLE, death_text(self.scene)))
+
     # -- keys -------------------------------------------------------------------------------------------------
 
     def go_to(self, name: str) -> None:
@@ -234,6 +240,7 @@ class TesterApp(HostApp):
     def get_system_commands(self, screen: Screen[object]) -> Iterable[SystemCommand]:
         """Return what the palette (Ctrl+P) offers."""
         yield SystemCommand("STOP", "Software stop, at once (F12, Ctrl+X)", self.action_stop)
+        yield SystemCommand("FAST STOP", "Quick stop of both drives, at once (F9, Ctrl+F)", self.action_fast_stop)
         yield SystemCommand("HOLD", "Lift and wait, keep the temperature (space)", self.action_hold)
         yield SystemCommand("Resume", "End HOLD, or go on with a run that was cut off (r)", self.action_resume)
         yield SystemCommand("Abort…", "Controlled stop of the run (x)", self.action_abort)

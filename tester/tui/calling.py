@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import asyncio
-import sys
 
-from tester.tui.starting import COMMAND
+from tester.children import tester_command
 
 
 async def call(*arguments: str) -> tuple[bool, str]:
     """Carry out ``tester ARGUMENTS``; return whether it was done, and what it said."""
     process = await asyncio.create_subprocess_exec(
-        sys.executable, "-c", COMMAND, *arguments,
+        *tester_command(*arguments),
         stdin=asyncio.subprocess.DEVNULL, stdout=asyncio.subprocess.DEVNULL, stderr=asyncio.subprocess.PIPE,
     )  # fmt: skip
     _, told = await process.communicate()

@@ -15,16 +15,18 @@ from textual.app import App
 from textual.binding import Binding, BindingType
 from textual.dom import DOMNode
 
-from tester import clock
+from tester import clock, keys
 from tester.service.address import Address
 from tester.service.client import Client, Link, Lost, LostError, NoServiceError, RefusedError
 from tester.service.commands import Action, Stop
 from tester.service.protocol import Event
 from tester.service.state import RunView
+from tester.service.stop_call import NotTakenError
 from tester.trouble import in_words
+from tester.tui.gone import farewell, stop_failed
 from tester.tui.scene import Scene
 from tester.tui.starting import start_service
-from tester.tui.stop_line import KEYS, NotTakenError, StopLine, stopping
+from tester.tui.stop_line import StopLine, stopping
 from tester.tui.words import clean
 
 TICK_S = 0.5
@@ -55,7 +57,8 @@ class HostApp(App[str]):
     HAS_RIG: ClassVar[bool] = True
     """There is a rig behind this screen."""
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding(",".join(KEYS), "stop", "STOP", priority=True, show=False),
+        Binding(",".join(keys.STOP.keys), "stop", "STOP", priority=True, show=False),
+        Binding(",".join(keys.FAST_STOP.keys), "fast_stop", "Fast stop", priority=True, show=False),
         Binding("ctrl+c,ctrl+q", "detach", "Detach", priority=True, show=False),
     ]
 
@@ -76,6 +79,9 @@ class HostApp(App[str]):
     def scene_changed(self) -> None:
         """Called after each change of the scene."""
 
+    def service_died(self) -> None:
+        """Called when the service turns out to be gone without having been told to end."""
+
     def go_to(self, name: str) -> None:
         """Show another screen, by its id."""
 
@@ -93,12 +99,17 @@ class HostApp(App[str]):
     def connect(self) -> None:
         """Keep a link to the service from now on."""
         self.link = Link(self.options.address, name=client_name(), control=not self.options.view_only)
+        if self.HAS_RIG and not self.options.view_only:
+            self.stop_line.open()
         self.run_worker(self._listen(self.link), name="link", group="link")
         self.set_interval(TICK_S, self.scene_changed)
 
     async def _listen(self, link: Link) -> None:
         async for message in link.messages():
+            before = self.scene.gone
             self.scene.take(message, link.client)
+            if self.scene.gone == "died" != before:
+                self.service_died()
             if isinstance(message, Lost) and self.scene.state is None:
                 self._begin_service()
             if isinstance(message, Event) and message.kind == "acknowledgement" and message.text.startswith("refused"):
@@ -141,38 +152,45 @@ class HostApp(App[str]):
 
     def action_stop(self) -> None:
         """STOP: no question, from everywhere, whoever controls."""
+        self._order_stop(fast=False)
+
+    def action_fast_stop(self) -> None:
+        """STOP with a quick stop of both drives."""
+        self._order_stop(fast=True)
+
+    def _order_stop(self, *, fast: bool) -> None:
         if self.options.view_only or self.link is None:
             self.say("view only: `tester stop` in a shell stops the rig", problem=True)
             return
-        task = asyncio.create_task(self._stop(self.link, self.stop_line.take()))
+        task = asyncio.create_task(self._stop(self.link, self.stop_line.take(), fast))
         self._stops.add(task)
         task.add_done_callback(self._stops.discard)
 
-    async def _stop(self, link: Link, sent: Future[None] | None) -> None:
+    async def _stop(self, link: Link, sent: Future[None] | None, fast: bool) -> None:
         """Wait for what the key has sent already; where there is nothing, or it failed, go over the link."""
+        taken = "FAST STOP taken" if fast else "STOP taken"
         if sent is not None:
             try:
                 await asyncio.wrap_future(sent)
             except NotTakenError:
                 pass
             else:
-                self.say("STOP taken")
+                self.say(taken)
                 return
         try:
             try:
-                await link.command(Stop())
+                await link.command(Stop(fast))
             except LostError:  # the link is coming back: a connection of its own may be quicker
                 async with await Client.connect(link.address, name=link.name) as client:
-                    await client.stop()
+                    await client.stop(fast=fast)
         except (LostError, NoServiceError, RefusedError, TimeoutError) as error:
-            self.say(f"STOP has not reached the service: {error}. Use the machine's own stop.", problem=True,
-                     lasting=True)  # fmt: skip
+            self.say(stop_failed(self.scene, str(error)), problem=True, lasting=True)
             return
-        self.say("STOP taken")
+        self.say(taken)
 
     def action_detach(self) -> None:
         """Leave the screen; the run goes on."""
-        self.exit("detached: the service and its run go on. `tester tui` comes back, `tester stop` stops the rig")
+        self.exit(farewell(self.scene))
 
 
 def client_name() -> str:

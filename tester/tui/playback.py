@@ -98,7 +98,7 @@ class Playback:
             progress=self._progress(at_s, condition),
             values=self._values(at_s, index, condition.info if condition is not None else None),
             gates=(), soak=None, alarms=(), prompt=None, manual=ManualView(None, ""), devices=(), buses=(),
-            disk=DiskView(0, 0, False), tick=TickView(0.0, 0.0, run.overruns), clients=ClientsView("", 0, 0),
+            disk=DiskView(None, 0, False), tick=TickView(0.0, 0.0, run.overruns), clients=ClientsView("", 0, 0),
             interrupted=(), preflight=(),
         )  # fmt: skip
 

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from tester import clock
-from tester.service.client import Client, Lost
+from tester.service.client import Client, Gone, Lost
 from tester.service.protocol import EVENTS_KEPT, TREND_ROWS, Event, Frame, Frames, Hello, PlanMessage, ServerMessage
 from tester.service.protocol import Snapshot as SnapshotMessage
 from tester.service.state import TREND_COLUMNS, Alarm, PlanView, RunView, StateView, Value
@@ -38,6 +38,8 @@ class Scene:
     frames_seen: int = 0
     lost: str = ""
     """Why there is no link, "" while there is one."""
+    gone: Gone = ""
+    """What became of the service behind a lost link, as far as that is known."""
     received_s: float = 0.0
     service: str = ""
     """Which life of the service the events are of."""
@@ -56,6 +58,11 @@ class Scene:
         return self.state is not None and not self.lost and self.age_s <= STALE_S
 
     @property
+    def run_under_way(self) -> bool:
+        """Return whether a run was under way when the service was heard last."""
+        return self.state is not None and self.state.run is not None and self.state.run.outcome == UNDER_WAY
+
+    @property
     def ended_run(self) -> RunView | None:
         """Return the last run, None while one is under way, or where it has left no folder (manual mode)."""
         run = self.state.run if self.state is not None else None
@@ -64,9 +71,9 @@ class Scene:
     def take(self, message: ServerMessage | Lost, client: Client | None) -> None:
         """Take in a message of the link."""
         if isinstance(message, Lost):
-            self.lost = message.reason or "the connection is lost"
+            self.lost, self.gone = message.reason or "the connection is lost", message.gone
             return
-        self.lost = ""
+        self.lost = self.gone = ""
         if isinstance(message, Hello):
             self._greet(message)
         elif isinstance(message, SnapshotMessage):

@@ -6,9 +6,9 @@ import subprocess
 import sys
 from pathlib import Path
 
+from tester.children import tester_command
 from tester.service.address import folder
 
-COMMAND = "from tester.cli.main import main; main()"
 LOG = "serve.log"
 """What the service says goes there, in its folder."""
 
@@ -19,7 +19,7 @@ def start_service(rig: str, runs: Path) -> None:
     A session of its own: neither the end of the terminal nor a Ctrl+C in it reaches the service. Windows has process
     groups for that, as documented; not tried.
     """
-    arguments = [sys.executable, "-c", COMMAND, "serve", "--rig", rig, "--out", str(runs)]
+    arguments = tester_command("serve", "--rig", rig, "--out", str(runs))
     detached = 0
     if sys.platform == "win32":
         detached = subprocess.CREATE_NEW_PROCESS_GROUP | subprocess.DETACHED_PROCESS

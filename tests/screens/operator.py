@@ -53,7 +53,7 @@ STEPS = (
     Step("acknowledged, and ready for another run", ("a",), "OFFLINE", "acknowledged"),
     Step("another run is started", ("F2", "End", "Enter"), "2 conditions", ""),
     Step("it asks, and is answered at once", ("Enter",), "waits since", "", 60.0),
-    Step("it measures", ("y",), "rep 1/3", "second run", 60.0),
+    Step("it measures", ("Enter", "Right", "Enter"), "rep 1/3", "second run", 60.0),
     Step("STOP", ("F12",), "STOP taken", "stop"),
     Step("the rig is at a standstill", (), "OFFLINE", "stopped", 60.0),
     Step("the results list both runs", ("F5",), "stopped", "results"),

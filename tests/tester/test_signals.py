@@ -8,7 +8,7 @@ from types import FrameType
 
 import pytest
 
-from tester.signals import HANG_UP, asking_to_end, handled, leave_to_parent, not_inherited
+from tester.signals import HANG_UP, QUIT, SUSPENDING, asking_to_end, handled, leave_to_parent, not_inherited
 
 posix = pytest.mark.skipif(not HANG_UP, reason="this system has no SIGHUP")
 
@@ -16,7 +16,7 @@ posix = pytest.mark.skipif(not HANG_UP, reason="this system has no SIGHUP")
 @pytest.fixture(autouse=True)
 def as_before() -> Generator[None]:
     """Give every handler back, whatever a test does to it."""
-    numbers = [signal.SIGINT, signal.SIGTERM, *([HANG_UP] if HANG_UP else [])]
+    numbers = [signal.SIGINT, signal.SIGTERM, *([HANG_UP, QUIT, *SUSPENDING] if HANG_UP else [])]
     before = {number: signal.getsignal(number) for number in numbers}
     if HANG_UP:
         signal.signal(HANG_UP, signal.SIG_DFL)
@@ -77,3 +77,13 @@ def test_a_worker_leaves_interrupts_and_hang_ups_to_its_parent() -> None:
     leave_to_parent()
     signal.raise_signal(HANG_UP)
     assert asking_to_end() == [signal.SIGINT, signal.SIGTERM] and signal.getsignal(signal.SIGINT) is signal.SIG_IGN
+
+
+@posix
+def test_quit_is_handled_and_nothing_suspends() -> None:
+    heard = Heard()
+    with handled(heard):
+        signal.raise_signal(QUIT)
+        for number in SUSPENDING:
+            signal.raise_signal(number)
+    assert heard.numbers == [QUIT] and len(SUSPENDING) == 3

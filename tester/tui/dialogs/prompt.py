@@ -1,36 +1,63 @@
-"""The answer to a question of the run."""
+"""The answer to a question of the run: by one of two buttons, and by nothing that was typed before they were seen."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import ClassVar
 
+from textual.binding import Binding, BindingType
+from textual.containers import Horizontal
 from textual.widget import Widget
-from textual.widgets import Input
+from textual.widgets import Button
 
-from tester.service.commands import Answer
+from tester import keys
+from tester.service.commands import Answer, Hold
 from tester.service.state import PromptView
-from tester.tui.dialogs.dialog import Dialog, entry, field, line
+from tester.tui.dialogs.dialog import Dialog, line
 from tester.tui.words import clean
+
+SEEN_S = 0.5
+"""What comes sooner after the question is shown was typed before it, s [A]."""
 
 
 class PromptDialog(Dialog):
-    """Asks for an answer, which is recorded."""
+    """Asks whether it is done; the answer is recorded."""
 
     TITLE = "The run asks"
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("left", "app.focus_previous", "Other button", show=False),
+        Binding("right", "app.focus_next", "Other button", show=False),
+        Binding(",".join(keys.HOLD.keys), "hold", "Hold", show=False),
+    ]
 
     def __init__(self, prompt: PromptView) -> None:
         """``prompt``: the question."""
         super().__init__()
         self.prompt = prompt
+        self._shown_s = float("inf")
 
     def content(self) -> Iterable[Widget]:
-        """Return question and field."""
+        """Return the question and its buttons; the one that does nothing comes first."""
         yield line([(clean(self.prompt.text), "bold")])
-        yield line('Answer when it is done. The answer is recorded; "no" leaves the question waiting.')
-        yield field("Answer", entry("answer", "yes", limit=2000))
+        yield line("Choose with the arrows, then Enter. The answer is recorded; the run goes on at once.")
+        with Horizontal(classes="buttons"):
+            yield Button("Not yet", id="not-yet", compact=True)
+            yield Button("Yes, it is done", id="done", compact=True)
 
-    def on_input_submitted(self, event: Input.Submitted) -> None:
-        """Send it."""
+    def on_mount(self) -> None:
+        """Begin at the button that does nothing."""
+        self._shown_s = self.host.scene.now()
+        self.query_one("#not-yet").focus()
+
+    def on_button_pressed(self, event: Button.Pressed) -> None:
+        """Answer, or leave the question waiting."""
         event.stop()
-        self.host.order(Answer(self.prompt.number, event.value.strip() or "yes"), "answered")
+        if self.host.scene.now() - self._shown_s < SEEN_S:
+            return
+        if event.button.id == "done":
+            self.host.order(Answer(self.prompt.number), "answered: yes")
         self.dismiss(None)
+
+    def action_hold(self) -> None:
+        """HOLD works while the question stands."""
+        self.host.order(Hold(), "HOLD")

@@ -32,6 +32,8 @@ AXES: tuple[tuple[JogAxis, str, str], ...] = (
 """Axis, name, the service's step and condition (docs/protocol.md)."""
 SHOWN = ("wheel_speed", "belt_speed", "slip", "load", "press", "sideslip", "camber", "surface", "hub", "heat")
 CALIBRATION = "load cell calibration by a wizard: not here yet, see the rig file"
+SIGN_S = 0.25
+"""Signs of life are given this often, s; a second without one ends manual mode."""
 SOON_S = 15.0
 """Less time left than this is worth a warning."""
 HELP = """\
@@ -41,7 +43,7 @@ more than five a second. Limits and interlocks are those of a run.
 m         arm manual mode, or disarm it. It disarms 60 s after the last step, and when this screen is left.
 up, down  choose an axis.     right or +, left or -   one step up, one step down.
 t         zero (tare) of the load cell: lifted and standing. Says the old and the new zero.
-space     STOP is F12: it stops manual motion too.
+F12       STOP stops manual motion too, F9 is a fast stop. A screen that stands still for 1 s ends the mode.
 The calibration of the load cell is in the rig file (`tester rig show`); it is not changed from here.
 """
 
@@ -114,6 +116,13 @@ class ManualView(View):
                             ("manual-events", "Events")):  # fmt: skip
             self.query_one(f"#{name}").border_title = title
         self.query_one("#manual-values").border_subtitle = CALIBRATION
+        self.set_interval(SIGN_S, self._give_sign)
+
+    def _give_sign(self) -> None:
+        """Say that somebody sees what moves: from the loop that draws, so that one that stands still says nothing."""
+        link = self.host.link
+        if self.display and self.host.scene.controls and link is not None and link.client is not None:
+            link.client.attend()
 
     def take_focus(self) -> None:
         """Begin at the axes."""

@@ -8,7 +8,6 @@ from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.containers import Horizontal, Vertical
 
-from tester.service.commands import Answer
 from tester.tui.dialogs.log import LogDialog
 from tester.tui.dialogs.prompt import PromptDialog
 from tester.tui.views.view import Keys, View
@@ -27,7 +26,7 @@ space   HOLD: lift, slip to zero, keep the temperature. Costs at most the repeat
 r       resume after HOLD, or a run that was cut off: shows the pre-flight list first.
 x       abort: controlled stop of the run; type the word.
 a       acknowledge the alarm of line 2. Nothing moves by it.
-Enter   answer the question that waits; y answers yes at once. At the end of a run: its results.
+Enter   answer the question that waits: its buttons are shown. At the end of a run: its results.
 l       event log.
 """
 
@@ -40,7 +39,6 @@ class RunView(View, can_focus=True):
     HELP: ClassVar[str | None] = HELP
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("enter", "answer", "Answer", show=False),
-        Binding("y", "yes", "Yes", show=False),
         Binding("l", "log", "Log", show=False),
     ]
 
@@ -79,12 +77,6 @@ class RunView(View, can_focus=True):
             self.host.push_screen(PromptDialog(state.prompt))
         elif (run := self.host.scene.ended_run) is not None:
             self.host.show_results(run)
-
-    def action_yes(self) -> None:
-        """Answer yes."""
-        state = self.host.scene.state
-        if state is not None and state.prompt is not None:
-            self.host.order(Answer(state.prompt.number), "answered: yes")
 
     def action_log(self) -> None:
         """Show the event log."""

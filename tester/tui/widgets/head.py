@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from tester.service.state import Alarm, StateView
+from tester.tui.gone import gone_line
 from tester.tui.scene import STALE_S, UNDER_WAY, Scene
 from tester.tui.widgets.panel import ABNORMAL, FAINT, NOTICE, WARNING, Panel, Part, Parts
 from tester.tui.words import clean, clock_text, fit, hours, number
@@ -97,6 +98,9 @@ class TabLine(Panel):
 
     def picture(self, scene: Scene, width: int, height: int) -> Parts:
         """Return the line."""
+        gone = gone_line(scene)
+        if gone:
+            return [(fit(f" ■ {gone}", width).ljust(width), ABNORMAL if scene.gone == "died" else NOTICE)]
         alarm = scene.top_alarm()
         if alarm is not None:
             key = f" [{alarm_key(alarm)}] "

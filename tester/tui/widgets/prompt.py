@@ -25,5 +25,5 @@ class PromptPanel(Panel):
             (" ? ", WARNING),
             fit(f" {clean(prompt.text)}  (waits since {since})", width - 4),
             "\n",
-            fit("    Enter: done, answer it   y: yes at once", width),
+            fit("    Enter: answer it", width),
         ]

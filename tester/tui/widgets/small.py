@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from tester.tui.gone import gone_line
 from tester.tui.scene import Scene
 from tester.tui.widgets.panel import Panel, Parts, rows
 from tester.tui.words import clean, fit
@@ -15,7 +16,8 @@ class SmallPanel(Panel):
 
     def picture(self, scene: Scene, width: int, height: int) -> Parts:
         """Return some lines."""
-        texts = ["terminal too small,", "the run continues", f"needed: {SMALLEST[0]} x {SMALLEST[1]}"]
+        needed = f"needed: {SMALLEST[0]} x {SMALLEST[1]}"
+        texts = ["terminal too small,", gone_line(scene) or "the run continues", needed]
         if scene.state is not None:
             if scene.state.prompt is not None:
                 texts.append(f"asks: {clean(scene.state.prompt.text)}")

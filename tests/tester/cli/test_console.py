@@ -5,33 +5,34 @@ from __future__ import annotations
 import io
 import json
 import sys
-from collections.abc import Callable
 
 import pytest
 
 from tester.cli import console as module
 from tester.cli.console import Console
+from tester.cli.keys import NoKeys
 from tester.engine.context import Progress
 from tester.engine.prompts import Prompts
 
 Output = pytest.CaptureFixture[str]
 
 
-class AtOnce:
-    """A thread that has ended when it has been started."""
+class Typed(NoKeys):
+    """A keyboard on which a person has typed something."""
 
-    def __init__(self, target: Callable[..., None], args: tuple[object, ...], daemon: bool) -> None:
-        self.target, self.args = target, args
+    def __init__(self) -> None:
+        self.waiting = ""
 
-    def start(self) -> None:
-        self.target(*self.args)
+    def pressed(self) -> str:
+        found, self.waiting = self.waiting, ""
+        return found
 
 
 @pytest.fixture
-def answers(monkeypatch: pytest.MonkeyPatch) -> Callable[[str], None]:
-    """Give what a person types, read at once."""
-    monkeypatch.setattr(module, "Thread", AtOnce)
-    return lambda text: monkeypatch.setattr(sys, "stdin", io.StringIO(text))
+def keyboard(monkeypatch: pytest.MonkeyPatch) -> Typed:
+    typed = Typed()
+    monkeypatch.setattr(module, "keys_of", lambda stream: typed)  # pyright: ignore
+    return typed
 
 
 def asking() -> tuple[Console, Prompts]:
@@ -40,10 +41,16 @@ def asking() -> tuple[Console, Prompts]:
     return Console(as_json=False, answer_yes=False), prompts
 
 
-def attend(console: Console, prompts: Prompts, times: int = 4) -> str | None:
-    for _ in range(times):
+def answered(keyboard: Typed, *pieces: str) -> tuple[str | None, list[str]]:
+    """Type after the question was put; return its answer and the commands."""
+    console, prompts = asking()
+    commands: list[str] = []
+    console.attend(prompts)
+    for piece in pieces:
+        keyboard.waiting = piece
+        commands += console.commands()
         console.attend(prompts)
-    return prompts.asked[0].answer
+    return prompts.asked[0].answer, commands
 
 
 def test_the_folder_is_the_last_line_of_standard_output(capsys: Output) -> None:
@@ -95,51 +102,52 @@ def test_nobody_can_be_asked_where_there_is_no_terminal(monkeypatch: pytest.Monk
     assert not Console(as_json=False, answer_yes=False).can_ask
 
 
-def test_enter_answers_a_question(answers: Callable[[str], None], capsys: Output) -> None:
-    answers("\n")
-    assert attend(*asking()) == "yes"
-    assert capsys.readouterr().err == "install wheel 1 - done? [Enter] \n"
+def test_the_word_answers_a_question(keyboard: Typed, capsys: Output) -> None:
+    assert answered(keyboard, "ye", "s\n") == ("yes", [])
+    assert capsys.readouterr().err.startswith('install wheel 1 - type "yes" and Enter')
 
 
-def test_what_is_typed_is_the_answer(answers: Callable[[str], None]) -> None:
-    answers("  wheel 17  \n")
-    assert attend(*asking()) == "wheel 17"
+@pytest.mark.parametrize("typed", ["\n", "y\n", "y  r\n", "yes please\n", "YES\n", "no\n", "wheel 17\n", "\x04"])
+def test_nothing_else_does(keyboard: Typed, typed: str) -> None:
+    assert answered(keyboard, typed)[0] is None
 
 
-@pytest.mark.parametrize("text", ["n\n", "No\n"])
-def test_no_asks_again(answers: Callable[[str], None], capsys: Output, text: str) -> None:
-    answers(text)
+def test_a_mistake_can_be_taken_back(keyboard: Typed) -> None:
+    assert answered(keyboard, "yex\x7fs\r")[0] == "yes"
+
+
+def test_what_was_typed_before_the_question_does_not_count(keyboard: Typed) -> None:
     console, prompts = asking()
-    assert attend(console, prompts, times=3) is None
-    assert capsys.readouterr().err.count("install wheel 1") == 2
+    keyboard.waiting = "yes\n"
+    console.attend(prompts)
+    assert console.commands() == [] and prompts.asked[0].answer is None
 
 
-def test_the_end_of_input_is_no_answer(answers: Callable[[str], None], capsys: Output) -> None:
-    answers("")
-    assert attend(*asking(), times=10) is None
-    assert capsys.readouterr().err.count("no answer can be read") == 1
+def test_both_stops_and_hold_work_while_a_question_stands_and_letters_are_its_own(keyboard: Typed) -> None:
+    assert answered(keyboard, "yr\x18 \x06") == (None, ["stop", "hold", "fast stop"])
 
 
-def test_a_question_is_asked_once(answers: Callable[[str], None], capsys: Output) -> None:
-    answers("")
-    attend(*asking(), times=10)
+def test_a_question_is_put_once(keyboard: Typed, capsys: Output) -> None:
+    answered(keyboard, "", "", "")
     assert capsys.readouterr().err.count("install wheel 1") == 1
 
 
-def test_a_question_is_a_record(answers: Callable[[str], None], capsys: Output) -> None:
-    answers("\n")
+def test_a_question_is_a_record(keyboard: Typed, capsys: Output) -> None:
     console, prompts = asking()
     console.as_json = True
-    attend(console, prompts)
+    console.attend(prompts)
     assert json.loads(capsys.readouterr().out) == {"event": "prompt", "number": 1, "text": "install wheel 1"}
 
 
-def test_questions_are_answered_in_turn(answers: Callable[[str], None]) -> None:
-    answers("first\nsecond\n")
+def test_questions_are_answered_in_turn(keyboard: Typed) -> None:
     console, prompts = asking()
-    prompts.ask(0.0, "clean debris")
-    attend(console, prompts, times=6)
-    assert [prompt.answer for prompt in prompts.asked] == ["first", "second"]
+    second = prompts.ask(0.0, "clean debris")
+    for word in ("yes\n", "yes\n"):
+        console.attend(prompts)
+        keyboard.waiting = word
+        assert second.answer is None
+        console.commands()
+    assert [prompt.answer for prompt in prompts.asked] == ["yes", "yes"]
 
 
 class Broken(io.StringIO):

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from tester.cli.keys import NoKeys, commands_of, keys_of
+from tester.cli.keys import NoKeys, keys_of
 
 
 @pytest.fixture
@@ -21,10 +21,6 @@ def terminal() -> Iterator[tuple[int, io.TextIOWrapper]]:
     yield far, stream
     stream.close()
     os.close(far)
-
-
-def test_keys_mean_commands_and_others_nothing() -> None:
-    assert commands_of("hXrA?\x18s") == ["hold", "release", "abort", "stop", "stop"]
 
 
 def test_a_stream_that_is_no_terminal_has_no_keys() -> None:

@@ -94,3 +94,10 @@ def test_options_reach_the_session(home: Path, taken: list[SessionOptions]) -> N
 
 def test_a_negative_seed_is_a_usage_error(home: Path) -> None:
     assert invoke(["run", "short.yaml", "--yes", "--seed", "-1"]) == 2
+
+
+def test_an_operator_whose_name_could_steer_a_terminal_is_a_usage_error(
+    home: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert invoke(["run", "quickstart", "--yes", "--operator", "Ada\x1b[31m"]) == 2
+    assert "operator: the character U+001B, number 4, is not accepted" in capsys.readouterr().err

@@ -12,6 +12,7 @@ from threading import Event, Thread
 import pytest
 
 from tester.cli.main import invoke
+from tester.cli.run_command import NOT_DETACHED, run
 from tester.service.address import HAS_UNIX, Address
 from tester.service.client import Client
 from tester.service.commands import RunRecipe, Stop
@@ -109,6 +110,24 @@ def test_run_detached_prints_the_folder_and_names_the_recipes_file_in_full(
 def test_run_detached_leaves_the_folder_to_the_service(capsys: pytest.CaptureFixture[str]) -> None:
     assert invoke(["run", "quickstart", "--detach", "--out", "here"]) == 2
     assert "not with --detach" in capsys.readouterr().err
+
+
+CARRIED = {"recipe", "rig_name", "overrides", "yes", "seed", "speed", "operator", "detach"}
+"""Parameters of `tester run` that reach the service."""
+LEFT = [["--bus-log", "logs"], ["--fault", "t=1 s: belt jammed"], ["--jobs", "2"], ["--jobs", "1"], ["--json"]]
+
+
+@pytest.mark.parametrize("option", LEFT, ids=" ".join)
+def test_run_detached_refuses_what_the_service_would_not_do(
+    option: list[str], fake: FakeService, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert invoke(["run", "quickstart", "--detach", *option]) == 2
+    assert f"the service would not do it: {option[0]}" in capsys.readouterr().err
+    assert not fake.orders
+
+
+def test_every_parameter_of_run_reaches_the_service_or_is_refused() -> None:
+    assert {parameter.name for parameter in run.params} == CARRIED | set(NOT_DETACHED)
 
 
 @contextmanager

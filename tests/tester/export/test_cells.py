@@ -9,7 +9,8 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from tester.export.cells import Number, encode, exact, line, nominal, number, plain_text, text
+from tester.export.cells import Number, encode, exact, line, nominal, number, text, unescaped
+from tester.plain import harmless
 
 TEXTS = st.text(st.characters(exclude_categories=("Cs",)), max_size=30)
 
@@ -26,7 +27,11 @@ def read(data: bytes) -> list[list[str]]:
 @example("", "")
 def test_any_text_reads_back_as_it_was_meant(a: str, b: str) -> None:
     ((one, two),) = read(encode_all([[a, b]]))
-    assert (plain_text(one), plain_text(two)) == (a, b)
+    assert (unescaped(one), unescaped(two)) == (harmless(a), harmless(b))
+
+
+def test_no_text_cell_steers_a_terminal() -> None:
+    assert text("\x1b[31mred\x9b\u202e") == "?[31mred??"
 
 
 def encode_all(rows: list[list[str | int | float | None]] | list[list[str]]) -> bytes:

@@ -90,6 +90,8 @@ def test_without_any_repeat_left_the_value_is_gone_and_says_so(run: Path) -> Non
     ("word", "message"),
     [
         (Word(2, 1, True, "  ", "ada"), "a reason is needed"),
+        (Word(2, 1, True, "debris \x1b[31m", "ada"), r"reason: the character U\+001B, number 8"),
+        (Word(2, 1, True, REASON, "ada\x07"), r"operator: the character U\+0007, number 4"),
         (Word(2, 9, True, REASON, "ada"), "condition 2 has repeats 1, 2, 3, 4"),
         (Word(7, 1, True, REASON, "ada"), "condition 7 has no committed repeat"),
         (IN, "2/1 has not been excluded"),

@@ -17,7 +17,7 @@ import pytest
 
 from tester.engine.results import condition_records
 from tester.export import conditions, repeats, results_of, write_parquet_file
-from tester.export.cells import plain_text
+from tester.export.cells import unescaped
 from tester.recipe.check import load_checked
 from tester.recipe.expand import expand
 from tester.recipe.plan import Plan
@@ -121,7 +121,7 @@ def check_batch(folder: Path, plans: Sequence[Plan]) -> None:
             for number, cells in enumerate(rows):
                 for column, value in meant(plans, number).items():
                     if name == "conditions" or column in ("compound", "note", "grid"):
-                        assert plain_text(cells[column]) == value, (name, read.__name__, column, value)
+                        assert unescaped(cells[column]) == value, (name, read.__name__, column, value)
                         assert not cells[column].startswith(("=", "+", "-", "@", "\t", "\r")), (name, column, value)
 
 
@@ -162,7 +162,7 @@ def test_every_seed_in_the_note(tmp_path: Path, text: str) -> None:
     plan = plan_with("note", text)
     if plan is not None:
         for table in exported(tmp_path / "run", [plan]).values():
-            assert plain_text(with_csv(table)[0]["note"]) == text
+            assert unescaped(with_csv(table)[0]["note"]) == text
 
 
 def test_numbers_are_numbers_for_pandas(tmp_path: Path) -> None:
@@ -207,4 +207,4 @@ def test_libreoffice_shows_what_was_meant(tmp_path: Path) -> None:
     (tmp_path / "conditions.csv").write_text(tables["conditions"], encoding="utf-8")
     command = [office, "--headless", "--convert-to", "csv:Text - txt - csv (StarCalc):44,34,76", "--outdir", "out"]
     subprocess.run([*command, "conditions.csv"], cwd=tmp_path, check=True, timeout=120, capture_output=True)
-    assert plain_text(with_csv((tmp_path / "out" / "conditions.csv").read_text("utf-8"))[0]["note"]) == "=1+1"
+    assert unescaped(with_csv((tmp_path / "out" / "conditions.csv").read_text("utf-8"))[0]["note"]) == "=1+1"

@@ -74,6 +74,7 @@ class FakeService:
 
     def _hear(self, line: bytes) -> None:
         message = FROM_GATEWAY.validate_json(line)
+        self.gateway.take(b"k1")
         if isinstance(message, Presence):
             self.presence = message
             return

@@ -13,15 +13,21 @@ from __future__ import annotations
 from collections.abc import Callable, Generator
 from pathlib import Path
 
+import pytest
 from pydantic import JsonValue
 
+from recipes import UnknownRecipe
+from tester.campaign.endings import CannotStartError
 from tester.service.address import UnixAddress
 from tester.service.commands import RigAction
 from tester.service.hub import Hub, HubConfig
 from tester.service.link import Order, Presence
+from tester.service.planning import Task
 from tester.service.protocol import Event, Frames
 from tester.service.service import Service, ServiceOptions
 from tester.service.state import PlanView, StateView
+from tester.session import Prepared, prepared
+from tester.source import InvalidSource
 
 Script = Generator[Order | Presence | list[Order | Presence] | None]
 MOST_POLLS = 20_000
@@ -41,6 +47,8 @@ class Stage(Hub):
         self.refused: dict[str, str] = {}
         self.notes: list[tuple[str, str]] = []
         self.polls = 0
+        self.silent = False
+        """The screen that controls gives no sign of life."""
         self.service: Service | None = None
         self._script = script(self)
         self._orders = 0
@@ -64,6 +72,10 @@ class Stage(Hub):
     @property
     def watched(self) -> bool:
         return True
+
+    @property
+    def silent_s(self) -> float:
+        return 1.1 if self.silent else 0.0
 
     def event(self, kind: str, text: str, severity: str = "info", t_s: float = 0.0, run: str = "") -> None:
         self.sequence += 1
@@ -104,9 +116,22 @@ class Stage(Hub):
         pass
 
 
+def planned_here(task: Task, meanwhile: Callable[[], str]) -> Prepared:
+    """Plan in this process: starting another one for every test would take longer than the test."""
+    why = meanwhile() or meanwhile()
+    if why:
+        raise CannotStartError(why)
+    try:
+        return prepared(task.recipe, task.rig, task.overrides)
+    except (InvalidSource, UnknownRecipe) as error:
+        raise CannotStartError(str(error)) from error
+
+
 def play(folder: Path, script: Callable[[Stage], Script], *overrides: str) -> Stage:
     """Let a service live until the script has ended; return what was said."""
     stage = Stage(folder, script)
     stage.service = Service(ServiceOptions("sim", overrides, folder / "runs"), stage)
-    stage.service.serve()
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("tester.service.running.planned", planned_here)
+        stage.service.serve()
     return stage

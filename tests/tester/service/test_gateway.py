@@ -8,8 +8,10 @@ from pathlib import Path
 import pytest
 
 from tester.service.client import Client, LostError, NoServiceError, RefusedError
-from tester.service.commands import Acknowledge, Control, Hold, Release, RunRecipe, Stop
-from tester.service.outbox import MOST_BEHIND
+from tester.service.commands import Acknowledge, Control, Hold, ListRuns, Release, RunRecipe, Stop, WatchFrames
+from tester.service.gateway import QUESTIONS
+from tester.service.manners import MOST_CLIENTS, MOST_STRANGERS, Bucket
+from tester.service.outbox import MOST_BEHIND, MOST_REPLIES
 from tester.service.protocol import Event, Hello, PlanMessage, Snapshot
 from tests.tester.service.fake import FakeService
 from tests.tester.service.views import HOSTILE, hostile, plan, state
@@ -227,17 +229,26 @@ def test_events_no_longer_kept_are_said_to_be_missing(tmp_path: Path) -> None:
     play(tmp_path, story)
 
 
+def test_a_name_that_could_steer_a_terminal_is_refused_with_the_reason(tmp_path: Path) -> None:
+    async def story(fake: FakeService) -> None:
+        with pytest.raises(NoServiceError, match=r"join.name: the character U\+001B, number 7, is not accepted"):
+            await Client.connect(fake.address, name="screen\x1b[2J")
+        assert not fake.gateway.guests
+
+    play(tmp_path, story)
+
+
 def test_hostile_text_comes_through_as_it_is(tmp_path: Path) -> None:
     async def story(fake: FakeService) -> None:
         fake.event("step", HOSTILE)
-        async with await Client.connect(fake.address, name=HOSTILE, control=True) as client:
+        async with await Client.connect(fake.address, name="[/x] $(rm) <b>", control=True) as client:
             fake.show(hostile(state()))
             messages = aiter(client)
             while not isinstance(await anext(messages), Snapshot):
                 pass
             assert client.state.prompt is not None and client.state.prompt.text == HOSTILE
             assert client.events[-1].text == HOSTILE
-            assert fake.presence.controller == HOSTILE
+            assert fake.presence.controller == "[/x] $(rm) <b>"
 
     play(tmp_path, story)
 
@@ -295,5 +306,85 @@ def test_a_client_that_does_not_take_its_events_is_sent_away(tmp_path: Path) -> 
         assert "come back with since" in slow.lost
         with pytest.raises(LostError):
             await slow.stop()
+
+    play(tmp_path, story)
+
+
+def test_one_client_more_than_there_are_places_is_turned_away_and_says_why(tmp_path: Path) -> None:
+    async def story(fake: FakeService) -> None:
+        there = [await Client.connect(fake.address) for _ in range(MOST_CLIENTS)]
+        with pytest.raises(NoServiceError, match=f"{MOST_CLIENTS} clients"):
+            await Client.connect(fake.address)
+        await there[0].close()
+        while len(fake.gateway.guests) >= MOST_CLIENTS:
+            await asyncio.sleep(0)
+        there[0] = await Client.connect(fake.address)
+        await asyncio.gather(*(client.close() for client in there))
+
+    play(tmp_path, story)
+
+
+def test_connections_that_never_join_keep_nobody_out(tmp_path: Path) -> None:
+    async def story(fake: FakeService) -> None:
+        path = str(tmp_path / "service.sock")
+        idle = [await asyncio.open_unix_connection(path) for _ in range(3 * MOST_STRANGERS)]
+        async with await Client.connect(fake.address) as client:
+            assert client.state.mode == "RUN"
+            assert len(fake.gateway.strangers) <= MOST_STRANGERS
+        for _, writer in idle:
+            writer.close()
+
+    play(tmp_path, story)
+
+
+def test_a_client_that_talks_without_a_pause_is_read_at_the_rate_it_has(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    waited: list[float] = []
+    monkeypatch.setattr(Bucket, "spend", lambda self, size: waited.append(1.0) or 0.001)  # pyright: ignore
+
+    async def story(fake: FakeService) -> None:
+        async with await Client.connect(fake.address) as client:
+            await asyncio.gather(*(client.command(WatchFrames(on=bool(number % 2))) for number in range(20)))
+            assert len(waited) == 20
+
+    play(tmp_path, story)
+
+
+def test_a_client_that_does_not_take_its_answers_is_sent_away(tmp_path: Path) -> None:
+    async def story(fake: FakeService) -> None:
+        client = await Client.connect(fake.address)
+        client._connection.transport.pause_reading()  # pyright: ignore[reportPrivateUsage]
+        guest = next(iter(fake.gateway.guests.values()))
+        number = 0
+        while fake.gateway.guests and not guest.leaving:
+            number += 1
+            fake.gateway.take(b"a%d " % guest.number + b"x" * 10_000)
+            await asyncio.sleep(0)
+        assert number > MOST_REPLIES and len(guest.outbox) <= MOST_REPLIES + 2
+        client._connection.transport.resume_reading()  # pyright: ignore[reportPrivateUsage]
+        async for _ in client:
+            pass
+        assert "come back with since" in client.lost
+
+    play(tmp_path, story)
+
+
+def test_a_client_asks_a_few_questions_at_a_time(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    go = asyncio.Event()
+
+    async def answer(question: object) -> dict[str, object]:
+        await go.wait()
+        return {}
+
+    async def story(fake: FakeService) -> None:
+        monkeypatch.setattr(type(fake.gateway.queries), "answer", lambda self, question: answer(question))
+        async with await Client.connect(fake.address) as client:
+            asked = [asyncio.create_task(client.command(ListRuns())) for _ in range(QUESTIONS + 1)]
+            with pytest.raises(RefusedError, match="questions are being worked out"):
+                await asked.pop()
+            go.set()
+            assert await asyncio.gather(*asked) == [{}] * QUESTIONS
+            assert await client.command(ListRuns()) == {}
 
     play(tmp_path, story)

@@ -14,11 +14,11 @@ from pathlib import Path
 import pytest
 
 from tester.service.address import CARD, TcpAddress, UnixAddress, new_tcp_address, read_card
-from tester.service.client import Client, NoServiceError
+from tester.service.client import Client, Gone, Link, Lost, NoServiceError
 from tester.service.commands import CheckRecipe, ListRecipes, RunRecipe
 from tester.service.hook import Hook
 from tester.service.hub import Hub, HubConfig
-from tester.service.protocol import Snapshot
+from tester.service.protocol import Hello, Snapshot
 from tests.tester.engine.bench import SHORT
 from tests.tester.service.views import state
 
@@ -159,3 +159,67 @@ def test_a_client_that_is_killed_leaves_the_run_alone_and_term_leaves_at_standst
         process.kill()
         process.wait()
     assert not address.path.exists()
+
+
+@posix
+def test_a_sign_of_life_of_whoever_controls_ends_the_silence(hub: Hub) -> None:
+    async def story() -> None:
+        client = await connected(hub)
+        assert hub.silent_s == float("inf")
+        client.attend()
+        for _ in range(1000):
+            hub.hear()
+            if hub.silent_s < float("inf"):
+                break
+            await asyncio.sleep(0.01)
+        assert hub.silent_s < 10.0
+        await client.close()
+
+    asyncio.run(story())
+
+
+@posix
+@pytest.mark.parametrize("told", [False, True])
+def test_clients_are_told_an_owner_that_died_from_one_that_was_told_to_end(told: bool, tmp_path: Path) -> None:
+    async def story() -> str:
+        hub = Hub(HubConfig(UnixAddress(tmp_path / "service.sock"), tmp_path / CARD, tmp_path, "sim"))
+        hub.open()
+        hub.state(state(), ROW)
+        await (await connected(hub)).close()
+        link = Link(hub.config.address, name="test")
+        gone = ""
+        async for message in link.messages():
+            if isinstance(message, Lost) and message.gone:
+                gone = message.gone
+                break
+            if not told and hub._end is not None:  # pyright: ignore[reportPrivateUsage]
+                hub._end.close()  # pyright: ignore[reportPrivateUsage]  # without a goodbye, as a SIGKILL does
+                hub._end = None  # pyright: ignore[reportPrivateUsage]
+            if isinstance(message, Hello):
+                await asyncio.to_thread(hub.close)
+        return gone
+
+    assert asyncio.run(story()) == ("ended" if told else "died")
+
+
+@posix
+def test_a_gateway_that_is_started_anew_is_no_death_of_the_service(hub: Hub) -> None:
+    async def story() -> list[Gone]:
+        await (await connected(hub)).close()
+        told: list[Gone] = []
+        messages = Link(hub.config.address, name="test").messages()
+        async for message in messages:
+            if isinstance(message, Hello):
+                process = hub._process  # pyright: ignore[reportPrivateUsage]
+                assert process is not None
+                process.kill()
+                process.wait()
+                hub.config.address.path.unlink()  # type: ignore[union-attr]
+            elif isinstance(message, Lost):
+                told.append(message.gone)
+            if len(told) == 2:
+                break
+        await messages.aclose()  # type: ignore[attr-defined]
+        return told
+
+    assert asyncio.run(story()) == ["", ""]

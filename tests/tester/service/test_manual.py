@@ -373,3 +373,14 @@ def test_a_journal_of_manual_mode_is_no_run(tmp_path: Path) -> None:
 
     play(tmp_path, script)
     assert list(run_folders(tmp_path / "runs")) == []
+
+
+def test_a_screen_that_gives_no_sign_of_life_for_a_second_ends_the_mode(tmp_path: Path) -> None:
+    def script(stage: Stage) -> Script:
+        yield from armed(stage)
+        yield from jog(stage, Jog("both", 1))
+        yield from stays_manual(stage, 5.0)
+        stage.silent = True
+        yield from stage.until(off)
+
+    assert any("no sign of its screen" in text for text in play(tmp_path, script).texts("mode"))

@@ -66,7 +66,7 @@ def test_a_message_of_the_service_comes_back_as_it_was(message: ServerMessage) -
 
 @pytest.mark.parametrize(
     "action",
-    [RunRecipe("quickstart", speed=None), Hold(), Stop(fast=True), Jog("press", -1), Answer(2, HOSTILE),
+    [RunRecipe("quickstart", speed=None), Hold(), Stop(fast=True), Jog("press", -1), Answer(2, "no"),
      Acknowledge(3), Control(force=True)],
     ids=lambda action: action.command,
 )  # fmt: skip
@@ -75,9 +75,8 @@ def test_a_command_comes_back_as_it_was(action: Action) -> None:
 
 
 def test_a_join_comes_back_as_it_was() -> None:
-    assert to_server(encode(Join(HOSTILE, control=True, service="life", since=9))) == Join(
-        HOSTILE, control=True, service="life", since=9
-    )
+    joined = Join("tui of [/x] $(rm) <b>", control=True, service="life", since=9)
+    assert to_server(encode(joined)) == joined
 
 
 @pytest.mark.parametrize(
@@ -89,6 +88,10 @@ def test_a_join_comes_back_as_it_was() -> None:
         (b'{"type":"command","id":1,"action":{"command":"run","recipe":"x","speed":-1}}', "speed"),
         (b'{"type":"command","id":1,"action":{"command":"run","recipe":"x","speed":NaN}}', "finite"),
         (b'{"type":"command","action":{"command":"stop"}}', "id"),
+        (b'{"type":"join","name":"a\\u001b[2J"}', r"join.name: the character U\+001B, number 2, is not accepted"),
+        (b'{"type":"command","id":1,"action":{"command":"run","recipe":"x","operator":"\\u202e"}}', "operator: .*202E"),
+        (b'{"type":"command","id":1,"action":{"command":"run","recipe":"x","notes":"a\\nb"}}', r"notes: .*U\+000A"),
+        (b'{"type":"command","id":1,"action":{"command":"resume","run":"x","reason":"\\u0007"}}', r"reason: .*U\+0007"),
         (b"[", "JSON"),
         (b"\xff\xfe", "JSON"),
         (b"{}", "type"),

@@ -202,6 +202,67 @@ def test_a_stop_leaves_the_second_specimen_undone(tmp_path: Path) -> None:
     assert {view.run.compound for view in stage.views if view.run is not None} <= {"", "1#"}
 
 
+def test_stop_from_its_own_lane_stops_a_run_before_anything_else_is_heard(tmp_path: Path) -> None:
+    def script(stage: Stage) -> Script:
+        yield stage.order(RUN)
+        yield from stage.until(running)
+        stage.lane._take("s 7 stop somebody")  # pyright: ignore[reportPrivateUsage]  # what the door's process says
+        yield None
+        yield stage.order(Hold())
+        yield from stage.until(over)
+
+    stage = play(tmp_path, script)
+    run = stage.views[-1].run
+    assert run is not None and (run.outcome, run.reason) == ("stopped", "stop by somebody")
+    assert "stopping" in stage.refused["hold"]
+
+
+def test_a_stop_while_the_recipe_is_planned_keeps_the_run_from_beginning(tmp_path: Path) -> None:
+    def script(stage: Stage) -> Script:
+        yield stage.order(RUN)
+        stage.lane._take("s 7 fast somebody")  # pyright: ignore[reportPrivateUsage]
+        yield None
+        yield None
+
+    stage = play(tmp_path, script)
+    assert stage.refused["run"] == "fast stop by somebody" and "run" not in stage.accepted
+    assert not list(tmp_path.glob("runs/2*"))
+
+
+@pytest.mark.parametrize("second", [Stop(), Stop(fast=True)])
+def test_two_stops_do_not_unlatch_a_fast_stop(tmp_path: Path, second: Stop) -> None:
+    def script(stage: Stage) -> Script:
+        yield stage.order(RUN)
+        yield from stage.until(running)
+        yield stage.order(Stop(fast=True))
+        yield from stage.until(lambda view: view.mode == "LATCHED")
+        yield stage.order(second)
+        yield from stage.until(over)
+        yield stage.order(RUN)
+        yield None
+        assert stage.views[-1].mode == "LATCHED"
+        yield stage.order(Acknowledge())
+        yield from stage.until(lambda view: view.mode == "OFFLINE")
+
+    stage = play(tmp_path, script)
+    assert "acknowledge first" in stage.refused["run"]
+    run = stage.views[-1].run
+    assert run is not None and run.outcome == "stopped"
+
+
+def test_a_fast_stop_is_not_softened_by_another_stop(tmp_path: Path) -> None:
+    def script(stage: Stage) -> Script:
+        yield stage.order(RUN)
+        yield from stage.until(running)
+        yield [stage.order(Stop(fast=True)), stage.order(Stop())]
+        yield from stage.until(lambda view: view.mode == "LATCHED")
+        assert not any(view.mode in ("STOPPING", "COOLDOWN") for view in stage.views)
+        yield stage.order(Acknowledge())
+        yield from stage.until(over)
+
+    play(tmp_path, script)
+
+
 def test_a_second_run_is_refused_while_one_is_under_way(tmp_path: Path) -> None:
     def script(stage: Stage) -> Script:
         yield stage.order(RUN)
@@ -257,14 +318,14 @@ def test_a_prompt_waits_for_its_answer_and_a_no_leaves_it_waiting(tmp_path: Path
         yield stage.order(Answer(1, "no"))
         yield None
         assert stage.views[-1].prompt is not None
-        yield stage.order(Answer(1, "mounted"))
+        yield stage.order(Answer(1))
         yield from stage.until(lambda view: view.prompt is None)
         yield stage.order(Stop())
         yield from stage.until(over)
 
     stage = play(tmp_path, script)
     assert any(name == "prompt" and "install wheel 1" in text for name, text in stage.notes)
-    assert "client 1 answers: mounted" in stage.texts("prompt")
+    assert "client 1 answers: yes" in stage.texts("prompt")
 
 
 def test_a_trip_latches_until_it_is_acknowledged(tmp_path: Path) -> None:

@@ -55,11 +55,45 @@ def test_acknowledging_names_the_alarm_of_line_two(house: House) -> None:
     house.play(act)
 
 
-def test_the_answer_to_a_prompt_is_sent_as_it_is_typed(house: House) -> None:
+def test_a_question_is_answered_by_its_button(house: House) -> None:
     async def act(on: Stage) -> None:
         await on.show(with_prompt(a_state()))
-        await on.pilot.press("f3", "enter", *"by me", "enter")
-        assert await on.ordered(Answer) == Answer(1, "by me")
+        await on.pilot.press("f3", "enter")
+        on.now[0] += 1.0
+        await on.pilot.press("right", "enter")
+        assert await on.ordered(Answer) == Answer(1)
+
+    house.play(act)
+
+
+@pytest.mark.parametrize("keys", [["enter"], ["y", "space", "space", "r", "enter"], [*"yes", "enter"], ["escape"]])
+def test_stray_keys_answer_no_question(keys: list[str], house: House) -> None:
+    async def act(on: Stage) -> None:
+        await on.show(with_prompt(a_state()))
+        await on.pilot.press("f3", "enter")
+        on.now[0] += 1.0
+        await on.pilot.press(*keys)
+        await on.pilot.pause()
+        assert not [order for order in on.fake.orders if isinstance(order.action, Answer)]
+
+    house.play(act)
+
+
+def test_what_was_typed_before_the_question_is_seen_does_not_count(house: House) -> None:
+    async def act(on: Stage) -> None:
+        await on.show(with_prompt(a_state()))
+        await on.pilot.press("f3", "enter", "right", "enter")
+        await on.pilot.pause()
+        assert not on.fake.orders and len(on.app.screen_stack) == 2
+
+    house.play(act)
+
+
+def test_hold_works_while_a_question_stands(house: House) -> None:
+    async def act(on: Stage) -> None:
+        await on.show(with_prompt(a_state()))
+        await on.pilot.press("f3", "enter", "space")
+        await on.ordered(Hold)
 
     house.play(act)
 

@@ -23,7 +23,7 @@ PLACES: dict[str, list[str]] = {
     "help": ["f3", "f1"],
     "event log": ["f3", "l"],
     "abort dialog, its word": ["f3", "x", "a", "b"],
-    "prompt dialog, its answer": ["f3", "enter"],
+    "prompt dialog": ["f3", "enter"],
     "resume dialog": ["f3", "r"],
     "filter of the frames": ["f6", "slash", "2"],
     "palette": ["f3", "ctrl+p"],
@@ -32,7 +32,7 @@ PLACES: dict[str, list[str]] = {
 
 
 @pytest.mark.parametrize("place", PLACES)
-def test_both_stop_keys_reach_the_service_from(place: str, house: House) -> None:
+def test_the_keys_of_both_stops_reach_the_service_from(place: str, house: House) -> None:
     async def act(on: Stage) -> None:
         await on.show(with_prompt(a_state("HOLD" if place == "resume dialog" else "RUN")))
         await on.until(lambda: on.checked(), "the recipes are checked")
@@ -40,12 +40,12 @@ def test_both_stop_keys_reach_the_service_from(place: str, house: House) -> None
         await on.pilot.pause()
         if place not in SCREENS and place != "the recipe's text" and "filter" not in place:
             assert len(on.app.screen_stack) == 2, on.text()
-        if any(word in place for word in ("word", "answer", "operator", "filter")):
+        if any(word in place for word in ("word", "operator", "filter")):
             assert isinstance(on.app.focused, Input), on.text()
-        for key in ("f12", "ctrl+x"):
+        for key, fast in (("f12", False), ("ctrl+x", False), ("f9", True), ("ctrl+f", True)):
             on.fake.orders.clear()
             await on.pilot.press(key)
-            assert await on.ordered(Stop) == Stop()
+            assert await on.ordered(Stop) == Stop(fast)
 
     house.play(act)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import asyncio
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -11,9 +11,9 @@ from textual.events import Key
 from textual.message import Message
 
 from tester.service.address import UnixAddress
-from tester.service.commands import Stop
-from tester.tui.stop_line import NotTakenError, StopLine, stopping
-from tests.tester.service.fake import FakeService
+from tester.service.stop_call import NotTakenError
+from tester.service.stop_lane import StopLane, StopWish
+from tester.tui.stop_line import StopLine, stopping
 
 
 class Silent(Driver):
@@ -35,33 +35,46 @@ class Silent(Driver):
 
 
 class Pressed(StopLine):
-    """Counts."""
+    """Notes each press, and whether it was for a fast stop."""
 
-    count = 0
+    def __init__(self, address: UnixAddress, name: str) -> None:
+        super().__init__(address, name)
+        self.pressed: list[bool] = []
 
-    def press(self) -> None:
-        self.count += 1
+    def press(self, *, fast: bool = False) -> None:
+        self.pressed.append(fast)
 
 
-@pytest.mark.parametrize(("key", "count"), [("f12", 1), ("ctrl+x", 1), ("f2", 0), ("x", 0)])
-def test_the_keys_of_stop_and_no_others_press_it_and_go_on_to_the_screen(key: str, count: int, tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("key", "pressed"),
+    [("f12", [False]), ("ctrl+x", [False]), ("f9", [True]), ("ctrl+f", [True]), ("f2", []), ("x", [])],
+)
+def test_the_keys_of_stop_and_no_others_press_it_and_go_on_to_the_screen(
+    key: str, pressed: list[bool], tmp_path: Path
+) -> None:
     line = Pressed(UnixAddress(tmp_path / "s"), "tui")
     driver: Driver = stopping(Silent, line)()  # type: ignore[call-arg]
     driver.process_message(Key(key, None))
-    assert line.count == count and len(driver.given) == 1  # type: ignore[attr-defined]
+    assert line.pressed == pressed and len(driver.given) == 1  # type: ignore[attr-defined]
 
 
-def test_it_arrives_as_a_viewers_stop_and_is_answered(tmp_path: Path) -> None:
-    async def act() -> None:
-        async with FakeService(tmp_path) as fake:
-            line = StopLine(fake.address, "tui of process 7")
-            line.press()
-            sent = line.take()
-            assert sent is not None and line.take() is None
-            await asyncio.wrap_future(sent)
-            assert [(order.name, order.action) for order in fake.orders] == [("tui of process 7", Stop())]
+@pytest.mark.parametrize("fast", [False, True])
+def test_it_arrives_over_the_lane_for_stop_and_is_answered(fast: bool, lane: StopLane, tmp_path: Path) -> None:
+    line = StopLine(UnixAddress(tmp_path / "service.sock"), "tui of process 7")
+    line.press(fast=fast)
+    sent = line.take()
+    assert sent is not None and line.take() is None
+    sent.result(10.0)
+    assert lane.taken() == [StopWish("tui of process 7", fast, 0)]
+    line.close()
 
-    asyncio.run(act())
+
+@pytest.fixture
+def lane(tmp_path: Path) -> Iterator[StopLane]:
+    made = StopLane()
+    made.open(UnixAddress(tmp_path / "service.sock"))
+    yield made
+    made.close()
 
 
 def test_where_there_is_no_service_it_says_so(tmp_path: Path) -> None:

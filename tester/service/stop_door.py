@@ -1,0 +1,270 @@
+"""The door for STOP, ``python -m tester.service.stop_door LINK``: a process that takes STOP and does nothing else.
+
+Clients' messages, their limit and their queues are in the gateway; none of them stands between STOP and the rig. What a
+caller says is a line, and so is the answer:
+
+    stop NAME      a controlled stop           -> taken
+    fast NAME      a fast stop                 -> taken
+
+Behind TCP the first line is the token. A line to the owner stands for all callers that wait (``s NUMBER fast|stop
+NAME``), the next one goes once that was answered (``NUMBER``): the owner never has more than
+one before it, however many call.
+"""
+
+from __future__ import annotations
+
+import hmac
+import os
+import selectors
+import signal
+import socket
+import sys
+from contextlib import suppress
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from pydantic import TypeAdapter
+
+from tester import clock
+from tester.service.address import peer_of, unlink_socket
+from tester.service.pair import link_of
+
+MOST_CALLERS = 256
+"""Connections kept; one more, and the process that has the most of them loses its oldest."""
+ACCEPTED_AT_ONCE = 16
+"""New connections between two looks at those that are there."""
+PAUSE_S = 0.03
+"""... after which nobody new is let in for so long: who comes and goes without end gets no more of a core than that."""
+LONGEST = 512
+"""A line is shorter, bytes."""
+NAME_LENGTH, NAMES_LENGTH = 100, 400
+"""Of one caller's name, and of all that one line gives, characters."""
+TAKEN = b"taken\n"
+BACKLOG = 128
+
+
+@dataclass(frozen=True, slots=True)
+class DoorSettings:
+    """What the owner tells its door: the socket's path, or a port (0: any) and the token."""
+
+    path: str
+    port: int = 0
+    token: str = ""
+
+
+SETTINGS: TypeAdapter[DoorSettings] = TypeAdapter(DoorSettings)
+
+
+@dataclass(slots=True, eq=False)
+class Caller:
+    """One connection. ``admitted``: it has shown the token, or needs none."""
+
+    connection: socket.socket
+    process: int
+    admitted: bool
+    said: bytes = b""
+
+
+@dataclass(slots=True)
+class Wish:
+    """What all who wait want: their names as far as they fit, fast if any of them wants it."""
+
+    name: str
+    fast: bool
+    callers: list[Caller] = field(default_factory=list[Caller])
+
+    def join(self, name: str, fast: bool) -> None:
+        """Take in another one's."""
+        self.fast = self.fast or fast
+        if len(self.name) + len(name) < NAMES_LENGTH and name not in self.name.split(", "):
+            self.name += f", {name}"
+
+
+class StopDoor:
+    """Takes STOP from callers, and hands it to the owner one line at a time."""
+
+    def __init__(self, listener: socket.socket, owner: socket.socket, *, uid: int | None, token: str = "") -> None:
+        """``uid``: the only user that may call through a Unix socket; ``token``: what others must show."""
+        self.uid, self.token = uid, token
+        self.owner = owner
+        self.callers: list[Caller] = []
+        self.ended = False
+        self._listener = listener
+        self._selector = selectors.DefaultSelector()
+        for one in (listener, owner):
+            one.setblocking(False)
+            self._selector.register(one, selectors.EVENT_READ)
+        self._number = os.getpid() << 16  # another life of the door has other numbers
+        self._admits_s: float | None = None
+        """When somebody new is let in again (tester.clock.monotonic); None: now."""
+        self._asked: Wish | None = None
+        self._next: Wish | None = None
+        self._answers = b""
+
+    def serve(self) -> None:
+        """Serve until the owner has ended."""
+        while not self.ended:
+            self.turn(None)
+
+    def turn(self, within_s: float | None) -> None:
+        """Wait for something and do it: the owner first, then those that are there, then who comes."""
+        if self._admits_s is not None:
+            left_s = self._admits_s - clock.monotonic()
+            if left_s <= 0.0:
+                self._admits_s = None
+                self._selector.register(self._listener, selectors.EVENT_READ)
+            else:
+                within_s = left_s if within_s is None else min(within_s, left_s)
+        ready = {id(key.fileobj): key.data for key, _ in self._selector.select(within_s)}
+        if id(self.owner) in ready:
+            self._hear_owner()
+        for found in ready.values():
+            if isinstance(found, Caller) and found in self.callers:
+                self._hear(found)
+        if id(self._listener) in ready:
+            self._admit()
+
+    # -- callers ----------------------------------------------------------------------------------------------
+
+    def _admit(self) -> None:
+        for _ in range(ACCEPTED_AT_ONCE):
+            try:
+                connection, _ = self._listener.accept()
+            except OSError:  # nobody is left, or gone again
+                return
+            connection.setblocking(False)
+            process, uid = peer_of(connection)
+            if not self.token and uid is not None and uid != self.uid:
+                connection.close()
+                continue
+            caller = Caller(connection, process, not self.token)
+            self.callers.append(caller)
+            self._selector.register(connection, selectors.EVENT_READ, caller)
+            if len(self.callers) > MOST_CALLERS:
+                self._make_room()
+        self._selector.unregister(self._listener)
+        self._admits_s = clock.monotonic() + PAUSE_S
+
+    def _make_room(self) -> None:
+        """Let go of the oldest connection of the process that has the most."""
+        count: dict[int, int] = {}
+        for caller in self.callers:
+            count[caller.process] = count.get(caller.process, 0) + 1
+        most = max(count, key=lambda process: count[process])
+        self._let_go(next(caller for caller in self.callers if caller.process == most))
+
+    def _let_go(self, caller: Caller) -> None:
+        self.callers.remove(caller)
+        self._selector.unregister(caller.connection)
+        caller.connection.close()
+
+    def _hear(self, caller: Caller) -> None:
+        try:
+            data = caller.connection.recv(LONGEST)
+        except BlockingIOError:
+            return
+        except OSError:
+            data = b""
+        caller.said += data
+        *lines, caller.said = caller.said.split(b"\n")
+        for line in lines:
+            if not self._understand(caller, line):
+                data = b""
+        if not data or len(caller.said) > LONGEST:
+            self._let_go(caller)
+
+    def _understand(self, caller: Caller, line: bytes) -> bool:
+        """Take one line; False for a caller that is none of ours."""
+        if not caller.admitted:
+            caller.admitted = hmac.compare_digest(line, self.token.encode())
+            return caller.admitted
+        word, _, name = line.decode("utf-8", "replace").partition(" ")
+        if word not in ("stop", "fast"):
+            return False
+        self._want(caller, word == "fast", "".join(c for c in name if c.isprintable())[:NAME_LENGTH] or "somebody")
+        return True
+
+    # -- the owner --------------------------------------------------------------------------------------------
+
+    def _want(self, caller: Caller, fast: bool, name: str) -> None:
+        if self._next is None:
+            self._next = Wish(name, fast)
+        else:
+            self._next.join(name, fast)
+        if caller not in self._next.callers:
+            self._next.callers.append(caller)
+        self._ask()
+
+    def _ask(self) -> None:
+        if self._asked is not None or self._next is None:
+            return
+        self._asked, self._next = self._next, None
+        self._number += 1
+        kind = "fast" if self._asked.fast else "stop"
+        line = f"s {self._number} {kind} {self._asked.name}\n".encode()
+        try:
+            self.owner.sendall(line)  # at most one is on its way: it always fits
+        except OSError:
+            self.ended = True
+
+    def _hear_owner(self) -> None:
+        try:
+            data = self.owner.recv(4096)
+        except BlockingIOError:
+            return
+        except OSError:
+            data = b""
+        if not data:
+            self.ended = True
+            return
+        *answers, self._answers = (self._answers + data).split(b"\n")
+        if self._asked is not None and str(self._number).encode() in answers:
+            for caller in self._asked.callers:
+                self._answer(caller)
+            self._asked = None
+            self._ask()
+
+    def _answer(self, caller: Caller) -> None:
+        if caller not in self.callers:
+            return  # it has hung up; its STOP was taken all the same
+        try:
+            caller.connection.sendall(TAKEN)
+        except OSError:  # it does not read
+            self._let_go(caller)
+
+
+def open_listener(settings: DoorSettings) -> socket.socket:
+    """Return the socket that listens: a Unix socket of mode 0600, or loopback TCP. Raises OSError, AddressError."""
+    if settings.token:
+        return socket.create_server(("127.0.0.1", settings.port), backlog=BACKLOG)
+    path = Path(settings.path)
+    unlink_socket(path)
+    listener = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+    before = os.umask(0o177)
+    try:
+        listener.bind(str(path))
+    finally:
+        os.umask(before)
+    listener.listen(BACKLOG)
+    return listener
+
+
+def main(link: socket.socket) -> None:
+    """Serve for the owner at the other end of ``link``: its first line is the settings, ours the port (0: none)."""
+    with link.makefile("rb", buffering=0) as stream:  # unbuffered: what follows is the door's
+        settings = SETTINGS.validate_json(stream.readline())
+    listener = open_listener(settings)
+    port = int(listener.getsockname()[1]) if settings.token else 0
+    link.sendall(b"p %d\n" % port)
+    StopDoor(listener, link, uid=None if settings.token else os.getuid(), token=settings.token).serve()
+    if not settings.token:
+        with suppress(OSError):
+            unlink_socket(Path(settings.path))
+
+
+if __name__ == "__main__":
+    for _number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(_number, signal.SIG_IGN)  # it ends with its owner, who comes to a standstill first
+    if hasattr(signal, "SIGHUP"):
+        signal.signal(signal.SIGHUP, signal.SIG_IGN)
+    main(link_of(sys.argv[1]))

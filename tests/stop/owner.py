@@ -1,0 +1,86 @@
+"""`python -m tests.stop.owner FOLDER`: `tester serve` on the simulated rig, which notes when STOP is in control.
+
+STOP of the operator is carried out. Everybody else's is taken to where the run would be told, noted and left there, so
+that one run bears two hundred of them. Each scan is noted too, with the time for which it was meant.
+"""
+
+from __future__ import annotations
+
+import sys
+from array import array
+from collections.abc import Callable
+from pathlib import Path
+
+from tester import clock
+from tester.campaign import part_run
+from tester.engine.tickers import Ticked, World, run_simulated
+from tester.service import service
+from tester.service.host import host
+from tester.service.orders import Orders
+
+OPERATOR = "operator"
+STOPS, SCANS = "stops.txt", "scans.bin"
+
+
+class Noted:
+    """A run whose scans are noted: when each one began by the clock, and for when it was meant (rig time), s."""
+
+    def __init__(self, run: Ticked, notes: array[float]) -> None:
+        self.run, self.notes = run, notes
+
+    @property
+    def finished(self) -> bool:
+        """As of the run."""
+        return self.run.finished
+
+    @property
+    def waiting(self) -> bool:
+        """As of the run."""
+        return self.run.waiting
+
+    def tick(self, now: float) -> float:
+        """Note the scan, and do it."""
+        self.notes.append(clock.monotonic())
+        self.notes.append(now)
+        return self.run.tick(now)
+
+
+def note_stops(file: Path) -> None:
+    """Write who has stopped, and when that was in control (tester.clock.monotonic), a line each."""
+    carry_out = Orders.stop
+    written = file.open("w", encoding="utf-8", buffering=1)
+
+    def stop(self: Orders, name: str, fast: bool) -> None:
+        if OPERATOR in name or ("probe" in name and self.desk.watch is None):  # what is being planned does not begin
+            carry_out(self, name, fast)
+        else:
+            self.desk.tell("command", f"stop by {name}", "warning")
+        written.write(f"{clock.monotonic()} {name}\n")
+
+    Orders.stop = stop
+
+
+def note_scans(file: Path) -> None:
+    """Write the scans of each run behind those before it."""
+
+    def ticked(engine: Ticked, world: World, *, lapse: float | None, poll: Callable[[float], None]) -> float:
+        notes: array[float] = array("d")
+        try:
+            return run_simulated(Noted(engine, notes), world, lapse=lapse, poll=poll)
+        finally:
+            with file.open("ab") as out:
+                notes.tofile(out)
+
+    part_run.run_simulated = ticked  # type: ignore[assignment]
+    service.run_simulated = ticked  # type: ignore[assignment]
+
+
+def main(folder: Path) -> int:
+    """Serve until told to end."""
+    note_stops(folder / STOPS)
+    note_scans(folder / SCANS)
+    return host("sim", (), str(folder / "runs"), f"unix:{folder / 'service.sock'}", None, "")
+
+
+if __name__ == "__main__":
+    sys.exit(main(Path(sys.argv[1])))

@@ -1,0 +1,186 @@
+"""A service under attack, the operator who uses it, and what they leave behind in files."""
+
+from __future__ import annotations
+
+import asyncio
+import subprocess
+import sys
+from array import array
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from random import Random
+
+from tester import clock
+from tester.service.address import UnixAddress
+from tester.service.client import Client, NoServiceError
+from tester.service.commands import Control
+from tester.service.gateway_process import NICE as GATEWAY_NICE
+from tester.service.state import StateView
+from tester.service.stop_call import NotTakenError, StopCall
+from tests.stop.hostile import ALL_KINDS
+from tests.stop.owner import OPERATOR, SCANS, STOPS
+
+LOOK_S = 0.02
+START_S = 180.0
+"""The service is there by then: on a machine that is busy it was seen to take one minute."""
+ROLLING = 500
+"""Scans over which the difference of both clocks is taken for constant."""
+
+
+class NotReachedError(Exception):
+    """What is to be measured does not come about; the message says what, and what was there instead."""
+
+
+@dataclass(frozen=True, slots=True)
+class Try:
+    """One STOP: when it was sent, when it was in control, when the answer was there (tester.clock.monotonic)."""
+
+    sent_s: float
+    control_s: float | None
+    answered_s: float | None
+
+
+NICE = 10
+"""Of hostile clients."""
+LOOP, NICED_LOOP = "loop.txt", "niced.txt"
+"""What the bare loops write: one that comes as the owner does, one as the gateway."""
+
+
+def started(*words: str, nice: int = 0) -> subprocess.Popen[bytes]:
+    """Run a module of this package."""
+    before = ["nice", "-n", str(nice)] if nice else []
+    return subprocess.Popen([*before, sys.executable, "-m", *words], stdin=subprocess.DEVNULL)
+
+
+def ended(process: subprocess.Popen[bytes]) -> None:
+    """End a process, in an orderly way first."""
+    process.terminate()
+    try:
+        process.wait(30.0)
+    except subprocess.TimeoutExpired:
+        process.kill()
+        process.wait()
+
+
+class Place:
+    """One folder, one service, one bare loop."""
+
+    def __init__(self, folder: Path, stack: ExitStack) -> None:
+        """Start both; they end with ``stack``."""
+        self.folder = folder
+        self.address = UnixAddress(folder / "service.sock")
+        self._owner = started("tests.stop.owner", str(folder))
+        stack.callback(ended, self._owner)
+        for file, nice in ((LOOP, 0), (NICED_LOOP, GATEWAY_NICE)):
+            stack.callback(ended, started("tests.stop.loop", str(folder / file), nice=nice))
+        self._probes = 0
+        self._random = Random(7)
+
+    async def operator(self) -> Client:
+        """Connect once the service is there, and control. Raises NotReachedError."""
+        end_s = clock.monotonic() + START_S
+        while clock.monotonic() < end_s:
+            try:
+                return await Client.connect(self.address, name="operator at the screen", control=True)
+            except NoServiceError:
+                await asyncio.sleep(LOOK_S)
+        raise NotReachedError(f"no service within {START_S:g} s")
+
+    @contextmanager
+    def attack(self) -> Iterator[None]:
+        """Let the hostile clients loose while the block lasts."""
+        processes = [started("tests.stop.hostile", kind, str(self.folder), nice=NICE) for kind in ALL_KINDS]
+        try:
+            yield
+        finally:
+            for process in processes:
+                process.kill()
+                process.wait()
+
+    async def until(
+        self, client: Client, true: Callable[[StateView], bool], what: str, within_s: float = 90.0
+    ) -> None:
+        """Wait for a state. Raises NotReachedError."""
+        end_s = clock.monotonic() + within_s
+        while not true(client.state):
+            if clock.monotonic() > end_s or client.lost:
+                state = client.state
+                why = f"{state.mode}: {state.mode_text} {client.lost}"
+                raise NotReachedError(f"{what}: not within {within_s:g} s; {why}")
+            await asyncio.sleep(LOOK_S)
+
+    async def take_control(self, client: Client) -> None:
+        """Have control, whoever has it."""
+        await client.command(Control(force=True))
+
+    # -- STOP -------------------------------------------------------------------------------------------------
+
+    async def stop(self, call: StopCall, after_s: float = 0.0) -> tuple[str, float, float | None]:
+        """Send a probe's STOP; return its name, when it was sent and when it was answered (None: not)."""
+        self._probes += 1
+        name = f"probe-{self._probes}"
+        await asyncio.sleep(after_s)
+
+        def say() -> tuple[float, float | None]:
+            call.name = name
+            sent_s = clock.monotonic()
+            try:
+                call.stop()
+            except NotTakenError:
+                return sent_s, None
+            return sent_s, clock.monotonic()
+
+        sent_s, answered_s = await asyncio.to_thread(say)
+        return name, sent_s, answered_s
+
+    async def tries(self, count: int) -> list[Try]:
+        """STOP so many times at random moments, over a connection that stays open as a screen's does."""
+        return self.judged(await self.stops(count))
+
+    async def stops(self, count: int) -> list[tuple[str, float, float | None]]:
+        """As ``tries``, not judged yet."""
+        made: list[tuple[str, float, float | None]] = []
+        with StopCall(self.address, "probe") as call:
+            call.connect()
+            for _ in range(count):
+                made.append(await self.stop(call, 0.05 + 0.2 * self._random.random()))
+        return made
+
+    def judged(self, made: list[tuple[str, float, float | None]]) -> list[Try]:
+        """Return the tries with when control had them."""
+        taken: dict[str, float] = {}
+        for line in (self.folder / STOPS).read_text(encoding="utf-8").splitlines():
+            at, names = line.split(" ", 1)
+            for name in names.split(", "):
+                taken.setdefault(name, float(at))
+        return [Try(sent_s, taken.get(name), answered_s) for name, sent_s, answered_s in made]
+
+    def end_for_real(self) -> None:
+        """The operator's STOP, which is carried out. Raises NotTakenError."""
+        with StopCall(self.address, OPERATOR) as call:
+            call.stop()
+
+    # -- what was noted ---------------------------------------------------------------------------------------
+
+    def loop_late_s(self, from_s: float, to_s: float, file: str = LOOP) -> float:
+        """Return the worst lateness of a bare loop in a time."""
+        rows = [line.split() for line in (self.folder / file).read_text(encoding="utf-8").splitlines()]
+        return max((float(row[1]) for row in rows if len(row) == 2 and from_s <= float(row[0]) <= to_s), default=0.0)
+
+    def scans(self) -> list[tuple[float, float]]:
+        """Return every scan of the runs that have ended: when it began by the clock, and how late that was, s."""
+        notes: array[float] = array("d")
+        file = self.folder / SCANS
+        if not file.exists():
+            return []
+        with file.open("rb") as stream:
+            notes.frombytes(stream.read())
+        apart = [(notes[i], notes[i] - notes[i + 1]) for i in range(0, len(notes), 2)]
+        late: list[tuple[float, float]] = []
+        for first in range(0, len(apart), ROLLING):
+            piece = apart[first : first + ROLLING]
+            least = min(difference for _, difference in piece)
+            late += [(at, difference - least) for at, difference in piece]
+        return late

@@ -1,0 +1,240 @@
+"""What the rig is doing while STOP is pressed: sliding at 100 Hz, resting at 10 Hz, moved by hand, not there yet."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import AsyncGenerator, AsyncIterator, Callable
+from contextlib import AbstractContextManager, asynccontextmanager, suppress
+
+from tester import clock
+from tester.service.client import Client, LostError, RefusedError
+from tester.service.commands import Arm, Jog, RunRecipe
+from tester.service.service import SILENT_S
+from tester.service.state import StateView
+from tests.acceptance.figure import Figure, at_least, at_most, equal, holds
+from tests.stop.place import NICED_LOOP, NotReachedError, Place, Try
+
+ASKED_S = 0.1
+QUIET_S = 10.0
+"""Scans are watched for so long without anybody hostile."""
+SETTLE_S = 3.0
+"""Hostile clients have begun by then, s."""
+SLIDES = """\
+recipe: sliding and resting
+specimens: [{compound: "1#"}]
+pre_grind: {wheel_speed: 0.8 m/s, belt_speed: 0.6 m/s, load: 100 N, duration: %d s}
+rest: {at_least: 60 min, until: 25 degC, within: 2 degC}
+measure: {wheel_speed: 0.8 m/s, repeats: 1, min_valid: 1, window: 14 rev}
+grids:
+  - {name: one, slip_velocity: 100 mm/s, load: 100 N, temperature: 25 degC}
+"""
+SIGN_S = 0.25
+"""Between two signs of life, s: as the operator's screen gives them."""
+SHARE_S = SILENT_S - 2.0 * SIGN_S
+"""A loop as nice as the gateway that is later than this: a sign of life may be a second on its way."""
+ARM_S = 120.0
+MOST_TRIES = 4
+"""As many tries as asked for are made at most, to have those while the rig is moved."""
+Attack = Callable[[], AbstractContextManager[None]]
+
+
+def big(conditions: int) -> str:
+    """Return a recipe of so many conditions (a multiple of 2,000)."""
+    slips = ", ".join(f"{100 + i} mm/s" for i in range(conditions // 2000))
+    loads = ", ".join(f"{100 + i} N" for i in range(100))
+    temperatures = ", ".join(f"{30 + i} degC" for i in range(20))
+    return (
+        'recipe: big\nspecimens: [{compound: "1#"}]\n'
+        "measure: {wheel_speed: 0.8 m/s, repeats: 3, window: 30 rev}\n"
+        f"grids:\n  - name: g\n    slip_velocity: [{slips}]\n    load: [{loads}]\n    temperature: [{temperatures}]\n"
+    )
+
+
+def figures_of(place: Place, name: str, tries: list[Try], began_s: float) -> list[Figure]:
+    """Compare the tries of a scene with what is asked of STOP."""
+    worst_s = place.loop_late_s(began_s, clock.monotonic())
+    delays = [one.control_s - one.sent_s for one in tries if one.control_s is not None]
+    answers = [one.answered_s - one.sent_s for one in tries if one.answered_s is not None]
+    limit_ms = 1e3 * (ASKED_S + worst_s)
+    kept = sum(delay <= ASKED_S + worst_s for delay in delays)
+    median = 1e3 * sorted(delays)[len(delays) // 2] if delays else float("nan")
+    return [
+        holds(f"{name}: a bare loop of 20 ms is late by at most", True, f"{1e3 * worst_s:.1f} ms", "no limit"),
+        equal(f"{name}: STOP in control in time", f"{kept} of {len(tries)}", f"{len(tries)} of {len(tries)}"),
+        at_most(f"{name}: STOP to control, worst", 1e3 * max(delays, default=float("nan")), limit_ms, "ms", 1,
+                note=f" (median {median:.1f})"),
+        equal(f"{name}: STOP answered", f"{len(answers)} of {len(tries)}", f"{len(tries)} of {len(tries)}"),
+    ]  # fmt: skip
+
+
+async def ended_by_the_operator(place: Place, client: Client) -> Figure:
+    """Stop for real, and look that the rig does."""
+    sent_s = clock.monotonic()
+    await asyncio.to_thread(place.end_for_real)
+    stopping = ("STOPPING", "COOLDOWN", "OFFLINE", "INTERRUPTED")
+    await place.until(client, lambda view: view.mode in stopping, "a stop", 10.0)
+    seen_ms = 1e3 * (clock.monotonic() - sent_s)
+    await place.until(client, at_rest, "standstill", 120.0)
+    return holds("the operator's own STOP stops the rig", True, f"seen after {seen_ms:.0f} ms", "stops")
+
+
+def at_rest(view: StateView) -> bool:
+    """Nothing is under way."""
+    return view.mode in ("OFFLINE", "INTERRUPTED", "IDLE")
+
+
+async def sliding_and_resting(place: Place, client: Client, attack: Attack, count: int) -> AsyncIterator[Figure]:
+    """100 Hz and 10 Hz: a run that slides, then rests."""
+    slides_s = QUIET_S + SETTLE_S + 0.4 * count + 15.0
+    await client.command(RunRecipe("slides", text=SLIDES % slides_s, speed=1.0, yes=True))
+    await place.until(client, lambda view: slides(view), "a wheel that slides", 120.0)
+    quiet = (clock.monotonic(), clock.monotonic() + QUIET_S)
+    await asyncio.sleep(QUIET_S)
+    with attack():
+        await asyncio.sleep(SETTLE_S)
+        began_s = clock.monotonic()
+        tries = await place.tries(count)
+        loud = (began_s, clock.monotonic())
+        yield holds("at 100 Hz: the wheel still slides", slides(client.state), client.state.mode, "RUN")
+        for figure in figures_of(place, "at 100 Hz", tries, began_s):
+            yield figure
+        await place.until(client, lambda view: view.tick.rate_hz <= 10.0, "a rest", 120.0)
+        began_s = clock.monotonic()
+        for figure in figures_of(place, "at 10 Hz", await place.tries(count), began_s):
+            yield figure
+        yield at_most("rate at a rest", client.state.tick.rate_hz, 10.0, "Hz", 1)
+    yield await ended_by_the_operator(place, client)
+    for figure in scans_of(place, quiet, loud):
+        yield figure
+
+
+def scans_of(place: Place, quiet: tuple[float, float], loud: tuple[float, float]) -> list[Figure]:
+    """Compare scans without hostile clients with those beside them."""
+    scans = place.scans()
+    before = [late for at, late in scans if quiet[0] <= at <= quiet[1]]
+    beside = [late for at, late in scans if loud[0] <= at <= loud[1]]
+    worst_before, worst_beside = max(before, default=float("nan")), max(beside, default=float("nan"))
+    loop_s = place.loop_late_s(*loud)
+    return [
+        at_least("scans beside hostile clients", len(beside), 0.9 * 100.0 * (loud[1] - loud[0])),
+        holds("latest scan without them", True, f"{1e3 * worst_before:.1f} ms of {len(before)}", "no limit"),
+        at_most("latest scan beside them", 1e3 * worst_beside, 1e3 * (worst_before + loop_s), "ms", 1,
+                note=f" (bare loop {1e3 * loop_s:.1f})"),
+    ]  # fmt: skip
+
+
+def slides(view: StateView) -> bool:
+    """The wheel slides under load."""
+    slip, load = view.value("slip"), view.value("load")
+    return (slip is not None and load is not None and slip.value is not None and load.value is not None
+            and slip.value > 50.0 and load.value > 50.0)  # fmt: skip
+
+
+async def by_hand(place: Place, client: Client, attack: Attack, count: int) -> AsyncIterator[Figure]:
+    """Manual mode that moves, a step of both speeds up or down twice a second.
+
+    Where the gateway gets no share of the processor for a second, no sign of life reaches the owner, and the mode
+    ends as it must. It is armed again then, until enough tries fell into it; every try is judged.
+    """
+    await place.take_control(client)
+    hand = Hand(place, client)
+    async with hand.at_work():
+        await hand.armed()
+        with attack():
+            await asyncio.sleep(SETTLE_S)
+            began_s = clock.monotonic()
+            tries: list[Try] = []
+            inside = 0
+            while inside < count and len(tries) < MOST_TRIES * count:
+                await hand.armed()
+                tries += await place.tries(1)
+                inside += moved(client.state)
+            to_s = clock.monotonic()
+            for figure in figures_of(place, "by hand", tries, began_s):
+                yield figure
+        yield equal("by hand: tries while it moves", inside, count)
+        yield at_least("by hand: steps taken", hand.steps, 4)
+        niced_s = place.loop_late_s(began_s, to_s, NICED_LOOP)
+        yield holds("by hand: manual mode stands, or the gateway gets no share of the processor",
+                    hand.again == 0 or niced_s > SHARE_S,
+                    f"armed {hand.again} times again; a bare loop beside the gateway is late by {1e3 * niced_s:.0f} ms",
+                    f"0, or later than {1e3 * SHARE_S:g} ms")  # fmt: skip
+        await hand.armed()
+        yield await ended_by_the_operator(place, client)
+
+
+def moved(view: StateView) -> bool:
+    """The rig is moved by hand."""
+    return view.mode == "MANUAL" and view.tick.rate_hz > 0.0
+
+
+class Hand:
+    """The operator who moves the rig: gives signs of life, takes steps, arms again where the mode has ended."""
+
+    def __init__(self, place: Place, client: Client) -> None:
+        """Nothing is armed."""
+        self.place, self.client = place, client
+        self.steps = 0
+        self.again = 0
+        """How often the mode was armed after it had ended."""
+        self._armed = False
+
+    @asynccontextmanager
+    async def at_work(self) -> AsyncGenerator[None]:
+        """Give signs of life and take steps while the block lasts."""
+        tasks = [asyncio.create_task(self._attend()), asyncio.create_task(self._move())]
+        try:
+            yield
+        finally:
+            for task in tasks:
+                task.cancel()
+
+    async def armed(self) -> None:
+        """See that manual mode stands. Raises NotReachedError."""
+        end_s = clock.monotonic() + ARM_S
+        while not moved(self.client.state):
+            if clock.monotonic() > end_s or self.client.lost:
+                state = self.client.state
+                raise NotReachedError(f"manual mode: not within {ARM_S:g} s; {state.mode}: {state.mode_text}")
+            if at_rest(self.client.state):
+                with suppress(RefusedError, TimeoutError):
+                    await self.client.command(Arm(), within_s=ARM_S)
+                    self.again += self._armed
+                    self._armed = True
+            await asyncio.sleep(SIGN_S)
+
+    async def _attend(self) -> None:
+        while not self.client.lost:
+            self.client.attend()
+            await asyncio.sleep(SIGN_S)
+
+    async def _move(self) -> None:
+        while not self.client.lost:
+            if moved(self.client.state):
+                with suppress(RefusedError, LostError, TimeoutError):
+                    await self.client.command(Jog("both", 1 if self.steps % 8 < 4 else -1), within_s=5.0)
+                    self.steps += 1
+            await asyncio.sleep(0.5)
+
+
+async def planning(place: Place, client: Client, attack: Attack, count: int, conditions: int) -> AsyncIterator[Figure]:
+    """A large recipe is being planned: what is planned does not begin."""
+    recipe = place.folder / "big.yaml"
+    recipe.write_text(big(conditions), encoding="utf-8")
+    made: list[tuple[str, float, float | None]] = []
+    refused = 0
+    with attack():
+        began_s = clock.monotonic()
+        await place.take_control(client)
+        await asyncio.sleep(SETTLE_S)
+        for number in range(count):
+            order = asyncio.create_task(client.command(RunRecipe(str(recipe), speed=1.0, yes=True), within_s=60.0))
+            await asyncio.sleep(0.3 + 12.0 * (number % 8) / 8.0 * conditions / 200_000)
+            made += await place.stops(1)
+            with suppress(RefusedError, LostError, TimeoutError):
+                await order
+                continue
+            refused += 1
+        for figure in figures_of(place, f"planning {conditions} conditions", place.judged(made), began_s):
+            yield figure
+    yield equal("planning: runs that did not begin", f"{refused} of {count}", f"{count} of {count}")

@@ -1,0 +1,40 @@
+"""A recipe planned by a process of its own."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tester.campaign.endings import CannotStartError
+from tester.service.planning import Task, planned
+from tester.session import prepared
+from tests.tester.engine.bench import SHORT
+
+
+def test_it_is_what_this_process_would_have_planned(tmp_path: Path) -> None:
+    (tmp_path / "short.yaml").write_text(SHORT)
+    task = Task(str(tmp_path / "short.yaml"), "sim", ("sim.noise=0",))
+    polls = list[int]()
+
+    def meanwhile() -> str:
+        polls.append(1)
+        return ""
+
+    found, here = planned(task, meanwhile), prepared(task.recipe, task.rig, task.overrides)
+    assert (found.work, found.expected) == (here.work, here.expected)
+    assert len(polls) > 3
+    assert all(
+        one is other for one, other in zip(found.work.parts[0].plan.steps, found.work.plan.steps, strict=True)
+    ), "a part's steps are the plan's own"
+
+
+def test_what_is_wrong_with_a_recipe_is_said(tmp_path: Path) -> None:
+    (tmp_path / "bad.yaml").write_text("recipe: [")
+    with pytest.raises(CannotStartError, match=r"bad\.yaml:1"):
+        planned(Task(str(tmp_path / "bad.yaml"), "sim"), lambda: "")
+
+
+def test_it_is_given_up_when_somebody_says_so(tmp_path: Path) -> None:
+    with pytest.raises(CannotStartError, match="stopped by me"):
+        planned(Task("table2", "sim"), lambda: "stopped by me")

@@ -1,0 +1,112 @@
+"""STOP's lane with its real process."""
+
+from __future__ import annotations
+
+import os
+import select
+from collections.abc import Iterator
+from contextlib import suppress
+from pathlib import Path
+from threading import Thread
+
+import pytest
+
+from tester.service.address import Address, TcpAddress, UnixAddress, new_tcp_address
+from tester.service.stop_call import NotTakenError, StopCall
+from tester.service.stop_lane import StopLane, StopWish
+
+pytestmark = pytest.mark.skipif(os.name != "posix", reason="Unix sockets")
+
+
+@pytest.fixture(scope="module")
+def address(tmp_path_factory: pytest.TempPathFactory) -> UnixAddress:
+    return UnixAddress(tmp_path_factory.mktemp("lane") / "service.sock")
+
+
+@pytest.fixture(scope="module")
+def lane(address: UnixAddress) -> Iterator[StopLane]:
+    made = StopLane()
+    made.open(address)
+    yield made
+    made.close()
+
+
+def test_while_nothing_ticks_stop_is_answered_at_once_and_kept(lane: StopLane, address: Address) -> None:
+    with StopCall(address, "me") as call:
+        call.stop(fast=True)
+    assert lane.wanted and lane.taken() == [StopWish("me", True, 0)] and not lane.wanted
+
+
+def test_of_stops_that_nobody_has_looked_at_two_are_kept_at_most(lane: StopLane, address: Address) -> None:
+    with StopCall(address, "me") as call:
+        for fast in (False, False, True, False, True):
+            call.stop(fast=fast)
+    assert [wish.fast for wish in lane.taken()] == [False, True]
+
+
+def test_while_something_ticks_the_one_who_ticks_answers(lane: StopLane, address: Address) -> None:
+    lane.begin_ticking()
+    with StopCall(address, "me") as call:
+        asking = Thread(target=call.stop)
+        asking.start()
+        assert select.select([lane.bell], [], [], 10.0)[0], "nobody rings"
+        (wish,) = lane.taken()
+        assert asking.is_alive()
+        lane.answer(wish)
+        asking.join(10.0)
+        assert not asking.is_alive()
+    lane.end_ticking()
+
+
+def test_who_waits_when_the_run_ends_is_answered(lane: StopLane, address: Address) -> None:
+    lane.begin_ticking()
+    with StopCall(address, "me") as call:
+        asking = Thread(target=call.stop)
+        asking.start()
+        assert select.select([lane.bell], [], [], 10.0)[0], "nobody rings"
+        lane.end_ticking()
+        asking.join(10.0)
+        assert not asking.is_alive() and [wish.number for wish in lane.taken()] == [0]
+
+
+def test_a_door_that_dies_is_opened_again_and_a_kept_connection_is_renewed(tmp_path: Path) -> None:
+    address, lane = UnixAddress(tmp_path / "s"), StopLane()
+    lane.open(address)
+    try:
+        with StopCall(address, "me") as call:
+            call.connect()
+            process = lane._process  # pyright: ignore[reportPrivateUsage]
+            assert process is not None
+            process.kill()
+            process.wait()
+            while call.open:
+                select.select([lane.bell], [], [], 0.01)
+            while not lane.wanted:
+                lane.look()
+                select.select([lane.bell], [], [], 0.05)  # leaves the interpreter to the lane's thread
+                with suppress(NotTakenError):
+                    call.stop()
+            assert lane.restarts == 1
+    finally:
+        lane.close()
+
+
+def test_tcp_has_a_port_of_its_own_that_needs_the_token() -> None:
+    address, lane = new_tcp_address(), StopLane()
+    lane.open(address)
+    try:
+        with StopCall(TcpAddress(address.host, 0, address.token, lane.port), "me") as call:
+            call.stop()
+        with (
+            StopCall(TcpAddress(address.host, 0, "guessed", lane.port), "me") as call,
+            pytest.raises(NotTakenError),
+        ):
+            call.stop()
+        assert len(lane.taken()) == 1
+    finally:
+        lane.close()
+
+
+def test_where_there_is_no_service_it_says_so(tmp_path: Path) -> None:
+    with StopCall(UnixAddress(tmp_path / "none"), "me") as call, pytest.raises(NotTakenError):
+        call.stop()
