@@ -6,7 +6,7 @@ import re
 from pathlib import Path
 
 from tester.control.describe import interlock_table
-from tester.control.interlocks import INTERLOCKS
+from tester.interlocks.table import INTERLOCKS
 from tester.rig import RigConfig
 
 PAGE = Path(__file__).parents[3] / "docs" / "safety.md"
