@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from tester.cli.main import invoke
+from tester.rig.load import packaged_text
 from tests.tester.recipe.texts import SMALL
 
 
@@ -88,3 +89,12 @@ def test_schema_prints_the_packaged_schema(folder: Path, capsys: pytest.CaptureF
     assert invoke(["schema"]) == 0
     schema = json.loads(capsys.readouterr().out)
     assert schema["required"] == ["recipe", "specimens"]
+
+
+def test_check_says_which_keys_of_the_rig_take_the_packaged_value(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = folder / "rig.yaml"
+    path.write_text(packaged_text().replace("  pushed: ", "  # pushed: "), encoding="utf-8")
+    assert invoke(["check", "quickstart", "--rig", str(path)]) == 0
+    assert f"{path}: packaged values count for interlocks.pushed\n" in capsys.readouterr().err
