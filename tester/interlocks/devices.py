@@ -70,4 +70,4 @@ WHEEL_WORN: Final = Interlock(
     reset="new wheel, acknowledged",
 )
 
-ROWS: Final = (DEVICE_REFUSED, LINE_NOISY, WHEEL_WORN)
+ROWS: Final[tuple[Interlock, ...]] = (DEVICE_REFUSED, LINE_NOISY, WHEEL_WORN)

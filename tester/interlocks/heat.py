@@ -14,7 +14,7 @@ _INF: Final = inf
 SURFACE_DELAY_S: Final = Parameter(
     "surface_delay_s", "s", "500 ms", "rubber above limits.surface [A]", NOT_NEGATIVE,
     direction=Direction.LOWER, hardest="2 s",
-    because="at its limit of 95 degC the surface is 35 K from harm, and friction warms it by some kelvin a second",
+    because="35 K are left from limits.surface to harm, and a burst is over after some seconds [A]",
 )  # fmt: skip
 
 
@@ -64,7 +64,7 @@ JACKET_HOT: Final = Interlock(
 RUNAWAY_K: Final = Parameter(
     "runaway_k", "K", "8 K", "hub above every setpoint of runaway_window by this",
     direction=Direction.LOWER, hardest="15 K",
-    because="three times the overshoot of a jacket controller that is tuned",
+    because="three times the overshoot of a jacket controller that is tuned [A]",
 )  # fmt: skip
 RUNAWAY_WINDOW_S: Final = Parameter(
     "runaway_window_s", "s", "10 min", "how far back setpoints count: a hub cools more slowly than it heats [A]",
@@ -196,12 +196,12 @@ HEATING_AT_STANDSTILL: Final = Interlock(
 JUMP_K: Final = Parameter(
     "jump_k", "K", "5 K", "from one reading to the next, surface or hub",
     direction=Direction.LOWER, hardest="10 K",
-    because="the hub gains 0.1 K, the rubber some kelvin from reading to reading",
+    because="full output moves the hub by 0.1 K from reading to reading: more than 10 K is no temperature",
 )  # fmt: skip
 BLIND_S: Final = Parameter(
     "blind_s", "s", "1 s", "after a change of wheel readings are not compared for this long [A]",
     direction=Direction.LOWER, hardest="5 s",
-    because="five readings: what has not come by then is stale",
+    because="25 readings: what was on its way has long come",
 )  # fmt: skip
 
 
@@ -253,7 +253,7 @@ FROZEN_DELAY_S: Final = Parameter(
     "frozen_delay_s", "s", "2 s",
     "either of both for this long: the thermometer is polled, the model is not [A]", NOT_NEGATIVE,
     direction=Direction.LOWER, hardest="5 s",
-    because="25 readings",
+    because="25 readings that say what the model denies",
 )  # fmt: skip
 
 
@@ -313,7 +313,7 @@ SURFACE_OFF_MODEL: Final = Interlock(
 STALE_IR_S: Final = Parameter(
     "stale_ir_s", "s", "1 s", "age of the surface temperature",
     direction=Direction.LOWER, hardest="3 s",
-    because="friction warms the surface by some kelvin a second",
+    because="fifteen readings are missing by then: the thermometer is gone",
 )  # fmt: skip
 STALE_JACKET_S: Final = Parameter(
     "stale_jacket_s", "s", "1 s", "age of the hub temperature",
@@ -323,7 +323,7 @@ STALE_JACKET_S: Final = Parameter(
 STALE_DELAY_S: Final = Parameter(
     "stale_delay_s", "s", "200 ms", "for both [A]", NOT_NEGATIVE,
     direction=Direction.LOWER, hardest="1 s",
-    because="two polls of a slow line",
+    because="with an age of 1 s ten readings are missing by then",
 )  # fmt: skip
 
 
@@ -365,7 +365,7 @@ JACKET_STALE: Final = Interlock(
     reset=ACK,
 )
 
-ROWS: Final = (
+ROWS: Final[tuple[Interlock, ...]] = (
     SURFACE_HOT, JACKET_HOT, JACKET_RUNAWAY, HEATER_STUCK, HEATER_LINE_OPEN, HEATING_AT_STANDSTILL, HUB_JUMP,
     SURFACE_JUMP, THERMOMETER_FROZEN, SURFACE_OFF_MODEL, SURFACE_STALE, JACKET_STALE,
 )  # fmt: skip

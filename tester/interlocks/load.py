@@ -65,7 +65,7 @@ CELL_SATURATED: Final = Interlock(
 FROZEN_CELL_S: Final = Parameter(
     "frozen_cell_s", "s", "500 ms", "identical raw counts of the load cell, loaded and turning ...",
     direction=Direction.LOWER, hardest="1 s",
-    because="runout shakes a turning wheel's load twice a second or more: a second without a change is no reading",
+    because="at 0.3 m/s runout moves the load once a second: a second without a change is no reading",
 )  # fmt: skip
 TOUCH_MARGIN_MM: Final = Parameter(
     "touch_margin_mm", "mm", "1.5 mm", "... or no force this far beyond the known contact: about 160 N unseen [A]",
@@ -156,7 +156,7 @@ OVERSHOOT: Final = Interlock(
 DEPTH_FACTOR: Final = Parameter(
     "depth_factor", "1", "1.3", "the press stands beyond the contact by this times what the load shown needs ...",
     AT_LEAST_ONE, direction=Direction.LOWER, hardest="1.5",
-    because="a cell that shows two thirds of the depth's load at 300 N lets 500 N stand: force grows with depth^1.3",
+    because="force grows with depth^1.3: at 1.5 times the depth 300 N shown are 508 N, and harm begins at 500 N",
 )  # fmt: skip
 DEPTH_MARGIN_MM: Final = Parameter(
     "depth_margin_mm", "mm", "0.2 mm", "... plus this [A]: rubber may be softer than loops.load.stiffness by 29 % ...",
@@ -228,7 +228,7 @@ CONTACT_LOST: Final = Interlock(
 SLIP_POWER_DELAY_S: Final = Parameter(
     "slip_power_delay_s", "s", "50 ms", "above limits.slip_power; harm is 0.5 s beyond [A]", NOT_NEGATIVE,
     direction=Direction.LOWER, hardest="200 ms",
-    because="harm is 0.5 s beyond, and a quick stop from 0.8 m/s takes 0.2 s",
+    because="harm is 0.5 s beyond, and a quick stop from 0.8 m/s takes 0.1 s",
 )  # fmt: skip
 
 
@@ -247,6 +247,6 @@ SLIP_POWER: Final = Interlock(
     reset=ACK,
 )
 
-ROWS: Final = (
+ROWS: Final[tuple[Interlock, ...]] = (
     CELL_STALE, CELL_SATURATED, CELL_FROZEN, OVERLOAD, OVERSHOOT, TOO_DEEP, CONTACT_LOST, SLIP_POWER,
 )  # fmt: skip

@@ -255,7 +255,7 @@ STANDING_UNDER_LOAD: Final = Interlock(
 TORN_SHARE: Final = Parameter(
     "torn_share", "1", "0.05", "friction and torque below this share of the load while sliding: no belt [A] ...",
     SHARE, direction=Direction.HIGHER, hardest="0.02",
-    because="a wheel on the bare roller shows friction of a few hundredths of its load",
+    because="a wheel on the bare roller shows friction of a few hundredths of its load [A]",
 )  # fmt: skip
 TORN_SLIP_M_S: Final = Parameter(
     "torn_slip_m_s", "m/s", "50 mm/s", "... above this slip [A]",
@@ -289,7 +289,7 @@ BELT_TORN: Final = Interlock(
     reset=REPAIR,
 )
 
-ROWS: Final = (
+ROWS: Final[tuple[Interlock, ...]] = (
     DRIVE_DATA_STALE, INPUTS_STALE, DRIVE_DROPPED_OUT, OVERSPEED, WHEEL_SPEED, BELT_SPEED, PRESS_SPEED, PRESS_TRAVEL,
     STANDING_UNDER_LOAD, BELT_TORN,
 )  # fmt: skip

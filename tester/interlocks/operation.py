@@ -40,7 +40,7 @@ ZERO_STOP_N: Final = Parameter(
 COOLDOWN_HUB_C: Final = Parameter(
     "cooldown_hub_c", "degC", "60 degC", "after a stop the wheel keeps turning, unloaded, while the hub is hotter", ANY,
     direction=Direction.LOWER, hardest="80 degC",
-    because="a standing wheel at 80 degC is baked on one side; its rubber is rated for tests at 85 degC while turning",
+    because="the paper's tests heat turning rubber to 85 degC; what stands is baked on one side",
 )  # fmt: skip
 COOLDOWN_SPEED_M_S: Final = Parameter(
     "cooldown_speed_m_s", "m/s", "0.1 m/s", "... this slowly [A]",
@@ -51,7 +51,7 @@ COOLDOWN_AT_MOST_S: Final = Parameter(
     "cooldown_at_most_s", "s", "45 min", "... and this long at most [A]",
 )  # fmt: skip
 
-PARAMETERS: Final = (
+PARAMETERS: Final[tuple[Parameter, ...]] = (
     MAX_SLIP_M_S, TURNING_CONFIRMED_S, START_K, COLD_K, HOLD_AT_MOST_S, ZERO_WARN_N, ZERO_STOP_N, COOLDOWN_HUB_C,
     COOLDOWN_SPEED_M_S, COOLDOWN_AT_MOST_S,
 )  # fmt: skip

@@ -65,4 +65,4 @@ LOADED_AT_REST: Final = Interlock(
     reset="cause gone",
 )
 
-ROWS: Final = (MOVING_AT_REST, LOADED_AT_REST)
+ROWS: Final[tuple[Interlock, ...]] = (MOVING_AT_REST, LOADED_AT_REST)

@@ -195,7 +195,7 @@ STOP_NOT_ENDED: Final = Interlock(
 CONTACTOR_DELAY_S: Final = Parameter(
     "contactor_delay_s", "s", "500 ms", "the contactor has not followed its request by then [A]", POSITIVE,
     direction=Direction.LOWER, hardest="1 s",
-    because="a contactor opens within 0.1 s; the input word that says so may be 0.25 s old",
+    because="a contactor opens within 0.1 s [A]; the input word that says so may be 0.25 s old",
 )  # fmt: skip
 
 
@@ -215,7 +215,7 @@ CONTACTOR_WELDED: Final = Interlock(
     reset=REPAIR,
 )
 
-ROWS: Final = (
+ROWS: Final[tuple[Interlock, ...]] = (
     NOT_LIFTED, LIFT_FAILED, NOT_STOPPING, QUICK_STOP_FAILED, HEAT_NOT_OFF, OUTPUT_NOT_OFF, STOP_NOT_ENDED,
     CONTACTOR_WELDED,
 )  # fmt: skip

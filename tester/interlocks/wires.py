@@ -134,6 +134,6 @@ SCAN_DELAYED: Final = Interlock(
     reset="by itself",
 )
 
-ROWS: Final = (SAFETY_CHAIN, DRIVE_FAULT, BUS_LOST, SECOND_MASTER, CLOCK_JUMP, SCAN_LATE, GUARD_OPEN)
-WARNINGS: Final = (SCAN_DELAYED,)
+ROWS: Final[tuple[Interlock, ...]] = (SAFETY_CHAIN, DRIVE_FAULT, BUS_LOST, SECOND_MASTER, CLOCK_JUMP, SCAN_LATE, GUARD_OPEN)
+WARNINGS: Final[tuple[Interlock, ...]] = (SCAN_DELAYED,)
 """Only said: they stand last in the table."""
