@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from difflib import get_close_matches
 from pathlib import Path
 
 FOLDER = Path(__file__).parent
@@ -28,4 +29,6 @@ def find(name_or_path: str | Path) -> Path:
         return path
     if path.parent in (Path(), Path("recipes")) and path.suffix in ("", ".yaml") and path.stem in names():
         return FOLDER / f"{path.stem}.yaml"
-    raise UnknownRecipe(f'no recipe "{name_or_path}": no such file, and packaged are {", ".join(names())}')
+    near = get_close_matches(path.stem, names(), 1)
+    meant = f", did you mean {near[0]}?" if near else ""
+    raise UnknownRecipe(f'no recipe "{name_or_path}"{meant} (no such file; packaged are {", ".join(names())})')

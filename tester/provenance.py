@@ -24,6 +24,9 @@ from tester.store.records import Calibration, RunInfo, SessionInfo
 LIBRARIES = ("friction-tester", "numpy", "pyarrow", "pydantic", "pymodbus", "pyserial", "python-can", "pyyaml")
 """Distributions whose versions are stored with a run."""
 
+ABSENT = "not installed"
+"""Stands for the version of a distribution that is not there, as of one that comes with an extra."""
+
 PACKAGED = "packaged: "
 """Begins the source of a recipe that comes with the program."""
 
@@ -77,8 +80,8 @@ def session_info(number: int, origin_s: float, operator: str) -> SessionInfo:
 
 
 def library_versions() -> dict[str, str]:
-    """Return the versions of what a result depends on: libraries, Python, the platform."""
-    found = {package: _version(package) for package in LIBRARIES}
+    """Return the versions of what a result depends on: libraries (ABSENT where one is not there), Python, platform."""
+    found = {package: _version(package, ABSENT) for package in LIBRARIES}
     return found | {"python": platform.python_version(), "platform": platform.platform()}
 
 
@@ -168,8 +171,8 @@ def git_revision() -> str:
     return done.stdout.strip()
 
 
-def _version(package: str) -> str:
+def _version(package: str, absent: str = "unknown") -> str:
     try:
         return version(package)
     except PackageNotFoundError:
-        return "unknown"
+        return absent

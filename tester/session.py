@@ -23,7 +23,7 @@ from tester.engine.prompts import Prompts
 from tester.engine.results import condition_records
 from tester.engine.run import Outcome, Run
 from tester.engine.tickers import TickStatistics
-from tester.export import write_all
+from tester.export import doubtful, write_all
 from tester.lock import ExclusiveUse
 from tester.provenance import recipe_source, rig_source, run_info, session_info
 from tester.recipe.check import load_checked
@@ -32,9 +32,9 @@ from tester.resume import prepare
 from tester.rig import RigConfig, load_rig
 from tester.screens import LastingScreen, Screen
 from tester.signals import HANG_UP, handled
-from tester.store.catalogue import cut_off
+from tester.store.catalogue import MANIFEST, cut_off
 from tester.store.reader import RunReader
-from tester.store.resume import FINISHED
+from tester.store.status import WENT_THROUGH
 from tester.store.writer import RunWriter
 
 
@@ -108,13 +108,15 @@ class Session:
         Raises CannotStartError, StoreError, InvalidSource.
         """
         with RunReader(folder) as reader:
-            finished = reader.run().status == FINISHED
-        if finished:
+            finished = reader.run().status == WENT_THROUGH
+        if finished and (folder / MANIFEST).is_file():
             self.screen.message(f"{folder.name} is complete: nothing is left to do")
             self.screen.result(str(folder))
             return 0
         with ExclusiveUse() as use:
             hold_run(use, folder)
+            if finished:  # cut off between its end and its tables
+                return self._report(folder, Ending(Outcome.DONE, "", None))
             recover(folder)
             resumed = prepare(folder, reason, self.options.operator)
             if isinstance(resumed, str):
@@ -273,9 +275,10 @@ class Session:
 
     def _report(self, folder: Path, ending: Ending) -> int:
         """Write the tables, name what is missing in them, and return the exit code."""
-        missing = [row.describe() for row in write_all(folder)]
-        for line in missing:
-            self.screen.message(line)
+        lost = write_all(folder)
+        missing = [row.describe() for row in lost]
+        for row in [*lost, *doubtful(folder)]:
+            self.screen.message(row.advise())
         if ending.reason:
             self.screen.message(f"{ending.outcome.value}: {ending.reason}")
         code = ending.exit_code(interrupted_once=self.interrupts == 1, missing=bool(missing))

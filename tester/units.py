@@ -106,6 +106,8 @@ _TYPOGRAPHY = str.maketrans(
 )
 _NUMBER = r"[+\-−]?([0-9]+(\.[0-9]*)?|\.[0-9]+)([eE][+\-]?[0-9]{1,2})?"
 _QUANTITY = re.compile(rf"\s*(?P<number>{_NUMBER})\s*(?P<unit>.*?)\s*", re.DOTALL)
+_HUGE = re.compile(r"\s*[+\-−]?[0-9.]+[eE][+\-]?[0-9]{3}")
+"""A number with more digits in its exponent than any quantity has."""
 _DECIMAL_COMMA = re.compile(r"\s*[+\-−]?[0-9]+,[0-9]")
 _LONGEST = 80
 """Longest text that is looked at, in characters: any real quantity is a quarter of this."""
@@ -159,6 +161,9 @@ def _parsed(text: str, units: tuple[str, ...]) -> tuple[float, str]:
     hint = expected(*units)
     if _DECIMAL_COMMA.match(text):
         raise UnitError(f"{shown(text)} has a decimal comma, write a point (expected {hint})")
+    if huge := _HUGE.match(text):
+        how = "small" if "-" in huge[0].lstrip().lstrip("-") else "large"
+        raise UnitError(f"{shown(text)} is too {how} (expected {hint})")
     match = _QUANTITY.fullmatch(text)
     if match is None:
         raise UnitError(f"{shown(text)} is not a number with a unit (expected {hint})")

@@ -38,7 +38,27 @@ _EXPECTED = {
 def problems_of(error: ValidationError, tree: Tree, model: type[BaseModel] | None) -> list[Problem]:
     """Return the errors as problems, sorted by position; see ``tester.source.problems_from_validation``."""
     details = islice(error.errors(include_url=False), MAX_PROBLEMS + 1)
-    return sorted({_problem(one, tree, model) for one in details})
+    found = list(details)
+    meant = {(at[:-1], near) for at, near in _misspelt(found, tree, model)}
+    return sorted({_problem(one, tree, model) for one in found if not _is_meant(one, tree, meant)})
+
+
+def _misspelt(
+    details: list[ErrorDetails], tree: Tree, model: type[BaseModel] | None
+) -> Iterator[tuple[Location, str]]:
+    """Yield where a key is unknown, and the key that it was probably meant to be."""
+    for detail in details:
+        if detail["type"] == "extra_forbidden":
+            at, _ = _locate(detail["loc"], tree.data)
+            for near in _nearest(str(detail["loc"][-1]), list(_fields(model, at[:-1]))):
+                yield at, near
+
+
+def _is_meant(detail: ErrorDetails, tree: Tree, meant: set[tuple[Location, str]]) -> bool:
+    """Return whether a missing key is there, misspelt: one mistake is one problem."""
+    if detail["type"] != "missing" or not detail["loc"]:
+        return False
+    return (_locate(detail["loc"], tree.data)[0], str(detail["loc"][-1])) in meant
 
 
 def _problem(detail: ErrorDetails, tree: Tree, model: type[BaseModel] | None) -> Problem:
@@ -88,9 +108,14 @@ def _models_in(annotation: object) -> Iterator[type[BaseModel]]:
         yield from _models_in(inner)
 
 
-def _unknown(key: str, valid: list[str]) -> str:
+def _nearest(key: str, valid: list[str]) -> list[str]:
+    """Return the valid key that is nearest to one, none where none is near."""
     tidy = key.strip().casefold().replace("-", "_").replace(" ", "_")
-    near = difflib.get_close_matches(tidy[:40], valid, n=1, cutoff=0.6)
+    return difflib.get_close_matches(tidy[:40], valid, n=1, cutoff=0.6)
+
+
+def _unknown(key: str, valid: list[str]) -> str:
+    near = _nearest(key, valid)
     meant = f", did you mean {near[0]}?" if near else ""
     listed = f" (expected one of {', '.join(valid)})" if valid else ""
     return f"unknown key {shown(key)}{meant}{listed}"

@@ -9,20 +9,20 @@ The tare was subtracted before the samples were recorded. The paper's tabulated 
 resultant.
 
 The uncertainty comes from 10 batch means: consecutive revolutions correlate, so s / sqrt(n) of raw samples
-covers 33 % where 95 % is claimed (physics.md 6). Batch means alone cover 93 % of windows of a fixed length, but 88 %
-of those that ended because they looked steady; with the blocks' own standard error, their correlation allowed for,
-where that is larger, 95 % (AR(1) noise of 1 % and 0.3 s, windows of 30 to 90 revolutions, 500 trials).
+covers 33 % where 95 % is claimed. Where the blocks' own standard error, their correlation allowed for, is larger, it
+is that (AR(1) noise of 1 % and 0.3 s).
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import pairwise
-from math import sqrt
+from math import isfinite, sqrt
 
 from tester.analysis.blocks import AVERAGED, Block, resultant
-from tester.analysis.results import NAN, Burst, RepeatResult, RepeatStatus
-from tester.analysis.stability import Stability, assess, enough
+from tester.analysis.drift import Drift, fit_drift
+from tester.analysis.results import NAN, NOT_SHOWN, Burst, RepeatResult, RepeatStatus, joined
+from tester.analysis.stability import REPEAT_WINDOWS, enough, left_out
 
 BATCHES = 10
 """Number of batch means per repeat."""
@@ -71,43 +71,54 @@ def without_value(status: RepeatStatus, reason: str, started_s: float = NAN, end
     return RepeatResult(status=status, reason=reason, started_s=started_s, ended_s=ended_s)
 
 
+def counted(blocks: Sequence[Block], revolutions: float | None, seconds: float | None) -> Sequence[Block]:
+    """Return the blocks of a repeat that count: without the transient at its beginning."""
+    return blocks[left_out(blocks, revolutions, seconds) :]
+
+
 def reduce_repeat(
     blocks: Sequence[Block],
     revolutions: float | None = None,
     seconds: float | None = None,
     *,
     rolling: bool = False,
-    stability: Stability | None = None,
+    alone: bool = False,
 ) -> RepeatResult:
     """Return a repeat's result from its blocks, in order of time.
 
     ``revolutions`` or ``seconds`` is the nominal window of accepted samples (both None: any length will do).
-    ``rolling`` marks a condition of 0 mm/s. ``stability`` saves assessing the same blocks again. Status:
-    VALID, NOT_STABILISED, or TOO_FEW when the window is not full; the latter two carry their figures too.
+    ``rolling`` marks a condition of 0 mm/s, whose drift is not judged: its coefficient is rolling resistance, next to
+    nothing. ``alone``: no siblings to be judged with, so a drift that is not shown to be small is flagged here.
+    Status: VALID, TOO_FEW when the window is not full, REFUSED without a coefficient; the latter carry their figures.
     """
     if not blocks:
         return without_value(RepeatStatus.TOO_FEW, "not one whole accepted revolution")
-    verdict = stability if stability is not None else assess(blocks, revolutions, seconds)
-    status, reason = _status(blocks, verdict, revolutions, seconds)
-    used = blocks[verdict.truncated :]
+    used = counted(blocks, revolutions, seconds)
     n = len(used)
+    drift = fit_drift([used], revolutions, seconds)
     means: dict[str, float] = {name: sum(getattr(block, name) for block in used) / n for name in AVERAGED}
     batches = batch_means(used)
     mu, load, spread = _resultant(used), means["force_z_n"], standard_deviation(batches)
+    status, reason = _status(blocks, used, revolutions, seconds)
+    if not isfinite(mu) or not (mu > 0.0 or rolling):
+        status, reason = RepeatStatus.REFUSED, "coefficient without a value"
+    flags = _flags(blocks, used, revolutions, seconds, rolling)
+    if alone and not rolling and not drift.stable:
+        flags.append(NOT_SHOWN)
     return RepeatResult(
         status=status,
         reason=reason,
-        flags=_flags(blocks, verdict, revolutions, seconds, rolling),
+        flags=joined(flags),
         mu_resultant=mu,
         mu_longitudinal=means["force_x_n"] / load if load > 0.0 else NAN,
         mu_lateral=means["force_y_n"] / load if load > 0.0 else NAN,
-        uncertainty=_uncertainty(used, batches, verdict),
+        uncertainty=_uncertainty(used, batches, drift),
         fluctuation_percent=100.0 * spread / mu if mu > 0.0 else NAN,
         batches=len(batches),
-        drift_percent=verdict.drift_percent,
-        bound_percent=verdict.bound_percent,
+        drift_percent=NAN if rolling else drift.drift_percent,
+        bound_percent=NAN if rolling else drift.bound_percent,
         revolutions=n,
-        truncated=verdict.truncated,
+        truncated=len(blocks) - n,
         window_s=sum(block.ended_s - block.started_s for block in used),
         bursts=len(bursts_of(used)),
         started_s=blocks[0].started_s,
@@ -116,38 +127,38 @@ def reduce_repeat(
     )
 
 
-def _uncertainty(used: Sequence[Block], batches: Sequence[float], verdict: Stability) -> float:
+def _uncertainty(used: Sequence[Block], batches: Sequence[float], drift: Drift) -> float:
     """Return the larger standard error of two: of the batch means, and of the blocks with their correlation."""
     of_batches = standard_deviation(batches) / sqrt(len(batches))
-    if verdict.effective < 1.0:
+    effective = len(used) / drift.inflation
+    if effective < 1.0:
         return of_batches
-    of_blocks = standard_deviation([block.mu for block in used]) / sqrt(verdict.effective)
+    of_blocks = standard_deviation([block.mu for block in used]) / sqrt(effective)
     return max(of_batches, of_blocks)
 
 
 def _status(
-    blocks: Sequence[Block], verdict: Stability, revolutions: float | None, seconds: float | None
+    blocks: Sequence[Block], used: Sequence[Block], revolutions: float | None, seconds: float | None
 ) -> tuple[RepeatStatus, str]:
-    if verdict.stabilised:
+    if enough(used, revolutions, seconds):
         return RepeatStatus.VALID, ""
-    if enough(blocks, revolutions, seconds):
-        return RepeatStatus.NOT_STABILISED, verdict.reason
+    transient = f", {len(blocks) - len(used)} more are transient" if len(used) < len(blocks) else ""
     if revolutions is None:
-        return RepeatStatus.TOO_FEW, f"{len(blocks)} revolutions in less than {seconds:g} s"
-    return RepeatStatus.TOO_FEW, f"{len(blocks)} of {revolutions:g} revolutions"
+        return RepeatStatus.TOO_FEW, f"{len(used)} revolutions in less than {seconds:g} s{transient}"
+    return RepeatStatus.TOO_FEW, f"{len(used)} of {revolutions:g} revolutions{transient}"
 
 
 def _flags(
     blocks: Sequence[Block],
-    verdict: Stability,
+    used: Sequence[Block],
     revolutions: float | None,
     seconds: float | None,
     rolling: bool,
-) -> str:
-    windowed = revolutions is not None or seconds is not None
+) -> list[str]:
+    wanted = revolutions and REPEAT_WINDOWS * revolutions, seconds and REPEAT_WINDOWS * seconds
     flags = ["rolling"] if rolling else []
-    if windowed and len(blocks) > 1 and enough(blocks[:-1], revolutions, seconds):
+    if any(wanted) and len(used) > 1 and enough(used[:-1], *wanted):
         flags.append("extended")
-    if verdict.truncated:
+    if len(used) < len(blocks):
         flags.append("truncated")
-    return " ".join(flags)
+    return flags

@@ -1,16 +1,16 @@
 """From repeats to a condition's coefficient, and from replicates on several wheels to one.
 
-By itself a repeat is left out only on objective grounds: a gate or the drift test made it not valid, or it fluctuates
-in excess, by Cochran's C (1 %) and by a variation within its window of more than three times its siblings'
-median. A value far from the others is flagged and stays: leaving out what does not agree makes any machine
-look precise (the closest two of three show a third of the true scatter). Both means are given. What a person leaves
-out, for a reason that is on record, is flagged ``excluded``.
+By itself a repeat is left out only on objective grounds: a gate or the drift test (module ``judge``) made it not
+valid, or it fluctuates in excess, by Cochran's C (1 %) and by a variation within its window of more than three times
+its siblings' median and of more than 1 %. A value far from the others is flagged and stays: leaving out what does not
+agree makes any machine look precise (the closest two of three show a third of the true scatter). Both means are given.
+What a person leaves out, for a reason that is on record, is flagged ``excluded``.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import astuple, dataclass, field, replace
 from math import isfinite, sqrt
 from statistics import median
 from types import MappingProxyType
@@ -18,14 +18,37 @@ from types import MappingProxyType
 from tester.analysis.blocks import AVERAGED
 from tester.analysis.quantiles import f_quantile, t_quantile
 from tester.analysis.reduce import standard_deviation
-from tester.analysis.results import NAN, ConditionStatus, RepeatResult, RepeatStatus
-from tester.analysis.uncertainty import CONFIDENCE, INSTRUMENTS, Contribution, Instruments, friction_budget
+from tester.analysis.results import (
+    DOUBTS,
+    NAN,
+    NOT_JUDGED,
+    SHORT,
+    ConditionStatus,
+    Judgement,
+    RepeatResult,
+    RepeatStatus,
+    flags_in,
+    joined,
+)
+from tester.analysis.uncertainty import (
+    CONFIDENCE,
+    INSTRUMENTS,
+    STEADY,
+    Contribution,
+    Instruments,
+    Unsteadiness,
+    friction_budget,
+    unsteadiness,
+)
 
 COCHRAN_ALPHA = 0.01
 """Level at which ISO 5725-2 calls a variance an outlier."""
 
 EXCESS_FACTOR = 3.0
-"""A repeat that varies by more than this times its siblings' median (physics.md 6)."""
+"""A repeat that varies by more than this times its siblings' median [A]."""
+
+EXCESS_PERCENT = 1.0
+"""... and by more than this: on a quiet rig three times next to nothing is nothing [A]."""
 
 BY_HAND = "excluded by hand"
 """Begins the reason of an exclusion that a person has made."""
@@ -37,7 +60,7 @@ _NOTHING: Mapping[int, str] = MappingProxyType({})
 
 OUTLIER_SIGMAS = 3.5
 REPEATABILITY = 0.02
-"""Historic standard deviation between repeats as a share of the coefficient (physics.md 5) [A]."""
+"""Historic standard deviation between repeats as a share of the coefficient [A]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,7 +76,9 @@ class ConditionResult:
     """A condition's coefficient. ``s``: standard deviation between its ``n_valid`` values of ``n``.
 
     ``interval`` is half the 95 % t interval of the mean, ``type_a`` s / sqrt(n); ``standard`` and
-    ``expanded`` (``coverage`` times it, 95 %) are those of the budget. ``measured`` holds the means over
+    ``expanded`` (``coverage`` times it, 95 %) are those of the budget. Drift and its
+    90 % bound are per window, the trend over the repeats, all per cent of the coefficient (``Judgement``); ``unsteady``
+    is what they add to the budget. ``measured`` holds the means over
     the valid repeats of what a block averages (names and units of AVERAGED). ``mu_without_flagged`` leaves
     out flagged outliers.
     """
@@ -76,11 +101,20 @@ class ConditionResult:
     measured: dict[str, float] = field(default_factory=dict[str, float])
     excluded: tuple[Exclusion, ...] = ()
     flagged: tuple[int, ...] = ()
+    drift_percent: float = NAN
+    drift_bound_percent: float = NAN
+    trend_percent: float = NAN
+    unsteady: Unsteadiness = STEADY
 
     @property
     def ok(self) -> bool:
-        """Return whether the coefficient can be trusted."""
+        """Return whether there is a coefficient; ``doubts`` says with what care it is to be taken."""
         return self.status is ConditionStatus.OK
+
+    @property
+    def doubts(self) -> tuple[str, ...]:
+        """Return the flags that say that the value is to be taken with care."""
+        return tuple(flag for flag in flags_in(self.flags) if flag in DOUBTS)
 
 
 def cochran_critical(groups: int, df: float, alpha: float = COCHRAN_ALPHA) -> float:
@@ -103,7 +137,14 @@ def excess_fluctuation(results: Sequence[RepeatResult]) -> int | None:
     if total <= 0.0 or spreads[worst] ** 2 / total <= cochran_critical(len(spreads), df):
         return None
     siblings = [result.fluctuation_percent for i, result in enumerate(results) if i != worst]
-    return worst if results[worst].fluctuation_percent > EXCESS_FACTOR * median(siblings) else None
+    limit = max(EXCESS_FACTOR * median(siblings), EXCESS_PERCENT)
+    return worst if results[worst].fluctuation_percent > limit else None
+
+
+def counting(results: Sequence[RepeatResult]) -> list[int]:
+    """Return the positions of the repeats that count: valid, and not fluctuating in excess of the others."""
+    left_out = {exclusion.position for exclusion in _exclusions(results, _NOTHING)}
+    return [i for i in range(len(results)) if i not in left_out]
 
 
 def _exclusions(results: Sequence[RepeatResult], by_hand: Mapping[int, str]) -> list[Exclusion]:
@@ -139,37 +180,49 @@ def combine_repeats(
     ended: ConditionStatus | None = None,
     reason: str = "",
     *,
+    judged: Judgement = NOT_JUDGED,
     by_hand: Mapping[int, str] = _NOTHING,
     repeatability: float = REPEATABILITY,
     instruments: Instruments = INSTRUMENTS,
 ) -> ConditionResult:
     """Return a condition's result from its repeats (one result per repeat: its last attempt; none void).
 
-    ``planned`` repeats were asked for and ``min_valid`` valid ones make a value. ``ended`` and ``reason``
-    are what the run said when it left the condition (None: it has not). ``by_hand``: positions that a person has left
+    ``planned`` repeats were asked for; with fewer valid ones than ``min_valid`` the value is flagged ``short``. Where
+    all repeats were refused for their drift, the value is theirs, flagged. ``ended`` and ``reason``
+    are what the run said when it left the condition (None: it has not), ``judged`` what its repeats say of its drift.
+    ``by_hand``: positions that a person has left
     out, each with the reason. ``repeatability`` is the historic standard deviation between repeats as a share of mu.
     """
     excluded = _exclusions(results, by_hand)
     left_out = {exclusion.position for exclusion in excluded}
     kept = [i for i in range(len(results)) if i not in left_out]
-    status, why = _condition_status(results, excluded, planned, min_valid, ended, reason)
+    if not kept:
+        # Nothing that stands still: what there is, flagged, rather than nothing.
+        kept = [i for i, result in enumerate(results) if result.drifts and i not in by_hand]
+        excluded = [exclusion for exclusion in excluded if exclusion.position not in kept]
+    status, why = _condition_status(results, excluded, planned, ended, reason)
     if not kept:
         return ConditionResult(status, why, EXCLUDED if by_hand else "", n=planned, excluded=tuple(excluded))
+    short = status is ConditionStatus.OK and len(kept) < min_valid
     values = [results[i].mu_resultant for i in kept]
     flagged = outliers(values, repeatability)
-    flags = {flag for i in kept for flag in results[i].flags.split()}
-    flags |= {word for word, on in (("outlier", flagged), (EXCLUDED, by_hand)) if on}
+    flags = {flag for i in kept for flag in flags_in(results[i].flags)} | set(flags_in(judged.flags))
+    flags |= {word for word, on in (("outlier", flagged), (EXCLUDED, by_hand), (SHORT, short)) if on}
     shell = ConditionResult(
         status=status,
         reason=why,
-        flags=" ".join(sorted(flags)),
+        flags=joined(flags),
         mu_longitudinal=_mean([results[i].mu_longitudinal for i in kept]),
         mu_lateral=_mean([results[i].mu_lateral for i in kept]),
         n=planned,
         measured={name: _mean([getattr(results[i], name) for i in kept]) for name in AVERAGED},
         excluded=tuple(excluded),
         flagged=tuple(kept[i] for i in flagged),
+        drift_percent=judged.drift_percent,
+        drift_bound_percent=judged.drift_bound_percent,
+        trend_percent=judged.trend_percent,
     )
+    shell = replace(shell, unsteady=unsteadiness(judged))
     return _with_statistics(shell, values, flagged, instruments)
 
 
@@ -194,11 +247,13 @@ def combine_replicates(
     shell = ConditionResult(
         status=status,
         reason=reason,
-        flags=" ".join(sorted({flag for result in kept for flag in result.flags.split()})),
+        flags=joined(flag for result in kept for flag in flags_in(result.flags)),
         mu_longitudinal=_mean([result.mu_longitudinal for result in kept]),
         mu_lateral=_mean([result.mu_lateral for result in kept]),
         n=len(results),
         measured={name: _mean([result.measured[name] for result in kept]) for name in AVERAGED},
+        # Wheels run in alike: what drifts on one drifts on the others, the same way.
+        unsteady=Unsteadiness(*(_mean(values) for values in zip(*(astuple(r.unsteady) for r in kept), strict=True))),
     )
     return _with_statistics(shell, [result.mu_resultant for result in kept], [], instruments)
 
@@ -222,6 +277,7 @@ def _with_statistics(
         shell.measured["slip_m_s"],
         Contribution("type A", type_a, df),
         instruments,
+        shell.unsteady,
     )
     return replace(
         shell,
@@ -241,14 +297,13 @@ def _condition_status(
     results: Sequence[RepeatResult],
     excluded: Sequence[Exclusion],
     planned: int,
-    min_valid: int,
     ended: ConditionStatus | None,
     reason: str,
 ) -> tuple[ConditionStatus, str]:
     n_valid = len(results) - len(excluded)
     if ended is None and len(results) < planned:
         return ConditionStatus.PENDING, f"{len(results)} of {planned} repeats committed"
-    if n_valid >= min_valid:
+    if n_valid > 0:
         return ConditionStatus.OK, reason
     if ended not in (None, ConditionStatus.OK, ConditionStatus.PENDING, ConditionStatus.INSUFFICIENT):
         return ended, reason
@@ -260,5 +315,5 @@ def _condition_status(
         if found and len(found) == len(results):
             return status, reason or found[0]
     causes = "; ".join(f"repeat {e.position + 1} {e.reason}" for e in excluded)
-    counted = f"{n_valid} of {planned} valid, {min_valid} needed"
+    counted = f"none of {len(results)} repeats is valid"
     return ConditionStatus.INSUFFICIENT, f"{counted}: {causes}" if causes else counted

@@ -5,22 +5,57 @@ Units are in the names. NaN stands for a value that does not exist; the store ke
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import Literal
+from math import isfinite
+from typing import Final, Literal
 
 NAN = float("nan")
 
-Flag = Literal["rolling", "extended", "truncated"]
+Flag = Literal["rolling", "extended", "truncated", "drift not shown"]
+
+NOT_SHOWN: Final = "drift not shown"
+"""Flag: the coefficient has a value, but that it stands still could not be shown."""
+SHORT: Final = "short"
+"""Flag of a condition with a value of fewer repeats than its least (``min_valid``)."""
+CARRY_OVER: Final = "carry-over"
+"""Flag of a condition whose coefficient was still settling over its repeats: refused and made-up repeats, or their
+means, tell of a run-in."""
+IMPRECISE: Final = "precision not reached"
+"""Flag of a condition that was to be repeated until its repeatability, and was not within its most repeats."""
+
+DOUBTS: Final = (NOT_SHOWN, SHORT, CARRY_OVER, IMPRECISE)
+"""Flags that say that a value is to be taken with care."""
+
+_OLD_WORDS = frozenset({"rolling", "extended", "truncated"})
+
+
+def joined(flags: Iterable[str]) -> str:
+    """Return flags as one text, sorted."""
+    return "; ".join(sorted(set(flags)))
+
+
+def flags_in(text: str) -> list[str]:
+    """Return the flags in a text that ``joined`` made; records of before had single words with spaces between."""
+    if ";" not in text and _OLD_WORDS.issuperset(words := text.split()):
+        return words
+    return [flag.strip() for flag in text.split(";") if flag.strip()]
 
 
 class RepeatStatus(StrEnum):
-    """How a repeat ended. Only VALID ones enter a mean; only VOID ones are done again."""
+    """How a repeat ended. Only VALID ones enter a mean; a VOID one is done again under its own number.
+
+    A repeat that was committed VALID may become REFUSED when its condition is judged; a make-up repeat replaces it.
+    """
 
     OPEN = "open"
     """Begun and not committed: under way, or cut off."""
     VALID = "valid"
+    REFUSED = "refused"
+    """It drifts, or differs from its siblings; it keeps its figures, and the reason."""
     NOT_STABILISED = "not stabilised"
+    """Of records before schema 4, whose repeats were judged one by one."""
     TOO_FEW = "too few revolutions"
     CANNOT_HOLD = "temperature cannot be held"
     NOT_REACHED = "not reached"
@@ -47,13 +82,14 @@ class RepeatResult:
     angles in degrees, temperatures in degC; times in rig seconds. ``uncertainty`` is the standard
     uncertainty of ``mu_resultant`` from ``batches`` batch means, ``fluctuation_percent`` the batch means'
     standard deviation in per cent of it. ``drift_percent`` and ``bound_percent`` (90 %) are per window, in
-    per cent of the coefficient.
+    per cent of the coefficient: of the repeat alone until its condition is judged, then with the condition's
+    sensitivity to temperature.
     """
 
     status: RepeatStatus
     reason: str = ""
     flags: str = ""
-    """Words of ``Flag``, separated by a space."""
+    """Words of ``Flag`` (``joined``)."""
     mu_resultant: float = NAN
     mu_longitudinal: float = NAN
     mu_lateral: float = NAN
@@ -88,6 +124,37 @@ class RepeatResult:
     def valid(self) -> bool:
         """Return whether the coefficient may enter a mean."""
         return self.status is RepeatStatus.VALID
+
+    @property
+    def drifts(self) -> bool:
+        """Return whether it was refused for its drift; it has a coefficient then."""
+        return self.status is RepeatStatus.REFUSED and isfinite(self.drift_percent) and self.mu_resultant > 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Judgement:
+    """What all repeats of a condition say of its drift; NaN where it was not judged (0 mm/s).
+
+    Drift, standard error and bound (90 %) in per cent of the coefficient a window, the sensitivity in %/K.
+    ``repeat_windows``: windows that a repeat collected, in the mean. ``trend_percent``: change of the coefficient
+    from the first repeat to the last along the sliding distance. ``flags``: NOT_SHOWN, CARRY_OVER, IMPRECISE.
+    """
+
+    drift_percent: float = NAN
+    drift_error_percent: float = NAN
+    drift_bound_percent: float = NAN
+    per_kelvin_percent: float = NAN
+    repeat_windows: float = NAN
+    trend_percent: float = NAN
+    flags: str = ""
+
+    @property
+    def made(self) -> bool:
+        """Return whether there is one."""
+        return isfinite(self.drift_percent)
+
+
+NOT_JUDGED: Final = Judgement()
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,7 +12,7 @@ from math import hypot, inf, isfinite, radians, sqrt
 from types import MappingProxyType
 
 from tester.analysis.quantiles import t_quantile
-from tester.analysis.results import NAN
+from tester.analysis.results import CARRY_OVER, NAN, Judgement, flags_in
 
 CONFIDENCE = 0.95
 
@@ -67,6 +67,32 @@ class Instruments:
 
 INSTRUMENTS = Instruments()
 
+
+@dataclass(frozen=True, slots=True)
+class Unsteadiness:
+    """What a coefficient that does not quite stand still adds to the budget: standard uncertainties, per cent of it."""
+
+    drift_percent: float = 0.0
+    carry_over_percent: float = 0.0
+
+
+STEADY = Unsteadiness()
+
+_SPREAD = 1.0 / sqrt(12.0)
+"""Standard deviation of what lies anywhere, evenly, in a range of 1."""
+
+
+def unsteadiness(judged: Judgement) -> Unsteadiness:
+    """Return what a condition's judgement adds: its drift always, with its own error; its trend where it carries over.
+
+    The coefficient moves by (|d| + se(d)) times the windows of a repeat while that is measured, and by the trend over
+    the repeats; a mean taken somewhere in that range is off by 1 / sqrt(12) of it (GUM 4.3.7).
+    """
+    drift = (abs(judged.drift_percent) + judged.drift_error_percent) * judged.repeat_windows * _SPREAD
+    carried = abs(judged.trend_percent) * _SPREAD if CARRY_OVER in flags_in(judged.flags) else 0.0
+    return Unsteadiness(drift if isfinite(drift) else 0.0, carried if isfinite(carried) else 0.0)
+
+
 _NO_SETTINGS: Mapping[str, str] = MappingProxyType({})
 
 
@@ -99,11 +125,17 @@ def budget(contributions: Sequence[Contribution]) -> Budget:
 
 
 def friction_budget(
-    mu: float, load_n: float, slip_m_s: float, type_a: Contribution, instruments: Instruments = INSTRUMENTS
+    mu: float,
+    load_n: float,
+    slip_m_s: float,
+    type_a: Contribution,
+    instruments: Instruments = INSTRUMENTS,
+    unsteady: Unsteadiness = STEADY,
 ) -> Budget:
     """Return the budget of a coefficient ``mu`` measured at a load in N (> 0) and a slip speed in m/s.
 
-    ``type_a`` is what repeating showed. Misalignment of the cell by d turns load into friction and back:
+    ``type_a`` is what repeating showed, ``unsteady`` what moved meanwhile.
+    Misalignment of the cell by d turns load into friction and back:
     (1 + mu^2) d; crosstalk does the same with two independent shares.
     """
     if not (isfinite(mu) and load_n > 0.0):
@@ -121,6 +153,8 @@ def friction_budget(
             Contribution("temperature", mu * 0.01 * i.mu_per_kelvin_percent * i.temperature_k * _RECTANGULAR),
             Contribution("speed", mu * i.mu_slip_exponent * speed * _RECTANGULAR),
             Contribution("load", mu * i.mu_load_exponent * linearity),
+            Contribution("drift", mu * 0.01 * unsteady.drift_percent),
+            Contribution("carry-over", mu * 0.01 * unsteady.carry_over_percent),
             type_a,
         ]
     )

@@ -18,6 +18,7 @@ from tester.engine.context import Attendant, Nobody
 from tester.engine.prompts import Prompts
 from tester.engine.run import Outcome, Run
 from tester.engine.tickers import Ticked, TickStatistics, World, run_real_time, run_simulated
+from tester.engine.time_left import TimeLeft
 from tester.pace import Pace
 from tester.provenance import record_parameters, record_statistics
 from tester.recipe.estimate import estimate
@@ -47,7 +48,7 @@ class Watch(Protocol):
         ...
 
     def poll(self, now_s: float, run: Run, share: float) -> None:
-        """Look at the run, about ten times a second of wall time; ``share`` of the expected rig time, from 0."""
+        """Look at the run, about ten times a second of wall time; ``share`` of the part that is done, 0..1."""
         ...
 
 
@@ -149,10 +150,10 @@ def _execute(
         run = build_run(rig, part.plan, ports, attendant, writer, prompts, work.point)
         _place(run, work, part)
         watch.begun(run)
-        expected_s = max(estimate(part.plan, rig).rig_seconds, 1.0)
+        left = TimeLeft(part.plan, estimate(part.plan, rig))
         ticked, lives = _with_faults(run, world, faults) if world is not None and faults else (run, world)
         with left_safe(run):
-            seconds = _tick(run, ticked, lives, ports.pace, job.lapse, expected_s, writer, watch)
+            seconds = _tick(run, ticked, lives, ports.pace, job.lapse, left, writer, watch)
         record_statistics(run.engine.devices, writer, seconds)
         return run.outcome, run.reason, seconds
     except BusLost as lost:
@@ -182,7 +183,7 @@ def _tick(
     world: World | None,
     pace: Pace | None,
     lapse: float | None,
-    expected_s: float,
+    left: TimeLeft,
     recorder: RunWriter,
     watch: Watch,
 ) -> float:
@@ -190,7 +191,8 @@ def _tick(
 
     def poll(now_s: float) -> None:
         notes.poll(now_s)
-        watch.poll(now_s, run, now_s / expected_s)
+        left.look(now_s, run)
+        watch.poll(now_s, run, left.share())
         if recorder.failed:
             run.request_stop(f"the run can no longer be recorded: {recorder.failed}")
 

@@ -10,9 +10,13 @@ from pathlib import Path
 from typing import Protocol
 
 from tester.export.results import Measured, results_of
-from tester.store.catalogue import run_folders
+from tester.store.catalogue import run_folders, under_way
 from tester.store.reader import DATABASE, RunReader
 from tester.store.schema import StoreError
+from tester.store.status import RunStatus
+
+_MADE_BY = "2"
+"""Raised when the same record gives other entries than before: then all are made anew."""
 
 
 class CatalogueError(Exception):
@@ -26,8 +30,9 @@ class RunEntry:
     origin: str
     name: str
     fingerprint: str
-    """Changes when the run's files change."""
+    """Changes when the run's files change, or a process begins or ends to work on it."""
     status: str
+    """A word of RunStatus: how the run stood when its own computer looked last."""
     recipe: str
     recipe_sha256: str
     compounds: str
@@ -67,6 +72,8 @@ class ConditionEntry:
     u_expanded: float | None
     n_valid: int
     n: int
+    flags: str = ""
+    """With ``status`` says how far the coefficient can be trusted (tester.analysis.trust)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,8 +132,8 @@ def refresh(catalogue: Catalogue, under: Path) -> None:
 
 
 def fingerprint(folder: Path) -> str:
-    """Return what changes when a run's record changes: size and time of the database and its log."""
-    parts: list[str] = []
+    """Return what changes when a run's entries change: size and time of the database and its log, held or not."""
+    parts = [_MADE_BY] if under_way(folder) is None else [_MADE_BY, "held"]
     for name in (DATABASE, f"{DATABASE}-wal"):
         path = folder / name
         if path.is_file():
@@ -148,7 +155,7 @@ def read_entries(folder: Path, origin: str, print_: str) -> tuple[RunEntry, list
         origin=origin,
         name=folder.name,
         fingerprint=print_,
-        status=run.status,
+        status=results.status.value,
         recipe=run.info.recipe_name,
         recipe_sha256=run.recipe_sha256,
         compounds="\n".join(compounds),
@@ -186,12 +193,14 @@ def _condition(measured: Measured) -> ConditionEntry:
         u_expanded=_number(r.expanded),
         n_valid=r.n_valid,
         n=r.n,
+        flags=r.flags,
     )
 
 
 def _unreadable(folder: Path, origin: str, print_: str, problem: str) -> RunEntry:
+    status = RunStatus.UNREADABLE.value
     return RunEntry(
-        origin, folder.name, print_, "unreadable", "", "", "", "", False, None, "", "", None, "", 0, 0, 0, 0, problem
+        origin, folder.name, print_, status, "", "", "", "", False, None, "", "", None, "", 0, 0, 0, 0, problem
     )
 
 

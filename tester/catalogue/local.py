@@ -13,7 +13,7 @@ from tester.catalogue.entries import CatalogueError, ConditionEntry, RunEntry, W
 
 INDEX = ".catalogue.db"
 
-_VERSION = 1
+_VERSION = 2
 
 _RUN = tuple(field.name for field in fields(RunEntry))
 _CONDITION = tuple(field.name for field in fields(ConditionEntry))

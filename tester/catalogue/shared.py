@@ -11,12 +11,13 @@ from dataclasses import asdict, fields
 from typing import Any
 
 from tester.catalogue.entries import CatalogueError, ConditionEntry, RunEntry, Wanted
+from tester.extras import needs
 
 try:
     import sqlalchemy as sa
     from sqlalchemy.exc import SQLAlchemyError
 except ImportError as error:
-    raise CatalogueError("a shared catalogue needs SQLAlchemy: pip install friction-tester[catalogue]") from error
+    raise CatalogueError(needs("a shared catalogue", "SQLAlchemy", "catalogue")) from error
 
 _TYPES: dict[str, sa.types.TypeEngine[Any]] = {
     "str": sa.Text(),
@@ -55,8 +56,18 @@ class SharedCatalogue:
         try:
             self._engine = sa.create_engine(_with_driver(url))
             _METADATA.create_all(self._engine)
-        except (SQLAlchemyError, ImportError) as error:
+            self._add_flags()
+        except ImportError as error:  # the database's driver
+            raise CatalogueError(f"{needs('this shared catalogue', 'a driver', 'catalogue')} ({error})") from error
+        except SQLAlchemyError as error:
             raise CatalogueError(f"the shared catalogue cannot be used: {error}") from error
+
+    def _add_flags(self) -> None:
+        """Give a table of conditions that an earlier version made the column of the flags."""
+        if any(column["name"] == "flags" for column in sa.inspect(self._engine).get_columns(CONDITION.name)):
+            return
+        with self._engine.begin() as connection:
+            connection.execute(sa.text(f"ALTER TABLE {CONDITION.name} ADD COLUMN flags TEXT NOT NULL DEFAULT ''"))
 
     def fingerprints(self, origin: str) -> dict[str, str]:
         """Return the fingerprint of every run of an origin, by name."""

@@ -24,6 +24,7 @@ def compare(run1: str, run2: str, as_json: bool) -> None:
     """Hold the conditions of RUN1 and RUN2 against each other: coefficients, difference, uncertainty, z.
 
     z is the difference over its standard uncertainty (both runs' combined); beyond 2 it is not chance alone.
+    Behind a coefficient ! says that it is not to be trusted, ? that it carries a doubt (`tester show` says which).
     """
     from tester.catalogue.entries import fingerprint, read_entries
 
@@ -43,7 +44,7 @@ def compare(run1: str, run2: str, as_json: bool) -> None:
     for row in rows:
         setpoints = f"{shown(str(row['compound']))}  {row['slip_velocity_mm_s']:g}  {row['load_n']:g}"
         setpoints += f"  {row['sideslip_deg']:g}  {row['temperature_c']:g}"
-        figures = (_cell(row[name], digits) for name, digits in _FIGURES)
+        figures = (f"{_cell(row[name], digits)}{row.get(f'mark_{name[-1]}') or ''}" for name, digits in _FIGURES)
         click.echo(f"{setpoints}  {'  '.join(figures)}")
 
 
@@ -52,6 +53,12 @@ _FIGURES = (("mu_1", 4), ("mu_2", 4), ("difference", 4), ("u_difference", 4), ("
 
 def _cell(value: Json, digits: int) -> str:
     return f"{value:+.{digits}f}" if isinstance(value, float) else "-"
+
+
+def _mark(side: ConditionEntry | None) -> str:
+    from tester.analysis.trust import mark_of
+
+    return mark_of(side.status, side.flags) if side is not None and side.mu is not None else ""
 
 
 def _setpoints(one: ConditionEntry) -> Setpoints:
@@ -85,6 +92,8 @@ def _row(first: ConditionEntry | None, second: ConditionEntry | None) -> dict[st
         "wheel_speed_m_s": one.wheel_speed_m_s,
         "mu_1": mu_1,
         "mu_2": mu_2,
+        "mark_1": _mark(first),
+        "mark_2": _mark(second),
         "difference": difference,
         "u_difference": u,
         "z": difference / u if difference is not None and u else None,

@@ -8,6 +8,7 @@ import sys
 from collections.abc import Callable
 from contextlib import suppress
 from errno import EBADF
+from pathlib import Path
 from queue import Empty, SimpleQueue
 from threading import Thread
 from typing import TextIO, cast
@@ -16,6 +17,7 @@ from rich.console import Console as RichConsole
 from rich.progress import BarColumn, Progress, TaskID, TextColumn
 from rich.text import Text
 
+from tester.cli.ending import ending_lines
 from tester.cli.keys import HELP, commands_of, keys_of
 from tester.engine.context import Progress as RunProgress
 from tester.engine.prompts import Prompts
@@ -173,7 +175,10 @@ class Console:
             self._out.line(json.dumps(record, ensure_ascii=False))
 
     def result(self, line: str) -> None:
-        """Write the last line of standard output."""
+        """Show people what was measured and what to do next; write the folder, the last line of standard output."""
+        if not self.as_json:
+            for text in ending_lines(Path(line)):
+                self.message(text)
         self._out.line(line)
 
     # -- prompts ----------------------------------------------------------------------------------------------

@@ -12,7 +12,7 @@ from tester.cli.finding import run_folder
 @click.option("--theme", type=click.Choice(["dark", "light", "16"]), default=None, help="Colours.")
 @click.option("--ascii", "plain", is_flag=True, help="Draw with ASCII characters only.")
 def replay(run: str, theme: str | None, plain: bool) -> int:
-    """Show RUN (a run's folder, or its name under runs) as it went; space plays, arrows seek. No rig is needed."""
+    """Show RUN (a folder, a name under runs, or latest) as it went; space plays, arrows seek. No rig is needed."""
     from tester.store.schema import StoreError
     from tester.tui.playback import load
     from tester.tui.replay import ReplayApp

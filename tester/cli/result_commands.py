@@ -28,7 +28,7 @@ FORMATS = ("appendix", "conditions", "repeats", "samples", "parquet")
 @click.argument("run")
 @click.option("--json", "as_json", is_flag=True, help="As JSON.")
 def show(run: str, as_json: bool) -> None:
-    """Show what RUN holds: a run's folder, or its name under runs."""
+    """Show what RUN holds: a run's folder, its name under runs, or latest."""
     from tester.export.results import results_of
     from tester.store.reader import RunReader
     from tester.store.schema import StoreError
@@ -98,7 +98,7 @@ def _summary(name: str, results: RunResults) -> dict[str, Json]:
     run = results.run
     return {
         "run": name,
-        "status": run.status,
+        "status": results.status.value,
         "reason": run.reason,
         "recipe": run.info.recipe_name,
         "recipe_sha256": run.recipe_sha256,
@@ -158,7 +158,7 @@ def _condition(measured: Measured) -> Json:
 def _lines(name: str, results: RunResults) -> Iterator[str]:
     run = results.run
     yield f"{name}: {shown(run.info.recipe_name)}"
-    yield f"status   {run.status}{': ' + shown(run.reason) if run.reason else ''}"
+    yield f"status   {results.status}{': ' + shown(run.reason) if run.reason else ''}"
     ended = f", ended {run.ended_utc}" if run.ended_utc else ""
     yield f"rig time {duration(run.rig_seconds)}, started {run.info.started_utc}{ended}"
     if run.overruns:
@@ -169,12 +169,15 @@ def _lines(name: str, results: RunResults) -> Iterator[str]:
 
 
 def _row(row: TableRow) -> str:
+    from tester.analysis.trust import mark_of
+
     r = row.result
     if not r.ok:
         return f"  {row.describe()}"
     setpoints = row.describe().removesuffix(f": {r.reason}").removesuffix(f": {r.status.value}")
     spread = f" ± {r.expanded:.3f}" if isfinite(r.expanded) else ""
-    return f"  {setpoints}: {r.mu_resultant:.3f}{spread} (n {r.n_valid} of {r.n}) {r.flags}".rstrip()
+    mu = f"{r.mu_resultant:.3f}{mark_of(r.status, r.flags)}"
+    return f"  {setpoints}: {mu}{spread} (n {r.n_valid} of {r.n}) {r.flags}".rstrip()
 
 
 # tester export
@@ -188,10 +191,11 @@ def _row(row: TableRow) -> str:
     "--decimals", type=click.IntRange(0, 10), default=2, show_default=True, help="Of the appendix's coefficient."
 )
 def export(run: str, kind: str, out: Path | None, decimals: int) -> None:
-    """Write a table of RUN: a run's folder, or its name under runs.
+    """Write a table of RUN: a run's folder, its name under runs, or latest.
 
     Conditions without a value that can be trusted are not in the appendix and are named on stderr.
     """
+    from tester.extras import MissingExtraError
     from tester.store.reader import RunReader
     from tester.store.schema import StoreError
 
@@ -201,6 +205,8 @@ def export(run: str, kind: str, out: Path | None, decimals: int) -> None:
     try:
         with RunReader(folder) as reader:
             _export(reader, kind, out, decimals)
+    except MissingExtraError as error:
+        raise click.UsageError(str(error)) from error
     except (StoreError, OSError) as error:
         if isinstance(error, BrokenPipeError):
             raise

@@ -20,7 +20,7 @@ from tester.cli.options import json_option
 def resume(
     run: str, yes: bool, reason: str, speed: str | None, bus_log: str | None, operator: str, as_json: bool
 ) -> int:
-    """Go on with RUN (its folder, or its name under runs) at the first repeat that is not committed.
+    """Go on with RUN (its folder, its name under runs, or latest) at the first repeat that is not committed.
 
     The wheel is heated again first. Prints the run's folder as the last line; a run that is complete stays as it is.
     """

@@ -63,6 +63,8 @@ def run(
 ) -> int:
     """Run RECIPE (a file, or the name of a shipped recipe) and print the run's folder as the last line.
 
+    What was measured comes before it, with the expanded uncertainty (95 %), on stderr; stdout is the folder alone.
+
     Ctrl+C stops in a controlled way; a second one stops fast. On a terminal: h holds (lifts, keeps the heat), r
     releases, a aborts, s or Ctrl+X stops fast.
     """
@@ -72,6 +74,10 @@ def run(
             raise click.UsageError("--out and --bus-log are the service's to choose: not with --detach")
         rig = rig_name if "rig_name" in given else ""
         return _detached(recipe, rig, overrides, seed, time_lapse(speed), yes, operator)
+
+    if not as_json:
+        # What the run needs takes a moment to load: say what has been begun before that.
+        click.echo(f"{recipe} on rig {rig_name}", err=True)
 
     from pathlib import Path
 

@@ -8,12 +8,10 @@ from typing import TYPE_CHECKING
 import click
 
 from tester.cli.showing import Json, dump, duration, shown
+from tester.store.status import RunStatus
 
 if TYPE_CHECKING:
     from tester.catalogue.entries import RunEntry
-
-FINISHED = ("done", "finished")
-RUNNING, INTERRUPTED = "running", "interrupted"
 
 
 @click.command()
@@ -24,9 +22,11 @@ RUNNING, INTERRUPTED = "running", "interrupted"
 @click.option("--since", default="", metavar="DATE", help="Runs begun on or after a date (UTC), e.g. 2026-11-01.")
 @click.option("--until", default="", metavar="DATE", help="Runs begun on or before a date (UTC).")
 @click.option("--recipe", default="", metavar="TEXT", help="Runs whose recipe's name holds this text.")
-@click.option("--status", default="", metavar="WORD", help="done, interrupted, running, stopped, tripped, failed ...")
+@click.option("--status", type=click.Choice([one.value for one in RunStatus]), default=None, help="Runs that stand so.")
 @click.option("--json", "as_json", is_flag=True, help="As JSON.")
-def runs(out: Path | None, compound: str, since: str, until: str, recipe: str, status: str, as_json: bool) -> None:
+def runs(
+    out: Path | None, compound: str, since: str, until: str, recipe: str, status: str | None, as_json: bool
+) -> None:
     """List the runs that are stored, those that were cut off with what is committed of them.
 
     With TESTER_CATALOGUE=postgresql://... the runs of everybody who shares that catalogue.
@@ -46,41 +46,42 @@ def runs(out: Path | None, compound: str, since: str, until: str, recipe: str, s
             catalogue.close()
     except CatalogueError as error:
         raise click.ClickException(str(error)) from error
-    stands = [(run, standing(run, under)) for run in found]
-    stands = [(run, stand) for run, stand in stands if not status or stand.split()[0].rstrip(",") == status]
+    found = [run for run in found if not status or run.status == status]
     if as_json:
-        dump([_record(run, stand) for run, stand in stands])
+        dump([_record(run) for run in found])
         return
-    for run, stand in stands:
+    for run in found:
         if run.problem:
             click.echo(f"{run.name}: {shown(run.problem)}", err=True)
             continue
         click.echo(
-            f"{run.name}  {stand}  {duration(run.rig_seconds or 0.0)}  "
+            f"{run.name}  {standing(run, under)}  {duration(run.rig_seconds or 0.0)}  "
             f"{run.conditions} conditions, {run.repeats} repeats  {shown(run.recipe)}"
         )
 
 
 def standing(run: RunEntry, under: Path) -> str:
-    """Return how a run stands, in words: done; running and by whom; interrupted with what is committed."""
+    """Return a run's status and what goes with it, in words: by whom, how many values, how much is committed."""
     from tester.catalogue.entries import origin_of
     from tester.store.catalogue import under_way
 
-    if run.status in FINISHED or run.problem:
-        return run.status
-    committed = f"{run.repeats} of {run.repeats_planned} repeats committed"
-    if run.status != RUNNING:
-        return f"{run.status}, {committed}"
-    holder = under_way(under / run.name) if run.origin == origin_of(under) else None
-    return f"{RUNNING}, {holder.describe()}" if holder is not None else f"{INTERRUPTED}, {committed}"
+    status = RunStatus(run.status)
+    if status is RunStatus.DONE:
+        return status
+    if status is RunStatus.INCOMPLETE:
+        return f"{status}, {run.trusted} of {run.conditions} conditions have a value"
+    if status is RunStatus.RUNNING:
+        holder = under_way(under / run.name) if run.origin == origin_of(under) else None
+        return f"{status}, {holder.describe()}" if holder is not None else f"{status} on {run.origin} when last seen"
+    return f"{status}, {run.repeats} of {run.repeats_planned} repeats committed"
 
 
-def _record(run: RunEntry, stand: str) -> Json:
+def _record(run: RunEntry) -> Json:
     found: dict[str, Json] = {"run": run.name, "origin": run.origin}
     if run.problem:
         return found | {"status": run.status, "problem": run.problem}
     known: dict[str, Json] = {
-        "status": stand.split(",")[0] if run.status == RUNNING else run.status,
+        "status": run.status,
         "recipe": run.recipe,
         "compounds": list[Json](run.compounds.split("\n")),
         "operator": run.operator,
@@ -93,7 +94,7 @@ def _record(run: RunEntry, stand: str) -> Json:
         "values": run.trusted,
         "repeats": run.repeats,
         "repeats_planned": run.repeats_planned,
-        "can_resume": run.status not in FINISHED and not stand.startswith(RUNNING),
+        "can_resume": RunStatus(run.status).can_resume,
     }
     return found | known
 

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
 EXIT_REFUSED = 1
 EXIT_UNREACHABLE = 4
+NO_SERVICE = "no service is running: start one with `tester serve`"
 Decorated = TypeVar("Decorated", bound=Callable[..., Any])
 
 
@@ -54,7 +55,7 @@ def serve(rig_name: str, overrides: tuple[str, ...], out: str, address: str, por
 @connect_option
 @json_option
 def status(address: str, as_json: bool) -> int:
-    """Say what the rig is doing; "no service is running" where there is none."""
+    """Say what the rig is doing; exit code 4 where no service is running."""
 
     async def ask(client: Client) -> None:
         _show(client.state, as_json)
@@ -67,7 +68,8 @@ def status(address: str, as_json: bool) -> int:
         if as_json:
             print_json({"service": False, "mode": None, "reason": str(error)})
         else:
-            click.echo("no service is running")
+            click.echo(NO_SERVICE, err=True)
+        return EXIT_UNREACHABLE
     return 0
 
 
@@ -131,10 +133,12 @@ def _command(address: str, action: Action, take: bool, *, control: bool = True, 
     try:
         _with_client(address, give, control=control)
     except NoServiceError:
-        click.echo("no service is running: start one with `tester serve`", err=True)
+        click.echo(NO_SERVICE, err=True)
         return EXIT_UNREACHABLE
     except (RefusedError, LostError, TimeoutError) as error:
-        click.echo(f"refused: {error}" if isinstance(error, RefusedError) else f"no answer: {error}", err=True)
+        may_take = control and not take and not show_folder
+        hint = ": `--take` takes control" if may_take and "has control" in str(error) else ""
+        click.echo(f"refused: {error}{hint}" if isinstance(error, RefusedError) else f"no answer: {error}", err=True)
         return EXIT_REFUSED
     return 0
 
@@ -179,7 +183,8 @@ def _lines(state: StateView) -> list[str]:
     if progress.steps:
         where = f"step     {progress.step}/{progress.steps}  {progress.title}"
         lines.append(where + (f"  repeat {progress.repeat}/{progress.repeats}" if progress.repeats else ""))
-        lines.append(f"done     {100 * progress.share:.0f} %, {_hours(progress.left_s)} of rig time left")
+        left = f", {_hours(progress.left_s)} of rig time left" if progress.left_s is not None else ""
+        lines.append(f"done     {100 * progress.share:.0f} %{left}")
     if state.prompt is not None:
         lines.append(f"prompt   {state.prompt.number}: {state.prompt.text}")
     lines += [f"alarm    {alarm.state}: {alarm.name}: {alarm.text}" for alarm in state.alarms]
@@ -190,7 +195,5 @@ def _lines(state: StateView) -> list[str]:
     return lines
 
 
-def _hours(seconds: float | None) -> str:
-    if seconds is None:
-        return "?"
+def _hours(seconds: float) -> str:
     return f"{int(seconds) // 3600}:{int(seconds) // 60 % 60:02d}:{int(seconds) % 60:02d}"

@@ -84,10 +84,11 @@ def tui(
 
 
 def _serve(port: int, address: str) -> int:
+    from tester.extras import needs
     from tester.tui.web import serve
 
     try:
         serve(port, address)
     except ImportError:
-        raise click.UsageError('--web needs textual-serve: pip install "friction-tester[web]"') from None
+        raise click.UsageError(needs("--web", "textual-serve", "web")) from None
     return 0

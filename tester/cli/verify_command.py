@@ -22,21 +22,20 @@ EXIT_INCOMPLETE = 6
 def verify(run: str, as_json: bool) -> int:
     """Check RUN: its manifest, its database, every sample block, recipe and rig file.
 
-    Exit code 0: as it was left, and complete. 1: something differs, each named on stderr. 6: as it was left, and
-    interrupted.
+    Exit code 0: as it was left, and its plan was gone through. 1: something differs, each named on stderr. 6: as it
+    was left, and its plan was not gone through.
     """
     from tester.export.verify import verify as check
 
     folder = run_folder(run)
     found = check(folder)
-    code = EXIT_DIFFERS if found.problems else 0 if found.complete else EXIT_INCOMPLETE
+    code = EXIT_DIFFERS if found.problems else 0 if found.status.over else EXIT_INCOMPLETE
     if as_json:
         print_json(_record(folder.name, found, code))
     elif not found.problems:
-        state = "complete" if found.complete else "interrupted or under way"
         by_hand = f"; excluded by hand: {found.excluded}" if found.excluded else ""
         read = f"{found.samples} samples in {found.blocks} blocks read"
-        click.echo(f"{folder.name}: as it was left, {state}; {read}{by_hand}")
+        click.echo(f"{folder.name}: as it was left, {found.status}; {read}{by_hand}")
     for problem in found.problems:
         click.echo(f"{folder.name}: {problem}", err=True)
     return code
@@ -49,7 +48,7 @@ def _record(name: str, found: Verification, code: int) -> dict[str, object]:
     record: dict[str, object] = {
         "run": name,
         "problems": list(found.problems),
-        "complete": found.complete,
+        "complete": found.status.over,
         "blocks": found.blocks,
         "samples": found.samples,
         "excluded": found.excluded,
@@ -59,7 +58,7 @@ def _record(name: str, found: Verification, code: int) -> dict[str, object]:
     if run is None:
         return record
     return record | {
-        "status": run.status,
+        "status": found.status.value,
         "recipe_sha256": run.recipe_sha256,
         "rig_sha256": run.rig_sha256,
         "calibration_sha256": run.calibration_sha256,

@@ -17,7 +17,10 @@ from typing import Final
 
 from sim.slip import slip_velocity
 from tester.analysis.blocks import RevolutionCounter
-from tester.analysis.stability import assess
+from tester.analysis.drift import fit_drift
+from tester.analysis.judge import ALONE
+from tester.analysis.reduce import counted
+from tester.analysis.stability import filled
 from tester.engine.context import Context
 from tester.engine.moves import Lift, Load, Power, Sequence, Settle, TakeTare, Turn, Yaw
 from tester.engine.thermal_steps import roll
@@ -27,6 +30,9 @@ TARE_S: Final = 1.0
 """Averaging time of the zero before each repeat, s [A]: about three turns."""
 TARE_WAIT_S: Final = 0.4
 """The cell settles this long after lifting, s [A]."""
+TARE_FRESH_S: Final = 110.0
+"""A zero is taken anew before the first burst if it is older than this, s: when the first sample counts, which is some
+seconds later, it is to be at most 120 s old (the cell's zero moves by 0.1 N/K with its temperature)."""
 COLDER_K: Final = 0.3
 """A burst does not start further than this below where it is meant to: its samples would lie too cold, K [A]."""
 OFFSET_STEP_K: Final = 0.5
@@ -125,6 +131,7 @@ class MeasureRepeat:
         self.phase = Phase.TARE
         self.moves = Sequence()
         self.tare: TakeTare | None = None
+        self.tared_s = float("-inf")
         self.counter = RevolutionCounter()
         self.burst = BurstNotes()
         self.bursts = 0
@@ -200,7 +207,13 @@ class MeasureRepeat:
         if self.tare.failed:
             self._end(ctx, Ending.ZERO_DRIFT, self.tare.failed)
             return
+        self.tared_s = ctx.now
         self._roll()
+
+    def _tare_again(self) -> None:
+        """Take the zero anew: the wait for the temperature was long, and the cell has warmed meanwhile."""
+        self.phase = Phase.TARE
+        self.tare = None
 
     def _roll(self) -> None:
         self.phase = Phase.ROLL
@@ -220,7 +233,10 @@ class MeasureRepeat:
         if waited > self.condition.soak.at_most_s:
             self._end(ctx, Ending.NOT_REACHED, f"surface at {surface:.1f} degC after {waited / 60:.0f} min")
         elif self._start_now(ctx, surface, target):
-            self._slip_in()
+            if self.bursts == 0 and ctx.now - self.tared_s > TARE_FRESH_S:
+                self._tare_again()
+            else:
+                self._slip_in()
         elif surface > target and ctx.now - self.rolling_since_s > LIFT_TO_COOL_S:
             self.phase = Phase.COOL
             self.cooling_since_s = ctx.now
@@ -302,14 +318,18 @@ class MeasureRepeat:
             self._end_burst(ctx)
 
     def _complete(self, ctx: Context) -> bool:
-        """Tell whether the window is full and its drift shown to be small, or as full as it may get."""
+        """Tell whether the repeat has what it collects; without siblings, whether its drift is shown to be small."""
         window = self.condition.window
         blocks = self.counter.blocks
         have = float(len(blocks)) if window.revolutions is not None else self.counter.seconds
-        wanted = window.revolutions if window.revolutions is not None else window.seconds or 0.0
-        if have < wanted:
+        if have >= window.extend_to:
+            return True
+        if not filled(blocks, window.revolutions, window.seconds):
             return False
-        return have >= window.extend_to or assess(blocks, window.revolutions, window.seconds).stabilised
+        if self.condition.repeats > ALONE or self.rolling_only:
+            return True
+        used = counted(blocks, window.revolutions, window.seconds)
+        return fit_drift([used], window.revolutions, window.seconds).stable
 
     def _burst_over(self, ctx: Context, surface: float, rate: float) -> bool:
         if self.rolling_only:

@@ -7,6 +7,7 @@ from math import isfinite
 from typing import Final, Protocol
 
 from tester.analysis.results import RepeatStatus
+from tester.analysis.stability import REPEAT_WINDOWS
 from tester.engine.activity import Activity
 from tester.engine.bursts import Ending, MeasureRepeat
 from tester.engine.context import Context
@@ -41,7 +42,7 @@ class RepeatOutcome:
 
 @dataclass(frozen=True, slots=True)
 class ConditionEnd:
-    """How a condition was left: None = all repeats were made."""
+    """How a condition was left: None = no further repeat was wanted."""
 
     ending: Ending | None = None
     detail: str = ""
@@ -58,6 +59,10 @@ class Results(Protocol):
 
     def over(self, step: ConditionStep) -> ConditionEnd | None:
         """Return how the last of these ended the condition; None where it goes on."""
+        ...
+
+    def another(self, step: ConditionStep) -> bool:
+        """Tell whether a further repeat is to be made, after those committed so far."""
         ...
 
     def attempt(self, step: ConditionStep, repeat: int) -> int:
@@ -125,7 +130,7 @@ class MeasureCondition:
         """Advance by one scan; done when the condition is committed."""
         progress = ctx.progress
         progress.condition, progress.repeat = self.condition.condition, self.repeat
-        progress.repeats = self.condition.repeats
+        progress.repeats = max(self.condition.repeats, self.repeat)
         if not self.soaked:
             return self._soak(ctx)
         if self.outcome is not None:
@@ -176,7 +181,7 @@ class MeasureCondition:
         self.key = self.results.begin_repeat(ctx, self.condition, self.repeat, attempt)
         ctx.repeat_key = self.key
         self.measuring = MeasureRepeat(self.condition, self.reference_tare, self.offset_k)
-        ctx.progress.revolutions_wanted = self.condition.window.revolutions or 0.0
+        ctx.progress.revolutions_wanted = REPEAT_WINDOWS * (self.condition.window.revolutions or 0.0)
 
     def _finish(self, ctx: Context, measured: MeasureRepeat) -> None:
         self.offset_k = measured.offset_k
@@ -197,7 +202,7 @@ class MeasureCondition:
         if measured.ending in (Ending.ZERO_DRIFT, Ending.CANNOT_HOLD, Ending.NOT_REACHED):
             end = ConditionEnd(measured.ending, measured.detail, measured.warming_k_s, measured.holdable_band_k)
             return self._close(ctx, end)
-        if self.repeat < self.condition.repeats:
+        if self.results.another(self.condition):
             return False
         return self._close(ctx, ConditionEnd())
 

@@ -10,6 +10,7 @@ from tester.store.resume import ResumePoint
 def take_up(executor: Executor, results: StoredResults, point: ResumePoint) -> None:
     """Let an executor of the remaining plan know what is committed: repeats, wheels, the load cell's reference zero."""
     results.earlier = dict(point.conditions)
+    results.pool = point.pool
     if point.reference_tare is not None:
         executor.reference_tare.extend(point.reference_tare)
     wheels = point.stand.wheels

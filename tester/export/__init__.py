@@ -57,7 +57,7 @@ def write_file(path: Path, chunks: Iterable[bytes]) -> None:
 
 
 def write_parquet_file(path: Path, reader: RunReader) -> None:
-    """Write the samples as a Parquet file, whole or not at all; raises OSError, StoreError."""
+    """Write the samples as a Parquet file, whole or not at all; raises OSError, StoreError, MissingExtraError."""
     from tester.export.parquet import write_parquet
 
     def fill(part: Path) -> None:
@@ -79,3 +79,9 @@ def write_all(run_dir: Path) -> list[TableRow]:
     write_file(run_dir / "repeats.csv", repeats(results))
     write_file(run_dir / MANIFEST, [manifest_text(run_dir).encode()])
     return results.missing()
+
+
+def doubtful(run_dir: Path) -> list[TableRow]:
+    """Return the rows whose value is to be taken with care; raises StoreError."""
+    with RunReader(run_dir) as reader:
+        return results_of(reader).doubtful()

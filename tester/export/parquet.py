@@ -1,9 +1,8 @@
-"""Samples as a Parquet file, written block by block; pyarrow is loaded only here."""
+"""Samples as a Parquet file, written block by block; pyarrow comes with the extra ``parquet``."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from importlib import import_module
 from itertools import islice
 from math import isfinite
 from pathlib import Path
@@ -11,11 +10,14 @@ from typing import Protocol, cast
 
 from tester.export.tables import SAMPLE_HEADER, WHOLE_COLUMNS
 from tester.process import SAMPLE_COLUMNS
+from tester.store.arrow import arrow_module
 from tester.store.reader import RunReader, SampleBlock
 from tester.store.records import StoredRepeat
 
 _BLOCKS_PER_GROUP = 128
 """Row groups of up to 65,536 samples: 13 MB in memory."""
+
+_WHAT = "the format parquet"
 
 
 _REAL_COLUMNS = frozenset(SAMPLE_COLUMNS) - WHOLE_COLUMNS
@@ -45,10 +47,11 @@ class _Parquet(Protocol):
 def write_parquet(reader: RunReader, path: Path) -> None:
     """Write every recorded sample to ``path``: float64 columns named as in samples.csv, ids as int64.
 
-    Condition, repeat and attempt are null for samples of no repeat. Raises StoreError, OSError.
+    Condition, repeat and attempt are null for samples of no repeat. Raises StoreError, OSError, and MissingExtraError
+    without pyarrow.
     """
-    pa = cast(_Arrow, import_module("pyarrow"))
-    pq = cast(_Parquet, import_module("pyarrow.parquet"))
+    pa = cast(_Arrow, arrow_module("pyarrow", _WHAT))
+    pq = cast(_Parquet, arrow_module("pyarrow.parquet", _WHAT))
     owners = {repeat.key: repeat for repeat in reader.repeats(attempts=True)}
     whole, real = pa.int64(), pa.float64()
     schema = pa.schema([(name, real if name in _REAL_COLUMNS else whole) for name in SAMPLE_HEADER])

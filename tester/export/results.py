@@ -8,12 +8,15 @@ from itertools import groupby
 from math import isfinite
 
 from tester.analysis.repeats import ConditionResult, combine_repeats, combine_replicates
+from tester.analysis.results import CARRY_OVER, IMPRECISE, NOT_SHOWN, SHORT, ConditionStatus
 from tester.analysis.uncertainty import Instruments, instruments_of
 from tester.export.cells import nominal
+from tester.store.catalogue import under_way
 from tester.store.exclusions import standing
 from tester.store.reader import RunReader
 from tester.store.records import ConditionInfo, StoredCondition, StoredExclusion, StoredRepeat, StoredRun
 from tester.store.schema import StoreError
+from tester.store.status import RunStatus, run_status
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,6 +70,35 @@ class TableRow:
                 parts.append(f"warming {c.warming_k_s:.2g} K/s; {c.holdable_band_k:.2g} K of band would do")
         return ": ".join([setpoints, *[part for part in parts if part]])
 
+    def advise(self) -> str:
+        """Return what is wrong with the row, or to be taken with care, and what to do about it, for people."""
+        told = self.describe()
+        if self.result.ok:
+            told = f"{told}: {', '.join(self.result.doubts)}"
+        advice = remedy(self.result)
+        return f"{told}: {advice}" if advice else told
+
+
+_WHAT_TO_DO: Mapping[ConditionStatus, str] = {
+    ConditionStatus.CANNOT_HOLD: "a wider temperature_band, a lower load or a lower slip_velocity would help",
+    ConditionStatus.NOT_REACHED: "check heating and cooling, or allow more time (soak.at_most)",
+    ConditionStatus.INSUFFICIENT: "a wider temperature_band or more max_bursts would help",
+    ConditionStatus.PENDING: "tester resume goes on with the run",
+}
+_WHAT_OF_FLAGS: Mapping[str, str] = {
+    CARRY_OVER: "the rubber was still running in: grind it longer before (pre_grind), then measure the condition again",
+    NOT_SHOWN: "allow more repeats (repeats: at_most), or look for what drifts",
+    SHORT: "allow more repeats (repeats: at_most)",
+    IMPRECISE: "allow more repeats (repeats: at_most), or ask for less (until)",
+}
+
+
+def remedy(result: ConditionResult) -> str:
+    """Return what to do about a condition without a value, or with one to be taken with care; "" where nothing is."""
+    if not result.ok:
+        return _WHAT_TO_DO.get(result.status, "")
+    return next((text for flag, text in _WHAT_OF_FLAGS.items() if flag in result.doubts), "")
+
 
 @dataclass(frozen=True, slots=True)
 class RunResults:
@@ -74,11 +106,17 @@ class RunResults:
 
     run: StoredRun
     rows: tuple[TableRow, ...]
+    status: RunStatus
+    """How the run stood when this was read."""
 
     def conditions(self) -> Iterator[Measured]:
         """Yield the conditions, in recipe order, replicates one after the other."""
         for row in self.rows:
             yield from row.replicates
+
+    def doubtful(self) -> list[TableRow]:
+        """Return the rows whose value is to be taken with care."""
+        return [row for row in self.rows if row.result.ok and row.result.doubts]
 
     def missing(self) -> list[TableRow]:
         """Return the rows without a value that can be trusted."""
@@ -106,7 +144,9 @@ def results_of(reader: RunReader) -> RunResults:
         else:
             combined = combine_replicates([m.result for m in replicates], instruments=instruments)
             rows.append(TableRow(replicates, combined))
-    return RunResults(run, tuple(rows))
+    missing = any(not row.result.ok for row in rows)
+    held = under_way(reader.path.parent) is not None
+    return RunResults(run, tuple(rows), run_status(run.status, held=held, missing=missing))
 
 
 def _measured(
@@ -123,6 +163,7 @@ def _measured(
         min_valid=info.min_valid,
         ended=stored.status,
         reason=stored.reason,
+        judged=stored.judged,
         by_hand={i: one.reason for i, one in by_hand.items()},
         instruments=instruments,
     )

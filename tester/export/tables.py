@@ -56,6 +56,9 @@ _CONDITION = (
     "u_standard",
     "u_expanded",
     "coverage_factor",
+    "drift_percent",
+    "drift_bound_percent",
+    "trend_percent",
 )
 
 _REPEAT = (
@@ -193,6 +196,9 @@ def _condition(r: ConditionResult) -> tuple[tuple[Cell, ...], tuple[Cell, ...]]:
         r.standard,
         r.expanded,
         r.coverage,
+        r.drift_percent,
+        r.drift_bound_percent,
+        r.trend_percent,
     )
     return found, tuple(_scaled(name, r.measured.get(name)) for name in AVERAGED)
 

@@ -7,14 +7,15 @@ from pathlib import Path
 
 from tester.export.exclude import is_unfinished
 from tester.export.manifest import MANIFEST, manifest_problems
+from tester.export.results import results_of
 from tester.source import InvalidSource, read_tree
 from tester.store.exclusions import problems as exclusion_problems
 from tester.store.exclusions import standing
 from tester.store.reader import RunReader
 from tester.store.recorder import calibration_sha256, text_sha256
 from tester.store.records import StoredExclusion, StoredRun
-from tester.store.resume import FINISHED
 from tester.store.schema import StoreError
+from tester.store.status import RunStatus
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,6 +23,7 @@ class Verification:
     """What was found: ``problems`` where something is not as it was left, a line each."""
 
     run: StoredRun | None
+    status: RunStatus
     problems: tuple[str, ...]
     blocks: int = 0
     samples: int = 0
@@ -29,18 +31,14 @@ class Verification:
     excluded: int = 0
     """Repeats that people have left out of the means; the manifest is of the tables without them."""
 
-    @property
-    def complete(self) -> bool:
-        """Return whether the run went through its whole plan."""
-        return self.run is not None and self.run.status == FINISHED
-
 
 def verify(folder: Path) -> Verification:
     """Check a run's folder; never raises for what it finds wrong in it."""
     problems = _manifest(folder)
     try:
         with RunReader(folder) as reader:
-            run = reader.run()
+            results = results_of(reader)
+            run = results.run
             problems += [f"run.db: {problem}" for problem in reader.integrity_problems()]
             problems += _texts(folder, run)
             said = reader.exclusions()
@@ -51,8 +49,8 @@ def verify(folder: Path) -> Verification:
                 blocks += 1
                 samples += block.rows
     except StoreError as error:
-        return Verification(None, (*problems, str(error)))
-    return Verification(run, tuple(problems), blocks, samples, len(standing(said)))
+        return Verification(None, RunStatus.UNREADABLE, (*problems, str(error)))
+    return Verification(run, results.status, tuple(problems), blocks, samples, len(standing(said)))
 
 
 def _cut_off(folder: Path, said: list[StoredExclusion]) -> list[str]:

@@ -26,7 +26,7 @@ class EstimateConstants:
     yaw_deg_s: float = 20.0
     yawed_slide_s: float = 1.8
     """With sideslip: sliding at full load that does not count, per burst, while load and friction settle."""
-    extension: float = 1.3
+    extension: float = 1.5 * 1.05
     """Windows collected per window asked for: some repeats go on until their drift is shown to be small."""
     cooling_ratio: float = 2.0
     """Rolling between pulses, at least: lengths of a pulse in which the heat of the surface spreads inward."""

@@ -78,13 +78,17 @@ def words(step: Step, one: StepEstimate) -> str:
         case Heat():
             return f"heat to {step.temperature_c:g} degC"
         case ConditionStep():
-            return f"{step.condition:>4}  {setpoint_words(step)}  {step.repeats} x {window_words(step.window)}" + (
-                f", {one.bursts} bursts" if one.bursts > 1 else ""
-            )
+            text = f"{step.condition:>4}  {setpoint_words(step)}  {repeats_words(step)} x {window_words(step.window)}"
+            return text + (f", {one.bursts} bursts" if one.bursts > 1 else "")
         case Cool():
             return f"cool the hub below {step.hub_below_c:g} degC"
         case Prompt():
             return f"ask: {step.text}"
+
+
+def repeats_words(step: ConditionStep) -> str:
+    """Return how many repeats are to count, and until what precision where the recipe says so: 4 (until 2 %)."""
+    return f"{step.repeats}" + (f" (until {step.until_percent:g} %)" if step.until_percent is not None else "")
 
 
 def setpoint_words(step: ConditionStep) -> str:

@@ -262,6 +262,8 @@ class _Expansion:
                 how.soak,
                 how.max_bursts,
                 how.wear_check,
+                how.at_most,
+                how.until_percent,
             )
         )
 

@@ -52,8 +52,8 @@ class Setpoint(NamedTuple):
 class Window:
     """How much a repeat collects: wheel revolutions or seconds, exactly one of the two is not None.
 
-    ``extend_to`` (same unit, at least the window): a repeat goes on past its window until its drift is shown
-    to be within bounds, or until this much has been collected.
+    Drift is per window; a repeat collects 1.5 of them. ``extend_to`` (same unit, at least the window): the most that it
+    collects, its transient included, and where it is judged alone.
     """
 
     revolutions: float | None
@@ -140,7 +140,10 @@ class Heat:
 
 @dataclass(frozen=True, slots=True)
 class ConditionStep:
-    """Measure one condition: ``repeats`` values, each a window collected in up to ``max_bursts`` contacts.
+    """Measure one condition: ``repeats`` values that count, each collected in up to ``max_bursts`` contacts.
+
+    Up to ``at_most`` repeats are made: what is refused is made up for, and with ``until_percent`` the condition goes on
+    until its expanded repeatability (95 %, per cent of the coefficient) is reached.
 
     ``condition`` counts from 1 through the plan (a replicate's conditions have numbers of their own).
     ``row`` counts from 1 in the recipe's order and is the same for all replicates: its row of the table.
@@ -162,6 +165,8 @@ class ConditionStep:
     soak: Soak
     max_bursts: int
     wear_check: WearCheck
+    at_most: int
+    until_percent: float | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -95,7 +95,8 @@ Load: TypeAlias = Annotated[float, Quantity("N", gt=0)]
 Seconds: TypeAlias = Annotated[float, Quantity("s", ge=0)]
 Band: TypeAlias = Annotated[float, Quantity("K", gt=0, le=20)]
 Temperature: TypeAlias = Annotated[float, Quantity("degC", ge=-50, le=200)]
-Repeats: TypeAlias = Annotated[int, Field(ge=1, le=MAX_REPEATS)]
+Count: TypeAlias = Annotated[int, Field(ge=1, le=MAX_REPEATS)]
+Precision: TypeAlias = Annotated[float, Quantity("%", ge=0.1, le=50)]
 MaxBursts: TypeAlias = Annotated[int, Field(ge=1, le=10_000)]
 WearCheckName: TypeAlias = Literal["never", "each_condition", "prompt"]
 
@@ -179,17 +180,46 @@ class SoakModel(_Strict):
         return self
 
 
+class RepeatsModel(_Strict):
+    """How many repeats a condition gets: as many as it needs to count, within bounds."""
+
+    at_least: Count
+    """repeats that count"""
+    at_most: Count | None = None
+    """repeats made in all, with those that make up for refused ones (default 2 x at_least)"""
+
+    @model_validator(mode="after")
+    def _in_order(self) -> RepeatsModel:
+        if self.at_most is not None and self.at_most < self.at_least:
+            raise ValueError(f"at_most, {self.at_most}, is less than at_least, {self.at_least}")
+        return self
+
+
+def _repeats(value: object) -> object:
+    """Take a single number for the repeats that count."""
+    return value if isinstance(value, dict | RepeatsModel) else {"at_least": value}
+
+
+Repeats: TypeAlias = Annotated[
+    RepeatsModel,
+    BeforeValidator(_repeats, json_schema_input_type=Count | RepeatsModel),
+]
+
+
 class MeasureModel(_Strict):
     """How a condition is measured; the defaults of every grid."""
 
     wheel_speed: Speed
-    repeats: Repeats = 5
-    min_valid: Repeats | None = None
-    """valid repeats a condition needs for a value (default 3, at most repeats)"""
+    repeats: Repeats = RepeatsModel(at_least=5)
+    """repeats that count, such as 5; or {at_least: 5, at_most: 10}"""
+    until: Precision | None = None
+    """repeated until the expanded repeatability (type A, 95 %) of the coefficient is this, such as 2 %"""
+    min_valid: Count | None = None
+    """least valid repeats for a value without a flag (default 3, at most repeats)"""
     window: Extent = Extent(30.0, "rev")
-    """accepted wheel revolutions (or seconds) per repeat, such as "30 rev" """
+    """wheel revolutions (or seconds) over which drift is judged, such as "30 rev"; a repeat collects 1.5 windows"""
     extend_to: Extent | None = None
-    """a repeat that still drifts goes on to this much (default 3 x window)"""
+    """the most that a repeat collects, such as one of repeats: 1 that is judged alone (default 3 x window)"""
     temperature_band: Band = 2.0
     soak: SoakModel = SoakModel()
     max_bursts: MaxBursts = 40
@@ -208,7 +238,8 @@ class GridModel(_Strict):
     camber: Annotated[list[float], Axis("deg", ge=-90, le=90)] = [0.0]
     wheel_speed: Annotated[list[float], Axis("m/s", ge=LEAST_SPEED_M_S)] | None = None
     repeats: Repeats | None = None
-    min_valid: Repeats | None = None
+    until: Precision | None = None
+    min_valid: Count | None = None
     window: Extent | None = None
     extend_to: Extent | None = None
     temperature_band: Band | None = None

@@ -10,7 +10,14 @@ from typing import NamedTuple, TypeVar
 from pydantic import BaseModel, ValidationError
 
 from tester.recipe.schema import LEAST_SPEED_M_S, MAX_CONDITIONS, GridModel, MeasureModel, Recipe
-from tester.recipe.settings import DEFAULT_MIN_VALID, extents_of, settings_of, wheel_speeds_of
+from tester.recipe.settings import (
+    DEFAULT_MIN_VALID,
+    LEAST_REPEATS,
+    at_most_of,
+    extents_of,
+    settings_of,
+    wheel_speeds_of,
+)
 from tester.source import Location, Problem, Tree, Value
 from tester.units import show, shown
 
@@ -114,16 +121,21 @@ def _measure(measure: MeasureModel, grid: GridModel | None, at: Location, tree: 
     def place(*names: str) -> Location:
         return (*at, next((name for name in names if name in said), names[-1]))
 
-    repeats, given = own.repeats or measure.repeats, own.min_valid or measure.min_valid
+    asked, given = own.repeats or measure.repeats, own.min_valid or measure.min_valid
+    repeats, most = asked.at_least, at_most_of(asked)
     if said & {"repeats", "min_valid"} and given is not None and given > repeats:
         yield tree.problem(place("min_valid", "repeats"), f"min_valid, {given}, is more than repeats, {repeats}")
     if "repeats" in said and given is None and repeats < DEFAULT_MIN_VALID:
-        message = f"a value needs {DEFAULT_MIN_VALID} valid repeats unless min_valid says otherwise"
+        message = f"a value without a flag needs {DEFAULT_MIN_VALID} valid repeats unless min_valid says otherwise"
         expected = f"(expected repeats of at least {DEFAULT_MIN_VALID}, or min_valid)"
         yield tree.problem((*at, "repeats"), f"{message} {expected}")
-    window, until = extents_of(measure, grid)
-    if said & {"window", "extend_to"} and until and (until.unit != window.unit or until.value < window.value):
-        message = f"extend_to, {until}, is to be at least the window, {window}, in the same unit"
+    if said & {"repeats", "until"} and (own.until or measure.until) is not None and most < LEAST_REPEATS:
+        message = f"until needs {LEAST_REPEATS} repeats to know the repeatability, and at most {most} are made"
+        expected = f"(expected at_most: {LEAST_REPEATS} or more in repeats)"
+        yield tree.problem(place("until", "repeats"), f"{message} {expected}")
+    window, longest = extents_of(measure, grid)
+    if said & {"window", "extend_to"} and longest and (longest.unit != window.unit or longest.value < window.value):
+        message = f"extend_to, {longest}, is to be at least the window, {window}, in the same unit"
         yield tree.problem(place("extend_to", "window"), message)
     soak, band = own.soak or measure.soak, own.temperature_band or measure.temperature_band
     if said & {"soak", "temperature_band"} and soak.within > band:

@@ -5,13 +5,19 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from tester.recipe.plan import Soak, WearCheck, Window
-from tester.recipe.schema import Extent, GridModel, MeasureModel, SoakModel
+from tester.recipe.schema import Extent, GridModel, MeasureModel, RepeatsModel, SoakModel
 
 DEFAULT_MIN_VALID = 3
-"""Valid repeats a condition needs for a value (physics.md 6)."""
+"""Least valid repeats for a value without a flag [A]."""
+
+DEFAULT_AT_MOST = 2
+"""Repeats made in all, as a multiple of those that are to count, unless the recipe says ``at_most``."""
+
+LEAST_REPEATS = 4
+"""Repeats of a condition before ``until`` counts as reached: with three a coverage of 71 % would be called 95 %."""
 
 DEFAULT_EXTENSION = 3.0
-"""A repeat that still drifts goes on to this multiple of its window, unless the recipe says ``extend_to``."""
+"""Most that a repeat collects as a multiple of its window, unless the recipe says ``extend_to``."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -19,6 +25,8 @@ class Settings:
     """How every condition of a grid is measured."""
 
     repeats: int
+    at_most: int
+    until_percent: float | None
     min_valid: int
     window: Window
     temperature_band_k: float
@@ -29,8 +37,11 @@ class Settings:
 
 def settings_of(measure: MeasureModel, grid: GridModel) -> Settings:
     """Return a grid's settings."""
+    repeats = grid.repeats or measure.repeats
     return Settings(
-        repeats=grid.repeats or measure.repeats,
+        repeats=repeats.at_least,
+        at_most=at_most_of(repeats),
+        until_percent=grid.until or measure.until,
         min_valid=grid.min_valid or measure.min_valid or DEFAULT_MIN_VALID,
         window=_window(measure, grid),
         temperature_band_k=grid.temperature_band or measure.temperature_band,
@@ -38,6 +49,11 @@ def settings_of(measure: MeasureModel, grid: GridModel) -> Settings:
         max_bursts=grid.max_bursts or measure.max_bursts,
         wear_check=grid.wear_check or measure.wear_check,
     )
+
+
+def at_most_of(repeats: RepeatsModel) -> int:
+    """Return how many repeats are made at most."""
+    return repeats.at_most or DEFAULT_AT_MOST * repeats.at_least
 
 
 def wheel_speeds_of(measure: MeasureModel, grid: GridModel) -> tuple[float, ...]:

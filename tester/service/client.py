@@ -120,7 +120,8 @@ class Client:
             async with asyncio.timeout(CONNECT_S):
                 first = from_server(await connection.recv())
         except (OSError, AddressError, InvalidHandshake, TimeoutError, BadMessageError) as error:
-            raise NoServiceError(f"no service there: {error}") from error
+            why = error.strerror if isinstance(error, OSError) and error.strerror else error
+            raise NoServiceError(f"no service there: {why}") from error
         except ConnectionClosed as error:
             raise NoServiceError(f"the service hung up: {error}") from error
         if not isinstance(first, Hello):

@@ -198,7 +198,7 @@ class Desk:
         watch, now = self.watch, self.now_s
         if watch is not None:
             self._watch_frames(watch)
-            if watch.track.update(now, watch.run.engine.ctx.progress, watch.run.engine.executor.steps):
+            if watch.track.look(now, watch.run):
                 self.hub.plan(watch.track.view())
             watch.watch_trip(self.alarms, now)
         view = self.view()

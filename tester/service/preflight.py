@@ -14,13 +14,14 @@ from datetime import date, datetime, timedelta
 from math import isfinite
 from pathlib import Path
 
-from tester.engine.run import Outcome
+from tester.export.results import results_of
 from tester.rig import CalibrationConfig, RigConfig
 from tester.service.state import Alarm, Check, DiskView
 from tester.store.catalogue import run_folders
 from tester.store.reader import RunReader
 from tester.store.records import WheelInfo
 from tester.store.schema import StoreError
+from tester.store.status import RunStatus
 
 SOON = timedelta(days=30)
 """A certificate that ends within this is named with its date [A]: a laboratory wants weeks for a calibration."""
@@ -43,10 +44,11 @@ def past_of(runs: Path) -> Past | None:
     """Return what the newest readable run below a folder left, None where there is none."""
     for folder in reversed(list(run_folders(runs))):
         with suppress(StoreError, OSError, sqlite3.Error), RunReader(folder) as reader:
-            run = reader.run()
+            results = results_of(reader)
+            run = results.run
             wheel = max(reader.wheels(), key=lambda one: (one.installed_s, one.wheel), default=None)
             new_mm = wheel.installed_diameter_mm if wheel is not None else 0.0
-            return Past(run.status, run.reason, wheel, new_mm, _tare_utc(reader))
+            return Past(results.status.value, run.reason, wheel, new_mm, _tare_utc(reader))
     return None
 
 
@@ -82,12 +84,12 @@ def last_run_check(past: Past | None, latched: str) -> Check:
     """Return how the last run ended; one that tripped is wrong until it is acknowledged."""
     if past is None:
         return Check("last run", None if not latched else False, latched or "none is stored")
-    if past.status == Outcome.RUNNING.value:
+    if past.status == RunStatus.INTERRUPTED:
         return Check("last run", None, "was cut off: r goes on with it")
     text = past.status + (f": {past.reason}" if past.reason else "")
     if latched:
         return Check("last run", False, f"{text}; not acknowledged")
-    return Check("last run", True if past.status == Outcome.DONE.value else None, text)
+    return Check("last run", True if past.status == RunStatus.DONE else None, text)
 
 
 def calibration_check(calibration: CalibrationConfig, now_utc: str, *, simulated: bool) -> Check:

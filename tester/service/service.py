@@ -16,12 +16,12 @@ from recipes import UnknownRecipe
 from tester import clock
 from tester.campaign.claims import hold_rig
 from tester.campaign.endings import CannotStartError
-from tester.campaign.part_run import INTERRUPTED, closed_early, connect_ports, left_safe
+from tester.campaign.part_run import closed_early, connect_ports, left_safe
 from tester.engine.build import Ports, build_run
 from tester.engine.prompts import Prompts
 from tester.engine.run import Outcome, Run
 from tester.engine.tickers import TickStatistics, World, run_real_time, run_simulated
-from tester.lock import RUN_LOCK, ExclusiveUse, user_of
+from tester.lock import ExclusiveUse
 from tester.recipe.estimate import estimate
 from tester.rig import load_rig
 from tester.service.commands import (
@@ -41,15 +41,18 @@ from tester.service.running import RunScreen, ServiceSession
 from tester.service.state import RunView
 from tester.session import SessionOptions
 from tester.source import InvalidSource
-from tester.store.catalogue import find_run
+from tester.store.catalogue import find_run, under_way
 from tester.store.reader import DATABASE, RunReader
 from tester.store.schema import StoreError
+from tester.store.status import RunStatus, run_status
 from tester.store.writer import RunWriter
 
 RECIPES = ".recipes"
 """Folder beside the runs for recipes that came as text, named by their content."""
 NEWEST_RUNS = 200
 """So many runs are looked at for one that was cut off, the newest first."""
+LOOK_EVERY_S = 10.0
+"""While nothing is under way, runs that were cut off are looked at again this often, s."""
 MANUAL_LAPSE = 1.0
 """A person moves a simulated rig in real time."""
 REFUSED = (CannotStartError, InvalidSource, UnknownRecipe, StoreError, OSError, sqlite3.Error)
@@ -74,6 +77,7 @@ class Service:
         self.rig = load_rig(options.rig, options.overrides)
         self.desk = Desk(hub, self.rig, options.runs)
         self.orders = Orders(self.desk)
+        self._look_due_s = 0.0
 
     # -- the loop ---------------------------------------------------------------------------------------------
 
@@ -91,10 +95,19 @@ class Service:
                     self._carry_out(self.orders.job)
                     self.orders.job = None
                     desk.past = past_of(self.options.runs)
+                    self._look_again()
                 else:
                     desk.wait()
+                    if clock.monotonic() >= self._look_due_s:
+                        self._look_again()
         desk.tell("service", "the service ends")
         desk.show()
+
+    def _look_again(self) -> None:
+        """Forget the runs that are cut off no longer: resumed here, or by a command."""
+        self._look_due_s = clock.monotonic() + LOOK_EVERY_S
+        runs = self.options.runs
+        self.desk.interrupted = tuple(name for name in self.desk.interrupted if is_interrupted(runs / name))
 
     def end(self) -> None:
         """End as soon as nothing is under way any more."""
@@ -172,10 +185,9 @@ class Service:
             return
         outcome = session.ending.outcome if session.ending is not None else Outcome.FAILED
         reason = problem or (session.ending.reason if session.ending is not None else "")
-        known = desk.run or session.view
-        desk.ended(
-            replace(known, outcome=outcome.value, reason=reason, exit=code, missing=tuple(screen.missing)), outcome
-        )
+        known, missing = desk.run or session.view, tuple(screen.missing)
+        status = run_status(outcome.value, held=False, missing=bool(missing))
+        desk.ended(replace(known, outcome=status.value, reason=reason, exit=code, missing=missing), outcome)
 
     def _manual(self, order: Order) -> None:
         """Connect the rig and let the client that asked move it."""
@@ -251,8 +263,14 @@ def interrupted_runs(runs: Path) -> Iterator[str]:
     """Yield the runs in a folder that were cut off: open, and nobody at work on them."""
     folders = sorted(runs.iterdir(), reverse=True)[:NEWEST_RUNS] if runs.is_dir() else []
     for folder in reversed(folders):
-        if not (folder / DATABASE).is_file() or user_of(folder / RUN_LOCK) is not None:
-            continue
-        with suppress(StoreError), RunReader(folder) as reader:
-            if reader.run().status in (Outcome.RUNNING.value, INTERRUPTED):
-                yield folder.name
+        if is_interrupted(folder):
+            yield folder.name
+
+
+def is_interrupted(folder: Path) -> bool:
+    """Return whether a folder holds a run that was cut off."""
+    if not (folder / DATABASE).is_file() or under_way(folder) is not None:
+        return False
+    with suppress(StoreError), RunReader(folder) as reader:
+        return run_status(reader.run().status, held=False, missing=False) is RunStatus.INTERRUPTED
+    return False

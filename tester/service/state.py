@@ -102,7 +102,8 @@ class SoakView:
 class ProgressView:
     """Where the run is. ``share``: of the whole rig time, 0..1, corrected by the durations measured so far.
 
-    ``left_s``: rig seconds to the end; ``finish_utc``: the wall clock then at the run's speed, "" at full speed.
+    ``left_s``: rig seconds of work to the end, None once a trip or a stop has given the run up; neither it nor the
+    share moves in a hold. ``finish_utc``: the wall clock then at the run's speed, "" at full speed.
     """
 
     step: int = 0

@@ -69,10 +69,10 @@ class RunWatch:
     def progress(self, now: float, lapse: float | None) -> ProgressView:
         """Return where the run is; ``lapse``: rig seconds per second, None where nobody knows."""
         p = self.run.engine.ctx.progress
-        left = self.track.left_s(now)
-        finish = clock.utc_in(left / lapse) if lapse else ""
+        left = self.track.left_s()
+        finish = clock.utc_in(left / lapse) if lapse and left is not None else ""
         return ProgressView(p.step, p.steps, p.title, p.phase, p.condition, p.conditions, p.repeat, p.repeats,
-                            p.revolutions, p.revolutions_wanted, p.burst, self.track.share(now), now, left,
+                            p.revolutions, p.revolutions_wanted, p.burst, self.track.share(), now, left,
                             finish)  # fmt: skip
 
     def gates(self) -> tuple[Gate, ...]:

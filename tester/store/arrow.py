@@ -1,10 +1,11 @@
-"""Samples as an Arrow table; pyarrow is loaded only here and for Parquet."""
+"""Samples as an Arrow table; pyarrow (extra ``parquet``) is loaded only here, and by Parquet's export."""
 
 from __future__ import annotations
 
 from importlib import import_module
 from typing import Protocol, cast
 
+from tester.extras import MissingExtraError, needs
 from tester.store.reader import RunReader
 
 
@@ -29,5 +30,18 @@ class _Arrow(Protocol):
 def sample_table(
     reader: RunReader, condition: int | None = None, repeat: int | None = None, attempt: int | None = None
 ) -> ArrowTable:
-    """Return samples as a ``pyarrow.Table`` of float64, chosen as in ``RunReader.samples``; raises StoreError."""
-    return cast(_Arrow, import_module("pyarrow")).table(reader.samples(condition, repeat, attempt))
+    """Return samples as a ``pyarrow.Table`` of float64, chosen as in ``RunReader.samples``.
+
+    Raises StoreError, and MissingExtraError without pyarrow.
+    """
+    return cast(_Arrow, arrow_module("pyarrow", "a table of samples")).table(
+        reader.samples(condition, repeat, attempt)
+    )
+
+
+def arrow_module(name: str, what: str) -> object:
+    """Return pyarrow or a module of it; raises MissingExtraError where it is not installed: ``what`` needs it."""
+    try:
+        return import_module(name)
+    except ModuleNotFoundError as error:
+        raise MissingExtraError(needs(what, "pyarrow", "parquet")) from error

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
+from contextlib import suppress
+from difflib import get_close_matches
 from pathlib import Path
 
 from tester.lock import RUN_LOCK, Holder, user_of
-from tester.store.reader import DATABASE
+from tester.store.reader import DATABASE, RunReader
 from tester.store.schema import StoreError
 
 RUNS = Path("runs")
@@ -16,17 +19,53 @@ MANIFEST = "manifest.json"
 """Written at a run's end, whatever the end: a run without one was cut off, or is under way."""
 
 
+LATEST = "latest"
+"""In place of a run's name: the newest run."""
+_STAMPED = re.compile(r"\d{4}-\d{2}-\d{2}T\d{2}-\d{2}-\d{2}(?=-)")
+"""How the name of a run's folder begins."""
+
+
 def find_run(name: str, under: Path = RUNS) -> Path:
     """Return the folder of a run, given as a folder, its ``run.db`` or a name under ``under``.
 
-    Raises StoreError naming where it was looked for.
+    ``latest`` is the newest run under ``under``, ``FOLDER/latest`` the newest under another folder; a folder of that
+    very name comes first. Raises StoreError naming where it was looked for, and the nearest name there is.
     """
     for folder in (Path(name), under / name):
         if (folder / DATABASE).is_file():
             return folder
         if folder.name == DATABASE and folder.is_file():
             return folder.parent
-    raise StoreError(f"no run {name}: neither a run folder nor a name under {under}")
+    there = under if name == LATEST else Path(name).parent
+    if Path(name).name == LATEST:
+        found = newest_run(there)
+        if found is not None:
+            return found
+        raise StoreError(f"no run {name}: there is no run under {there}")
+    near = get_close_matches(name, [folder.name for folder in run_folders(under)], 1)
+    hint = f", did you mean {near[0]}?" if near else ""
+    raise StoreError(f"no run {name}: neither a run folder nor a name under {under}{hint}")
+
+
+def newest_run(under: Path = RUNS) -> Path | None:
+    """Return the folder of the run that began last, None where there is none.
+
+    By the date in the names; runs of one second, and folders without a date (looked at where no other is there), by
+    what their records say.
+    """
+    folders = list(run_folders(under))
+    stamps = {folder: found[0] for folder in folders if (found := _STAMPED.match(folder.name))}
+    newest = max(stamps.values(), default="")
+    among = [folder for folder in folders if stamps.get(folder, "") == newest]
+    return max(among, key=_began, default=None)
+
+
+def _began(folder: Path) -> tuple[str, int, str]:
+    """Return when a run began, by its record; where that says nothing, or the same, by its name."""
+    began = ""
+    with suppress(StoreError), RunReader(folder) as reader:
+        began = reader.run().info.started_utc
+    return began, len(folder.name), folder.name
 
 
 def run_folders(under: Path = RUNS) -> Iterator[Path]:

@@ -11,12 +11,13 @@ import sqlite3
 import zlib
 from collections.abc import Iterator
 from contextlib import closing
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from pathlib import Path
 from types import TracebackType
 
 import numpy as np
 
+from tester.analysis.results import Judgement
 from tester.process import SAMPLE_COLUMNS
 from tester.store.reader import DATABASE, RunReader
 from tester.store.sample_blocks import unpack_array
@@ -66,7 +67,7 @@ HEADER = frozenset(
 )
 """Tables of the whole run, which parts do not fill. ``condition`` is brought up to date."""
 
-LEFT = ("status", "reason", "warming_k_s", "holdable_band_k")
+LEFT = ("status", "reason", "warming_k_s", "holdable_band_k", *(field.name for field in fields(Judgement)))
 """How a condition was left; ``started_s`` and ``ended_s`` are times."""
 
 _COLUMNS = len(SAMPLE_COLUMNS)

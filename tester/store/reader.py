@@ -14,7 +14,7 @@ from tempfile import TemporaryDirectory
 from types import TracebackType
 from typing import TYPE_CHECKING, Literal, TypeVar
 
-from tester.analysis.results import Burst, ConditionStatus, RepeatResult, RepeatStatus
+from tester.analysis.results import Burst, ConditionStatus, Judgement, RepeatResult, RepeatStatus
 from tester.store.records import (
     NAN,
     BusStatistic,
@@ -208,7 +208,8 @@ class RunReader:
         for row in self._rows("SELECT * FROM condition ORDER BY row, replicate, condition"):
             status = ConditionStatus(_text(row, "status"))
             left = status if row["ended_s"] is not None or status is not ConditionStatus.PENDING else None
-            found.append(_record(StoredCondition, row, info=_record(ConditionInfo, row), status=left))
+            info, judged = _record(ConditionInfo, row), _record(Judgement, row)
+            found.append(_record(StoredCondition, row, info=info, status=left, judged=judged))
         return found
 
     def repeats(self, condition: int | None = None, *, attempts: bool = False) -> list[StoredRepeat]:

@@ -6,11 +6,11 @@ are for one thread, the scan's.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from hashlib import sha256
 
-from tester.analysis.results import Burst, ConditionStatus, RepeatResult, RepeatStatus
+from tester.analysis.results import Burst, ConditionStatus, Judgement, RepeatResult, RepeatStatus
 from tester.store.records import (
     NAN,
     Calibration,
@@ -31,6 +31,7 @@ URGENT_SEVERITIES = frozenset({"alarm", "trip"})
 _RESULT_FIELDS = tuple(field.name for field in fields(RepeatResult))
 _BURST_FIELDS = tuple(field.name for field in fields(Burst))
 _CONDITION_FIELDS = tuple(field.name for field in fields(ConditionInfo))
+_JUDGEMENT_FIELDS = tuple(field.name for field in fields(Judgement))
 _WHEEL_FIELDS = tuple(field.name for field in fields(WheelInfo))
 _SESSION_FIELDS = tuple(field.name for field in fields(SessionInfo))
 _CHANGE_FIELDS = tuple(field.name for field in fields(Change))
@@ -89,6 +90,26 @@ def _calibration(figures: Iterable[Calibration], session: int) -> list[Statement
         )
         for c in figures
     ]
+
+
+@dataclass(frozen=True, slots=True)
+class Judged:
+    """How a condition was judged, and what that makes of its repeats: result by key."""
+
+    condition: int
+    judgement: Judgement
+    repeats: Mapping[int, RepeatResult]
+
+
+def _judged(judged: Judged | None) -> Iterator[Statement]:
+    if judged is None:
+        return
+    columns = _columns(judged.judgement, _JUDGEMENT_FIELDS)
+    assignments = ", ".join(f"{name} = ?" for name in columns)
+    yield f"UPDATE condition SET {assignments} WHERE condition = ?", (*columns.values(), judged.condition)
+    sql = "UPDATE repeat SET status = ?, reason = ?, drift_percent = ?, bound_percent = ? WHERE id = ?"
+    for key, r in judged.repeats.items():
+        yield sql, (r.status.value, r.reason, r.drift_percent, r.bound_percent, key)
 
 
 class Recorder:
@@ -250,14 +271,16 @@ class Recorder:
         *,
         warming_k_s: float = NAN,
         holdable_band_k: float = NAN,
+        judged: Judged | None = None,
     ) -> None:
-        """Record how a condition was left. For CANNOT_HOLD also the rate in K/s and the band in K that would do."""
+        """Record how a condition was left and judged. For CANNOT_HOLD also rate in K/s and band in K that would do."""
         sql = (
             "UPDATE condition SET status = ?, reason = ?, ended_s = ?, warming_k_s = ?, holdable_band_k = ?"
             " WHERE condition = ?"
         )
         at_s = t_s + self.origin_s
-        self._write((sql, (status.value, reason, at_s, warming_k_s, holdable_band_k, condition)), urgent=True)
+        left: Statement = (sql, (status.value, reason, at_s, warming_k_s, holdable_band_k, condition))
+        self._write(left, *_judged(judged), urgent=True)
 
     def begin_repeat(self, condition: int, repeat: int, attempt: int, t_s: float = NAN, wheel: int = 0) -> int:
         """Record the start of an attempt at a repeat and return its key, the ``repeat_key`` of its samples."""
@@ -274,8 +297,10 @@ class Recorder:
         self._write(insert("repeat", columns))
         return self._repeats
 
-    def commit_repeat(self, key: int, result: RepeatResult, bursts: Iterable[Burst] = ()) -> Ticket:
-        """Commit a repeat whole: its result, its bursts and every sample recorded so far.
+    def commit_repeat(
+        self, key: int, result: RepeatResult, bursts: Iterable[Burst] = (), judged: Judged | None = None
+    ) -> Ticket:
+        """Commit a repeat whole: its result, its bursts, every sample recorded so far, and how its condition is judged.
 
         The repeat counts only once the ticket is done.
         """
@@ -287,7 +312,7 @@ class Recorder:
         for burst in bursts:
             at = replace(burst, started_s=burst.started_s + origin, ended_s=burst.ended_s + origin)
             statements.append(insert("burst", {"repeat_id": key} | _columns(at, _BURST_FIELDS)))
-        return self._write(*statements, urgent=True)
+        return self._write(*statements, *_judged(judged), urgent=True)
 
     def void_repeat(self, key: int, reason: str, t_s: float = NAN) -> Ticket:
         """Record that an attempt was interrupted; a further attempt is to follow."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from tester.analysis.results import ConditionStatus, RepeatResult
+from tester.analysis.results import NOT_JUDGED, ConditionStatus, Judgement, RepeatResult
 
 NAN = float("nan")
 
@@ -202,6 +202,8 @@ class ConditionInfo:
     min_valid: int
     window_revolutions: float | None = None
     window_s: float | None = None
+    at_most: int = 0
+    until_percent: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -216,6 +218,8 @@ class StoredCondition:
     warming_k_s: float
     """Where the temperature could not be held: the rate measured, K/s, and the band that would do, K."""
     holdable_band_k: float
+    judged: Judgement = NOT_JUDGED
+    """What its repeats say of its drift."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,16 +6,17 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from math import isfinite
 
-from tester.analysis.results import ConditionStatus, RepeatResult, RepeatStatus
+from tester.analysis.blocks import Block, blocks_from_samples
+from tester.analysis.repeatability import NOTHING_POOLED, Pool
+from tester.analysis.repeats import counting
+from tester.analysis.results import NOT_JUDGED, ConditionStatus, Judgement, RepeatResult, RepeatStatus
 from tester.recipe.remaining import Stand, WornWheel
 from tester.store.reader import RunReader
-from tester.store.records import NAN, StoredRepeat, WheelInfo
+from tester.store.records import NAN, StoredCondition, StoredRepeat, WheelInfo
+from tester.store.status import WENT_THROUGH
 
 ENDS_A_CONDITION = (RepeatStatus.CANNOT_HOLD, RepeatStatus.NOT_REACHED)
 """A repeat with one of these is its condition's last."""
-
-FINISHED = "done"
-"""Status of a run that went through its whole plan."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,6 +29,12 @@ class ConditionSoFar:
     """Attempts at each repeat, committed or not."""
     warming_k_s: float = NAN
     holdable_band_k: float = NAN
+    keys: tuple[int, ...] = ()
+    """Of the results' repeats."""
+    blocks: tuple[tuple[Block, ...], ...] = ()
+    """Of the results' repeats, from their samples: what a condition is judged by."""
+    judged: Judgement = NOT_JUDGED
+    """How it was judged when the last of them was committed."""
 
     @property
     def over(self) -> RepeatStatus | None:
@@ -50,6 +57,8 @@ class ResumePoint:
     """Zero of the load cell when the present wheel was mounted."""
     session: int
     """Number of the next stretch."""
+    pool: Pool = NOTHING_POOLED
+    """Repeatability of the conditions that are over."""
 
     @property
     def next_repeat(self) -> tuple[int, int] | None:
@@ -73,27 +82,46 @@ def resume_point(reader: RunReader) -> ResumePoint:
         if stored.status not in (None, ConditionStatus.PENDING):
             ended.add(number)
         elif number in repeats:
-            open_[number] = _so_far(repeats[number], stored.warming_k_s, stored.holdable_band_k)
+            open_[number] = _so_far(reader, repeats[number], stored)
     sessions = reader.sessions()
     return ResumePoint(
-        finished=run.status == FINISHED,
+        finished=run.status == WENT_THROUGH,
         origin_s=run.rig_seconds if isfinite(run.rig_seconds) else 0.0,
         stand=Stand(frozenset(ended), frozenset(repeats), tuple(_wheels(reader.wheels(), repeats))),
         conditions=open_,
         reference_tare=_reference(reader),
         session=max((s.session for s in sessions), default=1) + 1,
+        pool=_pooled(repeats, ended),
     )
 
 
-def _so_far(attempts: list[StoredRepeat], warming_k_s: float, holdable_band_k: float) -> ConditionSoFar:
-    committed = {r.repeat: r.result for r in attempts if r.result.status not in (RepeatStatus.OPEN, RepeatStatus.VOID)}
-    results: list[RepeatResult] = []
-    while len(results) + 1 in committed:
-        results.append(committed[len(results) + 1])
+def _so_far(reader: RunReader, attempts: list[StoredRepeat], stored: StoredCondition) -> ConditionSoFar:
+    committed = {r.repeat: r for r in attempts if r.result.status not in (RepeatStatus.OPEN, RepeatStatus.VOID)}
+    found: list[StoredRepeat] = []
+    while len(found) + 1 in committed:
+        found.append(committed[len(found) + 1])
     counted: dict[int, int] = {}
     for r in attempts:
         counted[r.repeat] = max(counted.get(r.repeat, 0), r.attempt)
-    return ConditionSoFar(tuple(results), counted, warming_k_s, holdable_band_k)
+    return ConditionSoFar(
+        tuple(r.result for r in found),
+        counted,
+        stored.warming_k_s,
+        stored.holdable_band_k,
+        tuple(r.key for r in found),
+        tuple(tuple(blocks_from_samples(reader.samples(r.condition, r.repeat, r.attempt))) for r in found),
+        stored.judged,
+    )
+
+
+def _pooled(repeats: Mapping[int, list[StoredRepeat]], ended: set[int]) -> Pool:
+    """Return the repeatability of the conditions that are over, in their order."""
+    pool = Pool()
+    for number in sorted(ended & repeats.keys()):
+        last = {r.repeat: r.result for r in repeats[number] if r.result.status is not RepeatStatus.VOID}
+        results = list(last.values())
+        pool = pool.with_condition([results[i].mu_resultant for i in counting(results)])
+    return pool
 
 
 def _wheels(wheels: list[WheelInfo], repeats: Mapping[int, list[StoredRepeat]]) -> list[WornWheel]:

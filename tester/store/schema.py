@@ -260,7 +260,25 @@ CREATE TRIGGER exclusion_is_not_deleted BEFORE DELETE ON exclusion
 """Repeats that a person has left out of a mean, or taken in again (``excluded`` 0): who, when, why. Rows are only ever
 added. ``manifest_before``: the folder's manifest as it was before, with the hashes of the record without this row."""
 
-MIGRATIONS: tuple[str, ...] = (_VERSION_1, _VERSION_2, _VERSION_3)
+_JUDGEMENT = ("drift_percent", "drift_error_percent", "drift_bound_percent", "per_kelvin_percent", "repeat_windows",
+              "trend_percent")  # fmt: skip
+
+_VERSION_4 = """
+ALTER TABLE condition ADD COLUMN at_most INTEGER NOT NULL DEFAULT 0;
+ALTER TABLE condition ADD COLUMN until_percent REAL;
+ALTER TABLE condition ADD COLUMN flags TEXT NOT NULL DEFAULT '';
+UPDATE condition SET at_most = 2 * repeats;
+""" + "".join(f"ALTER TABLE condition ADD COLUMN {name} REAL;\n" for name in _JUDGEMENT)
+"""A condition's repeats are judged together: how many are made at most, until what precision, and what they say of its
+drift. Before, a repeat was judged by itself, and ``at_most`` is what the same recipe means now."""
+
+_AS_VERSION_4 = (
+    "CREATE TEMP VIEW condition AS SELECT *, 2 * repeats AS at_most, NULL AS until_percent, '' AS flags, "
+    + ", ".join(f"NULL AS {name}" for name in _JUDGEMENT)
+    + " FROM main.condition"
+)
+
+MIGRATIONS: tuple[str, ...] = (_VERSION_1, _VERSION_2, _VERSION_3, _VERSION_4)
 """Migration n leads from schema n to n + 1."""
 
 VERSION = len(MIGRATIONS)
@@ -288,13 +306,15 @@ def _empty(connection: sqlite3.Connection) -> bool:
 def reads_as_present(connection: sqlite3.Connection, version: int) -> bool:
     """Let an older database be read as one of the present schema without writing it; False where that cannot be.
 
-    What version 3 has added is an empty table, which a connection can have for itself.
+    What version 3 has added is an empty table, and what version 4 has added are columns without values, which a
+    connection can have for itself: a temporary table, and a temporary view in front of the table.
     """
-    if version == VERSION:
-        return True
-    if version != 2:
+    if version < 2:
         return False
-    connection.execute(_EXCLUSION.format(temporary="TEMP "))
+    if version < 3:
+        connection.execute(_EXCLUSION.format(temporary="TEMP "))
+    if version < 4:
+        connection.execute(_AS_VERSION_4)
     return True
 
 

@@ -24,7 +24,7 @@ from threading import Thread
 from tester.analysis.results import Burst, RepeatResult
 from tester.process import SAMPLE_COLUMNS
 from tester.store.files import sync_folder
-from tester.store.recorder import Batch, NullRecorder, Recorder, Ticket, no_utc
+from tester.store.recorder import Batch, Judged, NullRecorder, Recorder, Ticket, no_utc
 from tester.store.sample_blocks import BLOCK_ROWS, pack
 from tester.store.schema import StoreError, migrate, version_of
 
@@ -158,9 +158,11 @@ class RunWriter(Recorder):
         elif batch.urgent:
             self._wake.set()
 
-    def commit_repeat(self, key: int, result: RepeatResult, bursts: Iterable[Burst] = ()) -> Ticket:
+    def commit_repeat(
+        self, key: int, result: RepeatResult, bursts: Iterable[Burst] = (), judged: Judged | None = None
+    ) -> Ticket:
         """Commit a repeat whole; when lossless, return only after the COMMIT."""
-        ticket = super().commit_repeat(key, result, bursts)
+        ticket = super().commit_repeat(key, result, bursts, judged)
         if self._lossless:
             self._wait_for(ticket)
         return ticket

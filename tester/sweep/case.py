@@ -36,7 +36,8 @@ class Task:
 class RowResult:
     """One row of the recipe's table: its nominal setpoints, its status, and what was measured (NaN without a value).
 
-    ``s`` is the standard deviation between repeats, ``u_standard`` the stated standard uncertainty of ``mu``.
+    ``s`` is the standard deviation between repeats, ``u_standard`` the stated standard uncertainty of ``mu``;
+    ``reason`` says why there is no value.
     """
 
     row: int
@@ -51,6 +52,8 @@ class RowResult:
     s: float
     n_valid: int
     u_standard: float
+    flags: str
+    reason: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,7 +83,7 @@ def run_case(task: Task) -> CaseResult:
         recipe, rig = folder / "recipe.yaml", folder / "rig.yaml"
         recipe.write_text(task.recipe_text, encoding="utf-8", newline="\n")
         rig.write_text(task.rig_text, encoding="utf-8", newline="\n")
-        screen = _Unseen()
+        screen = Unseen()
         options = SessionOptions(str(recipe), str(rig), out=folder / "runs", seed=task.seed, samples=False)
         session = screen.session = Session(options, screen)
         code = session.run()
@@ -108,10 +111,10 @@ def _row(row: TableRow) -> RowResult:
     mu, s, u = (r.mu_resultant, r.s, r.standard) if r.ok else (NAN, NAN, NAN)
     slip_mm_s = round(1e3 * i.slip_velocity_m_s, 6)
     setpoints = (slip_mm_s, i.load_n, i.sideslip_deg, i.camber_deg, i.temperature_c)
-    return RowResult(i.row, i.compound, *setpoints, r.status.value, mu, s, r.n_valid, u)
+    return RowResult(i.row, i.compound, *setpoints, r.status.value, mu, s, r.n_valid, u, r.flags, r.reason)
 
 
-class _Unseen:
+class Unseen:
     """A screen that nobody looks at; a stop that is ordered of the pool reaches the session through it."""
 
     answer_yes = True

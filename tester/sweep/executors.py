@@ -9,6 +9,7 @@ from importlib import import_module
 from typing import Protocol, cast
 
 from tester.campaign.pool import Pool
+from tester.extras import needs
 from tester.sweep.case import CaseResult, Task
 
 
@@ -64,8 +65,7 @@ def dask(address: str) -> Generator[Submit]:
     try:
         distributed = cast("_Distributed", import_module("distributed"))
     except ImportError as error:
-        text = 'needs the extra "cluster": pip install "friction-tester[cluster]"'
-        raise NoClusterError(f"--dask {address}: {text} ({error})") from error
+        raise NoClusterError(f"{needs(f'--dask {address}', 'Dask', 'cluster')} ({error})") from error
     try:
         client = distributed.Client(address, set_as_default=False)
     except (OSError, ValueError) as error:

@@ -17,7 +17,7 @@ from tester.sweep.grid import Axis
 Row = tuple[Cell, ...]
 
 _SETPOINTS = ("row", "compound", "slip_velocity_mm_s", "load_n", "sideslip_deg", "camber_deg", "temperature_c")
-_MEASURED = ("status", "mu", "s", "n_valid", "u_standard")
+_MEASURED = ("status", "mu", "s", "n_valid", "u_standard", "flags", "reason")
 _STATISTICS = ("n", "mean", "sd", "min", "max")
 
 

@@ -9,6 +9,7 @@ from math import isfinite
 from pathlib import Path
 
 from tester.analysis.results import Burst
+from tester.export.results import results_of
 from tester.rig.load import load_rig_text
 from tester.service.protocol import Event
 from tester.service.state import (
@@ -49,6 +50,8 @@ class Playback:
     """A run's record: samples by column, in order of rig time; conditions, repeats, journal."""
 
     run: StoredRun
+    status: str
+    """A word of RunStatus."""
     rig_name: str
     specs: tuple[Spec, ...]
     samples: dict[str, array[float]]
@@ -85,12 +88,12 @@ class Playback:
         compound = condition.info.compound if condition is not None else ""
         note = condition.info.note if condition is not None else ""
         return StateView(
-            mode="RUN" if not over else run.status,
+            mode="RUN" if not over else self.status,
             mode_text="" if not over else run.reason,
             mode_since_s=at_s, t_s=at_s, wall_s=at_s, utc=info.started_utc, rig=self.rig_name,
             simulated=info.simulated,
             run=RunView(info.name, "", info.recipe_name, compound, note, info.operator, info.seed, info.simulated, None,
-                        info.started_utc, run.status, run.reason, None, ()),
+                        info.started_utc, self.status, run.reason, None, ()),
             progress=self._progress(at_s, condition),
             values=self._values(at_s, index, condition.info if condition is not None else None),
             gates=(), soak=None, alarms=(), prompt=None, manual=ManualView(None, ""), devices=(), buses=(),
@@ -190,14 +193,15 @@ def _title(i: ConditionInfo) -> str:
 def load(folder: Path) -> Playback:
     """Read a run; raises StoreError, InvalidSource (its rig file), sqlite3.Error."""
     with RunReader(folder) as reader:
-        run = reader.run()
+        results = results_of(reader)
+        run = results.run
         rig = load_rig_text(run.info.rig_text)
         events = tuple(
             Event(e.sequence, e.t_s, e.utc, e.kind, e.severity, e.text, run.info.name) for e in reader.events()
         )
         repeats = tuple(reader.repeats(attempts=True))
         return Playback(
-            run, rig.name, specs(rig), _thinned(reader, max(SPACING_S, run.rig_seconds / MOST)),
+            run, results.status.value, rig.name, specs(rig), _thinned(reader, max(SPACING_S, run.rig_seconds / MOST)),
             tuple(reader.conditions()), repeats, {one.key: tuple(reader.bursts(one.key)) for one in repeats}, events,
             tuple(event.t_s for event in events),
         )  # fmt: skip

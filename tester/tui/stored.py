@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from math import isfinite
 from pathlib import Path
 
+from tester.analysis.trust import mark_of
 from tester.export.cells import nominal
 from tester.export.results import Measured, RunResults, results_of
 from tester.store.catalogue import find_run
@@ -33,6 +34,8 @@ class Row:
     compound: str
     mu: float | None
     condition: int
+    mark: str = ""
+    """Of mu (tester.analysis.trust): "" where it is trusted."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,7 +67,7 @@ def read(name: str, runs: Path) -> Stored:
     folder = find_run(name, runs)
     with RunReader(folder) as reader:
         results = results_of(reader)
-    return Stored(folder.name, folder, results.run.info.recipe_name, results.run.status, tuple(_rows(results)))
+    return Stored(folder.name, folder, results.run.info.recipe_name, results.status.value, tuple(_rows(results)))
 
 
 def _rows(results: RunResults) -> list[Row]:
@@ -75,10 +78,11 @@ def _row(measured: Measured) -> Row:
     i, r = measured.info, measured.result
     at = (i.load_n, 1e3 * i.slip_velocity_m_s, i.temperature_c, i.sideslip_deg)
     setpoints = (nominal(at[1]), nominal(at[0]), nominal(at[3]), nominal(at[2]))
-    found = (_number(r.mu_resultant, 3), _number(r.s, 4), f"{r.n_valid}/{r.n}")
+    mark = mark_of(r.status, r.flags) if isfinite(r.mu_resultant) else ""
+    found = (_number(r.mu_resultant, 3) + mark, _number(r.s, 4), f"{r.n_valid}/{r.n}")
     status = f"{r.status.value}{': ' + r.reason if r.reason else ''} {r.flags}".strip()
     mu = r.mu_resultant if isfinite(r.mu_resultant) else None
-    return Row((i.compound, *map(str, setpoints), *found, status), at, i.compound, mu, i.condition)
+    return Row((i.compound, *map(str, setpoints), *found, status), at, i.compound, mu, i.condition, mark)
 
 
 def _number(value: float, decimals: int) -> str:
@@ -141,8 +145,12 @@ def points(stored: Stored, axis: int, chosen: Row | None = None) -> list[Point]:
     Where a ``chosen`` row has a series along the axis, that is drawn as ``●`` and everything else as ``·``.
     """
     marked = series(stored, chosen, axis) if chosen is not None else []
+
+    def own(row: Row) -> str:
+        return _sign(row) if len(marked) < 2 else SERIES
+
     return [
-        Point(row.at[axis], row.mu, _sign(row) if len(marked) < 2 else SERIES if row in marked else OTHER)
+        Point(row.at[axis], row.mu, OTHER if len(marked) > 1 and row not in marked else row.mark or own(row))
         for row in stored.rows
         if row.mu is not None
     ]

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import ast
-import re
 from pathlib import Path
+
+from compiling.modules import HOT
 
 ROOT = Path(__file__).parents[2]
 STAYS_PYTHON = {"Protocol", "Enum", "IntEnum", "IntFlag", "Flag", "NamedTuple", "TypedDict", "Exception"}
@@ -13,10 +14,11 @@ STAYS_PYTHON = {"Protocol", "Enum", "IntEnum", "IntFlag", "Flag", "NamedTuple", 
 
 def compiled() -> set[str]:
     """Return the names of the modules that are compiled."""
-    text = (ROOT / "setup.py").read_text(encoding="utf-8")
-    listed = text[text.index("HOT = (") : text.index("\n)\n", text.index("HOT = ("))]
-    paths = [path for pattern in re.findall(r'"([^"]+\.py)"', listed) for path in ROOT.glob(pattern)]
-    return {module_of(path) for path in paths}
+    return {module_of(path) for pattern in HOT for path in ROOT.glob(pattern)}
+
+
+def test_every_module_that_is_named_is_there() -> None:
+    assert [pattern for pattern in HOT if not list(ROOT.glob(pattern))] == []
 
 
 def module_of(path: Path) -> str:

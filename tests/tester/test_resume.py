@@ -104,6 +104,16 @@ def test_the_tables_hold_every_repeat_of_both_stretches(again: Path) -> None:
     assert invoke(["verify", str(again)]) == 0
 
 
+def test_a_run_that_was_cut_off_between_its_end_and_its_tables_gets_them(again: Path) -> None:
+    resume(again)
+    tables = {name: (again / name).read_bytes() for name in ("appendix.csv", "conditions.csv", "repeats.csv")}
+    for name in (*tables, "manifest.json"):
+        (again / name).unlink()
+    resume(again)
+    assert {name: (again / name).read_bytes() for name in tables} == tables
+    assert (again / "manifest.json").is_file()
+
+
 def test_times_of_samples_and_events_do_not_go_back(again: Path) -> None:
     resume(again)
     with RunReader(again) as reader:

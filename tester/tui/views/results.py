@@ -27,7 +27,8 @@ RUN_HEADER = ("Run", "Recipe", "Status", "Values", "Rig time", "Started")
 MISSING = (StoreError, OSError, sqlite3.Error)
 HELP = """\
 Above the stored runs, below the conditions of the chosen one in the export's columns, with s (between repeats) and
-n (valid of planned). The plot is mu against one setpoint; a point's sign is its compound, + is several. What differs
+n (valid of planned). Behind mu, and as a point's sign, ! is a number that is not to be trusted, ? one with a doubt that
+its status names. The plot is mu against one setpoint; a point's sign is its compound, + is several. What differs
 from the chosen condition in more than that setpoint is a faint dot.
 
 Enter   on a run: read it. On a condition: its repeats, with traces, and why one is not in the mean; Enter there

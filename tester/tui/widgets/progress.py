@@ -23,7 +23,8 @@ class ProgressPanel(Panel):
         if not progress.steps:
             return idle_words(scene, width)
         share = min(max(progress.share, 0.0), 1.0)
-        whole = _line("Campaign", share, f"{100 * share:3.0f} %   {hours(progress.left_s)} h left", width)
+        left = f"   {hours(progress.left_s)} h left" if progress.left_s is not None else ""
+        whole = _line("Campaign", share, f"{100 * share:3.0f} %{left}", width)
         return rows([whole, _repeat(progress, width), _step(progress, state.soak, state.gates, width)])
 
 

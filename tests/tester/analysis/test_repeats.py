@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from math import isnan, sqrt
+from dataclasses import replace
+from math import hypot, isnan, sqrt
 
 import pytest
 
@@ -14,7 +15,15 @@ from tester.analysis.repeats import (
     excess_fluctuation,
     outliers,
 )
-from tester.analysis.results import ConditionStatus, RepeatResult, RepeatStatus
+from tester.analysis.results import (
+    CARRY_OVER,
+    NOT_SHOWN,
+    SHORT,
+    ConditionStatus,
+    Judgement,
+    RepeatResult,
+    RepeatStatus,
+)
 
 
 def repeat(
@@ -75,22 +84,56 @@ def test_a_repeat_that_is_not_valid_is_left_out_with_its_reason() -> None:
     assert (excluded.position, excluded.reason) == (4, "not stabilised: drift +4 %")
 
 
-def test_fewer_valid_than_needed_is_insufficient_and_names_each() -> None:
+def test_no_valid_repeat_is_insufficient_and_names_each() -> None:
+    poor = repeat(status=RepeatStatus.TOO_FEW, reason="3 of 30 revolutions")
+    result = combine(*[poor] * 5)
+    assert result.status is ConditionStatus.INSUFFICIENT
+    assert result.reason.startswith("none of 5 repeats is valid: repeat 1 too few revolutions: 3 of 30")
+
+
+def test_fewer_valid_than_the_least_are_a_value_with_a_flag() -> None:
     poor = repeat(status=RepeatStatus.TOO_FEW, reason="3 of 30 revolutions")
     result = combine(FIVE[0], FIVE[1], poor, poor, poor)
-    assert result.status is ConditionStatus.INSUFFICIENT
-    assert result.reason.startswith("2 of 5 valid, 3 needed: repeat 3 too few revolutions: 3 of 30")
+    assert result.ok and result.n_valid == 2
+    assert (result.flags, result.doubts) == (SHORT, (SHORT,))
+    assert combine(*FIVE[:3], poor, poor).doubts == ()
 
 
-def test_an_insufficient_condition_still_shows_its_mean() -> None:
+def test_where_all_repeats_drift_the_value_is_theirs() -> None:
+    drifting = [replace(one, status=RepeatStatus.REFUSED, drift_percent=4.0) for one in FIVE]
+    result = combine_repeats(drifting, 5, judged=Judgement(flags=NOT_SHOWN))
+    assert result.ok and result.mu_resultant == pytest.approx(0.704)
+    assert result.doubts == (NOT_SHOWN,) and result.excluded == ()
+
+
+def test_a_refused_repeat_is_left_out_beside_valid_ones() -> None:
+    refused = replace(repeat(0.9), status=RepeatStatus.REFUSED, reason="drifts by +4.0 % a window", drift_percent=4.0)
+    result = combine(*FIVE, refused)
+    assert (result.n_valid, result.mu_resultant) == (5, pytest.approx(0.704))
+    assert result.excluded[0].reason == "refused: drifts by +4.0 % a window"
+
+
+def test_drift_and_carry_over_enter_the_uncertainty() -> None:
+    def added(judged: Judgement) -> float:
+        found = combine_repeats(FIVE, 5, judged=judged)
+        return 100.0 * sqrt(found.standard**2 - combine(*FIVE).standard ** 2) / found.mu_resultant
+
+    drift = Judgement(drift_percent=-0.8, drift_error_percent=0.3, repeat_windows=1.5, trend_percent=6.0)
+    assert added(drift) == pytest.approx(1.1 * 1.5 / sqrt(12.0))
+    carried = replace(drift, flags=CARRY_OVER)
+    assert added(carried) == pytest.approx(hypot(1.1 * 1.5, 6.0) / sqrt(12.0))
+
+
+def test_one_valid_repeat_shows_its_mean_and_no_scatter() -> None:
     result = combine(FIVE[0], *[repeat(status=RepeatStatus.TOO_FEW)] * 4)
     assert result.mu_resultant == pytest.approx(0.70)
     assert isnan(result.s)
     assert isnan(result.expanded)
 
 
-def test_a_condition_left_early_keeps_what_the_run_said() -> None:
-    result = combine(FIVE[0], ended=ConditionStatus.CANNOT_HOLD, reason="warming 3 K/s")
+def test_a_condition_left_early_without_a_value_keeps_what_the_run_said() -> None:
+    failed = repeat(status=RepeatStatus.CANNOT_HOLD, reason="warming 3 K/s")
+    result = combine(failed, ended=ConditionStatus.CANNOT_HOLD, reason="warming 3 K/s")
     assert (result.status, result.reason) == (ConditionStatus.CANNOT_HOLD, "warming 3 K/s")
 
 
@@ -159,7 +202,8 @@ def test_of_two_values_none_is_far() -> None:
 
 
 def test_flags_of_repeats_are_those_of_the_condition() -> None:
-    assert combine(*[repeat(flags="rolling"), repeat(flags="rolling extended"), *FIVE[:3]]).flags == "extended rolling"
+    flagged = [repeat(flags="rolling"), repeat(flags="rolling extended"), repeat(flags="drift not shown; truncated")]
+    assert combine(*flagged, *FIVE[:2]).flags == "drift not shown; extended; rolling; truncated"
 
 
 def test_replicates_combine_as_means_of_wheels() -> None:
@@ -172,7 +216,7 @@ def test_replicates_combine_as_means_of_wheels() -> None:
 
 
 def test_a_single_wheel_with_a_value_is_not_enough_for_replicates() -> None:
-    result = combine_replicates([combine(*FIVE), combine(*FIVE[:1], ended=ConditionStatus.NOT_REACHED)])
+    result = combine_replicates([combine(*FIVE), combine(ended=ConditionStatus.NOT_REACHED)])
     assert result.status is ConditionStatus.INSUFFICIENT
     assert result.reason == "replicate 2: not reached"
 

@@ -108,3 +108,13 @@ def test_a_redirected_stream_is_utf_8(monkeypatch: pytest.MonkeyPatch) -> None:
     print("Slip Velocity /mm·s⁻¹")
     sys.stdout.flush()
     assert "mm·s⁻¹".encode() in raw.getvalue()
+
+
+def test_a_mistyped_command_names_the_nearest(capsys: pytest.CaptureFixture[str]) -> None:
+    assert invoke(["staus"]) == 2
+    assert "No such command 'staus'. Did you mean status?" in capsys.readouterr().err
+
+
+def test_a_mistyped_recipe_names_the_nearest(capsys: pytest.CaptureFixture[str]) -> None:
+    assert invoke(["check", "quikstart"]) == 2
+    assert 'no recipe "quikstart", did you mean quickstart?' in capsys.readouterr().err

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import sys
 from pathlib import Path
 
 import pytest
@@ -28,7 +29,7 @@ def invoke(command: object, *arguments: str) -> Result:
 def test_show_tells_status_rig_time_and_values(home: Path) -> None:
     lines = invoke(show, "one").stdout.splitlines()
     assert lines[0] == "one: Small, two loads"
-    assert lines[1] == "status   finished"
+    assert lines[1] == "status   done"
     assert lines[2].startswith("rig time 0:45:00")
     assert lines[3] == "values   2 of 2 conditions"
     assert lines[4].startswith("  1#, 300 mm/s, 100 N, 0°, 25 °C: 0.900 ± ")
@@ -37,7 +38,7 @@ def test_show_tells_status_rig_time_and_values(home: Path) -> None:
 
 def test_show_as_json(home: Path) -> None:
     shown = json.loads(invoke(show, "one", "--json").stdout)
-    assert (shown["rig_seconds"], shown["status"], shown["seed"]) == (2700.5, "finished", 1)
+    assert (shown["rig_seconds"], shown["status"], shown["seed"]) == (2700.5, "done", 1)
     assert [condition["mu"] for condition in shown["conditions"]] == pytest.approx([0.9, 0.73])
     assert len(shown["conditions"][0]["repeats"]) == 3
     assert shown["missing"] == []
@@ -89,6 +90,16 @@ def test_parquet_needs_a_file(home: Path) -> None:
 def test_parquet_goes_to_its_file(home: Path) -> None:
     assert invoke(export, "one", "--format", "parquet", "--out", "s.parquet").exit_code == 0
     assert (home / "s.parquet").read_bytes()[:4] == b"PAR1"
+
+
+def test_parquet_without_pyarrow_names_the_command_that_installs_it(
+    home: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, "pyarrow", None)
+    result = invoke(export, "one", "--format", "parquet", "--out", "s.parquet")
+    assert result.exit_code == 2
+    assert 'the format parquet needs pyarrow: pip install "friction-tester[parquet]"' in result.stderr
+    assert [path.name for path in home.iterdir()] == ["runs"]
 
 
 @pytest.mark.parametrize("command", [[show, "nothing"], [export, "nothing", "--format", "appendix"]])

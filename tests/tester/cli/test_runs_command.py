@@ -45,12 +45,12 @@ def open_run(folder: Path, repeats: int = 2) -> Path:
 def test_runs_lists_name_status_and_what_is_committed(home: Path) -> None:
     result = invoke(runs)
     assert result.exit_code == 0
-    assert result.stdout == "one  finished  0:45:00  2 conditions, 6 repeats  Small, two loads\n"
+    assert result.stdout == "one  done  0:45:00  2 conditions, 6 repeats  Small, two loads\n"
 
 
 def test_runs_as_json(home: Path) -> None:
     (found,) = listed()
-    assert (found["run"], found["status"], found["rig_seconds"]) == ("one", "finished", 2700.5)
+    assert (found["run"], found["status"], found["rig_seconds"]) == ("one", "done", 2700.5)
     assert (found["conditions"], found["repeats"], found["seed"], found["values"]) == (2, 6, 1, 2)
 
 
@@ -99,7 +99,7 @@ def test_a_run_that_cannot_be_read_is_named_on_stderr(home: Path) -> None:
         (("--compound", "1"), []),
         (("--recipe", "TWO loads"), ["one", "two"]),
         (("--recipe", "%"), []),
-        (("--status", "finished"), ["one"]),
+        (("--status", "done"), ["one"]),
     ],
 )
 def test_runs_are_chosen(home: Path, arguments: tuple[str, ...], found: list[str]) -> None:

@@ -50,12 +50,13 @@ def fake(folder: Path) -> Iterator[FakeService]:
 
 
 def test_status_says_that_nothing_runs(capsys: pytest.CaptureFixture[str]) -> None:
-    assert invoke(["status"]) == 0
-    assert capsys.readouterr().out == "no service is running\n"
+    assert invoke(["status"]) == 4
+    out, err = capsys.readouterr()
+    assert (out, err) == ("", "no service is running: start one with `tester serve`\n")
 
 
 def test_status_says_so_as_json_too(capsys: pytest.CaptureFixture[str]) -> None:
-    assert invoke(["status", "--json"]) == 0
+    assert invoke(["status", "--json"]) == 4
     assert json.loads(capsys.readouterr().out)["service"] is False
 
 

@@ -59,7 +59,7 @@ def test_a_held_repeat_is_void_and_done_again_in_a_second_attempt(held_run: Simu
     assert held_run.run.outcome is Outcome.DONE
     begun = [values[1:4] for values in held_run.notes.written("INSERT INTO repeat")]
     assert [values[1:] for values in begun] == [(1, 1), (1, 2)]
-    statuses = [values[0] for values in held_run.notes.written("UPDATE repeat")]
+    statuses = [values[0] for values in held_run.notes.written("UPDATE repeat SET status = ?, reason = ?, flags")]
     assert statuses[0] == "void" and len(statuses) == 2
 
 

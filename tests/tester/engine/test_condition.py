@@ -41,6 +41,9 @@ class Results:
     def over(self, step: ConditionStep) -> ConditionEnd | None:
         return None
 
+    def another(self, step: ConditionStep) -> bool:
+        return sum(one.condition.condition == step.condition for one in self.finished) < step.repeats
+
     def attempt(self, step: ConditionStep, repeat: int) -> int:
         return 1
 

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from tester import export
+from tester.analysis.results import SHORT
 from tester.export import exclude
 from tester.export.exclude import CannotExcludeError, Word, parse_target, record_word
 from tester.export.results import RunResults, results_of
@@ -45,7 +46,7 @@ def test_an_excluded_repeat_is_left_out_of_the_mean_and_says_why(run: Path) -> N
     record_word(run, OUT)
     measured = list(results(run).conditions())[1]
     assert measured.result.mu_resultant == pytest.approx((0.74 + 0.72 + 0.73) / 3)
-    assert (measured.result.n_valid, measured.result.flags.split()) == (3, ["excluded", "extended"])
+    assert (measured.result.n_valid, measured.result.flags) == (3, "excluded; extended")
     assert measured.exclusion(measured.repeats[0]) == f"excluded by hand: {REASON}"
     found = measured.left_out_by(measured.repeats[0])
     assert found is not None and found.operator == "ada"
@@ -71,10 +72,17 @@ def test_taken_in_again_the_tables_are_what_they_were_to_the_byte(run: Path) -> 
     assert said == [(1, 1, REASON, "ada"), (2, 0, "it was not", "ben")]
 
 
-def test_too_few_repeats_left_take_the_value_away_and_say_so(run: Path) -> None:
+def test_too_few_repeats_left_flag_the_value(run: Path) -> None:
     record_word(run, Word(1, 3, True, REASON, ""))
+    found = results(run).rows[0].result
+    assert (found.n_valid, found.doubts) == (2, (SHORT,))
+
+
+def test_without_any_repeat_left_the_value_is_gone_and_says_so(run: Path) -> None:
+    for repeat in (1, 2, 3):
+        record_word(run, Word(1, repeat, True, REASON, ""))
     (row,) = results(run).missing()
-    assert "2 of 3 valid, 3 needed: repeat 3 excluded by hand: debris on the belt" in row.describe()
+    assert "none of 3 repeats is valid: repeat 1 excluded by hand: debris on the belt" in row.describe()
     assert len((run / "appendix.csv").read_text("utf-8").splitlines()) == 2
 
 

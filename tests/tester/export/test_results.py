@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tester.analysis.results import ConditionStatus, RepeatStatus
+from tester.analysis.results import SHORT, ConditionStatus, RepeatStatus
 from tester.export.results import RunResults, results_of
 from tester.store.reader import RunReader
 from tester.store.schema import StoreError
@@ -25,9 +25,14 @@ def test_every_condition_has_a_row_with_its_mean(tmp_path: Path) -> None:
     assert found.missing() == []
 
 
-def test_a_condition_without_enough_repeats_is_missing_and_says_why(tmp_path: Path) -> None:
-    (row,) = results(small_run(tmp_path, ([0.9, 0.91], [0.73, 0.74, 0.72]))).missing()
-    assert row.describe() == "1#, 300 mm/s, 100 N, 0°, 25 °C: insufficient: 2 of 3 valid, 3 needed"
+def test_a_condition_without_a_valid_repeat_is_missing_and_says_why(tmp_path: Path) -> None:
+    (row,) = results(small_run(tmp_path, ([], [0.73, 0.74, 0.72]))).missing()
+    assert row.describe() == "1#, 300 mm/s, 100 N, 0°, 25 °C: insufficient: none of 0 repeats is valid"
+
+
+def test_a_condition_of_too_few_repeats_has_a_value_and_a_flag(tmp_path: Path) -> None:
+    found = results(small_run(tmp_path, ([0.9, 0.91], [0.73, 0.74, 0.72])))
+    assert found.missing() == [] and found.rows[0].result.doubts == (SHORT,)
 
 
 def test_a_temperature_that_cannot_be_held_is_named_with_rate_and_band(tmp_path: Path) -> None:

@@ -48,12 +48,12 @@ def test_the_appendix_has_as_many_decimals_as_asked(tmp_path: Path) -> None:
 
 
 def test_a_condition_without_a_value_is_not_in_the_appendix_but_returned(tmp_path: Path) -> None:
-    missing = export.write_all(small_run(tmp_path, ([0.9], [0.73, 0.74, 0.72])))
+    missing = export.write_all(small_run(tmp_path, ([], [0.73, 0.74, 0.72])))
     appendix, conditions, _ = tables(tmp_path)
     assert [line["Load /N"] for line in appendix] == ["200"]
     assert [missed.info.load_n for missed in missing] == [100.0]
     assert [line["status"] for line in conditions] == ["insufficient", "ok"]
-    assert conditions[0]["reason"] == "1 of 3 valid, 3 needed"
+    assert conditions[0]["reason"] == "none of 0 repeats is valid"
 
 
 def test_conditions_carry_setpoints_means_scatter_and_metadata(tmp_path: Path) -> None:

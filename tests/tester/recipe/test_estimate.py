@@ -74,8 +74,8 @@ def test_friction_heats_the_surface_with_the_square_root_of_time() -> None:
 
 def test_more_friction_needs_more_bursts() -> None:
     mild, hard = condition(MILD), condition(HARD)
-    assert mild.bursts == 1
-    assert hard.bursts > 3
+    assert mild.bursts == 2
+    assert hard.bursts > 4
     assert hard.seconds > mild.seconds
 
 

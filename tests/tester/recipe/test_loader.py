@@ -32,7 +32,7 @@ def test_what_a_recipe_leaves_out_has_the_documented_defaults() -> None:
     read = recipe(PREPARED)
     assert read.measure is not None
     assert read.rest is not None
-    assert (read.measure.repeats, read.measure.min_valid, read.measure.max_bursts) == (5, None, 40)
+    assert (read.measure.repeats.at_least, read.measure.min_valid, read.measure.max_bursts) == (5, None, 40)
     assert (read.measure.window, read.measure.temperature_band) == (Extent(30.0, "rev"), 2.0)
     assert (read.measure.soak.within, read.measure.soak.for_, read.measure.soak.at_most) == (1.0, 60.0, 1800.0)
     assert (read.rest.at_most, read.wheel.replace_after, read.measure.wear_check) == (5400.0, 2.0, "never")
@@ -82,7 +82,9 @@ def test_a_file_is_read_like_a_text(tmp_path: Path) -> None:
         (
             "slip_velocity",
             "slip_velocty",
-            'r.yaml:7:5: slip_velocity is missing (expected a speed such as "0.8 m/s"; units accepted: m/s, mm/s)',
+            'r.yaml:8:5: unknown key "slip_velocty", did you mean slip_velocity? (expected one of name, slip_velocity, '
+            "load, temperature, sideslip, camber, wheel_speed, repeats, min_valid, window, extend_to, "
+            "temperature_band, soak, max_bursts, wear_check)",
         ),
         (
             "wheel_speed: 0.8 m/s",
@@ -128,7 +130,19 @@ def test_a_value_of_the_wrong_form_is_reported_where_it_stands(old: str, new: st
     [
         ("load: [100 N, 200 N]", "load: [100 N, 0.1 kN]", "9:19", "load: 100 N is listed twice"),
         ("slip_velocity: 300 mm/s", "slip_velocity: 790 mm/s", "8:20", "leaves 0.01 m/s for the belt"),
-        ("wheel_speed: 0.8 m/s", "wheel_speed: 0.8 m/s\n  repeats: 2", "6:12", "a value needs 3 valid repeats"),
+        ("wheel_speed: 0.8 m/s", "wheel_speed: 0.8 m/s\n  repeats: 2", "6:12", "a flag needs 3 valid repeats"),
+        (
+            "wheel_speed: 0.8 m/s",
+            "wheel_speed: 0.8 m/s\n  repeats: {at_least: 5, at_most: 4}",
+            "6:12",
+            "at_most, 4, is less than at_least, 5",
+        ),
+        (
+            "wheel_speed: 0.8 m/s",
+            "wheel_speed: 0.8 m/s\n  until: 2 %\n  repeats: {at_least: 3, at_most: 3}",
+            "6:10",
+            "until needs 4 repeats to know the repeatability, and at most 3 are made",
+        ),
         (
             "wheel_speed: 0.8 m/s",
             "wheel_speed: 0.8 m/s\n  min_valid: 6",
@@ -148,7 +162,7 @@ def test_a_value_of_the_wrong_form_is_reported_where_it_stands(old: str, new: st
             "6:21",
             "soak.within, 1 K, is wider than temperature_band, 0.5 K",
         ),
-        ("name: load", "name: load\n    repeats: 2", "8:14", "a value needs 3 valid repeats"),
+        ("name: load", "name: load\n    repeats: 2", "8:14", "a value without a flag needs 3 valid repeats"),
     ],
 )
 def test_what_makes_no_sense_is_reported_where_it_stands(old: str, new: str, line: str, said: str) -> None:

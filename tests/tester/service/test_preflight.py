@@ -51,7 +51,9 @@ def test_standing_alarms_are_wrong_and_named() -> None:
         ("stopped", "stop by ada", "", None, "stopped: stop by ada"),
         ("tripped", "overload", "overload", False, "tripped: overload; not acknowledged"),
         ("tripped", "overload", "", None, "tripped: overload"),
-        ("running", "", "", None, "was cut off: r goes on with it"),
+        ("interrupted", "", "", None, "was cut off: r goes on with it"),
+        ("running", "", "", None, "running"),
+        ("incomplete", "", "", None, "incomplete"),
     ],
 )
 def test_how_the_last_run_ended_is_said(status: str, reason: str, latched: str, ok: bool | None, words: str) -> None:

@@ -116,6 +116,37 @@ def test_what_is_left_shrinks_and_steps_get_their_measured_durations(finished: S
     assert finished.texts("step")[0].startswith("install wheel 1")
 
 
+def test_a_trip_leaves_no_time_left_and_the_share_as_it_was(tmp_path: Path) -> None:
+    def script(stage: Stage) -> Script:
+        yield stage.order(RunRecipe("quickstart", speed=None, yes=True))
+        yield from stage.until(lambda view: view.mode == "LATCHED")
+        tripped = stage.views[-1].t_s
+        yield from stage.until(lambda view: view.t_s > tripped + 2000.0)
+        yield stage.order(Acknowledge())
+        yield from stage.until(over)
+
+    fault = 'sim.faults=["t=100 s: belt drive heartbeat lost for 3 s"]'
+    latched = [view for view in play(tmp_path, script, fault).views if view.mode == "LATCHED" and view.progress.steps]
+    assert latched[-1].t_s > 2000.0 and {view.progress.left_s for view in latched} == {None}
+    assert all(view.progress.finish_utc == "" for view in latched)
+    assert latched[-1].progress.share == pytest.approx(latched[0].progress.share) and latched[0].progress.share < 0.15
+
+
+def test_a_hold_stops_the_share_and_the_time_left(tmp_path: Path) -> None:
+    def script(stage: Stage) -> Script:
+        yield stage.order(RunRecipe("quickstart", speed=None, yes=True))
+        yield from stage.until(lambda view: "pre-grind" in view.progress.title)
+        yield stage.order(Hold())
+        yield from stage.until(lambda view: view.mode == "HOLD")
+        held = stage.views[-1].t_s
+        yield from stage.until(lambda view: view.t_s > held + 1000.0)
+        yield stage.order(Stop())
+        yield from stage.until(over)
+
+    held = [view.progress for view in play(tmp_path, script).views if view.mode == "HOLD"]
+    assert len({progress.share for progress in held}) == 1 and len({progress.left_s for progress in held}) == 1
+
+
 def test_frames_of_every_bus_are_told_in_both_directions(finished: Stage) -> None:
     frames = [frame for message in finished.told_frames for frame in message.frames]
     assert {frame.bus for frame in frames} >= {"can", "load_cell"}
@@ -396,6 +427,31 @@ def test_an_open_run_is_shown_as_interrupted_until_acknowledged(tmp_path: Path) 
     stage = play(tmp_path, script)
     assert any(run.name in view.interrupted for view in stage.views)
     assert stage.views[-1].interrupted == ()
+
+
+def test_a_run_that_was_resumed_to_its_end_is_interrupted_no_longer(tmp_path: Path) -> None:
+    def cut_off(stage: Stage) -> Script:
+        yield stage.order(RUN)
+        yield from stage.until(running)
+        yield stage.order(Stop())
+        yield from stage.until(over)
+
+    run = play(tmp_path, cut_off, *QUIET).views[-1].run
+    assert run is not None
+    import sqlite3
+
+    with sqlite3.connect(Path(run.folder) / "run.db") as database:
+        database.execute("UPDATE run SET status = 'running'")
+
+    def script(stage: Stage) -> Script:
+        yield from stage.until(lambda view: view.mode == "INTERRUPTED")
+        yield stage.order(ResumeRun(run.name, speed=None, yes=True))
+        yield from stage.until(running)
+        yield from stage.until(lambda view: view.run is not None and view.run.outcome != "running")
+        yield from stage.until(lambda view: view.mode == "OFFLINE")
+
+    last = play(tmp_path, script, *QUIET).views[-1]
+    assert last.run is not None and (last.run.outcome, last.interrupted) == ("done", ())
 
 
 def test_a_run_that_somebody_is_at_work_on_is_not_interrupted(tmp_path: Path) -> None:

@@ -139,6 +139,6 @@ def small_run(folder: Path, values: tuple[list[float], ...] = ([0.90, 0.91, 0.89
     writer.begin_run(RUN, SPECIMENS, conditions)
     for condition, repeats in zip(conditions, values, strict=True):
         record(writer, condition.condition, repeats)
-    writer.finish("finished", rig_seconds=2700.5)
+    writer.finish("done", rig_seconds=2700.5)
     writer.close()
     return folder

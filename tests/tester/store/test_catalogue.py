@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -9,7 +10,7 @@ import pytest
 from tester.lock import RUN_LOCK, ExclusiveUse
 from tester.store.catalogue import cut_off, find_run, run_folders, under_way
 from tester.store.schema import StoreError
-from tests.tester.store.build import small_run
+from tests.tester.store.build import CONDITIONS, RUN, SPECIMENS, open_writer, small_run
 
 
 def test_a_run_is_found_by_folder_file_or_name(tmp_path: Path) -> None:
@@ -23,6 +24,40 @@ def test_what_is_no_run_is_refused(tmp_path: Path) -> None:
     (tmp_path / "empty").mkdir()
     with pytest.raises(StoreError, match="no run empty"):
         find_run("empty", tmp_path)
+
+
+def test_latest_is_the_newest_run_by_the_date_of_its_name(tmp_path: Path) -> None:
+    small_run(tmp_path / "2024-02-22T10-00-00-a")
+    small_run(tmp_path / "2024-02-21T10-00-00-b")
+    small_run(tmp_path / "zz-a-copy")
+    assert find_run("latest", tmp_path).name == "2024-02-22T10-00-00-a"
+    assert find_run(str(tmp_path / "latest")).name == "2024-02-22T10-00-00-a"
+
+
+def test_latest_of_one_second_is_the_one_numbered_last(tmp_path: Path) -> None:
+    for name in ("2024-02-22T10-00-00-a", "2024-02-22T10-00-00-a-10", "2024-02-22T10-00-00-a-9"):
+        small_run(tmp_path / name)
+    assert find_run("latest", tmp_path).name.endswith("-10")
+
+
+def test_latest_where_no_name_has_a_date_goes_by_the_records(tmp_path: Path) -> None:
+    small_run(tmp_path / "one")
+    (tmp_path / "another").mkdir()
+    writer = open_writer(tmp_path / "another")
+    writer.begin_run(replace(RUN, started_utc="2025-01-01T00:00:00.000Z"), SPECIMENS, CONDITIONS)
+    writer.close()
+    assert find_run("latest", tmp_path).name == "another"
+
+
+def test_latest_where_there_is_no_run_says_so(tmp_path: Path) -> None:
+    with pytest.raises(StoreError, match="there is no run under"):
+        find_run("latest", tmp_path)
+
+
+def test_a_name_that_is_nearly_one_is_named(tmp_path: Path) -> None:
+    small_run(tmp_path / "2024-02-22T10-00-00-quickstart")
+    with pytest.raises(StoreError, match=r"did you mean 2024-02-22T10-00-00-quickstart\?"):
+        find_run("2024-02-22T10-00-00-quikstart", tmp_path)
 
 
 def test_run_folders_are_those_with_a_record_by_name(tmp_path: Path) -> None:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import sqlite3
-from dataclasses import replace
+import sys
+from dataclasses import fields, replace
 from hashlib import sha256
 from math import isnan
 from pathlib import Path
@@ -11,7 +12,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tester.analysis.results import ConditionStatus, RepeatStatus
+from tester.analysis.results import ConditionStatus, Judgement, RepeatStatus
+from tester.extras import MissingExtraError
 from tester.process import SAMPLE_COLUMNS
 from tester.store.reader import RunReader
 from tester.store.records import WheelInfo
@@ -28,7 +30,7 @@ def test_the_run_comes_back(folder: Path) -> None:
     with RunReader(folder) as reader:
         run = reader.run()
         assert run.info == RUN
-        assert (run.status, run.rig_seconds, run.overruns) == ("finished", 2700.5, 0)
+        assert (run.status, run.rig_seconds, run.overruns) == ("done", 2700.5, 0)
         assert run.recipe_sha256 == sha256(RUN.recipe_text.encode()).hexdigest()
         assert run.ended_utc == "2024-02-21T14:06:00.000Z"
 
@@ -224,7 +226,13 @@ def test_reading_does_not_change_the_file(folder: Path) -> None:
 
 def test_a_name_with_spaces_and_marks_is_just_a_name(tmp_path: Path) -> None:
     with RunReader(small_run(tmp_path / "a run? 100% #1")) as reader:
-        assert reader.run().status == "finished"
+        assert reader.run().status == "done"
+
+
+def without_judgements(database: sqlite3.Connection) -> None:
+    """Take out of a record what version 4 has added."""
+    for column in ("at_most", "until_percent", *(field.name for field in fields(Judgement))):
+        database.execute(f"ALTER TABLE condition DROP COLUMN {column}")
 
 
 def test_a_record_of_an_older_schema_is_read_and_left_as_it_is(tmp_path: Path) -> None:
@@ -239,11 +247,12 @@ def test_a_record_of_an_older_schema_is_read_and_left_as_it_is(tmp_path: Path) -
             ("run", "calibration_sha256"),
         ):
             database.execute(f"ALTER TABLE {table} DROP COLUMN {column}")
+        without_judgements(database)
         database.execute("PRAGMA user_version = 1")
     database.close()
     before = (folder / "run.db").read_bytes()
     with RunReader(folder) as reader:
-        assert len(reader.repeats()) == 6 and reader.sessions() == [] and reader.run().status == "finished"
+        assert len(reader.repeats()) == 6 and reader.sessions() == [] and reader.run().status == "done"
     assert (folder / "run.db").read_bytes() == before
 
 
@@ -251,6 +260,7 @@ def test_a_record_without_exclusions_is_read_in_place(tmp_path: Path, monkeypatc
     folder = small_run(tmp_path / "run")
     with sqlite3.connect(folder / "run.db") as database:
         database.execute("DROP TABLE exclusion")
+        without_judgements(database)
         database.execute("PRAGMA user_version = 2")
     database.close()
     before = (folder / "run.db").read_bytes()
@@ -260,9 +270,35 @@ def test_a_record_without_exclusions_is_read_in_place(tmp_path: Path, monkeypatc
     assert (folder / "run.db").read_bytes() == before
 
 
+def test_a_record_without_judgements_is_read_in_place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    folder = small_run(tmp_path / "run")
+    with sqlite3.connect(folder / "run.db") as database:
+        without_judgements(database)
+        database.execute("PRAGMA user_version = 3")
+    database.close()
+    before = (folder / "run.db").read_bytes()
+    monkeypatch.delattr("tester.store.reader.TemporaryDirectory")  # no copy of it is made
+    with RunReader(folder) as reader:
+        (first, _) = reader.conditions()
+    assert (first.info.at_most, first.info.until_percent) == (2 * first.info.repeats, None)
+    assert isnan(first.judged.drift_percent) and first.judged.flags == ""
+    assert (folder / "run.db").read_bytes() == before
+
+
 def test_samples_come_as_an_arrow_table(tmp_path: Path) -> None:
     from tester.store.arrow import sample_table
 
     with RunReader(small_run(tmp_path / "run")) as reader:
         table = sample_table(reader, 1, 2)
         assert table.num_rows == 5 and table.column_names == list(SAMPLE_COLUMNS)
+
+
+def test_without_pyarrow_a_table_names_what_to_install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from tester.store.arrow import sample_table
+
+    monkeypatch.setitem(sys.modules, "pyarrow", None)
+    with (
+        RunReader(small_run(tmp_path / "run")) as reader,
+        pytest.raises(MissingExtraError, match=r"pip install .friction-tester\[parquet\]"),
+    ):
+        sample_table(reader)

@@ -7,7 +7,7 @@ from dataclasses import fields
 
 import pytest
 
-from tester.analysis.results import Burst, RepeatResult
+from tester.analysis.results import Burst, Judgement, RepeatResult
 from tester.store.records import ConditionInfo, Event, SpecimenInfo, WheelInfo
 from tester.store.schema import APPLICATION_ID, VERSION, StoreError, migrate, version_of
 
@@ -29,6 +29,7 @@ def columns(database: sqlite3.Connection, table: str) -> set[str]:
         ("repeat", RepeatResult),
         ("burst", Burst),
         ("condition", ConditionInfo),
+        ("condition", Judgement),
         ("wheel", WheelInfo),
         ("specimen", SpecimenInfo),
         ("event", Event),

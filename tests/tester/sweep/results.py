@@ -7,7 +7,7 @@ from tester.sweep.case import NAN, CaseResult, RowResult
 
 def row(number: int = 1, mu: float = 0.73, u: float = 0.01, status: str = "ok") -> RowResult:
     """Return one row of a run's table."""
-    value = (mu, 0.005, 3, u) if status == "ok" else (NAN, NAN, 0, NAN)
+    value = (mu, 0.005, 3, u, "", "") if status == "ok" else (NAN, NAN, 0, NAN, "", "because")
     return RowResult(number, "1#", 300.0, 100.0 * number, 0.0, 0.0, 40.0, status, *value)
 
 

@@ -1,0 +1,229 @@
+"""A condition's repeats judged together: which are refused, whether the coefficient stands still, what carries over.
+
+Make-up repeats must not launder a run-in: a coefficient that settles while it is measured loses its first repeats to
+the drift test, and what is left looks steady at a value that depends on when it was looked at. Such a condition
+carries ``carry-over``: when two or more repeats were refused for drift of the same sign, when the means fall or rise
+with the sliding distance, or when the drift itself dies away along it (both at 1 %), or when what stays drifts the way
+of those that were refused (5 %; 16 % where the first repeat is one of them). The tests of the trend look at all
+repeats, the refused ones too.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from math import inf, isfinite, sqrt
+
+from tester.analysis.blocks import Block
+from tester.analysis.drift import CONFIDENCE, Drift, fit_drift, refusals
+from tester.analysis.quantiles import t_quantile
+from tester.analysis.repeats import REPEATABILITY, counting
+from tester.analysis.results import (
+    CARRY_OVER,
+    NAN,
+    NOT_JUDGED,
+    NOT_SHOWN,
+    Judgement,
+    RepeatResult,
+    RepeatStatus,
+    flags_in,
+    joined,
+)
+from tester.analysis.stability import seconds_of
+
+ALONE = 2
+"""Up to this many repeats are judged each alone: there is nothing to pool."""
+
+TREND_LEVEL = 0.01
+"""Level of the tests for a trend over the repeats."""
+HISTORY_DF = 8.0
+"""Weight of the historic standard deviation between repeats beside the condition's own, degrees of freedom [A]."""
+LEAST_CHANGE_PERCENT = 1.0
+"""A drift dies away where it changes by more than this over the repeats, per cent a window [A]: half the limit."""
+
+_LEAST_FOR_TREND = 3
+
+
+def judge(
+    results: Sequence[RepeatResult],
+    blocks: Sequence[Sequence[Block]],
+    planned: int,
+    revolutions: float | None,
+    seconds: float | None,
+) -> tuple[list[RepeatResult], Judgement]:
+    """Return a condition's repeats as judged, and what they say together.
+
+    ``results`` are its committed repeats in order, ``blocks`` of each those that count (not needed of a repeat that is
+    not valid). ``planned`` repeats were asked for, each with a window of ``revolutions`` or accepted ``seconds``. Those
+    that count are judged; drift and bound of each are then those of the common fit.
+    """
+    judged = list(results)
+    valid = [i for i, result in enumerate(results) if result.valid]
+    if any("rolling" in flags_in(results[i].flags) for i in valid):
+        return judged, NOT_JUDGED
+    if planned <= ALONE and valid:
+        return judged, _each_alone([results[i] for i in valid], [blocks[i] for i in valid], revolutions, seconds)
+    # Drift first: what drifts fluctuates, too, and is to be called by its name.
+    found = _refuse(judged, valid, blocks, revolutions, seconds)
+    kept = counting(judged)
+    if any(judged[i].valid and i not in kept for i in valid):
+        found = _refuse(judged, kept, blocks, revolutions, seconds)
+        kept = counting(judged)
+    if not kept:
+        return judged, _left_with_refused(judged, blocks, revolutions, seconds)
+    return judged, _judgement(judged, found, [blocks[i] for i in kept], revolutions, seconds)
+
+
+def _refuse(
+    judged: list[RepeatResult],
+    positions: Sequence[int],
+    blocks: Sequence[Sequence[Block]],
+    revolutions: float | None,
+    seconds: float | None,
+) -> Drift:
+    """Put the drift of the repeats at some positions into their results, refuse those that drift; return the fit."""
+    found, refused = refusals([blocks[i] for i in positions], revolutions, seconds)
+    singles = iter(found.repeats)
+    for position, index in enumerate(positions):
+        one = refused[position] if position in refused else next(singles)
+        judged[index] = replace(judged[index], drift_percent=one.drift_percent, bound_percent=one.bound_percent)
+        if position in refused:
+            judged[index] = replace(judged[index], status=RepeatStatus.REFUSED, reason=one.reason)
+    return found
+
+
+def _judgement(
+    results: Sequence[RepeatResult],
+    found: Drift,
+    blocks: Sequence[Sequence[Block]],
+    revolutions: float | None,
+    seconds: float | None,
+) -> Judgement:
+    trend, carries = trend_of(results, found.per_kelvin_percent)
+    carries |= _go_the_same_way(results, found)
+    flags = [word for word, on in ((NOT_SHOWN, not found.stable), (CARRY_OVER, carries)) if on]
+    return Judgement(
+        drift_percent=found.drift_percent,
+        drift_error_percent=found.error_percent,
+        drift_bound_percent=found.bound_percent,
+        per_kelvin_percent=found.per_kelvin_percent,
+        repeat_windows=_windows(blocks, revolutions, seconds),
+        trend_percent=trend,
+        flags=joined(flags),
+    )
+
+
+def _go_the_same_way(results: Sequence[RepeatResult], found: Drift) -> bool:
+    """Tell whether those that stay drift, too, the way of those that were refused.
+
+    A run-in is at its worst in the first repeat: where that was refused, more than one standard error will do.
+    """
+    first = next((r for r in results if r.valid or r.drifts), None)
+    margin = found.bound_percent - abs(found.drift_percent)
+    shown = abs(found.drift_percent) > (found.error_percent if first is not None and first.drifts else margin)
+    refused = [r.drift_percent * found.drift_percent > 0.0 for r in results if r.drifts]
+    return shown and bool(refused) and all(refused)
+
+
+def _left_with_refused(
+    results: Sequence[RepeatResult],
+    blocks: Sequence[Sequence[Block]],
+    revolutions: float | None,
+    seconds: float | None,
+) -> Judgement:
+    """Return what is known where no repeat is left: the drift of all that were refused for it."""
+    drifting = [i for i, result in enumerate(results) if result.drifts and blocks[i]]
+    if not drifting:
+        return NOT_JUDGED
+    left = [blocks[i] for i in drifting]
+    found = fit_drift(left, revolutions, seconds)
+    judgement = _judgement(results, found, left, revolutions, seconds)
+    return replace(judgement, flags=joined([NOT_SHOWN, *flags_in(judgement.flags)]))
+
+
+def _each_alone(
+    results: Sequence[RepeatResult],
+    blocks: Sequence[Sequence[Block]],
+    revolutions: float | None,
+    seconds: float | None,
+) -> Judgement:
+    """Return the judgement of repeats that have no siblings to speak of: the worst of them stands for all."""
+    found = max((fit_drift([one], revolutions, seconds) for one in blocks), key=_bound)
+    flags = [NOT_SHOWN] if any(NOT_SHOWN in flags_in(result.flags) for result in results) else []
+    windows = _windows(blocks, revolutions, seconds)
+    return Judgement(
+        found.drift_percent, found.error_percent, found.bound_percent, found.per_kelvin_percent, windows,
+        flags=joined(flags),
+    )  # fmt: skip
+
+
+def _bound(found: Drift) -> float:
+    return found.bound_percent if isfinite(found.bound_percent) else inf
+
+
+def _windows(blocks: Sequence[Sequence[Block]], revolutions: float | None, seconds: float | None) -> float:
+    """Return how many windows a repeat collected, in the mean."""
+    if revolutions is not None:
+        return sum(len(one) for one in blocks) / (revolutions * len(blocks))
+    return sum(seconds_of(one) for one in blocks) / (seconds * len(blocks)) if seconds else 1.0
+
+
+def trend_of(results: Sequence[RepeatResult], per_kelvin_percent: float) -> tuple[float, bool]:
+    """Return by how many per cent the coefficient changes from first repeat to last, and whether it carries over.
+
+    ``results``: all committed repeats in order; of those without a value only the sliding distance counts.
+    """
+    middles: list[float] = []
+    slid = 0.0
+    for result in results:
+        own = abs(result.slip_m_s) * result.window_s
+        own = own if isfinite(own) and own > 0.0 else 1.0
+        middles.append(slid + 0.5 * own)
+        slid += own
+    seen = [i for i, result in enumerate(results) if result.valid or result.drifts]
+    signs = [results[i].drift_percent > 0.0 for i in seen if results[i].drifts]
+    carries = max(signs.count(True), signs.count(False)) >= 2
+    if len(seen) < 2:
+        return NAN, carries
+    x = [middles[i] for i in seen]
+    at = sum(x) / len(x)
+    x = [value - at for value in x]
+    span = x[-1] - x[0]
+    kelvin = per_kelvin_percent if isfinite(per_kelvin_percent) else 0.0
+    surface = sum(results[i].surface_c for i in seen) / len(seen)
+    values = [
+        results[i].mu_resultant * (1.0 - 0.01 * kelvin * (results[i].surface_c - surface)) for i in seen
+    ]
+    mean = sum(values) / len(values)
+    y = [100.0 * (value / mean - 1.0) for value in values]
+    per_m = sum(a * b for a, b in zip(x, y, strict=True)) / sum(a * a for a in x)
+    if len(seen) >= _LEAST_FOR_TREND:
+        rest = sum((b - per_m * a) ** 2 for a, b in zip(x, y, strict=True))
+        df = len(seen) - 2 + HISTORY_DF
+        s = sqrt((rest + HISTORY_DF * (100.0 * REPEATABILITY) ** 2) / df)
+        error = s / sqrt(sum(a * a for a in x))
+        # One-sided where the drift within the repeats goes the same way.
+        drifts = [results[i].drift_percent for i in seen if isfinite(results[i].drift_percent)]
+        sides = 1.0 if sum(drifts) * per_m > 0.0 else 2.0
+        carries |= abs(per_m) > t_quantile(1.0 - TREND_LEVEL / sides, df) * error
+        carries |= _dies_away(x, [results[i] for i in seen])
+    return per_m * span, carries
+
+
+def _dies_away(x: Sequence[float], results: Sequence[RepeatResult]) -> bool:
+    """Tell whether the drift becomes less from repeat to repeat, and is shown to."""
+    drifts = [result.drift_percent for result in results]
+    if not all(map(isfinite, drifts)):
+        return False
+    t = t_quantile(CONFIDENCE, inf)
+    errors = [(result.bound_percent - abs(result.drift_percent)) / t for result in results]
+    squares = sum(a * a for a in x)
+    mean = sum(drifts) / len(drifts)
+    per_m = sum(a * b for a, b in zip(x, drifts, strict=True)) / squares
+    # What scatters about the line, too: one odd repeat among steady ones is no drift that dies away.
+    rest = sum((d - mean - per_m * a) ** 2 for a, d in zip(x, drifts, strict=True)) / max(len(x) - 2, 1)
+    error = sqrt(sum(a * a * max(e * e, rest) for a, e in zip(x, errors, strict=True))) / squares
+    first, last = mean + per_m * x[0], mean + per_m * x[-1]
+    if abs(first) <= abs(last) or abs(last - first) <= LEAST_CHANGE_PERCENT:
+        return False
+    return abs(per_m) > t_quantile(1.0 - 0.5 * TREND_LEVEL, inf) * error

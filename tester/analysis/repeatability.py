@@ -1,0 +1,45 @@
+"""Repeatability pooled over conditions (ISO 5725-2, 7.4.4): what a few repeats of one cannot know by themselves.
+
+The expanded repeatability of a mean of n repeats is t(0.975, df) s / sqrt(n), per cent of the coefficient, with s
+pooled over the conditions of the run so far. Stopping on a condition's own s at n = 3 would cover 71 % where 95 % is
+meant: it stops where s happens to be small.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import inf, sqrt
+
+from tester.analysis.quantiles import t_quantile
+from tester.analysis.uncertainty import CONFIDENCE
+
+
+@dataclass(frozen=True, slots=True)
+class Pool:
+    """Sum of squared deviations from the conditions' means, as shares of them, and its degrees of freedom."""
+
+    squares: float = 0.0
+    df: int = 0
+
+    def with_condition(self, values: Sequence[float]) -> Pool:
+        """Return the pool with the coefficients of one more condition; fewer than two say nothing."""
+        n = len(values)
+        mean = sum(values) / n if n else 0.0
+        if n < 2 or mean <= 0.0:
+            return self
+        return Pool(self.squares + sum((value / mean - 1.0) ** 2 for value in values), self.df + n - 1)
+
+    @property
+    def s_percent(self) -> float:
+        """Return the pooled standard deviation between repeats, per cent; inf where nothing is known."""
+        return 100.0 * sqrt(self.squares / self.df) if self.df else inf
+
+    def expanded_percent(self, n: int) -> float:
+        """Return the expanded repeatability (95 %) of a mean of ``n`` >= 1 repeats, per cent; inf where unknown."""
+        if not self.df:
+            return inf
+        return t_quantile(0.5 + 0.5 * CONFIDENCE, float(self.df)) * self.s_percent / sqrt(n)
+
+
+NOTHING_POOLED = Pool()

@@ -1,0 +1,122 @@
+"""What a run ends with on a terminal: the table of what was measured, what was not, which command to try next."""
+
+from __future__ import annotations
+
+import shlex
+import sys
+from collections.abc import Iterator, Sequence
+from math import isfinite
+from pathlib import Path
+from textwrap import wrap
+
+from rich.cells import cell_len
+
+from tester.cli.showing import shown
+from tester.export.cells import nominal
+from tester.export.results import RunResults, TableRow, results_of
+from tester.store.reader import RunReader
+from tester.store.resume import FINISHED
+from tester.store.schema import StoreError
+
+ROWS_AT_MOST = 200
+"""A longer table is for a spreadsheet: its beginning is shown, with the file that has it all."""
+_COMPOUND_AT_MOST = 16
+"""Cells of a compound's name; what is longer is cut and ends in an ellipsis."""
+_WIDTH = 80
+"""Columns of a terminal; remarks that do not fit get a line of their own."""
+
+
+def ending_lines(folder: Path) -> list[str]:
+    """Return the lines for people at the end of a run; none where the folder holds no record that can be read."""
+    try:
+        with RunReader(folder) as reader:
+            results = results_of(reader)
+    except StoreError:
+        return []
+    return ["", *table_lines(results, folder), *_next_lines(results, folder)]
+
+
+def table_lines(results: RunResults, folder: Path) -> Iterator[str]:
+    """Yield the table, 80 columns wide: a row for each condition of which something was tried.
+
+    Setpoints are nominal, the coefficient is the resultant; U is its expanded uncertainty (coverage 95 %). A row
+    without a value that can be trusted has a dash and its status.
+    """
+    tried = [row for row in results.rows if any(measured.repeats for measured in row.replicates)]
+    listed = tried[:ROWS_AT_MOST]
+    if listed:
+        camber = any(row.info.camber_deg for row in listed)
+        lines = [(_header(camber), ""), *((_cells(row, camber), _remarks(row)) for row in listed)]
+        widths = [max(map(cell_len, column)) for column in zip(*(cells for cells, _ in lines), strict=True)]
+        for cells, remarks in lines:
+            yield from _line(cells, widths, remarks)
+    if len(tried) > ROWS_AT_MOST:
+        yield f"and {len(tried) - ROWS_AT_MOST} more conditions: {folder / 'conditions.csv'}"
+    if len(tried) < len(results.rows):
+        yield f"{len(results.rows) - len(tried)} of {len(results.rows)} conditions not measured"
+
+
+def _header(camber: bool) -> Sequence[str]:
+    return ("compound", "mm/s", "N", "sideslip", *(["camber"] if camber else []), "degC", "mu", "U (95 %)", "valid")
+
+
+def _cells(row: TableRow, camber: bool) -> Sequence[str]:
+    i, r = row.info, row.result
+    return (
+        _cut(shown(i.compound)),
+        nominal(1e3 * i.slip_velocity_m_s),
+        nominal(i.load_n),
+        nominal(i.sideslip_deg),
+        *([nominal(i.camber_deg)] if camber else []),
+        nominal(i.temperature_c),
+        f"{r.mu_resultant:.3f}" if r.ok else "-",
+        f"{r.expanded:.3f}" if r.ok and isfinite(r.expanded) else "-",
+        f"{r.n_valid} of {r.n}",
+    )
+
+
+def _remarks(row: TableRow) -> str:
+    """Return the row's status where it has no value, and its flags."""
+    status = "" if row.result.ok else row.result.status.value
+    return shown(", ".join(part for part in (status, row.result.flags) if part))
+
+
+def _line(cells: Sequence[str], widths: Sequence[int], remarks: str) -> Iterator[str]:
+    """Yield a row: the name at the left, numbers at the right, remarks behind them or below."""
+    room = [" " * (width - cell_len(cell)) for cell, width in zip(cells, widths, strict=True)]
+    line = "  ".join([cells[0] + room[0], *(space + cell for space, cell in zip(room[1:], cells[1:], strict=True))])
+    if not remarks or cell_len(line) + 2 + cell_len(remarks) <= _WIDTH:
+        yield f"{line}  {remarks}".rstrip()
+        return
+    yield line
+    yield from wrap(remarks, _WIDTH, initial_indent="    ", subsequent_indent="    ")
+
+
+def _cut(name: str) -> str:
+    """Return a name of at most _COMPOUND_AT_MOST cells."""
+    if cell_len(name) <= _COMPOUND_AT_MOST:
+        return name
+    while cell_len(name) >= _COMPOUND_AT_MOST:
+        name = name[:-1]
+    return f"{name}…"
+
+
+def _next_lines(results: RunResults, folder: Path) -> Iterator[str]:
+    """Yield the commands to try next, as this one was called."""
+    program = Path(sys.argv[0]).name if sys.argv[0] else ""
+    called = sys.argv[0] if program in ("tester", "tester.exe") and Path(sys.argv[0]).parent != Path() else "tester"
+    where = shlex.quote(str(folder))
+    yield ""
+    if results.run.status == FINISHED or not results.missing():
+        yield f"next: {_near(called)} show {where}"
+    else:
+        yield f"next: {_near(called)} resume {where}"
+    yield f"      {_near(called)} tui"
+
+
+def _near(program: str) -> str:
+    """Return a program's path from here where that is shorter; on the search path, its name."""
+    path = Path(program)
+    if path.is_absolute() and path.is_relative_to(Path.cwd()):
+        return str(path.relative_to(Path.cwd()))
+    return program
