@@ -134,6 +134,8 @@ SCAN_DELAYED: Final = Interlock(
     reset="by itself",
 )
 
-ROWS: Final[tuple[Interlock, ...]] = (SAFETY_CHAIN, DRIVE_FAULT, BUS_LOST, SECOND_MASTER, CLOCK_JUMP, SCAN_LATE, GUARD_OPEN)
+ROWS: Final[tuple[Interlock, ...]] = (
+    SAFETY_CHAIN, DRIVE_FAULT, BUS_LOST, SECOND_MASTER, CLOCK_JUMP, SCAN_LATE, GUARD_OPEN,
+)  # fmt: skip
 WARNINGS: Final[tuple[Interlock, ...]] = (SCAN_DELAYED,)
 """Only said: they stand last in the table."""
