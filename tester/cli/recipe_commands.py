@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import click
 
 import recipes
-from tester.cli.options import QuantityType, json_option, print_json, rig_option, set_option
+from tester.cli.options import QuantityType, json_option, print_json, rig_option, say_packaged_keys, set_option
 
 if TYPE_CHECKING:
     from tester.analysis.repeatability import Pool
@@ -62,6 +62,7 @@ def check(recipe: str, rig_name: str, overrides: tuple[str, ...], as_json: bool)
         print_json({"valid": True, "problems": [], "conditions": count})
     else:
         click.echo(f'{name}: valid on rig "{rig.name}", {count} conditions')
+    say_packaged_keys(rig_name, overrides)
     return 0
 
 
