@@ -8,6 +8,7 @@ from typing import Protocol, runtime_checkable
 
 from tester.engine.context import Progress
 from tester.engine.prompts import Prompts
+from tester.trouble import in_words
 
 
 class Screen(Protocol):
@@ -144,7 +145,7 @@ class LastingScreen:
         if self.gone:
             return
         self.gone = True
-        text = f"the run can no longer be shown: {error.strerror or error}"
+        text = f"the run can no longer be shown: {in_words(error)}"
         self._lost(text)
         with suppress(OSError):
             self._screen.message(text)

@@ -275,10 +275,13 @@ class Session:
     # -- results ----------------------------------------------------------------------------------------------
 
     def _report(self, folder: Path, ending: Ending) -> int:
-        """Write the tables, name what is missing in them, and return the exit code."""
+        """Write the tables, say what to do about what is missing in them, and return the exit code.
+
+        Conditions that the run did not come to are no news each: the screen's result counts them.
+        """
         lost = write_all(folder)
         missing = [row.describe() for row in lost]
-        for row in [*lost, *doubtful(folder)]:
+        for row in [*(row for row in lost if row.tried), *doubtful(folder)]:
             self.screen.message(row.advise())
         with RunReader(folder) as reader:
             for line in results_of(reader).wear_lines():

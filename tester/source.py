@@ -20,6 +20,7 @@ import yaml.events as ev
 from yaml.error import Mark, MarkedYAMLError
 from yaml.scanner import ScannerError
 
+from tester.trouble import in_words
 from tester.units import shown
 from tester.yaml_events import Events
 
@@ -151,7 +152,7 @@ def _read(path: Path, called: str) -> str:
         with path.open("rb") as stream:
             raw = stream.read(MAX_BYTES + 1)
     except OSError as error:
-        raise InvalidSource([Problem(called, 1, 1, f"cannot be read: {error.strerror}")]) from error
+        raise InvalidSource([Problem(called, 1, 1, f"cannot be read: {in_words(error)}")]) from error
     if len(raw) > MAX_BYTES:
         raise _too_large(called)
     try:

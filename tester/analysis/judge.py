@@ -2,10 +2,10 @@
 
 Make-up repeats must not launder a run-in: a coefficient that settles while it is measured loses its first repeats to
 the drift test, and what is left looks steady at a value that depends on when it was looked at. Such a condition
-carries ``carry-over``: when two or more repeats were refused for drift of the same sign, when the means fall or rise
-with the sliding distance, or when the drift itself dies away along it (both at 1 %), or when what stays drifts the way
-of those that were refused (5 %; 16 % where the first repeat is one of them). The tests of the trend look at all
-repeats, the refused ones too.
+carries ``carry-over``: when two or more repeats were refused for drift of the same sign, or the first, where a run-in
+is at its worst; when the means fall or rise with the sliding distance, or the drift itself dies away along it (both at
+1 %); or when what stays drifts the way of those that were refused (5 %). The tests of the trend look at all repeats,
+the refused ones too.
 """
 
 from __future__ import annotations
@@ -114,13 +114,14 @@ def _judgement(
 
 
 def _go_the_same_way(results: Sequence[RepeatResult], found: Drift) -> bool:
-    """Tell whether those that stay drift, too, the way of those that were refused.
+    """Tell whether a run-in is what refused repeats tell of: the first is one of them, or those that stay drift, too.
 
-    A run-in is at its worst in the first repeat: where that was refused, more than one standard error will do.
+    A run-in is at its worst in the first repeat; where only later ones were refused, the drift of the others has to be
+    shown, and to go the same way.
     """
-    first = next((r for r in results if r.valid or r.drifts), None)
-    margin = found.bound_percent - abs(found.drift_percent)
-    shown = abs(found.drift_percent) > (found.error_percent if first is not None and first.drifts else margin)
+    if (first := next((r for r in results if r.valid or r.drifts), None)) is not None and first.drifts:
+        return True
+    shown = abs(found.drift_percent) > found.bound_percent - abs(found.drift_percent)
     refused = [r.drift_percent * found.drift_percent > 0.0 for r in results if r.drifts]
     return shown and bool(refused) and all(refused)
 

@@ -187,7 +187,8 @@ def combine_repeats(
 ) -> ConditionResult:
     """Return a condition's result from its repeats (one result per repeat: its last attempt; none void).
 
-    ``planned`` repeats were asked for; with fewer valid ones than ``min_valid`` the value is flagged ``short``. Where
+    ``planned`` repeats were asked for: where in the end fewer count, the value is flagged ``short``. Valid ones that a
+    person left out are not missed, as long as ``min_valid`` are left, the least for a value without that flag. Where
     all repeats were refused for their drift, the value is theirs, flagged. ``ended`` and ``reason``
     are what the run said when it left the condition (None: it has not), ``judged`` what its repeats say of its drift.
     ``by_hand``: positions that a person has left
@@ -203,7 +204,8 @@ def combine_repeats(
     status, why = _condition_status(results, excluded, planned, ended, reason)
     if not kept:
         return ConditionResult(status, why, EXCLUDED if by_hand else "", n=planned, excluded=tuple(excluded))
-    short = status is ConditionStatus.OK and len(kept) < min_valid
+    asked = planned - sum(results[i].valid for i in by_hand if i < len(results))
+    short = status is ConditionStatus.OK and len(kept) < max(asked, min_valid)
     values = [results[i].mu_resultant for i in kept]
     flagged = outliers(values, repeatability)
     flags = {flag for i in kept for flag in flags_in(results[i].flags)} | set(flags_in(judged.flags))

@@ -18,7 +18,8 @@ Flag = Literal["rolling", "extended", "truncated", "drift not shown"]
 NOT_SHOWN: Final = "drift not shown"
 """Flag: the coefficient has a value, but that it stands still could not be shown."""
 SHORT: Final = "short"
-"""Flag of a condition with a value of fewer repeats than its least (``min_valid``)."""
+"""Flag of a condition with a value of fewer repeats than were asked for, make-ups and all; where a person left some
+out, of fewer than its least (``min_valid``)."""
 CARRY_OVER: Final = "carry-over"
 """Flag of a condition whose coefficient was still settling over its repeats: refused and made-up repeats, or their
 means, tell of a run-in."""

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from typing import Final
 
-from tester.analysis.results import ConditionStatus
+from tester.analysis.results import DOUBTS, ConditionStatus, flags_in
 
-DOUBTS: Final = ("drift not shown", "short", "carry-over", "precision not reached")
-"""Flags that say that a value is to be taken with care."""
 NOT_TRUSTED: Final = "!"
 """Mark of a number that is no value to be trusted."""
 WITH_CARE: Final = "?"
@@ -21,4 +19,4 @@ def mark_of(status: ConditionStatus | str, flags: str) -> str:
     """
     if status != ConditionStatus.OK:
         return NOT_TRUSTED
-    return WITH_CARE if any(doubt in flags for doubt in DOUBTS) else ""
+    return WITH_CARE if any(flag in DOUBTS for flag in flags_in(flags)) else ""

@@ -25,6 +25,7 @@ from tester.recipe.estimate import estimate
 from tester.rig import RigConfig
 from tester.store.reader import DATABASE
 from tester.store.writer import RunWriter
+from tester.trouble import in_words
 
 if TYPE_CHECKING:
     from sim.rig import SimRig
@@ -134,7 +135,7 @@ class left_safe:  # noqa: N801 - reads as a statement
 
 
 def _broken_off(kind: type[BaseException], error: BaseException | None) -> str:
-    return f"the program broke off: {kind.__name__}: {error}"
+    return f"the program broke off: {kind.__name__}: {in_words(error) if error is not None else ''}"
 
 
 def _execute(

@@ -17,6 +17,7 @@ from tester.store.merge import Merge
 from tester.store.reader import DATABASE
 from tester.store.schema import StoreError
 from tester.store.writer import RunWriter
+from tester.trouble import in_words
 
 MERGED = "parts.merged"
 """The parts' folder once the run's own record holds everything: to be deleted."""
@@ -45,7 +46,7 @@ def put_together(
                 merge.finish(ending.outcome.value, ending.reason, clock.utc_now())
             drop_parts(job.folder)
         except (sqlite3.Error, StoreError, OSError) as error:
-            failed = f"{type(error).__name__}: {error}"
+            failed = in_words(error)
     ending = ending_of(list(ended.values()), len(work.parts), wanted())
     return replace(ending, failed=failed) if failed else ending
 

@@ -11,16 +11,16 @@ from textwrap import wrap
 
 from rich.cells import cell_len
 
+from tester.analysis.trust import mark_of
 from tester.axes import Axis, columns, plain
 from tester.cli.showing import shown
 from tester.export.results import RunResults, TableRow, results_of
 from tester.store.reader import RunReader
 from tester.store.schema import StoreError
-from tester.store.status import RunStatus
 
 ROWS_AT_MOST = 200
 """A longer table is for a spreadsheet: its beginning is shown, with the file that has it all."""
-_COMPOUND_AT_MOST = 16
+_COMPOUND_AT_MOST = 12
 """Cells of a compound's name; what is longer is cut and ends in an ellipsis."""
 _WIDTH = 80
 """Columns of a terminal; remarks that do not fit get a line of their own."""
@@ -40,14 +40,20 @@ def table_lines(results: RunResults, folder: Path) -> Iterator[str]:
     """Yield the table, 80 columns wide: a row for each condition of which something was tried.
 
     Setpoints are nominal, the coefficient is the resultant; U is its expanded uncertainty (coverage 95 %). A row
-    without a value that can be trusted has a dash and its status.
+    without a value that can be trusted has a dash and its status, a value to be taken with care the mark ``?``.
+    Conditions that the run did not come to are one line.
     """
-    tried = [row for row in results.rows if any(measured.repeats for measured in row.replicates)]
+    tried = [row for row in results.rows if row.tried]
     listed = tried[:ROWS_AT_MOST]
     if listed:
         axes = columns(row.info for row in listed)
-        header = ("compound", *(axis.title for axis in axes), "mu", "U (95 %)", "valid")
-        lines: list[tuple[Sequence[str], str]] = [(header, ""), *((_cells(row, axes), _remarks(row)) for row in listed)]
+        pad = " " if any(row.result.doubts for row in listed) else ""
+        titles = [axis.title.rpartition(" ") for axis in axes]
+        lines: list[tuple[Sequence[str], str]] = [
+            (("compound", *(name for name, _, _ in titles), f"mu{pad}", "U", "valid"), ""),
+            (("", *(unit for _, _, unit in titles), "", "(95 %)", ""), ""),
+            *((_cells(row, axes, pad), _remarks(row)) for row in listed),
+        ]
         widths = [max(map(cell_len, column)) for column in zip(*(cells for cells, _ in lines), strict=True)]
         for cells, remarks in lines:
             yield from _line(cells, widths, remarks)
@@ -57,12 +63,13 @@ def table_lines(results: RunResults, folder: Path) -> Iterator[str]:
         yield f"{len(results.rows) - len(tried)} of {len(results.rows)} conditions not measured"
 
 
-def _cells(row: TableRow, axes: Sequence[Axis]) -> Sequence[str]:
+def _cells(row: TableRow, axes: Sequence[Axis], pad: str) -> Sequence[str]:
+    """Return a row's cells; ``pad`` stands behind a coefficient where others have a mark."""
     i, r = row.info, row.result
     return (
         _cut(shown(i.compound)),
         *(plain(axis.of(i)) for axis in axes),
-        f"{r.mu_resultant:.3f}" if r.ok else "-",
+        f"{r.mu_resultant:.3f}{mark_of(r.status, r.flags) or pad}" if r.ok else f"-{pad}",
         f"{r.expanded:.3f}" if r.ok and isfinite(r.expanded) else "-",
         f"{r.n_valid} of {r.n}",
     )
@@ -100,7 +107,7 @@ def _next_lines(results: RunResults, folder: Path) -> Iterator[str]:
     called = sys.argv[0] if program in ("tester", "tester.exe") and Path(sys.argv[0]).parent != Path() else "tester"
     where = shlex.quote(str(folder))
     yield ""
-    if results.status in (RunStatus.DONE, RunStatus.INCOMPLETE):
+    if results.status.over or not results.missing():
         yield f"next: {_near(called)} show {where}"
     else:
         yield f"next: {_near(called)} resume {where}"

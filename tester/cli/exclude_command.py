@@ -54,7 +54,7 @@ def _say(run: str, repeat: str, reason: str, operator: str | None, *, excluded: 
         record_word(folder, Word(condition, number, excluded, reason, user() if operator is None else operator))
         with RunReader(folder) as reader:
             rows = results_of(reader).rows
-    except (CannotExcludeError, StoreError, OSError) as error:
+    except (CannotExcludeError, StoreError) as error:
         raise click.ClickException(str(error)) from error
     row = next(row for row in rows if any(one.info.condition == condition for one in row.replicates))
     n = f"n {row.result.n_valid} of {row.result.n}"

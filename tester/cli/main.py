@@ -7,6 +7,7 @@ that command is called: `tester --help` loads nothing but click (docs/decisions/
 from __future__ import annotations
 
 import io
+import os
 import sys
 from importlib import import_module
 from typing import NamedTuple
@@ -23,6 +24,8 @@ EXIT_UNREACHABLE = 4
 EXIT_TRIPPED = 5
 EXIT_INCOMPLETE = 6
 EXIT_INTERRUPTED = 130
+EXIT_READER_GONE = 141
+"""Nobody reads the output any more (`tester runs | head -1`): what a shell calls the end by SIGPIPE."""
 
 
 class CommandEntry(NamedTuple):
@@ -62,6 +65,10 @@ COMMANDS: dict[str, CommandEntry] = {
 """The commands in the order of the help page. A test holds every entry against the module it names."""
 
 
+class ReaderGoneError(Exception):
+    """What a command writes to has been closed at its other end."""
+
+
 class LazyGroup(click.Group):
     """A click group whose commands are imported when they are called."""
 
@@ -92,6 +99,13 @@ class LazyGroup(click.Group):
             meant = f" Did you mean {near[0]}?" if near else ""
             raise click.UsageError(f"{error.message}{meant}", ctx) from error
 
+    def invoke(self, ctx: click.Context) -> object:
+        """Carry out the command; a reader that is gone is ours to tell, click would end with 1."""
+        try:
+            return super().invoke(ctx)
+        except BrokenPipeError as error:
+            raise ReaderGoneError from error
+
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write the commands' help lines without importing the commands."""
         with formatter.section("Commands"):
@@ -102,7 +116,8 @@ class LazyGroup(click.Group):
     cls=LazyGroup,
     context_settings={"help_option_names": ["-h", "--help"]},
     epilog="stdout is data, stderr is messages. Exit codes: 0 done, 1 run failed, 2 usage, 3 invalid recipe or rig "
-    "file, 4 rig unreachable, 5 tripped or stopped, 6 incomplete, 130 interrupted.",
+    "file, 4 rig unreachable, 5 tripped or stopped, 6 incomplete, 130 interrupted, "
+    "141 nobody reads the output any more.",
 )
 @click.version_option(__version__, message="%(prog)s %(version)s")
 def root() -> None:
@@ -120,10 +135,21 @@ def _invalid_source() -> type[Exception]:
     return InvalidSource
 
 
-def _write_utf8(stream: object) -> None:
-    """Let a redirected stream carry every character of a table's header; a console already does."""
-    if isinstance(stream, io.TextIOWrapper) and not stream.isatty():
-        stream.reconfigure(encoding="utf-8")
+def _prepare_streams() -> None:
+    """Let every character of a table's header and of a file's name go out, whatever the locale.
+
+    A redirected stream is UTF-8; a terminal that does not know a character (LANG=C) shows a question mark. A closed
+    stream leads nowhere: without that, a file that is opened would stand in its place.
+    """
+    for name in ("stdin", "stdout", "stderr"):
+        stream: object = getattr(sys, name)
+        if stream is None:
+            setattr(sys, name, open(os.devnull, "r" if name == "stdin" else "w", encoding="utf-8"))  # noqa: SIM115, PTH123
+        elif isinstance(stream, io.TextIOWrapper) and name != "stdin":
+            if stream.isatty():
+                stream.reconfigure(errors="replace")
+            else:
+                stream.reconfigure(encoding="utf-8", errors="surrogateescape")
 
 
 def invoke(arguments: list[str] | None = None) -> int:
@@ -136,14 +162,41 @@ def invoke(arguments: list[str] | None = None) -> int:
     except click.Abort:
         click.echo("interrupted", err=True)
         return EXIT_INTERRUPTED
+    except ReaderGoneError:
+        return EXIT_READER_GONE
     except _invalid_source() as error:
         click.echo(str(error), err=True)
         return EXIT_INVALID
+    except OSError as error:
+        from tester.trouble import in_words
+
+        click.echo(f"Error: {in_words(error)}", err=True)
+        return EXIT_FAILED
     return result if isinstance(result, int) else EXIT_DONE
+
+
+def _flushed(code: int) -> int:
+    """Return the exit code once everything is written; what is left for a reader that is gone is dropped."""
+    for stream in (sys.stdout, sys.stderr):
+        try:
+            stream.flush()
+        except BrokenPipeError:
+            code = code or EXIT_READER_GONE
+        except OSError as error:
+            from tester.trouble import in_words
+
+            code = code or EXIT_FAILED
+            if stream is sys.stdout:
+                click.echo(f"Error: the output is not complete: {in_words(error)}", err=True)
+        else:
+            continue
+        nothing = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nothing, stream.fileno())  # the interpreter flushes once more at its end
+        os.close(nothing)
+    return code
 
 
 def main() -> None:
     """Entry point of the console script."""
-    _write_utf8(sys.stdout)
-    _write_utf8(sys.stderr)
-    sys.exit(invoke())
+    _prepare_streams()
+    sys.exit(_flushed(invoke()))

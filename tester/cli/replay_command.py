@@ -5,6 +5,7 @@ from __future__ import annotations
 import click
 
 from tester.cli.finding import run_folder
+from tester.cli.tui_command import need_terminal
 
 
 @click.command(short_help="The screens over a stored run, with a time slider.")
@@ -19,6 +20,7 @@ def replay(run: str, theme: str | None, plain: bool) -> int:
     from tester.tui.stored import read
 
     folder = run_folder(run)
+    need_terminal("tester replay", "`tester show` needs none")
     try:
         playback, stored = load(folder), read(str(folder), folder.parent)
     except StoreError as error:

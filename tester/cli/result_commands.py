@@ -138,6 +138,9 @@ def _wheel(wheel: WheelInfo, results: RunResults) -> Json:
 
 
 def _condition(measured: Measured, results: RunResults) -> Json:
+    from tester.analysis.results import flags_in
+    from tester.analysis.trust import mark_of
+
     i, r = measured.info, measured.result
     worn = results.condition_wear(i.condition)
     return {
@@ -154,6 +157,8 @@ def _condition(measured: Measured, results: RunResults) -> Json:
         "status": r.status.value,
         "reason": r.reason,
         "mu": number(r.mu_resultant),
+        "mark": mark_of(r.status, r.flags) if isfinite(r.mu_resultant) else "",
+        "flags": [*flags_in(r.flags)],
         "s": number(r.s),
         "u_expanded": number(r.expanded),
         "n_valid": r.n_valid,
@@ -186,8 +191,12 @@ def _lines(name: str, results: RunResults) -> Iterator[str]:
         yield f"overruns {run.overruns} samples dropped"
     yield f"values   {len(results.rows) - len(results.missing())} of {len(results.rows)} conditions"
     for row in results.rows:
-        yield shown(_row(row))
-        yield from _worn(row, results)
+        if row.tried:
+            yield shown(_row(row))
+            yield from _worn(row, results)
+    left = sum(not row.tried for row in results.rows)
+    if left:
+        yield f"  {left} of {len(results.rows)} conditions not measured"
     for line in results.wear_lines():
         yield shown(line)
 
@@ -227,7 +236,8 @@ def _row(row: TableRow) -> str:
 def export(run: str, kind: str, out: Path | None, decimals: int) -> None:
     """Write a table of RUN: a run's folder, its name under runs, or latest.
 
-    Conditions without a value that can be trusted are not in the appendix and are named on stderr.
+    Conditions without a value that can be trusted are not in the appendix and are named on stderr; so are values that
+    are to be taken with care.
     """
     from tester.extras import MissingExtraError
     from tester.store.reader import RunReader
@@ -241,9 +251,7 @@ def export(run: str, kind: str, out: Path | None, decimals: int) -> None:
             _export(reader, kind, out, decimals)
     except MissingExtraError as error:
         raise click.UsageError(str(error)) from error
-    except (StoreError, OSError) as error:
-        if isinstance(error, BrokenPipeError):
-            raise
+    except StoreError as error:
         raise click.ClickException(str(error)) from error
 
 
@@ -269,6 +277,8 @@ def _export(reader: RunReader, kind: str, out: Path | None, decimals: int) -> No
         _deliver(tables.appendix(results, decimals), out)
         for row in results.missing():
             click.echo(f"not in the appendix: {shown(row.describe())}", err=True)
+        for row in results.doubtful():
+            click.echo(f"to be taken with care: {shown(row.advise())}", err=True)
 
 
 def _deliver(chunks: Iterable[bytes], out: Path | None) -> None:

@@ -27,7 +27,9 @@ def init(file: Path, force: bool) -> None:
     except FileExistsError as error:
         raise click.UsageError(f"{file} exists already; --force replaces it") from error
     except OSError as error:
-        raise click.UsageError(f"{file} cannot be written: {error.strerror}") from error
+        from tester.trouble import in_words
+
+        raise click.UsageError(f"the rig file cannot be written: {in_words(error)}") from error
     click.echo(str(file))
 
 

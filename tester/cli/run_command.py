@@ -43,6 +43,7 @@ from tester.cli.options import json_option, rig_option, set_option
 )
 @click.option("--operator", default="", metavar="NAME", help="Who runs the test; stored with the run.")
 @click.option("--detach", is_flag=True, help="Have the service run it (`tester serve`), and return.")
+@click.option("--take", is_flag=True, help="With --detach: take control from the client that has it.")
 @json_option
 @click.pass_context
 def run(
@@ -59,6 +60,7 @@ def run(
     faults: tuple[str, ...],
     operator: str,
     detach: bool,
+    take: bool,
     as_json: bool,
 ) -> int:
     """Run RECIPE (a file, or the name of a shipped recipe) and print the run's folder as the last line.
@@ -73,7 +75,9 @@ def run(
         if given & {"out", "bus_log"}:
             raise click.UsageError("--out and --bus-log are the service's to choose: not with --detach")
         rig = rig_name if "rig_name" in given else ""
-        return _detached(recipe, rig, overrides, seed, time_lapse(speed), yes, operator)
+        return _detached(recipe, rig, overrides, seed, time_lapse(speed), yes, operator, take)
+    if take:
+        raise click.UsageError("--take: a run in the foreground needs nobody's control; it goes with --detach")
 
     if not as_json:
         # What the run needs takes a moment to load: say what has been begun before that.
@@ -101,7 +105,14 @@ def run(
 
 
 def _detached(
-    recipe: str, rig: str, overrides: tuple[str, ...], seed: int, lapse: float | None, yes: bool, operator: str
+    recipe: str,
+    rig: str,
+    overrides: tuple[str, ...],
+    seed: int,
+    lapse: float | None,
+    yes: bool,
+    operator: str,
+    take: bool,
 ) -> int:
     """Have the service run a recipe; its files are named so that the service finds them from its own folder."""
     from pathlib import Path
@@ -115,11 +126,12 @@ def _detached(
     action = RunRecipe(
         found(recipe), rig=found(rig), overrides=overrides, seed=seed, speed=lapse, yes=yes, operator=operator
     )
-    return run_detached("", action)
+    return run_detached("", action, take)
 
 
 def carried_out(work: Callable[[], int]) -> int:
-    """Do the work and return its exit code; what keeps it from beginning goes to stderr."""
+    """Do the work and return its exit code; what keeps it from beginning goes to stderr. Raises OSError."""
+    from recipes import UnknownRecipe
     from tester.session import CannotStartError
     from tester.store.schema import StoreError
 
@@ -128,9 +140,9 @@ def carried_out(work: Callable[[], int]) -> int:
     except CannotStartError as error:
         click.echo(str(error), err=True)
         return error.code
-    except FileNotFoundError as error:
+    except UnknownRecipe as error:
         raise click.UsageError(str(error)) from error
-    except (StoreError, OSError) as error:
+    except StoreError as error:
         raise click.ClickException(str(error)) from error
 
 

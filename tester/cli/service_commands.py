@@ -113,9 +113,9 @@ def stop(address: str, fast: bool) -> int:
     return _command(address, Stop(fast=fast), take=False, control=False)
 
 
-def run_detached(address: str, action: Action) -> int:
+def run_detached(address: str, action: Action, take: bool) -> int:
     """Have the service run a recipe, print the run's folder and leave it to the service; return the exit code."""
-    return _command(address, action, take=False, show_folder=True)
+    return _command(address, action, take, show_folder=True)
 
 
 def _command(address: str, action: Action, take: bool, *, control: bool = True, show_folder: bool = False) -> int:
@@ -136,7 +136,7 @@ def _command(address: str, action: Action, take: bool, *, control: bool = True, 
         click.echo(NO_SERVICE, err=True)
         return EXIT_UNREACHABLE
     except (RefusedError, LostError, TimeoutError) as error:
-        may_take = control and not take and not show_folder
+        may_take = control and not take
         hint = ": `--take` takes control" if may_take and "has control" in str(error) else ""
         click.echo(f"refused: {error}{hint}" if isinstance(error, RefusedError) else f"no answer: {error}", err=True)
         return EXIT_REFUSED

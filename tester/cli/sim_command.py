@@ -66,7 +66,9 @@ def sim(
     except (UnknownCompoundError, FileNotFoundError) as error:
         raise click.UsageError(str(error)) from error
     except OSError as error:
-        click.echo(f"cannot listen on {listen} or write a file: {error}", err=True)
+        from tester.trouble import in_words
+
+        click.echo(f"cannot listen on {listen} or write a file: {in_words(error)}", err=True)
         return 1
     click.echo(f"ended; at most {1e3 * latest_s:.1f} ms late", err=True)
     return 0

@@ -110,8 +110,10 @@ class _Printer:
         self._emit({"event": "run", **record, "missing": result.missing, "rows": rows})
         point = "".join(f"{key}={value}, " for key, value in zip(self.keys, result.point, strict=True))
         missing = f", {result.missing} of {len(result.rows)} conditions missing" if result.missing else ""
+        doubts = f", {result.with_care} to be taken with care" if result.with_care else ""
         reason = f": {result.reason}" if result.reason else ""
-        click.echo(f"{done}/{self.runs}  {point}seed {result.seed}: {result.outcome}{missing}{reason}", err=True)
+        told = f"{result.outcome}{missing}{doubts}{reason}"
+        click.echo(f"{done}/{self.runs}  {point}seed {result.seed}: {told}", err=True)
 
     def _emit(self, record: dict[str, object]) -> None:
         if self.as_json:

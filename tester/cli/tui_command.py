@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from pathlib import Path
 
@@ -62,6 +63,7 @@ def tui(
     """
     if web:
         return _serve(port, address)
+    need_terminal("tester tui", "`tester status`, `tester run` and `tester stop` need none")
     from tester.service.address import AddressError, address_of
     from tester.tui.app import TesterApp
     from tester.tui.host import TuiOptions
@@ -81,6 +83,16 @@ def tui(
     if farewell:
         click.echo(farewell, err=True)
     return app.return_code or 0
+
+
+def need_terminal(command: str, instead: str) -> None:
+    """Raise UsageError where there is no terminal to draw on and to read keys from; a browser's is none of ours."""
+    if "TEXTUAL_DRIVER" in os.environ:
+        return
+    if not all(stream is not None and stream.isatty() for stream in (sys.__stdin__, sys.__stderr__)):
+        raise click.UsageError(f"{command} needs a terminal, and there is none here; {instead}")
+    if os.environ.get("TERM") == "dumb":
+        raise click.UsageError(f"{command} needs a terminal that can place text, and TERM is dumb; {instead}")
 
 
 def _serve(port: int, address: str) -> int:

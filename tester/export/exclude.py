@@ -13,6 +13,7 @@ from tester.lock import RUN_LOCK, ExclusiveUse, RigInUseError
 from tester.store.exclusions import add_exclusion, standing
 from tester.store.reader import RunReader
 from tester.store.records import StoredExclusion, StoredRepeat
+from tester.trouble import in_words
 
 MADE_ANEW = frozenset({"run.db", "appendix.csv", "conditions.csv", "repeats.csv", "wheel.csv", "wear.csv"})
 """Files of a run's folder that an exclusion changes, beside the manifest."""
@@ -107,7 +108,7 @@ def _check_manifest(folder: Path, *, unfinished: bool) -> None:
     try:
         wrong = manifest_problems(folder)
     except (ValueError, KeyError, TypeError, AttributeError) as error:
-        raise CannotExcludeError(f"{MANIFEST} cannot be read: {error}") from error
+        raise CannotExcludeError(f"{MANIFEST} cannot be read: {in_words(error)}") from error
     if unfinished:
         wrong = [line for line in wrong if line.partition(":")[0] not in MADE_ANEW]
     if wrong:

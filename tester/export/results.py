@@ -58,6 +58,11 @@ class TableRow:
         """Return the setpoints, those of the first replicate."""
         return self.replicates[0].info
 
+    @property
+    def tried(self) -> bool:
+        """Return whether the run came to this row: a repeat is on record, or why there is none."""
+        return self.result.status is not ConditionStatus.PENDING or any(m.repeats for m in self.replicates)
+
     def describe(self) -> str:
         """Return the row's setpoints and why it has no value, in a line for people."""
         parts = [self.result.status.value, self.result.reason]

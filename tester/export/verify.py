@@ -16,6 +16,7 @@ from tester.store.recorder import calibration_sha256, text_sha256
 from tester.store.records import StoredExclusion, StoredRun
 from tester.store.schema import StoreError
 from tester.store.status import RunStatus
+from tester.trouble import in_words
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,7 +70,7 @@ def _manifest(folder: Path) -> list[str]:
     try:
         return manifest_problems(folder)
     except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
-        return [f"{MANIFEST} cannot be read: {error}"]
+        return [f"{MANIFEST} cannot be read: {in_words(error)}"]
 
 
 def _texts(folder: Path, run: StoredRun) -> list[str]:

@@ -104,6 +104,8 @@ class Motion(NamedTuple):
     """Moves around a repeat."""
     moves_s: float
     """Moves around a pulse, beyond those around a repeat."""
+    repeats: float
+    """Expected, with those made up for."""
     swing_k: float
     """Rise during a pulse that starts below the setpoint and ends as far above it."""
 
@@ -175,9 +177,8 @@ class ConditionCosts:
         motion = self._motions.get(key)
         if motion is None:
             motion = self._motions[key] = self._motion(sp, how)
-        model, cornering, slip_m_s, _, soak_s, window_s, edge_s, repeat_s, moves_s, _ = motion
+        model, cornering, slip_m_s, _, soak_s, window_s, edge_s, repeat_s, moves_s, repeats, _ = motion
         c = self.constants
-        repeats = expected(how, self.s_percent(compound))
         if slip_m_s < ROLLING_M_S:
             seconds = soak_s + repeats * (repeat_s + window_s)
             return StepEstimate(seconds, 0.0, 0.0, 0.0, temperature_c, 1, repeats=repeats)
@@ -225,6 +226,7 @@ class ConditionCosts:
             edge_s=(c.yawed_slide_s if yawed else c.burst_edge_s) + c.split_turns * turn_s,
             repeat_s=0.0 if yawed else c.repeat_moves_s,
             moves_s=c.yawed_moves_s + 2.0 * abs(sp.sideslip_deg) / c.yaw_deg_s if yawed else 0.0,
+            repeats=expected(how, self.s_percent(sp.compound)),
             swing_k=self.offset_k + min(how.temperature_band_k, self.offset_k),
         )
 
@@ -246,7 +248,7 @@ class ConditionCosts:
 
         ``rise_k`` is the surface's rise in K per square root of a second.
         """
-        _, _, _, turn_s, _, window_s, edge_s, _, _, swing_k = motion
+        _, _, _, turn_s, _, window_s, edge_s, _, _, _, swing_k = motion
         if rise_k <= 0.0:
             return 1, window_s, True
         c = self.constants

@@ -85,6 +85,18 @@ def predicted_loss_mm(step: ConditionStep, rig: RigConfig) -> float:
     return Estimator(rig).condition(step).loss_mm
 
 
+def _precision_range_s(plan: Plan, steps: Sequence[StepEstimate]) -> tuple[float, float]:
+    """Return by how much sooner and later, s, precisions are reached that a run's own deviation decides."""
+    sooner_s = later_s = 0.0
+    least, most = SURE
+    for step, one in zip(plan.steps, steps, strict=True):
+        if isinstance(step, ConditionStep) and step.until_percent is not None and one.repeats:
+            moves_s = one.seconds - one.waiting_s
+            sooner_s += (1.0 - min(max(least * least, step.repeats / one.repeats), 1.0)) * moves_s
+            later_s += (max(min(most * most, step.at_most / one.repeats), 1.0) - 1.0) * moves_s
+    return sooner_s, later_s
+
+
 class Estimator:
     """Estimates for one rig; the costs of conditions are remembered."""
 
@@ -185,21 +197,17 @@ class Estimator:
         What waits for temperatures follows the thermometer's bias, one for all of a session, hence adds up;
         repeats that are made up for come one by one (Poisson); a precision's repeats follow the run's own deviation.
         """
-        c = self.constants
-        fixed = low = high = scattered = 0.0
-        for step, one in zip(plan.steps, steps, strict=True):
-            moves_s = one.seconds - one.waiting_s
-            if isinstance(step, ConditionStep) and one.repeats > 0.0:
-                a_repeat_s = one.seconds / one.repeats
-                scattered += MADE_UP * one.repeats * a_repeat_s * a_repeat_s
-                if step.until_percent is not None:
-                    least, most = SURE
-                    low += max(least * least, step.repeats / one.repeats) * moves_s - moves_s
-                    high += min(most * most, step.at_most / one.repeats) * moves_s - moves_s
-            fixed += moves_s
-            low += c.waits_least * one.waiting_s
-            high += c.waits_most * one.waiting_s
-        return fixed + low + c.waits_least * down_s, fixed + high + 2.0 * math.sqrt(scattered) + c.waits_most * down_s
+        seconds, waits_s, scattered = 0.0, down_s, 0.0
+        for one in steps:
+            took_s = one.seconds
+            seconds += took_s
+            waits_s += one.waiting_s
+            if one.repeats:
+                scattered += MADE_UP * took_s * took_s / one.repeats
+        sooner_s, later_s = _precision_range_s(plan, steps)
+        seconds += down_s
+        low = seconds - (1.0 - self.constants.waits_least) * waits_s - sooner_s
+        return low, seconds + (self.constants.waits_most - 1.0) * waits_s + later_s + 2.0 * math.sqrt(scattered)
 
     def shut_down_s(self, plan: Plan) -> float:
         """Return the seconds from the last step to standstill: a hot jacket is cooled turning."""

@@ -8,6 +8,7 @@ schema's own problems.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from difflib import get_close_matches
 from itertools import product
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -149,7 +150,9 @@ class _Limits:
             at = ("specimens", index, "compound")
             name = self._node(at)
             if self.rig.simulated and isinstance(name, str) and name not in KNOWN:
-                message = f"compound: the simulated rig has no friction model for {shown(name)}"
+                near = get_close_matches(name, KNOWN, 1)
+                meant = f", did you mean {near[0]}?" if near else ""
+                message = f"compound: the simulated rig has no friction model for {shown(name)}{meant}"
                 yield self.tree.problem(at, f"{message} (expected one of {', '.join(KNOWN)})")
 
     def _wheel_speeds(self, at: Location) -> Iterator[Problem]:

@@ -84,7 +84,12 @@ class OrderCosts:
         before.rolled = heat_w <= 0.0
         if waiting_s == 0.0:
             return one
-        return one._replace(seconds=one.seconds + waiting_s, waiting_s=one.waiting_s + waiting_s)
+        # Not _replace, which takes three times as long: plans have 100,000 conditions.
+        seconds, sliding_m, loss_mm, friction_j, peak_c, bursts, held, waited_s, _, repeats = one
+        seconds, waited_s = seconds + waiting_s, waited_s + waiting_s
+        return StepEstimate(
+            seconds, sliding_m, loss_mm, friction_j, peak_c, bursts, held, waited_s, heat_w, repeats
+        )  # fmt: skip
 
     def _settle_s(self, from_c: float, to_c: float) -> float:
         """Return the seconds in contact from a temperature that was reached to one that stands."""

@@ -42,6 +42,7 @@ from tester.service.protocol import (
     from_server,
 )
 from tester.service.state import PlanView, StateView
+from tester.trouble import in_words
 
 MAX_INCOMING = 64 * 1024 * 1024
 """Longest message taken from the service, bytes: a hello holds ten minutes and two thousand events."""
@@ -120,7 +121,7 @@ class Client:
             async with asyncio.timeout(CONNECT_S):
                 first = from_server(await connection.recv())
         except (OSError, AddressError, InvalidHandshake, TimeoutError, BadMessageError) as error:
-            why = error.strerror if isinstance(error, OSError) and error.strerror else error
+            why = in_words(error)
             raise NoServiceError(f"no service there: {why}") from error
         except ConnectionClosed as error:
             raise NoServiceError(f"the service hung up: {error}") from error

@@ -1,13 +1,14 @@
 """The gateway: the WebSocket side of the service. It owns no rig: it passes on, and says who may command.
 
 One process beside the one that ticks (docs/decisions/0015), so that a slow, stalled or hostile client costs the scan
-nothing. It keeps what a new client must be told: newest state, plan, events, ten minutes of trend, all as JSON that it
-never reads.
+nothing. It keeps what a new client must be told: newest state, plan, events, ten minutes of trend, all as JSON of
+which it reads the mode alone.
 """
 
 from __future__ import annotations
 
 import asyncio
+import re
 from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -53,6 +54,10 @@ JOIN_WITHIN_S = 10.0
 """A connection that has not said ``join`` by then is closed."""
 GREETED_WITHIN_S = 30.0
 """The owner's first state is there by then, s."""
+AT_REST = frozenset({"OFFLINE", "INTERRUPTED"})
+"""Modes in which neither a run nor manual mode is under way."""
+_MODE = re.compile(rb'\{"mode":"([^"]*)"')
+"""Begin of a state as it is sent."""
 
 
 @dataclass(slots=True, eq=False)
@@ -62,6 +67,8 @@ class Guest:
     connection: ServerConnection
     number: int
     name: str
+    asked: bool = False
+    """It asked for control when it joined."""
     outbox: Outbox = field(default_factory=Outbox)
     frames: bool = False
     leaving: asyncio.Task[None] | None = None
@@ -82,6 +89,10 @@ class Gateway:
         self.hook = hook
         self.guests: dict[int, Guest] = {}
         self.controller = 0
+        self._lender = 0
+        """The client that had control before an idle rig's command borrowed it; it gets it back."""
+        self._mode = ""
+        """What the rig does, by the newest state."""
         self._next = 1
         self._state = b""
         self._plan = b"null"
@@ -96,6 +107,7 @@ class Gateway:
         kind, rest = line[:1], line[1:]
         if kind == b"s":
             self._state, _, row = rest.partition(b"\t")
+            self._mode = _mode_of(self._state)
             self._rows.append(row)
             self._greeted.set()
             message = b'{"state":' + self._state + b',"row":' + row + b',"type":"snapshot"}'
@@ -144,7 +156,7 @@ class Gateway:
         except (ConnectionClosed, TimeoutError, BadMessageError) as error:
             await self._turn_away(connection, str(error) or "no join")
             return
-        guest = Guest(connection, self._next, joined.name)
+        guest = Guest(connection, self._next, joined.name, joined.control)
         self._next += 1
         guest.outbox.reply(self._hello(joined, guest))
         self.guests[guest.number] = guest
@@ -159,7 +171,8 @@ class Gateway:
             del self.guests[guest.number]
             sending.cancel()
             if self.controller == guest.number:
-                self.controller = 0
+                self.controller = self._lender if self._lender in self.guests else 0
+                self._lender = 0
             self._tell_presence()
 
     async def _joined(self, connection: ServerConnection) -> Join:
@@ -242,15 +255,29 @@ class Gateway:
 
     def _order(self, guest: Guest, number: int, action: RigAction) -> None:
         """Pass a command on to the rig's owner, if this client may give it: STOP from anybody."""
-        if not isinstance(action, Stop) and self.controller != guest.number:
+        if not isinstance(action, Stop) and self.controller != guest.number and not self._borrows(guest):
             holder = self.guests.get(self.controller)
             who = f"{holder.name} has control" if holder is not None else "nobody has control: take it first"
             guest.outbox.reply(encode(Refused(number, who)))
             return
+        self._mode = ""  # what the order makes of it is known with the next state
         order = Order(guest.number, guest.name, number, action)
         self.tell(FROM_GATEWAY.dump_json(order))
 
+    def _borrows(self, guest: Guest) -> bool:
+        """Give control to a client that asked for it when it joined, for as long as it stays, from one that is idle.
+
+        Idle: no run and no manual mode is under way, so that nobody commands anything that another could disturb.
+        """
+        if not guest.asked or self._mode not in AT_REST:
+            return False
+        self._lender = self._lender or self.controller
+        self.controller = guest.number
+        self._tell_presence()
+        return True
+
     def _control(self, guest: Guest, number: int, action: Control) -> None:
+        self._lender = 0
         holder = self.guests.get(self.controller)
         if not action.take:
             if self.controller == guest.number:
@@ -277,6 +304,12 @@ class Gateway:
         viewers = len(self.guests) - (holder is not None)
         name = holder.name if holder is not None else ""
         self.tell(FROM_GATEWAY.dump_json(Presence(name, self.controller, viewers, frames)))
+
+
+def _mode_of(state: bytes) -> str:
+    """Return the mode in a state as it is sent."""
+    found = _MODE.match(state)
+    return found.group(1).decode() if found is not None else ""
 
 
 def _id_of(text: str | bytes) -> int:

@@ -15,6 +15,8 @@ import sys
 from pydantic import JsonValue
 from pydantic_core import from_json
 
+from tester.trouble import in_words
+
 WITHIN_S = 30.0
 """A command that takes longer is ended [A]."""
 AT_ONCE = 4
@@ -38,7 +40,7 @@ class Hook:
         try:
             await self._run(note)
         except OSError as error:
-            _complain(f"notify: {error}")
+            _complain(f"notify: {in_words(error)}")
         finally:
             self.running -= 1
 

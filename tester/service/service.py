@@ -46,6 +46,7 @@ from tester.store.reader import DATABASE, RunReader
 from tester.store.schema import StoreError
 from tester.store.status import RunStatus, run_status
 from tester.store.writer import RunWriter
+from tester.trouble import in_words
 
 RECIPES = ".recipes"
 """Folder beside the runs for recipes that came as text, named by their content."""
@@ -178,7 +179,7 @@ class Service:
         try:
             code = work(session)
         except REFUSED as error:
-            problem = str(error)
+            problem = in_words(error)
         if not session.view.name:
             desk.hub.refuse(order, problem or "; ".join(screen.messages) or "the run has ended before it began")
             desk.detach(None)
@@ -199,7 +200,7 @@ class Service:
                 hold_rig(use, rig, NAME)
                 record = open_record(self.options.runs, rig, order.name)
             except REFUSED as error:
-                desk.hub.refuse(order, str(error))
+                desk.hub.refuse(order, in_words(error))
                 return
             with closing(record), closed_early(record):
                 try:

@@ -10,6 +10,7 @@ from pathlib import Path
 from tester.store.reader import DATABASE
 from tester.store.records import StoredExclusion, StoredRepeat
 from tester.store.schema import StoreError, migrate
+from tester.trouble import in_words
 
 _ADD = """
 INSERT INTO exclusion (condition, repeat, attempt, excluded, reason, operator, utc, software_version, manifest_before)
@@ -47,7 +48,7 @@ def add_exclusion(folder: Path, said: StoredExclusion) -> None:
             values = (*said.target, said.excluded, said.reason, said.operator, said.utc, said.software_version)
             database.execute(_ADD, (*values, said.manifest_before))
     except sqlite3.Error as error:
-        raise StoreError(f"{path} cannot be written: {error}") from error
+        raise StoreError(f"{path} cannot be written: {in_words(error)}") from error
 
 
 def problems(said: Iterable[StoredExclusion], repeats: Iterable[StoredRepeat]) -> list[str]:

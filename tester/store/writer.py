@@ -27,6 +27,7 @@ from tester.store.files import sync_folder
 from tester.store.recorder import Batch, Judged, NullRecorder, Recorder, Ticket, no_utc
 from tester.store.sample_blocks import BLOCK_ROWS, pack
 from tester.store.schema import StoreError, migrate, version_of
+from tester.trouble import in_words
 
 COMMIT_EVERY_S = 0.7
 """Longest time, of the wall clock, for which a sample waits for its commit to begin: a second with what a slow disk
@@ -281,7 +282,7 @@ class RunWriter(Recorder):
                 first = end
 
     def _fail(self, error: Exception) -> None:
-        self.failed = self.failed or f"{type(error).__name__}: {error}"
+        self.failed = self.failed or f"{type(error).__name__}: {in_words(error)}"
         self._committed_at = self._clock()
         for batch in self._batches:
             batch.ticket.error = self.failed

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from tester.analysis.trust import WITH_CARE, mark_of
 from tester.axes import AXES
 from tester.campaign.pool import stop_level
 from tester.engine.context import Progress
@@ -13,6 +14,7 @@ from tester.engine.prompts import Prompts
 from tester.export.results import TableRow, results_of
 from tester.session import Session, SessionOptions
 from tester.store.reader import RunReader
+from tester.trouble import in_words
 
 NAN = float("nan")
 NOT_RUN = "not run"
@@ -77,6 +79,11 @@ class CaseResult:
         """Rows without a value to be trusted."""
         return sum(1 for row in self.rows if row.status != "ok")
 
+    @property
+    def with_care(self) -> int:
+        """Rows whose value carries a doubt."""
+        return sum(mark_of(row.status, row.flags) == WITH_CARE for row in self.rows)
+
 
 def run_case(task: Task) -> CaseResult:
     """Run a recipe on a simulated rig as ``tester run --yes`` does, in a folder that does not outlast it."""
@@ -104,7 +111,7 @@ def run_case(task: Task) -> CaseResult:
 
 def not_run(task: Task, error: BaseException) -> CaseResult:
     """Return the result of a case that raised instead of returning one."""
-    reason = f"{type(error).__name__}: {error}".strip(": ")
+    reason = f"{type(error).__name__}: {in_words(error)}".strip(": ")
     return CaseResult(task.case, task.point, task.seed, NOT_RUN, reason, 1)
 
 

@@ -11,6 +11,7 @@ from typing import Protocol, cast
 from tester.campaign.pool import Pool
 from tester.extras import needs
 from tester.sweep.case import CaseResult, Task
+from tester.trouble import in_words
 
 
 class NoClusterError(Exception):
@@ -69,7 +70,7 @@ def dask(address: str) -> Generator[Submit]:
     try:
         client = distributed.Client(address, set_as_default=False)
     except (OSError, ValueError) as error:
-        raise NoClusterError(f"--dask {address}: no scheduler answers there: {error}") from error
+        raise NoClusterError(f"--dask {address}: no scheduler answers there: {in_words(error)}") from error
     try:
         # Not pure: equal tasks are carried out all the same. No retries: a lost worker is a result, too.
         yield client.get_executor(pure=False, retries=0).submit

@@ -10,6 +10,7 @@ from dataclasses import astuple, fields
 from math import isfinite, sqrt
 from statistics import fmean, stdev
 
+from tester.analysis.trust import WITH_CARE, mark_of
 from tester.axes import AXES
 from tester.export.cells import Cell, nominal
 from tester.sweep.case import CaseResult, RowResult
@@ -60,10 +61,11 @@ def summary_header(axes: Sequence[Axis]) -> Row:
     """Return the columns of ``summary.csv``.
 
     ``mu_sd`` is the spread between seeds, ``u_standard`` the root mean square of the uncertainties that the runs state,
-    ``sd_over_u`` their ratio: 1 where runs scatter as they say.
+    ``sd_over_u`` their ratio: 1 where runs scatter as they say. ``n`` counts the runs with a value,
+    ``with_care`` those of them whose value carries a doubt (its flags are in ``conditions.csv``).
     """
     mu = tuple(f"mu_{name}" for name in _STATISTICS[1:])
-    return (*head_of(axes), *_SETPOINTS, "runs", "n", *mu, "u_standard", "sd_over_u")
+    return (*head_of(axes), *_SETPOINTS, "runs", "n", *mu, "u_standard", "sd_over_u", "with_care")
 
 
 def summary_rows(results: Sequence[CaseResult]) -> Iterator[Row]:
@@ -78,7 +80,8 @@ def summary_rows(results: Sequence[CaseResult]) -> Iterator[Row]:
             stated = [row.u_standard for row in rows if isfinite(row.u_standard)]
             u = sqrt(fmean(x * x for x in stated)) if stated else None
             over = sd / u if sd is not None and u else None
-            yield (*point, *_setpoints(rows[0]), len(rows), n, mean, sd, least, greatest, u, over)
+            doubts = sum(mark_of(row.status, row.flags) == WITH_CARE for row in rows)
+            yield (*point, *_setpoints(rows[0]), len(rows), n, mean, sd, least, greatest, u, over, doubts)
 
 
 def totals_header(axes: Sequence[Axis]) -> Row:

@@ -15,6 +15,7 @@ from textual.widgets import ContentSwitcher
 
 from tester import clock
 from tester.service.commands import Acknowledge, Control, Hold, Release, ResumeRun
+from tester.service.state import RunView
 from tester.tui.dialogs.confirm import AbortDialog, GoOnDialog
 from tester.tui.dialogs.dialog import Dialog
 from tester.tui.dialogs.log import TextDialog
@@ -26,12 +27,11 @@ from tester.tui.views.bus import BusView
 from tester.tui.views.manual import ManualView
 from tester.tui.views.recipes import RecipesView
 from tester.tui.views.results import ResultsView
-from tester.tui.views.run import RunView
+from tester.tui.views.run import RunView as RunScreen
 from tester.tui.views.view import Keys, View
 from tester.tui.widgets.head import TABS, KeyLine, StateLine, TabLine, Tabs
-from tester.tui.widgets.small import SmallPanel
+from tester.tui.widgets.small import SMALLEST, SmallPanel
 
-SMALLEST = (60, 15)
 WIDE = (110, 34)
 HUGE = (180, 46)
 EVERYWHERE = """\
@@ -101,7 +101,7 @@ class TesterApp(HostApp):
     def views(self) -> Iterable[View]:
         """Return the screens."""
         yield RecipesView(id="recipes")
-        yield RunView(plain=self.options.plain, id="run")
+        yield RunScreen(plain=self.options.plain, id="run")
         yield ManualView(id="manual")
         yield ResultsView(id="results")
         yield BusView(id="bus")
@@ -178,6 +178,11 @@ class TesterApp(HostApp):
     def keys_of(self, view: View) -> Keys:
         """Return what the last line names on a screen."""
         return view.KEYS
+
+    def show_results(self, run: RunView) -> None:
+        """Show what a run has measured."""
+        self.go_to("results")
+        self.screen_stack[0].query_one(ResultsView).open_run(run.folder)
 
     def action_go_to(self, name: str) -> None:
         """Show another screen."""

@@ -10,6 +10,7 @@ from pydantic_core import to_json
 
 from tester import __version__
 from tester.service.address import AddressError, folder
+from tester.trouble import in_words
 from tester.tui.scene import Scene
 from tester.tui.starting import LOG
 
@@ -39,4 +40,4 @@ def _log() -> bytes:
     try:
         return (folder() / LOG).read_bytes()[-LOG_BYTES:]
     except (OSError, AddressError) as error:
-        return f"no log of a service started by this screen: {error}".encode()
+        return f"no log of a service started by this screen: {in_words(error)}".encode()

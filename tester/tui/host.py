@@ -20,6 +20,8 @@ from tester.service.address import Address
 from tester.service.client import Client, Link, Lost, LostError, NoServiceError, RefusedError
 from tester.service.commands import Action, Stop
 from tester.service.protocol import Event
+from tester.service.state import RunView
+from tester.trouble import in_words
 from tester.tui.scene import Scene
 from tester.tui.starting import start_service
 from tester.tui.stop_line import KEYS, NotTakenError, StopLine, stopping
@@ -77,6 +79,9 @@ class HostApp(App[str]):
     def go_to(self, name: str) -> None:
         """Show another screen, by its id."""
 
+    def show_results(self, run: RunView) -> None:
+        """Show what a run has measured."""
+
     def say(self, text: str, *, problem: bool = False, lasting: bool = False) -> None:
         """Tell the operator something, as it is."""
         self.notify(
@@ -108,7 +113,7 @@ class HostApp(App[str]):
         try:
             start_service(self.options.rig, self.options.runs)
         except OSError as error:
-            self.say(f"the service cannot be started: {error}", problem=True, lasting=True)
+            self.say(f"the service cannot be started: {in_words(error)}", problem=True, lasting=True)
 
     # -- orders -----------------------------------------------------------------------------------------------
 
@@ -124,7 +129,8 @@ class HostApp(App[str]):
         try:
             result = await self.link.command(action)
         except RefusedError as error:
-            self.say(f"refused: {error}", problem=True)
+            hint = ": Ctrl+P, Take control" if "has control" in str(error) else ""
+            self.say(f"refused: {error}{hint}", problem=True)
         except (LostError, TimeoutError) as error:
             self.say(f"no answer from the service: {error}", problem=True)
         else:

@@ -10,7 +10,7 @@ from tester import clock
 from tester.service.client import Client, Lost
 from tester.service.protocol import EVENTS_KEPT, TREND_ROWS, Event, Frame, Frames, Hello, PlanMessage, ServerMessage
 from tester.service.protocol import Snapshot as SnapshotMessage
-from tester.service.state import TREND_COLUMNS, Alarm, PlanView, StateView, Value
+from tester.service.state import TREND_COLUMNS, Alarm, PlanView, RunView, StateView, Value
 
 STALE_S = 2.0
 """A state older than this is no state: no value is to be believed."""
@@ -54,6 +54,12 @@ class Scene:
     def linked(self) -> bool:
         """Return whether what is shown is how it is."""
         return self.state is not None and not self.lost and self.age_s <= STALE_S
+
+    @property
+    def ended_run(self) -> RunView | None:
+        """Return the last run, None while one is under way, or where it has left no folder (manual mode)."""
+        run = self.state.run if self.state is not None else None
+        return run if run is not None and run.outcome != UNDER_WAY and run.folder else None
 
     def take(self, message: ServerMessage | Lost, client: Client | None) -> None:
         """Take in a message of the link."""

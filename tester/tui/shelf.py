@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TypeAlias
 
 import recipes
+from tester.trouble import in_words
 
 MOST_BYTES = 262_144
 """Longest recipe that is read (safety.md): the service takes no longer one."""
@@ -88,4 +89,4 @@ def _read(name: str, path: Path, *, shipped: bool) -> Recipe:
             return Recipe(name, path, shipped, "", f"longer than {MOST_BYTES} bytes")
         return Recipe(name, path, shipped, path.read_text(encoding="utf-8"))
     except (OSError, UnicodeDecodeError) as error:
-        return Recipe(name, path, shipped, "", str(error))
+        return Recipe(name, path, shipped, "", in_words(error))

@@ -18,6 +18,7 @@ from websockets.sync.client import ClientConnection, connect, unix_connect
 from tester.service.address import Address, AddressError, UnixAddress, default_address
 from tester.service.commands import Command, Join, Stop
 from tester.service.protocol import Accepted, BadMessageError, encode, from_server
+from tester.trouble import in_words
 
 KEYS = ("f12", "ctrl+x")
 """A terminal may take the function keys for itself, so there are two."""
@@ -59,7 +60,7 @@ class StopLine:
                 while not _taken(connection.recv(WITHIN_S)):
                     pass
         except (OSError, AddressError, WebSocketException, BadMessageError) as error:  # TimeoutError is an OSError
-            sent.set_exception(NotTakenError(str(error)))
+            sent.set_exception(NotTakenError(in_words(error)))
         else:
             sent.set_result(None)
 

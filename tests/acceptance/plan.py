@@ -14,7 +14,8 @@ from tests.acceptance.topic import Topic
 
 SETPOINT = ("compound", "slip_velocity_m_s", "load_n", "sideslip_deg", "camber_deg", "temperature_c", "wheel_speed_m_s")
 STANDSTILL_S = 45 * 60.0
-"""Greatest length of the way from the last step to standstill (interlocks.cooldown_at_most)."""
+"""Greatest length of the way from a part's last step to standstill (interlocks.cooldown_at_most); on the simulated rig
+every specimen is a part of its own, and each cools down at its end."""
 Step = dict[str, Any]
 
 
@@ -38,8 +39,8 @@ def figures(bench: Bench) -> Iterator[Figure]:
     yield from _wheels(steps, plan)
     seconds = fsum(step["seconds"] for step in steps)
     total = plan["rig_seconds"]
-    fits = seconds - 0.1 * len(steps) <= total <= seconds + STANDSTILL_S
-    limit = f"the sum of the steps, {seconds:.0f} s, and at most 45 min of cooling down to standstill"
+    fits = seconds - 0.1 * len(steps) <= total <= seconds + len(per_compound) * STANDSTILL_S
+    limit = f"the sum of the steps, {seconds:.0f} s, and at most 45 min a specimen of cooling down to standstill"
     yield holds("rig time", total > 0.0 and fits, f"{total:.0f} s = {total / 3600.0:.1f} h", limit)
 
 

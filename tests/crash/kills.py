@@ -26,7 +26,7 @@ from tester.engine.tickers import collector_at_rest
 from tester.export.verify import verify
 from tester.session import Session, SessionOptions
 from tester.store.reader import RunReader
-from tester.store.recorder import Ticket
+from tester.store.recorder import Judged, Ticket
 from tester.store.resume import resume_point
 from tester.store.schema import StoreError
 from tester.store.writer import RunWriter
@@ -100,9 +100,11 @@ class TellingWriter(RunWriter):
         self._places[key] = (condition, repeat)
         return key
 
-    def commit_repeat(self, key: int, result: RepeatResult, bursts: Any = ()) -> Ticket:
+    def commit_repeat(
+        self, key: int, result: RepeatResult, bursts: Any = (), judged: Judged | None = None
+    ) -> Ticket:
         bursts_: list[Burst] = list(bursts)
-        ticket = super().commit_repeat(key, result, bursts_)
+        ticket = super().commit_repeat(key, result, bursts_, judged)
         if ticket.done and result.status.value != "void":
             self.pipe.send(("repeat", self._places[key], result.mu_resultant, len(bursts_)))
         return ticket

@@ -22,7 +22,7 @@ from tester.recipe.loader import load_recipe
 from tester.recipe.plan import Plan
 from tester.rig import RigConfig, load_rig
 from tester.simulated import simulated_ports
-from tester.store.recorder import NullRecorder, Ticket
+from tester.store.recorder import Judged, NullRecorder, Ticket
 from tests.faults.invariants import Invariants
 
 RUNNING = frozenset({"armed", "run", "hold"})
@@ -48,7 +48,9 @@ class Ledger(NullRecorder):
         self.journal: list[str] = []
         self.warned: set[str] = set()
 
-    def commit_repeat(self, key: int, result: RepeatResult, bursts: Iterable[Burst] = ()) -> Ticket:
+    def commit_repeat(
+        self, key: int, result: RepeatResult, bursts: Iterable[Burst] = (), judged: Judged | None = None
+    ) -> Ticket:
         """Count a repeat that was committed for good."""
         if result.status is not RepeatStatus.VOID:
             self.committed += 1

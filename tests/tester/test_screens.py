@@ -65,7 +65,7 @@ def everything(screen: LastingScreen) -> None:
 def test_a_failure_is_told_once_with_its_cause(name: str) -> None:
     told: list[str] = []
     everything(LastingScreen(Failing(name), told.append))
-    assert told == ["the run can no longer be shown: Broken pipe"]
+    assert told == ["the run can no longer be shown: its reader is gone"]
 
 
 def test_nothing_more_is_shown_or_asked_after_a_failure() -> None:

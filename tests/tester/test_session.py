@@ -6,10 +6,12 @@ import re
 import signal
 import sqlite3
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
+from tester.analysis.results import CARRY_OVER
 from tester.bus_log import BusLog
 from tester.campaign import folder as folder_module
 from tester.campaign import part_run
@@ -25,7 +27,8 @@ from tester.simulated import simulated_ports
 from tester.source import InvalidSource
 from tester.store.reader import RunReader
 from tester.store.writer import RunWriter
-from tests.tester.engine.bench import QUIET, SHORT
+from tests.tester.engine.bench import HOT, QUIET, SHORT
+from tests.tester.store.build import CONDITION, RUN, SPECIMENS, open_writer, record
 
 TABLES = ("appendix.csv", "conditions.csv", "repeats.csv")
 
@@ -100,8 +103,15 @@ def done(tmp_path_factory: pytest.TempPathFactory) -> Ended:
 
 @pytest.fixture(scope="module")
 def incomplete(tmp_path_factory: pytest.TempPathFactory) -> Ended:
+    """A run whose only condition cannot be held: on the hot rig 3# at 400 N leaves the band within one turn."""
+    text = SHORT.replace("1#", "3#").replace("200 N", "400 N")
+    return run(tmp_path_factory.mktemp("incomplete"), *HOT, text=text)
+
+
+@pytest.fixture(scope="module")
+def undecided(tmp_path_factory: pytest.TempPathFactory) -> Ended:
     """A run on the default rig, whose window is too short to show that the coefficient stands still."""
-    return run(tmp_path_factory.mktemp("incomplete"), seed=1)
+    return run(tmp_path_factory.mktemp("undecided"), seed=1)
 
 
 Prepare = Callable[[World, Attendant], Attendant]
@@ -129,6 +139,9 @@ class Interrupting:
 
     def install(self, specimen: int, wheel: int, compound: str, *, new_specimen: bool) -> None:
         self.hands.install(specimen, wheel, compound, new_specimen=new_specimen)
+
+    def remount(self, specimen: int, wheel: int, compound: str, diameter_mm: float, sliding_m: float) -> None:
+        self.hands.remount(specimen, wheel, compound, diameter_mm, sliding_m)
 
     def begin_repeat(self, condition: int, repeat: int, attempt: int) -> None:
         self.hands.begin_repeat(condition, repeat, attempt)
@@ -193,8 +206,31 @@ def test_two_runs_of_one_second_have_two_folders(tmp_path: Path, monkeypatch: py
 
 def test_missing_conditions_exit_6_and_are_named(incomplete: Ended) -> None:
     assert incomplete.code == 6
-    assert any("200 N" in text and "not stabilised" in text for text in incomplete.screen.messages)
+    assert any("400 N" in text and "temperature cannot be held" in text for text in incomplete.screen.messages)
     assert len((incomplete.folder / "appendix.csv").read_text(encoding="utf-8-sig").splitlines()) == 1
+
+
+def test_a_drift_that_is_not_shown_is_a_row_with_a_flag(undecided: Ended) -> None:
+    assert undecided.code == 0
+    assert "drift not shown" in (undecided.folder / "conditions.csv").read_text(encoding="utf-8-sig")
+    assert len((undecided.folder / "appendix.csv").read_text(encoding="utf-8-sig").splitlines()) == 2
+
+
+def test_conditions_that_were_tried_are_told_and_the_others_are_no_line_each(tmp_path: Path) -> None:
+    writer = open_writer(tmp_path)
+    writer.begin_run(RUN, SPECIMENS, [replace(CONDITION, condition=i, row=i) for i in range(1, 166)])
+    record(writer, 1, [0.9] * 3)
+    record(writer, 2, [float("nan")])
+    record(writer, 3, [0.9] * 3, flags=CARRY_OVER)
+    writer.finish("done", rig_seconds=60.0)  # cut off before its tables
+    writer.close()
+    screen = Screen()
+    Session(SessionOptions(), screen).resume(tmp_path)
+    lost, doubted = screen.messages
+    assert "none of 1 repeats is valid" in lost and "max_bursts" in lost
+    assert "carry-over" in doubted and "pre_grind" in doubted
+    (end,) = (event for event in screen.records if event["event"] == "end")
+    assert len(end["missing"]) == 163  # type: ignore[arg-type]
 
 
 def test_nobody_to_ask_is_a_usage_error_without_a_trace(tmp_path: Path) -> None:
@@ -303,7 +339,7 @@ class Breaking(Screen):
 
 def test_a_run_that_can_no_longer_be_shown_stops_in_a_controlled_way(tmp_path: Path) -> None:
     ended = run(tmp_path, "interlocks.cooldown_hub=26 degC", screen=Breaking(BrokenPipeError(32, "Broken pipe")))
-    assert ended.code == 5 and ended.stored() == ("stopped", "the run can no longer be shown: Broken pipe")
+    assert ended.code == 5 and ended.stored() == ("stopped", "the run can no longer be shown: its reader is gone")
 
 
 def test_an_unexpected_error_leaves_an_interrupted_run_and_a_safe_rig(tmp_path: Path) -> None:
@@ -341,9 +377,9 @@ def tables(ended: Ended) -> dict[str, bytes]:
     return {name: (ended.folder / name).read_bytes() for name in TABLES}
 
 
-def test_the_same_seed_gives_the_same_tables_byte_for_byte(tmp_path: Path, incomplete: Ended) -> None:
-    assert tables(run(tmp_path, seed=1)) == tables(incomplete)
+def test_the_same_seed_gives_the_same_tables_byte_for_byte(tmp_path: Path, undecided: Ended) -> None:
+    assert tables(run(tmp_path, seed=1)) == tables(undecided)
 
 
-def test_another_seed_gives_other_repeats(tmp_path: Path, incomplete: Ended) -> None:
-    assert tables(run(tmp_path, seed=2))["repeats.csv"] != tables(incomplete)["repeats.csv"]
+def test_another_seed_gives_other_repeats(tmp_path: Path, undecided: Ended) -> None:
+    assert tables(run(tmp_path, seed=2))["repeats.csv"] != tables(undecided)["repeats.csv"]

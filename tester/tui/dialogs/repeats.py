@@ -13,6 +13,7 @@ from textual.widgets import OptionList, Static
 from textual.widgets.option_list import Option
 
 from tester.store.schema import StoreError
+from tester.trouble import in_words
 from tester.tui.dialogs.dialog import Dialog, line
 from tester.tui.dialogs.exclude import ExcludeDialog
 from tester.tui.plot import Canvas, Range
@@ -67,7 +68,7 @@ class RepeatsDialog(Dialog):
         try:
             self.row, found = await asyncio.to_thread(condition, self.stored.folder, self.row.condition, columns)
         except (StoreError, OSError, sqlite3.Error) as error:
-            self.host.say(f"cannot be read: {error}", problem=True)
+            self.host.say(f"cannot be read: {in_words(error)}", problem=True)
             return
         if self.is_attached:
             self.found = found

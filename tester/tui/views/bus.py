@@ -13,6 +13,7 @@ from tester.service.commands import WatchFrames
 from tester.service.protocol import Frame
 from tester.service.state import BusView as BusState
 from tester.service.state import DeviceView
+from tester.trouble import in_words
 from tester.tui.bundle import write_bundle
 from tester.tui.scene import STALE_S, Scene
 from tester.tui.views.view import Keys, View
@@ -188,6 +189,6 @@ class BusView(View, can_focus=True):
         try:
             path = write_bundle(self.host.scene, clock.local_stamp())
         except OSError as error:
-            self.host.say(f"no bundle: {error}", problem=True)
+            self.host.say(f"no bundle: {in_words(error)}", problem=True)
         else:
             self.host.say(f"support bundle: {path}", lasting=True)

@@ -17,6 +17,7 @@ from textual.widgets import OptionList, TextArea
 from textual.widgets.option_list import Option
 
 from tester.service.commands import CheckRecipe
+from tester.trouble import in_words
 from tester.tui.dialogs.plan import PlanDialog
 from tester.tui.dialogs.start import StartDialog
 from tester.tui.scene import Scene
@@ -222,7 +223,7 @@ class RecipesView(View):
             own = own_copy(recipe, self.host.options.recipe_folder) if recipe.shipped else recipe
             self._edit(own)
         except OSError as error:
-            self.host.say(f"cannot be edited: {error}", problem=True)
+            self.host.say(f"cannot be edited: {in_words(error)}", problem=True)
             return
         except SuspendNotSupported:
             self.host.say("no editor can be shown here: edit the file, then press g", problem=True)

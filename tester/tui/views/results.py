@@ -16,6 +16,7 @@ from textual.widgets import DataTable
 from tester.axes import AXES
 from tester.service.commands import ListRuns
 from tester.store.schema import StoreError
+from tester.trouble import in_words
 from tester.tui.dialogs.export import ExportDialog
 from tester.tui.dialogs.plot import PlotDialog
 from tester.tui.dialogs.repeats import RepeatsDialog
@@ -124,8 +125,7 @@ class ResultsView(View):
         event.stop()
         if self.runs_table.has_focus:
             if event.cursor_row < len(self.names):
-                name = self.names[event.cursor_row]
-                self.run_worker(partial(self._open, name), group="open", exclusive=True, exit_on_error=False)
+                self.open_run(self.names[event.cursor_row])
         elif self.stored is not None and (row := self.chosen) is not None:
             self.host.push_screen(RepeatsDialog(self.stored, row, self._read_again))
 
@@ -143,8 +143,11 @@ class ResultsView(View):
     def _read_again(self) -> None:
         """Read the run again: somebody has left out a repeat."""
         if self.stored is not None:
-            work = partial(self._open, str(self.stored.folder))
-            self.run_worker(work, group="open", exclusive=True, exit_on_error=False)
+            self.open_run(str(self.stored.folder))
+
+    def open_run(self, name: str) -> None:
+        """Read a run, by its name or folder, and show its conditions."""
+        self.run_worker(partial(self._open, name), group="open", exclusive=True, exit_on_error=False)
 
     async def _open(self, name: str) -> None:
         self.conditions_table.border_title = "reading …"
@@ -152,7 +155,7 @@ class ResultsView(View):
             stored = await asyncio.to_thread(read, name, self.host.options.runs)
         except MISSING as error:
             self.conditions_table.border_title = "Conditions"
-            self.host.say(f"{name} cannot be read: {error}", problem=True)
+            self.host.say(f"{name} cannot be read: {in_words(error)}", problem=True)
             return
         if self.is_attached:
             self.open(stored)

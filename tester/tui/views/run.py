@@ -27,7 +27,7 @@ space   HOLD: lift, slip to zero, keep the temperature. Costs at most the repeat
 r       resume after HOLD, or a run that was cut off: shows the pre-flight list first.
 x       abort: controlled stop of the run; type the word.
 a       acknowledge the alarm of line 2. Nothing moves by it.
-Enter   answer the question that waits; y answers yes at once.
+Enter   answer the question that waits; y answers yes at once. At the end of a run: its results.
 l       event log.
 """
 
@@ -73,10 +73,12 @@ class RunView(View, can_focus=True):
         self.query_one("#events").border_title = "Alarms and events"
 
     def action_answer(self) -> None:
-        """Ask for the answer to the question that waits."""
+        """Ask for the answer to the question that waits; at the end of a run, show what it has measured."""
         state = self.host.scene.state
         if state is not None and state.prompt is not None:
             self.host.push_screen(PromptDialog(state.prompt))
+        elif (run := self.host.scene.ended_run) is not None:
+            self.host.show_results(run)
 
     def action_yes(self) -> None:
         """Answer yes."""

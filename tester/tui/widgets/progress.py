@@ -37,9 +37,11 @@ def idle_words(scene: Scene, width: int) -> Parts:
     run = state.run
     if run is not None and run.outcome != UNDER_WAY:
         reason = f": {clean(run.reason)}" if run.reason else ""
-        lines.append([fit(f" Last run {clean(run.name)} {clean(run.outcome)}{reason}", width)])
+        key = "Enter shows its results. " if scene.ended_run is not None else ""
+        lines.append([fit(f" {key}Last run {clean(run.outcome)}{reason}   {clean(run.name)}", width)])
         if run.missing:
-            lines.append([fit(f" Without a value: {'; '.join(clean(one) for one in run.missing)}", width)])
+            named = "; ".join(clean(one) for one in run.missing)
+            lines.append([fit(f" {len(run.missing)} without a value: {named}", width)])
     if len(lines) < 3 and state.interrupted:
         lines.append([(fit(f" {clean(state.interrupted[-1])} was cut off: r resumes it", width), NOTICE)])
     if len(lines) < 3:

@@ -6,13 +6,16 @@ from tester.tui.scene import Scene
 from tester.tui.widgets.panel import Panel, Parts, rows
 from tester.tui.words import clean, fit
 
+SMALLEST = (60, 15)
+"""Columns and lines from which on the screens are shown."""
+
 
 class SmallPanel(Panel):
     """That the run goes on, the question that waits, why the rig is in its mode."""
 
     def picture(self, scene: Scene, width: int, height: int) -> Parts:
         """Return some lines."""
-        texts = ["terminal too small,", "the run continues"]
+        texts = ["terminal too small,", "the run continues", f"needed: {SMALLEST[0]} x {SMALLEST[1]}"]
         if scene.state is not None:
             if scene.state.prompt is not None:
                 texts.append(f"asks: {clean(scene.state.prompt.text)}")

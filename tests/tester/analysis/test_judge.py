@@ -103,9 +103,25 @@ def test_two_repeats_refused_for_the_same_drift_carry_over() -> None:
 
 
 def test_two_repeats_refused_for_opposite_drifts_do_not() -> None:
-    results, found = judged([repeat(1, 0.05), repeat(2, -0.05), repeat(3), repeat(4), repeat(5)])
+    results, found = judged([repeat(3), repeat(1, 0.05), repeat(2, -0.05), repeat(4), repeat(5)])
     assert sum(result.drifts for result in results) == 2
     assert found.flags == ""
+
+
+def test_a_first_repeat_that_is_refused_carries_over_a_later_one_does_not() -> None:
+    refused, steady = repeat(2, -0.05), [repeat(seed) for seed in (1, 3, 4)]
+    results, found = judged([refused, *steady])
+    assert results[0].drifts and CARRY_OVER in flags_in(found.flags)
+    results, found = judged([*steady[:2], refused, steady[2]])
+    assert results[2].drifts and CARRY_OVER not in flags_in(found.flags)
+
+
+def test_what_stays_may_not_drift_the_way_of_what_was_refused() -> None:
+    results, found = judged([repeat(1, -0.01), repeat(2, -0.05), repeat(3, -0.01), repeat(4, -0.01)])
+    assert [result.drifts for result in results] == [False, True, False, False]
+    assert CARRY_OVER in flags_in(found.flags)
+    results, found = judged([repeat(1, 0.01), repeat(2, -0.05), repeat(3, 0.01), repeat(4, 0.01)])
+    assert results[1].drifts and CARRY_OVER not in flags_in(found.flags)
 
 
 def test_means_that_fall_with_the_distance_carry_over() -> None:

@@ -91,12 +91,25 @@ def test_no_valid_repeat_is_insufficient_and_names_each() -> None:
     assert result.reason.startswith("none of 5 repeats is valid: repeat 1 too few revolutions: 3 of 30")
 
 
-def test_fewer_valid_than_the_least_are_a_value_with_a_flag() -> None:
+def test_fewer_that_count_than_were_asked_for_are_a_value_with_a_flag() -> None:
     poor = repeat(status=RepeatStatus.TOO_FEW, reason="3 of 30 revolutions")
-    result = combine(FIVE[0], FIVE[1], poor, poor, poor)
-    assert result.ok and result.n_valid == 2
+    result = combine(*FIVE[:4], poor)
+    assert result.ok and result.n_valid == 4
     assert (result.flags, result.doubts) == (SHORT, (SHORT,))
-    assert combine(*FIVE[:3], poor, poor).doubts == ()
+    assert combine(*FIVE[:4], poor, FIVE[4]).doubts == ()
+
+
+@pytest.mark.parametrize(("left_out", "doubts"), [((0, 1), ()), ((0, 1, 2), (SHORT,))])
+def test_repeats_that_a_person_left_out_are_missed_below_the_least(
+    left_out: tuple[int, ...], doubts: tuple[str, ...]
+) -> None:
+    result = combine_repeats(FIVE, 5, 3, by_hand=dict.fromkeys(left_out, "the jacket was off"))
+    assert result.ok and result.doubts == doubts
+
+
+def test_a_person_who_leaves_out_what_is_not_valid_makes_up_for_nothing() -> None:
+    poor = repeat(status=RepeatStatus.TOO_FEW, reason="3 of 30 revolutions")
+    assert combine_repeats([*FIVE[:4], poor], 5, 3, by_hand={4: "the jacket was off"}).doubts == (SHORT,)
 
 
 def test_where_all_repeats_drift_the_value_is_theirs() -> None:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from tester.analysis.results import ConditionStatus
-from tester.analysis.trust import DOUBTS, mark_of
+from tester.analysis.results import DOUBTS, ConditionStatus
+from tester.analysis.trust import mark_of
 
 
 @pytest.mark.parametrize("status", ConditionStatus)

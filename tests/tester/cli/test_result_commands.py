@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import json
 import sys
+from dataclasses import replace
+from math import nan
 from pathlib import Path
 
 import pytest
 from click.testing import CliRunner, Result
 
+from tester.analysis.results import CARRY_OVER
 from tester.cli.result_commands import export, show
 from tester.cli.runs_command import runs
-from tests.tester.store.build import CONDITIONS, RUN, SPECIMENS, open_writer, small_run
+from tests.tester.store.build import CONDITIONS, RUN, SPECIMENS, open_writer, record, small_run
 
 
 @pytest.fixture
@@ -45,11 +48,39 @@ def test_show_as_json(home: Path) -> None:
 
 
 def test_show_names_what_has_no_value(home: Path) -> None:
-    small_run(home / "runs" / "two", ([0.9], [0.73, 0.74, 0.72]))
+    small_run(home / "runs" / "two", ([nan] * 3, [0.73, 0.74, 0.72]))
     shown = invoke(show, "two").stdout
     assert "values   1 of 2 conditions" in shown
-    assert "  1#, 300 mm/s, 100 N, 25 degC: insufficient: 1 of 3 valid, 3 needed" in shown
+    assert "  1#, 300 mm/s, 100 N, 25 degC: insufficient: none of 3 repeats is valid" in shown
     assert json.loads(invoke(show, "two", "--json").stdout)["conditions"][0]["s"] is None
+
+
+@pytest.fixture
+def stopped(home: Path) -> str:
+    """A run of five conditions of which one was measured, with a doubt."""
+    folder = home / "runs" / "stopped"
+    folder.mkdir()
+    writer = open_writer(folder)
+    writer.begin_run(RUN, SPECIMENS, [replace(CONDITIONS[0], condition=i, row=i) for i in range(1, 6)])
+    record(writer, 1, [0.9] * 3, flags=CARRY_OVER)
+    writer.finish("stopped", rig_seconds=60.0)
+    writer.close()
+    return "stopped"
+
+
+def test_conditions_that_a_run_did_not_come_to_are_one_line(stopped: str) -> None:
+    lines = invoke(show, stopped).stdout.splitlines()
+    assert lines[-1] == "  4 of 5 conditions not measured" and len(lines) == 6
+
+
+def test_a_doubt_is_in_json(stopped: str) -> None:
+    first, second, *_ = json.loads(invoke(show, stopped, "--json").stdout)["conditions"]
+    assert (first["mark"], second["mark"]) == ("?", "") and "carry-over" in first["flags"]
+
+
+def test_a_doubt_about_a_value_of_the_appendix_is_told(stopped: str) -> None:
+    told = invoke(export, stopped, "--format", "appendix").stderr.splitlines()
+    assert told[-1].startswith("to be taken with care: 1#, 300 mm/s") and "pre_grind" in told[-1]
 
 
 def test_export_writes_to_stdout_what_the_run_folder_holds(home: Path) -> None:
@@ -74,7 +105,7 @@ def test_export_to_a_file_leaves_stdout_empty(home: Path) -> None:
 
 
 def test_export_names_missing_conditions_on_stderr(home: Path) -> None:
-    small_run(home / "runs" / "two", ([0.9], [0.73, 0.74, 0.72]))
+    small_run(home / "runs" / "two", ([nan] * 3, [0.73, 0.74, 0.72]))
     result = invoke(export, "two", "--format", "appendix")
     assert result.exit_code == 0
     assert result.stderr.startswith("not in the appendix: 1#, 300 mm/s, 100 N, 25 degC: insufficient")

@@ -5,13 +5,15 @@ from __future__ import annotations
 import asyncio
 import json
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from threading import Event, Thread
 
 import pytest
 
 from tester.cli.main import invoke
-from tester.service.address import HAS_UNIX
+from tester.service.address import HAS_UNIX, Address
+from tester.service.client import Client
 from tester.service.commands import RunRecipe, Stop
 from tests.tester.service.fake import FakeService
 from tests.tester.service.views import hostile, state
@@ -107,3 +109,51 @@ def test_run_detached_prints_the_folder_and_names_the_recipes_file_in_full(
 def test_run_detached_leaves_the_folder_to_the_service(capsys: pytest.CaptureFixture[str]) -> None:
     assert invoke(["run", "quickstart", "--detach", "--out", "here"]) == 2
     assert "not with --detach" in capsys.readouterr().err
+
+
+@contextmanager
+def controlled(address: Address) -> Iterator[None]:
+    """Have another client in control, in a thread of its own."""
+    up, end = Event(), Event()
+
+    async def live() -> None:
+        async with await Client.connect(address, name="another screen", control=True):
+            up.set()
+            while not end.is_set():
+                await asyncio.sleep(0.01)
+
+    thread = Thread(target=lambda: asyncio.run(live()))
+    thread.start()
+    assert up.wait(20)
+    try:
+        yield
+    finally:
+        end.set()
+        thread.join(20)
+
+
+COMMANDS = (["hold"], ["release"], ["ack"], ["run", "quickstart", "--detach"])
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_a_refusal_for_want_of_control_says_how_to_take_it(
+    fake: FakeService, command: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    fake.results["run"] = {"run": "r", "folder": "runs/r"}
+    with controlled(fake.address):
+        assert invoke(command) == 1
+        assert capsys.readouterr().err == "refused: another screen has control: `--take` takes control\n"
+        assert invoke([*command, "--take"]) == 0
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_a_screen_before_an_idle_rig_blocks_no_command(fake: FakeService, command: list[str]) -> None:
+    fake.results["run"] = {"run": "r", "folder": "runs/r"}
+    fake.show(state("OFFLINE"))
+    with controlled(fake.address):
+        assert invoke(command) == 0
+
+
+def test_a_run_in_the_foreground_takes_nothing(capsys: pytest.CaptureFixture[str]) -> None:
+    assert invoke(["run", "quickstart", "--take"]) == 2
+    assert "goes with --detach" in capsys.readouterr().err

@@ -10,7 +10,7 @@ from statistics import fmean
 import pytest
 
 from tester.analysis.blocks import blocks_from_samples
-from tester.engine.bursts import Ending, MeasureRepeat, Phase
+from tester.engine.bursts import TARE_FRESH_S, Ending, MeasureRepeat, Phase
 from tester.process import SAMPLE_COLUMNS, Press
 from tester.recipe.plan import ConditionStep
 from tests.tester.engine.bench import SHORT, Bench, Simulation, condition_of, make_bench
@@ -91,6 +91,27 @@ def test_a_surface_far_below_the_band_is_waited_for(bench: Bench) -> None:
     repeat = MeasureRepeat(AT_40, [], 1.0)
     bench.hold(repeat, 120.0)
     assert repeat.phase is Phase.READY
+
+
+@pytest.mark.parametrize(("waited_s", "tares"), [(TARE_FRESH_S - 20.0, 1), (TARE_FRESH_S + 20.0, 2)])
+def test_a_zero_that_has_grown_old_is_taken_anew_before_the_first_burst(
+    bench: Bench, waited_s: float, tares: int
+) -> None:
+    bench.surface_c = 37.0
+    repeat = MeasureRepeat(AT_40, [], 1.0)
+    bench.hold(repeat, waited_s)
+    bench.surface_c = 39.0
+    bench.until(repeat, lambda: repeat.phase is Phase.COUNT, at_most_s=60.0)
+    assert len(bench.notes.written("INSERT INTO tare")) == tares
+    # Some seconds until the slip is there: 120 s at most when the first sample counts.
+    assert bench.now - repeat.tared_s < 115.0
+
+
+def test_a_zero_is_not_taken_anew_between_bursts(bench: Bench) -> None:
+    bench.warming_k_s, bench.returning_k_s = 1.0, 0.02
+    repeat = measure(bench, replace(AT_40, window=replace(AT_40.window, revolutions=60.0, extend_to=60.0)))
+    assert repeat.bursts > 1 and bench.now - repeat.tared_s > TARE_FRESH_S
+    assert len(bench.notes.written("INSERT INTO tare")) == 1
 
 
 def test_a_burst_ends_as_far_above_the_setpoint_as_it_began_below(bench: Bench) -> None:

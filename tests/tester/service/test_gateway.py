@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from tester.service.client import Client, LostError, NoServiceError, RefusedError
-from tester.service.commands import Control, Hold, Release, Stop
+from tester.service.commands import Acknowledge, Control, Hold, Release, RunRecipe, Stop
 from tester.service.outbox import MOST_BEHIND
 from tester.service.protocol import Event, Hello, PlanMessage, Snapshot
 from tests.tester.service.fake import FakeService
@@ -97,6 +97,60 @@ def test_only_the_first_of_two_that_ask_has_control(tmp_path: Path) -> None:
                 await second.command(Hold())
             with pytest.raises(RefusedError, match="first has control"):
                 await second.command(Control())
+
+    play(tmp_path, story)
+
+
+@pytest.mark.parametrize("mode", ["OFFLINE", "INTERRUPTED"])
+def test_a_screen_that_is_idle_lends_its_control_to_a_command(tmp_path: Path, mode: str) -> None:
+    async def story(fake: FakeService) -> None:
+        fake.show(state(mode))
+        async with await Client.connect(fake.address, name="screen", control=True) as screen:
+            async with await Client.connect(fake.address, name="command", control=True) as command:
+                await command.command(RunRecipe("quickstart"))
+                assert fake.presence.controller == "command"
+            async with asyncio.timeout(20):
+                while fake.presence.controller != "screen":
+                    await asyncio.sleep(0.001)
+            await screen.command(Hold())
+
+    play(tmp_path, story)
+
+
+@pytest.mark.parametrize("mode", ["RUN", "HOLD", "MANUAL", "IDLE", "LATCHED", "CONNECTING"])
+def test_no_control_is_lent_while_something_is_under_way(tmp_path: Path, mode: str) -> None:
+    async def story(fake: FakeService) -> None:
+        fake.show(state(mode))
+        first = await Client.connect(fake.address, name="first", control=True)
+        second = await Client.connect(fake.address, name="second", control=True)
+        async with first, second:
+            with pytest.raises(RefusedError, match="first has control"):
+                await second.command(Acknowledge())
+
+    play(tmp_path, story)
+
+
+def test_no_control_is_lent_before_what_an_order_made_is_known(tmp_path: Path) -> None:
+    async def story(fake: FakeService) -> None:
+        fake.show(state("OFFLINE"))
+        first = await Client.connect(fake.address, name="first", control=True)
+        second = await Client.connect(fake.address, name="second", control=True)
+        async with first, second:
+            await first.command(RunRecipe("quickstart"))
+            with pytest.raises(RefusedError, match="first has control"):
+                await second.command(Hold())
+
+    play(tmp_path, story)
+
+
+def test_who_asked_for_no_control_is_lent_none(tmp_path: Path) -> None:
+    async def story(fake: FakeService) -> None:
+        fake.show(state("OFFLINE"))
+        first = await Client.connect(fake.address, name="first", control=True)
+        second = await Client.connect(fake.address, name="second")
+        async with first, second:
+            with pytest.raises(RefusedError, match="first has control"):
+                await second.command(RunRecipe("quickstart"))
 
     play(tmp_path, story)
 

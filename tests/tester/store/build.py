@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from math import isfinite
 from pathlib import Path
 
-from tester.analysis.results import Burst, ConditionStatus, RepeatResult, RepeatStatus
+from tester.analysis.results import Burst, ConditionStatus, Judgement, RepeatResult, RepeatStatus
 from tester.process import SAMPLE_COLUMNS
-from tester.store.recorder import Recorder
+from tester.store.recorder import Judged, Recorder
 from tester.store.records import ConditionInfo, RunInfo, SpecimenInfo
 from tester.store.writer import RunWriter
 
@@ -107,16 +108,22 @@ def row(t: float, key: float = 0.0, **values: float) -> tuple[float, ...]:
 
 
 def record(
-    recorder: Recorder, condition: int, values: list[float], rows: int = 5, status: RepeatStatus = RepeatStatus.VALID
+    recorder: Recorder,
+    condition: int,
+    values: list[float],
+    rows: int = 5,
+    status: RepeatStatus = RepeatStatus.VALID,
+    flags: str = "",
 ) -> None:
-    """Record a condition with one repeat for each coefficient."""
+    """Record a condition with one repeat for each coefficient, a refused one for NaN; ``flags``: of its judgement."""
     recorder.begin_condition(condition, 5.0)
     for repeat, mu in enumerate(values, start=1):
         key = recorder.begin_repeat(condition, repeat, 1, 9.0, wheel=1)
         for i in range(rows):
             recorder.sample(row(1000.0 * condition + 100.0 * repeat + 0.01 * i, float(key)))
-        recorder.commit_repeat(key, result(mu, status), BURSTS)
-    recorder.end_condition(condition, ConditionStatus.OK, t_s=60.0)
+        recorder.commit_repeat(key, result(mu, status if isfinite(mu) else RepeatStatus.REFUSED), BURSTS)
+    judged = Judged(condition, Judgement(0.1, 0.1, 0.3, 0.0, 3.0, 0.2, flags), {}) if flags else None
+    recorder.end_condition(condition, ConditionStatus.OK, t_s=60.0, judged=judged)
 
 
 def open_writer(folder: Path, **options: bool | int) -> RunWriter:
@@ -139,6 +146,19 @@ def small_run(folder: Path, values: tuple[list[float], ...] = ([0.90, 0.91, 0.89
     writer.begin_run(RUN, SPECIMENS, conditions)
     for condition, repeats in zip(conditions, values, strict=True):
         record(writer, condition.condition, repeats)
+    writer.finish("done", rig_seconds=2700.5)
+    writer.close()
+    return folder
+
+
+def lacking_run(folder: Path) -> Path:
+    """Write a finished run of 100 and 200 N whose first condition has one repeat, which did not fill its window."""
+    folder.mkdir(parents=True, exist_ok=True)
+    writer = open_writer(folder)
+    conditions = [replace(CONDITION, load_n=100.0), replace(CONDITION, condition=2, row=2, load_n=200.0)]
+    writer.begin_run(RUN, SPECIMENS, conditions)
+    record(writer, 1, [0.9], status=RepeatStatus.TOO_FEW)
+    record(writer, 2, [0.73, 0.74, 0.72])
     writer.finish("done", rig_seconds=2700.5)
     writer.close()
     return folder

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from math import sqrt
 
 import pytest
@@ -39,6 +40,14 @@ def test_a_condition_without_a_value_counts_as_a_run_and_not_as_a_value() -> Non
     results = [result(1, row()), result(2, row(status="insufficient"))]
     (found,) = named(tables.summary_header(()), tables.summary_rows(results))
     assert (found["runs"], found["n"], found["mu_mean"], found["mu_sd"], found["sd_over_u"]) == (2, 1, 0.73, None, None)
+
+
+def test_values_to_be_taken_with_care_are_counted() -> None:
+    doubtful = replace(row(1), flags="extended; carry-over")
+    results = [result(1, row(1)), result(2, doubtful), result(3, row(1, status="insufficient"))]
+    (found,) = named(tables.summary_header(()), tables.summary_rows(results))
+    assert (found["n"], found["with_care"]) == (2, 1)
+    assert [one.with_care for one in results] == [0, 1, 0]
 
 
 def test_points_are_summed_up_by_themselves_in_their_order() -> None:

@@ -12,11 +12,13 @@ from tester import export
 from tester.axes import axis
 from tester.recipe.plan import Setpoint
 from tester.service.commands import Stop
+from tester.service.state import ProgressView
 from tester.store.reader import RunReader
 from tester.tui.dialogs.exclude import ExcludeDialog
 from tester.tui.dialogs.repeats import RepeatsDialog
 from tester.tui.stored import Row, Stored, points, read, series
 from tester.tui.views.results import ResultsView
+from tests.tester.service.views import state
 from tests.tester.store.build import small_run
 from tests.tester.tui.stage import Stage, play
 
@@ -66,6 +68,31 @@ def test_what_is_not_of_the_series_is_a_faint_dot() -> None:
 
 def test_a_condition_without_a_series_leaves_every_sign_as_it_is() -> None:
     assert [point.sign for point in points(STORED, axis("slip_velocity"), ROW)] == ["1", "1", "1", "2", "1"]
+
+
+@pytest.mark.parametrize("size", [(80, 24), (120, 40)])
+def test_the_end_of_a_run_names_the_key_that_shows_what_it_measured(size: tuple[int, int], tmp_path: Path) -> None:
+    run = a_run(tmp_path)
+
+    async def act(on: Stage) -> None:
+        before = state("OFFLINE")
+        assert before.run is not None
+        over = replace(before.run, folder=str(run), outcome="incomplete", missing=("1#, 300 N: insufficient",), exit=6)
+        await on.show(replace(before, run=over, progress=ProgressView(), prompt=None))
+        await on.pilot.press("f3")
+        await on.until(lambda: "Enter shows its results. Last run incomplete" in on.text(), "the run is over")
+        await on.pilot.press("enter")
+        await on.until(lambda: "0.900" in on.text() and on.app.view.id == "results", "the table is shown")
+
+    play(act, tmp_path, size)
+
+
+def test_enter_leads_nowhere_while_a_run_is_under_way(tmp_path: Path) -> None:
+    async def act(on: Stage) -> None:
+        await on.pilot.press("f3", "enter")
+        assert on.app.view.id == "run"
+
+    play(act, tmp_path)
 
 
 @pytest.mark.parametrize("size", [(80, 24), (120, 40)])
