@@ -14,7 +14,7 @@ from math import hypot, isfinite, pi
 from typing import Final, NamedTuple
 
 from tester.analysis.wear_check import NO_CONDITION, WearCheck
-from tester.control.load_loop import depth_mm
+from tester.interlocks.contact import depth_mm
 from tester.engine.attended import AskAtRest
 from tester.engine.context import CheckReference, Context, WheelLife
 from tester.engine.moves import Lift, Load, Power, Sequence, Settle, TakeTare, Turn
