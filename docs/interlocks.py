@@ -1,4 +1,4 @@
-"""Write what is made from the interlock rows: tables of docs/safety.md, the section ``interlocks`` of sim/rig.yaml.
+"""Write what is made from interlock rows and ceilings: tables of docs/safety.md, ``interlocks`` of sim/rig.yaml.
 
 ``python docs/interlocks.py`` writes, ``--check`` only says what is out of date and exits 1.
 """
@@ -8,8 +8,8 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-from tester.interlocks.table import PARAMETERS
-from tester.interlocks.written import HEADER, ceiling_table, interlock_table, rig_section
+from tester.interlocks.written import HEADER, interlock_table, rig_section
+from tester.rig.ceilings import ceiling_table
 
 ROOT = Path(__file__).resolve().parents[1]
 SAFETY, RIG = ROOT / "docs" / "safety.md", ROOT / "sim" / "rig.yaml"
@@ -17,7 +17,7 @@ SAFETY, RIG = ROOT / "docs" / "safety.md", ROOT / "sim" / "rig.yaml"
 
 def safety_text(text: str) -> str:
     """Return the page with its tables anew."""
-    for name, table in (("interlocks", interlock_table()), ("ceilings", ceiling_table(PARAMETERS))):
+    for name, table in (("interlocks", interlock_table()), ("ceilings", ceiling_table())):
         begin, end = f"<!-- {name}: begin -->\n", f"<!-- {name}: end -->"
         before, _, rest = text.partition(begin)
         text = before + begin + table + end + rest.partition(end)[2]

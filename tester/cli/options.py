@@ -54,6 +54,17 @@ def set_option(command: Decorated) -> Decorated:
     )(command)
 
 
+def risk_option(command: Decorated) -> Decorated:
+    """Add --accept-risk REASON."""
+    return click.option(
+        "--accept-risk",
+        "accept_risk",
+        default="",
+        metavar="REASON",
+        help="Why safety keys of the rig may be looser than they should be; stored and shown with the run.",
+    )(command)
+
+
 def json_option(command: Decorated) -> Decorated:
     """Add --json: data for programs on stdout."""
     return click.option("--json", "as_json", is_flag=True, help="Print JSON on stdout.")(command)

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from tester.cli.options import json_option, print_json, rig_option, say_packaged_keys, set_option
+from tester.cli.options import json_option, print_json, rig_option, risk_option, say_packaged_keys, set_option
 
 
 @click.group()
@@ -36,12 +36,13 @@ def init(file: Path, force: bool) -> None:
 @rig.command()
 @rig_option
 @set_option
+@risk_option
 @json_option
-def show(rig_name: str, overrides: tuple[str, ...], as_json: bool) -> None:
+def show(rig_name: str, overrides: tuple[str, ...], accept_risk: str, as_json: bool) -> None:
     """Check a rig file and print it with everything resolved."""
     from tester.rig import load_rig
 
-    config = load_rig(rig_name, overrides)
+    config = load_rig(rig_name, overrides, accept_risk)
     if as_json:
         print_json(config.tree)
     else:

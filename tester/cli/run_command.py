@@ -7,15 +7,16 @@ from collections.abc import Callable
 import click
 from click.core import ParameterSource
 
-from tester.cli.options import json_option, rig_option, set_option
+from tester.cli.options import json_option, rig_option, risk_option, set_option
 
 
 @click.command("run", short_help="Run a recipe on a rig, simulated unless told.")
 @click.argument("recipe")
 @rig_option
 @set_option
+@risk_option
 @click.option("--out", default="runs", show_default=True, metavar="DIR", help="Folder that gets the run's folder.")
-@click.option("--yes", is_flag=True, help="Answer every prompt with yes.")
+@click.option("--yes", is_flag=True, help="Answer prompts with yes, but those that ask a person to a real rig.")
 @click.option(
     "--seed",
     default=0,
@@ -51,6 +52,7 @@ def run(
     recipe: str,
     rig_name: str,
     overrides: tuple[str, ...],
+    accept_risk: str,
     out: str,
     yes: bool,
     seed: int,
@@ -74,6 +76,8 @@ def run(
         given = {name for name in context.params if context.get_parameter_source(name) is ParameterSource.COMMANDLINE}
         if given & {"out", "bus_log"}:
             raise click.UsageError("--out and --bus-log are the service's to choose: not with --detach")
+        if accept_risk:
+            raise click.UsageError("--accept-risk goes with `tester serve`, which owns the rig: not with --detach")
         rig = rig_name if "rig_name" in given else ""
         return _detached(recipe, rig, overrides, seed, time_lapse(speed), yes, operator, take)
     if take:
@@ -92,6 +96,7 @@ def run(
         recipe=recipe,
         rig=rig_name,
         overrides=overrides,
+        accept_risk=accept_risk,
         out=Path(out),
         seed=seed,
         lapse=time_lapse(speed),

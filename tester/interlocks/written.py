@@ -30,17 +30,6 @@ def interlock_table(rows: Iterable[Interlock] = INTERLOCKS) -> str:
     return "\n".join(lines) + "\n"
 
 
-def ceiling_table(parameters: Iterable[Parameter]) -> str:
-    """Return how far each parameter may be loosened as Markdown, a line for each that has such a bound."""
-    lines = ["| key | packaged | tighter is | not looser than | because |", "|---|---|---|---|---|"]
-    lines += [
-        f"| {one.key} | {one.default} | {one.direction.value} | {one.hardest} | {one.because} |"
-        for one in parameters
-        if one.direction is not None
-    ]
-    return "\n".join(lines) + "\n"
-
-
 def rig_section(rows: Iterable[Interlock] = INTERLOCKS) -> str:
     """Return the section ``interlocks`` with its comments: every parameter under the first row that has it."""
     lines = [*HEADER, f"{SECTION}:"]

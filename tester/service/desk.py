@@ -19,7 +19,7 @@ from tester.service.progress import PlanTrack
 from tester.service.protocol import SNAPSHOT_S
 from tester.service.state import DiskView, ManualView, ProgressView, RunView, StateView, TickView, Value
 from tester.service.values import unknown_values
-from tester.service.watch import RunWatch
+from tester.service.watch import RunWatch, risk_of
 from tester.store.space import MARGIN
 
 UNWATCHED_S = 1.0
@@ -83,12 +83,14 @@ class Desk:
     _disk: DiskView = field(default_factory=lambda: DiskView(0, 0, False))
     _disk_due_s: float = float("-inf")
     _unknown: tuple[Value, ...] = ()
+    _risk: str = ""
     alarms: AlarmList = field(init=False)
 
     def __post_init__(self) -> None:
         """Begin with no alarm."""
         self.alarms = AlarmList(clock.utc_now, self._alarm_changed)
         self._unknown = unknown_values(self.rig)
+        self._risk = risk_of(self.rig)
 
     # -- runs -------------------------------------------------------------------------------------------------
 
@@ -255,6 +257,7 @@ class Desk:
             clients=hub.clients,
             interrupted=self.interrupted,
             preflight=(*(check for check in known if check.name not in said), *own),
+            risk=watch.risk if watch is not None else self._risk,
         )
 
     def _situation(self) -> tuple[str, str, float]:
