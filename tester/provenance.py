@@ -7,7 +7,7 @@ import os
 import platform
 import shlex
 import subprocess
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
@@ -18,8 +18,9 @@ from tester.engine.devices import Devices
 from tester.recipe.loader import LoadedRecipe
 from tester.recipe.plan import Plan
 from tester.rig import RigConfig
+from tester.rig.load import risks_of
 from tester.store.recorder import Recorder
-from tester.store.records import Calibration, RunInfo, SessionInfo
+from tester.store.records import ACCEPTED_RISK, LOOSE_KEYS, Calibration, RunInfo, SessionInfo
 
 LIBRARIES = ("friction-tester", "numpy", "pyarrow", "pydantic", "pymodbus", "pyserial", "python-can", "pyyaml")
 """Distributions whose versions are stored with a run."""
@@ -43,8 +44,9 @@ def run_info(
     operator: str = "",
     recipe_source: str = "",
     rig_source: str = "",
+    risks: Mapping[str, str] | None = None,
 ) -> RunInfo:
-    """Return what the store keeps of a run's beginning."""
+    """Return what the store keeps of a run's beginning. ``risks``: as ``accepted_risks`` returns them."""
     return RunInfo(
         name=name,
         recipe_name=plan.name,
@@ -59,9 +61,15 @@ def run_info(
         recipe_source=recipe_source,
         rig_source=rig_source,
         calibration=calibration_of(rig),
-        metadata=dict(plan.metadata),
+        metadata={**plan.metadata, **(risks or {})},
         versions=library_versions(),
     )
+
+
+def accepted_risks(rig: RigConfig, reason: str) -> dict[str, str]:
+    """Return what is kept with a run of the safety keys that are looser than they should be; nothing where none is."""
+    risks = risks_of(rig)
+    return {ACCEPTED_RISK: reason, LOOSE_KEYS: "; ".join(map(str, risks))} if risks else {}
 
 
 def session_info(number: int, origin_s: float, operator: str) -> SessionInfo:

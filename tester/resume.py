@@ -13,7 +13,7 @@ from pathlib import Path
 
 from tester import clock
 from tester.engine.results import condition_records
-from tester.provenance import PACKAGED, calibration_of, session_info
+from tester.provenance import PACKAGED, accepted_risks, calibration_of, session_info
 from tester.recipe.check import load_checked
 from tester.recipe.expand import expand
 from tester.recipe.plan import Plan
@@ -24,9 +24,12 @@ from tester.source import read_tree
 from tester.store.files import write_text
 from tester.store.reader import RunReader
 from tester.store.recorder import calibration_sha256, text_sha256
-from tester.store.records import Change, ConditionInfo, StoredCondition, StoredRun
+from tester.store.records import LOOSE_KEYS, Change, ConditionInfo, StoredCondition, StoredRun, risk_text
 from tester.store.resume import ResumePoint, resume_point
 from tester.store.writer import RunWriter
+
+LATER = "asked for when it is known which text the run goes on with"
+"""Stands for the word that a rig's risks need, while texts are compared."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,10 +59,11 @@ class Found:
     """The files that differ, a line each."""
 
 
-def prepare(folder: Path, reason: str, operator: str) -> Resumed | str:
+def prepare(folder: Path, reason: str, operator: str, accept_risk: str = "") -> Resumed | str:
     """Return the run in a folder as it can go on, or why it is refused.
 
-    ``reason``: why it may go on although recipe, rig or calibration changed; stored with each change. Raises
+    ``reason``: why it may go on although recipe, rig or calibration changed; stored with each change. ``accept_risk``:
+    why safety keys of the rig may be looser than they should be: asked for again whenever a run goes on. Raises
     StoreError for a record that cannot be read, InvalidSource for a recipe or rig file that is invalid now.
     """
     with RunReader(folder) as reader:
@@ -68,6 +72,9 @@ def prepare(folder: Path, reason: str, operator: str) -> Resumed | str:
     if found.changes and not reason:
         subjects = ", ".join(dict.fromkeys(change.subject for change in found.changes))
         return f"{subjects} changed since the run began ({'; '.join(found.where)}): --reason TEXT goes on all the same"
+    risks = accepted_risks(found.rig, accept_risk)
+    if risks and not accept_risk:
+        return f"{risks[LOOSE_KEYS]}: --accept-risk REASON goes on all the same"
     recipe = load_checked(found.recipe_text, found.rig, str(folder / "recipe.yaml"))
     plan = expand(recipe.recipe, found.rig)
     conditions = list(condition_records(plan))
@@ -89,6 +96,9 @@ def prepare(folder: Path, reason: str, operator: str) -> Resumed | str:
         if found.changes:
             write_text(folder / "recipe.yaml", found.recipe_text)
             write_text(folder / "rig.yaml", found.rig.text)
+        writer.add_metadata(risks)
+        if risks:
+            writer.event(0.0, "risk", risk_text(risks), "warning")
         writer.event(0.0, "resume", f"stretch {session.session} of the run{': ' + reason if reason else ''}")
 
     if any(change.subject == "calibration" for change in found.changes):
@@ -159,7 +169,7 @@ def _text_of(path: Path) -> str:
 
 
 def _rig_text(path: Path) -> str:
-    return load_rig(path).text
+    return load_rig(path, (), LATER).text
 
 
 def _recipe_at_source(run: StoredRun) -> str | None:
@@ -174,7 +184,7 @@ def _rig_at_source(run: StoredRun) -> str | None:
     where, *overrides = shlex.split(run.info.rig_source) or [""]
     if not where or where == "sim" or not Path(where).is_file():
         return None
-    return load_rig(where, overrides).text
+    return load_rig(where, overrides, LATER).text
 
 
 def _begun(stored: StoredCondition) -> bool:

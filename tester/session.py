@@ -27,12 +27,14 @@ from tester.export import doubtful, write_all
 from tester.export.results import results_of
 from tester.lock import ExclusiveUse
 from tester.plain import plain_text
-from tester.provenance import recipe_source, rig_source, run_info, session_info
+from tester.provenance import accepted_risks, recipe_source, rig_source, run_info, session_info
 from tester.recipe.check import load_checked
 from tester.recipe.estimate import Estimate, estimate
 from tester.recipe.loader import LoadedRecipe
 from tester.resume import prepare
 from tester.rig import RigConfig, load_rig
+from tester.rig.ceilings import counts_as_simulated
+from tester.rig.load import risks_of
 from tester.screens import LastingScreen, Screen
 from tester.signals import HANG_UP, QUIT, handled
 from tester.store.catalogue import MANIFEST, cut_off
@@ -48,6 +50,8 @@ class SessionOptions:
     recipe: str = ""
     rig: str = "sim"
     overrides: tuple[str, ...] = ()
+    accept_risk: str = ""
+    """Why safety keys may be looser than they should be; "" = they may not."""
     out: Path = Path("runs")
     seed: int = 0
     lapse: float | None = None
@@ -80,9 +84,9 @@ def only_plain(**texts: str) -> None:
         raise CannotStartError(str(error), EXIT_USAGE) from error
 
 
-def prepared(recipe: str, rig_name: str, overrides: tuple[str, ...]) -> Prepared:
+def prepared(recipe: str, rig_name: str, overrides: tuple[str, ...], accept_risk: str = "") -> Prepared:
     """Read and plan a recipe. Raises InvalidSource, UnknownRecipe."""
-    rig = load_rig(rig_name, overrides)
+    rig = load_rig(rig_name, overrides, accept_risk)
     path = find(recipe)
     loaded = load_checked(path, rig)
     work = work_of(loaded.recipe, rig)
@@ -135,7 +139,8 @@ class Session:
 
     def prepare(self) -> Prepared:
         """Read and plan the recipe; raises as ``run`` does."""
-        return prepared(self.options.recipe, self.options.rig, self.options.overrides)
+        options = self.options
+        return prepared(options.recipe, options.rig, options.overrides, options.accept_risk)
 
     def resume(self, folder: Path, reason: str = "") -> int:
         """Go on with an interrupted run; return the exit code. ``reason``: why it may although something changed.
@@ -154,7 +159,7 @@ class Session:
             if finished:  # cut off between its end and its tables
                 return self._report(folder, Ending(Outcome.DONE, "", None))
             recover(folder)
-            resumed = prepare(folder, reason, self.options.operator)
+            resumed = prepare(folder, reason, self.options.operator, self.options.accept_risk)
             if isinstance(resumed, str):
                 raise CannotStartError(resumed, EXIT_REFUSED)
             refusal = self._refusal(resumed.rig)
@@ -218,6 +223,8 @@ class Session:
         jobs = self.options.jobs
         if jobs > 1 and not rig.simulated:
             return f"--jobs {jobs}: only a simulated rig can be there several times, and this one is real"
+        if self.screen.answer_yes and not (self.screen.can_ask or counts_as_simulated(rig)):
+            return "--yes: nobody is at this terminal, and only a person can answer what is asked beside a real rig"
         if self.screen.answer_yes:
             return ""
         if jobs > 1:
@@ -242,17 +249,23 @@ class Session:
             operator=o.operator,
             recipe_source=recipe_source(path),
             rig_source=rig_source(o.rig, o.overrides),
+            risks=accepted_risks(work.rig, o.accept_risk),
         )
 
         def begin(writer: RunWriter) -> None:
             writer.begin_run(info, specimens_of(work.plan), condition_records(work.plan))
             writer.begin_session(session_info(1, 0.0, o.operator))
+            if info.risk:
+                writer.event(0.0, "risk", info.risk, "warning")
 
         return begin
 
     def _record(self, job: Job, work: Work, begin: Begin) -> int:
         """Carry out the work into the folder; write the tables and return the exit code."""
         self.folder = job.folder
+        self.prompts.real = not counts_as_simulated(work.rig)
+        for risk in risks_of(work.rig):
+            self.screen.message(f"accepted risk ({self.options.accept_risk}): {risk}")
         with self._signals():
             self.screen.begin(work.plan.name)
             try:

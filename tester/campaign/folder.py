@@ -15,7 +15,8 @@ from tester.recipe.check import load_checked
 from tester.recipe.expand import expand
 from tester.recipe.plan import Plan
 from tester.recipe.schema import Recipe
-from tester.rig import RigConfig, load_rig
+from tester.rig import RigConfig
+from tester.rig.load import load_rig_text
 from tester.store.files import write_text
 from tester.store.records import RunInfo, SpecimenInfo
 from tester.store.resume import ResumePoint
@@ -71,7 +72,7 @@ def write_sources(folder: Path, recipe_text: str, rig: RigConfig) -> None:
 
 def read_work(folder: Path) -> Work:
     """Return the work of a run's folder; raises InvalidSource where its files are not as they were written."""
-    rig = load_rig(folder / "rig.yaml")
+    rig = load_rig_text(folder / "rig.yaml")
     return work_of(load_checked(folder / "recipe.yaml", rig).recipe, rig)
 
 

@@ -43,6 +43,7 @@ def table_lines(results: RunResults, folder: Path) -> Iterator[str]:
     without a value that can be trusted has a dash and its status, a value to be taken with care the mark ``?``.
     Conditions that the run did not come to are one line.
     """
+    yield from risk_lines(results)
     tried = [row for row in results.rows if row.tried]
     listed = tried[:ROWS_AT_MOST]
     if listed:
@@ -61,6 +62,12 @@ def table_lines(results: RunResults, folder: Path) -> Iterator[str]:
         yield f"and {len(tried) - ROWS_AT_MOST} more conditions: {folder / 'conditions.csv'}"
     if len(tried) < len(results.rows):
         yield f"{len(results.rows) - len(tried)} of {len(results.rows)} conditions not measured"
+
+
+def risk_lines(results: RunResults) -> Iterator[str]:
+    """Yield which safety keys were looser than they should be, and why that was accepted; nothing where none was."""
+    if results.run.info.risk:
+        yield from wrap(shown(f"RISK ACCEPTED: {results.run.info.risk}"), _WIDTH, subsequent_indent="    ")
 
 
 def _cells(row: TableRow, axes: Sequence[Axis], pad: str) -> Sequence[str]:

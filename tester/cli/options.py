@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, TypeVar
 
 import click
@@ -54,6 +54,17 @@ def set_option(command: Decorated) -> Decorated:
     )(command)
 
 
+def risk_option(command: Decorated) -> Decorated:
+    """Add --accept-risk REASON."""
+    return click.option(
+        "--accept-risk",
+        "accept_risk",
+        default="",
+        metavar="REASON",
+        help="Why safety keys of the rig may be looser than they should be; stored and shown with the run.",
+    )(command)
+
+
 def json_option(command: Decorated) -> Decorated:
     """Add --json: data for programs on stdout."""
     return click.option("--json", "as_json", is_flag=True, help="Print JSON on stdout.")(command)
@@ -62,3 +73,13 @@ def json_option(command: Decorated) -> Decorated:
 def print_json(data: object) -> None:
     """Print data as one line of JSON, numbers in full precision; not-a-number is refused (ValueError)."""
     click.echo(json.dumps(data, ensure_ascii=False, allow_nan=False))
+
+
+def say_packaged_keys(rig_name: str, overrides: Sequence[str]) -> None:
+    """Say on stderr for which keys the packaged value counts, because the rig file does not have them."""
+    from tester.rig.upgrade import packaged_keys
+
+    keys = packaged_keys(rig_name, overrides)
+    if keys:
+        click.echo(f"{rig_name}: packaged values count for {', '.join(keys)}", err=True)
+        click.echo(f"{rig_name}: `tester rig upgrade {rig_name}` writes them in", err=True)

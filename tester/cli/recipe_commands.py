@@ -12,7 +12,15 @@ from typing import TYPE_CHECKING
 import click
 
 import recipes
-from tester.cli.options import QuantityType, json_option, print_json, rig_option, set_option
+from tester.cli.options import (
+    QuantityType,
+    json_option,
+    print_json,
+    rig_option,
+    risk_option,
+    say_packaged_keys,
+    set_option,
+)
 
 if TYPE_CHECKING:
     from tester.analysis.repeatability import Pool
@@ -36,8 +44,9 @@ def recipe_file(name_or_path: str) -> tuple[Path, str]:
 @click.argument("recipe")
 @rig_option
 @set_option
+@risk_option
 @json_option
-def check(recipe: str, rig_name: str, overrides: tuple[str, ...], as_json: bool) -> int:
+def check(recipe: str, rig_name: str, overrides: tuple[str, ...], accept_risk: str, as_json: bool) -> int:
     """Validate RECIPE (a file, or the name of a packaged recipe) against the schema and the rig.
 
     Every problem at once, as file:line:col: message, and exit code 3.
@@ -48,7 +57,7 @@ def check(recipe: str, rig_name: str, overrides: tuple[str, ...], as_json: bool)
     from tester.source import InvalidSource
 
     path, name = recipe_file(recipe)
-    rig = load_rig(rig_name, list(overrides))
+    rig = load_rig(rig_name, overrides, accept_risk)
     try:
         loaded = load_checked(path, rig, name)
     except InvalidSource as error:
@@ -62,6 +71,7 @@ def check(recipe: str, rig_name: str, overrides: tuple[str, ...], as_json: bool)
         print_json({"valid": True, "problems": [], "conditions": count})
     else:
         click.echo(f'{name}: valid on rig "{rig.name}", {count} conditions')
+    say_packaged_keys(rig_name, overrides)
     return 0
 
 
@@ -69,6 +79,7 @@ def check(recipe: str, rig_name: str, overrides: tuple[str, ...], as_json: bool)
 @click.argument("recipe")
 @rig_option
 @set_option
+@risk_option
 @json_option
 @click.option(
     "--precision",
@@ -89,6 +100,7 @@ def plan(
     recipe: str,
     rig_name: str,
     overrides: tuple[str, ...],
+    accept_risk: str,
     as_json: bool,
     precision: float | None,
     total: float | None,
@@ -109,7 +121,7 @@ def plan(
         if percent is not None and not 0.1 <= percent <= 50.0:
             raise click.BadParameter(f"{percent:g} % is not within 0.1 % to 50 %", param_hint=option)
     path, name = recipe_file(recipe)
-    rig = load_rig(rig_name, list(overrides))
+    rig = load_rig(rig_name, overrides, accept_risk)
     wanted = load_checked(path, rig, name).recipe
     if total is not None:
         try:

@@ -106,6 +106,7 @@ def _summary(name: str, results: RunResults) -> dict[str, Json]:
         "seed": run.info.seed,
         "simulated": run.info.simulated,
         "operator": run.info.operator,
+        "risk": run.info.risk,
         "software_version": run.info.software_version,
         "git_revision": run.info.git_revision,
         "versions": dict(run.info.versions),
@@ -182,9 +183,12 @@ def _condition(measured: Measured, results: RunResults) -> Json:
 
 
 def _lines(name: str, results: RunResults) -> Iterator[str]:
+    from tester.cli.ending import risk_lines
+
     run = results.run
     yield f"{name}: {shown(run.info.recipe_name)}"
     yield f"status   {results.status}{': ' + shown(run.reason) if run.reason else ''}"
+    yield from risk_lines(results)
     ended = f", ended {run.ended_utc}" if run.ended_utc else ""
     yield f"rig time {duration(run.rig_seconds)}, started {run.info.started_utc}{ended}"
     if run.overruns:

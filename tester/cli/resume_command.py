@@ -4,21 +4,29 @@ from __future__ import annotations
 
 import click
 
-from tester.cli.options import json_option
+from tester.cli.options import json_option, risk_option
 
 
 @click.command("resume", short_help="Go on with an interrupted run.")
 @click.argument("run")
-@click.option("--yes", is_flag=True, help="Answer every prompt with yes.")
+@click.option("--yes", is_flag=True, help="Answer prompts with yes, but those that ask a person to a real rig.")
 @click.option(
     "--reason", default="", metavar="TEXT", help="Go on although recipe, rig or calibration changed; stored with it."
 )
 @click.option("--speed", default=None, metavar="max|X", help="Simulated rig: as fast as it goes, or X times real time.")
 @click.option("--bus-log", default=None, metavar="DIR", help="Write every CAN and Modbus frame into this folder.")
 @click.option("--operator", default="", metavar="NAME", help="Who runs the test; stored with the run.")
+@risk_option
 @json_option
 def resume(
-    run: str, yes: bool, reason: str, speed: str | None, bus_log: str | None, operator: str, as_json: bool
+    run: str,
+    yes: bool,
+    reason: str,
+    speed: str | None,
+    bus_log: str | None,
+    operator: str,
+    accept_risk: str,
+    as_json: bool,
 ) -> int:
     """Go on with RUN (its folder, its name under runs, or latest) at the first repeat that is not committed.
 
@@ -31,7 +39,12 @@ def resume(
     from tester.cli.run_command import carried_out, time_lapse
     from tester.session import Session, SessionOptions
 
-    options = SessionOptions(lapse=time_lapse(speed), bus_log=Path(bus_log) if bus_log else None, operator=operator)
+    options = SessionOptions(
+        accept_risk=accept_risk,
+        lapse=time_lapse(speed),
+        bus_log=Path(bus_log) if bus_log else None,
+        operator=operator,
+    )
     folder = run_folder(run)
     session = Session(options, Console(as_json=as_json, answer_yes=yes))
     return carried_out(lambda: session.resume(folder, reason))

@@ -1,4 +1,4 @@
-"""`tester rig init` and `tester rig show`."""
+"""`tester rig init`, `tester rig show` and `tester rig upgrade`."""
 
 from __future__ import annotations
 
@@ -6,12 +6,12 @@ from pathlib import Path
 
 import click
 
-from tester.cli.options import json_option, print_json, rig_option, set_option
+from tester.cli.options import json_option, print_json, rig_option, risk_option, say_packaged_keys, set_option
 
 
 @click.group()
 def rig() -> None:
-    """Write or show a rig file."""
+    """Write, show or complete a rig file."""
 
 
 @rig.command()
@@ -36,13 +36,31 @@ def init(file: Path, force: bool) -> None:
 @rig.command()
 @rig_option
 @set_option
+@risk_option
 @json_option
-def show(rig_name: str, overrides: tuple[str, ...], as_json: bool) -> None:
+def show(rig_name: str, overrides: tuple[str, ...], accept_risk: str, as_json: bool) -> None:
     """Check a rig file and print it with everything resolved."""
     from tester.rig import load_rig
 
-    config = load_rig(rig_name, overrides)
+    config = load_rig(rig_name, overrides, accept_risk)
     if as_json:
         print_json(config.tree)
     else:
         click.echo(config.text, nl=False)
+    say_packaged_keys(rig_name, overrides)
+
+
+@rig.command()
+@click.argument("file", type=click.Path(dir_okay=False, path_type=Path))
+def upgrade(file: Path) -> None:
+    """Write the keys that FILE lacks into it, with the packaged values and their comments.
+
+    Nothing else of the file changes.
+    """
+    from tester.rig.upgrade import upgrade as complete
+
+    try:
+        keys = complete(file)
+    except OSError as error:
+        raise click.UsageError(f"{file} cannot be written: {error.strerror}") from error
+    click.echo(f"{file}: written: {', '.join(keys)}" if keys else f"{file}: has every key")

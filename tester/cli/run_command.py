@@ -7,7 +7,7 @@ from collections.abc import Callable
 import click
 from click.core import ParameterSource
 
-from tester.cli.options import json_option, rig_option, set_option
+from tester.cli.options import json_option, rig_option, risk_option, set_option
 
 NOT_DETACHED = {
     "out": "--out", "bus_log": "--bus-log", "faults": "--fault", "jobs": "--jobs", "as_json": "--json",
@@ -19,8 +19,9 @@ NOT_DETACHED = {
 @click.argument("recipe")
 @rig_option
 @set_option
+@risk_option
 @click.option("--out", default="runs", show_default=True, metavar="DIR", help="Folder that gets the run's folder.")
-@click.option("--yes", is_flag=True, help="Answer every prompt with yes.")
+@click.option("--yes", is_flag=True, help="Answer prompts with yes, but those that ask a person to a real rig.")
 @click.option(
     "--seed",
     default=0,
@@ -56,6 +57,7 @@ def run(
     recipe: str,
     rig_name: str,
     overrides: tuple[str, ...],
+    accept_risk: str,
     out: str,
     yes: bool,
     seed: int,
@@ -79,6 +81,8 @@ def run(
         given = {name for name in context.params if context.get_parameter_source(name) is ParameterSource.COMMANDLINE}
         if kept := [option for name, option in NOT_DETACHED.items() if name in given]:
             raise click.UsageError(f"not with --detach, the service would not do it: {', '.join(kept)}")
+        if accept_risk:
+            raise click.UsageError("--accept-risk goes with `tester serve`, which owns the rig: not with --detach")
         rig = rig_name if "rig_name" in given else ""
         return _detached(recipe, rig, overrides, seed, time_lapse(speed), yes, operator, take)
     if take:
@@ -97,6 +101,7 @@ def run(
         recipe=recipe,
         rig=rig_name,
         overrides=overrides,
+        accept_risk=accept_risk,
         out=Path(out),
         seed=seed,
         lapse=time_lapse(speed),

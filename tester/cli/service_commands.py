@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-from tester.cli.options import json_option, print_json, rig_option, set_option
+from tester.cli.options import json_option, print_json, rig_option, risk_option, set_option
 
 if TYPE_CHECKING:
     from tester.service.address import Address
@@ -36,20 +36,32 @@ def take_option(command: Decorated) -> Decorated:
 @click.command(short_help="Own the rig and serve its screens and commands.")
 @rig_option
 @set_option
+@risk_option
 @click.option("--out", default="runs", show_default=True, metavar="DIR", help="Folder that gets the runs' folders.")
 @click.option("--connect", "address", default="", metavar="URL", help="Listen at unix:PATH instead of the user's own.")
 @click.option("--tcp", "port", default=None, metavar="PORT", type=click.IntRange(0, 65535),
               help="Listen on loopback TCP with a token instead of a Unix socket; 0 = any port.")  # fmt: skip
 @click.option("--notify", default="", metavar="COMMAND",
               help="Command to run on a trip, hold, prompt, end or full disk; JSON on its standard input.")  # fmt: skip
-def serve(rig_name: str, overrides: tuple[str, ...], out: str, address: str, port: int | None, notify: str) -> int:
+def serve(
+    rig_name: str,
+    overrides: tuple[str, ...],
+    accept_risk: str,
+    out: str,
+    address: str,
+    port: int | None,
+    notify: str,
+) -> int:
     """Own the rig, run what clients ask for, and go on when they disconnect.
 
     Nothing moves by starting it. TERM or Ctrl+C stops a run in a controlled way and leaves at standstill.
     """
-    from tester.service.host import host
+    from pathlib import Path
 
-    return host(rig_name, overrides, out, address, port, notify)
+    from tester.service.host import host
+    from tester.service.service import ServiceOptions
+
+    return host(ServiceOptions(rig_name, overrides, Path(out), accept_risk), address, port, notify)
 
 
 @click.command(short_help="Say what the rig is doing.")
@@ -197,6 +209,8 @@ def _lines(state: StateView) -> list[str]:
     """Return a state in some lines."""
     run, progress = state.run, state.progress
     lines = [f"{state.mode}  {state.mode_text}".rstrip()]
+    if state.risk:
+        lines.append(f"risk     accepted: {state.risk}")
     if run is not None:
         lines.append(f"run      {run.name} ({run.recipe}): {run.outcome}" + (f": {run.reason}" if run.reason else ""))
     if progress.steps:

@@ -12,17 +12,13 @@ from dataclasses import dataclass
 from math import exp, inf, isfinite, nan, pi, sqrt
 from typing import Final
 
+from tester.interlocks.contact import STIFFNESS_EXPONENT, UNLOADED_N, Contact
 from tester.process import Demand, Press, Readings
 from tester.rig import AxisConfig, LoadLoopConfig
 
 _INF: Final = inf
 _LOAD: Final = Press.LOAD
 _TURN: Final = 2.0 * pi
-UNLOADED_N: Final = 20.0
-"""Below this the contact counts as unloaded (safety concept, "load with a drive stopped")."""
-STIFFNESS_EXPONENT: Final = 0.23
-"""Tangent stiffness of the line contact grows with load to this power: 125 to 172 N/mm from 100 to 400 N [A]."""
-_DEPTH_SHARE: Final = 1.0 / (1.0 - STIFFNESS_EXPONENT)
 DECELERATION_SHARE: Final = 0.6
 """Share of the press's acceleration limit that approach profiles use, so that the drive can follow them."""
 POSITION_GAIN_PER_S: Final = 6.0
@@ -36,22 +32,13 @@ HELD_BAND: Final = 0.03
 
 
 @dataclass(slots=True)
-class LoadLoop:
+class LoadLoop(Contact):
     """State of the press control."""
 
-    contact_mm: float = nan
-    """Press position at the last first touch; NaN until the wheel has been touched since its installation."""
     diameter_mm: float = nan
-    """The wheel's diameter then: since then it has worn."""
-    in_contact: bool = False
+    """The wheel's diameter when it was touched last: since then it has worn."""
     seen_open: bool = False
     """The contact was open since it was touched last: where it is touched again is where the rubber begins."""
-    loaded: bool = False
-    """Half of the wanted load has been reached since touching: from then on losing it is a fault."""
-    highest_n: float = 0.0
-    lowest_n: float = 0.0
-    """The wanted load, followed slowly downwards (highest) and upwards (lowest): what the load is watched against
-    while the press brings it to another value."""
     integral_mm_s: float = 0.0
     error_n: float = 0.0
     """Load error, filtered over one turn or so; decides between the fast and the holding bandwidth."""
@@ -141,14 +128,6 @@ class LoadLoop:
             self.integral_mm_s += gain * self.error_n * dt / loop.integral_s
             self.integral_mm_s = min(max(self.integral_mm_s, -0.1 * limit), 0.1 * limit)
         return min(max(gain * error + self.integral_mm_s, -limit), limit)
-
-
-def depth_mm(force_n: float, stiffness_n_per_mm: float) -> float:
-    """Return how far beyond the first touch the press stands under ``force_n``, mm: the integral of dF over the tangent
-    stiffness, which is ``stiffness_n_per_mm`` at 200 N (physics, section 5); 0 where there is no force."""
-    if not force_n > 0.0:
-        return 0.0
-    return _DEPTH_SHARE * force_n / (stiffness_n_per_mm * math.pow(force_n / 200.0, STIFFNESS_EXPONENT))
 
 
 def _gain(loop: LoadLoopConfig, bandwidth_hz: float, force_n: float) -> float:

@@ -11,15 +11,14 @@ from math import cos, pi
 from typing import Final
 
 from tester.control.state import ControlState
-from tester.control.thresholds import Thresholds
-from tester.control.view import STANDING_M_S
+from tester.interlocks.heat import STALE_IR_S, STALE_JACKET_S
+from tester.interlocks.known import STANDING_M_S
+from tester.interlocks.load import STALE_CELL_S
+from tester.interlocks.operation import MAX_SLIP_M_S, TURNING_CONFIRMED_S
+from tester.interlocks.parameter import Values
 from tester.process import Demand, Readings
 from tester.rig import RigConfig
 
-TURNING_CONFIRMED_S: Final = 0.3
-"""Heat is allowed once the wheel has been seen turning this long [A]."""
-CONFIRMED_M_S: Final = 2.0 * STANDING_M_S
-"""A speed above this is confirmed turning."""
 HARD_LOAD_N: Final = 500.0
 HARD_HUB_C: Final = 155.0
 HARD_SURFACE_C: Final = 130.0
@@ -71,21 +70,24 @@ def may_move(readings: Readings) -> bool:
     return readings.safety_chain and readings.guard_closed and not readings.drive_fault
 
 
-def may_heat(state: ControlState, readings: Readings, limits: Thresholds) -> bool:
+def confirmed_speed_m_s(p: Values) -> float:
+    """Return the speed above which a drive is confirmed turning, m/s."""
+    return 2.0 * p[STANDING_M_S]
+
+
+def may_heat(state: ControlState, readings: Readings, p: Values) -> bool:
     """Tell whether the jacket may heat: wheel seen turning for a while, both temperatures fresh and valid."""
     r, now = readings, readings.now_s
     return (
-        now - state.turning_since_s >= TURNING_CONFIRMED_S
+        now - state.turning_since_s >= p[TURNING_CONFIRMED_S]
         and r.jacket_valid
         and r.surface_valid
-        and now - r.jacket_at_s <= limits.stale_jacket_s
-        and now - r.surface_at_s <= limits.stale_ir_s
+        and now - r.jacket_at_s <= p[STALE_JACKET_S]
+        and now - r.surface_at_s <= p[STALE_IR_S]
     )
 
 
-def may_load(
-    state: ControlState, demand: Demand, readings: Readings, limits: Thresholds, most_n: float
-) -> bool:
+def may_load(state: ControlState, demand: Demand, readings: Readings, p: Values, most_n: float) -> bool:
     """Tell whether the press may approach or press.
 
     Both speeds confirmed and their difference bounded, the angles in place before touching, the load fresh and the
@@ -93,13 +95,14 @@ def may_load(
     """
     r = readings
     wheel, belt = r.wheel_speed_m_s, r.belt_speed_m_s
+    confirmed_m_s, slip_m_s = confirmed_speed_m_s(p), p[MAX_SLIP_M_S]
     along = wheel if r.sideslip_deg == 0.0 else wheel * cos(r.sideslip_deg * _RADIANS)
     return (
-        wheel > CONFIRMED_M_S
-        and belt > CONFIRMED_M_S
+        wheel > confirmed_m_s
+        and belt > confirmed_m_s
         and r.cell_valid
-        and r.now_s - r.cell_at_s <= limits.stale_cell_s
+        and r.now_s - r.cell_at_s <= p[STALE_CELL_S]
         and (state.load.in_contact or r.yaw_reached)
-        and -limits.max_slip_m_s <= along - belt <= limits.max_slip_m_s
+        and -slip_m_s <= along - belt <= slip_m_s
         and demand.load_n <= most_n
     )

@@ -7,6 +7,8 @@ from enum import Enum
 
 from tester.control.heat_loop import HeatLoop
 from tester.control.load_loop import LoadLoop
+from tester.interlocks.inputs import StopProgress
+from tester.interlocks.row import Reaction
 from tester.process import Setpoints
 
 
@@ -31,20 +33,6 @@ class Mode(Enum):
     """Nothing moves until the cause is gone, the operator has acknowledged and the rig is armed again."""
 
 
-class Reaction(Enum):
-    """What a level leads to that has stood for its delay. From the mildest to the hardest."""
-
-    WARN = "warning"
-    """An event in the journal."""
-    REFUSE = "neither armed nor acknowledged"
-    """Nothing is left to stop; nothing may begin."""
-    CONTROLLED = "controlled stop"
-    FAST = "fast stop"
-    POWER_OFF = "power off"
-    """A fast stop that has not worked: every power stage off."""
-    EMERGENCY = "emergency stop mirrored"
-
-
 @dataclass(frozen=True, slots=True)
 class Trip:
     """First cause of a stop ("first-up")."""
@@ -62,23 +50,6 @@ class Event:
     at_s: float
     kind: str
     text: str
-
-
-@dataclass(slots=True)
-class StopProgress:
-    """The stop under way: when it began and how fast the drives were then."""
-
-    began_s: float = float("inf")
-    """When the rig left RUN, HOLD or COOLDOWN; infinity while no stop is under way."""
-    speed_m_s: float = 0.0
-    """The faster of wheel and belt then."""
-    press_mm: float = float("inf")
-    """How far the press may still have come then, by its ramp; infinity where that is not known."""
-    fast_s: float = float("inf")
-    """When the quick stop began."""
-    fast_speed_m_s: float = 0.0
-    creeps: bool = False
-    """The wheel is meant to turn: cool-down."""
 
 
 @dataclass(slots=True)
@@ -109,7 +80,7 @@ class ControlState:
     ack_until_s: float = float("-inf")
     """An acknowledgement was given: it counts if every cause is gone by then."""
     hub_ceiling: list[tuple[float, float]] = field(default_factory=list[tuple[float, float]])
-    """(time, hub setpoint) of the last ten minutes, falling ones only: the first is the highest (runaway limit)."""
+    """(time, hub setpoint) within ``runaway_window``, falling ones only: the first is the highest."""
 
     def enter(self, mode: Mode, now_s: float, why: str) -> None:
         """Change the mode and journal it."""

@@ -5,21 +5,10 @@ from __future__ import annotations
 from math import copysign, inf, isfinite
 from typing import Final
 
-from tester.control.interlocks import AT_REST, INTERLOCKS, WARNINGS, bit
-from tester.control.levels import (
-    heat_levels,
-    lift_levels,
-    load_levels,
-    motion_levels,
-    process_levels,
-    rest_levels,
-    stop_levels,
-    unpowered_levels,
-    unseen_levels,
-)
-from tester.control.permissives import CONFIRMED_M_S, Bounds, may_heat, may_load, may_move, rig_bounds
+from tester.control.interlock_inputs import InterlockInputs
+from tester.control.permissives import Bounds, confirmed_speed_m_s, may_heat, may_load, may_move, rig_bounds
 from tester.control.safe_outputs import no_outputs, withdraw_escalation
-from tester.control.state import ControlState, Event, Mode, Reaction, Trip
+from tester.control.state import ControlState, Event, Mode, Trip
 from tester.control.stops import (
     after_stop,
     begin_fast,
@@ -29,22 +18,19 @@ from tester.control.stops import (
     stop_ended,
     stop_outputs,
 )
-from tester.control.view import UNLOADED_N, View
+from tester.interlocks.contact import UNLOADED_N
+from tester.interlocks.heat import RUNAWAY_WINDOW_S
+from tester.interlocks.operation import COLD_K, HOLD_AT_MOST_S, START_K
+from tester.interlocks.row import Interlock, Reaction
+from tester.interlocks.table import AT_REST, INTERLOCKS, WARNINGS, held, names_of, still_there
 from tester.process import Demand, Press, Readings, Setpoints
 from tester.rig import RigConfig
 
 _INF: Final = inf
-CEILING_WINDOW_S: Final = 600.0
-"""The runaway limit looks back this long (rulings, interlocks)."""
 CEILING_STEP_S: Final = 1.0
 """How exactly it knows when a setpoint was left, s."""
 ACK_WAIT_S: Final = 1.0
 """An acknowledged drive has reset its fault by then, s [A]; a cause that still holds refuses the acknowledgement."""
-_HEATING: Final = bit("heat not off") | bit("output not off") | bit("contactor welded") | bit("heating at standstill")
-"""Rows after which a heat that is still on leaves the jacket's lease to run out."""
-_MOVING: Final = bit("moving at rest")
-COLD_K: Final = 3.0
-"""A hub this near to ambient is cold: the rubber on it is, too (safety concept, "both at the start")."""
 
 # Bound once: a look-up on the enum class costs several times as much in every scan (CPython 3.11).
 _IDLE: Final = Mode.IDLE
@@ -80,8 +66,10 @@ class Control:
         """What is wanted in every mode but RUN and HOLD: nothing. A stop is not watched against the load it lifts."""
         self._held = Demand()
         """What is wanted in HOLD."""
-        self._delays = tuple(row.delay_s(rig) for row in INTERLOCKS)
-        self.view = View(state, rig)
+        self.view = InterlockInputs(state=state, rig=rig)
+        self._parameters = self.view.parameters
+        self._confirmed_m_s = confirmed_speed_m_s(self._parameters)
+        self._delays = tuple(row.delay_s(self._parameters) for row in INTERLOCKS)
         self._load_loop, self._heat_loop, self._press = rig.loops.load, rig.loops.heat, rig.axes.press
         self._ambient_c = rig.ambient_c
         state.pending_s = [inf] * len(INTERLOCKS)
@@ -148,9 +136,10 @@ class Control:
         demand = self._withdrawn
         demand.enabled = False
         self.view.look(demand, readings, 0.0, 0.0)
-        holding = names_of(self._levels() & ~WARNINGS)
-        cold = abs(readings.hub_c - self.rig.ambient_c) <= COLD_K
-        if cold and not abs(readings.surface_c - readings.hub_c) <= self.rig.interlocks.start_k:
+        holding = names_of(held(self.view) & ~WARNINGS)
+        p = self._parameters
+        cold = abs(readings.hub_c - self.rig.ambient_c) <= p[COLD_K]
+        if cold and not abs(readings.surface_c - readings.hub_c) <= p[START_K]:
             holding.append(f"thermometer at {readings.surface_c:.1f} degC, hub cold at {readings.hub_c:.1f} degC")
         if holding:
             return "not armed: " + ", ".join(holding)
@@ -217,7 +206,7 @@ class Control:
     def _acknowledge(self, now: float) -> None:
         """Leave LATCHED where nothing holds any more; refuse when something still does after a while."""
         state = self.state
-        holding = (state.held | unseen_levels(self.view) & state.tripped) & ~WARNINGS
+        holding = (state.held | still_there(self.view) & state.tripped) & ~WARNINGS
         if not holding:
             state.ack_until_s = -inf
             state.trip = None
@@ -235,35 +224,22 @@ class Control:
         """Evaluate every row of the table: a level that has held for its delay trips."""
         state = self.state
         self.view.look(demand, readings, scan_s, dt)
-        held = self._levels()
-        if held or state.held:
-            self._time(held, readings)
+        now_held = held(self.view)
+        if now_held or state.held:
+            self._time(now_held, readings)
 
-    def _levels(self) -> int:
-        view = self.view
-        held = process_levels(view) | motion_levels(view) | load_levels(view) | heat_levels(view)
-        if view.lifting_s >= 0.0:
-            held |= lift_levels(view)
-            if view.stopped_s >= 0.0:
-                held |= stop_levels(view)
-        if view.resting:
-            held |= rest_levels(view)
-        elif view.unpowered:
-            held |= unpowered_levels(view)
-        return held
-
-    def _time(self, held: int, readings: Readings) -> None:
-        """Note since when levels hold, and trip those that have for their delay."""
+    def _time(self, now_held: int, readings: Readings) -> None:
+        """Note since when rows hold, and trip those that have for their delay."""
         state, now, delays = self.state, readings.now_s, self._delays
         pending = state.pending_s
-        gone = state.held & ~held
-        state.held = held
+        gone = state.held & ~now_held
+        state.held = now_held
         state.tripped &= ~(gone & WARNINGS)
         while gone:
             lowest = gone & -gone
             gone ^= lowest
             pending[lowest.bit_length() - 1] = inf
-        due = held & ~state.tripped
+        due = now_held & ~state.tripped
         while due:
             lowest = due & -due
             due ^= lowest
@@ -281,7 +257,7 @@ class Control:
             state.events.append(Event(now, "warning", f"{row.name}: {row.cause}"))
             return
         resting = state.mode in _AT_REST
-        if resting and not self._acts_at_rest(own, readings):
+        if resting and not self._acts_at_rest(row):
             return
         state.tripped |= own
         text = row.cause + _detail(readings)
@@ -290,7 +266,7 @@ class Control:
             state.events.append(Event(now, "trip", f"{row.name}: {text}"))
         else:
             state.events.append(Event(now, "alarm", f"{row.name}: {text}"))
-        if own & _HEATING and not (readings.heat_percent <= 0.0):
+        if row.ends_lease and not (readings.heat_percent <= 0.0):
             state.setpoints.jacket_silent = True
         if not resting:
             self._react(row.reaction, now, row.name)
@@ -299,9 +275,9 @@ class Control:
             if state.mode is not _LATCHED:
                 state.enter(_LATCHED, now, row.name)
 
-    def _acts_at_rest(self, own: int, readings: Readings) -> bool:
-        """Tell whether a row trips at rest: something is on that is to be off. A belt may be turned by hand."""
-        return own & AT_REST != 0 and not (own == _MOVING and readings.drives_disabled)
+    def _acts_at_rest(self, row: Interlock) -> bool:
+        """Tell whether a row trips at rest: something is on that is to be off."""
+        return row.at_rest is not None and row.at_rest(self.view)
 
     def _react(self, reaction: Reaction, now: float, why: str) -> None:
         state, mode = self.state, self.state.mode
@@ -336,7 +312,7 @@ class Control:
         load = self._load_loop
         if not readings.drives_enabled:
             out.press_mm_s = 0.0
-        elif demand.press is _LOAD and not may_load(state, demand, readings, self.view.bounds, bounds.load_n):
+        elif demand.press is _LOAD and not may_load(state, demand, readings, self._parameters, bounds.load_n):
             out.press_mm_s = -load.lift_speed_mm_s if not (readings.force_z_n <= UNLOADED_N) else 0.0
         else:
             out.press_mm_s = state.load.velocity(demand, readings, dt, load, self._press)
@@ -345,7 +321,7 @@ class Control:
     def _hold(self, readings: Readings, dt: float) -> None:
         """Command what a hold wants; one that lasts too long ends in a controlled stop."""
         state, now = self.state, readings.now_s
-        if now - state.mode_since_s > self.rig.interlocks.hold_at_most_s:
+        if now - state.mode_since_s > self._parameters[HOLD_AT_MOST_S]:
             self.request_stop(now, "held too long")
             stop_outputs(state, self.view)
         else:
@@ -360,13 +336,13 @@ class Control:
 
     def _heat(self, demand: Demand, readings: Readings) -> None:
         out, state, now = self.state.setpoints, self.state, readings.now_s
-        least_c = self.view.bounds.hub_min_c
-        if not readings.wheel_speed_m_s > CONFIRMED_M_S:
+        least_c = self.view.limits.hub_min_c
+        if not readings.wheel_speed_m_s > self._confirmed_m_s:
             state.turning_since_s = inf
         elif state.turning_since_s > now:
             state.turning_since_s = now
         wanted = -_INF < demand.surface_c < _INF
-        out.heat = out.contactor = wanted and may_heat(state, readings, self.view.bounds)
+        out.heat = out.contactor = wanted and may_heat(state, readings, self._parameters)
         if not wanted:
             out.hub_c = least_c
         elif not demand.freeze_heat:
@@ -380,18 +356,13 @@ class Control:
             self._note_ceiling(now, setpoint_c)
 
     def _note_ceiling(self, now: float, setpoint_c: float) -> None:
-        """Keep the highest hub setpoint of the last ten minutes at the front of a short monotonic list."""
+        """Keep the highest hub setpoint of ``runaway_window`` at the front of a short monotonic list."""
         ceiling = self.state.hub_ceiling
         while ceiling and ceiling[-1][1] <= setpoint_c:
             ceiling.pop()
         ceiling.append((now, setpoint_c))
-        while ceiling[0][0] < now - CEILING_WINDOW_S:
+        while ceiling[0][0] < now - self._parameters[RUNAWAY_WINDOW_S]:
             ceiling.pop(0)
-
-
-def names_of(levels: int) -> list[str]:
-    """Return the names of the rows whose bits are set."""
-    return [row.name for i, row in enumerate(INTERLOCKS) if levels >> i & 1]
 
 
 def _bounded(value: float, limit: float) -> float:

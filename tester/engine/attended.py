@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import Final
 
-from tester.control.levels import SPEEDS_OLD_S
-from tester.control.view import STANDING_M_S
 from tester.engine.activity import Activity
 from tester.engine.context import Context
 from tester.engine.moves import Ask, Lift, Move, Power, Sequence, Turn
@@ -28,10 +26,11 @@ class Standing(Move):
         """Done when all of it is measured, not just commanded."""
         r = ctx.readings
         ctx.moving = True
+        still_m_s = ctx.rig.interlocks.standing_m_s
         return (
             r.drives_disabled
-            and abs(r.wheel_speed_m_s) <= STANDING_M_S
-            and abs(r.belt_speed_m_s) <= STANDING_M_S
+            and abs(r.wheel_speed_m_s) <= still_m_s
+            and abs(r.belt_speed_m_s) <= still_m_s
             and not r.contactor_closed
         )
 
@@ -45,7 +44,7 @@ class Free(Move):
     def step(self, ctx: Context) -> bool:
         """Done when a fresh reading shows no more than an unloaded cell may."""
         r, (ox, oy, oz, om) = ctx.readings, ctx.cell.tare
-        fresh = r.cell_valid and r.now_s - r.cell_at_s <= SPEEDS_OLD_S
+        fresh = r.cell_valid and r.now_s - r.cell_at_s <= ctx.rig.interlocks.speeds_old_s
         return fresh and not loaded((r.force_x_n + ox, r.force_y_n + oy, r.force_z_n + oz, r.moment_z_nm + om), ctx.rig)
 
 

@@ -198,9 +198,10 @@ class Ask:
     closed; one that was given with the guard open is asked for again then, so that closing it starts nothing.
     """
 
-    def __init__(self, text: str) -> None:
-        """The question as a person reads it."""
+    def __init__(self, text: str, *, near: bool = True) -> None:
+        """The question as a person reads it; ``near``: it asks a person to come near the machine."""
         self.text = text
+        self.near = near
         self.number = 0
         self.record = 0
         self.heard = False
@@ -210,11 +211,12 @@ class Ask:
         if not self.number:
             self._put(ctx, self.text)
         answer = ctx.prompts.asked[self.number - 1].answer
-        ctx.demand.attended = not ctx.prompts.automatic
+        alone = ctx.prompts.answers_itself(near=self.near)
+        ctx.demand.attended = not alone
         if answer is None:
             return False
         # Where nobody is asked, an open guard is a fault: it trips with the next drive switched on.
-        closed = ctx.readings.guard_closed or ctx.prompts.automatic
+        closed = ctx.readings.guard_closed or alone
         if not self.heard:
             self.heard = True
             ctx.journal.prompt_answered(self.record, ctx.now, answer)
@@ -227,7 +229,7 @@ class Ask:
         return False
 
     def _put(self, ctx: Context, text: str) -> None:
-        self.number = ctx.prompts.ask(ctx.now, text).number
+        self.number = ctx.prompts.ask(ctx.now, text, near=self.near).number
         self.record = ctx.journal.prompt(ctx.now, text)
         self.heard = False
 

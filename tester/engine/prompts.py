@@ -20,14 +20,23 @@ class Prompt:
 
 @dataclass(slots=True)
 class Prompts:
-    """The prompts of a run, oldest first. ``automatic``: answer "yes" at once (``--yes``)."""
+    """The prompts of a run, oldest first. ``automatic``: answer "yes" at once (``--yes``).
+
+    ``real``: a person really has to come near the machine where a prompt asks for that; only a person can answer it.
+    """
 
     automatic: bool = False
+    real: bool = False
     asked: list[Prompt] = field(default_factory=list[Prompt])
 
-    def ask(self, now: float, text: str) -> Prompt:
+    def answers_itself(self, *, near: bool) -> bool:
+        """Tell whether nobody is asked. ``near``: the question asks a person to come near the machine."""
+        return self.automatic and not (near and self.real)
+
+    def ask(self, now: float, text: str, *, near: bool = True) -> Prompt:
         """Put a question and return it; it may already be answered."""
-        prompt = Prompt(len(self.asked) + 1, now, text, "yes (automatic)" if self.automatic else None)
+        answer = "yes (automatic)" if self.answers_itself(near=near) else None
+        prompt = Prompt(len(self.asked) + 1, now, text, answer)
         self.asked.append(prompt)
         return prompt
 

@@ -149,7 +149,7 @@ class RestStep:
         if self.late is None:
             text = f"after {waited / 60:.0f} min of rest the surface is at {surface:.1f} degC, not at {until} degC"
             ctx.journal.event(ctx.now, "rest", f"not reached: {text}", "warning")
-            self.late = Ask(f"{text}: go on?") if self.ask_when_late else Sequence()
+            self.late = Ask(f"{text}: go on?", near=False) if self.ask_when_late else Sequence()
         return self.late.step(ctx)
 
 

@@ -14,11 +14,11 @@ from math import hypot, isfinite, pi
 from typing import Final, NamedTuple
 
 from tester.analysis.wear_check import NO_CONDITION, WearCheck
-from tester.control.load_loop import depth_mm
 from tester.engine.attended import AskAtRest
 from tester.engine.context import CheckReference, Context, WheelLife
 from tester.engine.moves import Lift, Load, Power, Sequence, Settle, TakeTare, Turn
 from tester.engine.thermal_steps import Straighten
+from tester.interlocks.contact import depth_mm
 from tester.process import NAN
 from tester.recipe.plan import WearCheck as Method
 

@@ -23,6 +23,7 @@ from tester.rig.config import (
     RigConfig,
     ScanConfig,
     WearConfig,
+    interlock_values,
 )
 from tester.rig.load import load_rig
 
@@ -47,5 +48,6 @@ __all__ = [
     "RigConfig",
     "ScanConfig",
     "WearConfig",
+    "interlock_values",
     "load_rig",
 ]

@@ -1,19 +1,23 @@
 """What a rig file says, as frozen dataclasses. Units are in the names; keys in the file have none (config_reader).
 
-Nothing here has a default: a limit or an interlock never comes from the program, always from a file that a person
-can read. The numbers and their sources stand in the packaged file of the simulated rig, ``sim/rig.yaml``.
+Nothing here has a default: a limit never comes from the program, always from a file that a person can read. The
+numbers and their sources stand in the packaged file of the simulated rig, ``sim/rig.yaml``. Only the section
+``interlocks`` is declared elsewhere, each key beside the interlock that it belongs to (tester.interlocks): a key that a
+file lacks takes the packaged value, and ``tester check`` says which.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, make_dataclass
 from datetime import date
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from drivers.axis import AxisConfig
 from sim.parameters import SimParameters, ThermalParameters, WheelParameters
 from tester.config_reader import Range, as_text, as_tree
+from tester.interlocks.parameter import Values
+from tester.interlocks.table import PARAMETERS
 
 _POSITIVE = Range(gt=0.0)
 _NOT_NEGATIVE = Range(ge=0.0)
@@ -193,75 +197,29 @@ class GatesConfig:
     contact_transient_s: Annotated[float, "s", _NOT_NEGATIVE]
 
 
-@dataclass(frozen=True, slots=True)
-class InterlocksConfig:
-    """Levels and delays of the interlocks (tester.control.interlocks); a delay is how long a level must stand."""
+if TYPE_CHECKING:
 
-    stale_cell_s: Annotated[float, "s", _POSITIVE]
-    stale_cell_delay_s: Annotated[float, "s", _NOT_NEGATIVE]
-    stale_can_scans: Annotated[float, "1", Range(ge=1.0)]
-    stale_can_s: Annotated[float, "s", _POSITIVE]
-    stale_inputs_s: Annotated[float, "s", _POSITIVE]
-    stale_ir_s: Annotated[float, "s", _POSITIVE]
-    stale_jacket_s: Annotated[float, "s", _POSITIVE]
-    stale_delay_s: Annotated[float, "s", _NOT_NEGATIVE]
-    overload_factor: Annotated[float, "1", Range(ge=1.0)]
-    overload_margin_n: Annotated[float, "N", _NOT_NEGATIVE]
-    overload_delay_s: Annotated[float, "s", _NOT_NEGATIVE]
-    depth_factor: Annotated[float, "1", Range(ge=1.0)]
-    depth_margin_mm: Annotated[float, "mm", _NOT_NEGATIVE]
-    depth_delay_s: Annotated[float, "s", _NOT_NEGATIVE]
-    contact_share: Annotated[float, "1", _SHARE]
-    contact_delay_s: Annotated[float, "s", _NOT_NEGATIVE]
-    max_slip_m_s: Annotated[float, "m/s", _POSITIVE]
-    slip_power_delay_s: Annotated[float, "s", _NOT_NEGATIVE]
-    standing_delay_s: Annotated[float, "s", _NOT_NEGATIVE]
-    overspeed_share: Annotated[float, "1", _NOT_NEGATIVE]
-    overspeed_delay_s: Annotated[float, "s", _NOT_NEGATIVE]
-    surface_delay_s: Annotated[float, "s", _NOT_NEGATIVE]
-    jacket_delay_s: Annotated[float, "s", _NOT_NEGATIVE]
-    runaway_k: Annotated[float, "K", _POSITIVE]
-    runaway_delay_s: Annotated[float, "s", _NOT_NEGATIVE]
-    standstill_heat_delay_s: Annotated[float, "s", _NOT_NEGATIVE]
-    late_warn_s: Annotated[float, "s", _POSITIVE]
-    late_scan_s: Annotated[float, "s", _POSITIVE]
-    torn_share: Annotated[float, "1", _SHARE]
-    torn_slip_m_s: Annotated[float, "m/s", _POSITIVE]
-    torn_delay_s: Annotated[float, "s", _NOT_NEGATIVE]
-    speed_error_m_s: Annotated[float, "m/s", _POSITIVE]
-    speed_error_delay_s: Annotated[float, "s", _NOT_NEGATIVE]
-    press_error_mm: Annotated[float, "mm", _POSITIVE]
-    dropped_delay_s: Annotated[float, "s", _NOT_NEGATIVE]
-    frozen_cell_s: Annotated[float, "s", _POSITIVE]
-    frozen_surface_s: Annotated[float, "s", _POSITIVE]
-    frozen_model_k: Annotated[float, "K", _POSITIVE]
-    frozen_delay_s: Annotated[float, "s", _NOT_NEGATIVE]
-    jump_k: Annotated[float, "K", _POSITIVE]
-    jacket_margin_k: Annotated[float, "K", _NOT_NEGATIVE]
-    stuck_rate_k_s: Annotated[float, "K/s", _POSITIVE]
-    stuck_off_s: Annotated[float, "s", _NOT_NEGATIVE]
-    stuck_delay_s: Annotated[float, "s", _NOT_NEGATIVE]
-    open_output_percent: Annotated[float, "%", _POSITIVE]
-    open_s: Annotated[float, "s", _POSITIVE]
-    open_below_k: Annotated[float, "K", _POSITIVE]
-    open_rise_k: Annotated[float, "K", _POSITIVE]
-    model_k: Annotated[float, "K", _POSITIVE]
-    model_delay_s: Annotated[float, "s", _NOT_NEGATIVE]
-    start_k: Annotated[float, "K", _POSITIVE]
-    line_errors: Annotated[float, "1", _SHARE]
-    line_errors_delay_s: Annotated[float, "s", _NOT_NEGATIVE]
-    least_diameter_mm: Annotated[float, "mm", _POSITIVE]
-    contactor_delay_s: Annotated[float, "s", _POSITIVE]
-    heat_off_s: Annotated[float, "s", _POSITIVE]
-    lift_late_s: Annotated[float, "s", _POSITIVE]
-    lift_failed_s: Annotated[float, "s", _POSITIVE]
-    stop_margin_s: Annotated[float, "s", _POSITIVE]
-    hold_at_most_s: Annotated[float, "s", _POSITIVE]
-    zero_warn_n: Annotated[float, "N", _POSITIVE]
-    zero_stop_n: Annotated[float, "N", _POSITIVE]
-    cooldown_hub_c: Annotated[float, "degC"]
-    cooldown_speed_m_s: Annotated[float, "m/s", _POSITIVE]
-    cooldown_at_most_s: Annotated[float, "s", _POSITIVE]
+    @dataclass(frozen=True, slots=True)
+    class InterlocksConfig:
+        """The section ``interlocks``: a field for each parameter of the interlock table (tester.interlocks)."""
+
+        def __getattr__(self, name: str) -> float:
+            """Return a parameter's value in its unit, by the name of its field (``Parameter.name``)."""
+            ...
+
+else:
+    InterlocksConfig = make_dataclass(
+        "InterlocksConfig",
+        [(one.name, Annotated[float, one.unit, one.bounds], field(default=one.value)) for one in PARAMETERS],
+        frozen=True,
+        slots=True,
+        namespace={"__module__": __name__, "__doc__": "The section interlocks; a missing key has its default."},
+    )
+
+
+def interlock_values(section: InterlocksConfig) -> Values:
+    """Return what a rig's section ``interlocks`` says, by parameter."""
+    return {one: float(getattr(section, one.name)) for one in PARAMETERS}
 
 
 @dataclass(frozen=True, slots=True)

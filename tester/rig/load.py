@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from copy import deepcopy
+from functools import cache
 from importlib.resources import files
 from pathlib import Path
 
 from tester.config_reader import read
+from tester.rig.ceilings import Risk, beyond, counts_as_simulated, loosened
 from tester.rig.checks import problems_of
 from tester.rig.config import RigConfig
 from tester.source import InvalidSource, Problem, Tree, Value, load_tree
@@ -19,29 +21,76 @@ _AXES = ("wheel", "belt", "press", "sideslip", "camber")
 _MAY_BE_MANUAL = ("sideslip", "camber")
 
 
-def load_rig(name_or_path: str | Path = SIMULATED, overrides: Sequence[str] = ()) -> RigConfig:
+def load_rig(
+    name_or_path: str | Path = SIMULATED, overrides: Sequence[str] = (), accept_risk: str = ""
+) -> RigConfig:
     """Return the rig of a file, or the packaged simulated one for "sim".
 
     ``overrides`` are ``a.b.c=value`` texts, each replacing one key of the file; the value is read as in the file.
-    Raises InvalidSource with every problem; one that an override brought in is named by it.
+    ``accept_risk``: why safety keys may be looser than they should be (``risks_of``), "" = they may not. On a real rig
+    only its file may say so: ``overrides`` can but tighten what it says. Raises InvalidSource with every problem; one
+    that an override brought in is named by it.
     """
     tree = load_tree(packaged_text(), "sim/rig.yaml") if name_or_path == SIMULATED else load_tree(Path(name_or_path))
     texts = tuple(overrides)
     if not texts:
-        return _checked(tree)
-    _checked(deepcopy(tree))  # what is wrong with the file itself is told first, and as such
+        return _accepted(_checked(tree), None, tree, accept_risk)
+    stated = _checked(deepcopy(tree))  # what is wrong with the file itself is told first, and as such
     problems = [problem for number, text in enumerate(texts) for problem in _override(tree, text, number)]
     if problems:
         raise InvalidSource(problems)
     try:
-        return _checked(tree)
+        return _accepted(_checked(tree), stated, tree, accept_risk)
     except InvalidSource as error:
         raise InvalidSource([_attributed(problem, texts) for problem in error.problems]) from error
 
 
-def load_rig_text(text: str, name: str = "rig.yaml") -> RigConfig:
-    """Return the rig of a file's text, such as a run has stored; raises InvalidSource with every problem."""
-    return _checked(load_tree(text, name))
+def risks_of(rig: RigConfig) -> tuple[Risk, ...]:
+    """Return the safety keys for which a rig needs somebody's word: those looser than the packaged values.
+
+    Where nobody can be hurt (``counts_as_simulated``) only those looser than their hardest values.
+    """
+    return beyond(rig) if counts_as_simulated(rig) else loosened(rig, _packaged())
+
+
+@cache
+def _packaged() -> RigConfig:
+    return _checked(load_tree(packaged_text(), "sim/rig.yaml"))
+
+
+def _accepted(rig: RigConfig, stated: RigConfig | None, tree: Tree, reason: str) -> RigConfig:
+    """Return a rig whose risks are accepted; ``stated``: what the file says without overrides."""
+    real = not counts_as_simulated(rig)
+    loose = loosened(rig, stated) if real and stated is not None else ()
+    problems = [
+        tree.problem(
+            one.location,
+            f"{one.key}: {one.compared}, and --set may only tighten what the file of a real rig says"
+            f" ({one.ceiling.because}): write it there, and run with --accept-risk REASON",
+        )
+        for one in loose
+    ]
+    told = {one.location for one in loose}
+    if not reason:
+        problems += [
+            tree.problem(
+                one.location,
+                f"{one.key}: {one.compared} ({one.ceiling.because}): tighten it, or take it on: --accept-risk REASON",
+            )
+            for one in risks_of(rig)
+            if one.location not in told
+        ]
+    if problems:
+        raise InvalidSource(problems)
+    return rig
+
+
+def load_rig_text(text: str | Path, name: str | None = None) -> RigConfig:
+    """Return the rig of a text or a file that a run has stored; raises InvalidSource with every problem.
+
+    Its risks were accepted when the run began, or are asked for where it goes on (tester.session).
+    """
+    return _checked(load_tree(text, name or ("rig.yaml" if isinstance(text, str) else None)))
 
 
 def _checked(tree: Tree) -> RigConfig:

@@ -19,7 +19,7 @@ from tester.service.progress import PlanTrack
 from tester.service.protocol import SNAPSHOT_S
 from tester.service.state import DiskView, ManualView, ProgressView, RunView, StateView, TickView, Value
 from tester.service.values import unknown_values
-from tester.service.watch import RunWatch
+from tester.service.watch import RunWatch, risk_of
 from tester.store.space import MARGIN, FreeRoom
 
 UNWATCHED_S = 1.0
@@ -96,6 +96,7 @@ class Desk:
     _room: FreeRoom = field(init=False)
     _unknown: tuple[Value, ...] = ()
     _alone: str = ""
+    _risk: str = ""
     alarms: AlarmList = field(init=False)
 
     def __post_init__(self) -> None:
@@ -106,6 +107,7 @@ class Desk:
         self._room = FreeRoom(self.runs)
         self._look_at_disk()
         self._room.wait(DISK_FIRST_S)
+        self._risk = risk_of(self.rig)
 
     # -- runs -------------------------------------------------------------------------------------------------
 
@@ -285,6 +287,7 @@ class Desk:
             interrupted=self.interrupted,
             preflight=(*(check for check in known if check.name not in said), *own),
             alone=watch.alone if watch is not None else self._alone,
+            risk=watch.risk if watch is not None else self._risk,
         )
 
     def _situation(self) -> tuple[str, str, float]:

@@ -39,13 +39,14 @@ class Settings:
     token: str = ""
     port: int = 0
     stop_port: int = 0
+    accept_risk: str = ""
 
 
 SETTINGS: TypeAdapter[Settings] = TypeAdapter(Settings)
 
 
 async def _serve(reader: asyncio.StreamReader, writer: asyncio.StreamWriter, settings: Settings) -> None:
-    queries = Queries(Path(settings.runs), settings.rig)
+    queries = Queries(Path(settings.runs), settings.rig, settings.accept_risk)
 
     def tell(line: bytes) -> None:
         if not writer.is_closing():

@@ -24,7 +24,7 @@ EXIT_FAILED = 1
 EXIT_USAGE = 2
 
 
-def host(rig: str, overrides: tuple[str, ...], runs: str, url: str, port: int | None, notify: str) -> int:
+def host(options: ServiceOptions, url: str, port: int | None, notify: str) -> int:
     """Serve until told to end; return the exit code. Raises InvalidSource for the rig file."""
     try:
         where, address = _place(url, port)
@@ -37,8 +37,8 @@ def host(rig: str, overrides: tuple[str, ...], runs: str, url: str, port: int | 
         except RigInUseError as error:
             sys.stderr.write(f"{error}\n")
             return EXIT_FAILED
-        hub = Hub(HubConfig(address, where / CARD, Path(runs), rig, notify))
-        service = Service(ServiceOptions(rig, overrides, Path(runs)), hub)
+        hub = Hub(HubConfig(address, where / CARD, options.runs, options.rig, notify, options.accept_risk))
+        service = Service(options, hub)
         hub.open()
         sys.stderr.write(f'rig "{service.rig.name}" is served at {address}\n')
         sys.stderr.flush()

@@ -39,6 +39,7 @@ class HubConfig:
     runs: Path
     rig: str
     notify: str = ""
+    accept_risk: str = ""
 
 
 @dataclass(slots=True)
@@ -175,7 +176,7 @@ class Hub:
         path = self.config.card if isinstance(address, TcpAddress) else address.path
         settings = Settings(
             self.service, __version__, str(path), str(self.config.runs), self.config.rig, self.config.notify,
-            address.token if tcp else "", address.port if tcp else 0, self.lane.port,
+            address.token if tcp else "", address.port if tcp else 0, self.lane.port, self.config.accept_risk,
         )  # fmt: skip
         self._say(SETTINGS.dump_json(settings))
         for row in self._rows:

@@ -21,6 +21,7 @@ from tester.engine.moves import TakeTare
 from tester.engine.results import StoredResults
 from tester.engine.run import Run
 from tester.process import Press
+from tester.provenance import accepted_risks
 from tester.recipe.limits import least_load_n
 from tester.recipe.plan import Plan
 from tester.rig import RigConfig
@@ -242,7 +243,7 @@ def empty_plan() -> Plan:
     return Plan(NAME, (), (), (), 0.0, 1)
 
 
-def open_record(runs: Path, rig: RigConfig, operator: str) -> RunWriter:
+def open_record(runs: Path, rig: RigConfig, operator: str, accept_risk: str = "") -> RunWriter:
     """Return the journal of one stay in manual mode: a record of its own, without samples, in ``runs/.manual``.
 
     It is no run: it holds commands, modes, trips and tares, and no listing of runs shows it. Raises OSError,
@@ -251,7 +252,9 @@ def open_record(runs: Path, rig: RigConfig, operator: str) -> RunWriter:
     folder = make_folder(runs / MANUAL_RUNS, NAME)
     writer = Unsampled(folder / DATABASE, clock=clock.monotonic, utc=clock.utc_now)
     started_utc = clock.utc_now()
-    writer.begin_run(RunInfo(folder.name, NAME, "", rig.text, started_utc, rig.simulated, operator=operator), [], [])
+    info = RunInfo(folder.name, NAME, "", rig.text, started_utc, rig.simulated, operator=operator,
+                   metadata=accepted_risks(rig, accept_risk))  # fmt: skip
+    writer.begin_run(info, [], [])
     return writer
 
 

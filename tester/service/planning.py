@@ -43,6 +43,7 @@ class Task:
     recipe: str
     rig: str
     overrides: tuple[str, ...] = ()
+    accept_risk: str = ""
 
 
 TASK: TypeAdapter[Task] = TypeAdapter(Task)
@@ -155,7 +156,7 @@ def plan_for(link: socket.socket) -> None:
 
     gc.disable()
     try:
-        found = prepared(task.recipe, task.rig, task.overrides)
+        found = prepared(task.recipe, task.rig, task.overrides, task.accept_risk)
     except (InvalidSource, UnknownRecipe, CannotStartError, OSError) as error:
         send(str(error) or type(error).__name__)
         return

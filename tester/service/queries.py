@@ -37,10 +37,12 @@ class QueryError(Exception):
 
 @dataclass(slots=True)
 class Queries:
-    """Answers questions. ``runs``: folder of the stored runs; ``rig``: the rig file used where none is named."""
+    """Answers questions. ``runs``: folder of the stored runs; ``rig``: the rig file used where none is named,
+    with the risks that its service accepted."""
 
     runs: Path
     rig: str = "sim"
+    accept_risk: str = ""
     _turns: asyncio.Semaphore = field(default_factory=lambda: asyncio.Semaphore(AT_ONCE))
     _tasks: set[asyncio.Task[None]] = field(default_factory=set[asyncio.Task[None]])
 
@@ -61,6 +63,8 @@ class Queries:
 
     async def _of_recipe(self, question: CheckRecipe | ShowPlan) -> JsonValue:
         options = ["--rig", question.rig or self.rig, "--json"]
+        if self.accept_risk and not question.rig:
+            options += [f"--accept-risk={self.accept_risk}"]
         for override in question.overrides:
             options += ["--set", override]
         if not question.text:

@@ -53,7 +53,7 @@ class ServiceSession(Session):
     def prepare(self) -> Prepared:
         """Have the recipe planned by a process of its own, and go on looking after clients; STOP ends it."""
         o = self.options
-        found = planned(Task(o.recipe, o.rig, o.overrides), self._meanwhile)
+        found = planned(Task(o.recipe, o.rig, o.overrides, o.accept_risk), self._meanwhile)
         self._expected = found.expected
         return found
 

@@ -70,6 +70,8 @@ class ServiceOptions:
     rig: str = "sim"
     overrides: tuple[str, ...] = ()
     runs: Path = Path("runs")
+    accept_risk: str = ""
+    """Why safety keys of this rig may be looser than they should be."""
 
 
 class Service:
@@ -78,7 +80,7 @@ class Service:
     def __init__(self, options: ServiceOptions, hub: Hub) -> None:
         """Read the rig file; raises InvalidSource. Nothing is connected."""
         self.options = options
-        self.rig = load_rig(options.rig, options.overrides)
+        self.rig = load_rig(options.rig, options.overrides, options.accept_risk)
         self.desk = Desk(hub, self.rig, options.runs)
         self.orders = Orders(self.desk)
         self._look_due_s = 0.0
@@ -137,6 +139,7 @@ class Service:
             recipe=spooled or action.recipe,
             rig=action.rig or self.options.rig,
             overrides=(*(() if action.rig else self.options.overrides), *action.overrides),
+            accept_risk="" if action.rig else self.options.accept_risk,
             out=self.options.runs,
             seed=action.seed,
             lapse=action.speed,
@@ -150,7 +153,9 @@ class Service:
         except StoreError as error:
             self.desk.hub.refuse(order, str(error))
             return
-        options = SessionOptions(out=self.options.runs, lapse=action.speed, operator=order.name)
+        options = SessionOptions(
+            accept_risk=self.options.accept_risk, out=self.options.runs, lapse=action.speed, operator=order.name
+        )
         self._session(order, options, action.yes, "", lambda session: session.resume(folder, action.reason))
 
     def _spooled(self, action: RunRecipe) -> str:
@@ -208,7 +213,7 @@ class Service:
         with ExclusiveUse() as use:
             try:
                 hold_rig(use, rig, NAME)
-                record = open_record(self.options.runs, rig, order.name)
+                record = open_record(self.options.runs, rig, order.name, self.options.accept_risk)
             except REFUSED as error:
                 desk.hub.refuse(order, in_words(error))
                 return

@@ -271,7 +271,8 @@ class StateView:
     """The whole state. ``t_s``: rig seconds of the run; ``wall_s``: seconds since the service started.
 
     ``mode_text`` says why the rig is in its mode. ``interrupted``: runs in the store that were cut off and can be
-    resumed, by name. ``preflight``: what a person should look at before starting.
+    resumed, by name. ``preflight``: what a person should look at before starting. ``risk``: the rig's safety keys that
+    are looser than they should be, in words; "" where none is.
     """
 
     mode: str
@@ -299,6 +300,7 @@ class StateView:
     preflight: tuple[Check, ...]
     alone: str = ""
     """What the rig's devices do by themselves once the service is gone."""
+    risk: str = ""
 
     def value(self, key: str) -> Value | None:
         """Return the value with this key, None where the rig has none."""

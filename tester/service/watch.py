@@ -11,6 +11,8 @@ from tester.engine.connect import Stage
 from tester.engine.run import Run
 from tester.engine.thermal_steps import HeatUp, SoakTo
 from tester.process import GATE_LOAD, GATE_SETTLING, GATE_SLIP, GATE_SPEED, GATE_TEMPERATURE
+from tester.rig import RigConfig
+from tester.rig.load import risks_of
 from tester.service.alarms import AlarmList, Cause
 from tester.service.alone import left_alone
 from tester.service.buses import BusWatch
@@ -33,6 +35,11 @@ RESTING = (Mode.IDLE, Mode.LATCHED)
 """Modes in which drives are let go of at the end of a run."""
 
 
+def risk_of(rig: RigConfig) -> str:
+    """Return the safety keys of a rig that are looser than they should be, in words; "" where none is."""
+    return "; ".join(map(str, risks_of(rig)))
+
+
 class RunWatch:
     """Looks at one run, between two ticks."""
 
@@ -41,6 +48,7 @@ class RunWatch:
         self.run = run
         engine = run.engine
         self.rig = engine.ctx.rig
+        self.risk = risk_of(self.rig)
         self.values = ValueView(engine)
         self.buses = BusWatch(engine.devices, self.rig)
         self.frames = FrameLog(engine.devices, tuple(self.rig.lines))

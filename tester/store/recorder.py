@@ -218,6 +218,11 @@ class Recorder:
         replaced: Statement = (sql, (text, text_sha256(text), calibration_sha256(figures), source))
         self._write(replaced, *_calibration(figures, session), urgent=True)
 
+    def add_metadata(self, values: Mapping[str, str]) -> None:
+        """Record what is to be known of the run from now on; a key that was there gets its new value."""
+        sql = "INSERT OR REPLACE INTO metadata (key, value) VALUES (?, ?)"
+        self._write(*((sql, (key, value)) for key, value in values.items()), urgent=True)
+
     def finish(self, status: str, reason: str = "", rig_seconds: float = NAN, ended_utc: str = "") -> Ticket:
         """Record the end: ``status`` such as finished, incomplete, tripped, stopped, failed; rig time in s."""
         sql = "UPDATE run SET status = ?, reason = ?, rig_seconds = ?, ended_utc = ?"

@@ -112,11 +112,22 @@ class BusStatistic:
     value: float
 
 
+ACCEPTED_RISK, LOOSE_KEYS = "accepted_risk", "loose_safety_keys"
+"""Metadata of a run on a rig whose safety keys are looser than they should be: why that is so, and which they are."""
+
+
+def risk_text(metadata: Mapping[str, str]) -> str:
+    """Return the risks in a run's metadata as one line; "" where none was accepted."""
+    keys = metadata.get(LOOSE_KEYS, "")
+    return f"{keys} (accepted: {metadata.get(ACCEPTED_RISK, '')})" if keys else ""
+
+
 @dataclass(frozen=True, slots=True)
 class RunInfo:
     """A run as it begins. Texts of recipe and rig file as they were used; times as ISO 8601 UTC text.
 
-    ``metadata`` is the recipe's (abrasive, humidity, experiment fields); ``versions`` those of libraries.
+    ``metadata`` is the recipe's (abrasive, humidity, experiment fields), and the risks that were accepted (``risk``);
+    ``versions`` those of libraries.
     """
 
     name: str
@@ -135,6 +146,11 @@ class RunInfo:
     calibration: tuple[Calibration, ...] = ()
     metadata: Mapping[str, str] = field(default_factory=dict[str, str])
     versions: Mapping[str, str] = field(default_factory=dict[str, str])
+
+    @property
+    def risk(self) -> str:
+        """Which safety keys are looser than they should be, and why that was accepted; "" where none is."""
+        return risk_text(self.metadata)
 
 
 @dataclass(frozen=True, slots=True)

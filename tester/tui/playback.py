@@ -99,7 +99,7 @@ class Playback:
             values=self._values(at_s, index, condition.info if condition is not None else None),
             gates=(), soak=None, alarms=(), prompt=None, manual=ManualView(None, ""), devices=(), buses=(),
             disk=DiskView(None, 0, False), tick=TickView(0.0, 0.0, run.overruns), clients=ClientsView("", 0, 0),
-            interrupted=(), preflight=(),
+            interrupted=(), preflight=(), risk=info.risk,
         )  # fmt: skip
 
     def _progress(self, at_s: float, condition: StoredCondition | None) -> ProgressView:

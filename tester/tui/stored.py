@@ -88,6 +88,8 @@ def stored_of(folder: Path, results: RunResults) -> Stored:
     header = ("Formula", *(one.title for one in shown), *FIGURES)
     rows = tuple(_row(measured, shown) for measured in conditions)
     run = results.run
+    if run.info.risk:
+        common = f"RISK ACCEPTED: {run.info.risk}{'; ' + common if common else ''}"
     return Stored(folder.name, folder, run.info.recipe_name, results.status.value, header, common, rows)
 
 

@@ -10,7 +10,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from sim.faults.language import parse
-from tester.control.interlocks import INTERLOCKS
+from tester.interlocks.table import INTERLOCKS
 from tests.faults.late_scans import PATIENT
 from tests.faults.moments import Moment, Twins, rehearse, visit
 from tests.faults.stage import Stage

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 WORKING = frozenset({"run", "hold"})
 AT_REST = frozenset({"idle", "latched"})
 SLOW_M_S = 0.02
-"""A wheel slower than this does not turn (tester.control.view)."""
+"""A wheel slower than this does not turn (``standing`` of the rig file)."""
 SHARE = 1.001
 """A command may exceed its limit by a rounding."""
 

@@ -20,6 +20,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from tester.interlocks.table import INTERLOCKS
+
 ROOT = Path(__file__).resolve().parents[2]
 COPIED = ("tester", "drivers", "sim", "recipes", "tests")
 ASKED_FOR = 0.9
@@ -41,51 +43,60 @@ class Mutant:
     row: str = ""
 
 
-_STEP, _LEVELS, _STOPS = "tester/control/step.py", "tester/control/levels.py", "tester/control/stops.py"
-_TABLE, _SAFE, _MAY = "tester/control/interlocks.py", "tester/control/safe_outputs.py", "tester/control/permissives.py"
+_STEP, _STOPS = "tester/control/step.py", "tester/control/stops.py"
+_SAFE, _MAY = "tester/control/safe_outputs.py", "tester/control/permissives.py"
+_TABLE, _WIRES, _MOTION = "tester/interlocks/table.py", "tester/interlocks/wires.py", "tester/interlocks/motion.py"
+_LOAD, _HEAT = "tester/interlocks/load.py", "tester/interlocks/heat.py"
 
-def _masked(row: str, constant: str) -> Mutant:
+
+def _masked(name: str) -> Mutant:
     """Return the mutant in which a row of the table never holds."""
-    return Mutant(f"row masked: {row}", _LEVELS, f"held |= {constant}\n", "held |= 0\n", row)
+    row = next(one for one in INTERLOCKS if one.name == name)
+    condition = row.condition
+    path = condition.__module__.replace(".", "/") + ".py"
+    return Mutant(
+        f"row masked: {name}", path, f"condition={condition.__name__},\n", "condition=lambda v: False,\n", name
+    )
 
 
 MUTANTS: tuple[Mutant, ...] = (
-    Mutant("a comparison inverted: overload", _LEVELS,
-           "if not (fz <= b.load_n):", "if not (fz >= b.load_n):"),
-    Mutant("a comparison inverted: standing under load", _LEVELS,
-           "apart = v.turning is not belt_moves and", "apart = v.turning is belt_moves and"),
-    Mutant("a comparison inverted: overshoot", _LEVELS,
-           "if not (fz <= b.overload_factor * highest + b.overload_margin_n):",
-           "if fz <= -(b.overload_factor * highest + b.overload_margin_n):"),
-    Mutant("a comparison inverted: wheel speed", _LEVELS,
-           "if not (v.wheel.low_m_s - error <= wheel <= v.wheel.high_m_s + error):",
-           "if v.wheel.low_m_s - error <= wheel <= v.wheel.high_m_s + error:"),
-    Mutant("a delay x 10: stale temperatures", _TABLE,
-           '"age > stale_jacket, or not valid",\n              lambda c: c.stale_delay_s,',
-           '"age > stale_jacket, or not valid",\n              lambda c: 10.0 * c.stale_delay_s,'),
-    Mutant("a delay x 10: load overshoot", _TABLE,
-           "lambda c: c.overload_delay_s, FAST", "lambda c: 10.0 * c.overload_delay_s, FAST"),
+    Mutant("a comparison inverted: overload", _LOAD,
+           "not (v.readings.force_z_n <= v.limits.load_n)", "not (v.readings.force_z_n >= v.limits.load_n)"),
+    Mutant("a comparison inverted: standing under load", _MOTION,
+           "if v.turning is belt_moves:", "if v.turning is not belt_moves:"),
+    Mutant("a comparison inverted: overshoot", _LOAD,
+           "return not (force_n <= p[OVERLOAD_FACTOR] * highest_n + p[OVERLOAD_MARGIN_N])",
+           "return force_n <= -(p[OVERLOAD_FACTOR] * highest_n + p[OVERLOAD_MARGIN_N])"),
+    Mutant("a comparison inverted: wheel speed", _MOTION,
+           "return not (wheel.low_m_s - error <= v.readings.wheel_speed_m_s <= wheel.high_m_s + error)",
+           "return wheel.low_m_s - error <= v.readings.wheel_speed_m_s <= wheel.high_m_s + error"),
+    Mutant("a delay x 10: stale temperatures", _HEAT,
+           "parameters=(STALE_JACKET_S,),\n    delay=STALE_DELAY_S,",
+           "parameters=(STALE_JACKET_S,),\n    delay=JACKET_DELAY_S,"),
+    Mutant("a delay x 10: load overshoot", _LOAD,
+           "    delay=OVERLOAD_DELAY_S,\n", "    delay=FROZEN_CELL_S,\n"),
     Mutant("a level made an edge", _STEP,
-           "        state.held = held\n        state.tripped", "        held, state.held = held & ~state.held, held\n"
-           "        state.tripped"),
-    Mutant("an early return hides the other levels", _STEP,
-           "        held = process_levels(view) | motion_levels(view)",
-           "        if process_levels(view) & 1:\n            return 0\n"
-           "        held = process_levels(view) | motion_levels(view)"),
-    Mutant("stale accepted: drives", _LEVELS, "held |= _DATA", "held |= 0"),
-    Mutant("stale accepted: load", _LEVELS,
-           "if not (r.now_s - r.cell_at_s <= b.stale_cell_s):\n        held |= _CELL_STALE",
-           "if not (r.now_s - r.cell_at_s <= 1e9):\n        held |= _CELL_STALE"),
-    Mutant("not a number passes: hub", _LEVELS,
-           "if not (r.jacket_valid and r.now_s - r.jacket_at_s <= b.stale_jacket_s):",
-           "if r.jacket_valid and r.now_s - r.jacket_at_s > b.stale_jacket_s:"),
+           "        state.held = now_held\n        state.tripped",
+           "        now_held, state.held = now_held & ~state.held, now_held\n        state.tripped"),
+    Mutant("an early return hides the other levels", _TABLE,
+           "    if v.loaded and not v.unpowered:\n", "    if found & 1:\n        return 0\n"
+           "    if v.loaded and not v.unpowered:\n"),
+    Mutant("stale accepted: drives", _MOTION,
+           "since = r.now_s - (allowed if allowed < most else most)", "since = r.now_s - 1e9"),
+    Mutant("stale accepted: load", _LOAD,
+           "return not (r.now_s - r.cell_at_s <= v.parameters[STALE_CELL_S])",
+           "return not (r.now_s - r.cell_at_s <= 1e9)"),
+    Mutant("not a number passes: hub", _HEAT,
+           "not (r.jacket_valid and r.now_s - r.jacket_at_s <= v.parameters[STALE_JACKET_S])",
+           "r.jacket_valid and r.now_s - r.jacket_at_s > v.parameters[STALE_JACKET_S]"),
     Mutant("acknowledged without the cause gone", _STEP,
-           "        holding = (state.held | unseen_levels(self.view) & state.tripped) & ~WARNINGS\n        if not",
+           "        holding = (state.held | still_there(self.view) & state.tripped) & ~WARNINGS\n        if not",
            "        holding = 0\n        if not"),
     Mutant("the drives do not watch our heartbeat", "drivers/servo_setup.py",
            "    watched = heartbeat.consumer_entry(pc_node_id, config.consumer_heartbeat_s)\n", "    watched = 0\n"),
-    Mutant("a unit factor 1000: late scans", _LEVELS,
-           "if not (late_s <= b.late_scan_s):", "if not (1e-3 * late_s <= b.late_scan_s):"),
+    Mutant("a unit factor 1000: late scans", _WIRES,
+           "return not (v.late_s <= v.parameters[LATE_SCAN_S])",
+           "return not (1e-3 * v.late_s <= v.parameters[LATE_SCAN_S])"),
     Mutant("safe outputs without: heat off", _SAFE, "    setpoints.heat = False\n", ""),
     Mutant("safe outputs without: contactor off", _SAFE, "    setpoints.contactor = False\n", ""),
     Mutant("safe outputs without: lift", _SAFE, "    setpoints.press_mm_s = -rig.loops.load.lift_speed_mm_s\n", ""),
@@ -94,24 +105,24 @@ MUTANTS: tuple[Mutant, ...] = (
     Mutant("no power off when the lift has failed", _STEP, "            state.setpoints.power_off = True\n",
            "            state.setpoints.power_off = False\n"),
     Mutant("heat without the wheel seen turning", _MAY,
-           "now - state.turning_since_s >= TURNING_CONFIRMED_S", "now >= 0.0"),
+           "now - state.turning_since_s >= p[TURNING_CONFIRMED_S]", "now >= 0.0"),
     Mutant("latched before the contact is open", _STOPS,
-           "return standing(r) and lifted and unloaded(view)", "return standing(r)"),
-    _masked("jacket runaway", "_RUNAWAY"),
-    _masked("jacket hot", "_HUB_HOT"),
-    _masked("heater stuck", "_STUCK"),
-    _masked("heater line open", "_OPEN"),
-    _masked("thermometer frozen", "_FROZEN"),
-    _masked("surface off model", "_MODEL"),
-    _masked("hub sensor jump", "_HUB_JUMP"),
-    _masked("belt torn", "_TORN"),
-    _masked("contact too deep", "_DEEP"),
-    _masked("contactor welded", "_WELDED"),
-    _masked("overspeed", "_OVERSPEED"),
-    _masked("not lifted", "_NOT_LIFTED"),
-    _masked("stop not ended", "_ENDLESS"),
-    _masked("not stopping", "_NOT_STOPPING"),
-    _masked("quick stop failed", "_QUICK_FAILED"),
+           "return standing(view) and lifted and unloaded(view)", "return standing(view)"),
+    _masked("jacket runaway"),
+    _masked("jacket hot"),
+    _masked("heater stuck"),
+    _masked("heater line open"),
+    _masked("thermometer frozen"),
+    _masked("surface off model"),
+    _masked("hub sensor jump"),
+    _masked("belt torn"),
+    _masked("contact too deep"),
+    _masked("contactor welded"),
+    _masked("overspeed"),
+    _masked("not lifted"),
+    _masked("stop not ended"),
+    _masked("not stopping"),
+    _masked("quick stop failed"),
 )  # fmt: skip
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tester.control.interlocks import INTERLOCKS
+from tester.interlocks.table import INTERLOCKS
 from tests.faults.first_up import FIRST, NEVER_FIRST, SLIDE, conduct, left_out
 
 FEW = ("belt torn", "hub sensor jump", "surface sensor jump", "line noisy", "not stopping", "quick stop failed",

@@ -16,6 +16,7 @@ from tester.bus_log import BusLog
 from tester.campaign import folder as folder_module
 from tester.campaign import part_run
 from tester.campaign.folder import make_folder
+from tester.cli.ending import ending_lines
 from tester.engine.build import Ports
 from tester.engine.context import Attendant, Progress
 from tester.engine.prompts import Prompts
@@ -383,3 +384,40 @@ def test_the_same_seed_gives_the_same_tables_byte_for_byte(tmp_path: Path, undec
 
 def test_another_seed_gives_other_repeats(tmp_path: Path, undecided: Ended) -> None:
     assert tables(run(tmp_path, seed=2))["repeats.csv"] != tables(undecided)["repeats.csv"]
+
+
+# -- ceilings -------------------------------------------------------------------------------------------------------
+
+
+LOOSE = "interlocks.hold_at_most=3 h"
+
+
+def test_an_accepted_risk_is_kept_with_the_run_and_shown_at_its_end(tmp_path: Path) -> None:
+    recipe = tmp_path / "short.yaml"
+    recipe.write_text(SHORT, encoding="utf-8")
+    screen = Screen()
+    options = SessionOptions(
+        recipe=str(recipe), out=tmp_path / "runs", overrides=(*QUIET, LOOSE), accept_risk="nobody comes"
+    )
+    assert Session(options, screen).run() == 0
+    folder = Path(screen.results[-1])
+    told = "interlocks.hold_at_most 10800 s is looser than 7200 s"
+    assert f"accepted risk (nobody comes): {told}" in screen.messages
+    with RunReader(folder) as reader:
+        assert reader.run().info.risk == f"{told} (accepted: nobody comes)"
+        assert [event.text for event in reader.events() if event.kind == "risk"] == [reader.run().info.risk]
+    header, row, *_ = (folder / "conditions.csv").read_text(encoding="utf-8").splitlines()
+    assert "accepted_risk" in header.split(",") and "nobody comes" in row
+    assert "RISK ACCEPTED" in "\n".join(ending_lines(folder))
+
+
+def test_a_risk_that_nobody_accepted_begins_nothing(tmp_path: Path) -> None:
+    with pytest.raises(InvalidSource, match="hold_at_most"):
+        run(tmp_path, *QUIET, LOOSE)
+    assert not (tmp_path / "runs").exists()
+
+
+def test_a_run_without_risks_says_nothing_of_them(done: Ended) -> None:
+    with RunReader(Path(done.screen.results[-1])) as reader:
+        assert reader.run().info.risk == ""
+        assert "accepted_risk" not in reader.run().info.metadata

@@ -20,7 +20,7 @@ STOP_KEYS = " F12 STOP "
 
 
 class StateLine(Panel):
-    """Line 1: mode, alarms, condition, repeat, time left and clock at the end, compound."""
+    """Line 1: mode, accepted risk, alarms, condition, repeat, time left and clock at the end, compound."""
 
     def picture(self, scene: Scene, width: int, height: int) -> Parts:
         """Return the line."""
@@ -28,7 +28,7 @@ class StateLine(Panel):
         if state is None:
             why = clean(scene.lost) or "looking for the service"
             return [(" NO LINK ", WARNING), fit(f" {why}", width - 9)]
-        parts: Parts = [_mode(scene, state), *_link(scene), "  ", _count(state.alarms)]
+        parts: Parts = [_mode(scene, state), *_link(scene), *_risk(state), "  ", _count(state.alarms)]
         parts += [fit(piece, width) for piece in _where(scene, state, width)]
         return _cut(parts, width)
 
@@ -46,6 +46,11 @@ def _link(scene: Scene) -> Parts:
     if scene.linked:
         return []
     return [(f" NO LINK {max(scene.age_s, STALE_S if not scene.lost else 0.0):.0f} s ", ABNORMAL)]
+
+
+def _risk(state: StateView) -> Parts:
+    """Return the mark of a rig whose safety keys are looser than they should be."""
+    return [(" RISK ACCEPTED ", WARNING)] if state.risk else []
 
 
 def _count(alarms: tuple[Alarm, ...]) -> Part:

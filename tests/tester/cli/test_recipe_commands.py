@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from tester.cli.main import invoke
+from tester.rig.load import packaged_text
 from tests.tester.recipe.texts import SMALL
 
 
@@ -115,3 +116,12 @@ def test_plan_refuses_a_total_below_what_the_instruments_have(
 @pytest.mark.parametrize("arguments", [["--precision", "0%"], ["--precision", "2%", "--total", "5%"]])
 def test_a_precision_that_makes_no_sense_is_a_usage_error(folder: Path, arguments: list[str]) -> None:
     assert invoke(["plan", "quickstart", *arguments]) == 2
+
+
+def test_check_says_which_keys_of_the_rig_take_the_packaged_value(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = folder / "rig.yaml"
+    path.write_text(packaged_text().replace("  pushed: ", "  # pushed: "), encoding="utf-8")
+    assert invoke(["check", "quickstart", "--rig", str(path)]) == 0
+    assert f"{path}: packaged values count for interlocks.pushed\n" in capsys.readouterr().err

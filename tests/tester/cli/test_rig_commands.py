@@ -1,4 +1,4 @@
-"""`tester rig init` and `tester rig show`."""
+"""`tester rig init`, `tester rig show` and `tester rig upgrade`."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import pytest
 
 from tester.cli.main import invoke
 from tester.rig import load_rig
+from tester.rig.template import hardware_text
 
 
 def test_init_writes_a_file_that_is_a_rig(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -53,3 +54,24 @@ def test_show_prints_json(capsys: pytest.CaptureFixture[str]) -> None:
 
 def test_show_of_a_file_that_is_not_there_exits_3(tmp_path: Path) -> None:
     assert invoke(["rig", "show", "--rig", str(tmp_path / "none.yaml")]) == 3
+
+
+def test_show_says_which_keys_take_the_packaged_value(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "rig.yaml"
+    path.write_text(hardware_text().replace("  pushed: ", "  # pushed: "), encoding="utf-8")
+    assert invoke(["rig", "show", "--rig", str(path)]) == 0
+    shown = capsys.readouterr()
+    assert "pushed: 0.3 mm" in shown.out
+    assert "packaged values count for interlocks.pushed\n" in shown.err and f"tester rig upgrade {path}" in shown.err
+
+
+def test_upgrade_writes_the_keys_that_a_file_lacks(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "rig.yaml"
+    path.write_text(hardware_text().replace("  pushed: ", "  # pushed: "), encoding="utf-8")
+    assert invoke(["rig", "upgrade", str(path)]) == 0
+    assert invoke(["rig", "upgrade", str(path)]) == 0
+    assert capsys.readouterr().out == f"{path}: written: pushed\n{path}: has every key\n"
+
+
+def test_upgrade_of_a_file_that_is_not_there_exits_3(tmp_path: Path) -> None:
+    assert invoke(["rig", "upgrade", str(tmp_path / "none.yaml")]) == 3

@@ -7,9 +7,10 @@ from collections.abc import Callable
 
 import pytest
 
-from tester.control.interlocks import INTERLOCKS, bit
-from tester.control.load_loop import depth_mm
-from tester.control.state import Mode, Reaction
+from tester.control.state import Mode
+from tester.interlocks.contact import depth_mm
+from tester.interlocks.row import Reaction
+from tester.interlocks.table import INTERLOCKS, bit
 from tester.process import Press
 from tests.tester.control.conftest import STAMPS, Bench
 
@@ -183,7 +184,7 @@ def test_a_cause_raises_its_level_and_something_trips_within_the_rows_delay(
 ) -> None:
     CAUSES[name][number](bench)
     began = bench.readings.now_s
-    delay = INTERLOCKS[index_of(name)].delay_s(bench.control.rig) + AGES.get(name, 0.0)
+    delay = INTERLOCKS[index_of(name)].delay_s(bench.control.view.parameters) + AGES.get(name, 0.0)
     seen = 0
     while bench.state.trip is None and bench.readings.now_s - began < delay + 0.1:
         bench.scan()
@@ -198,7 +199,7 @@ def test_a_cause_raises_its_level_and_something_trips_within_the_rows_delay(
 def test_a_row_does_not_trip_before_its_delay(bench: Bench, name: str) -> None:
     if name in ("overload", "load overshoot", "contact lost"):
         _rolling(bench)
-    delay = INTERLOCKS[index_of(name)].delay_s(bench.control.rig) + AGES.get(name, 0.0)
+    delay = INTERLOCKS[index_of(name)].delay_s(bench.control.view.parameters) + AGES.get(name, 0.0)
     CAUSES[name][0](bench)
     began = bench.readings.now_s
     while bench.readings.now_s - began < delay - 0.0151:

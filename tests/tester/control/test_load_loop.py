@@ -6,7 +6,8 @@ import math
 
 import pytest
 
-from tester.control.load_loop import STIFFNESS_EXPONENT, LoadLoop, depth_mm
+from tester.control.load_loop import LoadLoop
+from tester.interlocks.contact import STIFFNESS_EXPONENT, depth_mm
 from tester.process import Demand, Press, Readings
 from tester.rig import RigConfig
 

@@ -8,8 +8,8 @@ from hypothesis import settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, precondition, rule
 
-from tester.control.interlocks import WARNINGS
 from tester.control.state import Mode
+from tester.interlocks.table import WARNINGS
 from tester.process import Press
 from tester.rig import load_rig
 from tests.tester.control.conftest import Bench, make_bench

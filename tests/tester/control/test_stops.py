@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from tester.control.state import Mode, Reaction
+from tester.control.state import Mode
+from tester.interlocks.row import Reaction
 from tests.tester.control.conftest import Bench
 
 

@@ -122,7 +122,7 @@ def planned_here(task: Task, meanwhile: Callable[[], str]) -> Prepared:
     if why:
         raise CannotStartError(why)
     try:
-        return prepared(task.recipe, task.rig, task.overrides)
+        return prepared(task.recipe, task.rig, task.overrides, task.accept_risk)
     except (InvalidSource, UnknownRecipe) as error:
         raise CannotStartError(str(error)) from error
 

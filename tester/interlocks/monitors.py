@@ -8,26 +8,21 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import inf, isfinite, nan
-from typing import Final
 
-from tester.control.thresholds import Thresholds
 from tester.process import Readings
-
-RATE_FILTER_S: Final = 1.0
-RATE_WINDOW_S: Final = 4.0
-"""The hub's rate is that of its filtered readings over one to two of these windows: 5 mK/s of noise at 5 Hz [A]."""
-RATE_SETTLE_S: Final = 3.0
-"""After the heat went off the sensor and the filter still catch up for this long [A]: no window begins before."""
-BLIND_S: Final = 1.0
-"""After a wheel was changed, readings still on their way are not compared with those before, s [A]."""
-RAMP_SHARE: Final = 0.3
-"""A speed on its way may follow this share of the configured ramp [A]: delays of scan and wire, and load."""
 
 
 @dataclass(slots=True)
 class JacketMonitor:
-    """The hub from poll to poll."""
+    """The hub from poll to poll. The numbers it compares with are parameters of the rows in ``heat``."""
 
+    blind_s: float
+    rate_filter_s: float
+    rate_window_s: float
+    rate_settle_s: float
+    open_output_percent: float
+    open_below_k: float
+    open_rise_k: float
     stamp_s: float = -inf
     hub_c: float = nan
     """Last valid reading."""
@@ -52,9 +47,9 @@ class JacketMonitor:
         self.filtered_c = nan
         self.jump_k = 0.0
         self.coolest_c = -inf
-        self.blind_until_s = now + BLIND_S
+        self.blind_until_s = now + self.blind_s
 
-    def update(self, r: Readings, heat: bool, setpoint_c: float, bounds: Thresholds) -> None:
+    def update(self, r: Readings, heat: bool, setpoint_c: float) -> None:
         """Take in a new reading; ``heat`` and ``setpoint_c`` (degC) are what is commanded."""
         stamp = r.jacket_at_s
         dt, self.stamp_s = stamp - self.stamp_s, stamp
@@ -73,33 +68,33 @@ class JacketMonitor:
         elif self.coolest_c == -inf or hub < self.coolest_c:
             self.coolest_c = hub
         self._follow_rate(stamp, hub, dt)
-        self._watch_line(r, heat, setpoint_c, bounds)
+        self._watch_line(r, heat, setpoint_c)
 
     def _follow_rate(self, stamp: float, hub_c: float, dt: float) -> None:
         if isfinite(self.filtered_c) and 0.0 < dt < 10.0:
-            self.filtered_c += (hub_c - self.filtered_c) * dt / (RATE_FILTER_S + dt)
+            self.filtered_c += (hub_c - self.filtered_c) * dt / (self.rate_filter_s + dt)
         else:
             self.filtered_c = hub_c
             self.marks = (stamp, hub_c, stamp, hub_c)
-        if not stamp - self.off_since_s >= RATE_SETTLE_S:
+        if not stamp - self.off_since_s >= self.rate_settle_s:
             self.marks = (stamp, self.filtered_c, stamp, self.filtered_c)
             self.rate_k_s = 0.0
             return
         old_s, old_c, new_s, new_c = self.marks
-        if stamp - new_s >= RATE_WINDOW_S:
+        if stamp - new_s >= self.rate_window_s:
             self.marks = old_s, old_c, new_s, new_c = (new_s, new_c, stamp, self.filtered_c)
-        if stamp - old_s >= RATE_WINDOW_S:
+        if stamp - old_s >= self.rate_window_s:
             self.rate_k_s = (self.filtered_c - old_c) / (stamp - old_s)
 
-    def _watch_line(self, r: Readings, heat: bool, setpoint_c: float, bounds: Thresholds) -> None:
+    def _watch_line(self, r: Readings, heat: bool, setpoint_c: float) -> None:
         """Measure the rise while the output is high: a heater whose line is open makes none."""
-        weak = heat and r.heat_percent >= bounds.open_output_percent and r.hub_c < setpoint_c - bounds.open_below_k
+        weak = heat and r.heat_percent >= self.open_output_percent and r.hub_c < setpoint_c - self.open_below_k
         if not weak:
             self.weak_since_s = inf
             self.rise_k = 0.0
             return
         rise = r.hub_c - self.weak_from_c
-        if self.weak_since_s == inf or rise >= bounds.open_rise_k:
+        if self.weak_since_s == inf or rise >= self.open_rise_k:
             self.weak_since_s, self.weak_from_c = self.stamp_s, r.hub_c
             rise = 0.0
         self.rise_k = rise
@@ -109,6 +104,7 @@ class JacketMonitor:
 class SurfaceMonitor:
     """The thermometer from poll to poll."""
 
+    blind_s: float
     stamp_s: float = -inf
     surface_c: float = nan
     jump_k: float = 0.0
@@ -120,7 +116,7 @@ class SurfaceMonitor:
     def forget(self, now: float) -> None:
         """Compare nothing with the readings before: another wheel is in front of the thermometer."""
         self.jump_k = 0.0
-        self.blind_until_s = now + BLIND_S
+        self.blind_until_s = now + self.blind_s
 
     def update(self, r: Readings, model_c: float) -> None:
         """Take in a new reading; ``model_c`` is what the observer has for it."""

@@ -1,4 +1,4 @@
-"""What the interlocks' levels may look at in one scan, and what several of them ask for."""
+"""Brings up to date what the interlocks' conditions may look at, once a scan."""
 
 from __future__ import annotations
 
@@ -6,17 +6,27 @@ from dataclasses import dataclass, field
 from math import inf, sqrt
 from typing import Final
 
-from tester.control.load_loop import UNLOADED_N
-from tester.control.monitors import RAMP_SHARE, JacketMonitor, PressTracker, SpeedTracker, SurfaceMonitor
 from tester.control.observer import ThermalObserver
 from tester.control.state import ControlState, Mode
-from tester.control.thresholds import Thresholds, thresholds_of
+from tester.interlocks.contact import UNLOADED_N
+from tester.interlocks.heat import (
+    BLIND_S,
+    OPEN_BELOW_K,
+    OPEN_OUTPUT_PERCENT,
+    OPEN_RISE_K,
+    RATE_FILTER_S,
+    RATE_SETTLE_S,
+    RATE_WINDOW_S,
+)
+from tester.interlocks.inputs import Inputs, RigLimits
+from tester.interlocks.known import STANDING_M_S
+from tester.interlocks.monitors import JacketMonitor, PressTracker, SpeedTracker, SurfaceMonitor
+from tester.interlocks.motion import RAMP_SHARE
+from tester.interlocks.parameter import Values
 from tester.process import Demand, Press, Readings
-from tester.rig import RigConfig
+from tester.rig import RigConfig, interlock_values
 
 _INF: Final = inf
-STANDING_M_S: Final = 0.02
-"""Below this a drive counts as standing [A]."""
 
 # Bound once: a look-up on the enum class costs several times as much in every scan (CPython 3.11).
 _LOAD: Final = Press.LOAD
@@ -29,72 +39,37 @@ _LATCHED: Final = Mode.LATCHED
 
 
 @dataclass(slots=True)
-class View:
+class InterlockInputs(Inputs):
     """One object serves every scan: ``look`` brings it up to date."""
 
-    state: ControlState
-    rig: RigConfig
-    bounds: Thresholds = field(init=False)
-    readings: Readings = field(init=False)
-    demand: Demand = field(init=False)
+    state: ControlState = field(kw_only=True)
+    rig: RigConfig = field(kw_only=True)
     observer: ThermalObserver = field(init=False)
-    jacket: JacketMonitor = field(default_factory=JacketMonitor)
-    surface: SurfaceMonitor = field(default_factory=SurfaceMonitor)
-    wheel: SpeedTracker = field(init=False)
-    belt: SpeedTracker = field(init=False)
-    press: PressTracker = field(init=False)
-    scan_s: float = 0.0
-    """Period of the scan, s."""
-    pressing: bool = False
-    """Contact is wanted."""
-    loaded: bool = True
-    """Contact is wanted or cannot be excluded."""
-    turning: bool = False
-    """The wheel is confirmed turning."""
-    confirmed: bool = False
-    """Every drive has been in operation since they were last wanted to be."""
-    least_n: float = inf
-    """The least force since contact was last wanted: what is lifting does not get firmer."""
-    contact_mm: float = inf
-    """Where the press touches the wheel: as it was touched last, less its wear since, or as its diameter says."""
-    friction_n: float = 0.0
-    friction_w: float = 0.0
-    """Resultant friction force and its power (NaN where a part is unknown); 0 while unloaded."""
-    stopped_s: float = -inf
-    """How long a stop has been under way; -inf while none is."""
-    lifting_s: float = -inf
-    """How long a stop or a hold has been lifting; -inf while neither is."""
-    resting: bool = True
-    """Everything is to rest: idle, armed or latched."""
-    unpowered: bool = False
-    """A run that wants no drives has seen them without power: until all are in operation again, nothing may move."""
-    rest_mm: float = inf
-    """How far back the press has been since then."""
-    attended: bool = False
-    """A person was asked to come near; what hands do to sensors is nobody's fault."""
-    wheel_most_m_s: float = field(init=False)
-    belt_most_m_s: float = field(init=False)
-    """Overspeed begins here."""
 
     def __post_init__(self) -> None:
-        """Keep the parts of the rig file that levels compare with."""
-        rig = self.rig
-        self.bounds = thresholds_of(rig)
-        limits, bounds = rig.limits, rig.interlocks
+        """Take over the parts of the rig file that conditions compare with, and the state they look at."""
+        rig, state = self.rig, self.state
+        self.parameters = p = interlock_values(rig.interlocks)
+        self.limits = limits_of(rig)
+        self.setpoints, self.contact, self.stop = state.setpoints, state.load, state.stop
+        self.hub_setpoints = state.hub_ceiling
         self.observer = ThermalObserver(rig)
+        self.jacket = _jacket_monitor(p)
+        self.surface = SurfaceMonitor(p[BLIND_S])
         radius_m = 0.5e-3 * rig.geometry.wheel_diameter_mm
-        self.wheel = SpeedTracker(RAMP_SHARE * rig.axes.wheel.acceleration * radius_m)
-        self.belt = SpeedTracker(RAMP_SHARE * rig.axes.belt.acceleration)
-        self.press = PressTracker(RAMP_SHARE * rig.axes.press.acceleration)
-        self.wheel_most_m_s = limits.wheel_speed_m_s * (1.0 + bounds.overspeed_share)
-        self.belt_most_m_s = limits.belt_speed_m_s * (1.0 + bounds.overspeed_share)
+        self.wheel = SpeedTracker(p[RAMP_SHARE] * rig.axes.wheel.acceleration * radius_m)
+        self.belt = SpeedTracker(p[RAMP_SHARE] * rig.axes.belt.acceleration)
+        self.press = PressTracker(p[RAMP_SHARE] * rig.axes.press.acceleration)
 
     def look(self, demand: Demand, readings: Readings, scan_s: float, dt: float) -> None:
-        """Take this scan's demand and readings, and work out what several levels ask for."""
+        """Take this scan's demand and readings, and work out what several conditions ask for."""
         self.readings = r = readings
         self.demand = demand
         self.scan_s = scan_s
         state = self.state
+        self.last_s = last_s = state.last_s
+        self.late_s = r.now_s - last_s - scan_s
+        self.mode_since_s = state.mode_since_s
         self.pressing = pressing = demand.press is _LOAD
         self.loaded = loaded = pressing or not (r.force_z_n < UNLOADED_N)
         if pressing:
@@ -106,7 +81,8 @@ class View:
         elif r.force_z_n < self.least_n:
             self.least_n = r.force_z_n
         wheel_m_s = r.wheel_speed_m_s
-        self.turning = wheel_m_s > STANDING_M_S or wheel_m_s < -STANDING_M_S
+        still = self.parameters[STANDING_M_S]
+        self.turning = wheel_m_s > still or wheel_m_s < -still
         mode = state.mode
         self.stopped_s = self.lifting_s = r.now_s - state.stop.began_s
         if mode is _HOLD:
@@ -130,9 +106,10 @@ class View:
             observer.step(r.now_s, r.hub_c if r.jacket_valid else self.jacket.hub_c, wheel_m_s, r.surface_c)
         if r.jacket_at_s > self.jacket.stamp_s:
             out = state.setpoints
-            self.jacket.update(r, out.heat, out.hub_c, self.bounds)
+            self.jacket.update(r, out.heat, out.hub_c)
+        self.model_c = model_c = observer.surface_c
         if r.surface_at_s > self.surface.stamp_s:
-            self.surface.update(r, observer.surface_c)
+            self.surface.update(r, model_c)
 
     def _follow_speeds(self, demand: Demand, r: Readings, dt: float) -> None:
         """Bring the speed trackers up to date while the drives are in operation and something commands them.
@@ -174,3 +151,39 @@ class View:
         """Compare no temperature with the one before."""
         self.surface.forget(now)
         self.jacket.forget(now)
+
+
+def limits_of(rig: RigConfig) -> RigLimits:
+    """Take over what conditions compare with from a rig file's sections beside ``interlocks``.
+
+    The configuration is known by its annotations and therefore stays Python where the scan is compiled
+    (docs/decisions/0019); asking it in every scan would cost more than comparing.
+    """
+    limits, belt = rig.limits, rig.axes.belt
+    low_mm, high_mm = rig.axes.press.software_limits or (-inf, inf)
+    return RigLimits(
+        load_n=limits.load_n,
+        wheel_speed_m_s=limits.wheel_speed_m_s,
+        belt_speed_m_s=limits.belt_speed_m_s,
+        slip_power_w=limits.slip_power_w,
+        jacket_c=limits.jacket_c,
+        surface_c=limits.surface_c,
+        hub_min_c=rig.loops.heat.hub_min_c,
+        stiffness_n_per_mm=rig.loops.load.stiffness_n_per_mm,
+        press_low_mm=low_mm,
+        press_high_mm=high_mm,
+        deceleration_m_s2=belt.deceleration,
+        quick_stop_m_s2=belt.quick_stop_deceleration,
+    )
+
+
+def _jacket_monitor(p: Values) -> JacketMonitor:
+    return JacketMonitor(
+        blind_s=p[BLIND_S],
+        rate_filter_s=p[RATE_FILTER_S],
+        rate_window_s=p[RATE_WINDOW_S],
+        rate_settle_s=p[RATE_SETTLE_S],
+        open_output_percent=p[OPEN_OUTPUT_PERCENT],
+        open_below_k=p[OPEN_BELOW_K],
+        open_rise_k=p[OPEN_RISE_K],
+    )

@@ -1,0 +1,111 @@
+"""What the conditions of interlocks may look at: plain data, brought up to date once a scan.
+
+``tester.control.interlock_inputs`` fills it. What is not known stays NaN, infinite or the value that trips.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from math import inf, nan
+
+from tester.interlocks.contact import Contact
+from tester.interlocks.monitors import JacketMonitor, PressTracker, SpeedTracker, SurfaceMonitor
+from tester.interlocks.parameter import Values
+from tester.process import Demand, Readings, Setpoints
+
+
+@dataclass(slots=True)
+class RigLimits:
+    """What conditions compare with beside their own parameters: numbers from the rig file's other sections."""
+
+    load_n: float
+    wheel_speed_m_s: float
+    belt_speed_m_s: float
+    slip_power_w: float
+    jacket_c: float
+    surface_c: float
+    hub_min_c: float
+    """``loops.heat.hub_min``: the setpoint while no heat is wanted."""
+    stiffness_n_per_mm: float
+    """``loops.load.stiffness``."""
+    press_low_mm: float
+    press_high_mm: float
+    """``axes.press.software_limits``; infinite where there are none."""
+    deceleration_m_s2: float
+    quick_stop_m_s2: float
+    """Ramps of the belt; those of the wheel are the same at its rim."""
+
+
+@dataclass(slots=True)
+class StopProgress:
+    """The stop under way: when it began and how fast the drives were then."""
+
+    began_s: float = inf
+    """When the rig left RUN, HOLD or COOLDOWN; infinity while no stop is under way."""
+    speed_m_s: float = 0.0
+    """The faster of wheel and belt then."""
+    press_mm: float = inf
+    """How far the press may still have come then, by its ramp; infinity where that is not known."""
+    fast_s: float = inf
+    """When the quick stop began."""
+    fast_speed_m_s: float = 0.0
+    creeps: bool = False
+    """The wheel is meant to turn: cool-down."""
+
+
+@dataclass(slots=True)
+class Inputs:
+    """One scan, as conditions see it."""
+
+    parameters: Values = field(init=False)
+    limits: RigLimits = field(init=False)
+    readings: Readings = field(init=False)
+    demand: Demand = field(init=False)
+    setpoints: Setpoints = field(init=False)
+    """What the scan before has commanded."""
+    contact: Contact = field(init=False)
+    stop: StopProgress = field(init=False)
+    hub_setpoints: list[tuple[float, float]] = field(init=False)
+    """(time, hub setpoint) within ``runaway_window``, falling ones only: the first is the highest."""
+    jacket: JacketMonitor = field(init=False)
+    surface: SurfaceMonitor = field(init=False)
+    wheel: SpeedTracker = field(init=False)
+    belt: SpeedTracker = field(init=False)
+    press: PressTracker = field(init=False)
+    model_c: float = nan
+    """What the thermal observer has for the rubber's surface."""
+    scan_s: float = 0.0
+    """Period of the scan, s."""
+    last_s: float = -inf
+    """When the scan before was."""
+    late_s: float = inf
+    """How much later than its period this scan is, s."""
+    mode_since_s: float = 0.0
+    """Since when the rig has been in its mode."""
+    pressing: bool = False
+    """Contact is wanted."""
+    loaded: bool = True
+    """Contact is wanted or cannot be excluded."""
+    turning: bool = False
+    """The wheel is confirmed turning."""
+    confirmed: bool = False
+    """Every drive has been in operation since they were last wanted to be, and something commands them."""
+    least_n: float = inf
+    """The least force since contact was last wanted: what is lifting does not get firmer."""
+    contact_mm: float = inf
+    """Where the press touches the wheel: as it was touched last, less its wear since, or as its diameter says."""
+    friction_n: float = 0.0
+    friction_w: float = 0.0
+    """Resultant friction force and its power (NaN where a part is unknown); 0 while unloaded."""
+    stopped_s: float = -inf
+    """How long a stop has been under way; -inf while none is."""
+    lifting_s: float = -inf
+    """How long a stop or a hold has been lifting; -inf while neither is."""
+    resting: bool = True
+    """Everything is to rest: idle, armed or latched."""
+    unpowered: bool = False
+    """A run that wants no drives has seen them without power: until all are in operation again, nothing may move."""
+    rest_mm: float = inf
+    """How far back the press has been since then."""
+    attended: bool = False
+    """A person was asked to come near; what hands do to sensors is nobody's fault."""

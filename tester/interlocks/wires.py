@@ -1,0 +1,141 @@
+"""What takes effect at once: the safety chain, the wires and their masters, the scan's own clock, the guard."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from tester.interlocks.inputs import Inputs
+from tester.interlocks.parameter import Direction, Parameter
+from tester.interlocks.row import ACK, EMERGENCY, FAST, WARN, Interlock
+
+
+def _chain_open(v: Inputs) -> bool:
+    return not v.readings.safety_chain
+
+
+SAFETY_CHAIN: Final = Interlock(
+    name="safety chain",
+    cause="emergency stop circuit open (drive input)",
+    level="input 0x60FD bit 16 = 0",
+    condition=_chain_open,
+    reaction=EMERGENCY,
+    reset=ACK,
+)
+
+
+def _drive_faulty(v: Inputs) -> bool:
+    return v.readings.drive_fault != ""
+
+
+DRIVE_FAULT: Final = Interlock(
+    name="drive fault",
+    cause="drive in fault, lost, rebooted or with an emergency message",
+    level="state FAULT, heartbeat missing 3 x 50 ms, boot-up, or EMCY",
+    condition=_drive_faulty,
+    reaction=FAST,
+    reset="drive reset by the acknowledgement",
+)
+
+
+def _bus_gone(v: Inputs) -> bool:
+    return v.readings.bus_fault != ""
+
+
+BUS_LOST: Final = Interlock(
+    name="bus lost",
+    cause="CAN adapter or serial line gone, bus-off",
+    level="the wire's port is lost: it is never reopened",
+    condition=_bus_gone,
+    reaction=FAST,
+    reset="started anew",
+)
+
+
+def _other_master(v: Inputs) -> bool:
+    return v.readings.foreign_master != ""
+
+
+SECOND_MASTER: Final = Interlock(
+    name="second master",
+    cause="another master on the CAN bus",
+    level="a frame only a master sends",
+    condition=_other_master,
+    reaction=FAST,
+    reset="other master gone, started anew",
+)
+
+
+def _clock_back(v: Inputs) -> bool:
+    return not (v.readings.now_s >= v.last_s)
+
+
+CLOCK_JUMP: Final = Interlock(
+    name="clock jump",
+    cause="the scan's clock went back",
+    level="now < last scan",
+    condition=_clock_back,
+    reaction=FAST,
+    reset=ACK,
+)
+
+LATE_WARN_S: Final = Parameter("late_warn_s", "s", "50 ms", "a scan this late is a warning ...")
+LATE_SCAN_S: Final = Parameter(
+    "late_scan_s", "s", "150 ms", "... this late a trip",
+    direction=Direction.LOWER, hardest="200 ms",
+    because="the drives stop by themselves 200 ms after the PC's last heartbeat or setpoint",
+)  # fmt: skip
+
+
+def _late(v: Inputs) -> bool:
+    return not (v.late_s <= v.parameters[LATE_SCAN_S])
+
+
+SCAN_LATE: Final = Interlock(
+    name="scan late",
+    cause="the controlling process was late",
+    level="scan later than late_scan",
+    condition=_late,
+    parameters=(LATE_WARN_S, LATE_SCAN_S),
+    reaction=FAST,
+    reset=ACK,
+)
+
+
+def _guard_open(v: Inputs) -> bool:
+    return v.demand.enabled and not v.readings.guard_closed
+
+
+def _guard_still_open(v: Inputs) -> bool:
+    return not v.readings.guard_closed
+
+
+GUARD_OPEN: Final = Interlock(
+    name="guard open",
+    cause="guard open with drives on",
+    level="input 0x60FD bit 17 = 0, drives wanted",
+    condition=_guard_open,
+    unseen=_guard_still_open,
+    reaction=FAST,
+    reset=ACK,
+)
+
+
+def _delayed(v: Inputs) -> bool:
+    return not (v.late_s <= v.parameters[LATE_WARN_S])
+
+
+SCAN_DELAYED: Final = Interlock(
+    name="scan delayed",
+    cause="the controlling process was late, but not dangerously",
+    level="scan later than late_warn",
+    condition=_delayed,
+    parameters=(LATE_WARN_S,),
+    reaction=WARN,
+    reset="by itself",
+)
+
+ROWS: Final[tuple[Interlock, ...]] = (
+    SAFETY_CHAIN, DRIVE_FAULT, BUS_LOST, SECOND_MASTER, CLOCK_JUMP, SCAN_LATE, GUARD_OPEN,
+)  # fmt: skip
+WARNINGS: Final[tuple[Interlock, ...]] = (SCAN_DELAYED,)
+"""Only said: they stand last in the table."""
