@@ -9,11 +9,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from datetime import date
-from typing import Annotated, Literal
+from typing import Annotated, Final, Literal
 
 from drivers.axis import AxisConfig
 from sim.parameters import SimParameters, ThermalParameters, WheelParameters
 from tester.config_reader import Range, as_text, as_tree
+
+HARMFUL_N: Final = 500.0
+"""From here on a force on the wheel counts as harm (sim.harm)."""
 
 _POSITIVE = Range(gt=0.0)
 _NOT_NEGATIVE = Range(ge=0.0)
@@ -36,7 +39,7 @@ class GeometryConfig:
 class LimitsConfig:
     """Hard limits: no recipe and no loop gets past them."""
 
-    load_n: Annotated[float, "N", Range(gt=0.0, le=500.0)]
+    load_n: Annotated[float, "N", Range(gt=0.0, le=HARMFUL_N)]
     """At most 500 N: above it the concept counts harm (rulings on safety figures)."""
     wheel_speed_m_s: Annotated[float, "m/s", _POSITIVE]
     belt_speed_m_s: Annotated[float, "m/s", _POSITIVE]
