@@ -67,6 +67,13 @@ class Relaxation:
         self._memory = (0.0, 0.0, 0.0, 0.0, 0.0)
         self._apart_s = 0.0
 
+    def change(self, share: float) -> None:
+        """Lose another share (above 0) from now on; what is lost so far stays lost."""
+        scale = self.share / share
+        a, b, c, d, e = self._memory
+        self._memory = (a * scale, b * scale, c * scale, d * scale, e * scale)
+        self.share = share
+
     def retime(self, dt_s: float) -> None:
         """Set the length of a step in s."""
         a, b, c, d, e = RELAXATION_TIMES_S
@@ -134,5 +141,5 @@ class Warmth:
 
     def growth_mm(self, rubber_c: float, hub_c: float, cold_mm: float) -> float:
         """Return what the radius of a wheel of ``cold_mm`` diameter at ambient has gained at these temperatures."""
-        layer_mm = 0.5 * cold_mm - self._hub_radius_mm
+        layer_mm = max(0.0, 0.5 * cold_mm - self._hub_radius_mm)
         return self._layer_per_k * layer_mm * (rubber_c - self._ambient_c) + self._hub_mm_k * (hub_c - self._ambient_c)

@@ -23,6 +23,8 @@ from sim.slip import cornering_factor, traction_direction
 from sim.thermal import ThermalModel, ThermalState
 
 _TURN: Final = 2.0 * pi
+_SAME_SIZE_K: Final = 0.005
+"""A change of the rubber's mean temperature that is waited for: 0.02 um of radius, 0.002 % of stiffness."""
 _RUNNING_IN_LASTS: Final = 37.0
 """Running-in distances after which its factor is 1 to the last bit: exp(-37) is less than 2^-53."""
 
@@ -31,54 +33,13 @@ class Plant:
     """The physics of one rig, with a wheel on it after ``install``. Deep-copyable; all randomness from one seed."""
 
     __slots__ = (
-        "_arm_m",
-        "_cold_factor",
-        "_compound",
-        "_cornering",
-        "_cos",
-        "_deficit",
-        "_deficit_keep",
-        "_dt",
-        "_flow",
-        "_grip",
-        "_noise",
-        "_place",
-        "_relaxation",
-        "_rotating_above",
-        "_rubbing",
-        "_run_in_m",
-        "_scatter",
-        "_seed",
-        "_sideslip_deg",
-        "_sin",
-        "_stiffness",
-        "_swing_mm",
-        "_touch_mm",
-        "_warm_c",
-        "_warmth",
-        "_within",
-        "belt_speed",
-        "camber_deg",
-        "cold_mm",
-        "condition_factor",
-        "diameter_mm",
-        "drive_torque_nm",
-        "force_x_n",
-        "force_y_n",
-        "force_z_n",
-        "hub_sensor",
-        "ir",
-        "load_cell",
-        "mu",
-        "parameters",
-        "run_factor",
-        "sliding_m",
-        "slip_m_s",
-        "surface_c",
-        "wheel_angle_rev",
-        "wheel_factor",
-        "wheel_speed",
-    )
+        "_arm_m", "_cold_factor", "_compound", "_cornering", "_cos", "_deficit", "_deficit_keep", "_dt", "_flow",
+        "_grip", "_noise", "_place", "_relaxation", "_rotating_above", "_rubbing", "_run_in_m", "_scatter", "_seed",
+        "_sideslip_deg", "_sin", "_stiffness", "_swing_mm", "_touch_mm", "_warm_c", "_warmth", "_within",
+        "belt_speed", "camber_deg", "cold_mm", "condition_factor", "diameter_mm", "drive_torque_nm", "force_x_n",
+        "force_y_n", "force_z_n", "hub_sensor", "ir", "load_cell", "mu", "parameters", "run_factor", "size",
+        "sliding_m", "slip_m_s", "surface_c", "wheel_angle_rev", "wheel_factor", "wheel_speed",
+    )  # fmt: skip
 
     def __init__(self, parameters: SimParameters, seed: int) -> None:
         """Build a rig at ambient temperature without a wheel; draw what stays the same for the session."""
@@ -91,6 +52,7 @@ class Plant:
         self._warmth = Warmth(p)
         self._warm_c = inf
         self._relaxation: Relaxation | None = None
+        self.size = 1.0
         self.set_runout(p.contact.runout)
         self._arm_m = 0.001 * p.friction.aligning_arm
         self._rotating_above = p.thermal.rotating_above
@@ -150,8 +112,8 @@ class Plant:
         self._flow.state.set_rubber(self.parameters.ambient)
         self._flow.restart()
         self.surface_c = self.parameters.ambient
-        self.cold_mm = self.diameter_mm = diameter_mm
-        self._touch_mm = self.parameters.contact.gap + 0.5 * (wheel.outer_diameter - diameter_mm)
+        self.cold_mm = self.diameter_mm = self.size * diameter_mm
+        self._touch_mm = self.parameters.contact.gap + 0.5 * (wheel.outer_diameter - self.diameter_mm)
         self._warm_c = inf  # whatever the heat has done to the last one
         if self._relaxation is not None:
             self._relaxation.forget()
@@ -224,13 +186,24 @@ class Plant:
 
     def set_relaxation(self, share: float) -> None:
         """Let the contact lose this share of its load in a decade of time, 0 to 0.15, from now on."""
+        if self._relaxation is not None and share > 0.0:
+            self._relaxation.change(share)
+            return
         self._relaxation = Relaxation(share) if share > 0.0 else None
         if self._relaxation is not None and self._dt > 0.0:
             self._relaxation.retime(self._dt)
 
+    def set_size(self, share: float) -> None:
+        """Have a wheel on of another diameter than it should be, and every one from now on; out of contact only."""
+        self.cold_mm *= share / self.size
+        self.size = share
+        self._grow(self._flow.rubber_c)
+
     def _grow(self, rubber_c: float) -> None:
         """Take over what the wheel's temperatures do to its size and stiffness."""
         self._warm_c = rubber_c
+        if not (self._warmth.matters or self.size != 1.0) or not self._compound:
+            return
         warmth, contact = self._warmth, self.parameters.contact
         _, exponent, damping = self._stiffness
         self._stiffness = (self._cold_factor * warmth.stiffness_share(rubber_c), exponent, damping)
@@ -258,7 +231,7 @@ class Plant:
             self._retime(dt)
         if sideslip_deg != self._sideslip_deg:
             self._yaw(sideslip_deg)
-        if self._flow.rubber_c != self._warm_c and self._warmth.matters and self._compound:
+        if not -_SAME_SIZE_K < self._flow.rubber_c - self._warm_c < _SAME_SIZE_K:
             self._grow(self._flow.rubber_c)
         self.camber_deg = camber_deg
         self.wheel_angle_rev = turns = self.wheel_angle_rev + wheel_rad_s * dt / _TURN

@@ -155,10 +155,13 @@ class SimRig:
         if plant.force_z_n > 0.0 or self._stalled:
             self._bear(self._press)
         self._pressed_mm = press.position
+        wheel_rad_s, belt_m_s = wheel_axis.value, belt_axis.value
+        if self.swapped:
+            wheel_rad_s, belt_m_s = belt_m_s / self._roller_m, wheel_rad_s * self._roller_m
         plant.advance(
             elapsed,
-            self.wheel_rad_s,
-            self.belt_m_s,
+            wheel_rad_s / plant.wheel_speed.factor,
+            belt_m_s / plant.belt_speed.factor,
             press.position,
             press.value,
             self._sideslip.axis.position if self._sideslip is not None else 0.0,
