@@ -269,7 +269,7 @@ TORN_DELAY_S: Final = Parameter(
 )  # fmt: skip
 TORN_FRICTION_NM: Final = Parameter(
     "torn_friction_nm", "N m", "0.25 N m",
-    "wheel torque that its shaft takes unloaded: taken off before judging, rather too much [A]", NOT_NEGATIVE,
+    "of the wheel's torque, taken off first: its shaft unloaded, rather too much [A]", NOT_NEGATIVE,
     direction=Direction.HIGHER, hardest="0.1 N m",
     because="a shaft with 0.2 N m then hides a torn belt below 45 N, with nothing taken off below 92 N",
 )  # fmt: skip
