@@ -43,7 +43,6 @@ HOT = (
     "sim/sensors.py",
     "sim/slip.py",
     "sim/thermal.py",
-    "sim/torque.py",
     "sim/wear.py",
     "tester/analysis/blocks.py",
     "tester/control/*.py",
