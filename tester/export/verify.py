@@ -107,7 +107,7 @@ def _notes(chain: ChainFound | None, version: int) -> tuple[str, ...]:
 
 def _finished(folder: Path, results: RunResults, chain: ChainFound) -> list[str]:
     """Return what a run lacks that has ended: its manifest, with the chain's head."""
-    if results.run.status == "running" or under_way(folder) is not None:
+    if results.status in (RunStatus.RUNNING, RunStatus.INTERRUPTED) or under_way(folder) is not None:
         return []
     if not (folder / MANIFEST).is_file():
         return [f"{MANIFEST}: missing, and the run has ended"]
