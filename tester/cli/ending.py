@@ -31,9 +31,11 @@ def ending_lines(folder: Path) -> list[str]:
     try:
         with RunReader(folder) as reader:
             results = results_of(reader)
+            head = reader.record_head()
     except StoreError:
         return []
-    return ["", *table_lines(results, folder), *_next_lines(results, folder)]
+    kept = [f"record head: {head}"] if head else []
+    return ["", *table_lines(results, folder), "", *kept, *_next_lines(results, folder)]
 
 
 def table_lines(results: RunResults, folder: Path) -> Iterator[str]:
@@ -113,7 +115,6 @@ def _next_lines(results: RunResults, folder: Path) -> Iterator[str]:
     program = Path(sys.argv[0]).name if sys.argv[0] else ""
     called = sys.argv[0] if program in ("tester", "tester.exe") and Path(sys.argv[0]).parent != Path() else "tester"
     where = shlex.quote(str(folder))
-    yield ""
     if results.status.over or not results.missing():
         yield f"next: {_near(called)} show {where}"
     else:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 import click
@@ -16,11 +17,22 @@ EXIT_DIFFERS = 1
 EXIT_INCOMPLETE = 6
 
 
+def _hash(_context: click.Context, _parameter: click.Parameter, value: str) -> str:
+    """Refuse what is no hash: a mistyped one must not read as a forged record."""
+    if value and not re.fullmatch(r"[0-9a-fA-F]{64}", value):
+        raise click.BadParameter(f"expected 64 hexadecimal digits, got {value!r}")
+    return value
+
+
 @click.command()
 @click.argument("run")
+@click.option("--head", metavar="HASH", default="", callback=_hash, help="The record's head as you have kept it.")
 @json_option
-def verify(run: str, as_json: bool) -> int:
-    """Check RUN: its manifest, its database, every sample block, recipe and rig file.
+def verify(run: str, head: str, as_json: bool) -> int:
+    """Check RUN: the chain over its record, every coefficient by its samples, its tables, manifest, recipe, rig file.
+
+    The record's head is shown at a run's end, and here. Who can write the folder can make everything in it anew; with
+    the head that you have kept elsewhere, --head shows that, too.
 
     Exit code 0: as it was left, and its plan was gone through. 1: something differs, each named on stderr. 6: as it
     was left, and its plan was not gone through.
@@ -28,14 +40,19 @@ def verify(run: str, as_json: bool) -> int:
     from tester.export.verify import verify as check
 
     folder = run_folder(run)
-    found = check(folder)
+    found = check(folder, head)
     code = EXIT_DIFFERS if found.problems else 0 if found.status.over else EXIT_INCOMPLETE
     if as_json:
         print_json(_record(folder.name, found, code))
     elif not found.problems:
         by_hand = f"; excluded by hand: {found.excluded}" if found.excluded else ""
-        read = f"{found.samples} samples in {found.blocks} blocks read"
+        read = f"{found.samples} samples in {found.blocks} blocks read, {found.coefficients} coefficients recomputed"
         click.echo(f"{folder.name}: as it was left, {found.status}; {read}{by_hand}")
+    if not as_json:
+        for note in found.notes:
+            click.echo(f"{folder.name}: {note}")
+        if found.head:
+            click.echo(f"record head: {found.head}")
     for problem in found.problems:
         click.echo(f"{folder.name}: {problem}", err=True)
     return code
@@ -52,6 +69,9 @@ def _record(name: str, found: Verification, code: int) -> dict[str, object]:
         "blocks": found.blocks,
         "samples": found.samples,
         "excluded": found.excluded,
+        "coefficients": found.coefficients,
+        "record_head": found.head,
+        "notes": list(found.notes),
         "verified_with": __version__,
         "exit": code,
     }

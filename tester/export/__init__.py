@@ -86,13 +86,14 @@ def write_all(run_dir: Path) -> list[TableRow]:
     """
     with RunReader(run_dir) as reader:
         results = results_of(reader)
+        head = reader.record_head()
     write_file(run_dir / "appendix.csv", appendix(results))
     write_file(run_dir / "conditions.csv", conditions(results))
     write_file(run_dir / "repeats.csv", repeats(results))
     write_file(run_dir / "wheel.csv", wheels(results))
     if results.checks:
         write_file(run_dir / "wear.csv", wear(results))
-    write_file(run_dir / MANIFEST, [manifest_text(run_dir).encode()])
+    write_file(run_dir / MANIFEST, [manifest_text(run_dir, head).encode()])
     return results.missing()
 
 

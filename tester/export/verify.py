@@ -1,14 +1,18 @@
-"""Is a run as it was left? The manifest's hashes, SQLite's own check, every sample block, the texts' hashes."""
+"""Is a run as it was left? The chain over its record, coefficients from their samples, the manifest, the texts."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
 
+from tester import __version__
 from tester.export.exclude import is_unfinished
-from tester.export.manifest import MANIFEST, manifest_problems
-from tester.export.results import results_of
+from tester.export.manifest import MANIFEST, manifest_head, manifest_problems
+from tester.export.recomputed import coefficient_problems, table_problems
+from tester.export.results import RunResults, results_of
 from tester.source import InvalidSource, read_tree
+from tester.store.catalogue import under_way
+from tester.store.chain import ChainFound
 from tester.store.exclusions import problems as exclusion_problems
 from tester.store.exclusions import standing
 from tester.store.reader import RunReader
@@ -17,6 +21,9 @@ from tester.store.records import StoredExclusion, StoredRun
 from tester.store.schema import StoreError
 from tester.store.status import RunStatus
 from tester.trouble import in_words
+
+LISTED = 5
+"""The newest rows since a kept head that are named."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,15 +38,35 @@ class Verification:
     """What was read of the record: sample blocks, and samples in them."""
     excluded: int = 0
     """Repeats that people have left out of the means; the manifest is of the tables without them."""
+    coefficients: int = 0
+    """Recomputed from their samples."""
+    head: str = ""
+    """The last head of the record's chain, hexadecimal; "" where there is none."""
+    notes: tuple[str, ...] = ()
+    """What could not be checked, and why."""
 
 
-def verify(folder: Path) -> Verification:
-    """Check a run's folder; never raises for what it finds wrong in it."""
+def verify(folder: Path, kept: str = "") -> Verification:
+    """Check a run's folder; never raises for what it finds wrong in it.
+
+    ``kept``: the head of the record's chain as a person has kept it, hexadecimal, 64 digits; "" for none.
+    """
     problems = _manifest(folder)
     try:
         with RunReader(folder) as reader:
             results = results_of(reader)
             run = results.run
+            chain = reader.chain()
+            problems += _chain(chain, kept)
+            notes = _notes(chain, reader.version)
+            coefficients = 0
+            if chain is not None:
+                problems += _finished(folder, results, chain)
+                if _made_by(reader) == __version__:  # another version may write other tables of the same record
+                    told = {problem.partition(":")[0] for problem in problems}
+                    problems += [line for name, line in table_problems(folder, results) if name not in told]
+                coefficients, differing = coefficient_problems(reader)
+                problems += differing
             problems += [f"run.db: {problem}" for problem in reader.integrity_problems()]
             problems += _texts(folder, run)
             said = reader.exclusions()
@@ -51,7 +78,51 @@ def verify(folder: Path) -> Verification:
                 samples += block.rows
     except StoreError as error:
         return Verification(None, RunStatus.UNREADABLE, (*problems, str(error)))
-    return Verification(run, results.status, tuple(problems), blocks, samples, len(standing(said)))
+    head = chain.head if chain is not None else ""
+    out = len(standing(said))
+    return Verification(run, results.status, tuple(problems), blocks, samples, out, coefficients, head, notes)
+
+
+def _chain(chain: ChainFound | None, kept: str) -> list[str]:
+    """Return what the chain does not bear out, and whether it ends in the head that a person has kept."""
+    if chain is None:
+        return [f"run.db: has no chain, and so not the head {kept}"] if kept else []
+    problems = [f"run.db: {problem}" for problem in chain.problems]
+    if not kept or kept.lower() == chain.head:
+        return problems
+    heads = [head.hex() for head in chain.heads]
+    if kept.lower() not in heads:
+        return [*problems, f"run.db: another record than the one of the head {kept}: its own is {chain.head or 'none'}"]
+    since = chain.names[heads.index(kept.lower()) + 1 :]
+    return [*problems, f"run.db: has grown since the head {kept} by {len(since)} rows: {', '.join(since[-LISTED:])}"]
+
+
+def _notes(chain: ChainFound | None, version: int) -> tuple[str, ...]:
+    if chain is None:
+        return (f"older version (schema {version}): recorded without a chain, coefficients not recomputed",)
+    if chain.adopted:
+        return (f"begun by an older version (schema {chain.adopted}): chained as it was found by a later one",)
+    return ()
+
+
+def _finished(folder: Path, results: RunResults, chain: ChainFound) -> list[str]:
+    """Return what a run lacks that has ended: its manifest, with the chain's head."""
+    if results.status in (RunStatus.RUNNING, RunStatus.INTERRUPTED) or under_way(folder) is not None:
+        return []
+    if not (folder / MANIFEST).is_file():
+        return [f"{MANIFEST}: missing, and the run has ended"]
+    try:
+        if manifest_head(folder) != chain.head:
+            return [f"{MANIFEST}: of a record with another head"]
+    except (OSError, ValueError, AttributeError):
+        pass  # that it cannot be read is told already
+    return []
+
+
+def _made_by(reader: RunReader) -> str:
+    """Return the version that wrote the folder's tables last."""
+    said, sessions = reader.exclusions(), reader.sessions()
+    return said[-1].software_version if said else sessions[-1].software_version if sessions else ""
 
 
 def _cut_off(folder: Path, said: list[StoredExclusion]) -> list[str]:

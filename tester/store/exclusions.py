@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from contextlib import closing, suppress
 from pathlib import Path
 
+from tester.store.chain import Chain
 from tester.store.reader import DATABASE
 from tester.store.records import StoredExclusion, StoredRepeat
 from tester.store.schema import StoreError, migrate
@@ -45,8 +46,12 @@ def add_exclusion(folder: Path, said: StoredExclusion) -> None:
             # reads a record that is still WAL prevents that; then what is committed waits in the log until they leave.
             with suppress(sqlite3.OperationalError):
                 database.execute("PRAGMA journal_mode = DELETE")
+            chain = Chain(database)
             values = (*said.target, said.excluded, said.reason, said.operator, said.utc, said.software_version)
+            database.execute("BEGIN IMMEDIATE")
             database.execute(_ADD, (*values, said.manifest_before))
+            chain.seal()
+            database.execute("COMMIT")
     except sqlite3.Error as error:
         raise StoreError(f"{path} cannot be written: {in_words(error)}") from error
 

@@ -19,8 +19,10 @@ import numpy as np
 
 from tester.analysis.results import Judgement
 from tester.process import SAMPLE_COLUMNS
+from tester.store.chain import Chain
 from tester.store.reader import DATABASE, RunReader
 from tester.store.sample_blocks import unpack_array
+from tester.store.schema import migrate
 
 Cell = str | int | float | bytes | None
 
@@ -64,6 +66,7 @@ HEADER = frozenset(
         "change",
         "calibration",
         "exclusion",
+        "chain",
     }
 )
 """Tables of the whole run, which parts do not fill. ``condition`` is brought up to date."""
@@ -94,6 +97,8 @@ class Merge:
         try:
             # The deletion of a rollback journal is synced, too: one that came back would take the merge back.
             self._connection.execute("PRAGMA synchronous = EXTRA")
+            migrate(self._connection)
+            self._chain = Chain(self._connection)
             with self._transaction():
                 for table in reversed(TABLES):
                     self._connection.execute(f"DELETE FROM {table}")
@@ -130,7 +135,8 @@ class Merge:
     def finish(self, status: str, reason: str, ended_utc: str) -> None:
         """Record how the whole run ended."""
         sql = "UPDATE run SET status = ?, reason = ?, rig_seconds = ?, ended_utc = ?"
-        self._connection.execute(sql, (status, reason, self.rig_seconds, ended_utc))
+        with self._transaction():
+            self._connection.execute(sql, (status, reason, self.rig_seconds, ended_utc))
 
     # -- rows -------------------------------------------------------------------------------------------------
 
@@ -187,14 +193,15 @@ class Merge:
         return self._connection.execute(f"SELECT coalesce(max({TABLES[table].key}), 0) FROM {table}").fetchone()[0]
 
     def _transaction(self) -> _Transaction:
-        return _Transaction(self._connection)
+        return _Transaction(self._connection, self._chain)
 
 
 class _Transaction:
-    """All of it or nothing."""
+    """All of it or nothing, and chained."""
 
-    def __init__(self, connection: sqlite3.Connection) -> None:
+    def __init__(self, connection: sqlite3.Connection, chain: Chain) -> None:
         self._connection = connection
+        self._chain = chain
 
     def __enter__(self) -> None:
         self._connection.execute("BEGIN IMMEDIATE")
@@ -202,7 +209,13 @@ class _Transaction:
     def __exit__(
         self, kind: type[BaseException] | None, value: BaseException | None, trace: TracebackType | None
     ) -> None:
-        self._connection.execute("COMMIT" if kind is None else "ROLLBACK")
+        try:
+            if kind is None:
+                self._chain.seal()
+                self._connection.execute("COMMIT")
+        finally:
+            if self._connection.in_transaction:
+                self._connection.execute("ROLLBACK")
 
 
 def _raised(key: Cell, base: int) -> Cell:

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Literal, TypeVar
 
 from tester.analysis.results import Burst, ConditionStatus, Judgement, RepeatResult, RepeatStatus
 from tester.analysis.wear_check import WearCheck
+from tester.store.chain import ChainFound, inspect
 from tester.store.records import (
     NAN,
     BusStatistic,
@@ -37,7 +38,7 @@ from tester.store.records import (
     WheelInfo,
 )
 from tester.store.sample_blocks import unpack, unpack_array
-from tester.store.schema import StoreError, migrate, reads_as_present, version_of
+from tester.store.schema import CHAINED, StoreError, migrate, reads_as_present, version_of
 
 if TYPE_CHECKING:
     from array import array
@@ -121,6 +122,8 @@ class RunReader:
         """Open the record for reading."""
         self.path = path / DATABASE if path.is_dir() else path
         self._copy: TemporaryDirectory[str] | None = None
+        self.version = 0
+        """The schema of the record as it lies in the folder."""
         if not self.path.is_file():
             raise StoreError(f"no run in {path}")
         try:
@@ -135,6 +138,7 @@ class RunReader:
         except StoreError as error:
             connection.close()
             raise StoreError(f"{self.path}: {error}") from error
+        self.version = version
         if reads_as_present(connection, version):
             return connection
         if version == 0:
@@ -287,6 +291,25 @@ class RunReader:
         """Yield the counters of the buses in order."""
         for row in self._rows("SELECT * FROM bus_statistic ORDER BY id"):
             yield _record(BusStatistic, row)
+
+    def record_head(self) -> str:
+        """Return the last head of the record's chain, hexadecimal; "" where an older version recorded without one."""
+        if self.version < CHAINED:
+            return ""
+        last = self._rows("SELECT lower(hex(head)) AS head FROM chain ORDER BY seq DESC LIMIT 1")
+        return next((_text(row, "head") for row in last), "")
+
+    def chain(self) -> ChainFound | None:
+        """Hold every row against the record's chain; None where an older version recorded without one."""
+        if self.version < CHAINED:
+            return None
+        factory, self._connection.row_factory = self._connection.row_factory, None
+        try:
+            return inspect(self._connection)
+        except (sqlite3.Error, TypeError, ValueError) as error:
+            raise StoreError(f"{self.path}: the chain cannot be read: {error}") from error
+        finally:
+            self._connection.row_factory = factory
 
     def integrity_problems(self) -> list[str]:
         """Return what SQLite's own check finds wrong in the file; none in a sound one."""

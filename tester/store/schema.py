@@ -14,6 +14,8 @@ from __future__ import annotations
 
 import sqlite3
 
+from tester.store.chain import adopt
+
 APPLICATION_ID = 0x46525431
 """``FRT1``: SQLite's application_id of a run's database, so that ``file`` and we know it from others."""
 
@@ -303,10 +305,31 @@ CREATE {temporary}TABLE wear_check (
 """Checks of a wheel's diameter between its conditions (``before`` and ``after``: their numbers, 0 for none), held
 against the first of their series at ``reference_s``; what their uncertainty comes from is in the row."""
 
-MIGRATIONS: tuple[str, ...] = (_VERSION_1, _VERSION_2, _VERSION_3, _VERSION_4, _WEAR_CHECK.format(temporary=""))
+_CHAIN = """
+CREATE {temporary}TABLE chain (
+    seq INTEGER PRIMARY KEY,
+    name TEXT NOT NULL,
+    key INTEGER NOT NULL,
+    row_sha256 BLOB NOT NULL,
+    head BLOB NOT NULL
+);
+"""
+"""The chain of hashes over all rows (tester.store.chain)."""
+
+MIGRATIONS: tuple[str, ...] = (
+    _VERSION_1,
+    _VERSION_2,
+    _VERSION_3,
+    _VERSION_4,
+    _WEAR_CHECK.format(temporary=""),
+    _CHAIN.format(temporary=""),
+)
 """Migration n leads from schema n to n + 1."""
 
-_ADDED: dict[int, str] = {3: _EXCLUSION, 4: _AS_VERSION_4, 5: _WEAR_CHECK}
+CHAINED = 6
+"""The first schema with a chain. A later migration that changes what rows hold has to add them to it again."""
+
+_ADDED: dict[int, str] = {3: _EXCLUSION, 4: _AS_VERSION_4, 5: _WEAR_CHECK, 6: _CHAIN}
 """What versions have added, by version: what a connection to an older record can have for itself."""
 
 VERSION = len(MIGRATIONS)
@@ -347,8 +370,11 @@ def reads_as_present(connection: sqlite3.Connection, version: int) -> bool:
 
 def migrate(connection: sqlite3.Connection) -> None:
     """Bring a database to the present schema, each step in a transaction of its own; raises StoreError."""
-    for version in range(version_of(connection), VERSION):
+    found = version_of(connection)
+    for version in range(found, VERSION):
         connection.executescript(
-            f"BEGIN;{MIGRATIONS[version]}PRAGMA application_id = {APPLICATION_ID};"
-            f"PRAGMA user_version = {version + 1};COMMIT;"
+            f"BEGIN;{MIGRATIONS[version]}PRAGMA application_id = {APPLICATION_ID};PRAGMA user_version = {version + 1};"
         )
+        if version + 1 == CHAINED:
+            adopt(connection, found)
+        connection.execute("COMMIT")

@@ -23,6 +23,7 @@ from threading import Thread
 
 from tester.analysis.results import Burst, RepeatResult
 from tester.process import SAMPLE_COLUMNS
+from tester.store.chain import Chain
 from tester.store.files import sync_folder
 from tester.store.recorder import Batch, Judged, NullRecorder, Recorder, Ticket, no_utc
 from tester.store.sample_blocks import BLOCK_ROWS, pack
@@ -49,7 +50,7 @@ _WRITE_ERRORS = (sqlite3.Error, OSError, ValueError, OverflowError, TypeError, I
 """What a disk (first two) or a value that no column takes (the others) can raise."""
 
 
-def _open(path: Path) -> sqlite3.Connection:
+def _open(path: Path) -> tuple[sqlite3.Connection, Chain]:
     connection = sqlite3.connect(path, isolation_level=None, check_same_thread=False)
     try:
         version_of(connection)  # before anything is changed in a file that may be somebody else's
@@ -59,9 +60,13 @@ def _open(path: Path) -> sqlite3.Connection:
         connection.execute("PRAGMA journal_mode = WAL")
         connection.execute("PRAGMA synchronous = FULL")
         migrate(connection)
+        chain = Chain(connection)
+        connection.execute("BEGIN IMMEDIATE")
         connection.executemany(
             "INSERT OR IGNORE INTO sample_column (position, name) VALUES (?, ?)", enumerate(SAMPLE_COLUMNS)
         )
+        chain.seal()
+        connection.execute("COMMIT")
         columns = connection.execute("SELECT name FROM sample_column ORDER BY position").fetchall()
         if tuple(name for (name,) in columns) != SAMPLE_COLUMNS:
             raise StoreError(f"{path.name} was recorded with other sample columns and cannot be continued")
@@ -69,7 +74,7 @@ def _open(path: Path) -> sqlite3.Connection:
     except (sqlite3.Error, StoreError):
         connection.close()
         raise
-    return connection
+    return connection, chain
 
 
 class RunWriter(Recorder):
@@ -107,7 +112,7 @@ class RunWriter(Recorder):
         self._stored_overruns = 0
         self._stopping = False
         self._wake, self._room, self._committed = Signal(), Signal(), Signal()
-        self._connection = _open(path)
+        self._connection, self._chain = _open(path)
         self._continue_counting()
         self._committed_at = clock()
         self._thread = None if synchronous else Thread(target=self._run, name="recorder", daemon=True)
@@ -262,6 +267,7 @@ class RunWriter(Recorder):
             overruns = self.overruns
             if overruns != self._stored_overruns:
                 connection.execute("UPDATE run SET overruns = overruns + ?", (overruns - self._stored_overruns,))
+            self._chain.seal()
             connection.execute("COMMIT")
         finally:
             if connection.in_transaction:

@@ -26,7 +26,7 @@ TABLES = ("appendix.csv", "conditions.csv", "repeats.csv")
 
 @pytest.fixture
 def run(tmp_path: Path) -> Path:
-    folder = small_run(tmp_path / "run", FOUR)
+    folder = small_run(tmp_path / "run", FOUR, rows=0)
     (folder / "recipe.yaml").write_text(RUN.recipe_text, encoding="utf-8")
     (folder / "rig.yaml").write_text(RUN.rig_text, encoding="utf-8")
     export.write_all(folder)
@@ -168,7 +168,7 @@ def test_the_manifest_of_before_is_kept_so_that_the_first_record_can_still_be_to
 
 
 def test_a_run_that_was_cut_off_takes_the_word_and_gets_no_tables_yet(tmp_path: Path) -> None:
-    folder = small_run(tmp_path / "run", FOUR)
+    folder = small_run(tmp_path / "run", FOUR, rows=0)
     record_word(folder, OUT)
     assert results(folder).rows[1].result.n_valid == 3
     assert [path.name for path in folder.iterdir()] == ["run.db"]

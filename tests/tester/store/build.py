@@ -138,14 +138,16 @@ def open_writer(folder: Path, **options: bool | int) -> RunWriter:
     )
 
 
-def small_run(folder: Path, values: tuple[list[float], ...] = ([0.90, 0.91, 0.89], [0.73, 0.74, 0.72])) -> Path:
-    """Write a finished run of conditions 1, 2, ... with these repeats; return its folder."""
+def small_run(
+    folder: Path, values: tuple[list[float], ...] = ([0.90, 0.91, 0.89], [0.73, 0.74, 0.72]), rows: int = 5
+) -> Path:
+    """Write a finished run of conditions 1, 2, ... with these repeats, made-up samples each; return its folder."""
     folder.mkdir(parents=True, exist_ok=True)
     writer = open_writer(folder)
     conditions = [replace(CONDITION, condition=i, row=i, load_n=100.0 * i) for i in range(1, len(values) + 1)]
     writer.begin_run(RUN, SPECIMENS, conditions)
     for condition, repeats in zip(conditions, values, strict=True):
-        record(writer, condition.condition, repeats)
+        record(writer, condition.condition, repeats, rows)
     writer.finish("done", rig_seconds=2700.5)
     writer.close()
     return folder

@@ -157,11 +157,17 @@ def test_wheels_trips_prompts_tares_and_devices_of_all_parts_are_there(run: Path
     assert rows(run, "SELECT t_s FROM device_parameter") == [(0.5,), (FIRST_S + 0.5,)]
 
 
-def test_merging_again_changes_nothing(run: Path) -> None:
+def test_merging_again_changes_nothing_and_the_chain_tells_it(run: Path) -> None:
     merge(run)
-    before = {table: rows(run, f"SELECT * FROM {table}") for table in TABLES.keys() | HEADER}
+    tables = TABLES.keys() | HEADER - {"chain"}
+    before = {table: rows(run, f"SELECT * FROM {table}") for table in tables}
+    (entries,) = rows(run, "SELECT count(*) FROM chain")[0]
     merge(run)
-    assert {table: rows(run, f"SELECT * FROM {table}") for table in TABLES.keys() | HEADER} == before
+    assert {table: rows(run, f"SELECT * FROM {table}") for table in tables} == before
+    assert rows(run, "SELECT count(*) FROM chain")[0][0] > entries
+    with RunReader(run) as reader:
+        chain = reader.chain()
+    assert chain is not None and chain.problems == ()
 
 
 def test_a_part_that_cannot_be_read_leaves_the_parts_before_it(run: Path) -> None:

@@ -238,7 +238,7 @@ def without_judgements(database: sqlite3.Connection) -> None:
 def test_a_record_of_an_older_schema_is_read_and_left_as_it_is(tmp_path: Path) -> None:
     folder = small_run(tmp_path / "run")
     with sqlite3.connect(folder / "run.db") as database:
-        for table in ("session", "change", "calibration", "exclusion", "wear_check"):
+        for table in ("session", "change", "calibration", "exclusion", "wear_check", "chain"):
             database.execute(f"DROP TABLE {table}")
         for table, column in (
             ("wheel", "ground_s"),
@@ -261,6 +261,7 @@ def test_a_record_without_exclusions_is_read_in_place(tmp_path: Path, monkeypatc
     with sqlite3.connect(folder / "run.db") as database:
         database.execute("DROP TABLE exclusion")
         database.execute("DROP TABLE wear_check")
+        database.execute("DROP TABLE chain")
         without_judgements(database)
         database.execute("PRAGMA user_version = 2")
     database.close()

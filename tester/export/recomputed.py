@@ -1,0 +1,90 @@
+"""Does the record bear out what is said of it? Every coefficient from its samples, every table from the record."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Callable, Iterable, Iterator
+from io import StringIO
+from itertools import zip_longest
+from math import isclose, isfinite
+from pathlib import Path
+
+from tester.analysis.blocks import AVERAGED, blocks_from_samples
+from tester.analysis.reduce import reduce_repeat
+from tester.analysis.results import RepeatResult, RepeatStatus
+from tester.export import appendix, conditions, repeats, wear, wheels
+from tester.export.results import RunResults
+from tester.store.reader import RunReader
+from tester.store.records import ConditionInfo, StoredRepeat
+
+TOLERANCE = 1e-9
+"""Relative. Stored are doubles, bit by bit; a mean over a revolution is summed in another order, and merged parts have
+their times put back on a grid of a microsecond."""
+
+_FIGURES = ("mu_resultant", "mu_longitudinal", "mu_lateral", *AVERAGED)
+_TABLES: dict[str, Callable[[RunResults], Iterator[bytes]]] = {
+    "appendix.csv": appendix,
+    "conditions.csv": conditions,
+    "repeats.csv": repeats,
+    "wheel.csv": wheels,
+    "wear.csv": wear,
+}
+
+
+def coefficient_problems(reader: RunReader) -> tuple[int, list[str]]:
+    """Recompute every repeat that has a coefficient; return how many, and what the samples do not bear out.
+
+    A run recorded without samples has none to recompute. Raises StoreError.
+    """
+    if not reader.count("sample_block", "repeat_id > 0"):
+        return 0, []
+    infos = {stored.info.condition: stored.info for stored in reader.conditions()}
+    measured = [one for one in reader.repeats(attempts=True) if isfinite(one.result.mu_resultant)]
+    problems: list[str] = []
+    for one in measured:
+        problems += _differing(one, _recomputed(reader, one, infos[one.condition]))
+    return len(measured), problems
+
+
+def _recomputed(reader: RunReader, one: StoredRepeat, info: ConditionInfo) -> RepeatResult:
+    samples = reader.samples(one.condition, one.repeat, one.attempt)
+    rolling = info.slip_velocity_m_s == 0.0
+    return reduce_repeat(blocks_from_samples(samples), info.window_revolutions, info.window_s, rolling=rolling)
+
+
+def _differing(one: StoredRepeat, again: RepeatResult) -> Iterator[str]:
+    place = f"repeat {one.condition}/{one.repeat}, attempt {one.attempt}"
+    if not isfinite(again.mu_resultant):
+        yield f"{place}: its samples give no coefficient, on record is {one.result.mu_resultant:.6g}"
+        return
+    for name in _FIGURES:
+        stored, found = getattr(one.result, name), getattr(again, name)
+        if not isclose(stored, found, rel_tol=TOLERANCE, abs_tol=TOLERANCE) and (isfinite(stored) or isfinite(found)):
+            yield f"{place}: {name} is {found:.6g} by its samples, on record is {stored:.6g}"
+    if one.result.revolutions != again.revolutions:
+        yield f"{place}: {again.revolutions} revolutions by its samples, on record are {one.result.revolutions}"
+    if one.result.status is RepeatStatus.VALID and again.status is not RepeatStatus.VALID:
+        yield f"{place}: {again.status.value} by its samples ({again.reason}), on record is valid"
+
+
+def table_problems(folder: Path, results: RunResults) -> Iterator[tuple[str, str]]:
+    """Yield the tables of a folder that do not say what the record does, each with a line that says so."""
+    for name, made in _TABLES.items():
+        path = folder / name
+        if path.is_file():
+            try:
+                found = _first_difference(path.read_text("utf-8-sig"), b"".join(made(results)).decode("utf-8-sig"))
+            except (UnicodeDecodeError, csv.Error):
+                found = "it cannot be read"
+            if found:
+                yield name, f"{name}: not what the record says: {found}"
+
+
+def _first_difference(there: str, by_record: str) -> str:
+    def read(text: str) -> Iterable[list[str]]:
+        return csv.reader(StringIO(text))
+
+    for number, (row, expected) in enumerate(zip_longest(read(there), read(by_record)), start=1):
+        if row != expected:
+            return f"row {number}"
+    return ""

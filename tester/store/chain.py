@@ -1,0 +1,188 @@
+"""A chain of hashes over every row of a run's record, in the order of commits: what was changed afterwards shows.
+
+The table ``chain`` has an entry for each row at each commit that made or changed it, or took it out:
+
+    row_sha256 = SHA-256 of the JSON text [table, key, {column: value, ...}]      (null in place of a row taken out)
+    head       = SHA-256 of (head of the entry before | row_sha256), 32 bytes each; 32 zero bytes before the first
+
+``key`` is the row's rowid. Columns are in the table's order, those that are NULL left out (a column that a later
+version adds changes no hash); numbers as Python's ``repr`` writes them, text escaped to ASCII, a blob as its own
+SHA-256. Who can write the file can also make the whole chain anew. What shows that is the last head, kept elsewhere by
+a person.
+"""
+
+from __future__ import annotations
+
+import json
+import sqlite3
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from hashlib import sha256
+
+Cell = str | int | float | bytes | None
+
+TABLE = "chain"
+ADOPTED = "adopted"
+"""In place of a table's name: the rows that follow were recorded by an older schema (``key``), without a chain."""
+START = bytes(32)
+NAMED_AT_MOST = 5
+"""Rows of a table that are named; of more, only the number is told."""
+
+_INSERT = "INSERT INTO chain (seq, name, key, row_sha256, head) VALUES (?, ?, ?, ?, ?)"
+
+
+def tables_in(connection: sqlite3.Connection) -> list[str]:
+    """Return the tables that the chain is over: all of the database but itself and SQLite's own."""
+    found = connection.execute("SELECT name FROM main.sqlite_master WHERE type = 'table' ORDER BY name")
+    return [name for (name,) in found if name != TABLE and not name.startswith("sqlite_")]
+
+
+def row_sha256(table: str, key: int, columns: Sequence[str], values: Sequence[Cell] | None) -> bytes:
+    """Return the hash of a row; ``values`` None: it was taken out."""
+    row = None
+    if values is not None:
+        row = {name: _plain(v) for name, v in zip(columns, values, strict=True) if v is not None}
+    return sha256(json.dumps([table, key, row], separators=(",", ":")).encode()).digest()
+
+
+def _plain(value: Cell) -> object:
+    return {"sha256": sha256(value).hexdigest()} if isinstance(value, bytes) else value
+
+
+def next_head(head: bytes, row: bytes) -> bytes:
+    """Return the head that follows when a row's hash is added."""
+    return sha256(head + row).digest()
+
+
+class Chain:
+    """Chains what one connection writes. ``seal`` belongs before every COMMIT of a transaction that changes rows.
+
+    Temporary triggers note which rows a transaction touches, so no statement can be forgotten.
+    """
+
+    def __init__(self, connection: sqlite3.Connection) -> None:
+        """Watch the tables of a database of the present schema, outside a transaction."""
+        self._connection = connection
+        connection.execute("PRAGMA temp_store = MEMORY")
+        connection.execute(
+            "CREATE TEMP TABLE touched"
+            " (n INTEGER PRIMARY KEY, name TEXT, key INTEGER, UNIQUE (name, key) ON CONFLICT IGNORE)"
+        )
+        self._columns = {table: columns_of(connection, table) for table in tables_in(connection)}
+        for table in self._columns:
+            for verb, row in (("INSERT", "new"), ("UPDATE", "new"), ("DELETE", "old")):
+                connection.execute(
+                    f"CREATE TEMP TRIGGER touched_{table}_{verb} AFTER {verb} ON main.{table}"
+                    f" BEGIN INSERT INTO touched (name, key) VALUES ('{table}', {row}.rowid); END"
+                )
+
+    def seal(self) -> None:
+        """Add an entry for each row that this transaction has touched, as it is now."""
+        connection = self._connection
+        touched = connection.execute("SELECT name, key FROM touched ORDER BY n").fetchall()
+        if touched:
+            add_entries(connection, ((name, key, self._hash(name, key)) for name, key in touched))
+            connection.execute("DELETE FROM touched")
+
+    def _hash(self, table: str, key: int) -> bytes:
+        columns = self._columns[table]
+        found = self._connection.execute(f"SELECT {', '.join(columns)} FROM main.{table} WHERE rowid = ?", (key,))
+        return row_sha256(table, key, columns, found.fetchone())
+
+
+def columns_of(connection: sqlite3.Connection, table: str) -> tuple[str, ...]:
+    """Return the names of a table's columns in their order."""
+    return tuple(str(row[1]) for row in connection.execute(f"PRAGMA main.table_info({table})"))
+
+
+def add_entries(connection: sqlite3.Connection, rows: Iterator[tuple[str, int, bytes]]) -> None:
+    """Append rows (name of the table, key, hash) to the chain, inside a transaction."""
+    last = connection.execute("SELECT seq, head FROM chain ORDER BY seq DESC LIMIT 1").fetchone()
+    seq, head = (last[0], last[1]) if last is not None else (0, START)
+    for name, key, row in rows:
+        seq, head = seq + 1, next_head(head, row)
+        connection.execute(_INSERT, (seq, name, key, row, head))
+
+
+def adopt(connection: sqlite3.Connection, version: int) -> None:
+    """Chain what an older schema (``version``) has recorded, as it is found, inside a transaction."""
+    if connection.execute("SELECT 1 FROM run").fetchone() is None:
+        return  # nothing was recorded yet: what comes is chained as it comes
+    add_entries(connection, _found(connection, version))
+
+
+def _found(connection: sqlite3.Connection, version: int) -> Iterator[tuple[str, int, bytes]]:
+    yield ADOPTED, version, row_sha256(ADOPTED, version, (), None)
+    for table in tables_in(connection):
+        for key, row in hashes_of(connection, table):
+            yield table, key, row
+
+
+def hashes_of(connection: sqlite3.Connection, table: str) -> Iterator[tuple[int, bytes]]:
+    """Yield key and hash of every row of a table."""
+    columns = columns_of(connection, table)
+    for row in connection.execute(f"SELECT rowid, {', '.join(columns)} FROM main.{table} ORDER BY rowid"):
+        yield row[0], row_sha256(table, row[0], columns, tuple(row)[1:])
+
+
+@dataclass(frozen=True, slots=True)
+class ChainFound:
+    """What a look at a chain has found. ``heads``: all of it, in order, as far as it is unbroken."""
+
+    problems: tuple[str, ...]
+    heads: tuple[bytes, ...]
+    names: tuple[str, ...]
+    """For each entry, the row in words, such as ``event 12``."""
+    adopted: int
+    """The older schema under which the record was begun; 0 where it was chained from its first row."""
+
+    @property
+    def head(self) -> str:
+        """Return the last head, hexadecimal; "" of an empty chain."""
+        return self.heads[-1].hex() if self.heads else ""
+
+
+def inspect(connection: sqlite3.Connection) -> ChainFound:
+    """Hold a record of this schema against its chain, as it is at one moment: a run may go on. Raises sqlite3.Error."""
+    connection.execute("BEGIN")
+    try:
+        problems: list[str] = []
+        latest: dict[tuple[str, int], bytes] = {}
+        heads: list[bytes] = []
+        names: list[str] = []
+        adopted, head = 0, START
+        entries = connection.execute("SELECT seq, name, key, row_sha256, head FROM chain ORDER BY seq")
+        for n, (seq, name, key, row, said) in enumerate(entries, start=1):
+            head = next_head(head, bytes(row))
+            if seq != n or head != said:
+                problems.append(f"the chain is broken at entry {n}")
+                break
+            heads.append(head)
+            names.append(f"{name} {key}")
+            latest[name, key] = row
+            adopted = key if name == ADOPTED else adopted
+        for table in tables_in(connection):
+            of_table = {key: row for (name, key), row in latest.items() if name == table}
+            problems += _told(table, of_table, connection)
+        unknown = {name for name, _ in latest} - {ADOPTED, *tables_in(connection)}
+        problems += [f"the table {name} is gone" for name in sorted(unknown)]
+    finally:
+        connection.execute("ROLLBACK")
+    return ChainFound(tuple(problems), tuple(heads), tuple(names), adopted)
+
+
+def _told(table: str, said: dict[int, bytes], connection: sqlite3.Connection) -> Iterator[str]:
+    """Yield what differs between a table's rows and the last entries of the chain on them."""
+    changed: list[int] = []
+    strange: list[int] = []
+    for key, row in hashes_of(connection, table):
+        expected = said.pop(key, None)
+        if expected is None:
+            strange.append(key)
+        elif expected != row:
+            changed.append(key)
+    gone = [key for key, row in said.items() if row != row_sha256(table, key, (), None)]
+    for keys, words in ((changed, "changed"), (strange, "not in the chain"), (gone, "gone")):
+        yield from (f"{table} {key}: {words}" for key in keys[:NAMED_AT_MOST])
+        if len(keys) > NAMED_AT_MOST:
+            yield f"{table}: {len(keys) - NAMED_AT_MOST} more rows {words}"

@@ -1,0 +1,68 @@
+"""Fifteen forgeries of a finished run: each is told with the head kept, and without it where the chain is unmade."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tester.cli.main import invoke
+from tester.export.verify import verify
+from tests.forgery.forge import FORGERIES, Forgery, remake_all, told
+from tests.forgery.run import finished_run
+
+
+@pytest.fixture(scope="module")
+def runs(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
+    home = tmp_path_factory.mktemp("forgery")
+    return finished_run(home / "one", 1), finished_run(home / "two", 2)
+
+
+def test_the_run_itself_is_as_it_was_left(runs: tuple[Path, Path]) -> None:
+    found = verify(runs[0])
+    assert verify(runs[0], found.head).problems == () and found.coefficients == 3 and found.notes == ()
+
+
+def test_there_are_fifteen_kinds() -> None:
+    assert len({forgery.name for forgery in FORGERIES}) == 15
+
+
+@pytest.mark.parametrize("forgery", FORGERIES, ids=lambda forgery: forgery.name)
+def test_a_forgery_is_told(runs: tuple[Path, Path], forgery: Forgery, tmp_path: Path) -> None:
+    kept, without, kept_all_anew, _ = told(*runs, forgery, tmp_path)
+    assert (kept, without, kept_all_anew) == (True, True, True)
+
+
+def test_changed_samples_are_told_by_the_coefficient_even_with_all_made_anew(
+    runs: tuple[Path, Path], tmp_path: Path
+) -> None:
+    (forgery,) = (one for one in FORGERIES if one.name == "samples changed")
+    assert told(*runs, forgery, tmp_path)[3]
+
+
+def test_a_head_from_before_is_told_with_what_came_since(
+    runs: tuple[Path, Path], capsys: pytest.CaptureFixture[str]
+) -> None:
+    from tester.store.reader import RunReader
+
+    with RunReader(runs[0]) as reader:
+        chain = reader.chain()
+    assert chain is not None
+    assert invoke(["verify", str(runs[0]), "--head", chain.heads[-2].hex()]) == 1
+    assert f"by 1 rows: {chain.names[-1]}" in capsys.readouterr().err
+    assert invoke(["verify", str(runs[0]), "--head", chain.head.upper()]) == 0
+
+
+def test_a_head_that_is_no_hash_is_refused(runs: tuple[Path, Path]) -> None:
+    assert invoke(["verify", str(runs[0]), "--head", "abc"]) == 2
+
+
+def test_all_made_anew_over_what_is_right_is_another_head(runs: tuple[Path, Path], tmp_path: Path) -> None:
+    import shutil
+
+    folder = tmp_path / "run"
+    shutil.copytree(runs[1], folder)
+    head = verify(folder).head
+    remake_all(folder)
+    assert verify(folder).problems == ()
+    assert any("another record than the one of the head" in line for line in verify(folder, head).problems)
