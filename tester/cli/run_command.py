@@ -11,6 +11,7 @@ from tester.cli.options import json_option, rig_option, risk_option, set_option
 
 NOT_DETACHED = {
     "out": "--out", "bus_log": "--bus-log", "faults": "--fault", "jobs": "--jobs", "as_json": "--json",
+    "accept_risk": "--accept-risk",
 }  # fmt: skip
 """What the service has no command for, or chooses itself."""
 
@@ -79,10 +80,10 @@ def run(
     """
     if detach:
         given = {name for name in context.params if context.get_parameter_source(name) is ParameterSource.COMMANDLINE}
-        if kept := [option for name, option in NOT_DETACHED.items() if name in given]:
-            raise click.UsageError(f"not with --detach, the service would not do it: {', '.join(kept)}")
         if accept_risk:
             raise click.UsageError("--accept-risk goes with `tester serve`, which owns the rig: not with --detach")
+        if kept := [option for name, option in NOT_DETACHED.items() if name in given]:
+            raise click.UsageError(f"not with --detach, the service would not do it: {', '.join(kept)}")
         rig = rig_name if "rig_name" in given else ""
         return _detached(recipe, rig, overrides, seed, time_lapse(speed), yes, operator, take)
     if take:

@@ -139,6 +139,8 @@ class TimeLeft:
         self._finish()
         for place in range(self.position + 1, min(position + 1, len(self.estimated))):
             self._ahead[self._kinds[place]] -= self.estimated[place]
+            if place < position:  # came and went between two looks: its time is told with the step before it
+                self.measured[place] = 0.0
         self.position, self._open = position, True
 
     def _finish(self) -> None:

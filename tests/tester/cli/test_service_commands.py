@@ -112,7 +112,7 @@ def test_run_detached_leaves_the_folder_to_the_service(capsys: pytest.CaptureFix
     assert "not with --detach" in capsys.readouterr().err
 
 
-CARRIED = {"recipe", "rig_name", "overrides", "yes", "seed", "speed", "operator", "detach"}
+CARRIED = {"recipe", "rig_name", "overrides", "yes", "seed", "speed", "operator", "detach", "take"}
 """Parameters of `tester run` that reach the service."""
 LEFT = [["--bus-log", "logs"], ["--fault", "t=1 s: belt jammed"], ["--jobs", "2"], ["--jobs", "1"], ["--json"]]
 

@@ -231,8 +231,10 @@ class Scan(NamedTuple):
 class Simulation:
     """A run on the simulated rig, ticked by hand."""
 
-    def __init__(self, text: str = SHORT, overrides: Sequence[str] = (), *, seed: int = 0) -> None:
-        config = rig(*overrides)
+    def __init__(
+        self, text: str = SHORT, overrides: Sequence[str] = (), *, seed: int = 0, accept_risk: str = ""
+    ) -> None:
+        config = rig(*overrides, accept_risk=accept_risk)
         ports, world, attendant = simulated_ports(config, seed, None)
         self.plan = plan_of(text, config)
         self.notes = Notes()

@@ -26,9 +26,9 @@ def wrongly_zeroed() -> Simulation:
     return simulation
 
 
-def pressed(press_mm: float, *overrides: str) -> Simulation:
+def pressed(press_mm: float, *overrides: str, accept_risk: str = "") -> Simulation:
     """Return a rig whose wheel is mounted before the program starts, with the press at ``press_mm``."""
-    simulation = Simulation(SHORT, (HOLDS, *overrides))
+    simulation = Simulation(SHORT, (HOLDS, *overrides), accept_risk=accept_risk)
     simulation.world.axes["press"].axis.position = press_mm
     simulation.world.install(1, 1, "1#", new_specimen=True)
     return simulation
@@ -115,7 +115,8 @@ def test_one_reply_of_the_load_cell_may_be_lost() -> None:
 
 
 def test_a_rig_without_bump_test_and_proof_is_lifted_all_the_same() -> None:
-    simulation = pressed(TOUCHING_MM, "arming.watchdog_proof=false", "arming.bump_test=false")
+    unproven = "arming.watchdog_proof=false", "arming.bump_test=false"
+    simulation = pressed(TOUCHING_MM, *unproven, accept_risk="a rig that cannot prove")
     simulation.until(in_stage(Stage.READY), 15.0)
     assert simulation.world.plant.force_z_n == 0.0 and simulation.run.engine.devices.all_off()
 

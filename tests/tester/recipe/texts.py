@@ -32,9 +32,9 @@ rest: {at_least: 20 min, until: 25 degC, within: 2 degC}
 
 
 @cache
-def rig(*overrides: str) -> RigConfig:
-    """Return the simulated rig, with overrides as for --set."""
-    return load_rig("sim", list(overrides))
+def rig(*overrides: str, accept_risk: str = "") -> RigConfig:
+    """Return the simulated rig, with overrides as for --set; ``accept_risk`` as for --accept-risk."""
+    return load_rig("sim", list(overrides), accept_risk)
 
 
 def real_rig() -> RigConfig:
