@@ -18,9 +18,10 @@ class Played(Sweeps):
     """Sweeps whose results the test plays: what is odd about the first run and about some rows."""
 
     def __init__(
-        self, rows: int, odd_run: dict[str, str] | None = None, odd_rows: dict[int, dict[str, str]] | None = None
+        self, rows: int, odd_run: dict[str, str] | None = None, odd_rows: dict[int, dict[str, str]] | None = None,
+        *, full: bool = False,
     ) -> None:
-        super().__init__(Path(), full=False, jobs=1)
+        super().__init__(Path(), full=full, jobs=1)
         self.rows = rows
         self.odd_run = odd_run or {}
         self.odd_rows = odd_rows or {}
@@ -83,7 +84,7 @@ def test_a_row_without_value_for_drift_misses_and_one_for_heat_does_not() -> Non
 
 
 def test_an_estimate_six_per_cent_off_misses() -> None:
-    slow = Played(2)
+    slow = Played(2, full=True)
     slow.planned["rig_seconds"] = 940
     assert missed("estimate", slow) == 5
 

@@ -81,6 +81,9 @@ def _table2(sweeps: Sweeps) -> Iterator[Figure]:
         yield holds(f"table2: seed {row['seed']}", True, told, "named")
 
 
+SEEDS_OF_A_MEDIAN = 20
+"""Fewer seeds than this do not settle the median of the rig time."""
+
 ESTIMATED = {
     "quickstart": "quickstart",
     "four conditions": recipes.FOUR,
@@ -103,7 +106,10 @@ def _estimate(sweeps: Sweeps) -> Iterator[Figure]:
         within, total = within + inside, total + seeds
         off = 100.0 * (middle / told - 1.0)
         words = f"{middle:.0f} s against {told:.0f} s ({low:.0f} to {high:.0f}): {off:+.1f} %"
-        yield holds(f"estimate, {name}: median of {len(took)} seeds", abs(off) <= 5.0, words, "within 5 %")
+        # The thermometer's bias of a session moves a run by a third: the median of a few seeds says nothing.
+        judged = seeds >= SEEDS_OF_A_MEDIAN
+        limit = "within 5 %" if judged else "not judged: too few seeds"
+        yield holds(f"estimate, {name}: median of {len(took)} seeds", not judged or abs(off) <= 5.0, words, limit)
         yield holds(f"estimate, {name}: runs inside the range", True, f"{inside} of {len(took)}", "counted below")
     yield at_least("estimate: runs inside the stated 95 % range", 100.0 * within / total, 90.0, "%", 1)
 
