@@ -331,8 +331,8 @@ def test_a_hold_does_not_stop_its_minute(tmp_path: Path) -> None:
 
     stage = play(tmp_path, script)
     assert stage.views[-1].run is not None and stage.views[-1].run.outcome == "done"
-    # The minute and what the lift and the cool-down take; a hold that stopped it would last a minute longer.
-    assert max(view.t_s for view in stage.views) - began[0] < 80.0
+    # Counted from the hold, how long arming took does not matter; arming to the hold takes 13 s of rig time.
+    assert max(view.t_s for view in stage.views) - began[0] < 67.0
 
 
 def journal(home: Path) -> tuple[str, str, list[str]]:
