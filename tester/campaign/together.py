@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sqlite3
 from collections.abc import Callable, Generator
-from contextlib import closing
+from contextlib import closing, suppress
 from dataclasses import replace
 from pathlib import Path
 from shutil import rmtree
@@ -15,7 +15,7 @@ from tester.campaign.folder import PARTS, Begin, Job, Work
 from tester.store.files import sync_folder
 from tester.store.merge import Merge
 from tester.store.reader import DATABASE
-from tester.store.schema import StoreError
+from tester.store.schema import NotBegunError, StoreError
 from tester.store.writer import RunWriter
 from tester.trouble import in_words
 
@@ -61,7 +61,8 @@ def recover(folder: Path) -> None:
         try:
             with Merge(folder) as merge:
                 for record in found:
-                    merge.add(record.parent)
+                    with suppress(NotBegunError):  # cut off as it began: nothing was measured in it
+                        merge.add(record.parent)
         except sqlite3.Error as error:
             raise StoreError(f"the parts of {folder.name} cannot be put together: {error}") from error
     drop_parts(folder)

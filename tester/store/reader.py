@@ -38,7 +38,7 @@ from tester.store.records import (
     WheelInfo,
 )
 from tester.store.sample_blocks import unpack, unpack_array
-from tester.store.schema import CHAINED, StoreError, migrate, reads_as_present, version_of
+from tester.store.schema import CHAINED, NotBegunError, StoreError, migrate, reads_as_present, version_of
 
 if TYPE_CHECKING:
     from array import array
@@ -143,7 +143,7 @@ class RunReader:
             return connection
         if version == 0:
             connection.close()
-            raise StoreError(f"{self.path}: the run was not begun")
+            raise NotBegunError(f"{self.path}: the run was not begun")
         # An older record stays as it is (its manifest holds); a copy is brought to the present schema.
         self._copy = TemporaryDirectory(prefix="tester-", ignore_cleanup_errors=True)
         with closing(connection), closing(sqlite3.connect(Path(self._copy.name) / DATABASE)) as present:
@@ -188,7 +188,7 @@ class RunReader:
                 versions=self._texts("version", "component", "version"),
             )
             return _record(StoredRun, row, info=info, rig_seconds=self._rig_seconds(row))
-        raise StoreError(f"{self.path}: the run was not begun")
+        raise NotBegunError(f"{self.path}: the run was not begun")
 
     def _rig_seconds(self, run: Row) -> float:
         if run["rig_seconds"] is not None:

@@ -339,6 +339,10 @@ class StoreError(Exception):
     """A run's database cannot be used; the message says why, for people."""
 
 
+class NotBegunError(StoreError):
+    """A database in which no run is recorded: its program was cut off before the first entry."""
+
+
 def version_of(connection: sqlite3.Connection) -> int:
     """Return the schema's number, 0 of an empty database; raises StoreError if it is somebody else's."""
     version: int = connection.execute("PRAGMA user_version").fetchone()[0]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 import signal
 import sqlite3
 import subprocess
@@ -16,6 +17,7 @@ import pytest
 
 from tester.campaign import part_run
 from tester.campaign.folder import PARTS
+from tester.campaign.together import recover
 from tester.engine.build import Ports
 from tester.engine.context import Attendant
 from tester.engine.tickers import World
@@ -23,7 +25,9 @@ from tester.rig import RigConfig
 from tester.rig.template import hardware_text
 from tester.session import Session, SessionOptions
 from tester.simulated import simulated_ports
+from tester.store import schema
 from tester.store.reader import RunReader
+from tester.store.schema import VERSION
 from tests.tester.engine.bench import SHORT
 from tests.tester.test_session import TABLES, Ended, Screen
 
@@ -211,6 +215,21 @@ def test_a_run_that_is_cut_off_in_its_second_part_keeps_the_first_and_goes_on(
     assert statuses(resumed) == statuses(one) and not (folder / PARTS).exists()
     with RunReader(folder) as reader, RunReader(one.folder) as other:
         assert reader.repeats(1) == other.repeats(1)
+
+
+@pytest.mark.parametrize("steps", [0, 1, VERSION])
+def test_a_part_that_was_cut_off_as_it_began_is_none(tmp_path: Path, one: Ended, steps: int) -> None:
+    folder = tmp_path / "run"
+    for number in ("1", "2"):
+        (folder / PARTS / number).mkdir(parents=True)
+    for copy in (folder, folder / PARTS / "1"):
+        shutil.copy(one.folder / "run.db", copy)
+    with closing(sqlite3.connect(folder / PARTS / "2" / "run.db")) as begun, pytest.MonkeyPatch.context() as patch:
+        patch.setattr(schema, "VERSION", steps)
+        schema.migrate(begun)
+    recover(folder)
+    with RunReader(folder) as reader, RunReader(one.folder) as other:
+        assert list(reader.repeats()) == list(other.repeats())
 
 
 @pytest.mark.skipif(not hasattr(os, "killpg"), reason="no process groups on this system")
