@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import signal
-from collections.abc import Generator
+from collections.abc import Callable, Generator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from threading import current_thread, main_thread
 from types import FrameType
+from typing import TypeVar
 
 from recipes import find
 from tester.campaign.claims import enough_room, hold_rig, hold_run
@@ -24,7 +25,7 @@ from tester.engine.results import condition_records
 from tester.engine.run import Outcome, Run
 from tester.engine.tickers import TickStatistics
 from tester.export import doubtful, write_all
-from tester.export.results import results_of
+from tester.export.results import TableRow, results_of
 from tester.lock import ExclusiveUse
 from tester.plain import plain_text
 from tester.provenance import accepted_risks, recipe_source, rig_source, run_info, session_info
@@ -41,6 +42,9 @@ from tester.store.catalogue import MANIFEST, cut_off
 from tester.store.reader import RunReader
 from tester.store.status import WENT_THROUGH
 from tester.store.writer import RunWriter
+
+
+Got = TypeVar("Got")
 
 
 @dataclass(frozen=True, slots=True)
@@ -158,8 +162,8 @@ class Session:
             hold_run(use, folder)
             if finished:  # cut off between its end and its tables
                 return self._report(folder, Ending(Outcome.DONE, "", None))
-            recover(folder)
-            resumed = prepare(folder, reason, self.options.operator, self.options.accept_risk)
+            self.aside(lambda: recover(folder))
+            resumed = self.aside(lambda: prepare(folder, reason, self.options.operator, self.options.accept_risk))
             if isinstance(resumed, str):
                 raise CannotStartError(resumed, EXIT_REFUSED)
             refusal = self._refusal(resumed.rig)
@@ -172,6 +176,10 @@ class Session:
             # What is left goes on in the run's own record, one specimen after the other.
             work = Work(resumed.rig, resumed.plan, (Part(1, resumed.plan, last_wheel=0),), resumed.point)
             return self._record(self._job(folder, resumed.seed), work, resumed.begin)
+
+    def aside(self, work: Callable[[], Got]) -> Got:
+        """Do what reads or writes many files while nothing moves; a service hears its clients meanwhile."""
+        return work()
 
     def stop(self, level: Stop) -> None:
         """Stop the run, from a signal handler or another thread too: what is begun ends, and nothing more is begun."""
@@ -330,13 +338,10 @@ class Session:
 
         Conditions that the run did not come to are no news each: the screen's result counts them.
         """
-        lost = write_all(folder)
+        lost, advice = self.aside(lambda: _tables(folder))
         missing = [row.describe() for row in lost]
-        for row in [*(row for row in lost if row.tried), *doubtful(folder)]:
-            self.screen.message(row.advise())
-        with RunReader(folder) as reader:
-            for line in results_of(reader).wear_lines():
-                self.screen.message(line)
+        for line in advice:
+            self.screen.message(line)
         if ending.reason:
             self.screen.message(f"{ending.outcome.value}: {ending.reason}")
         code = ending.exit_code(interrupted_once=self.interrupts == 1, missing=bool(missing))
@@ -345,6 +350,14 @@ class Session:
         self.screen.emit({"event": "end", "outcome": ending.outcome.value, "exit": code, "missing": missing})
         self.screen.result(str(folder))
         return code
+
+
+def _tables(folder: Path) -> tuple[list[TableRow], list[str]]:
+    """Write a run's tables; return what is missing in them, and lines of advice and of wear."""
+    lost = list(write_all(folder))
+    advice = [row.advise() for row in [*(row for row in lost if row.tried), *doubtful(folder)]]
+    with RunReader(folder) as reader:
+        return lost, [*advice, *results_of(reader).wear_lines()]
 
 
 def _check_faults(texts: tuple[str, ...], rig: RigConfig) -> None:

@@ -5,22 +5,25 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from types import FrameType
-from typing import cast
+from typing import TypeVar, cast
 
 from tester import clock
-from tester.campaign.endings import Stop
+from tester.campaign.endings import CannotStartError, Stop
 from tester.campaign.folder import Begin, Job, Work
 from tester.engine.context import Progress as RunProgress
 from tester.engine.prompts import Prompts
 from tester.engine.run import Run
 from tester.engine.tickers import TickStatistics
 from tester.recipe.estimate import Estimate, estimate
+from tester.service.aside import aside
 from tester.service.desk import Desk
 from tester.service.planning import Task, planned
 from tester.service.progress import PlanTrack
 from tester.service.state import RunView, TickView
 from tester.session import Prepared, Session, SessionOptions
 from tester.store.space import expected_bytes
+
+Got = TypeVar("Got")
 
 RECENT_S = 1.0
 """Lateness is told over one to two of these, s: longer than the period of states, so that none is missed."""
@@ -56,6 +59,20 @@ class ServiceSession(Session):
         found = planned(Task(o.recipe, o.rig, o.overrides, o.accept_risk), self._meanwhile)
         self._expected = found.expected
         return found
+
+    def aside(self, work: Callable[[], Got]) -> Got:
+        """Do it by a thread, and go on looking after clients; what STOP has given up begins nothing afterwards."""
+        given_up: list[str] = []
+
+        def look() -> None:
+            why = self._meanwhile()
+            if why and not given_up:
+                given_up.append(why)
+
+        got = aside(work, look)
+        if given_up and not self.view.name:
+            raise CannotStartError(given_up[0])
+        return got
 
     def begun(self, run: Run) -> None:
         """Look after a part's run; the first one begins the whole."""

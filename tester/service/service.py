@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from hashlib import sha256
 from pathlib import Path
 from types import FrameType
+from typing import TypeVar
 
 from drivers.ports import BusLost
 from recipes import UnknownRecipe
@@ -24,6 +25,7 @@ from tester.engine.tickers import TickStatistics, World, run_real_time, run_simu
 from tester.lock import ExclusiveUse
 from tester.recipe.estimate import estimate
 from tester.rig import load_rig
+from tester.service.aside import aside
 from tester.service.commands import (
     Arm,
     ResumeRun,
@@ -48,6 +50,8 @@ from tester.store.schema import StoreError
 from tester.store.status import RunStatus, run_status
 from tester.store.writer import RunWriter
 from tester.trouble import in_words
+
+Got = TypeVar("Got")
 
 RECIPES = ".recipes"
 """Folder beside the runs for recipes that came as text, named by their content."""
@@ -91,8 +95,8 @@ class Service:
         """Serve until the process is told to end (TERM, INT), and leave at standstill."""
         desk = self.desk
         with Signals(self.end):
-            desk.interrupted = tuple(interrupted_runs(self.options.runs))
-            desk.past = past_of(self.options.runs)
+            desk.interrupted = self._aside(lambda: tuple(interrupted_runs(self.options.runs)))
+            desk.past = self._aside(lambda: past_of(self.options.runs))
             for name in desk.interrupted:
                 desk.tell("run", f"{name} was cut off: `tester resume {name}` goes on with it", "warning")
             while not self.orders.ending:
@@ -100,7 +104,7 @@ class Service:
                 if self.orders.job is not None:
                     self._carry_out(self.orders.job)
                     self.orders.job = None
-                    desk.past = past_of(self.options.runs)
+                    desk.past = self._aside(lambda: past_of(self.options.runs))
                     self._look_again()
                 else:
                     desk.wait()
@@ -113,7 +117,12 @@ class Service:
         """Forget the runs that are cut off no longer: resumed here, or by a command."""
         self._look_due_s = clock.monotonic() + LOOK_EVERY_S
         runs = self.options.runs
-        self.desk.interrupted = tuple(name for name in self.desk.interrupted if is_interrupted(runs / name))
+        names = self.desk.interrupted
+        self.desk.interrupted = self._aside(lambda: tuple(name for name in names if is_interrupted(runs / name)))
+
+    def _aside(self, work: Callable[[], Got]) -> Got:
+        """Look into the store while nothing is under way, and go on hearing clients."""
+        return aside(work, lambda: self.desk.poll(0.0))
 
     def end(self) -> None:
         """End as soon as nothing is under way any more."""
@@ -183,7 +192,7 @@ class Service:
 
         screen = RunScreen(desk, view, answer_yes=yes)
         def meanwhile() -> str:
-            desk.poll(0.0)
+            desk.poll(0.0 if desk.watch is None else desk.now_s)
             if self.orders.ending:
                 return "the service ends"
             return "" if self.orders.job is order else "stopped while it was planned"
@@ -214,10 +223,14 @@ class Service:
             try:
                 hold_rig(use, rig, NAME)
                 record = open_record(self.options.runs, rig, order.name, self.options.accept_risk)
+                mounted = self._aside(lambda: mounted_wheel(self.options.runs, rig))
             except REFUSED as error:
                 desk.hub.refuse(order, in_words(error))
                 return
             with closing(record), closed_early(record):
+                if self.orders.job is not order:
+                    record.finish(Outcome.STOPPED.value, "stopped before anything was connected", 0.0)
+                    return
                 try:
                     ports, world, attendant = connect_ports(rig, 0, None)
                 except BusLost as error:
@@ -225,7 +238,6 @@ class Service:
                     desk.hub.refuse(order, str(error))
                     return
                 run = build_run(rig, empty_plan(), ports, attendant, record, Prompts())
-                mounted = mounted_wheel(self.options.runs, rig)
                 hand = take_over(run, mounted.wheel if mounted is not None else None)
                 desk.attach(run, PlanTrack(hand.plan, estimate(hand.plan, rig)), view, hand)
                 record.event(0.0, "wheel", taken_for(mounted, run.engine.ctx.wheel.diameter_mm))
