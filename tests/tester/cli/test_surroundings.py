@@ -158,7 +158,7 @@ def test_a_screen_without_a_terminal_is_refused_with_what_needs_none(home: Path,
 def test_a_terminal_that_places_no_text_is_refused(home: Path) -> None:
     outer, inner = os.openpty()
     try:
-        done = tester("tui", stdin=inner, stdout=subprocess.PIPE, stderr=inner, env=os.environ | {"TERM": "dumb"})
+        done = called("tui", stdin=inner, stdout=subprocess.PIPE, stderr=inner, env=os.environ | {"TERM": "dumb"})
         assert done.returncode == 2 and b"TERM is dumb" in os.read(outer, 10_000)
     finally:
         os.close(inner)
