@@ -1,4 +1,4 @@
-"""The acceptance checks as tests: the quick ones by default, whole campaigns with `-m campaign`."""
+"""The acceptance checks as tests: those without a run by default, whole campaigns with `-m campaign`."""
 
 from __future__ import annotations
 
@@ -10,16 +10,14 @@ from pathlib import Path
 import pytest
 
 from tests import wear
-from tests.acceptance import truth
 from tests.acceptance.__main__ import main
 from tests.acceptance.bench import Bench
 from tests.acceptance.figure import Figure, at_least, at_most, equal, near
 from tests.acceptance.topic import Topic
 from tests.acceptance.topics import TOPICS
 
-QUICK = {name: TOPICS[name] for name in ("predict", "plan", "check", "startup", "bus", "determinism")}
-QUICK["truth"] = replace(TOPICS["truth"], figures=truth.exact_figures)
-"""Table 2 is a campaign even as a sample, and so is the truth with noise and no scatter."""
+QUICK = {name: TOPICS[name] for name in ("predict", "plan", "check", "startup")}
+"""Those that need no run; the others in their short form: ``python -m tests.acceptance``."""
 
 NAN = float("nan")
 

@@ -108,12 +108,14 @@ def new_tcp_address(port: int = 0) -> TcpAddress:
 
 
 def write_card(address: TcpAddress, path: Path) -> None:
-    """Write address and token for the user's clients (mode 0600)."""
-    path.unlink(missing_ok=True)
-    descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
+    """Write address and token for the user's clients (mode 0600): whole, or not there at all."""
+    part = path.with_name(f"{path.name}.part")
+    part.unlink(missing_ok=True)
+    descriptor = os.open(part, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
     with os.fdopen(descriptor, "w", encoding="utf-8") as file:
         card = {"host": address.host, "port": address.port, "token": address.token, "stop_port": address.stop_port}
         json.dump(card, file)
+    part.replace(path)
 
 
 def read_card(path: Path) -> TcpAddress:

@@ -152,12 +152,12 @@ class StopLane:
         if mark != "s":
             return  # the port of a door that was opened again
         number, kind, name = rest.split(" ", 2)
-        wish = StopWish(name, kind == "fast", int(number))
-        if not self.ticking:
-            self._answer(wish)
-            wish = StopWish(name, wish.fast, 0)
+        heard = StopWish(name, kind == "fast", int(number))
+        wish = heard if self.ticking else StopWish(name, heard.fast, 0)
         if not self._wishes or wish.fast > self._wishes[-1].fast or wish.number:
             self._wishes.append(wish)
+        if not self.ticking:
+            self._answer(heard)  # only now: whoever hears the answer may rely on it
         with suppress(OSError):  # full: it has been rung already
             self._rope.send(b"!")
 

@@ -103,12 +103,4 @@ def _within_sigmas(run: Run, kind: str) -> Iterator[Figure]:
         yield at_most(name, abs(error) / sigma, 3.0, "sigma", 2)
 
 
-def exact_figures(bench: Bench) -> Iterator[Figure]:
-    """Measure without the runs with noise and no scatter: the short form for the default tests."""
-    for spec in exact_runs(bench):
-        yield from _within(bench.run(spec), f"noise 0, scatter 0, seed {spec.seed}", 1.0)
-    for spec in scattered_runs(bench):
-        yield from _within_sigmas(bench.run(spec), f"noise 1, scatter 1, seed {spec.seed}")
-
-
 TOPIC = Topic("truth", "the quickstart's coefficients against the model at what was measured", figures, all_runs)

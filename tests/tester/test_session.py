@@ -321,7 +321,7 @@ def test_termination_after_an_interrupt_takes_the_cool_down_away(
     tmp_path: Path, at_the_rig: Callable[[Prepare], None], cools: bool, signals: tuple[int, ...]
 ) -> None:
     at_the_rig(lambda _, hands: Interrupting(hands, *signals))
-    ended = run(tmp_path, "interlocks.cooldown_hub=26 degC", text=SHORT.replace("25 degC", "40 degC"))
+    ended = run(tmp_path, "interlocks.cooldown_hub=26 degC", text=SHORT.replace("25 degC", "30 degC"))
     with RunReader(ended.folder) as reader:
         assert any("cooldown" in event.text for event in reader.events()) is cools
 

@@ -90,7 +90,7 @@ def test_a_folder_that_takes_no_run_is_said(
 # -- streams ------------------------------------------------------------------------------------------------------
 
 
-def tester(*arguments: str, **options: object) -> subprocess.CompletedProcess[str]:
+def called(*arguments: str, **options: object) -> subprocess.CompletedProcess[str]:
     """Run a command in a process of its own."""
     command = [sys.executable, "-c", MAIN, *arguments]
     return subprocess.run(command, text=True, timeout=120, check=False, **options)  # type: ignore[call-overload,no-any-return]
@@ -101,7 +101,7 @@ def test_a_reader_that_is_gone_ends_a_command_without_a_word(home: Path, argumen
     read, write = os.pipe()
     os.close(read)
     try:
-        done = tester(*arguments, stdout=write, stderr=subprocess.PIPE)
+        done = called(*arguments, stdout=write, stderr=subprocess.PIPE)
     finally:
         os.close(write)
     assert (done.returncode, done.stderr) == (EXIT_READER_GONE, "")
@@ -111,7 +111,7 @@ def test_a_reader_that_is_gone_ends_a_command_without_a_word(home: Path, argumen
 @pytest.mark.parametrize("arguments", [["runs"], ["plan", "quickstart"], ["export", "one", "--format", "repeats"]])
 def test_a_disk_that_is_full_under_the_output_fails(home: Path, arguments: list[str]) -> None:
     with Path("/dev/full").open("w") as full:
-        done = tester(*arguments, stdout=full, stderr=subprocess.PIPE)
+        done = called(*arguments, stdout=full, stderr=subprocess.PIPE)
     assert done.returncode == 1 and "the disk is full: make room" in done.stderr
     assert "Errno" not in done.stderr and "Traceback" not in done.stderr
 
@@ -124,14 +124,14 @@ C_LOCALE = {"LC_ALL": "C", "LANG": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE"
 )
 def test_a_locale_without_utf_8_changes_no_output(home: Path, arguments: list[str]) -> None:
     usual = {key: value for key, value in os.environ.items() if key != "PYTHONIOENCODING"}
-    plain = tester(*arguments, capture_output=True, encoding="utf-8", env=usual)
-    in_c = tester(*arguments, capture_output=True, encoding="utf-8", env=usual | C_LOCALE)
+    plain = called(*arguments, capture_output=True, encoding="utf-8", env=usual)
+    in_c = called(*arguments, capture_output=True, encoding="utf-8", env=usual | C_LOCALE)
     assert plain.returncode == in_c.returncode == 0
     assert in_c.stdout == plain.stdout and in_c.stdout
 
 
 def test_a_file_whose_name_is_no_utf_8_is_named(home: Path) -> None:
-    done = tester("show", os.fsdecode(b"caf\xe9"), capture_output=True, errors="surrogateescape")
+    done = called("show", os.fsdecode(b"caf\xe9"), capture_output=True, errors="surrogateescape")
     assert done.returncode == 2 and "no run caf" in done.stderr
 
 
@@ -141,7 +141,7 @@ def test_closed_streams_are_no_trouble(home: Path, arguments: list[str]) -> None
         for number in (0, 1, 2):
             os.close(number)
 
-    assert tester(*arguments, preexec_fn=close).returncode == 0
+    assert called(*arguments, preexec_fn=close).returncode == 0
 
 
 # -- terminals ----------------------------------------------------------------------------------------------------
@@ -149,7 +149,7 @@ def test_closed_streams_are_no_trouble(home: Path, arguments: list[str]) -> None
 
 @pytest.mark.parametrize("arguments", [["tui"], ["replay", "one"]])
 def test_a_screen_without_a_terminal_is_refused_with_what_needs_none(home: Path, arguments: list[str]) -> None:
-    done = tester(*arguments, capture_output=True, stdin=subprocess.DEVNULL)
+    done = called(*arguments, capture_output=True, stdin=subprocess.DEVNULL)
     assert done.returncode == 2 and "needs a terminal, and there is none here; `tester s" in done.stderr
     assert "\x1b" not in done.stdout + done.stderr
 
@@ -158,7 +158,7 @@ def test_a_screen_without_a_terminal_is_refused_with_what_needs_none(home: Path,
 def test_a_terminal_that_places_no_text_is_refused(home: Path) -> None:
     outer, inner = os.openpty()
     try:
-        done = tester("tui", stdin=inner, stdout=subprocess.PIPE, stderr=inner, env=os.environ | {"TERM": "dumb"})
+        done = called("tui", stdin=inner, stdout=subprocess.PIPE, stderr=inner, env=os.environ | {"TERM": "dumb"})
         assert done.returncode == 2 and b"TERM is dumb" in os.read(outer, 10_000)
     finally:
         os.close(inner)
