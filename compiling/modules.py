@@ -43,6 +43,7 @@ HOT = (
     "sim/sensors.py",
     "sim/slip.py",
     "sim/thermal.py",
+    "sim/torque.py",
     "sim/wear.py",
     "tester/analysis/blocks.py",
     "tester/control/*.py",

@@ -76,7 +76,11 @@ class Readings:
     wheel_at_s: float = NEVER
     belt_speed_m_s: float = NAN
     belt_at_s: float = NEVER
+    belt_torque_nm: float = NAN
+    """Of the belt's drive at its roller: positive = it drives the belt on, as the wheel's torque drives the wheel."""
     press_mm: float = NAN
+    press_torque_nm: float = NAN
+    """Of the press's drive: what its screw makes of it is a second witness of the load (``drivers.screw``)."""
     press_at_s: float = NEVER
     sideslip_deg: float = 0.0
     sideslip_at_s: float = NEVER

@@ -214,8 +214,8 @@ class Devices:
                 r.wheel_angle_rev += wheel_rad_s * (stamp_s - self._last_angle_s) / _TURN
             self._last_angle_s = stamp_s
         r.belt_speed_m_s = belt_m_s = belt.actual
-        r.belt_at_s = belt.stamp_s
-        r.press_mm, r.press_at_s = press.actual, press.stamp_s
+        r.belt_torque_nm, r.belt_at_s = belt.torque_nm, belt.stamp_s
+        r.press_mm, r.press_torque_nm, r.press_at_s = press.actual, press.torque_nm, press.stamp_s
         r.inputs_at_s = press.inputs_stamp_s
         sideslip, camber = axes.sideslip, axes.camber
         reached = True

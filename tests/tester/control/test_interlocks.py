@@ -195,6 +195,31 @@ def test_a_cause_raises_its_level_and_something_trips_within_the_rows_delay(
     assert seen & bit(name) or trip.name != name
 
 
+def at_little_load(bench: Bench, load_n: float, friction_n: float, torque_nm: float) -> float:
+    """Press with little load and return the seconds until something trips, in a second."""
+    stiffness = bench.control.rig.loops.load.stiffness_n_per_mm
+    r, bench.demand.load_n = bench.readings, load_n
+    r.press_mm += depth_mm(load_n, stiffness) - depth_mm(r.force_z_n, stiffness)
+    r.force_x_n, r.force_z_n, r.drive_torque_nm = friction_n, load_n, torque_nm
+    return bench.until_trip(1.0)
+
+
+@pytest.mark.parametrize("torque_nm", [0.21, -0.21, NAN])
+def test_bearings_and_seals_of_the_wheel_do_not_hide_a_torn_belt_at_little_load(
+    bench: Bench, torque_nm: float
+) -> None:
+    """0.21 N m are 5 % of 93 N at 45 mm."""
+    assert at_little_load(bench, 50.0, 0.0, torque_nm) < math.inf
+    assert bench.state.trip is not None and bench.state.trip.name == "belt torn"
+
+
+@pytest.mark.parametrize(("friction_n", "torque_nm"), [(20.0, 0.0), (0.0, 0.9)])
+def test_friction_that_cell_or_drive_shows_at_little_load_is_a_whole_belt(
+    bench: Bench, friction_n: float, torque_nm: float
+) -> None:
+    assert at_little_load(bench, 50.0, friction_n, torque_nm) == math.inf
+
+
 @pytest.mark.parametrize("name", sorted(set(CAUSES) - {"drive data stale", "hub sensor jump", "surface sensor jump"}))
 def test_a_row_does_not_trip_before_its_delay(bench: Bench, name: str) -> None:
     if name in ("overload", "load overshoot", "contact lost"):
