@@ -9,6 +9,7 @@ from typing import Annotated, Literal
 from drivers.canopen.dictionary import PRODUCT_CODE, VENDOR_ID
 from drivers.canopen.emcy import register_text
 from drivers.canopen.objects import emergency_text
+from drivers.screw import Screw
 
 _I32_MAX = 0x7FFF_FFFF
 
@@ -38,6 +39,7 @@ class AxisConfig:
     deceleration: float                              # speed unit per s
     quick_stop_deceleration: float                   # speed unit per s
     max_torque_per_mille: int = 3000                 # 0x6072, of rated; 3000 is a usual servo's peak [A]
+    screw: Screw | None = None                       # what the torque moves, where that is a screw
     software_limits: tuple[float, float] | None = None   # position unit; 0x607D
     home_offset: float = 0.0                         # position unit; 0x607C
     homing_method: int = 19                          # 0x6098; 19: home switch, no index pulse [A]
@@ -80,6 +82,8 @@ class AxisConfig:
             value = getattr(self, name)
             if not 0.001 <= value <= 65.535:
                 problems.append(f"{name} is {value} s, possible are 0.001..65.535 s")
+        if not 1 <= self.max_torque_per_mille <= 0xFFFF:
+            problems.append(f"max_torque_per_mille is {self.max_torque_per_mille}, possible are 1..65535")
         if self.digital_io and not 0.01 <= self.inputs_period_s <= 65.535:
             problems.append(f"inputs_period is {self.inputs_period_s} s, possible are 0.01..65.535 s")
         return problems

@@ -46,9 +46,7 @@ class Truth:
     def of(cls, rig: SimRig) -> Truth:
         """Look at a rig."""
         plant = rig.plant
-        wheel = 0.0005 * plant.diameter_mm * rig.axes["wheel"].axis.value / plant.wheel_speed.factor
-        belt = rig.axes["belt"].axis.value / plant.belt_speed.factor
-        return cls(plant.force_z_n, plant.slip_m_s, wheel, belt, heat_flowing_w(rig))
+        return cls(plant.force_z_n, plant.slip_m_s, rig.rim_m_s, rig.belt_m_s, heat_flowing_w(rig))
 
     def unsafe(self, *, creeping: bool = False, force_stays: bool = False, heat_stays: bool = False) -> list[str]:
         """Return what is missing to the safe state of invariant I5; empty when the rig is safe.
@@ -107,8 +105,7 @@ class HarmObserver:
             self._note("contact temperature", f"{plant.surface_c:.0f} degC at {now:.2f} s, at most {CONTACT_C:g} degC")
         if plant.heat.hub_c > HUB_C:
             self._note("hub temperature", f"{plant.heat.hub_c:.0f} degC at {now:.2f} s, at most {HUB_C:g} degC")
-        wheel = abs(0.0005 * plant.diameter_mm * rig.axes["wheel"].axis.value / plant.wheel_speed.factor)
-        belt = abs(rig.axes["belt"].axis.value / plant.belt_speed.factor)
+        wheel, belt = abs(rig.rim_m_s), abs(rig.belt_m_s)
         self._rubbing(now, dt, force_n, wheel, belt)
         if wheel < STILL_M_S and heat_flowing_w(rig) > 0.0:
             self._heat_since_s = min(self._heat_since_s, now)

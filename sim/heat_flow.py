@@ -21,7 +21,10 @@ SAME_STEP_S: Final = 1e-9
 
 
 class HeatFlow:
-    """Temperatures of wheel, hub and belt (``state``), and what follows them: the hub's sensor and the load cell."""
+    """Temperatures of wheel, hub and belt (``state``), and what follows them: the hub's sensor and the load cell.
+
+    ``rubber_c`` is the rubber's mean temperature as of the last flow of heat, degC.
+    """
 
     __slots__ = (
         "_ambient_c",
@@ -38,6 +41,7 @@ class HeatFlow:
         "_quiet_s",
         "_sensor",
         "_touch_s",
+        "rubber_c",
         "state",
     )
 
@@ -61,6 +65,7 @@ class HeatFlow:
         self._key = 0
         self._gains = self._every_gains[0]
         self._pending_s = self._heater_j = self._friction_j = self._touch_s = 0.0
+        self.rubber_c = self._model.rubber_mean_c(self.state)
         self._sensor.reset(self.state.hub_c)
         self._stir()
 
@@ -100,6 +105,7 @@ class HeatFlow:
             self._cell.warm(step_s, self.state.belt_c)
             pending_s -= step_s
             self._quiet_s += step_s
+        self.rubber_c = model.rubber_mean_c(self.state)
         self._pending_s = pending_s
         self._heater_j = heater_w * pending_s
         self._friction_j = friction_w * pending_s
@@ -108,11 +114,6 @@ class HeatFlow:
             self._calm = True
             self._due_s = CALM_STEP_S - SAME_STEP_S
             self._sensor.retime(CALM_STEP_S)
-
-    @property
-    def rubber_excess_k(self) -> float:
-        """The rubber's mean temperature over ambient, K."""
-        return self._model.mean_c(self.state) - self._ambient_c
 
     def _disturb(self) -> None:
         """End the calm: what has not flowed yet flows now, as it was until now."""

@@ -19,6 +19,10 @@ FrictionModelName = Literal["paper", "v2"]
 PowerLoss = Literal["retract", "hold"]
 """What the press does without power: its spring retracts it, or its screw holds it where it is."""
 
+_NOT_NEGATIVE = (
+    "noise", "scatter", "running_in", "wear", "relaxation", "softening", "growth", "belt_conductance",
+)  # fmt: skip
+
 MODEL_NAMES: tuple[FrictionModelName, ...] = ("paper", "v2")
 
 
@@ -101,7 +105,10 @@ class ThermalParameters:
 
 @dataclass(frozen=True, slots=True)
 class ContactParameters:
-    """Wheel against belt: F = k d^n, all [A]. 125/145/160/172 N/mm at 100/200/300/400 N within 1 %."""
+    """Wheel against belt: F = k d^n, all [A]. 125/145/160/172 N/mm at 100/200/300/400 N within 1 %.
+
+    Sizes and stiffness are those at ambient temperature, the stiffness that of a load put on within a second.
+    """
 
     gap: Annotated[float, "mm"] = 10.0  # press travel from fully lifted to touching a new wheel
     reference_load: Annotated[float, "N"] = 200.0
@@ -109,14 +116,45 @@ class ContactParameters:
     exponent: Annotated[float, "1"] = 1.30  # stiffness then goes with F^(1 - 1/n) = F^0.23
     damping: Annotated[float, "N s/m"] = 400.0
     runout: Annotated[float, "mm"] = 0.05  # total indicator reading: the tread's swing, peak to peak
-    growth: Annotated[float, "mm/K"] = 0.0058  # of the diameter with the rubber's mean temperature, off ambient:
-    # 8 mm of rubber bonded to metal, linear expansion 1.8e-4/K, between free and held in two directions
+    relaxation: Annotated[float, "1"] = 0.03  # load lost in a decade of time at held depth, 1 s to 10,000 s
+    softening: Annotated[float, "1/K"] = 0.004  # stiffness lost with the rubber's mean temperature above ambient
+    rubber_expansion: Annotated[float, "1/K"] = 4e-4  # radial, of the bonded layer: some 2.3 times the linear 1.75e-4
+    hub_expansion: Annotated[float, "1/K"] = 2.3e-5  # linear, aluminium
 
     def __post_init__(self) -> None:
         """Raise ValueError for values out of range."""
-        _refuse_below_zero(self, frozenset({"damping", "runout", "gap", "growth"}))
+        rubber = {"relaxation", "softening", "rubber_expansion", "hub_expansion"}
+        _refuse_below_zero(self, frozenset({"damping", "runout", "gap"} | rubber))
+        if self.relaxation > 0.15:
+            raise ValueError("ContactParameters.relaxation is at most 0.15 a decade: over five decades more than all")
         if self.exponent < 1.0:
             raise ValueError("ContactParameters.exponent must be at least 1")
+
+
+@dataclass(frozen=True, slots=True)
+class DriveParameters:
+    """Mechanics between the drives and what they move, all [A]; ``SimParameters.noise`` scales gain and spread."""
+
+    wheel_friction: Annotated[float, "N m"] = 0.2  # bearings and seals of the wheel's shaft
+    belt_friction: Annotated[float, "N m"] = 0.4  # of both rollers, and bending the belt, at the drive roller
+    torque_gain: Annotated[float, "1"] = 0.03  # greatest error of a drive's torque reading
+    belt_roller_diameter: Annotated[float, "mm"] = 100.0
+    screw_lead: Annotated[float, "mm"] = 5.0  # press travel in a turn
+    screw_efficiency: Annotated[float, "1"] = 0.90  # a ball screw's
+    screw_efficiency_spread: Annotated[float, "1"] = 0.03  # of a session: lubrication, temperature, torque reading
+    screw_drag: Annotated[float, "N m"] = 0.015  # of nut and seals, whatever the force
+    screw_presliding: Annotated[float, "mm"] = 0.02  # press travel from friction one way to friction the other way
+    press_spring: Annotated[float, "N"] = 40.0  # lifts the press without power; none where a brake holds it
+
+    def __post_init__(self) -> None:
+        """Raise ValueError for values out of range."""
+        _refuse_below_zero(self, frozenset({
+            "wheel_friction", "belt_friction", "torque_gain", "screw_efficiency_spread", "screw_drag", "press_spring",
+        }))  # fmt: skip
+        if not self.screw_efficiency - self.screw_efficiency_spread > 0.5:
+            raise ValueError("DriveParameters.screw_efficiency less its spread must be above 0.5: the press is lifted")
+        if self.screw_efficiency + self.screw_efficiency_spread > 1.0:
+            raise ValueError("DriveParameters.screw_efficiency with its spread is at most 1")
 
 
 @dataclass(frozen=True, slots=True)
@@ -193,6 +231,9 @@ class SimParameters:
     scatter: Annotated[float, "1"] = 1.0  # scale of run, wheel, condition and within-run scatter
     running_in: Annotated[float, "1"] = 1.0  # scale
     wear: Annotated[float, "1"] = 1.0  # scale
+    relaxation: Annotated[float, "1"] = 0.0  # scale of the contact's relaxation
+    softening: Annotated[float, "1"] = 0.0  # scale of the contact's softening with temperature
+    growth: Annotated[float, "1"] = 1.0  # scale of the thermal growth of rubber layer and hub
     friction_model: FrictionModelName = "paper"
     friction_heat_fraction: Annotated[float, "1"] = 0.06  # the rubber's share of friction heat; 0.5 = hot rig
     belt_conductance: Annotated[float, "W/K"] = 0.06  # rubber to belt in contact; 0.3 = hot rig
@@ -203,13 +244,14 @@ class SimParameters:
     friction: FrictionParameters = field(default_factory=FrictionParameters)
     thermal: ThermalParameters = field(default_factory=ThermalParameters)
     contact: ContactParameters = field(default_factory=ContactParameters)
+    drives: DriveParameters = field(default_factory=DriveParameters)
     abrasion: AbrasionParameters = field(default_factory=AbrasionParameters)
     variability: VariabilityParameters = field(default_factory=VariabilityParameters)
     sensors: SensorParameters = field(default_factory=SensorParameters)
 
     def __post_init__(self) -> None:
         """Raise ValueError for values out of range."""
-        for name in ("noise", "scatter", "running_in", "wear", "belt_conductance"):
+        for name in _NOT_NEGATIVE:
             value: float = getattr(self, name)
             if not math.isfinite(value) or value < 0.0:
                 raise ValueError(f"{name} must be finite and at least 0, not {value!r}")

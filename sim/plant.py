@@ -3,7 +3,8 @@
 ``Plant.advance`` is called once a tick with where the drives are at its end; forces follow at once, heat in
 steps of its own. Forces are those on the belt in the wheel's frame: Fx along the wheel's plane (above 0
 when the wheel drives), Fy across it, Fz the load. Every public attribute is the truth; the ``measured``
-methods are what instruments make of it.
+methods are what instruments make of it. ``diameter_mm`` is the wheel's as it is, grown by its heat; ``cold_mm`` that
+at ambient temperature, which a calliper would find: wear takes from it.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ import math
 from math import cos, exp, inf, pi, radians, sin, sqrt
 from typing import Final
 
-from sim.contact import ContactModel
+from sim.contact import ContactModel, Relaxation, Warmth
 from sim.friction import V2_LOAD_N, FrictionModel
 from sim.heat_flow import SAME_STEP_S, HeatFlow
 from sim.noise import Autoregressive, NormalStream, condition_factor, run_factor, uniforms, wheel_factor
@@ -22,8 +23,8 @@ from sim.slip import cornering_factor, traction_direction
 from sim.thermal import ThermalModel, ThermalState
 
 _TURN: Final = 2.0 * pi
-_NEAR_MM: Final = 1.0
-"""Nearer than this to the cold tread, growth is looked at: more than 100 K of heat and the runout make."""
+_SAME_SIZE_K: Final = 0.005
+"""A change of the rubber's mean temperature that is waited for: 0.02 um of radius, 0.002 % of stiffness."""
 _RUNNING_IN_LASTS: Final = 37.0
 """Running-in distances after which its factor is 1 to the last bit: exp(-37) is less than 2^-53."""
 
@@ -32,50 +33,13 @@ class Plant:
     """The physics of one rig, with a wheel on it after ``install``. Deep-copyable; all randomness from one seed."""
 
     __slots__ = (
-        "_arm_m",
-        "_compound",
-        "_cornering",
-        "_cos",
-        "_deficit",
-        "_deficit_keep",
-        "_dt",
-        "_flow",
-        "_grip",
-        "_noise",
-        "_place",
-        "_radius_mm_k",
-        "_rotating_above",
-        "_rubbing",
-        "_run_in_m",
-        "_scatter",
-        "_seed",
-        "_sideslip_deg",
-        "_sin",
-        "_stiffness",
-        "_swing_mm",
-        "_touch_mm",
-        "_within",
-        "belt_speed",
-        "camber_deg",
-        "condition_factor",
-        "diameter_mm",
-        "drive_torque_nm",
-        "force_x_n",
-        "force_y_n",
-        "force_z_n",
-        "hub_sensor",
-        "ir",
-        "load_cell",
-        "mu",
-        "parameters",
-        "run_factor",
-        "sliding_m",
-        "slip_m_s",
-        "surface_c",
-        "wheel_angle_rev",
-        "wheel_factor",
-        "wheel_speed",
-    )
+        "_arm_m", "_cold_factor", "_compound", "_cornering", "_cos", "_deficit", "_deficit_keep", "_dt", "_flow",
+        "_grip", "_noise", "_place", "_relaxation", "_rotating_above", "_rubbing", "_run_in_m", "_scatter", "_seed",
+        "_sideslip_deg", "_sin", "_stiffness", "_swing_mm", "_touch_mm", "_warm_c", "_warmth", "_within",
+        "belt_speed", "camber_deg", "cold_mm", "condition_factor", "diameter_mm", "drive_torque_nm", "force_x_n",
+        "force_y_n", "force_z_n", "hub_sensor", "ir", "load_cell", "mu", "parameters", "run_factor", "size",
+        "sliding_m", "slip_m_s", "surface_c", "wheel_angle_rev", "wheel_factor", "wheel_speed",
+    )  # fmt: skip
 
     def __init__(self, parameters: SimParameters, seed: int) -> None:
         """Build a rig at ambient temperature without a wheel; draw what stays the same for the session."""
@@ -84,13 +48,18 @@ class Plant:
         self._seed = seed
         contact = ContactModel(p.contact)
         self._stiffness = (contact.factor, contact.exponent, contact.damping_n_s_mm)
-        self._swing_mm = 0.5 * p.contact.runout
-        self._radius_mm_k = 0.5 * p.contact.growth
+        self._cold_factor = contact.factor
+        self._warmth = Warmth(p)
+        self._warm_c = inf
+        self._relaxation: Relaxation | None = None
+        self.size = 1.0
+        self.set_runout(p.contact.runout)
         self._arm_m = 0.001 * p.friction.aligning_arm
         self._rotating_above = p.thermal.rotating_above
         self._within = Autoregressive(p.scatter * p.variability.within, p.variability.within_time)
         self._grip = 1.0
         self._dt, self._deficit_keep = 0.0, 1.0
+        self.set_relaxation(p.relaxation * p.contact.relaxation)
         self._sideslip_deg, self._cos, self._sin, self._cornering = 0.0, 1.0, 0.0, 1.0
         self.camber_deg = 0.0
         self._build_sensors()
@@ -143,8 +112,11 @@ class Plant:
         self._flow.state.set_rubber(self.parameters.ambient)
         self._flow.restart()
         self.surface_c = self.parameters.ambient
-        self.diameter_mm = diameter_mm
-        self._touch_mm = self.parameters.contact.gap + 0.5 * (wheel.outer_diameter - diameter_mm)
+        self.cold_mm = self.diameter_mm = self.size * diameter_mm
+        self._touch_mm = self.parameters.contact.gap + 0.5 * (wheel.outer_diameter - self.diameter_mm)
+        self._warm_c = inf  # whatever the heat has done to the last one
+        if self._relaxation is not None:
+            self._relaxation.forget()
         self.sliding_m = sliding_m
         self.wheel_angle_rev = 0.0
         self.slip_m_s = 0.0
@@ -171,8 +143,8 @@ class Plant:
 
         ``specimen`` and ``wheel`` (0 and up) key the wheel's scatter. ``new_specimen`` starts hub, belt and
         load cell at ambient temperature too; otherwise they keep theirs. A resumed run gives the
-        ``diameter_mm`` and the sliding distance in m that the wheel had; by default it is new. Raises
-        UnknownCompoundError.
+        ``diameter_mm`` (at ambient temperature) and the sliding distance in m that the wheel had; by default it is
+        new. Raises UnknownCompoundError.
         """
         p = self.parameters
         self._take(FrictionModel(compound, p.friction_model))
@@ -208,6 +180,37 @@ class Plant:
         self._grip = share
         self._scatter = self.wheel_factor * self.condition_factor * self.run_factor * share
 
+    def set_runout(self, runout_mm: float) -> None:
+        """Let the tread swing by this much, peak to peak in mm, once a turn."""
+        self._swing_mm = 0.5 * runout_mm
+
+    def set_relaxation(self, share: float) -> None:
+        """Let the contact lose this share of its load in a decade of time, 0 to 0.15, from now on."""
+        if self._relaxation is not None and share > 0.0:
+            self._relaxation.change(share)
+            return
+        self._relaxation = Relaxation(share) if share > 0.0 else None
+        if self._relaxation is not None and self._dt > 0.0:
+            self._relaxation.retime(self._dt)
+
+    def set_size(self, share: float) -> None:
+        """Have a wheel on of another diameter than it should be, and every one from now on; out of contact only."""
+        self.cold_mm *= share / self.size
+        self.size = share
+        self._grow(self._flow.rubber_c)
+
+    def _grow(self, rubber_c: float) -> None:
+        """Take over what the wheel's temperatures do to its size and stiffness."""
+        self._warm_c = rubber_c
+        if not (self._warmth.matters or self.size != 1.0) or not self._compound:
+            return
+        warmth, contact = self._warmth, self.parameters.contact
+        _, exponent, damping = self._stiffness
+        self._stiffness = (self._cold_factor * warmth.stiffness_share(rubber_c), exponent, damping)
+        grown_mm = warmth.growth_mm(rubber_c, self._flow.state.hub_c, self.cold_mm)
+        self.diameter_mm = self.cold_mm + 2.0 * grown_mm
+        self._touch_mm = contact.gap + 0.5 * (self.parameters.wheel.outer_diameter - self.diameter_mm)
+
     def advance(
         self,
         dt: float,
@@ -228,6 +231,8 @@ class Plant:
             self._retime(dt)
         if sideslip_deg != self._sideslip_deg:
             self._yaw(sideslip_deg)
+        if not -_SAME_SIZE_K < self._flow.rubber_c - self._warm_c < _SAME_SIZE_K:
+            self._grow(self._flow.rubber_c)
         self.camber_deg = camber_deg
         self.wheel_angle_rev = turns = self.wheel_angle_rev + wheel_rad_s * dt / _TURN
         wheel_m_s = 0.0005 * self.diameter_mm * wheel_rad_s
@@ -236,16 +241,18 @@ class Plant:
         self.slip_m_s = sqrt(vx * vx + vy * vy)
 
         power_w = load_n = 0.0
-        depth_mm, swing = press_mm - self._touch_mm, self._swing_mm
-        if self._radius_mm_k and depth_mm > -_NEAR_MM:
-            depth_mm += self._radius_mm_k * self._flow.rubber_excess_k
+        depth_mm, swing, relaxation = press_mm - self._touch_mm, self._swing_mm, self._relaxation
         if depth_mm > -swing:
             angle = _TURN * turns
             depth_mm += swing * sin(angle)
-            if depth_mm > 0.0:
-                factor, exponent, damping = self._stiffness
-                rate_mm_s = press_mm_s + swing * wheel_rad_s * cos(angle)
-                load_n = factor * math.pow(depth_mm, exponent) + damping * rate_mm_s
+        if depth_mm > 0.0:
+            factor, exponent, damping = self._stiffness
+            load_n = factor * math.pow(depth_mm, exponent)
+            if relaxation is not None:
+                load_n = relaxation.load_n(load_n)
+            load_n += damping * (press_mm_s + swing * wheel_rad_s * cos(_TURN * turns))
+        elif relaxation is not None:
+            relaxation.rest(dt)
         if load_n > 0.0:
             power_w = self._rub(dt, load_n, vx, vy)
         elif self.force_z_n > 0.0:
@@ -261,6 +268,8 @@ class Plant:
     def _retime(self, dt: float) -> None:
         """Prepare what depends on the length of a tick alone."""
         self._dt = dt
+        if self._relaxation is not None:
+            self._relaxation.retime(dt)
         self._within.retime(dt)
         self.ir.retime(dt)
         self._deficit_keep = exp(-dt / self.parameters.friction.touch_time)
@@ -311,8 +320,16 @@ class Plant:
         self.sliding_m = sliding_m + slid_m
         worn_mm = wear * load_n * slid_m / diameter_mm
         self.diameter_mm = diameter_mm - 2.0 * worn_mm
+        self.cold_mm -= 2.0 * worn_mm
         self._touch_mm += worn_mm
         return friction_n * slip_m_s
+
+    def press_at_mm(self, load_n: float) -> float:
+        """Return where the press would stand now under a load of at least 0 N, at rest, mm."""
+        factor, exponent, _ = self._stiffness
+        lost_n = self._relaxation.lost_n if self._relaxation is not None else 0.0
+        depth_mm = math.pow((load_n + lost_n) / factor, 1.0 / exponent)
+        return self._touch_mm + depth_mm - self._swing_mm * sin(_TURN * self.wheel_angle_rev)
 
     @property
     def heat(self) -> ThermalState:

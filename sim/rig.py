@@ -1,14 +1,15 @@
 """The whole simulated rig: wires, nodes and plant, advanced together.
 
 Order within one advance: drives move (and send what falls due), the jacket controller heats, the plant follows, and
-what it answers with (torque, forces, temperatures) is there when the next request arrives on a wire.
+what it answers with (torque, forces, temperatures) is there when the next request arrives on a wire. The press goes no
+deeper than the torque that its drive is allowed (0x6072) brings it; wheel and belt have torque enough for any friction.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from math import floor
+from math import copysign, floor
 from typing import Final, Literal
 
 from drivers.axis import AxisConfig
@@ -22,6 +23,7 @@ from sim.nodes.jacket_slave import JacketSlave
 from sim.nodes.motion import VelocityAxis
 from sim.parameters import SimParameters
 from sim.plant import Plant
+from sim.torque import PressScrew, shafts
 
 PRESS_LAG_S: Final = 0.03
 """Lag of the press screw behind its velocity command, s [A] (physics, section 5)."""
@@ -32,6 +34,8 @@ PRESS_SPRING_MM_S: Final = -20.0
 SHORTEST_STEP_S: Final = 1e-3
 LONGEST_STEP_S: Final = 0.1
 """The plant is advanced in steps between these."""
+_NEAR_LIMIT: Final = 0.5
+"""Below this share of the force that the press can bring about no single step brings it there."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,6 +95,15 @@ class SimRig:
             name: ModbusWire(line.baud, line.parity, [slave for where, slave in slaves if where == name])
             for name, line in spec.lines.items()
         }
+        drives = parameters.drives
+        self.wheel_shaft, self.belt_shaft, efficiency = shafts(drives, parameters.noise, seed)
+        self._screw = PressScrew(drives, efficiency, drives.press_spring if self._spring_mm_s else 0.0)
+        self._roller_m = 0.0005 * drives.belt_roller_diameter
+        self._limit_nm = self._pushed_n = self._held_n = 0.0
+        self._pressed_mm = 0.0
+        self._stalled = False
+        self.swapped = False
+        """The drives of wheel and belt are connected the wrong way round: each moves what the other should."""
         self.now_s = 0.0
         self._plant_s = 0.0
         self._wheel, self._belt, self._press = self.axes["wheel"], self.axes["belt"], self.axes["press"]
@@ -139,27 +152,84 @@ class SimRig:
         self._plant_s = t1
         wheel_axis, belt_axis, press = self._wheel.axis, self._belt.axis, self._press.axis
         io = self._press.io
+        if plant.force_z_n > 0.0 or self._stalled:
+            self._bear(self._press)
+        self._pressed_mm = press.position
         wheel_rad_s, belt_m_s = wheel_axis.value, belt_axis.value
-        wheel_speed, belt_speed = plant.wheel_speed, plant.belt_speed
+        if self.swapped:
+            wheel_rad_s, belt_m_s = belt_m_s / self._roller_m, wheel_rad_s * self._roller_m
         plant.advance(
             elapsed,
-            wheel_rad_s / wheel_speed.factor,
-            belt_m_s / belt_speed.factor,
+            wheel_rad_s / plant.wheel_speed.factor,
+            belt_m_s / plant.belt_speed.factor,
             press.position,
             press.value,
             self._sideslip.axis.position if self._sideslip is not None else 0.0,
             self._camber.axis.position if self._camber is not None else 0.0,
             jacket.heater_w if io is not None and io.contactor_closed else 0.0,
         )
-        # Encoders are noisy while they turn.
+        self._show(wheel_axis.value, belt_axis.value)
+
+    @property
+    def wheel_rad_s(self) -> float:
+        """How fast the wheel turns, rad/s: what its drive shows, but for the error of its scale."""
+        shaft = self._belt.axis.value / self._roller_m if self.swapped else self._wheel.axis.value
+        return shaft / self.plant.wheel_speed.factor
+
+    @property
+    def belt_m_s(self) -> float:
+        """How fast the belt's surface moves, m/s."""
+        surface = self._wheel.axis.value * self._roller_m if self.swapped else self._belt.axis.value
+        return surface / self.plant.belt_speed.factor
+
+    @property
+    def rim_m_s(self) -> float:
+        """How fast the wheel's tread moves, m/s."""
+        return 0.0005 * self.plant.diameter_mm * self.wheel_rad_s
+
+    def _show(self, wheel_rad_s: float, belt_m_s: float) -> None:
+        """Let three drives show their torques, and the errors of their encoders: those are noisy while they turn."""
+        plant, wheel, belt, press = self.plant, self._wheel, self._belt, self._press
+        wheel_nm, belt_nm = plant.drive_torque_nm, -plant.belt_force_n * self._roller_m
+        if self.swapped:
+            wheel_nm, belt_nm = belt_nm, wheel_nm
+        wheel_nm = self.wheel_shaft.shown_nm(wheel_nm, wheel_rad_s) if wheel.energised else 0.0
+        belt_nm = self.belt_shaft.shown_nm(belt_nm, belt_m_s / self._roller_m) if belt.energised else 0.0
         if wheel_rad_s != 0.0:
-            self._wheel.load(plant.drive_torque_nm, wheel_speed.error() * 2000.0 / plant.diameter_mm)
-        elif self._wheel.encoder_error != 0.0 or self._wheel.torque_nm != plant.drive_torque_nm:
-            self._wheel.load(plant.drive_torque_nm, 0.0)
+            wheel.load(wheel_nm, plant.wheel_speed.error() * 2000.0 / plant.diameter_mm)
+        elif wheel.encoder_error != 0.0 or wheel.torque_nm != wheel_nm:
+            wheel.load(wheel_nm, 0.0)
         if belt_m_s != 0.0:
-            self._belt.load(0.0, belt_speed.error())
-        elif self._belt.encoder_error != 0.0:
-            self._belt.load(0.0, 0.0)
+            belt.load(belt_nm, plant.belt_speed.error())
+        elif belt.encoder_error != 0.0 or belt.torque_nm != belt_nm:
+            belt.load(belt_nm, 0.0)
+        press_nm = 0.0
+        if press.energised:
+            axis = press.axis
+            press_nm = self._screw.torque_nm(plant.force_z_n, axis.position)
+            if axis.blocked and axis.demand != 0.0:
+                press_nm = copysign(press.torque_limit_nm, axis.demand)
+        if press.torque_nm != press_nm:
+            press.load(press_nm, 0.0)
+
+    def _bear(self, drive: Cia402Slave) -> None:
+        """Keep the press from going deeper than its drive's torque can: it stalls; a greater load drives it back."""
+        limit_nm, plant = drive.torque_limit_nm, self.plant
+        if limit_nm != self._limit_nm:
+            self._limit_nm = limit_nm
+            self._pushed_n = max(0.0, self._screw.pushed_n(limit_nm))
+            self._held_n = max(0.0, self._screw.held_n(limit_nm))
+        if plant.force_z_n > _NEAR_LIMIT * self._pushed_n and drive.energised:
+            place_mm = drive.axis.position
+            reached_mm = max(self._pressed_mm, plant.press_at_mm(self._pushed_n))
+            borne_mm = min(place_mm, reached_mm, plant.press_at_mm(self._held_n))
+            if borne_mm < place_mm:
+                self._stalled = True
+                drive.stall(borne_mm)
+                return
+        if self._stalled:
+            self._stalled = False
+            drive.unstall()
 
     # -- the person's side ----------------------------------------------------------------------------------------
 

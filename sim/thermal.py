@@ -85,7 +85,7 @@ class ThermalModel:
         "_hub_to_shaft",
         "_links",
         "_outer_to_surface",
-        "_rubber_j_k",
+        "_parts",
         "_share",
         "_sides",
         "_touching",
@@ -121,7 +121,7 @@ class ThermalModel:
         self._hub_to_shaft = thermal.hub_to_shaft
         self._belt_to_air = thermal.belt_to_air
         self._cell_j_k = [thermal.density * thermal.heat_capacity * width_m * a for a in areas]
-        self._rubber_j_k = sum(self._cell_j_k)
+        self._parts = [a / sum(areas) for a in areas]
         self._hub_to_cell = 1.0 / (1.0 / thermal.hub_to_rubber + math.log(middles[0] / faces[0]) / radial)
         self._outer_to_surface = radial / math.log(faces[-1] / middles[-1])
         inner = [radial / math.log(b / a) for a, b in pairwise(middles)]
@@ -180,10 +180,12 @@ class ThermalModel:
         """Return a state with one temperature everywhere."""
         return ThermalState(self.cells, temperature_c)
 
-    def mean_c(self, state: ThermalState) -> float:
-        """Return the rubber's mean temperature over its volume, degC."""
-        heat_j = sum(c * t for c, t in zip(self._cell_j_k, state.cells_c, strict=True))
-        return heat_j / self._rubber_j_k
+    def rubber_mean_c(self, state: ThermalState) -> float:
+        """Return the mean temperature of the rubber by volume, degC."""
+        mean_c = 0.0
+        for part, cell_c in zip(self._parts, state.cells_c):  # noqa: B905 - compiles to a plain loop
+            mean_c += part * cell_c
+        return mean_c
 
     def surface_gains(self, ambient_c: float, contact: float, rotating: bool) -> tuple[float, float, float, float]:
         """Return the tread's K per K of the outermost cell, per W of friction, per K of the belt, and degC of the air.

@@ -25,8 +25,10 @@ from tests.compiled.worker import Silent
 
 RATES = {0.02: 0.08, 0.08: 0.24, 0.24: 0.08}
 """Rate put into the simulated rig, and the rate that the software believes, mm3/(N m)."""
-GROWTH_MM_K = (0.0029, 0.0087)
-"""What the growth of the diameter may be (sim/rig.yaml, wear.growth_uncertainty)."""
+RUBBER_LAYER_MM = 8.0
+RUBBER_EXPANSION = (0.0029 / (2.0 * RUBBER_LAYER_MM), 0.0087 / (2.0 * RUBBER_LAYER_MM))
+"""Radial expansion of the layer, 1/K: the range of the rubber's part of the growth of the diameter, 0.0029 to
+0.0087 mm/K, that ``wear.growth_uncertainty`` stands for (sim/rig.yaml)."""
 SEEDS, SAMPLE = 20, 2
 OF_EACH, OF_ALL = 0.8, 53 / 60
 """Shares of seeds whose stated interval has to hold the rate: 16 of 20, 53 of 60."""
@@ -60,10 +62,10 @@ class Found(NamedTuple):
 
 def carry_out(case: Case) -> Found:
     """Run the recipe on the simulated rig."""
-    growth = Random(f"growth {case.seed} {case.rate}").uniform(*GROWTH_MM_K)
+    expansion = Random(f"growth {case.seed} {case.rate}").uniform(*RUBBER_EXPANSION)
     overrides = (
         f"sim.abrasion.wear_rate={case.rate}",
-        f"sim.contact.growth={growth:.5f}",
+        f"sim.contact.rubber_expansion={expansion:.6f}",
         f"wear.rate={RATES[case.rate]}",
     )
     with TemporaryDirectory(prefix="wear-") as name:

@@ -16,8 +16,8 @@ from dataclasses import dataclass, replace
 from difflib import get_close_matches
 from math import inf, isfinite
 
-from sim.faults.catalogue import CATALOGUE
 from sim.faults.kinds import FaultKind
+from sim.faults.parametric import FAULTS
 
 STEPS = ("connect", "install", "pre-grind", "rest", "heat", "soak", "tare", "roll", "measure", "lift", "cool", "prompt")
 """Names of steps that a fault can wait for."""
@@ -27,6 +27,7 @@ _FACTORS: dict[str, dict[str, float]] = {
     "N": {"N": 1.0, "kN": 1000.0},
     "K": {"K": 1.0},
     "%": {"%": 1.0},
+    "mm": {"mm": 1.0, "um": 1e-3},
     "mm/s": {"mm/s": 1.0, "m/s": 1000.0},
     "m/s": {"m/s": 1.0, "mm/s": 1e-3},
     "rad/s": {"rad/s": 1.0},
@@ -34,7 +35,7 @@ _FACTORS: dict[str, dict[str, float]] = {
     "N/s": {"N/s": 1.0},
     "": {"": 1.0},
 }
-"""Units that a value is accepted in, by the unit of the catalogue's row; times become seconds."""
+"""Units that a value is accepted in, by the unit of the fault's row; times become seconds."""
 
 _NUMBER = r"[+-]?(?:0x[0-9a-fA-F]+|\d+(?:\.\d*)?|\.\d+)"
 _DURATION = re.compile(rf"^(?P<rest>.*\S)\s+for\s+(?P<number>{_NUMBER})\s*(?P<unit>[a-z]*)$")
@@ -128,14 +129,14 @@ def _when(text: str, when: str) -> When:
 
 
 def _what(text: str, what: str) -> tuple[FaultKind, float | None]:
-    kind = CATALOGUE.get(what)
+    kind = FAULTS.get(what)
     if kind is not None:
         return kind, None
     match = _VALUE.match(what)
-    if match is None or match["phrase"] not in CATALOGUE:
+    if match is None or match["phrase"] not in FAULTS:
         phrase = match["phrase"] if match is not None else what
-        raise _error(text, f"unknown fault {phrase!r}{_nearest(phrase, CATALOGUE)}")
-    kind = CATALOGUE[match["phrase"]]
+        raise _error(text, f"unknown fault {phrase!r}{_nearest(phrase, FAULTS)}")
+    kind = FAULTS[match["phrase"]]
     if kind.unit is None:
         raise _error(text, f"{kind.phrase!r} takes no value")
     factors = _FACTORS[kind.unit]

@@ -22,8 +22,8 @@ from sim.nodes.drive_modes import ProfileVelocity
 from sim.nodes.drive_objects import clamped_i16, wrapped_i32
 from sim.nodes.drive_positioning import Homing, ProfilePosition
 from sim.nodes.drive_power import Axis, DrivePower
-from sim.nodes.drive_state import FAULTY, STATUS_BITS
-from sim.nodes.motion import PositionAxis
+from sim.nodes.drive_state import ENERGISED, FAULTY, STATUS_BITS
+from sim.nodes.motion import PositionAxis, VelocityAxis
 from sim.nodes.object_store import ObjectStore
 from sim.nodes.pdo_channels import ReceivePdo, TransmitPdo
 from sim.nodes.safety_io import SafetyIo
@@ -34,6 +34,7 @@ _OUTPUTS: Final = (o.DIGITAL_OUTPUTS, 1)
 _OUTPUT_MASK: Final = (o.DIGITAL_OUTPUTS, 2)
 
 _TARGET_VELOCITY: Final = (o.TARGET_VELOCITY, 0)
+_MAX_TORQUE: Final = (o.MAX_TORQUE, 0)
 
 _RPDO1: Final = struct.Struct("<Hi").unpack
 _TPDO1: Final = struct.Struct("<Hih").pack
@@ -173,6 +174,32 @@ class Cia402Slave(DrivePower):
         """Put a torque on the shaft (N m) and an error on the encoder's reading (units of the axis)."""
         self.torque_nm = torque_nm
         self.encoder_error = encoder_error
+        self.pdos.stale = True
+
+    @property
+    def energised(self) -> bool:
+        """The power stage is on: the drive can give torque."""
+        return self.state in ENERGISED
+
+    @property
+    def torque_limit_nm(self) -> float:
+        """What 0x6072 leaves the drive, N m."""
+        return self.store.values[_MAX_TORQUE] / self._per_mille
+
+    def stall(self, position: float) -> None:
+        """Stand at ``position`` (axis unit) with the torque that 0x6072 leaves; bit 11 shows it until ``unstall``."""
+        if isinstance(self.axis, VelocityAxis):
+            self.axis.stall(position)
+        self._at_torque_limit(True)
+
+    def unstall(self) -> None:
+        """Follow the demand again."""
+        self._at_torque_limit(False)
+
+    def _at_torque_limit(self, limited: bool) -> None:
+        if self._velocity is not None:
+            self._velocity.at_torque_limit = limited
+        self.watching = True
         self.pdos.stale = True
 
     def set_safety_chain(self, healthy: bool) -> None:

@@ -110,9 +110,10 @@ class ModeOwner(Protocol):
 
 
 class ProfileVelocity:
-    """Mode 3: ramp to 0x60FF. Bit 10 target reached, 12 speed zero, 13 slippage error."""
+    """Mode 3: ramp to 0x60FF. Bit 10 target reached, 11 limit of speed or torque, 12 speed zero, 13 slippage error."""
 
-    __slots__ = ("_axis", "_drive", "_halt", "_reached_at", "_target", "_zero_at", "bits", "limited")
+    __slots__ = ("_axis", "_drive", "_halt", "_reached_at", "_target", "_zero_at", "at_torque_limit", "bits",
+                 "limited")
 
     def __init__(self, drive: ModeOwner, axis: VelocityAxis) -> None:
         self._drive = drive
@@ -123,6 +124,7 @@ class ProfileVelocity:
         self._zero_at = inf
         self.bits = 0
         self.limited = False
+        self.at_torque_limit = False
 
     def start(self) -> None:
         """Operation was enabled, or ramps have changed: the next target counts as new."""
@@ -191,7 +193,7 @@ class ProfileVelocity:
         slippage = axis.demand - value
         if enabled and not -ramps.max_slippage <= slippage <= ramps.max_slippage:
             bits |= cia402.MAX_SLIPPAGE
-        if enabled and self.limited:
+        if enabled and (self.limited or self.at_torque_limit):
             bits |= cia402.INTERNAL_LIMIT
         self.bits = bits
         return waiting

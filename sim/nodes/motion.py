@@ -91,6 +91,13 @@ class VelocityAxis:
         self.settled = False
         self.still = False
 
+    def stall(self, position: float) -> None:
+        """Stand at ``position``, short of where the demand would have it: what drives the axis is at its limit."""
+        self.position = position
+        self.value = 0.0
+        self.settled = False
+        self.still = False
+
     def step(self, dt: float) -> None:
         """Advance by ``dt`` seconds (>= 0)."""
         if self.settled:

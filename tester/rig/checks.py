@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 from drivers.profiles import ProfileError, load_profile
 from tester.rig.config import DeviceConfig, IrThermometerConfig, RigConfig
+from tester.rig.press import torque_problem
 from tester.source import Location, Problem, Tree
 
 EQUAL_DECELERATIONS = 0.05
@@ -20,7 +21,7 @@ SYNC_BITS, RPDO_BITS, TPDO_BITS = 55, 115, 135
 def problems_of(rig: RigConfig, tree: Tree) -> list[Problem]:
     """Return what does not fit together, with positions."""
     found = [*_nodes(rig), *_bus_load(rig), *_speeds(rig), *_decelerations(rig), *_lines(rig), *_units(rig)]
-    found += [*_profiles(rig), *_temperatures(rig), *_simulation(rig)]
+    found += [*_profiles(rig), *_press(rig), *_temperatures(rig), *_simulation(rig)]
     return [tree.problem(location, message) for location, message in found]
 
 
@@ -116,6 +117,12 @@ def _units(rig: RigConfig) -> _Found:
     if rig.interlocks.stale_inputs_s < 2.0 * rig.axes.press.inputs_period_s:
         message = "is less than two of axes.press.inputs_period: a single lost frame would stop the rig"
         yield ("interlocks", "stale_inputs"), message
+
+
+def _press(rig: RigConfig) -> _Found:
+    problem = torque_problem(rig)
+    if problem:
+        yield ("axes", "press", "screw"), problem
 
 
 def _temperatures(rig: RigConfig) -> _Found:

@@ -11,13 +11,16 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, make_dataclass
 from datetime import date
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Final, Literal
 
 from drivers.axis import AxisConfig
 from sim.parameters import SimParameters, ThermalParameters, WheelParameters
 from tester.config_reader import Range, as_text, as_tree
 from tester.interlocks.parameter import Values
 from tester.interlocks.table import PARAMETERS
+
+HARMFUL_N: Final = 500.0
+"""From here on a force on the wheel counts as harm (sim.harm)."""
 
 _POSITIVE = Range(gt=0.0)
 _NOT_NEGATIVE = Range(ge=0.0)
@@ -29,7 +32,7 @@ class GeometryConfig:
     """Sizes of the machine."""
 
     wheel_diameter_mm: Annotated[float, "mm", _POSITIVE]
-    """Outer diameter of a new wheel."""
+    """Outer diameter of a new wheel, at ``wear.reference``."""
     wheel_width_mm: Annotated[float, "mm", _POSITIVE]
     belt_roller_diameter_mm: Annotated[float, "mm", _POSITIVE]
     touch_mm: Annotated[float, "mm", _POSITIVE]
@@ -40,7 +43,7 @@ class GeometryConfig:
 class LimitsConfig:
     """Hard limits: no recipe and no loop gets past them."""
 
-    load_n: Annotated[float, "N", Range(gt=0.0, le=500.0)]
+    load_n: Annotated[float, "N", Range(gt=0.0, le=HARMFUL_N)]
     """At most 500 N: above it the concept counts harm (rulings on safety figures)."""
     wheel_speed_m_s: Annotated[float, "m/s", _POSITIVE]
     belt_speed_m_s: Annotated[float, "m/s", _POSITIVE]
@@ -250,8 +253,10 @@ class WearConfig:
     """
 
     rate_mm3_per_n_m: Annotated[float, "mm3/(N m)", _NOT_NEGATIVE]
-    growth_mm_per_k: Annotated[float, "mm/K", _NOT_NEGATIVE] = 0.0058
-    """The diameter grows by this per K of the rubber's mean temperature."""
+    growth_mm_per_k: Annotated[float, "mm/K", _NOT_NEGATIVE] = 0.0075
+    """The diameter, rubber and hub together, grows by this per K of the rubber's mean temperature."""
+    reference_c: Annotated[float, "degC", Range(ge=0.0, le=40.0)] = 23.0
+    """At which a diameter is called cold: that of a new wheel, of every check and of the record."""
     growth_uncertainty_mm_per_k: Annotated[float, "mm/K", _NOT_NEGATIVE] = 0.0017
     check_press_mm: Annotated[float, "mm", _NOT_NEGATIVE] = 0.002
     """Of where the press stands in a roll check, beside what load and heat do."""
@@ -265,6 +270,10 @@ class WearConfig:
     """Of a diameter that a person measures on rubber."""
     rate_uncertainty_percent: Annotated[float, "%", _NOT_NEGATIVE] = 1.5
     """Of a wear rate from load, slip and width of the tread."""
+
+    def growth_mm(self, rubber_c: float) -> float:
+        """Return what the diameter has gained over the cold one at a mean temperature of the rubber (degC), mm."""
+        return self.growth_mm_per_k * (rubber_c - self.reference_c)
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,6 +12,7 @@ from tester.config_reader import read
 from tester.rig.ceilings import Risk, beyond, counts_as_simulated, loosened
 from tester.rig.checks import problems_of
 from tester.rig.config import RigConfig
+from tester.rig.press import with_torque_limit
 from tester.source import InvalidSource, Problem, Tree, Value, load_tree
 
 SIMULATED = "sim"
@@ -96,7 +97,7 @@ def load_rig_text(text: str | Path, name: str | None = None) -> RigConfig:
 def _checked(tree: Tree) -> RigConfig:
     """Return a tree as a rig whose sections fit together; changes the tree."""
     _complete(tree)
-    rig = read(RigConfig, tree)
+    rig = with_torque_limit(read(RigConfig, tree))
     problems = problems_of(rig, tree)
     if problems:
         raise InvalidSource(problems)

@@ -11,14 +11,13 @@ import pytest
 
 from sim.contact import ContactModel
 from sim.friction import KNOWN, FrictionModel, UnknownCompoundError
-from sim.parameters import ContactParameters, FrictionModelName, SimParameters
+from sim.parameters import ContactParameters, DriveParameters, FrictionModelName, SimParameters
 from sim.plant import Plant
 from sim.slip import cornering_factor, predict, predict_forces, slip_velocity, traction_direction
 from sim.wear import radius_loss_mm, running_in_factor
 
-EXACT = SimParameters(noise=0.0, scatter=0.0, running_in=0.0, ambient=25.0)
-ROUND = replace(EXACT, contact=ContactParameters(runout=0.0, growth=0.0))
-"""A round wheel that heat does not make larger: a press that stands still keeps its load."""
+EXACT = SimParameters(noise=0.0, scatter=0.0, running_in=0.0, growth=0.0, ambient=25.0)
+ROUND = replace(EXACT, contact=ContactParameters(runout=0.0))
 WHEEL_RAD_S = 0.8 / 0.045
 
 
@@ -224,16 +223,6 @@ def test_a_minute_at_200_n_wears_34_um_off_the_radius() -> None:
     assert plant.force_z_n == pytest.approx(200.0, rel=1e-3)
 
 
-def test_a_tread_that_heat_makes_larger_is_pressed_harder() -> None:
-    cold, warm = mounted(), mounted(replace(ROUND, contact=ContactParameters(runout=0.0, growth=0.01)))
-    for plant in (cold, warm):
-        plant.heat.set_rubber(plant.parameters.ambient + 10.0)
-        plant.advance(0.001, WHEEL_RAD_S, 0.8, press_for(200.0), 0.0, 0.0, 0.0, 0.0)
-    deeper = ContactModel(ContactParameters()).depth_mm(200.0) + 0.5 * 10.0 * 0.01
-    assert cold.force_z_n == pytest.approx(200.0, rel=1e-3)
-    assert warm.force_z_n == pytest.approx(ContactModel(ContactParameters()).load_n(deeper, 0.0), rel=2e-3)
-
-
 def test_worn_wheel_touches_later_and_runs_slower() -> None:
     plant = mounted(replace(ROUND, wear=0.0))
     plant.install(1, 1, "1#", False, diameter_mm=88.0)
@@ -407,9 +396,88 @@ def test_resumed_wheel_has_its_scatter_diameter_and_distance_again() -> None:
     plant = mounted(SimParameters())
     run(plant, 20.0, 200.0)
     resumed = Plant(SimParameters(), 1)
-    resumed.install(1, 1, "1#", True, diameter_mm=plant.diameter_mm, sliding_m=plant.sliding_m)
+    resumed.install(1, 1, "1#", True, diameter_mm=plant.cold_mm, sliding_m=plant.sliding_m)
     assert resumed.wheel_factor == plant.wheel_factor
-    assert (resumed.diameter_mm, resumed.sliding_m) == (plant.diameter_mm, plant.sliding_m)
+    assert (resumed.cold_mm, resumed.sliding_m) == (plant.cold_mm, plant.sliding_m)
+    assert resumed.diameter_mm == resumed.cold_mm < plant.diameter_mm, "it has cooled down meanwhile"
+
+
+def test_contact_loses_three_percent_of_its_load_in_each_decade_at_held_depth() -> None:
+    plant = mounted(replace(ROUND, relaxation=1.0))
+    loads: list[float] = []
+    for seconds in (10.0, 90.0, 900.0):
+        run(plant, seconds, 200.0, belt_m_s=0.8, dt=0.05)
+        loads.append(plant.force_z_n)
+    assert loads[0] == pytest.approx(200.0 * (1.0 - 0.03 * 1.72), rel=2e-3)
+    assert [(a - b) / 200.0 for a, b in pairwise(loads)] == pytest.approx([0.03, 0.03], abs=2e-3)
+
+
+def test_relaxed_rubber_recovers_when_it_is_left_alone() -> None:
+    plant = mounted(replace(ROUND, relaxation=1.0))
+    run(plant, 100.0, 200.0, belt_m_s=0.8, dt=0.05)
+    relaxed_n = plant.force_z_n
+    again: list[float] = []
+    for apart_s in (1.0, 2000.0):
+        twin = copy.deepcopy(plant)
+        run(twin, apart_s, dt=0.1)
+        run(twin, 0.01, 200.0, belt_m_s=0.8)
+        again.append(twin.force_z_n)
+    assert relaxed_n + 1.0 < again[0] < again[1] < 200.0
+    assert again[1] == pytest.approx(200.0, abs=0.5)
+
+
+def test_another_wheel_knows_nothing_of_the_last_one_s_load() -> None:
+    plant = mounted(replace(ROUND, relaxation=1.0))
+    run(plant, 100.0, 200.0, belt_m_s=0.8, dt=0.05)
+    plant.install(1, 2, "1#", False)
+    run(plant, 0.01, 200.0)
+    assert plant.force_z_n == pytest.approx(200.0, rel=1e-3)
+
+
+def test_contact_softens_by_the_mean_temperature_of_the_rubber() -> None:
+    plant = mounted(replace(ROUND, softening=1.0))
+    run(plant, 900.0, heater_w=60.0, dt=0.1)
+    cells = plant.heat.cells_c
+    run(plant, 0.01, 200.0)
+    softened = math.log(200.0 / plant.force_z_n) / 0.004
+    assert softened > 30.0 and min(cells) - 25.0 < softened < max(cells) - 25.0
+
+
+def test_heated_wheel_grows_touches_sooner_and_runs_faster_and_its_cold_size_stays() -> None:
+    plant = mounted(replace(ROUND, growth=1.0))
+    run(plant, 500.0, heater_w=60.0, dt=0.1)
+    grown_mm = 0.5 * (plant.diameter_mm - 90.0)
+    layer_k = (grown_mm - 37.0 * 2.3e-5 * (plant.hub_c - 25.0)) / (8.0 * 4e-4)
+    assert min(plant.heat.cells_c) - 25.0 < layer_k < max(plant.heat.cells_c) - 25.0
+    assert 0.1 < grown_mm < 0.3 and plant.cold_mm == 90.0
+    assert plant.slip_m_s == pytest.approx(0.8 * plant.diameter_mm / 90.0 - 0.5)
+    plant.advance(0.01, WHEEL_RAD_S, 0.5, 10.0, 0.0, 0.0, 0.0, 0.0)
+    assert plant.force_z_n == pytest.approx(ContactModel(ContactParameters()).load_n(grown_mm, 0.0), rel=1e-3)
+
+
+def test_wear_takes_as_much_of_the_cold_as_of_the_warm_wheel() -> None:
+    plant = mounted(replace(ROUND, growth=1.0))
+    run(plant, 600.0, heater_w=60.0, dt=0.1)
+    warm_mm = plant.diameter_mm
+    run(plant, 0.02, 200.0)
+    worn_mm = 90.0 - plant.cold_mm
+    assert worn_mm > 0.0 and warm_mm - plant.diameter_mm == pytest.approx(worn_mm, rel=1e-2)
+
+
+def test_without_the_rubber_s_effects_nothing_of_them_is_there() -> None:
+    plant = mounted()
+    run(plant, 300.0, heater_w=100.0, dt=0.1)
+    run(plant, 30.0, 200.0, belt_m_s=0.8, dt=0.05)
+    assert plant.diameter_mm == plant.cold_mm
+    assert plant.force_z_n == pytest.approx(200.0, rel=1e-6)
+
+
+def test_press_stands_where_the_contact_says_whatever_it_has_been_through() -> None:
+    plant = mounted(SimParameters(noise=0.0, relaxation=1.0, softening=1.0))
+    run(plant, 60.0, 300.0, heater_w=100.0, dt=0.01)
+    wanted_mm = plant.press_at_mm(350.0)
+    plant.advance(0.001, 0.0, 0.0, wanted_mm, 0.0, 0.0, 0.0, 0.0)
+    assert plant.force_z_n == pytest.approx(350.0, rel=1e-3)
 
 
 def test_scatter_multiplies_the_friction() -> None:
@@ -453,3 +521,7 @@ def test_parameters_out_of_range_are_refused_by_name(wrong: dict[str, object]) -
 def test_group_parameters_out_of_range_are_refused_by_name() -> None:
     with pytest.raises(ValueError, match=r"ContactParameters\.reference_stiffness"):
         ContactParameters(reference_stiffness=0.0)
+    with pytest.raises(ValueError, match=r"ContactParameters\.relaxation"):
+        ContactParameters(relaxation=0.2)
+    with pytest.raises(ValueError, match=r"DriveParameters\.screw_efficiency"):
+        DriveParameters(screw_efficiency=0.52)

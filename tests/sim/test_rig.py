@@ -6,7 +6,11 @@ from copy import deepcopy
 
 import pytest
 
+from drivers.canopen.objects import MAX_TORQUE, Mode
+from drivers.cia402 import INTERNAL_LIMIT, State
+from sim.harm import FORCE_N
 from sim.nodes.jacket_slave import JacketSlave
+from sim.nodes.motion import VelocityAxis
 from sim.plant import Plant
 from sim.rig import LONGEST_STEP_S, SHORTEST_STEP_S, SimRig
 from tester.rig import load_rig
@@ -109,9 +113,106 @@ def test_a_rig_that_is_left_alone_stops_by_its_own_watchdogs(rolling: Simulation
     assert world.axes["wheel"].axis.value == world.axes["belt"].axis.value == 0.0
 
 
-def test_the_load_shows_in_the_wheel_drive_s_torque(rolling: Simulation) -> None:
+def test_the_torques_of_wheel_and_belt_are_those_of_friction_and_their_own(rolling: Simulation) -> None:
     world = rolling.world
-    assert world.axes["wheel"].torque_nm == world.plant.drive_torque_nm
+    plant, axes = world.plant, world.axes
+    shown = [axes[name].torque_nm for name in ("wheel", "belt")]
+    due = [plant.drive_torque_nm + 0.2, -0.05 * plant.belt_force_n + 0.4]
+    assert due[0] > 2.0 and due[1] < -2.0
+    gains = [a / b for a, b in zip(shown, due, strict=True)]
+    assert all(0.97 <= gain <= 1.03 for gain in gains) and gains[0] != gains[1]
+
+
+def test_what_both_drives_give_is_what_friction_and_bearings_take() -> None:
+    world = Simulation(overrides=["sim.noise=0"]).until(sliding).world
+    plant, axes = world.plant, world.axes
+    given_w = axes["wheel"].torque_nm * world.wheel_rad_s + axes["belt"].torque_nm * world.belt_m_s / 0.05
+    bearings_w = 0.2 * world.wheel_rad_s + 0.4 * world.belt_m_s / 0.05
+    rubbed_w = plant.mu * plant.force_z_n * plant.slip_m_s
+    assert rubbed_w > 20.0 and given_w - bearings_w == pytest.approx(rubbed_w, rel=1e-3)
+
+
+def sliding(simulation: Simulation) -> bool:
+    plant = simulation.world.plant
+    return plant.force_z_n > 150.0 and plant.slip_m_s > 0.19
+
+
+def test_a_drive_without_power_gives_no_torque(rolling: Simulation) -> None:
+    world = deepcopy(rolling).world
+    for name in ("wheel", "belt", "press"):
+        assert world.axes[name].torque_nm != 0.0
+        world.axes[name].set_torque_off(True)
+    world.advance(world.now_s + 0.02)
+    assert [world.axes[name].torque_nm for name in ("wheel", "belt", "press")] == [0.0, 0.0, 0.0]
+
+
+def driven(world: SimRig, speed_mm_s: float, seconds: float) -> list[float]:
+    """Return the force at every 10 ms while the press's drive, powered, moves at a speed that nobody controls."""
+    press = world.axes["press"]
+    assert isinstance(press.axis, VelocityAxis)
+    forces: list[float] = []
+    for _ in range(round(seconds / 0.01)):
+        press.axis.aim(speed_mm_s)
+        press.watching = True
+        world.advance(world.now_s + 0.01)
+        forces.append(world.plant.force_z_n)
+    return forces
+
+
+def powered(seed: int = 0, per_mille: int = 230) -> SimRig:
+    """Return a rig with a turning wheel 0.5 mm before its touch, and a press whose drive is on."""
+    config = load_rig("sim", [])
+    assert config.axes.press.max_torque_per_mille == 230
+    world = SimRig(spec_of(config), config.sim, seed)
+    world.install(1, 1, "1#", new_specimen=True)
+    world.advance(1.0)
+    wheel, press = world.axes["wheel"], world.axes["press"]
+    assert isinstance(wheel.axis, VelocityAxis)
+    wheel.axis.aim(17.8)
+    press.store.values[MAX_TORQUE, 0] = per_mille
+    press.axis.position = 9.5
+    press.state, press.mode = State.OPERATION_ENABLED, press.modes[Mode.PROFILE_VELOCITY]
+    return world
+
+
+@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("speed_mm_s", [2.0, 20.0])
+def test_press_reaches_the_limit_of_the_load_and_its_torque_stops_it_short_of_harm(
+    seed: int, speed_mm_s: float
+) -> None:
+    world = powered(seed)
+    forces = driven(world, speed_mm_s, 4.0)
+    press = world.axes["press"]
+    assert min(forces[-50:]) > 440.0 and max(forces) < FORCE_N
+    assert press.axis.value < 0.5 * speed_mm_s and press.statusword & INTERNAL_LIMIT
+    assert press.torque_nm == pytest.approx(0.46, rel=0.02)
+
+
+def test_a_press_at_its_limit_comes_back_when_it_is_told_to() -> None:
+    world = powered()
+    driven(world, 5.0, 2.0)
+    assert driven(world, -5.0, 1.0)[-1] == 0.0
+    assert not world.axes["press"].statusword & INTERNAL_LIMIT
+
+
+def test_press_with_more_torque_goes_further() -> None:
+    assert max(driven(powered(per_mille=3000), 5.0, 1.5)) > 560.0
+
+
+def test_a_press_is_driven_back_by_a_load_far_beyond_its_torque() -> None:
+    world = powered(per_mille=3000)
+    driven(world, 5.0, 1.0)
+    before_mm = world.axes["press"].axis.position
+    world.axes["press"].store.values[MAX_TORQUE, 0] = 80
+    driven(world, 5.0, 0.05)
+    assert world.axes["press"].axis.position < before_mm - 0.5
+
+
+def test_a_press_that_is_held_fast_pushes_with_all_it_has() -> None:
+    world = powered()
+    world.axes["press"].block(True)
+    driven(world, -5.0, 0.05)
+    assert world.axes["press"].torque_nm == pytest.approx(-0.46)
 
 
 def test_equal_seeds_make_equal_rigs(world: SimRig) -> None:

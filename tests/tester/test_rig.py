@@ -34,7 +34,7 @@ def file_problems(path: Path, text: str) -> list[str]:
 
 def test_packaged_rig_has_the_hard_limits_of_the_interface(rig: RigConfig) -> None:
     limits = rig.limits
-    assert (limits.load_n, limits.wheel_speed_m_s, limits.belt_speed_m_s, limits.slip_power_w) == (450, 1.1, 1.3, 350)
+    assert (limits.load_n, limits.wheel_speed_m_s, limits.belt_speed_m_s, limits.slip_power_w) == (440, 1.1, 1.3, 350)
     assert (limits.jacket_c, limits.surface_c, limits.sideslip_deg, limits.camber_deg) == (150, 95, 30, 10)
 
 
@@ -155,6 +155,10 @@ def test_every_bad_override_is_told() -> None:
         ("lines.heat.port=/dev/ttyUSB0", 'a simulated rig has "sim" here'),
         ("can.interface=socketcan", 'a simulated rig has "sim" here'),
         ("limits.load=501 N", "too large"),
+        ("limits.load=450 N", "press with 498 N with the least"),
+        ("axes.press.screw.efficiency_least=0.8", "lower limits.load, or narrow down efficiency"),
+        ("axes.press.max_torque_per_mille=200", "surely press with 375 N only"),
+        ("axes.press.screw.lead=0 mm", "lead must be above 0 mm"),
     ],
 )
 def test_what_does_not_fit_together_is_refused(override: str, place: str) -> None:
@@ -167,7 +171,7 @@ def test_a_file_that_is_not_there_is_a_problem(tmp_path: Path) -> None:
 
 
 def test_a_problem_of_a_file_has_its_line_and_column(tmp_path: Path) -> None:
-    text = packaged_text().replace("  load: 450 N ", "  laod: 450 N ")
+    text = packaged_text().replace("  load: 440 N ", "  laod: 440 N ")
     line = text[: text.index("laod")].count("\n") + 1
     found = file_problems(tmp_path / "rig.yaml", text)
     (problem,) = found  # the key that is missing for it is no mistake of its own
@@ -177,6 +181,26 @@ def test_a_problem_of_a_file_has_its_line_and_column(tmp_path: Path) -> None:
 def test_a_limit_is_never_taken_from_the_program(tmp_path: Path) -> None:
     text = packaged_text().replace("  surface: 95 degC ", "  # surface: ")
     assert any("surface is missing" in problem for problem in file_problems(tmp_path / "rig.yaml", text))
+
+
+@pytest.mark.parametrize(("load", "per_mille"), [("440 N", 230), ("300 N", 166), ("100 N", 75)])
+def test_press_gets_the_torque_for_the_limit_of_the_load_and_no_more(load: str, per_mille: int) -> None:
+    assert load_rig("sim", [f"limits.load={load}"]).axes.press.max_torque_per_mille == per_mille
+
+
+def test_press_gets_less_torque_where_the_file_says_so() -> None:
+    rig = load_rig("sim", ["limits.load=300 N", "axes.press.max_torque_per_mille=500"])
+    assert rig.axes.press.max_torque_per_mille == 166
+    assert rig.axes.wheel.max_torque_per_mille == 3000
+
+
+def test_press_without_a_known_screw_keeps_the_torque_of_its_file(tmp_path: Path) -> None:
+    text = packaged_text()
+    begin = text.index("    screw:")
+    path = tmp_path / "rig.yaml"
+    path.write_text(text[:begin] + text[text.index("    max_speed: 20   ") :], encoding="utf-8")
+    press = load_rig(path).axes.press
+    assert press.screw is None and press.max_torque_per_mille == 3000
 
 
 def test_resolved_text_reads_back_as_the_same_rig(tmp_path: Path) -> None:

@@ -140,7 +140,7 @@ CAUSES: dict[str, list[Break]] = {
     "jacket data stale": [_stale("jacket_at_s"), _set(jacket_valid=False)],
     "device refused": [_set(device_fault="jacket: exception 2")],
     "line noisy": [_set(line_errors=0.5), _set(line_errors=NAN)],
-    "wheel worn": [_set(diameter_mm=77.9), _set(diameter_mm=NAN)],
+    "wheel worn": [_set(cold_mm=77.9), _set(cold_mm=NAN)],
 }
 """Causes by the row they belong to. Rows of a stop, of rest, of the scan and of the contactor have their own tests."""
 
@@ -193,6 +193,31 @@ def test_a_cause_raises_its_level_and_something_trips_within_the_rows_delay(
     assert trip is not None and trip.at_s - began <= delay + 0.0401
     # One cause may raise several levels (an unknown force is also an overload): the quickest is first.
     assert seen & bit(name) or trip.name != name
+
+
+def at_little_load(bench: Bench, load_n: float, friction_n: float, torque_nm: float) -> float:
+    """Press with little load and return the seconds until something trips, in a second."""
+    stiffness = bench.control.rig.loops.load.stiffness_n_per_mm
+    r, bench.demand.load_n = bench.readings, load_n
+    r.press_mm += depth_mm(load_n, stiffness) - depth_mm(r.force_z_n, stiffness)
+    r.force_x_n, r.force_z_n, r.drive_torque_nm = friction_n, load_n, torque_nm
+    return bench.until_trip(1.0)
+
+
+@pytest.mark.parametrize("torque_nm", [0.21, -0.21, NAN])
+def test_bearings_and_seals_of_the_wheel_do_not_hide_a_torn_belt_at_little_load(
+    bench: Bench, torque_nm: float
+) -> None:
+    """0.21 N m are 5 % of 93 N at 45 mm."""
+    assert at_little_load(bench, 50.0, 0.0, torque_nm) < math.inf
+    assert bench.state.trip is not None and bench.state.trip.name == "belt torn"
+
+
+@pytest.mark.parametrize(("friction_n", "torque_nm"), [(20.0, 0.0), (0.0, 0.9)])
+def test_friction_that_cell_or_drive_shows_at_little_load_is_a_whole_belt(
+    bench: Bench, friction_n: float, torque_nm: float
+) -> None:
+    assert at_little_load(bench, 50.0, friction_n, torque_nm) == math.inf
 
 
 @pytest.mark.parametrize("name", sorted(set(CAUSES) - {"drive data stale", "hub sensor jump", "surface sensor jump"}))

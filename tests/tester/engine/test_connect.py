@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from drivers.canopen.objects import MAX_TORQUE
 from drivers.cia402 import State
 from sim.modbus_wire import Impairment
 from tester.engine import arming
@@ -35,6 +36,12 @@ def test_every_drive_is_configured_online_and_homed(simulation: Simulation) -> N
     drives = connect(simulation).devices.drives
     assert len(drives) == 5 and all(drive.online and drive.parameters for drive in drives)
     assert all(drive.homed for drive in drives if drive.config.mode == "position")
+
+
+def test_the_press_has_its_limit_of_torque_and_says_so(simulation: Simulation) -> None:
+    press = connect(simulation).devices.axes.press
+    assert press.parameters[MAX_TORQUE, 0] == press.config.max_torque_per_mille == 230
+    assert simulation.world.axes["press"].torque_limit_nm == pytest.approx(0.46)
 
 
 def test_no_drive_has_power_after_connecting(simulation: Simulation) -> None:

@@ -23,10 +23,10 @@ def devices() -> Devices:
 
 
 def filled(devices: Devices, diameter_mm: float = 90.0, now: float = 1.0) -> Readings:
-    readings = Readings()
+    readings = Readings(diameter_mm=diameter_mm)
     for drive in devices.drives:
         drive.news = True  # the tests set states by hand
-    devices.fill(readings, now, diameter_mm)
+    devices.fill(readings, now)
     return readings
 
 
@@ -78,7 +78,7 @@ def test_angles_add_up_from_the_drive_s_own_time_stamps(devices: Devices) -> Non
     wheel.actual = 2.0 * 3.141592653589793
     for stamp in (0.0, 0.1, 0.1, 0.2):
         wheel.stamp_s = stamp
-        devices.fill(r, stamp, 90.0)
+        devices.fill(r, stamp)
     assert r.wheel_angle_rev == pytest.approx(0.2)
 
 
@@ -148,3 +148,11 @@ def test_on_a_rig_the_readings_are_those_of_the_plant(mid_burst: Simulation) -> 
     assert r.slip_m_s == pytest.approx(plant.slip_m_s, abs=0.005)
     assert hypot(r.force_x_n, r.force_y_n) == pytest.approx(hypot(plant.force_x_n, plant.force_y_n), abs=15.0)
     assert r.hub_c == pytest.approx(plant.hub_c, abs=1.0)
+
+
+def test_on_a_rig_the_torques_of_press_and_belt_tell_of_load_and_friction(mid_burst: Simulation) -> None:
+    r, plant = mid_burst.ctx.readings, mid_burst.world.plant
+    screw = mid_burst.ctx.rig.axes.press.screw
+    assert screw is not None
+    assert screw.reached_n(r.press_torque_nm) - 5.0 < plant.force_z_n < screw.held_n(r.press_torque_nm) + 5.0
+    assert r.belt_torque_nm == pytest.approx(0.4 - 0.05 * plant.belt_force_n, rel=0.05)

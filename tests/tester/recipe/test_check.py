@@ -34,8 +34,8 @@ def test_checking_returns_the_recipe_with_its_text() -> None:
     [
         (
             "200 N]",
-            "451 N]",
-            f"r.yaml:9:19: load: 451 N is more than the rig allows (limit 450 N: limits.load {FROM_RIG}",
+            "441 N]",
+            f"r.yaml:9:19: load: 441 N is more than the rig allows (limit 440 N: limits.load {FROM_RIG}",
         ),
         (
             "[40 degC, 25 degC]",
@@ -107,7 +107,7 @@ def test_an_angle_on_an_axis_that_is_set_by_hand_is_refused() -> None:
 
 
 def test_a_compound_without_a_model_has_no_power_to_check_on_a_real_rig() -> None:
-    text = SMALL.replace('"1#"', "EPDM").replace("300 mm/s", "500 mm/s").replace("200 N]", "450 N]")
+    text = SMALL.replace('"1#"', "EPDM").replace("300 mm/s", "500 mm/s").replace("200 N]", "440 N]")
     assert check(text, real_rig(), "r.yaml") == []
 
 

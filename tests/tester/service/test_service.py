@@ -90,7 +90,7 @@ def test_values_stand_beside_setpoint_gate_and_limit(finished: Stage) -> None:
     counting = _counting(finished)
     load, friction = counting.value("load"), counting.value("friction")
     assert load is not None and friction is not None
-    assert (load.setpoint, load.band_low, load.high, load.quality) == (200.0, 196.0, 450.0, "good")
+    assert (load.setpoint, load.band_low, load.high, load.quality) == (200.0, 196.0, 440.0, "good")
     assert load.value == pytest.approx(200.0, abs=5.0)
     assert friction.value is not None and 0.5 < friction.value < 1.2
 

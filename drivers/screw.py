@@ -1,0 +1,59 @@
+"""A screw between a drive's torque and a force, with the friction that is known of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import isfinite, pi
+from typing import Annotated
+
+
+@dataclass(frozen=True, slots=True)
+class Screw:
+    """What a lead screw makes of torque, between the least and the most of its friction; raises ValueError if wrong.
+
+    Pressing with a force F takes K (F + spring) / efficiency + drag, with K = lead / 2 pi; where the force drives the
+    screw back, friction is on the other side: K (F + spring) (2 - 1 / efficiency) - drag (machine elements: a screw's
+    efficiency as a drive and driven back). The ranges hold for every temperature and lubrication, and for the error of
+    the drive's torque reading: they are measured against the load cell when the machine is put into operation.
+    """
+
+    lead_mm: Annotated[float, "mm"]                  # travel in a turn
+    efficiency_least: Annotated[float, "1"]
+    efficiency_most: Annotated[float, "1"]
+    drag_least_nm: Annotated[float, "N.m"]           # of nut and seals, whatever the force
+    drag_most_nm: Annotated[float, "N.m"]
+    spring_n: Annotated[float, "N"] = 0.0            # force that lifts the press when its drive has no power
+
+    def __post_init__(self) -> None:
+        for name in ("lead_mm", "efficiency_least", "efficiency_most", "drag_least_nm", "drag_most_nm", "spring_n"):
+            value: float = getattr(self, name)
+            if not (isfinite(value) and value >= 0.0):
+                raise ValueError(f"screw: {name} is {value}, it must be finite and at least 0")
+        if not self.lead_mm > 0.0:
+            raise ValueError("screw: lead must be above 0 mm")
+        if not 0.5 < self.efficiency_least <= self.efficiency_most <= 1.0:
+            raise ValueError(f"screw: efficiency {self.efficiency_least:g} to {self.efficiency_most:g}: expected 0.5 < "
+                             "least <= most <= 1 (a press whose load cannot drive it back is not lifted by its spring)")
+        if not self.drag_least_nm <= self.drag_most_nm:
+            raise ValueError("screw: drag_least is above drag_most")
+
+    @property
+    def _m(self) -> float:
+        return 1e-3 * self.lead_mm / (2.0 * pi)
+
+    def torque_nm(self, force_n: float) -> float:
+        """Return the torque that brings about a force (N, at least 0) whatever the friction is, N m."""
+        return self._m * (force_n + self.spring_n) / self.efficiency_least + self.drag_most_nm
+
+    def pushed_n(self, torque_nm: float) -> float:
+        """Return the greatest force that a torque can bring about by pressing, N; at least 0."""
+        return max(0.0, (torque_nm - self.drag_least_nm) * self.efficiency_most / self._m - self.spring_n)
+
+    def reached_n(self, torque_nm: float) -> float:
+        """Return the force that a torque brings about whatever the friction is, N; at least 0."""
+        return max(0.0, (torque_nm - self.drag_most_nm) * self.efficiency_least / self._m - self.spring_n)
+
+    def held_n(self, torque_nm: float) -> float:
+        """Return the greatest force under which a press can stand, or be driven back, with a torque shown, N."""
+        driven = self._m * (2.0 - 1.0 / self.efficiency_least)
+        return max(0.0, (torque_nm + self.drag_most_nm) / driven - self.spring_n)
