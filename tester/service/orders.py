@@ -98,7 +98,7 @@ class Orders:
             if watch is None:
                 desk.unlatch(order.name)
             elif watch.run.engine.control.state.mode is Mode.LATCHED:
-                refusal = watch.run.request_ack()
+                refusal = watch.run.request_ack(order.name)
         self._reply(order, refusal)
 
     def _answer(self, order: Order, action: Answer) -> str:
