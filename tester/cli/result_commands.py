@@ -38,13 +38,14 @@ def show(run: str, as_json: bool) -> None:
     try:
         with RunReader(folder) as reader:
             results, sessions, changes = results_of(reader), reader.sessions(), reader.changes()
-            said, trips = reader.exclusions(), [*reader.trips()]
+            said, trips, commands = reader.exclusions(), [*reader.trips()], [*reader.commands()]
     except StoreError as error:
         raise click.ClickException(str(error)) from error
     if as_json:
         history: dict[str, Json] = {"sessions": [*map(_session, sessions)], "changes": [*map(_change, changes)]}
         history["exclusions"] = [*map(_word, said)]
         history["trips"] = [*map(_trip, trips)]
+        history["commands"] = [{"t_s": number(one.t_s), "utc": one.utc, "text": one.text} for one in commands]
         dump(_summary(folder.name, results) | history)
         return
     for text in _lines(folder.name, results):
@@ -54,6 +55,8 @@ def show(run: str, as_json: bool) -> None:
         click.echo(f"went on at {where}, version {session.software_version}")
     for change in changes:
         click.echo(f"{change.subject} changed before stretch {change.session}: {shown(change.reason)}")
+    for one in commands:
+        click.echo(f"command at {duration(one.t_s)} of rig time, {one.utc}: {shown(one.text)}")
     for trip in trips:
         compared = f" ({trip.compared})" if trip.compared else ""
         click.echo(f"trip at {duration(trip.t_s)} of rig time, {trip.utc}: {trip.interlock}{compared}")

@@ -9,6 +9,7 @@ from pathlib import Path
 from tester import clock
 from tester.engine.run import Outcome, Run
 from tester.rig import RigConfig
+from tester.service.address import with_peer
 from tester.service.alarms import AlarmList, Cause
 from tester.service.alone import left_alone
 from tester.service.hub import Hub
@@ -177,6 +178,14 @@ class Desk:
         """Tell every client."""
         self.hub.event(kind, text, severity, self.now_s if t_s is None else t_s, self.run.name if self.run else "")
 
+    def command(self, text: str, severity: str = "info", kind: str = "command") -> None:
+        """Tell what a client has commanded, and by whom; while a run is under way, in its record too."""
+        if self.watch is None:
+            self.tell(kind, text, severity)
+        else:
+            ctx = self.watch.run.engine.ctx
+            ctx.journal.event(ctx.now, kind, text, severity)  # which tells it
+
     def notify(self, event: str, text: str) -> None:
         """Have the user's hook run."""
         run = self.run
@@ -220,8 +229,8 @@ class Desk:
         if number == self._controller:
             return
         self._controller = number
-        who = self.hub.presence.controller
-        self.tell("control", f"{who} has control" if number else "nobody has control")
+        who = with_peer(self.hub.presence.controller, self.hub.presence.peer)
+        self.command(f"{who} has control" if number else "nobody has control", kind="control")
         self.lost_control()
 
     def show(self) -> None:

@@ -178,6 +178,7 @@ class Service:
 
         def begun(view: RunView) -> None:
             desk.hub.accept(order, {"run": view.name, "folder": view.folder})
+            desk.command(f"{order.action.command} by {order.by}")
             if notes and desk.watch is not None:
                 desk.watch.run.engine.ctx.journal.event(0.0, "note", notes)
 
@@ -230,6 +231,7 @@ class Service:
                 desk.attach(run, PlanTrack(hand.plan, estimate(hand.plan, rig)), view, hand)
                 record.event(0.0, "wheel", taken_for(mounted, run.engine.ctx.wheel.diameter_mm))
                 desk.hub.accept(order)
+                desk.command(f"arm by {order.by}")
                 with closing(ports), left_safe(run):
                     seconds = self._by_hand(run, hand, world, ports, record)
                 record.finish(run.outcome.value, run.reason, seconds)

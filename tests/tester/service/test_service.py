@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -553,3 +554,23 @@ def test_locks_of_the_run_are_let_go_of(tmp_path: Path) -> None:
     assert run is not None
     with ExclusiveUse() as use:
         use.lock_file("run", Path(run.folder) / RUN_LOCK, "", lasting=False)
+
+
+def test_commands_are_recorded_with_who_the_system_says_gave_them(tmp_path: Path) -> None:
+    def script(stage: Stage) -> Script:
+        yield replace(stage.order(RUN), peer="user id 1000")
+        yield from stage.until(running)
+        yield replace(stage.order(Hold(), 2), peer="address 192.0.2.7:40000")
+        yield replace(stage.order(Stop()), peer="user id 1000")
+        yield from stage.until(over)
+
+    stage = play(tmp_path, script, *QUIET)
+    run = stage.views[-1].run
+    assert run is not None
+    with RunReader(Path(run.folder)) as reader:
+        said = [event.text for event in reader.commands()]
+    assert said == [
+        "run by client 1 (user id 1000)",
+        "hold by client 2 (address 192.0.2.7:40000)",
+        "stop by client 1 (user id 1000)",
+    ]
