@@ -15,6 +15,7 @@ from tester.campaign.claims import enough_room, hold_rig, hold_run
 from tester.campaign.crew import Sight, side_by_side
 from tester.campaign.endings import EXIT_REFUSED, EXIT_USAGE, CannotStartError, Ending, PartEnd, Stop, ending_of
 from tester.campaign.folder import Begin, Job, Work, beginning_of, make_folder, specimens_of, work_of, write_sources
+from tester.campaign.latch import acknowledge, open_trips
 from tester.campaign.part_run import run_part
 from tester.campaign.pool import Pool
 from tester.campaign.split import Part
@@ -25,7 +26,7 @@ from tester.engine.run import Outcome, Run
 from tester.engine.tickers import TickStatistics
 from tester.export import doubtful, write_all
 from tester.export.results import results_of
-from tester.lock import ExclusiveUse
+from tester.lock import ExclusiveUse, user
 from tester.plain import plain_text
 from tester.provenance import accepted_risks, recipe_source, rig_source, run_info, session_info
 from tester.recipe.check import load_checked
@@ -266,6 +267,7 @@ class Session:
         self.prompts.real = not counts_as_simulated(work.rig)
         for risk in risks_of(work.rig):
             self.screen.message(f"accepted risk ({self.options.accept_risk}): {risk}")
+        self._acknowledge(job.folder, work.rig)
         with self._signals():
             self.screen.begin(work.plan.name)
             try:
@@ -278,6 +280,13 @@ class Session:
             finally:
                 self.screen.end()
             return self._report(job.folder, self.ending)
+
+    def _acknowledge(self, folder: Path, rig: RigConfig) -> None:
+        """Take this start as the acknowledgement of what has tripped on the rig before. Raises StoreError, OSError."""
+        found = open_trips(self.options.out, rig, folder)
+        for one in found:
+            self.screen.message(f"acknowledged by this start: {one}")
+        acknowledge(found, f"{self.options.operator or user()}, by the start of {folder.name}", folder)
 
     def _ends(self, job: Job, work: Work) -> Generator[PartEnd]:
         """Yield how the parts ended: one after the other in this process, or side by side in others."""

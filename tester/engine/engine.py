@@ -127,7 +127,11 @@ class Engine:
                 )
             elif event.kind == ACKNOWLEDGED and self._trip:
                 journal.trip_acknowledged(self._trip, event.at_s, event.text)
+                self._trip = 0
             journal.event(event.at_s, event.kind, event.text, SEVERITIES.get(event.kind, "info"))
+        if state.mode is Mode.LATCHED and not self._trip:
+            # A fast stop that a person has made latches too: who comes next has to know.
+            self._trip = journal.trip(self.ctx.now, "fast stop", state.stop_requested)
         state.events.clear()
 
     def _journal_emergencies(self) -> None:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from tester import clock
+from tester.campaign.latch import acknowledge, open_trips
 from tester.engine.run import Outcome, Run
 from tester.rig import RigConfig
 from tester.service.address import with_peer
@@ -21,7 +22,9 @@ from tester.service.protocol import SNAPSHOT_S
 from tester.service.state import DiskView, ManualView, ProgressView, RunView, StateView, TickView, Value
 from tester.service.values import unknown_values
 from tester.service.watch import RunWatch, risk_of
+from tester.store.schema import StoreError
 from tester.store.space import MARGIN, FreeRoom
+from tester.trouble import in_words
 
 UNWATCHED_S = 1.0
 """Period of states while nobody is connected, s: the gateway's trend goes on, at a rate that costs nothing."""
@@ -159,11 +162,24 @@ class Desk:
             self.alarms.raise_(Cause(watch.tripped, 1, reason, "the drives stop by their own watchdogs"), self.now_s)
         self.latched, self.tripped = reason, watch.tripped
 
+    def latch_again(self) -> None:
+        """Latch a hardware rig after a restart, where a trip on it has not been acknowledged."""
+        found = open_trips(self.runs, self.rig)
+        if found:
+            first = found[0].trip
+            self.latched, self.tripped = f"{found[0]}; not acknowledged", first.interlock
+            consequence = "nothing begins before it is acknowledged"
+            self.alarms.raise_(Cause(first.interlock, 1, f"{first.text}; not acknowledged", consequence), self.now_s)
+
     def unlatch(self, by: str) -> None:
-        """Take an acknowledgement: the next run may begin."""
+        """Take an acknowledgement: the next run may begin. It goes on record with the trips that it is for."""
         if self.latched:
             self.tell("mode", f"acknowledged by {by}")
             self.alarms.clear(self.tripped)
+            try:
+                acknowledge(open_trips(self.runs, self.rig), by)
+            except (StoreError, OSError) as error:
+                self.tell("mode", f"the acknowledgement cannot be recorded: {in_words(error)}", "warning")
         self.latched, self.tripped, self.interrupted = "", "", ()
 
     def heard(self, t_s: float, kind: str, text: str, severity: str) -> None:

@@ -93,6 +93,7 @@ class Service:
         with Signals(self.end):
             desk.interrupted = tuple(interrupted_runs(self.options.runs))
             desk.past = past_of(self.options.runs)
+            desk.latch_again()
             for name in desk.interrupted:
                 desk.tell("run", f"{name} was cut off: `tester resume {name}` goes on with it", "warning")
             while not self.orders.ending:

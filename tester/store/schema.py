@@ -339,6 +339,9 @@ MIGRATIONS: tuple[str, ...] = (
 CHAINED = 6
 """The first schema with a chain. A later migration that changes what rows hold has to add them to it again."""
 
+ACKNOWLEDGED = 7
+"""The first schema under which acknowledgements of trips are recorded."""
+
 _ADDED: dict[int, str] = {3: _EXCLUSION, 4: _AS_VERSION_4, 5: _WEAR_CHECK, 6: _CHAIN, 7: _AS_VERSION_6}
 """What versions have added, by version: what a connection to an older record can have for itself."""
 
