@@ -13,7 +13,7 @@ from types import FrameType
 from recipes import find
 from tester.campaign.claims import enough_room, hold_rig, hold_run
 from tester.campaign.crew import Sight, side_by_side
-from tester.campaign.endings import EXIT_REFUSED, EXIT_USAGE, CannotStartError, Ending, PartEnd, Stop, ending_of
+from tester.campaign.endings import EXIT_CODES, EXIT_REFUSED, EXIT_USAGE, CannotStartError, Ending, PartEnd, Stop, ending_of
 from tester.campaign.folder import Begin, Job, Work, beginning_of, make_folder, specimens_of, work_of, write_sources
 from tester.campaign.latch import acknowledge, open_trips
 from tester.campaign.part_run import run_part
@@ -39,9 +39,11 @@ from tester.rig.load import risks_of
 from tester.screens import LastingScreen, Screen
 from tester.signals import HANG_UP, QUIT, handled
 from tester.store.catalogue import MANIFEST, cut_off
-from tester.store.reader import RunReader
+from tester.store.reader import DATABASE, RunReader
+from tester.store.schema import StoreError
 from tester.store.status import WENT_THROUGH
 from tester.store.writer import RunWriter
+from tester.trouble import in_words
 
 
 @dataclass(frozen=True, slots=True)
@@ -339,7 +341,10 @@ class Session:
 
         Conditions that the run did not come to are no news each: the screen's result counts them.
         """
-        lost = write_all(folder)
+        try:
+            lost = write_all(folder)
+        except (OSError, StoreError) as error:
+            return self._without_tables(folder, ending, in_words(error))
         missing = [row.describe() for row in lost]
         for row in [*(row for row in lost if row.tried), *doubtful(folder)]:
             self.screen.message(row.advise())
@@ -352,6 +357,19 @@ class Session:
         if ending.failed:
             self.screen.message(f"not everything could be recorded: {ending.failed}")
         self.screen.emit({"event": "end", "outcome": ending.outcome.value, "exit": code, "missing": missing})
+        self.screen.result(str(folder))
+        return code
+
+
+    def _without_tables(self, folder: Path, ending: Ending, why: str) -> int:
+        """Say how a run has ended whose tables cannot be written, and return the exit code."""
+        self.screen.message(f"{ending.outcome.value}: {ending.reason}" if ending.reason else ending.outcome.value)
+        if ending.failed:
+            self.screen.message(f"not everything could be recorded: {ending.failed}")
+        then = f"; then `tester resume {folder}` goes on" if (folder / DATABASE).is_file() else ""
+        self.screen.message(f"the tables cannot be written: {why}{then}")
+        code = EXIT_CODES[Outcome.FAILED]
+        self.screen.emit({"event": "end", "outcome": ending.outcome.value, "exit": code, "missing": []})
         self.screen.result(str(folder))
         return code
 

@@ -326,7 +326,7 @@ def test_a_prompt_waits_for_its_answer_and_a_no_leaves_it_waiting(tmp_path: Path
 
     stage = play(tmp_path, script)
     assert any(name == "prompt" and "install wheel 1" in text for name, text in stage.notes)
-    assert "client 1 answers: yes" in stage.texts("prompt")
+    assert "answer yes by client 1" in stage.texts("command")
 
 
 def test_a_trip_latches_until_it_is_acknowledged(tmp_path: Path) -> None:
