@@ -574,3 +574,14 @@ def test_commands_are_recorded_with_who_the_system_says_gave_them(tmp_path: Path
         "hold by client 2 (address 192.0.2.7:40000)",
         "stop by client 1 (user id 1000)",
     ]
+
+
+def test_an_override_of_a_client_that_is_looser_than_it_may_be_begins_nothing(tmp_path: Path) -> None:
+    def script(stage: Stage) -> Script:
+        yield stage.order(replace(RUN, overrides=("interlocks.hold_at_most=3 h",)))
+        while "run" not in stage.refused:
+            yield None
+
+    stage = play(tmp_path, script, *QUIET)
+    assert "interlocks.hold_at_most: 10800 s is looser than 7200 s" in stage.refused["run"]
+    assert not list(tmp_path.glob("runs/2*")) and stage.accepted == {}
