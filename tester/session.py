@@ -13,7 +13,16 @@ from types import FrameType
 from recipes import find
 from tester.campaign.claims import enough_room, hold_rig, hold_run
 from tester.campaign.crew import Sight, side_by_side
-from tester.campaign.endings import EXIT_CODES, EXIT_REFUSED, EXIT_USAGE, CannotStartError, Ending, PartEnd, Stop, ending_of
+from tester.campaign.endings import (
+    EXIT_CODES,
+    EXIT_REFUSED,
+    EXIT_USAGE,
+    CannotStartError,
+    Ending,
+    PartEnd,
+    Stop,
+    ending_of,
+)
 from tester.campaign.folder import Begin, Job, Work, beginning_of, make_folder, specimens_of, work_of, write_sources
 from tester.campaign.latch import acknowledge, open_trips
 from tester.campaign.part_run import run_part

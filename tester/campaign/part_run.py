@@ -89,7 +89,8 @@ def run_part(job: Job, work: Work, part: Part, begin: Begin, watch: Watch, promp
     folder.mkdir(parents=True, exist_ok=True)
     open_record = RunWriter if job.samples else Unsampled
     lossless = work.rig.can.interface == "sim"
-    writer = open_record(folder / DATABASE, clock=clock.monotonic, utc=clock.utc_now, lossless=lossless, reserve=RESERVE_BYTES)
+    path = folder / DATABASE
+    writer = open_record(path, clock=clock.monotonic, utc=clock.utc_now, lossless=lossless, reserve=RESERVE_BYTES)
     try:
         with closed_early(writer):
             begin(writer)

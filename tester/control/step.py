@@ -20,7 +20,7 @@ from tester.control.stops import (
 )
 from tester.interlocks.contact import UNLOADED_N
 from tester.interlocks.heat import RUNAWAY_WINDOW_S
-from tester.interlocks.operation import COLD_K, HOLD_AT_MOST_S, START_K
+from tester.interlocks.operation import ACK_WAIT_S, COLD_K, HOLD_AT_MOST_S, START_K
 from tester.interlocks.row import NOTHING_COMPARED, Interlock, Reaction
 from tester.interlocks.table import AT_REST, INTERLOCKS, WARNINGS, held, names_of, still_there
 from tester.process import Demand, Press, Readings, Setpoints
@@ -29,8 +29,6 @@ from tester.rig import RigConfig
 _INF: Final = inf
 CEILING_STEP_S: Final = 1.0
 """How exactly it knows when a setpoint was left, s."""
-ACK_WAIT_S: Final = 1.0
-"""An acknowledged drive has reset its fault by then, s [A]; a cause that still holds refuses the acknowledgement."""
 
 # Bound once: a look-up on the enum class costs several times as much in every scan (CPython 3.11).
 _IDLE: Final = Mode.IDLE
@@ -199,7 +197,7 @@ class Control:
         if state.mode is not _LATCHED:
             return f"nothing to acknowledge: the rig is in {state.mode.value}"
         if state.ack_until_s < now:
-            state.ack_until_s, state.ack_by = now + ACK_WAIT_S, by
+            state.ack_until_s, state.ack_by = now + self._parameters[ACK_WAIT_S], by
             withdraw_escalation(state.setpoints)
         return ""
 

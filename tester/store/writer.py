@@ -1,7 +1,7 @@
 """Writes a run's database from a thread of its own, fed through a bounded queue.
 
-A file beside the database keeps RESERVE_BYTES of room. On a full disk it is given up: what the run still has to say while
-it comes to rest, its status among it, is written in that room.
+A file beside the database keeps RESERVE_BYTES of room. On a full disk it is given up: what the run still has to say
+while it comes to rest, its status among it, is written in that room.
 
 The scan's thread only appends: to one deque that carries samples (tuples) and batches of statements in the
 order in which they came. Appending to and popping from a deque is atomic, so no lock is held in a scan. The
