@@ -30,7 +30,7 @@ Config = TypeVar("Config", bound="DataclassInstance")
 SUFFIXES: dict[str, str] = {
     "m/s": "_m_s", "mm/s": "_mm_s", "rad/s": "_rad_s", "m/s2": "_m_s2", "mm/s2": "_mm_s2",
     "mm": "_mm", "m": "_m", "um": "_um", "deg": "_deg", "s": "_s", "ms": "_ms", "Hz": "_hz", "rev": "_rev",
-    "N": "_n", "N m": "_nm", "N/mm": "_n_per_mm", "N s/m": "_ns_per_m", "N/K": "_n_per_k",
+    "N": "_n", "N m": "_nm", "N/mm": "_n_per_mm", "N s/m": "_ns_per_m", "N/K": "_n_per_k", "N/s": "_n_s",
     "degC": "_c", "K": "_k", "K/s": "_k_s", "W": "_w", "J": "_j", "J/K": "_j_k", "W/K": "_w_k",
     "mm3/(N m)": "_mm3_per_n_m", "mm/K": "_mm_per_k", "%": "_percent", "bit/s": "_bit_s",
     "kg/m3": "_kg_m3", "J/(kg K)": "_j_kg_k", "W/(m K)": "_w_m_k", "W/(m2 K)": "_w_m2_k",

@@ -14,8 +14,18 @@ from typing import TypeVar
 from recipes import find
 from tester.campaign.claims import enough_room, hold_rig, hold_run
 from tester.campaign.crew import Sight, side_by_side
-from tester.campaign.endings import EXIT_REFUSED, EXIT_USAGE, CannotStartError, Ending, PartEnd, Stop, ending_of
+from tester.campaign.endings import (
+    EXIT_CODES,
+    EXIT_REFUSED,
+    EXIT_USAGE,
+    CannotStartError,
+    Ending,
+    PartEnd,
+    Stop,
+    ending_of,
+)
 from tester.campaign.folder import Begin, Job, Work, beginning_of, make_folder, specimens_of, work_of, write_sources
+from tester.campaign.latch import acknowledge, open_trips
 from tester.campaign.part_run import run_part
 from tester.campaign.pool import Pool
 from tester.campaign.split import Part
@@ -26,7 +36,7 @@ from tester.engine.run import Outcome, Run
 from tester.engine.tickers import TickStatistics
 from tester.export import doubtful, write_all
 from tester.export.results import TableRow, results_of
-from tester.lock import ExclusiveUse
+from tester.lock import ExclusiveUse, user
 from tester.plain import plain_text
 from tester.provenance import accepted_risks, recipe_source, rig_source, run_info, session_info
 from tester.recipe.check import load_checked
@@ -39,10 +49,11 @@ from tester.rig.load import risks_of
 from tester.screens import LastingScreen, Screen
 from tester.signals import HANG_UP, QUIT, handled
 from tester.store.catalogue import MANIFEST, cut_off
-from tester.store.reader import RunReader
+from tester.store.reader import DATABASE, RunReader
+from tester.store.schema import StoreError
 from tester.store.status import WENT_THROUGH
 from tester.store.writer import RunWriter
-
+from tester.trouble import in_words
 
 Got = TypeVar("Got")
 
@@ -274,6 +285,7 @@ class Session:
         self.prompts.real = not counts_as_simulated(work.rig)
         for risk in risks_of(work.rig):
             self.screen.message(f"accepted risk ({self.options.accept_risk}): {risk}")
+        self._acknowledge(job.folder, work.rig)
         with self._signals():
             self.screen.begin(work.plan.name)
             try:
@@ -286,6 +298,13 @@ class Session:
             finally:
                 self.screen.end()
             return self._report(job.folder, self.ending)
+
+    def _acknowledge(self, folder: Path, rig: RigConfig) -> None:
+        """Take this start as the acknowledgement of what has tripped on the rig before. Raises StoreError, OSError."""
+        found = open_trips(self.options.out, rig, folder)
+        for one in found:
+            self.screen.message(f"acknowledged by this start: {one}")
+        acknowledge(found, f"{self.options.operator or user()}, by the start of {folder.name}", folder)
 
     def _ends(self, job: Job, work: Work) -> Generator[PartEnd]:
         """Yield how the parts ended: one after the other in this process, or side by side in others."""
@@ -338,7 +357,10 @@ class Session:
 
         Conditions that the run did not come to are no news each: the screen's result counts them.
         """
-        lost, advice = self.aside(lambda: _tables(folder))
+        try:
+            lost, advice = self.aside(lambda: _tables(folder))
+        except (OSError, StoreError) as error:
+            return self._without_tables(folder, ending, in_words(error))
         missing = [row.describe() for row in lost]
         for line in advice:
             self.screen.message(line)
@@ -348,6 +370,19 @@ class Session:
         if ending.failed:
             self.screen.message(f"not everything could be recorded: {ending.failed}")
         self.screen.emit({"event": "end", "outcome": ending.outcome.value, "exit": code, "missing": missing})
+        self.screen.result(str(folder))
+        return code
+
+
+    def _without_tables(self, folder: Path, ending: Ending, why: str) -> int:
+        """Say how a run has ended whose tables cannot be written, and return the exit code."""
+        self.screen.message(f"{ending.outcome.value}: {ending.reason}" if ending.reason else ending.outcome.value)
+        if ending.failed:
+            self.screen.message(f"not everything could be recorded: {ending.failed}")
+        then = f"; then `tester resume {folder}` goes on" if (folder / DATABASE).is_file() else ""
+        self.screen.message(f"the tables cannot be written: {why}{then}")
+        code = EXIT_CODES[Outcome.FAILED]
+        self.screen.emit({"event": "end", "outcome": ending.outcome.value, "exit": code, "missing": []})
         self.screen.result(str(folder))
         return code
 

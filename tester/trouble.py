@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import os
+import sqlite3
 from collections.abc import Mapping
 from typing import Final
 
@@ -28,6 +29,8 @@ _IN_WORDS: Final[Mapping[int, tuple[str, str]]] = {
     errno.EPIPE: ("its reader is gone", ""),
 }
 """Of an errno: why, and what to do."""
+_OF_SQLITE: Final[Mapping[int, int]] = {sqlite3.SQLITE_FULL: errno.ENOSPC, sqlite3.SQLITE_IOERR: errno.EIO}
+"""What SQLite's codes say of a disk."""
 
 
 def in_words(error: BaseException) -> str:
@@ -35,6 +38,9 @@ def in_words(error: BaseException) -> str:
 
     Others get the system's own words for them, as far as there are any.
     """
+    if isinstance(error, sqlite3.Error):
+        code = getattr(error, "sqlite_errorcode", 0) & 0xFF  # of an extended code the primary one
+        return ": ".join(_IN_WORDS[_OF_SQLITE[code]]) if code in _OF_SQLITE else str(error)
     if not isinstance(error, OSError) or error.errno is None:
         return str(error)
     why, advice = _IN_WORDS.get(error.errno, (_system_words(error), ""))

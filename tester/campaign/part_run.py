@@ -24,7 +24,7 @@ from tester.provenance import record_parameters, record_statistics
 from tester.recipe.estimate import estimate
 from tester.rig import RigConfig
 from tester.store.reader import DATABASE
-from tester.store.writer import RunWriter
+from tester.store.writer import RESERVE_BYTES, RunWriter
 from tester.trouble import in_words
 
 if TYPE_CHECKING:
@@ -89,7 +89,8 @@ def run_part(job: Job, work: Work, part: Part, begin: Begin, watch: Watch, promp
     folder.mkdir(parents=True, exist_ok=True)
     open_record = RunWriter if job.samples else Unsampled
     lossless = work.rig.can.interface == "sim"
-    writer = open_record(folder / DATABASE, clock=clock.monotonic, utc=clock.utc_now, lossless=lossless)
+    path = folder / DATABASE
+    writer = open_record(path, clock=clock.monotonic, utc=clock.utc_now, lossless=lossless, reserve=RESERVE_BYTES)
     try:
         with closed_early(writer):
             begin(writer)
@@ -97,7 +98,7 @@ def run_part(job: Job, work: Work, part: Part, begin: Begin, watch: Watch, promp
             writer.finish(outcome.value, reason, seconds)
     finally:
         writer.close()
-    return PartEnd(part.number, outcome, reason, writer.failed)
+    return PartEnd(part.number, outcome, reason, writer.lost)
 
 
 class closed_early:  # noqa: N801 - reads as a statement

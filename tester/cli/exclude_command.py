@@ -53,9 +53,10 @@ def _say(run: str, repeat: str, reason: str, operator: str | None, *, excluded: 
     try:
         record_word(folder, Word(condition, number, excluded, reason, user() if operator is None else operator))
         with RunReader(folder) as reader:
-            rows = results_of(reader).rows
+            results = results_of(reader)
     except (CannotExcludeError, StoreError) as error:
         raise click.ClickException(str(error)) from error
-    row = next(row for row in rows if any(one.info.condition == condition for one in row.replicates))
+    row = next(row for row in results.rows if any(one.info.condition == condition for one in row.replicates))
     n = f"n {row.result.n_valid} of {row.result.n}"
     click.echo(f"{condition}/{number} {'excluded' if excluded else 'included'}: {shown(row.describe())}, {n}", err=True)
+    click.echo(f"record head: {results.record_head}", err=True)

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from tester.analysis.wear import WearRate
     from tester.export.results import Measured, RunResults, TableRow
     from tester.store.reader import RunReader
-    from tester.store.records import Change, SessionInfo, StoredExclusion, WheelInfo
+    from tester.store.records import Change, SessionInfo, StoredExclusion, StoredTrip, WheelInfo
 
 FORMATS = ("appendix", "conditions", "repeats", "wheel", "wear", "samples", "parquet")
 
@@ -38,12 +38,14 @@ def show(run: str, as_json: bool) -> None:
     try:
         with RunReader(folder) as reader:
             results, sessions, changes = results_of(reader), reader.sessions(), reader.changes()
-            said = reader.exclusions()
+            said, trips, commands = reader.exclusions(), [*reader.trips()], [*reader.commands()]
     except StoreError as error:
         raise click.ClickException(str(error)) from error
     if as_json:
         history: dict[str, Json] = {"sessions": [*map(_session, sessions)], "changes": [*map(_change, changes)]}
         history["exclusions"] = [*map(_word, said)]
+        history["trips"] = [*map(_trip, trips)]
+        history["commands"] = [{"t_s": number(one.t_s), "utc": one.utc, "text": one.text} for one in commands]
         dump(_summary(folder.name, results) | history)
         return
     for text in _lines(folder.name, results):
@@ -53,6 +55,12 @@ def show(run: str, as_json: bool) -> None:
         click.echo(f"went on at {where}, version {session.software_version}")
     for change in changes:
         click.echo(f"{change.subject} changed before stretch {change.session}: {shown(change.reason)}")
+    for one in commands:
+        click.echo(f"command at {duration(one.t_s)} of rig time, {one.utc}: {shown(one.text)}")
+    for trip in trips:
+        compared = f" ({trip.compared})" if trip.compared else ""
+        click.echo(f"trip at {duration(trip.t_s)} of rig time, {trip.utc}: {trip.interlock}{compared}")
+        click.echo(f"  {shown(trip.acknowledged)}")
     for word in said:
         what = "excluded" if word.excluded else "included again"
         who = f" by {shown(word.operator)}" if word.operator else ""
@@ -79,6 +87,21 @@ def _change(change: Change) -> Json:
         "before_sha256": change.before_sha256,
         "after_sha256": change.after_sha256,
         "reason": change.reason,
+    }
+
+
+def _trip(trip: StoredTrip) -> Json:
+    return {
+        "t_s": number(trip.t_s),
+        "utc": trip.utc,
+        "interlock": trip.interlock,
+        "text": trip.text,
+        "value": number(trip.value),
+        "limit": number(trip.limit_value),
+        "unit": trip.unit,
+        "acknowledged_s": number(trip.acknowledged_s),
+        "acknowledged_utc": trip.acknowledged_utc or None,
+        "acknowledged_by": trip.acknowledged_by,
     }
 
 

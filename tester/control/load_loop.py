@@ -23,10 +23,6 @@ DECELERATION_SHARE: Final = 0.6
 """Share of the press's acceleration limit that approach profiles use, so that the drive can follow them."""
 POSITION_GAIN_PER_S: Final = 6.0
 """Final approach to a press position: mm/s per mm, well below the drive's 30 ms lag [A]."""
-LOAD_RATE_N_S: Final = 100.0
-"""A change of load is expected to be followed at this rate at least [A]: 2 mm/s make it at about 290 N/s."""
-OPEN_SHARE: Final = 0.5
-"""Below this share of the touching force the contact was seen open: only then is the next touch a first one [A]."""
 HELD_BAND: Final = 0.03
 """Inside this relative error the slower holding bandwidth is used: it does not chase the runout."""
 
@@ -55,8 +51,9 @@ class LoadLoop(Contact):
         force, position = readings.force_z_n, readings.press_mm
         if demand.press is not _LOAD or not (-_INF < force < _INF and -_INF < position < _INF):
             return self._lift(force, position, loop, press)
-        self.highest_n = max(demand.load_n, self.highest_n - LOAD_RATE_N_S * dt)
-        self.lowest_n = min(demand.load_n, self.lowest_n + LOAD_RATE_N_S * dt)
+        change_n = loop.follow_rate_n_s * dt
+        self.highest_n = max(demand.load_n, self.highest_n - change_n)
+        self.lowest_n = min(demand.load_n, self.lowest_n + change_n)
         self._track_contact(force, readings, loop)
         self.loaded = self.in_contact and (self.loaded or force >= 0.5 * demand.load_n)
         if not self.in_contact:
@@ -83,7 +80,7 @@ class LoadLoop(Contact):
         return -min(loop.lift_speed_mm_s, _profile(-distance, press), -distance * POSITION_GAIN_PER_S)
 
     def _look_open(self, force: float, loop: LoadLoopConfig) -> None:
-        if force < OPEN_SHARE * loop.touch_load_n:
+        if force < loop.open_share * loop.touch_load_n:
             self.seen_open = True
 
     def worn_to_mm(self, diameter_mm: float) -> float:

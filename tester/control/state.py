@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from enum import Enum
+from typing import Final
 
 from tester.control.heat_loop import HeatLoop
 from tester.control.load_loop import LoadLoop
 from tester.interlocks.inputs import StopProgress
-from tester.interlocks.row import Reaction
+from tester.interlocks.row import NOTHING_COMPARED, Compared, Reaction
 from tester.process import Setpoints
 
 
@@ -41,6 +42,11 @@ class Trip:
     name: str
     text: str
     reaction: Reaction
+    compared: Compared = NOTHING_COMPARED
+
+
+ACKNOWLEDGED: Final = "acknowledged"
+"""Kind of the event that ends a trip; its text is who has acknowledged."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,6 +85,8 @@ class ControlState:
     """The cool-down of this run is over (or not wanted), whether the jacket got cool or not."""
     ack_until_s: float = float("-inf")
     """An acknowledgement was given: it counts if every cause is gone by then."""
+    ack_by: str = ""
+    """Who gave it."""
     hub_ceiling: list[tuple[float, float]] = field(default_factory=list[tuple[float, float]])
     """(time, hub setpoint) within ``runaway_window``, falling ones only: the first is the highest."""
 

@@ -8,7 +8,7 @@ from typing import Final
 from tester.control.interlock_inputs import InterlockInputs
 from tester.control.permissives import Bounds, confirmed_speed_m_s, may_heat, may_load, may_move, rig_bounds
 from tester.control.safe_outputs import no_outputs, withdraw_escalation
-from tester.control.state import ControlState, Event, Mode, Trip
+from tester.control.state import ACKNOWLEDGED, ControlState, Event, Mode, Trip
 from tester.control.stops import (
     after_stop,
     begin_fast,
@@ -20,8 +20,8 @@ from tester.control.stops import (
 )
 from tester.interlocks.contact import UNLOADED_N
 from tester.interlocks.heat import RUNAWAY_WINDOW_S
-from tester.interlocks.operation import COLD_K, HOLD_AT_MOST_S, START_K
-from tester.interlocks.row import Interlock, Reaction
+from tester.interlocks.operation import ACK_WAIT_S, COLD_K, HOLD_AT_MOST_S, START_K
+from tester.interlocks.row import NOTHING_COMPARED, Interlock, Reaction
 from tester.interlocks.table import AT_REST, INTERLOCKS, WARNINGS, held, names_of, still_there
 from tester.process import Demand, Press, Readings, Setpoints
 from tester.rig import RigConfig
@@ -29,8 +29,6 @@ from tester.rig import RigConfig
 _INF: Final = inf
 CEILING_STEP_S: Final = 1.0
 """How exactly it knows when a setpoint was left, s."""
-ACK_WAIT_S: Final = 1.0
-"""An acknowledged drive has reset its fault by then, s [A]; a cause that still holds refuses the acknowledgement."""
 
 # Bound once: a look-up on the enum class costs several times as much in every scan (CPython 3.11).
 _IDLE: Final = Mode.IDLE
@@ -193,13 +191,13 @@ class Control:
         elif mode in _WORKING or (mode is _COOLDOWN and state.cooled):
             state.enter(_STOPPING, now, why)
 
-    def request_ack(self, now: float) -> str:
+    def request_ack(self, now: float, by: str = "") -> str:
         """Acknowledge a latched trip: IDLE follows once every cause is gone. Return "" or why not; idempotent."""
         state = self.state
         if state.mode is not _LATCHED:
             return f"nothing to acknowledge: the rig is in {state.mode.value}"
         if state.ack_until_s < now:
-            state.ack_until_s = now + ACK_WAIT_S
+            state.ack_until_s, state.ack_by = now + self._parameters[ACK_WAIT_S], by
             withdraw_escalation(state.setpoints)
         return ""
 
@@ -211,6 +209,7 @@ class Control:
             state.ack_until_s = -inf
             state.trip = None
             state.tripped = 0
+            state.events.append(Event(now, ACKNOWLEDGED, state.ack_by))
             state.enter(_IDLE, now, "acknowledged")
         elif now > state.ack_until_s:
             state.ack_until_s = -inf
@@ -262,7 +261,8 @@ class Control:
         state.tripped |= own
         text = row.cause + _detail(readings)
         if state.trip is None:
-            state.trip = Trip(now, row.name, text, row.reaction)
+            compared = row.compared(self.view) if row.compared is not None else NOTHING_COMPARED
+            state.trip = Trip(now, row.name, text, row.reaction, compared)
             state.events.append(Event(now, "trip", f"{row.name}: {text}"))
         else:
             state.events.append(Event(now, "alarm", f"{row.name}: {text}"))

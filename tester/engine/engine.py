@@ -6,7 +6,7 @@ from math import inf
 from typing import Final
 
 from tester.control.safe_outputs import safe_outputs
-from tester.control.state import Mode
+from tester.control.state import ACKNOWLEDGED, Mode
 from tester.control.step import Control
 from tester.engine.context import Context
 from tester.engine.devices import Devices
@@ -51,6 +51,8 @@ class Engine:
         self.last_scan_s = -inf
         self.scans = 0
         self.finished = False
+        self._trip = 0
+        """Number of the trip that is latched, in the record."""
 
     def tick(self, now: float) -> float:
         """Do what is due at ``now`` (s) and return when the next tick is due at the latest."""
@@ -120,8 +122,17 @@ class Engine:
         journal = self.ctx.journal
         for event in state.events:
             if event.kind == "trip" and state.trip is not None:
-                journal.trip(event.at_s, state.trip.name, event.text)
+                compared = state.trip.compared
+                self._trip = journal.trip(
+                    event.at_s, state.trip.name, event.text, compared.value, compared.limit, compared.unit
+                )
+            elif event.kind == ACKNOWLEDGED and self._trip:
+                journal.trip_acknowledged(self._trip, event.at_s, event.text)
+                self._trip = 0
             journal.event(event.at_s, event.kind, event.text, SEVERITIES.get(event.kind, "info"))
+        if state.mode is Mode.LATCHED and not self._trip:
+            # A fast stop that a person has made latches too: who comes next has to know.
+            self._trip = journal.trip(self.ctx.now, "fast stop", state.stop_requested)
         state.events.clear()
 
     def _journal_emergencies(self) -> None:

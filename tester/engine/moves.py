@@ -210,7 +210,8 @@ class Ask:
         """Done when it is answered; question and answer are journalled."""
         if not self.number:
             self._put(ctx, self.text)
-        answer = ctx.prompts.asked[self.number - 1].answer
+        asked = ctx.prompts.asked[self.number - 1]
+        answer = asked.answer
         alone = ctx.prompts.answers_itself(near=self.near)
         ctx.demand.attended = not alone
         if answer is None:
@@ -219,7 +220,7 @@ class Ask:
         closed = ctx.readings.guard_closed or alone
         if not self.heard:
             self.heard = True
-            ctx.journal.prompt_answered(self.record, ctx.now, answer)
+            ctx.journal.prompt_answered(self.record, ctx.now, answer, asked.by)
             if closed:
                 ctx.demand.attended = False
                 return True

@@ -16,6 +16,8 @@ class Prompt:
     at_s: float
     text: str
     answer: str | None = None
+    by: str = ""
+    """Who has answered; "" where nobody says so."""
 
 
 @dataclass(slots=True)

@@ -90,10 +90,10 @@ class Run:
             engine.executor.resume(engine.ctx)
         return refused
 
-    def request_ack(self) -> str:
+    def request_ack(self, by: str = "") -> str:
         """Acknowledge a trip: drives are told to reset their faults, IDLE follows when every cause is gone."""
         engine = self.engine
-        refused = engine.control.request_ack(engine.ctx.now)
+        refused = engine.control.request_ack(engine.ctx.now, by)
         if not refused:
             for drive in engine.devices.drives:
                 drive.reset_fault()

@@ -8,7 +8,15 @@ from pathlib import Path
 from tester.export.cells import encode
 from tester.export.manifest import MANIFEST, manifest_text
 from tester.export.results import RunResults, TableRow, results_of
-from tester.export.tables import appendix_rows, check_rows, condition_rows, repeat_rows, sample_rows, wheel_rows
+from tester.export.tables import (
+    appendix_rows,
+    check_rows,
+    condition_rows,
+    marked,
+    repeat_rows,
+    sample_rows,
+    wheel_rows,
+)
 from tester.store.files import write_whole
 from tester.store.reader import RunReader
 
@@ -30,7 +38,7 @@ __all__ = [
 
 def appendix(results: RunResults, decimals: int = 2) -> Iterator[bytes]:
     """Yield appendix.csv: the paper's table, UTF-8 with BOM."""
-    return encode(appendix_rows(results, decimals), bom=True)
+    return encode(marked(appendix_rows(results, decimals), results.run.info), bom=True)
 
 
 def conditions(results: RunResults) -> Iterator[bytes]:
@@ -40,22 +48,22 @@ def conditions(results: RunResults) -> Iterator[bytes]:
 
 def repeats(results: RunResults) -> Iterator[bytes]:
     """Yield repeats.csv."""
-    return encode(repeat_rows(results))
+    return encode(marked(repeat_rows(results), results.run.info))
 
 
 def wheels(results: RunResults) -> Iterator[bytes]:
     """Yield wheel.csv."""
-    return encode(wheel_rows(results))
+    return encode(marked(wheel_rows(results), results.run.info))
 
 
 def wear(results: RunResults) -> Iterator[bytes]:
     """Yield wear.csv: the checks of the wheels' diameters."""
-    return encode(check_rows(results))
+    return encode(marked(check_rows(results), results.run.info))
 
 
 def samples(reader: RunReader) -> Iterator[bytes]:
     """Yield samples.csv in bounded memory."""
-    return encode(sample_rows(reader))
+    return encode(marked(sample_rows(reader), reader.run().info))
 
 
 def write_file(path: Path, chunks: Iterable[bytes]) -> None:

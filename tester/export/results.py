@@ -113,6 +113,8 @@ class RunResults:
     wheels: tuple[WheelInfo, ...] = ()
     checks: tuple[WearCheck, ...] = ()
     """Of the wheels' diameters, in the order in which they were made."""
+    record_head: str = ""
+    """The last head of the record's chain, hexadecimal; "" where an older version recorded without one."""
 
     def wear_of(self, wheel: int) -> WearRate:
         """Return the wear rate over a wheel's life."""
@@ -173,7 +175,8 @@ def results_of(reader: RunReader) -> RunResults:
     missing = any(not row.result.ok for row in rows)
     held = under_way(reader.path.parent) is not None
     status = run_status(run.status, held=held, missing=missing)
-    return RunResults(run, tuple(rows), status, tuple(reader.wheels()), tuple(reader.wear_checks()))
+    wheels, checks = tuple(reader.wheels()), tuple(reader.wear_checks())
+    return RunResults(run, tuple(rows), status, wheels, checks, reader.record_head())
 
 
 def _measured(

@@ -19,7 +19,7 @@ from tester.export.cells import Cell, Number, exact, nominal
 from tester.export.results import Measured, RunResults
 from tester.process import SAMPLE_COLUMNS
 from tester.store.reader import RunReader
-from tester.store.records import ConditionInfo, StoredRepeat
+from tester.store.records import ConditionInfo, RunInfo, StoredRepeat
 
 _SETPOINTS = (
     "specimen",
@@ -79,10 +79,24 @@ _WEAR = ("diameter_before_mm", "diameter_after_mm", "u_worn_mm", "wear_mm3_n_m",
 
 _CHECK = tuple(field.name for field in fields(WearCheck))
 
+HEAD_COLUMN = "record_head"
+RISK_COLUMN = "accepted_risk"
+"""Last column of every table of a run for which a risk was accepted; ``conditions.csv`` has it among the metadata."""
+
 WHOLE_COLUMNS = frozenset({"gate", "burst", "repeat_key"})
 """Columns of a sample whose values are whole numbers."""
 
 SAMPLE_HEADER: tuple[str, ...] = (*SAMPLE_COLUMNS, "condition", "repeat", "attempt")
+
+
+def marked(rows: Iterator[tuple[Cell, ...]], run: RunInfo) -> Iterator[tuple[Cell, ...]]:
+    """Yield a table's rows, with a last column that names the risk, where one was accepted for the run."""
+    if not run.risk:
+        yield from rows
+        return
+    yield (*next(rows), RISK_COLUMN)
+    for row in rows:
+        yield (*row, run.risk)
 
 
 def appendix_rows(results: RunResults, decimals: int = 2) -> Iterator[tuple[Cell, ...]]:
@@ -104,11 +118,13 @@ def appendix_rows(results: RunResults, decimals: int = 2) -> Iterator[tuple[Cell
 def condition_rows(results: RunResults) -> Iterator[tuple[Cell, ...]]:
     """Yield one row for each condition, and for one measured on several wheels a row that combines them.
 
-    ``level`` is ``condition`` or ``combined``; what the recipe says of the test comes last, a column each.
+    ``level`` is ``condition`` or ``combined``; what the recipe says of the test follows, a column each, and last the
+    head of the record's chain: empty for a simulated run, which its seed proves, byte for byte.
     """
     metadata = dict(sorted(results.run.info.metadata.items()))
+    last = (*metadata.values(), "" if results.run.info.simulated else results.record_head)
     own = ("level", "condition", *_SETPOINTS, *_CONDITION, "warming_k_s", "holdable_band_k", *_MEASURED, *_WEAR)
-    yield (*own, *(key if key not in own else f"recipe_{key}" for key in metadata))
+    yield (*own, *(key if key not in (*own, HEAD_COLUMN) else f"recipe_{key}" for key in metadata), HEAD_COLUMN)
     for row in results.rows:
         for measured in row.replicates:
             rate = (measured.condition.warming_k_s, measured.condition.holdable_band_k)
@@ -116,11 +132,11 @@ def condition_rows(results: RunResults) -> Iterator[tuple[Cell, ...]]:
             result = _condition(measured.result)
             wear = _wear(results.condition_wear(measured.info.condition))
             cells = (*setpoints, *result[0], *rate, *result[1], *wear)
-            yield ("condition", measured.info.condition, *cells, *metadata.values())
+            yield ("condition", measured.info.condition, *cells, *last)
         if len(row.replicates) > 1:
             result = _condition(row.result)
             setpoints = _setpoints(row.info, None)
-            yield ("combined", None, *setpoints, *result[0], None, None, *result[1], *_wear(None), *metadata.values())
+            yield ("combined", None, *setpoints, *result[0], None, None, *result[1], *_wear(None), *last)
 
 
 def repeat_rows(results: RunResults) -> Iterator[tuple[Cell, ...]]:

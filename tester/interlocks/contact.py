@@ -8,7 +8,12 @@ from math import nan
 from typing import Final
 
 UNLOADED_N: Final = 20.0
-"""Below this the contact counts as unloaded, N [A]: noise, zero drift and the runout of a wheel that just touches."""
+"""Below this the contact counts as unloaded, N [A]: noise, zero drift and the runout of a wheel that just touches.
+
+No key of the rig file: what a rig may differ in, the zero of its cell, has keys of its own (``zero_stop``,
+``arming.unloaded``), which may not be looser than 30 N because they lean on this. Were 20 N set higher, a rig would
+turn its angles, and end its stops, under a load; set lower, a drifting zero would keep stops from ending.
+"""
 STIFFNESS_EXPONENT: Final = 0.23
 """Tangent stiffness of the line contact grows with load to this power: 125 to 172 N/mm from 100 to 400 N [A]."""
 _DEPTH_SHARE: Final = 1.0 / (1.0 - STIFFNESS_EXPONENT)

@@ -6,7 +6,7 @@ from typing import Final
 
 from tester.interlocks.inputs import Inputs
 from tester.interlocks.parameter import NOT_NEGATIVE, SHARE, Direction, Parameter
-from tester.interlocks.row import ACK, CONTROLLED, REPAIR, Interlock
+from tester.interlocks.row import ACK, CONTROLLED, REPAIR, Compared, Interlock
 
 
 def _device_refuses(v: Inputs) -> bool:
@@ -43,6 +43,7 @@ LINE_NOISY: Final = Interlock(
     cause="a Modbus device answers badly (CRC, time-outs, late replies)",
     level="failed requests > line_errors",
     condition=_line_noisy,
+    compared=lambda v: Compared(v.readings.line_errors, v.parameters[LINE_ERRORS], "1"),
     parameters=(LINE_ERRORS,),
     delay=LINE_ERRORS_DELAY_S,
     reaction=CONTROLLED,
@@ -65,6 +66,7 @@ WHEEL_WORN: Final = Interlock(
     cause="wheel diameter below its least",
     level="cold diameter < least_diameter",
     condition=_wheel_worn,
+    compared=lambda v: Compared(v.readings.cold_mm, v.parameters[LEAST_DIAMETER_MM], "mm"),
     parameters=(LEAST_DIAMETER_MM,),
     reaction=CONTROLLED,
     reset="new wheel, acknowledged",

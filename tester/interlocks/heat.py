@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from math import inf
+from math import inf, nan
 from typing import Final
 
 from tester.interlocks.inputs import Inputs
 from tester.interlocks.parameter import NOT_NEGATIVE, Direction, Parameter
-from tester.interlocks.row import ACK, CONTROLLED, REPAIR, Interlock, always
+from tester.interlocks.row import ACK, CONTROLLED, REPAIR, Compared, Interlock, always
 
 _INF: Final = inf
 
@@ -28,6 +28,7 @@ SURFACE_HOT: Final = Interlock(
     cause="rubber surface above its limit",
     level="surface > limits.surface",
     condition=_surface_hot,
+    compared=lambda v: Compared(v.readings.surface_c, v.limits.surface_c, "degC"),
     delay=SURFACE_DELAY_S,
     reaction=CONTROLLED,
     reset=ACK,
@@ -55,6 +56,7 @@ JACKET_HOT: Final = Interlock(
     cause="hub above its limit",
     level="hub > limits.jacket + jacket_margin",
     condition=_hub_hot,
+    compared=lambda v: Compared(v.readings.hub_c, v.limits.jacket_c + v.parameters[JACKET_MARGIN_K], "degC"),
     parameters=(JACKET_MARGIN_K,),
     delay=JACKET_DELAY_S,
     reaction=CONTROLLED,
@@ -78,17 +80,23 @@ RUNAWAY_DELAY_S: Final = Parameter(
 )  # fmt: skip
 
 
-def _hub_above_setpoints(v: Inputs) -> bool:
+def _highest_c(v: Inputs) -> float:
+    """Return what the hub may be by its setpoints: the highest of those that count."""
     r, setpoints = v.readings, v.hub_setpoints
-    if v.attended or not r.jacket_valid or not setpoints:
-        return False
     # A hub that was hot takes longer to cool than the window is: without output it must not get hotter again,
     # except by a rubber that friction has made hotter than itself.
     coolest = v.jacket.coolest_c
     highest = max(setpoints[0][1], v.limits.hub_min_c, coolest)
     if coolest > -_INF and r.surface_valid and r.surface_c > highest:
         highest = r.surface_c
-    return not (r.hub_c <= highest + v.parameters[RUNAWAY_K])
+    return highest
+
+
+def _hub_above_setpoints(v: Inputs) -> bool:
+    r = v.readings
+    if v.attended or not r.jacket_valid or not v.hub_setpoints:
+        return False
+    return not (r.hub_c <= _highest_c(v) + v.parameters[RUNAWAY_K])
 
 
 JACKET_RUNAWAY: Final = Interlock(
@@ -96,6 +104,7 @@ JACKET_RUNAWAY: Final = Interlock(
     cause="hub above every setpoint of the last ten minutes",
     level="hub > highest setpoint in runaway_window + runaway; without output: > coolest since, or rubber, + runaway",
     condition=_hub_above_setpoints,
+    compared=lambda v: Compared(v.readings.hub_c, _highest_c(v) + v.parameters[RUNAWAY_K], "degC"),
     parameters=(RUNAWAY_K, RUNAWAY_WINDOW_S),
     delay=RUNAWAY_DELAY_S,
     reaction=CONTROLLED,
@@ -140,6 +149,7 @@ HEATER_STUCK: Final = Interlock(
     cause="the hub heats although no output is given",
     level="rate > stuck_rate, no output for stuck_off",
     condition=_hub_rises,
+    compared=lambda v: Compared(v.jacket.rate_k_s, v.parameters[STUCK_RATE_K_S], "K/s"),
     parameters=(STUCK_RATE_K_S, STUCK_OFF_S, RATE_FILTER_S, RATE_WINDOW_S, RATE_SETTLE_S),
     delay=STUCK_DELAY_S,
     reaction=CONTROLLED,
@@ -164,6 +174,7 @@ HEATER_LINE_OPEN: Final = Interlock(
     cause="full output and the hub does not warm: slip ring or heater open",
     level="output > open_output for open, rise < open_rise",
     condition=_hub_does_not_warm,
+    compared=lambda v: Compared(v.jacket.rise_k, v.parameters[OPEN_RISE_K], "K"),
     parameters=(OPEN_OUTPUT_PERCENT, OPEN_S, OPEN_BELOW_K, OPEN_RISE_K),
     reaction=CONTROLLED,
     reset=REPAIR,
@@ -186,6 +197,7 @@ HEATING_AT_STANDSTILL: Final = Interlock(
     cause="jacket heating with the wheel not turning",
     level="output > 0, wheel stands",
     condition=_heats_a_standing_wheel,
+    compared=lambda v: Compared(v.readings.heat_percent, 0.0, "%"),
     delay=STANDSTILL_HEAT_DELAY_S,
     at_rest=always,
     ends_lease=True,
@@ -214,6 +226,7 @@ HUB_JUMP: Final = Interlock(
     cause="hub sensor's line noisy (slip ring)",
     level="two readings apart by > jump",
     condition=_hub_jumps,
+    compared=lambda v: Compared(v.jacket.jump_k, v.parameters[JUMP_K], "K"),
     parameters=(JUMP_K, BLIND_S),
     reaction=CONTROLLED,
     reset=ACK,
@@ -234,6 +247,7 @@ SURFACE_JUMP: Final = Interlock(
     cause="thermometer moved, covered or disturbed",
     level="two readings apart by > jump",
     condition=_surface_jumps,
+    compared=lambda v: Compared(v.surface.jump_k, v.parameters[JUMP_K], "K"),
     parameters=(JUMP_K, BLIND_S),
     reaction=CONTROLLED,
     reset=ACK,
@@ -268,11 +282,20 @@ def _surface_frozen(v: Inputs) -> bool:
     )
 
 
+def _repeated(v: Inputs) -> Compared:
+    r, p = v.readings, v.parameters
+    same_s = r.now_s - r.surface_changed_s
+    if not (same_s <= p[FROZEN_SURFACE_S]):
+        return Compared(same_s, p[FROZEN_SURFACE_S], "s")
+    return Compared(abs(v.model_c - v.surface.model_c), p[FROZEN_MODEL_K], "K")
+
+
 THERMOMETER_FROZEN: Final = Interlock(
     name="thermometer frozen",
     cause="the thermometer repeats itself",
     level="unchanged for frozen_surface, or while the model moved by frozen_model, turning",
     condition=_surface_frozen,
+    compared=_repeated,
     parameters=(FROZEN_SURFACE_S, FROZEN_MODEL_K),
     delay=FROZEN_DELAY_S,
     reaction=CONTROLLED,
@@ -304,6 +327,7 @@ SURFACE_OFF_MODEL: Final = Interlock(
     cause="thermometer misaligned, dirty or wrong emissivity",
     level="surface off the thermal observer by > model, turning",
     condition=_surface_off_model,
+    compared=lambda v: Compared(abs(v.readings.surface_c - v.model_c), v.parameters[MODEL_K], "K"),
     parameters=(MODEL_K,),
     delay=MODEL_DELAY_S,
     reaction=CONTROLLED,
@@ -336,11 +360,17 @@ def _surface_stale(v: Inputs) -> bool:
     return _surface_unknown(v) and _surface_wanted(v)
 
 
+def _surface_age(v: Inputs) -> Compared:
+    r = v.readings
+    return Compared(r.now_s - r.surface_at_s if r.surface_valid else nan, v.parameters[STALE_IR_S], "s")
+
+
 SURFACE_STALE: Final = Interlock(
     name="surface data stale",
     cause="no fresh surface temperature",
     level="age > stale_ir, or not valid, and wanted",
     condition=_surface_stale,
+    compared=_surface_age,
     unseen=_surface_unknown,
     parameters=(STALE_IR_S,),
     delay=STALE_DELAY_S,
@@ -354,11 +384,17 @@ def _hub_unknown(v: Inputs) -> bool:
     return not v.attended and not (r.jacket_valid and r.now_s - r.jacket_at_s <= v.parameters[STALE_JACKET_S])
 
 
+def _hub_age(v: Inputs) -> Compared:
+    r = v.readings
+    return Compared(r.now_s - r.jacket_at_s if r.jacket_valid else nan, v.parameters[STALE_JACKET_S], "s")
+
+
 JACKET_STALE: Final = Interlock(
     name="jacket data stale",
     cause="no fresh hub temperature, sensor broken",
     level="age > stale_jacket, or not valid",
     condition=_hub_unknown,
+    compared=_hub_age,
     parameters=(STALE_JACKET_S,),
     delay=STALE_DELAY_S,
     reaction=CONTROLLED,

@@ -8,7 +8,7 @@ from tester.interlocks.contact import UNLOADED_N, depth_mm
 from tester.interlocks.inputs import Inputs
 from tester.interlocks.known import SPEEDS_OLD_S
 from tester.interlocks.parameter import AT_LEAST_ONE, NOT_NEGATIVE, SHARE, Direction, Parameter
-from tester.interlocks.row import ACK, FAST, LOADED, REPAIR, Interlock
+from tester.interlocks.row import ACK, FAST, LOADED, REPAIR, Compared, Interlock
 
 STALE_CELL_S: Final = Parameter(
     "stale_cell_s", "s", "50 ms", "age of the load",
@@ -37,6 +37,7 @@ CELL_STALE: Final = Interlock(
     cause="load unknown while in contact",
     level="age > stale_cell",
     condition=_cell_old,
+    compared=lambda v: Compared(v.readings.now_s - v.readings.cell_at_s, v.parameters[STALE_CELL_S], "s"),
     unseen=_cell_still_old,
     parameters=(STALE_CELL_S,),
     delay=STALE_CELL_DELAY_S,
@@ -83,11 +84,20 @@ def _cell_frozen(v: Inputs) -> bool:
     return v.pressing and unmoved and not (r.press_mm - v.contact_mm <= v.parameters[TOUCH_MARGIN_MM])
 
 
+def _repeated(v: Inputs) -> Compared:
+    r, p = v.readings, v.parameters
+    beyond_mm = r.press_mm - v.contact_mm
+    if v.pressing and not (r.force_z_n >= UNLOADED_N) and not (beyond_mm <= p[TOUCH_MARGIN_MM]):
+        return Compared(beyond_mm, p[TOUCH_MARGIN_MM], "mm")
+    return Compared(r.now_s - r.cell_changed_s, p[FROZEN_CELL_S], "s")
+
+
 CELL_FROZEN: Final = Interlock(
     name="load cell frozen",
     cause="the cell repeats itself",
     level="identical raw counts for frozen_cell, loaded and turning; or no force touch_margin beyond the contact",
     condition=_cell_frozen,
+    compared=_repeated,
     parameters=(FROZEN_CELL_S, TOUCH_MARGIN_MM),
     when=LOADED,
     reaction=FAST,
@@ -104,6 +114,7 @@ OVERLOAD: Final = Interlock(
     cause="normal force above the rig's limit",
     level="Fz > limits.load",
     condition=_overloaded,
+    compared=lambda v: Compared(v.readings.force_z_n, v.limits.load_n, "N"),
     when=LOADED,
     reaction=FAST,
     reset=ACK,
@@ -131,14 +142,18 @@ PRESSED_N: Final = Parameter(
 )  # fmt: skip
 
 
-def _above_target(v: Inputs) -> bool:
-    force_n, p = v.readings.force_z_n, v.parameters
+def _most_n(v: Inputs) -> float:
+    p = v.parameters
     if not v.pressing:
-        return not (force_n <= v.least_n + p[PRESSED_N])
+        return v.least_n + p[PRESSED_N]
     wanted_n, highest_n = v.demand.load_n, v.contact.highest_n
     if not highest_n > wanted_n:
         highest_n = wanted_n
-    return not (force_n <= p[OVERLOAD_FACTOR] * highest_n + p[OVERLOAD_MARGIN_N])
+    return p[OVERLOAD_FACTOR] * highest_n + p[OVERLOAD_MARGIN_N]
+
+
+def _above_target(v: Inputs) -> bool:
+    return not (v.readings.force_z_n <= _most_n(v))
 
 
 OVERSHOOT: Final = Interlock(
@@ -146,6 +161,7 @@ OVERSHOOT: Final = Interlock(
     cause="normal force above its target",
     level="Fz > overload_factor x target + overload_margin; or pressed more while none is wanted",
     condition=_above_target,
+    compared=lambda v: Compared(v.readings.force_z_n, _most_n(v), "N"),
     parameters=(OVERLOAD_FACTOR, OVERLOAD_MARGIN_N, PRESSED_N),
     delay=OVERLOAD_DELAY_S,
     when=LOADED,
@@ -170,12 +186,15 @@ DEPTH_DELAY_S: Final = Parameter(
 )  # fmt: skip
 
 
+def _deepest_mm(v: Inputs) -> float:
+    p, needed_mm = v.parameters, depth_mm(v.readings.force_z_n, v.limits.stiffness_n_per_mm)
+    return p[DEPTH_FACTOR] * needed_mm + p[DEPTH_MARGIN_MM]
+
+
 def _too_deep(v: Inputs) -> bool:
     if not (v.pressing and v.contact.in_contact):
         return False
-    r, p = v.readings, v.parameters
-    needed_mm = depth_mm(r.force_z_n, v.limits.stiffness_n_per_mm)
-    return not (r.press_mm - v.contact_mm <= p[DEPTH_FACTOR] * needed_mm + p[DEPTH_MARGIN_MM])
+    return not (v.readings.press_mm - v.contact_mm <= _deepest_mm(v))
 
 
 TOO_DEEP: Final = Interlock(
@@ -183,6 +202,7 @@ TOO_DEEP: Final = Interlock(
     cause="the cell reads too little: the press is further than its load needs",
     level="depth > depth_factor x that of Fz (loops.load.stiffness) + depth_margin",
     condition=_too_deep,
+    compared=lambda v: Compared(v.readings.press_mm - v.contact_mm, _deepest_mm(v), "mm"),
     parameters=(DEPTH_FACTOR, DEPTH_MARGIN_MM),
     delay=DEPTH_DELAY_S,
     when=LOADED,
@@ -203,13 +223,16 @@ CONTACT_LEAST_N: Final = Parameter(
 CONTACT_DELAY_S: Final = Parameter("contact_delay_s", "s", "200 ms", "... for this long [A]", NOT_NEGATIVE)
 
 
+def _lowest_n(v: Inputs) -> float:
+    wanted_n, lowest_n = v.demand.load_n, v.contact.lowest_n
+    return lowest_n if lowest_n < wanted_n else wanted_n
+
+
 def _contact_lost(v: Inputs) -> bool:
-    contact, p = v.contact, v.parameters
-    if not (v.pressing and contact.loaded):
+    p = v.parameters
+    if not (v.pressing and v.contact.loaded):
         return False
-    wanted_n, lowest_n = v.demand.load_n, contact.lowest_n
-    if not lowest_n < wanted_n:
-        lowest_n = wanted_n
+    lowest_n = _lowest_n(v)
     return lowest_n >= p[CONTACT_LEAST_N] and not (v.readings.force_z_n >= p[CONTACT_SHARE] * lowest_n)
 
 
@@ -218,6 +241,7 @@ CONTACT_LOST: Final = Interlock(
     cause="normal force far below target",
     level="Fz < contact_share of a target of contact_least or more",
     condition=_contact_lost,
+    compared=lambda v: Compared(v.readings.force_z_n, v.parameters[CONTACT_SHARE] * _lowest_n(v), "N"),
     parameters=(CONTACT_SHARE, CONTACT_LEAST_N),
     delay=CONTACT_DELAY_S,
     when=LOADED,
@@ -241,6 +265,7 @@ SLIP_POWER: Final = Interlock(
     cause="friction power above the rig's limit",
     level="friction x slip > limits.slip_power",
     condition=_too_much_power,
+    compared=lambda v: Compared(v.friction_w, v.limits.slip_power_w, "W"),
     delay=SLIP_POWER_DELAY_S,
     when=LOADED,
     reaction=FAST,

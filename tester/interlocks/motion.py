@@ -7,8 +7,9 @@ from typing import Final
 from tester.interlocks.contact import UNLOADED_N
 from tester.interlocks.inputs import Inputs
 from tester.interlocks.known import STALE_INPUTS_S, STANDING_M_S
+from tester.interlocks.monitors import SpeedTracker
 from tester.interlocks.parameter import AT_LEAST_ONE, NOT_NEGATIVE, SHARE, Direction, Parameter
-from tester.interlocks.row import ACK, FAST, LOADED, REPAIR, Interlock
+from tester.interlocks.row import ACK, FAST, LOADED, REPAIR, Compared, Interlock
 
 STALE_CAN_SCANS: Final = Parameter(
     "stale_can_scans", "1", "2.5", "age of the drives' data in scan periods ...", AT_LEAST_ONE,
@@ -22,15 +23,19 @@ STALE_CAN_S: Final = Parameter(
 )  # fmt: skip
 
 
+def _allowed_s(v: Inputs) -> float:
+    # Drives answer a scan's SYNC: after a late one their data is as old as that scan was ("scan late" judges).
+    p = v.parameters
+    allowed = p[STALE_CAN_SCANS] * max(v.scan_s, v.readings.now_s - v.last_s)
+    most = p[STALE_CAN_S]
+    return allowed if allowed < most else most
+
+
 def _drive_data_old(v: Inputs) -> bool:
     r = v.readings
     if not (v.demand.enabled and r.drives_enabled):
         return False
-    # Drives answer a scan's SYNC: after a late one their data is as old as that scan was ("scan late" judges).
-    p = v.parameters
-    allowed = p[STALE_CAN_SCANS] * max(v.scan_s, r.now_s - v.last_s)
-    most = p[STALE_CAN_S]
-    since = r.now_s - (allowed if allowed < most else most)
+    since = r.now_s - _allowed_s(v)
     return not (
         r.wheel_at_s >= since
         and r.belt_at_s >= since
@@ -40,11 +45,18 @@ def _drive_data_old(v: Inputs) -> bool:
     )
 
 
+def _oldest_drive_data(v: Inputs) -> Compared:
+    r = v.readings
+    oldest_s = min(r.wheel_at_s, r.belt_at_s, r.press_at_s, r.sideslip_at_s, r.camber_at_s)
+    return Compared(r.now_s - oldest_s, _allowed_s(v), "s")
+
+
 DRIVE_DATA_STALE: Final = Interlock(
     name="drive data stale",
     cause="no fresh drive data",
     level="age > stale_can_scans periods, or > stale_can",
     condition=_drive_data_old,
+    compared=_oldest_drive_data,
     parameters=(STALE_CAN_SCANS, STALE_CAN_S),
     reaction=FAST,
     reset=ACK,
@@ -61,6 +73,7 @@ INPUTS_STALE: Final = Interlock(
     cause="no fresh input word from the drive with the safety inputs",
     level="age > stale_inputs",
     condition=_inputs_old,
+    compared=lambda v: Compared(v.readings.now_s - v.readings.inputs_at_s, v.parameters[STALE_INPUTS_S], "s"),
     parameters=(STALE_INPUTS_S,),
     reaction=FAST,
     reset=ACK,
@@ -108,11 +121,20 @@ def _too_fast(v: Inputs) -> bool:
     return not (-wheel <= r.wheel_speed_m_s <= wheel and -belt <= r.belt_speed_m_s <= belt)
 
 
+def _faster(v: Inputs) -> Compared:
+    r, share = v.readings, 1.0 + v.parameters[OVERSPEED_SHARE]
+    belt_m_s, most_m_s = abs(r.belt_speed_m_s), v.limits.belt_speed_m_s * share
+    if not (belt_m_s <= most_m_s):
+        return Compared(belt_m_s, most_m_s, "m/s")
+    return Compared(abs(r.wheel_speed_m_s), v.limits.wheel_speed_m_s * share, "m/s")
+
+
 OVERSPEED: Final = Interlock(
     name="overspeed",
     cause="wheel or belt above its limit",
     level="speed > limit + overspeed_share",
     condition=_too_fast,
+    compared=_faster,
     parameters=(OVERSPEED_SHARE,),
     delay=OVERSPEED_DELAY_S,
     reaction=FAST,
@@ -136,6 +158,12 @@ SPEED_ERROR_DELAY_S: Final = Parameter(
 )  # fmt: skip
 
 
+def _off_ramp(v: Inputs, speed_m_s: float, ramp: SpeedTracker) -> Compared:
+    error = v.parameters[SPEED_ERROR_M_S]
+    limit = ramp.low_m_s - error if speed_m_s < ramp.low_m_s else ramp.high_m_s + error
+    return Compared(speed_m_s, limit, "m/s")
+
+
 def _wheel_off_its_ramp(v: Inputs) -> bool:
     if not v.confirmed:
         return False
@@ -148,6 +176,7 @@ WHEEL_SPEED: Final = Interlock(
     cause="wheel not at its speed: jammed, slipping coupling, wrong scale",
     level="off what its ramp allows by > speed_error",
     condition=_wheel_off_its_ramp,
+    compared=lambda v: _off_ramp(v, v.readings.wheel_speed_m_s, v.wheel),
     parameters=(RAMP_SHARE, SPEED_ERROR_M_S),
     delay=SPEED_ERROR_DELAY_S,
     reaction=FAST,
@@ -167,6 +196,7 @@ BELT_SPEED: Final = Interlock(
     cause="belt not at its speed: jammed, wrong scale",
     level="off what its ramp allows by > speed_error",
     condition=_belt_off_its_ramp,
+    compared=lambda v: _off_ramp(v, v.readings.belt_speed_m_s, v.belt),
     parameters=(RAMP_SHARE, SPEED_ERROR_M_S),
     delay=SPEED_ERROR_DELAY_S,
     reaction=FAST,
@@ -189,6 +219,7 @@ PRESS_SPEED: Final = Interlock(
     cause="press comes on its own: broken velocity loop, setpoints lost",
     level="further towards the contact than its ramp allows by > press_error",
     condition=_press_ahead,
+    compared=lambda v: Compared(v.press.ahead_mm, v.parameters[PRESS_ERROR_MM], "mm"),
     parameters=(PRESS_ERROR_MM,),
     reaction=FAST,
     reset=REPAIR,
@@ -201,11 +232,18 @@ def _press_beyond_travel(v: Inputs) -> bool:
     return wanted and not (limits.press_low_mm <= r.press_mm <= limits.press_high_mm)
 
 
+def _beyond_end(v: Inputs) -> Compared:
+    press_mm, limits = v.readings.press_mm, v.limits
+    end_mm = limits.press_low_mm if press_mm < limits.press_low_mm else limits.press_high_mm
+    return Compared(press_mm, end_mm, "mm")
+
+
 PRESS_TRAVEL: Final = Interlock(
     name="press travel",
     cause="press outside its travel: ran past its end, or its zero is wrong",
     level="position outside axes.press.software_limits",
     condition=_press_beyond_travel,
+    compared=_beyond_end,
     reaction=FAST,
     reset=ACK,
 )
@@ -241,11 +279,18 @@ def _one_stands(v: Inputs) -> bool:
     return not slow and not quick
 
 
+def _slower(v: Inputs) -> Compared:
+    wheel_m_s, belt_m_s = abs(v.readings.wheel_speed_m_s), abs(v.readings.belt_speed_m_s)
+    still_m_s = v.parameters[STANDING_M_S]
+    return Compared(belt_m_s if not (belt_m_s > still_m_s) else wheel_m_s, still_m_s, "m/s")
+
+
 STANDING_UNDER_LOAD: Final = Interlock(
     name="drive standing under load",
     cause="wheel on a stopped belt, or belt under a stopped wheel",
     level="load > 20 N, one below standing, the other above apart",
     condition=_one_stands,
+    compared=_slower,
     parameters=(STANDING_M_S, APART_M_S),
     delay=STANDING_DELAY_S,
     reaction=FAST,
@@ -290,6 +335,7 @@ BELT_TORN: Final = Interlock(
     cause="friction and drive torque collapsed while sliding under load",
     level="friction, and torque less torn_friction, < torn_share of the load at slip > torn_slip",
     condition=_no_friction,
+    compared=lambda v: Compared(v.friction_n, v.parameters[TORN_SHARE] * v.readings.force_z_n, "N"),
     parameters=(TORN_SHARE, TORN_SLIP_M_S, TORN_FRICTION_NM),
     delay=TORN_DELAY_S,
     when=LOADED,

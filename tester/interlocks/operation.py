@@ -29,6 +29,9 @@ HOLD_AT_MOST_S: Final = Parameter(
     direction=Direction.LOWER, hardest="120 min",
     because="nobody is expected to attend to a hot, turning wheel for longer than that",
 )  # fmt: skip
+ACK_WAIT_S: Final = Parameter(
+    "ack_wait_s", "s", "1 s", "an acknowledged drive has reset its fault by then, or it is refused [A]",
+)  # fmt: skip
 ZERO_WARN_N: Final = Parameter(
     "zero_warn_n", "N", "5 N", "the unloaded cell is off its reference zero by this: a warning",
 )  # fmt: skip
@@ -52,6 +55,6 @@ COOLDOWN_AT_MOST_S: Final = Parameter(
 )  # fmt: skip
 
 PARAMETERS: Final[tuple[Parameter, ...]] = (
-    MAX_SLIP_M_S, TURNING_CONFIRMED_S, START_K, COLD_K, HOLD_AT_MOST_S, ZERO_WARN_N, ZERO_STOP_N, COOLDOWN_HUB_C,
-    COOLDOWN_SPEED_M_S, COOLDOWN_AT_MOST_S,
+    MAX_SLIP_M_S, TURNING_CONFIRMED_S, START_K, COLD_K, HOLD_AT_MOST_S, ACK_WAIT_S, ZERO_WARN_N, ZERO_STOP_N,
+    COOLDOWN_HUB_C, COOLDOWN_SPEED_M_S, COOLDOWN_AT_MOST_S,
 )  # fmt: skip

@@ -10,12 +10,25 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Enum
+from math import nan
 from typing import Final, TypeAlias
 
 from tester.interlocks.inputs import Inputs
 from tester.interlocks.parameter import Parameter, Values
 
 Condition: TypeAlias = Callable[[Inputs], bool]
+
+
+@dataclass(frozen=True, slots=True)
+class Compared:
+    """What a row has found beyond its limit, as a person is told it. NaN where it is not known, or no one number."""
+
+    value: float
+    limit: float
+    unit: str
+
+
+NOTHING_COMPARED: Final = Compared(nan, nan, "")
 
 
 class Reaction(Enum):
@@ -76,6 +89,8 @@ class Interlock:
     delay: Parameter | None = None
     """How long the condition must hold; None: it trips in its first scan."""
     when: When = ALWAYS
+    compared: Callable[[Inputs], Compared] | None = None
+    """Value and limit of a trip, for the record; asked when the row trips. None: what it looks at is no number."""
     unseen: Condition | None = None
     """For a condition that is only looked at while drives, load or heat are wanted: is its cause still there? Asked
     before a trip of this row is acknowledged."""

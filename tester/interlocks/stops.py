@@ -7,7 +7,7 @@ from typing import Final
 from tester.interlocks.inputs import Inputs
 from tester.interlocks.known import CLEAR_MM, SPEEDS_OLD_S, contactor_open, standing, unloaded
 from tester.interlocks.parameter import POSITIVE, Direction, Parameter
-from tester.interlocks.row import CONTROLLED, ENDING, FAST, POWER_OFF, REPAIR, Interlock, always
+from tester.interlocks.row import CONTROLLED, ENDING, FAST, POWER_OFF, REPAIR, Compared, Interlock, always
 
 LIFT_LATE_S: Final = Parameter(
     "lift_late_s", "s", "1 s", "after a stop: unloaded by then, else both drives stop fast [A]",
@@ -25,6 +25,7 @@ NOT_LIFTED: Final = Interlock(
     cause="still loaded after a stop or in a hold",
     level="Fz >= 20 N at lift_late after it began",
     condition=_still_loaded,
+    compared=lambda v: Compared(v.lifting_s, v.parameters[LIFT_LATE_S], "s"),
     parameters=(LIFT_LATE_S, SPEEDS_OLD_S, CLEAR_MM),
     when=ENDING,
     reaction=FAST,
@@ -55,11 +56,19 @@ def _lift_failed(v: Inputs) -> bool:
     return (late or goes_on) and not unloaded(v)
 
 
+def _still_pressing(v: Inputs) -> Compared:
+    press_mm, most_mm = v.readings.press_mm, v.stop.press_mm + v.parameters[PUSHED_MM]
+    if v.stopped_s >= 0.0 and not (press_mm <= most_mm):
+        return Compared(press_mm, most_mm, "mm")
+    return Compared(v.lifting_s, v.parameters[LIFT_FAILED_S], "s")
+
+
 LIFT_FAILED: Final = Interlock(
     name="lift failed",
     cause="still loaded after the quick stop, or the press goes on",
     level="Fz >= 20 N at lift_failed after it began; or the press beyond its ramp and lag by pushed",
     condition=_lift_failed,
+    compared=_still_pressing,
     parameters=(LIFT_FAILED_S, PUSHED_MM, PRESS_LAG_S),
     when=ENDING,
     reaction=POWER_OFF,
@@ -78,12 +87,16 @@ STOP_MARGIN_S: Final = Parameter(
 )  # fmt: skip
 
 
-def _ramp_over(v: Inputs) -> bool:
-    stop, p = v.stop, v.parameters
-    if stop.creeps or not v.stopped_s >= 0.0 or standing(v):
-        return False
+def _ramp_s(v: Inputs) -> float:
     # Slip is taken out first, then both come down on the ramp.
-    return not (v.stopped_s <= p[SLIP_OUT_S] + stop.speed_m_s / v.limits.deceleration_m_s2 + p[STOP_MARGIN_S])
+    p = v.parameters
+    return p[SLIP_OUT_S] + v.stop.speed_m_s / v.limits.deceleration_m_s2 + p[STOP_MARGIN_S]
+
+
+def _ramp_over(v: Inputs) -> bool:
+    if v.stop.creeps or not v.stopped_s >= 0.0 or standing(v):
+        return False
+    return not (v.stopped_s <= _ramp_s(v))
 
 
 NOT_STOPPING: Final = Interlock(
@@ -91,6 +104,7 @@ NOT_STOPPING: Final = Interlock(
     cause="a drive turns longer than its ramp allows",
     level="turning at slip_out + v / deceleration + stop_margin",
     condition=_ramp_over,
+    compared=lambda v: Compared(v.stopped_s, _ramp_s(v), "s"),
     parameters=(SLIP_OUT_S, STOP_MARGIN_S),
     when=ENDING,
     reaction=FAST,
@@ -98,12 +112,14 @@ NOT_STOPPING: Final = Interlock(
 )
 
 
+def _quick_stop_s(v: Inputs) -> float:
+    return v.stop.fast_speed_m_s / v.limits.quick_stop_m_s2 + v.parameters[STOP_MARGIN_S]
+
+
 def _quick_stop_over(v: Inputs) -> bool:
-    stop, now = v.stop, v.readings.now_s
-    if stop.creeps or not v.stopped_s >= 0.0 or standing(v):
+    if v.stop.creeps or not v.stopped_s >= 0.0 or standing(v):
         return False
-    allowed_s = stop.fast_speed_m_s / v.limits.quick_stop_m_s2 + v.parameters[STOP_MARGIN_S]
-    return not (now - stop.fast_s <= allowed_s)
+    return not (v.readings.now_s - v.stop.fast_s <= _quick_stop_s(v))
 
 
 QUICK_STOP_FAILED: Final = Interlock(
@@ -111,6 +127,7 @@ QUICK_STOP_FAILED: Final = Interlock(
     cause="a drive turns longer than its quick stop allows",
     level="turning at v / quick-stop deceleration + stop_margin",
     condition=_quick_stop_over,
+    compared=lambda v: Compared(v.readings.now_s - v.stop.fast_s, _quick_stop_s(v), "s"),
     parameters=(STOP_MARGIN_S,),
     when=ENDING,
     reaction=POWER_OFF,
@@ -129,6 +146,10 @@ def _gives_output(v: Inputs) -> bool:
     return due and not (v.readings.heat_percent <= 0.0)
 
 
+def _output(v: Inputs) -> Compared:
+    return Compared(v.readings.heat_percent, 0.0, "%")
+
+
 def _still_heats(v: Inputs) -> bool:
     return _gives_output(v) and not contactor_open(v)
 
@@ -138,6 +159,7 @@ HEAT_NOT_OFF: Final = Interlock(
     cause="the jacket heats after a stop",
     level="output and contactor on at heat_off after the stop",
     condition=_still_heats,
+    compared=_output,
     parameters=(HEAT_OFF_S,),
     when=ENDING,
     ends_lease=True,
@@ -155,6 +177,7 @@ OUTPUT_NOT_OFF: Final = Interlock(
     cause="the jacket's controller gives output after a stop, whatever the contactor does",
     level="output on at heat_off after the stop, or at rest",
     condition=_output_on,
+    compared=_output,
     parameters=(HEAT_OFF_S,),
     when=ENDING,
     ends_lease=True,
@@ -186,6 +209,7 @@ STOP_NOT_ENDED: Final = Interlock(
     cause="a stop has not come to its end: standing, lifted, unloaded, without heat",
     level="stop_timeout after it began, and once more after the power was taken",
     condition=_endless,
+    compared=lambda v: Compared(v.readings.now_s - v.mode_since_s, v.parameters[STOP_TIMEOUT_S], "s"),
     parameters=(STOP_TIMEOUT_S, LIFTED_MM),
     when=ENDING,
     reaction=POWER_OFF,

@@ -6,7 +6,7 @@ from typing import Final
 
 from tester.interlocks.inputs import Inputs
 from tester.interlocks.parameter import Direction, Parameter
-from tester.interlocks.row import ACK, EMERGENCY, FAST, WARN, Interlock
+from tester.interlocks.row import ACK, EMERGENCY, FAST, WARN, Compared, Interlock
 
 
 def _chain_open(v: Inputs) -> bool:
@@ -74,6 +74,7 @@ CLOCK_JUMP: Final = Interlock(
     cause="the scan's clock went back",
     level="now < last scan",
     condition=_clock_back,
+    compared=lambda v: Compared(v.readings.now_s - v.last_s, 0.0, "s"),
     reaction=FAST,
     reset=ACK,
 )
@@ -95,6 +96,7 @@ SCAN_LATE: Final = Interlock(
     cause="the controlling process was late",
     level="scan later than late_scan",
     condition=_late,
+    compared=lambda v: Compared(v.late_s, v.parameters[LATE_SCAN_S], "s"),
     parameters=(LATE_WARN_S, LATE_SCAN_S),
     reaction=FAST,
     reset=ACK,

@@ -154,6 +154,10 @@ class LoadLoopConfig:
     """Tangent stiffness of the contact at 200 N."""
     integral_s: Annotated[float, "s", _POSITIVE]
     touch_load_n: Annotated[float, "N", _POSITIVE]
+    open_share: Annotated[float, "1", _SHARE]
+    """Below this share of the touching force the contact was seen open: only then is the next touch a first one."""
+    follow_rate_n_s: Annotated[float, "N/s", _POSITIVE]
+    """A change of load is expected to be followed at this rate at least: what the load is watched against."""
     touch_speed_mm_s: Annotated[float, "mm/s", _POSITIVE]
     loading_speed_mm_s: Annotated[float, "mm/s", _POSITIVE]
     lift_speed_mm_s: Annotated[float, "mm/s", _POSITIVE]

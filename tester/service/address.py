@@ -158,3 +158,23 @@ def peer_of(connection: socket.socket) -> tuple[int, int | None]:
     raw = connection.getsockopt(socket.SOL_SOCKET, option, CREDENTIALS.size)
     pid, uid, _ = CREDENTIALS.unpack(raw)
     return int(pid), int(uid)
+
+
+def peer_text(connection: socket.socket) -> str:
+    """Return who is at the other end, for the record: the user id on a Unix socket, else the address.
+
+    Never raises: what the system does not tell, and a caller that is gone already, is said in its place.
+    """
+    try:
+        if connection.family == getattr(socket, "AF_UNIX", None):
+            user = peer_of(connection)[1]
+            return f"user id {user}" if user is not None else "user id not told"
+        host, port = connection.getpeername()[:2]
+    except (OSError, ValueError):
+        return "peer not known"
+    return f"address {host}:{port}"
+
+
+def with_peer(name: str, peer: str) -> str:
+    """Return a client's name with what the system says of it."""
+    return f"{name} ({peer})" if peer else name

@@ -7,8 +7,10 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from tester import clock
+from tester.campaign.latch import acknowledge, open_trips
 from tester.engine.run import Outcome, Run
 from tester.rig import RigConfig
+from tester.service.address import with_peer
 from tester.service.alarms import AlarmList, Cause
 from tester.service.alone import left_alone
 from tester.service.hub import Hub
@@ -20,7 +22,9 @@ from tester.service.protocol import SNAPSHOT_S
 from tester.service.state import DiskView, ManualView, ProgressView, RunView, StateView, TickView, Value
 from tester.service.values import unknown_values
 from tester.service.watch import RunWatch, risk_of
+from tester.store.schema import StoreError
 from tester.store.space import MARGIN, FreeRoom
+from tester.trouble import in_words
 
 UNWATCHED_S = 1.0
 """Period of states while nobody is connected, s: the gateway's trend goes on, at a rate that costs nothing."""
@@ -158,11 +162,24 @@ class Desk:
             self.alarms.raise_(Cause(watch.tripped, 1, reason, "the drives stop by their own watchdogs"), self.now_s)
         self.latched, self.tripped = reason, watch.tripped
 
+    def latch_again(self) -> None:
+        """Latch a hardware rig after a restart, where a trip on it has not been acknowledged."""
+        found = open_trips(self.runs, self.rig)
+        if found:
+            first = found[0].trip
+            self.latched, self.tripped = f"{found[0]}; not acknowledged", first.interlock
+            consequence = "nothing begins before it is acknowledged"
+            self.alarms.raise_(Cause(first.interlock, 1, f"{first.text}; not acknowledged", consequence), self.now_s)
+
     def unlatch(self, by: str) -> None:
-        """Take an acknowledgement: the next run may begin."""
+        """Take an acknowledgement: the next run may begin. It goes on record with the trips that it is for."""
         if self.latched:
             self.tell("mode", f"acknowledged by {by}")
             self.alarms.clear(self.tripped)
+            try:
+                acknowledge(open_trips(self.runs, self.rig), by)
+            except (StoreError, OSError) as error:
+                self.tell("mode", f"the acknowledgement cannot be recorded: {in_words(error)}", "warning")
         self.latched, self.tripped, self.interrupted = "", "", ()
 
     def heard(self, t_s: float, kind: str, text: str, severity: str) -> None:
@@ -176,6 +193,14 @@ class Desk:
     def tell(self, kind: str, text: str, severity: str = "info", t_s: float | None = None) -> None:
         """Tell every client."""
         self.hub.event(kind, text, severity, self.now_s if t_s is None else t_s, self.run.name if self.run else "")
+
+    def command(self, text: str, severity: str = "info", kind: str = "command") -> None:
+        """Tell what a client has commanded, and by whom; while a run is under way, in its record too."""
+        if self.watch is None:
+            self.tell(kind, text, severity)
+        else:
+            ctx = self.watch.run.engine.ctx
+            ctx.journal.event(ctx.now, kind, text, severity)  # which tells it
 
     def notify(self, event: str, text: str) -> None:
         """Have the user's hook run."""
@@ -220,8 +245,8 @@ class Desk:
         if number == self._controller:
             return
         self._controller = number
-        who = self.hub.presence.controller
-        self.tell("control", f"{who} has control" if number else "nobody has control")
+        who = with_peer(self.hub.presence.controller, self.hub.presence.peer)
+        self.command(f"{who} has control" if number else "nobody has control", kind="control")
         self.lost_control()
 
     def show(self) -> None:

@@ -9,14 +9,17 @@ from __future__ import annotations
 
 import asyncio
 import re
+import socket
 from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import cast
 
 from pydantic_core import from_json, to_json
 from websockets.asyncio.server import ServerConnection
 from websockets.exceptions import ConnectionClosed
 
+from tester.service.address import peer_text
 from tester.service.commands import (
     VERSION,
     Attend,
@@ -73,6 +76,8 @@ class Guest:
     connection: ServerConnection
     number: int
     name: str
+    peer: str
+    """Who the system says it is."""
     asked: bool = False
     """It asked for control when it joined."""
     outbox: Outbox = field(default_factory=Outbox)
@@ -176,7 +181,9 @@ class Gateway:
         if len(self.guests) >= MOST_CLIENTS:
             await self._turn_away(connection, f"{MOST_CLIENTS} clients are here already", FULL)
             return
-        guest = Guest(connection, self._next, joined.name, joined.control)
+        found = cast("socket.socket | None", connection.transport.get_extra_info("socket"))
+        peer = peer_text(found) if found is not None else "peer not known"
+        guest = Guest(connection, self._next, joined.name, peer, joined.control)
         self._next += 1
         guest.outbox.reply(self._hello(joined, guest))
         self.guests[guest.number] = guest
@@ -295,7 +302,7 @@ class Gateway:
             self._reply(guest, encode(Refused(number, who)))
             return
         self._mode = ""  # what the order makes of it is known with the next state
-        order = Order(guest.number, guest.name, number, action)
+        order = Order(guest.number, guest.name, number, action, guest.peer)
         if isinstance(action, Stop):
             if (stood_for := self.owner.stop(order)) is not None:
                 self._reply(guest, encode(Accepted(stood_for.id)))
@@ -359,7 +366,8 @@ class Gateway:
         frames = any(guest.frames for guest in self.guests.values())
         viewers = len(self.guests) - (holder is not None)
         name = holder.name if holder is not None else ""
-        self.owner.presence(Presence(name, self.controller, viewers, frames, self._signs))
+        peer = holder.peer if holder is not None else ""
+        self.owner.presence(Presence(name, self.controller, viewers, frames, self._signs, peer))
 
 
 def _mode_of(state: bytes) -> str:

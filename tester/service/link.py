@@ -26,6 +26,7 @@ from typing import Annotated, Literal, TypeAlias
 
 from pydantic import Field, TypeAdapter, ValidationError
 
+from tester.service.address import with_peer
 from tester.service.commands import MAX_MESSAGE, RigAction, Stop
 
 MOST_QUEUED = 8_000_000
@@ -45,7 +46,14 @@ class Order:
     name: str
     id: int
     action: Annotated[RigAction, Field(discriminator="command")]
+    peer: str = ""
+    """Who the system says is at the client's end: user id or address."""
     type: Literal["order"] = "order"
+
+    @property
+    def by(self) -> str:
+        """Who gives it, for the record: the name that the client has given itself, and its peer."""
+        return with_peer(self.name, self.peer)
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,6 +66,8 @@ class Presence:
     frames: bool
     signs: int = 0
     """Signs of life of whoever controls, counted."""
+    peer: str = ""
+    """Of whoever controls, as of an order."""
     type: Literal["presence"] = "presence"
 
 

@@ -12,6 +12,7 @@ from pathlib import Path
 
 from tester import clock
 from tester.campaign.folder import make_folder
+from tester.campaign.latch import MANUAL_RUNS
 from tester.campaign.part_run import Unsampled
 from tester.control.load_loop import UNLOADED_N as STANDING_LOAD_N
 from tester.control.permissives import Bounds, rig_bounds
@@ -32,8 +33,6 @@ from tester.store.records import RunInfo, WheelInfo
 from tester.store.writer import RunWriter
 
 NAME = "manual mode"
-MANUAL_RUNS = ".manual"
-"""Folder beside the runs for the journals of manual mode."""
 ARMED_S = 60.0
 """Manual mode disarms after this long without a step."""
 STEPS_PER_S = 5.0

@@ -7,8 +7,8 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
+from tester.campaign.latch import made_on
 from tester.rig import RigConfig
-from tester.source import InvalidSource, load_tree
 from tester.store.catalogue import run_folders
 from tester.store.reader import RunReader
 from tester.store.records import WheelInfo
@@ -34,7 +34,7 @@ def mounted_wheel(runs: Path, rig: RigConfig) -> Mounted | None:
     for folder in list(run_folders(runs))[: -NEWEST_RUNS - 1 : -1]:
         with suppress(StoreError, OSError, sqlite3.Error), RunReader(folder) as reader:
             wheel = max(reader.wheels(), key=lambda one: (one.installed_s, one.wheel), default=None)
-            if wheel is None or not _on(rig, reader):
+            if wheel is None or not made_on(rig, reader):
                 continue
             return Mounted(folder.name, wheel) if wheel.diameter_mm >= rig.interlocks.least_diameter_mm else None
     return None
@@ -44,15 +44,3 @@ def taken_for(mounted: Mounted | None, diameter_mm: float) -> str:
     """Return which wheel is taken to be on the rig, for people; ``diameter_mm``: what is reckoned with."""
     known = f"as {mounted.run} left it" if mounted is not None else "a new one: no run on this rig says otherwise"
     return f"the wheel is taken to have {diameter_mm:.2f} mm, {known}"
-
-
-def _on(rig: RigConfig, reader: RunReader) -> bool:
-    """Tell whether a stored run was made on a rig of this name: the rest of its file may have changed since."""
-    info = reader.run().info
-    if info.simulated is not rig.simulated:
-        return False
-    try:
-        tree = load_tree(info.rig_text, "rig.yaml").data
-    except InvalidSource:
-        return False
-    return isinstance(tree, dict) and tree.get("rig") == rig.name

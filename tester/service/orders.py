@@ -36,7 +36,7 @@ class Orders:
         """Carry out an order, or say why not."""
         action = order.action
         if isinstance(action, Stop):
-            self.stop(order.name, action.fast)
+            self.stop(order.by, action.fast)
             self.desk.hub.accept(order)
         elif isinstance(action, RunRecipe | ResumeRun):
             self._begin(order)
@@ -47,7 +47,7 @@ class Orders:
         elif isinstance(action, Answer):
             self._reply(order, self._answer(order, action))
         elif isinstance(action, Jog | Tare):
-            self._reply(order, self._by_hand(action))
+            self._reply(order, self._by_hand(order, action))
         else:
             self._reply(order, self._hold(order, action))
 
@@ -62,7 +62,7 @@ class Orders:
         """STOP: whoever says it, whatever is under way."""
         desk = self.desk
         kind = "fast stop" if fast else "stop"
-        desk.tell("command", f"{kind} by {name}", "warning")
+        desk.command(f"{kind} by {name}", "warning")
         if desk.watch is not None:
             if desk.watch.run.engine.control.state.mode is Mode.LATCHED:
                 desk.watch.run.stays_latched = False  # its cause may never go; the desk stays latched until it is
@@ -78,11 +78,11 @@ class Orders:
         if watch is None:
             return "nothing runs"
         name = "hold" if isinstance(action, Hold) else "release"
-        self.desk.tell("command", f"{name} by {order.name}")
+        self.desk.command(f"{name} by {order.by}")
         run = watch.run
         if isinstance(action, Hold):
-            return run.request_hold(f"held by {order.name}")
-        return run.request_release(f"released by {order.name}")
+            return run.request_hold(f"held by {order.by}")
+        return run.request_release(f"released by {order.by}")
 
     def _acknowledge(self, order: Order, action: Acknowledge) -> None:
         """Acknowledge alarms, a latched rig, and what was found at the start. Nothing moves by it.
@@ -92,13 +92,14 @@ class Orders:
         desk, watch = self.desk, self.desk.watch
         tripped = watch.tripped if watch is not None else desk.tripped
         trip = next((alarm.number for alarm in desk.alarms.listed() if alarm.name == tripped), 0)
-        count = desk.alarms.acknowledge(action.number, order.name)
+        desk.command(f"ack {action.number or 'all'} by {order.by}")
+        count = desk.alarms.acknowledge(action.number, order.by)
         refusal = "" if count or desk.latched or desk.interrupted else "nothing to acknowledge"
         if action.number in (0, trip):
             if watch is None:
-                desk.unlatch(order.name)
+                desk.unlatch(order.by)
             elif watch.run.engine.control.state.mode is Mode.LATCHED:
-                refusal = watch.run.request_ack()
+                refusal = watch.run.request_ack(order.by)
         self._reply(order, refusal)
 
     def _answer(self, order: Order, action: Answer) -> str:
@@ -107,19 +108,21 @@ class Orders:
         waiting = watch.run.engine.ctx.prompts.waiting if watch is not None else None
         if waiting is None or waiting.number != action.number:
             return f"prompt {action.number} does not wait for an answer"
-        self.desk.tell("prompt", f"{order.name} answers: {action.answer}")
+        self.desk.command(f"answer {action.answer} by {order.by}")
         if action.answer == DONE:
-            waiting.answer = DONE
+            waiting.answer, waiting.by = DONE, order.by
         return ""
 
-    def _by_hand(self, action: Jog | Tare) -> str:
+    def _by_hand(self, order: Order, action: Jog | Tare) -> str:
         """Take a step in manual mode; return "" or why not."""
         desk = self.desk
         if desk.hand is None or desk.watch is None or desk.watch.mode[0] != "RUN":
             return "manual mode is not armed"
         ctx = desk.watch.run.engine.ctx
         if isinstance(action, Tare):
+            desk.command(f"tare by {order.by}")
             return desk.hand.tare(ctx)
+        desk.command(f"jog {action.axis} {action.direction:+d} by {order.by}", "debug")
         return desk.hand.jog(ctx, action.axis, action.direction)
 
     def lost_control(self) -> None:
@@ -154,5 +157,6 @@ class Orders:
             return
         hand = self.desk.hand
         if hand is not None:
+            self.desk.command(f"disarm by {order.by}")
             hand.disarm()
         self._reply(order, "" if hand is not None else "manual mode is not armed")

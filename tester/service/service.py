@@ -95,6 +95,7 @@ class Service:
         """Serve until the process is told to end (TERM, INT), and leave at standstill."""
         desk = self.desk
         with Signals(self.end):
+            desk.latch_again()  # before anybody is heard
             desk.interrupted = self._aside(lambda: tuple(interrupted_runs(self.options.runs)))
             desk.past = self._aside(lambda: past_of(self.options.runs))
             for name in desk.interrupted:
@@ -187,6 +188,7 @@ class Service:
 
         def begun(view: RunView) -> None:
             desk.hub.accept(order, {"run": view.name, "folder": view.folder})
+            desk.command(f"{order.action.command} by {order.by}")
             if notes and desk.watch is not None:
                 desk.watch.run.engine.ctx.journal.event(0.0, "note", notes)
 
@@ -242,6 +244,7 @@ class Service:
                 desk.attach(run, PlanTrack(hand.plan, estimate(hand.plan, rig)), view, hand)
                 record.event(0.0, "wheel", taken_for(mounted, run.engine.ctx.wheel.cold_mm))
                 desk.hub.accept(order)
+                desk.command(f"arm by {order.by}")
                 with closing(ports), left_safe(run):
                     seconds = self._by_hand(run, hand, world, ports, record)
                 record.finish(run.outcome.value, run.reason, seconds)

@@ -26,7 +26,7 @@ from pathlib import Path
 from pydantic import TypeAdapter
 
 from tester import clock
-from tester.service.address import peer_of, unlink_socket
+from tester.service.address import peer_of, peer_text, unlink_socket, with_peer
 from tester.service.pair import link_of
 
 MOST_CALLERS = 256
@@ -62,6 +62,7 @@ class Caller:
     connection: socket.socket
     process: int
     admitted: bool
+    peer: str
     said: bytes = b""
 
 
@@ -137,7 +138,7 @@ class StopDoor:
             if not self.token and uid is not None and uid != self.uid:
                 connection.close()
                 continue
-            caller = Caller(connection, process, not self.token)
+            caller = Caller(connection, process, not self.token, peer_text(connection))
             self.callers.append(caller)
             self._selector.register(connection, selectors.EVENT_READ, caller)
             if len(self.callers) > MOST_CALLERS:
@@ -181,7 +182,8 @@ class StopDoor:
         word, _, name = line.decode("utf-8", "replace").partition(" ")
         if word not in ("stop", "fast"):
             return False
-        self._want(caller, word == "fast", "".join(c for c in name if c.isprintable())[:NAME_LENGTH] or "somebody")
+        plain = "".join(c for c in name if c.isprintable())[:NAME_LENGTH] or "somebody"
+        self._want(caller, word == "fast", with_peer(plain, caller.peer))
         return True
 
     # -- the owner --------------------------------------------------------------------------------------------

@@ -163,7 +163,11 @@ class RunWatch:
         trip = self.run.engine.control.state.trip
         if trip is not None:
             consequence = "the rig comes to a standstill; nothing moves before it is acknowledged"
-            alarms.raise_(Cause(trip.name, 1, trip.text, consequence), now)
+            found = trip.compared
+            value = found.value if isfinite(found.value) else None
+            limit = found.limit if isfinite(found.limit) else None
+            cause = Cause(trip.name, 1, trip.text, consequence, value=value, limit=limit, unit=found.unit)
+            alarms.raise_(cause, now)
             self.tripped = trip.name
         elif self.tripped:
             alarms.clear(self.tripped)

@@ -2,16 +2,11 @@
 
 from __future__ import annotations
 
-import sqlite3
 from collections.abc import Iterable
-from contextlib import closing, suppress
 from pathlib import Path
 
-from tester.store.chain import Chain
-from tester.store.reader import DATABASE
+from tester.store.amend import amended
 from tester.store.records import StoredExclusion, StoredRepeat
-from tester.store.schema import StoreError, migrate
-from tester.trouble import in_words
 
 _ADD = """
 INSERT INTO exclusion (condition, repeat, attempt, excluded, reason, operator, utc, software_version, manifest_before)
@@ -35,25 +30,9 @@ def add_exclusion(folder: Path, said: StoredExclusion) -> None:
 
     An older record is brought to the present schema. Raises StoreError.
     """
-    path = folder / DATABASE
-    try:
-        uri = f"{path.absolute().as_uri()}?mode=rw"
-        with closing(sqlite3.connect(uri, uri=True, isolation_level=None)) as database:
-            # EXTRA: a rollback journal whose deletion is not on the disk would take the row back.
-            database.execute("PRAGMA synchronous = EXTRA")
-            migrate(database)
-            # Not WAL any more, as after the end of a run: the manifest counts what is in the one file. Somebody who
-            # reads a record that is still WAL prevents that; then what is committed waits in the log until they leave.
-            with suppress(sqlite3.OperationalError):
-                database.execute("PRAGMA journal_mode = DELETE")
-            chain = Chain(database)
-            values = (*said.target, said.excluded, said.reason, said.operator, said.utc, said.software_version)
-            database.execute("BEGIN IMMEDIATE")
-            database.execute(_ADD, (*values, said.manifest_before))
-            chain.seal()
-            database.execute("COMMIT")
-    except sqlite3.Error as error:
-        raise StoreError(f"{path} cannot be written: {in_words(error)}") from error
+    values = (*said.target, said.excluded, said.reason, said.operator, said.utc, said.software_version)
+    with amended(folder) as database:
+        database.execute(_ADD, (*values, said.manifest_before))
 
 
 def problems(said: Iterable[StoredExclusion], repeats: Iterable[StoredRepeat]) -> list[str]:

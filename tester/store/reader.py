@@ -248,6 +248,11 @@ class RunReader:
         for row in self._rows("SELECT * FROM event ORDER BY sequence"):
             yield _record(Event, row)
 
+    def commands(self) -> Iterator[Event]:
+        """Yield what clients have commanded, and who, in order; steps by hand are left out."""
+        for row in self._rows("SELECT * FROM event WHERE kind = 'command' AND severity <> 'debug' ORDER BY sequence"):
+            yield _record(Event, row)
+
     def sessions(self) -> list[SessionInfo]:
         """Return the stretches in which the run was worked on, a process each."""
         return [_record(SessionInfo, row) for row in self._rows("SELECT * FROM session ORDER BY session")]

@@ -367,8 +367,10 @@ class Recorder:
         names = ("force_x_n", "force_y_n", "force_z_n", "moment_z_nm")
         self._write(insert("tare", columns | dict(zip(names, values, strict=True))))
 
-    def trip(self, t_s: float, interlock: str, text: str, value: float = NAN, limit: float = NAN) -> int:
-        """Record a trip with the value that caused it and its limit; return its number."""
+    def trip(
+        self, t_s: float, interlock: str, text: str, value: float = NAN, limit: float = NAN, unit: str = ""
+    ) -> int:
+        """Record a trip with the value that caused it and its limit, in ``unit``; return its number."""
         self._trips += 1
         columns: dict[str, Value] = {
             "id": self._trips,
@@ -378,14 +380,15 @@ class Recorder:
             "text": text,
             "value": value,
             "limit_value": limit,
+            "unit": unit,
         }
         self._write(insert("trip", columns), urgent=True)
         return self._trips
 
     def trip_acknowledged(self, trip: int, t_s: float, by: str = "") -> None:
-        """Record that a trip was acknowledged, and by whom."""
-        sql = "UPDATE trip SET acknowledged_s = ?, acknowledged_by = ? WHERE id = ?"
-        self._write((sql, (t_s + self.origin_s, by, trip)), urgent=True)
+        """Record that a trip was acknowledged while its run went on, and by whom."""
+        sql = "UPDATE trip SET acknowledged_s = ?, acknowledged_utc = ?, acknowledged_by = ? WHERE id = ?"
+        self._write((sql, (t_s + self.origin_s, self._utc(), by, trip)), urgent=True)
 
     # The file
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from math import isnan
 
 from tester.analysis.results import NOT_JUDGED, ConditionStatus, Judgement, RepeatResult
 
@@ -80,14 +81,39 @@ class StoredPrompt:
 
 @dataclass(frozen=True, slots=True)
 class StoredTrip:
-    """A trip: the interlock, the value that caused it and its limit."""
+    """A trip: the interlock, the value that caused it and its limit, who acknowledged it and when.
 
+    Value and limit are NaN where what is watched is no number, ``acknowledged_s`` where the run was over by then.
+    """
+
+    id: int
     t_s: float
     utc: str
     interlock: str
     text: str
     value: float
     limit_value: float
+    unit: str
+    acknowledged_s: float
+    acknowledged_utc: str
+    acknowledged_by: str
+
+    @property
+    def compared(self) -> str:
+        """Value and limit in words, "" where there are none."""
+        if isnan(self.value) and isnan(self.limit_value):
+            return ""
+        value = "unknown" if isnan(self.value) else f"{self.value:.4g}"
+        unit = "" if self.unit in ("", "1") else f" {self.unit}"
+        return f"{value}{unit}, limit {self.limit_value:.4g}{unit}"
+
+    @property
+    def acknowledged(self) -> str:
+        """Who acknowledged it and when, in words."""
+        if not self.acknowledged_utc:
+            return "not acknowledged"
+        by = f" by {self.acknowledged_by}" if self.acknowledged_by else ""
+        return f"acknowledged {self.acknowledged_utc}{by}"
 
 
 @dataclass(frozen=True, slots=True)

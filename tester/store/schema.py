@@ -316,6 +316,15 @@ CREATE {temporary}TABLE chain (
 """
 """The chain of hashes over all rows (tester.store.chain)."""
 
+_TRIP = """
+ALTER TABLE trip ADD COLUMN unit TEXT;
+ALTER TABLE trip ADD COLUMN acknowledged_utc TEXT;
+"""
+"""The unit of value and limit; when a trip was acknowledged, by the wall clock: the run may be over by then. Columns
+without a value change no hash of a row that was there before."""
+
+_AS_VERSION_6 = "CREATE TEMP VIEW trip AS SELECT *, NULL AS unit, NULL AS acknowledged_utc FROM main.trip;"
+
 MIGRATIONS: tuple[str, ...] = (
     _VERSION_1,
     _VERSION_2,
@@ -323,13 +332,17 @@ MIGRATIONS: tuple[str, ...] = (
     _VERSION_4,
     _WEAR_CHECK.format(temporary=""),
     _CHAIN.format(temporary=""),
+    _TRIP,
 )
 """Migration n leads from schema n to n + 1."""
 
 CHAINED = 6
 """The first schema with a chain. A later migration that changes what rows hold has to add them to it again."""
 
-_ADDED: dict[int, str] = {3: _EXCLUSION, 4: _AS_VERSION_4, 5: _WEAR_CHECK, 6: _CHAIN}
+ACKNOWLEDGED = 7
+"""The first schema under which acknowledgements of trips are recorded."""
+
+_ADDED: dict[int, str] = {3: _EXCLUSION, 4: _AS_VERSION_4, 5: _WEAR_CHECK, 6: _CHAIN, 7: _AS_VERSION_6}
 """What versions have added, by version: what a connection to an older record can have for itself."""
 
 VERSION = len(MIGRATIONS)

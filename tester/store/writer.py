@@ -1,5 +1,8 @@
 """Writes a run's database from a thread of its own, fed through a bounded queue.
 
+A file beside the database keeps RESERVE_BYTES of room. On a full disk it is given up: what the run still has to say
+while it comes to rest, its status among it, is written in that room.
+
 The scan's thread only appends: to one deque that carries samples (tuples) and batches of statements in the
 order in which they came. Appending to and popping from a deque is atomic, so no lock is held in a scan. The
 logger's thread takes what has come and commits it in one transaction: every second of wall time, and at
@@ -13,6 +16,7 @@ waits instead, and waits for the COMMIT of a repeat, so that results do not depe
 
 from __future__ import annotations
 
+import os
 import sqlite3
 from collections import deque
 from collections.abc import Callable, Iterable
@@ -40,6 +44,12 @@ QUEUE_LIMIT = 65536
 RETRY_S = 1.0
 """After a write error the next attempt is made this much later."""
 
+RESERVE_BYTES = 4_000_000
+"""Room that is kept for the end of a run: a cool-down of 45 min at two samples a second takes 0.3 MB, what waits in a
+full queue (65536 samples of 40 to 60 bytes) up to 4 MB."""
+RESERVE = ".reserve.part"
+"""Ending of the file that keeps it; no manifest lists such files."""
+
 LOSSLESS_LIMIT = 8192
 """Items the queue holds before the simulation waits; also the most samples in one transaction."""
 
@@ -48,6 +58,36 @@ _KEY = SAMPLE_COLUMNS.index("repeat_key") - _COLUMNS
 _TIME = SAMPLE_COLUMNS.index("time_s")
 _WRITE_ERRORS = (sqlite3.Error, OSError, ValueError, OverflowError, TypeError, IndexError)
 """What a disk (first two) or a value that no column takes (the others) can raise."""
+
+
+class RecordGoneError(OSError):
+    """The file that is written lies under its name no more: what is written now would be lost with it."""
+
+
+class _Reserve:
+    """Keeps room on the disk until it is needed."""
+
+    def __init__(self, path: Path, size: int) -> None:
+        """Take ``size`` bytes in ``path``; where there is not so much, none are kept."""
+        self._path = path
+        try:
+            with path.open("wb") as file:
+                if hasattr(os, "posix_fallocate"):
+                    os.posix_fallocate(file.fileno(), 0, size)
+                else:
+                    file.write(bytes(size))
+        except OSError:
+            self.give_up()
+
+    def give_up(self) -> None:
+        """Give the room back."""
+        with suppress(OSError):
+            self._path.unlink(missing_ok=True)
+
+
+def _identity(path: Path) -> tuple[int, int]:
+    found = path.stat()
+    return found.st_dev, found.st_ino
 
 
 def _open(path: Path) -> tuple[sqlite3.Connection, Chain]:
@@ -95,9 +135,11 @@ class RunWriter(Recorder):
         synchronous: bool = False,
         limit: int | None = None,
         commit_every_s: float = COMMIT_EVERY_S,
+        reserve: int = 0,
     ) -> None:
-        """Open the file and start the logger."""
+        """Open the file and start the logger. ``reserve``: bytes of room to keep for the end."""
         super().__init__(utc)
+        self._path = path
         self._clock = clock
         self._lossless = lossless
         self._synchronous = synchronous
@@ -113,6 +155,8 @@ class RunWriter(Recorder):
         self._stopping = False
         self._wake, self._room, self._committed = Signal(), Signal(), Signal()
         self._connection, self._chain = _open(path)
+        self._file = _identity(path)
+        self._reserve = _Reserve(path.with_name(path.name + RESERVE), reserve) if reserve else None
         self._continue_counting()
         self._committed_at = clock()
         self._thread = None if synchronous else Thread(target=self._run, name="recorder", daemon=True)
@@ -188,7 +232,8 @@ class RunWriter(Recorder):
             self._thread.join()
         self._drain()
         self._commit()
-        if self.failed is None:
+        self._give_room()
+        if not self._rows and not self._batches:
             # Not WAL any more: a finished run is one file that reading does not touch. Somebody who reads it just now
             # prevents that; then the log is folded in when the last of them leaves, and the file stays WAL.
             self._connection.execute("PRAGMA busy_timeout = 0")
@@ -196,6 +241,17 @@ class RunWriter(Recorder):
             with suppress(sqlite3.OperationalError):
                 self._connection.execute("PRAGMA journal_mode = DELETE")
         self._connection.close()
+
+    @property
+    def lost(self) -> str | None:
+        """Why something is missing in the record; None where everything has been written in the end."""
+        return self.failed if self._rows or self._batches or self.overruns else None
+
+    def _give_room(self) -> None:
+        """Give the room up that was kept for the end."""
+        if self._reserve is not None:
+            self._reserve.give_up()
+            self._reserve = None
 
     # The logger's side
 
@@ -257,6 +313,7 @@ class RunWriter(Recorder):
         self._committed.set()
 
     def _write_transaction(self) -> None:
+        self._look_for_file()
         connection = self._connection
         connection.execute("BEGIN IMMEDIATE")
         try:
@@ -274,6 +331,15 @@ class RunWriter(Recorder):
                 connection.execute("ROLLBACK")
         self._stored_overruns = overruns
 
+    def _look_for_file(self) -> None:
+        """Raise RecordGoneError where the file was removed, moved or exchanged: writing to it would go on unseen."""
+        try:
+            there = _identity(self._path) == self._file
+        except FileNotFoundError:
+            there = False
+        if not there:
+            raise RecordGoneError(f"{self._path} was removed, or another file put in its place")
+
     def _write_rows(self) -> None:
         rows = self._rows
         first = 0
@@ -288,7 +354,8 @@ class RunWriter(Recorder):
                 first = end
 
     def _fail(self, error: Exception) -> None:
-        self.failed = self.failed or f"{type(error).__name__}: {in_words(error)}"
+        self.failed = self.failed or in_words(error)
+        self._give_room()
         self._committed_at = self._clock()
         for batch in self._batches:
             batch.ticket.error = self.failed

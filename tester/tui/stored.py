@@ -60,6 +60,8 @@ class Stored:
     in ``common`` instead where there are more axes than the paper's."""
     common: str
     rows: tuple[Row, ...]
+    record_head: str = ""
+    """Of the chain over the run's record; "" where there is none."""
 
     @property
     def plotted(self) -> tuple[Axis, ...]:
@@ -90,7 +92,8 @@ def stored_of(folder: Path, results: RunResults) -> Stored:
     run = results.run
     if run.info.risk:
         common = f"RISK ACCEPTED: {run.info.risk}{'; ' + common if common else ''}"
-    return Stored(folder.name, folder, run.info.recipe_name, results.status.value, header, common, rows)
+    status, head = results.status.value, results.record_head
+    return Stored(folder.name, folder, run.info.recipe_name, status, header, common, rows, head)
 
 
 def _row(measured: Measured, shown: Sequence[Axis]) -> Row:

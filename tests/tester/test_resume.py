@@ -179,6 +179,20 @@ def test_what_changed_is_refused_and_goes_on_with_a_reason_that_is_stored(
     assert invoke(["verify", str(again)]) == 0
 
 
+def test_a_risk_is_asked_for_again_and_stands_in_the_record_and_every_table(again: Path) -> None:
+    edit(again / "rig.yaml", "hold_at_most:", "hold_at_most: 3 h #")
+    with pytest.raises(CannotStartError, match=r"hold_at_most.*--accept-risk REASON"):
+        resume(again, "longer holds")
+    session = Session(SessionOptions(accept_risk="nobody comes"), Screen())
+    assert session.resume(again, "longer holds") == 0
+    with RunReader(again) as reader:
+        risk = reader.run().info.risk
+    assert "hold_at_most 10800 s is looser than 7200 s" in risk and "nobody comes" in risk
+    for name in ("appendix.csv", "repeats.csv", "wheel.csv", "conditions.csv"):
+        header, *rows = (again / name).read_text(encoding="utf-8-sig").splitlines()
+        assert "accepted_risk" in header and rows and all("nobody comes" in row for row in rows)
+
+
 def test_a_recipe_file_that_was_edited_after_the_start_is_found(again: Path, cut: Path) -> None:
     source = cut.parent.parent / "short.yaml"
     edit(source, "recipe: short", "recipe: shorter")

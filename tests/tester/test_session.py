@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import errno
+import os
 import re
+import shutil
 import signal
 import sqlite3
 from collections.abc import Callable
@@ -369,6 +372,44 @@ def test_a_store_that_cannot_be_written_fails_the_run(tmp_path: Path, monkeypatc
     ended = run(tmp_path)
     assert ended.code == 1
     assert any("not everything could be recorded" in text for text in ended.screen.messages)
+
+
+class Removing(Screen):
+    """Removes the runs when a repeat is shown."""
+
+    def __init__(self, runs: Path) -> None:
+        super().__init__()
+        self.runs = runs
+
+    def show(self, now_s: float, run: Progress, share: float) -> None:
+        if run.repeat:
+            shutil.rmtree(self.runs, ignore_errors=True)
+
+
+@pytest.mark.skipif(os.name != "posix", reason="Windows removes no file that is open")
+def test_a_run_whose_folder_is_removed_stops_in_a_controlled_way_and_says_so(tmp_path: Path) -> None:
+    ended = run(tmp_path, "interlocks.cooldown_hub=26 degC", screen=Removing(tmp_path / "runs"))
+    assert ended.code == 1
+    (stopped,) = [text for text in ended.screen.messages if text.startswith("stopped: ")]
+    assert "the run can no longer be recorded" in stopped and "run.db was removed" in stopped
+    assert any("the tables cannot be written" in text for text in ended.screen.messages)
+
+
+@pytest.mark.skipif(os.name != "posix", reason="a file system of its own")
+def test_a_run_on_a_full_disk_stops_in_a_controlled_way_with_its_status_and_reason(tmp_path: Path) -> None:
+    def grow(writer: RunWriter) -> None:
+        if writer._reserve is not None and any("repeat" in sql for b in writer._batches for sql, _ in b.statements):  # pyright: ignore[reportPrivateUsage]
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        write(writer)
+
+    write = RunWriter._write_transaction  # pyright: ignore[reportPrivateUsage]
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(RunWriter, "_write_transaction", grow)
+        ended = run(tmp_path, "interlocks.cooldown_hub=26 degC")
+    status, reason = ended.stored()
+    assert (ended.code, status) == (5, "stopped")
+    assert reason.startswith("the run can no longer be recorded: the disk is full: make room")
+    assert (ended.folder / "manifest.json").is_file() and not [*ended.folder.glob("*.part")]
 
 
 # -- determinism --------------------------------------------------------------------------------------------------

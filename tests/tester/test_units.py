@@ -16,7 +16,7 @@ from tester.units import Quantity, UnitError, as_text, expected, parse, parse_on
 UNITS = [
     "m/s", "mm/s", "m/s2", "mm/s2", "N", "kN", "s", "min", "h", "ms", "degC", "K", "deg", "rad", "deg/s", "rad/s",
     "mm", "m", "um", "Hz", "kHz", "W", "kW", "J", "N m", "J/K", "W/K", "kg/m3", "J/(kg K)", "W/(m K)", "W/(m2 K)",
-    "N/mm", "N s/m", "mm3/(N m)", "K/s", "N/K", "bit/s", "kbit/s", "rev", "%", "1",
+    "N/mm", "N s/m", "mm3/(N m)", "K/s", "N/K", "N/s", "bit/s", "kbit/s", "rev", "%", "1",
 ]  # fmt: skip
 
 

@@ -175,6 +175,8 @@ class ResultsView(View):
         table.border_title = Text(f"{clean(stored.name)}: {clean(stored.recipe)}, {clean(stored.status)}")
         table.border_subtitle = Text(f"all: {clean(stored.common)}" if stored.common else "")
         table.move_cursor(row=at)
+        head = stored.record_head
+        self.runs_table.border_subtitle = Text(f"record head {clean(head)}" if head else "")
         self._plot(axis)
 
     def _plot(self, axis: int) -> None:

@@ -47,6 +47,23 @@ def test_show_as_json(home: Path) -> None:
     assert shown["missing"] == []
 
 
+def test_show_tells_a_trip_with_its_value_and_who_acknowledged_it(home: Path) -> None:
+    (home / "runs" / "two").mkdir()
+    writer = open_writer(home / "runs" / "two")
+    writer.begin_run(RUN, SPECIMENS, CONDITIONS)
+    number = writer.trip(20.0, "overload", "too firm", 460.0, 450.0, "N")
+    writer.trip_acknowledged(number, 30.0, "ada, user id 1000")
+    writer.trip(40.0, "drive fault", "lost")
+    writer.close()
+    lines = invoke(show, "two").stdout.splitlines()
+    assert lines[-4].startswith("trip at 0:00:20 of rig time") and lines[-4].endswith("overload (460 N, limit 450 N)")
+    assert lines[-3].startswith("  acknowledged 2024-") and lines[-3].endswith("by ada, user id 1000")
+    assert lines[-2].endswith("drive fault") and lines[-1] == "  not acknowledged"
+    first, second = json.loads(invoke(show, "two", "--json").stdout)["trips"]
+    assert (first["value"], first["limit"], first["unit"], first["acknowledged_s"]) == (460.0, 450.0, "N", 30.0)
+    assert (second["value"], second["acknowledged_utc"]) == (None, None)
+
+
 def test_show_names_what_has_no_value(home: Path) -> None:
     small_run(home / "runs" / "two", ([nan] * 3, [0.73, 0.74, 0.72]))
     shown = invoke(show, "two").stdout

@@ -220,6 +220,30 @@ def test_friction_that_cell_or_drive_shows_at_little_load_is_a_whole_belt(
     assert at_little_load(bench, 50.0, friction_n, torque_nm) == math.inf
 
 
+NO_NUMBER = {
+    "safety chain", "drive fault", "bus lost", "second master", "guard open", "drive dropped out",
+    "load cell saturated", "device refused", "contactor welded",
+}  # fmt: skip
+"""Rows that look at a state, not at a number."""
+AT_LEAST = {"drive standing under load", "belt torn", "contact lost", "heater line open", "wheel worn", "clock jump"}
+"""Rows whose value has to be above its limit; of the others, below."""
+BOTH_WAYS = {"wheel speed", "belt speed", "press travel"}
+
+
+@pytest.mark.parametrize(("name", "number"), CASES)
+def test_a_trip_names_the_value_that_is_beyond_its_limit(bench: Bench, name: str, number: int) -> None:
+    CAUSES[name][number](bench)
+    bench.until_trip(40.0)
+    trip = bench.state.trip
+    assert trip is not None
+    value, limit, unit = trip.compared.value, trip.compared.limit, trip.compared.unit
+    if trip.name in NO_NUMBER:
+        assert math.isnan(value) and math.isnan(limit) and unit == ""
+        return
+    assert (unit and not math.isnan(limit)) or math.isnan(value)
+    assert trip.name in BOTH_WAYS or not (value >= limit if trip.name in AT_LEAST else value <= limit)
+
+
 @pytest.mark.parametrize("name", sorted(set(CAUSES) - {"drive data stale", "hub sensor jump", "surface sensor jump"}))
 def test_a_row_does_not_trip_before_its_delay(bench: Bench, name: str) -> None:
     if name in ("overload", "load overshoot", "contact lost"):

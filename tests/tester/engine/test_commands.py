@@ -139,6 +139,18 @@ def test_a_trip_waits_for_its_acknowledgement_where_it_is_told_to(running: Simul
     assert running.run.outcome is Outcome.TRIPPED
 
 
+def test_a_trip_is_recorded_with_value_limit_and_unit_and_who_acknowledged_it(running: Simulation) -> None:
+    running.run.stays_latched = True
+    running.run.engine.control.view.limits.load_n = 150.0
+    running.until(lambda s: mode(s) is Mode.LATCHED)
+    assert running.run.request_ack("ada, user id 1000") == ""
+    running.until(lambda s: mode(s) is Mode.IDLE)
+    (trip,) = running.notes.written("INSERT INTO trip")
+    (said,) = running.notes.written("UPDATE trip")
+    assert trip[3] == "overload" and trip[5:] == (pytest.approx(200.0, abs=20.0), 150.0, "N")
+    assert said[0] > trip[1] and said[2:] == ("ada, user id 1000", 1)  # type: ignore[operator]
+
+
 def test_an_acknowledgement_with_the_chain_open_is_refused(running: Simulation) -> None:
     running.run.stays_latched = True
     running.world.axes["press"].set_safety_chain(False)

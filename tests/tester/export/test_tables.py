@@ -18,6 +18,7 @@ from tester.analysis.results import RepeatStatus
 from tester.export.manifest import manifest_problems
 from tester.process import SAMPLE_COLUMNS
 from tester.store.reader import RunReader
+from tester.store.records import WheelInfo
 from tests.tester.store.build import CONDITION, RUN, SPECIMENS, Clock, open_writer, record, result, row, small_run
 
 HEADER = "Formula,Slip Velocity /mm·s⁻¹,Load /N,Sideslip Angle /°,Temperature /°C,Friction Coefficient"
@@ -144,6 +145,43 @@ def test_the_same_data_gives_the_same_bytes_whenever_and_wherever(tmp_path: Path
         export.write_all(tmp_path / folder)
     for name in names:
         assert (tmp_path / "a" / name).read_bytes() == (tmp_path / "b" / name).read_bytes()
+
+
+def test_the_conditions_of_a_real_rig_end_with_the_head_of_the_record(tmp_path: Path) -> None:
+    writer = open_writer(tmp_path)
+    writer.begin_run(replace(RUN, simulated=False), SPECIMENS, [CONDITION])
+    record(writer, 1, [0.7, 0.71, 0.72])
+    writer.close()
+    with RunReader(tmp_path) as reader:
+        head = reader.record_head()
+    _, (line,), _ = tables(tmp_path)
+    assert len(head) == 64 and list(line.items())[-1] == ("record_head", head)
+
+
+def test_those_of_a_simulated_rig_leave_it_empty_for_the_same_seed_gives_the_same_bytes(tmp_path: Path) -> None:
+    _, (line, _), _ = tables(small_run(tmp_path))
+    assert line["record_head"] == ""
+
+
+def test_a_risk_that_was_accepted_stands_in_every_row_of_every_table(tmp_path: Path) -> None:
+    writer = open_writer(tmp_path)
+    risk = {"accepted_risk": "trial of a new cell", "loose_safety_keys": "limits.load 480 N is looser than 450 N"}
+    writer.begin_run(replace(RUN, metadata=risk), SPECIMENS, [CONDITION])
+    writer.wheel_installed(WheelInfo(1, 1, 1, "1#", 60.0, 90.0, 85.0, 812.0))
+    record(writer, 1, [0.7, 0.71, 0.72])
+    writer.close()
+    with RunReader(tmp_path) as reader:
+        results, said = export.results_of(reader), reader.run().info.risk
+        found = [
+            table(export.appendix(results)),
+            table(export.repeats(results)),
+            table(export.wheels(results)),
+            table(export.samples(reader)),
+        ]
+        (condition,) = table(export.conditions(results))
+    assert "trial of a new cell" in said and "480 N" in said
+    assert all(lines and all(line["accepted_risk"] == said for line in lines) for lines in found)
+    assert (condition["accepted_risk"], condition["loose_safety_keys"]) == tuple(risk.values())
 
 
 def test_samples_have_every_column_and_their_repeat(tmp_path: Path) -> None:

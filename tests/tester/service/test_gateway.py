@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import asyncio
+import os
 from collections.abc import Awaitable, Callable
 from dataclasses import replace
 from pathlib import Path
@@ -61,6 +62,17 @@ def test_an_accepted_command_gives_its_result(tmp_path: Path) -> None:
         async with await Client.connect(fake.address, control=True) as client:
             assert await client.command(Hold()) == {"at": 1.0}
             assert fake.orders[-1].action == Hold()
+
+    play(tmp_path, story)
+
+
+@pytest.mark.skipif(os.name != "posix", reason="Unix sockets")
+def test_a_command_carries_the_user_id_of_its_client(tmp_path: Path) -> None:
+    async def story(fake: FakeService) -> None:
+        async with await Client.connect(fake.address, name="ada", control=True) as client:
+            await client.command(Hold())
+            assert fake.orders[-1].by == f"ada (user id {os.getuid()})"
+            assert fake.presence.peer == f"user id {os.getuid()}"
 
     play(tmp_path, story)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -325,7 +326,7 @@ def test_a_prompt_waits_for_its_answer_and_a_no_leaves_it_waiting(tmp_path: Path
 
     stage = play(tmp_path, script)
     assert any(name == "prompt" and "install wheel 1" in text for name, text in stage.notes)
-    assert "client 1 answers: yes" in stage.texts("prompt")
+    assert "answer yes by client 1" in stage.texts("command")
 
 
 def test_a_trip_latches_until_it_is_acknowledged(tmp_path: Path) -> None:
@@ -553,3 +554,34 @@ def test_locks_of_the_run_are_let_go_of(tmp_path: Path) -> None:
     assert run is not None
     with ExclusiveUse() as use:
         use.lock_file("run", Path(run.folder) / RUN_LOCK, "", lasting=False)
+
+
+def test_commands_are_recorded_with_who_the_system_says_gave_them(tmp_path: Path) -> None:
+    def script(stage: Stage) -> Script:
+        yield replace(stage.order(RUN), peer="user id 1000")
+        yield from stage.until(running)
+        yield replace(stage.order(Hold(), 2), peer="address 192.0.2.7:40000")
+        yield replace(stage.order(Stop()), peer="user id 1000")
+        yield from stage.until(over)
+
+    stage = play(tmp_path, script, *QUIET)
+    run = stage.views[-1].run
+    assert run is not None
+    with RunReader(Path(run.folder)) as reader:
+        said = [event.text for event in reader.commands()]
+    assert said == [
+        "run by client 1 (user id 1000)",
+        "hold by client 2 (address 192.0.2.7:40000)",
+        "stop by client 1 (user id 1000)",
+    ]
+
+
+def test_an_override_of_a_client_that_is_looser_than_it_may_be_begins_nothing(tmp_path: Path) -> None:
+    def script(stage: Stage) -> Script:
+        yield stage.order(replace(RUN, overrides=("interlocks.hold_at_most=3 h",)))
+        while "run" not in stage.refused:
+            yield None
+
+    stage = play(tmp_path, script, *QUIET)
+    assert "interlocks.hold_at_most: 10800 s is looser than 7200 s" in stage.refused["run"]
+    assert not list(tmp_path.glob("runs/2*")) and stage.accepted == {}

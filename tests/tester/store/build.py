@@ -138,11 +138,22 @@ def open_writer(folder: Path, **options: bool | int) -> RunWriter:
     )
 
 
+_MADE: dict[str, bytes] = {}
+"""Records of ``small_run``, by what is in them."""
+
+
 def small_run(
     folder: Path, values: tuple[list[float], ...] = ([0.90, 0.91, 0.89], [0.73, 0.74, 0.72]), rows: int = 5
 ) -> Path:
-    """Write a finished run of conditions 1, 2, ... with these repeats, made-up samples each; return its folder."""
+    """Write a finished run of conditions 1, 2, ... with these repeats, made-up samples each; return its folder.
+
+    Every commit waits for the disk, so one that was made before is copied.
+    """
     folder.mkdir(parents=True, exist_ok=True)
+    before = _MADE.get(key := f"{values} {rows}")
+    if before is not None:
+        (folder / "run.db").write_bytes(before)
+        return folder
     writer = open_writer(folder)
     conditions = [replace(CONDITION, condition=i, row=i, load_n=100.0 * i) for i in range(1, len(values) + 1)]
     writer.begin_run(RUN, SPECIMENS, conditions)
@@ -150,6 +161,7 @@ def small_run(
         record(writer, condition.condition, repeats, rows)
     writer.finish("done", rig_seconds=2700.5)
     writer.close()
+    _MADE[key] = (folder / "run.db").read_bytes()
     return folder
 
 

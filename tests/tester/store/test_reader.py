@@ -230,7 +230,9 @@ def test_a_name_with_spaces_and_marks_is_just_a_name(tmp_path: Path) -> None:
 
 
 def without_judgements(database: sqlite3.Connection) -> None:
-    """Take out of a record what version 4 has added."""
+    """Take out of a record what version 4 has added, and the columns that version 7 has."""
+    for column in ("unit", "acknowledged_utc"):
+        database.execute(f"ALTER TABLE trip DROP COLUMN {column}")
     for column in ("at_most", "until_percent", *(field.name for field in fields(Judgement))):
         database.execute(f"ALTER TABLE condition DROP COLUMN {column}")
 

@@ -129,6 +129,20 @@ def test_a_repeat_is_left_out_with_a_reason_and_the_table_follows(tmp_path: Path
     assert (word.target, word.reason, bool(word.operator)) == ((2, 1, 1), "[/x]", True)
 
 
+def test_the_head_of_the_record_stands_below_the_runs(tmp_path: Path) -> None:
+    run = a_run(tmp_path)
+    with RunReader(run) as reader:
+        head = reader.record_head()
+
+    async def story(on: Stage) -> None:
+        await on.pilot.press("f5")
+        view = on.app.screen_stack[0].query_one(ResultsView)
+        view.open(read(str(run), run.parent))
+        await on.until(lambda: f"record head {head[:16]}" in on.text(), "the head is shown")
+
+    play(story, tmp_path)
+
+
 def test_without_a_reason_nothing_is_done(tmp_path: Path) -> None:
     run = a_run(tmp_path)
     before = (run / "run.db").read_bytes()

@@ -1,0 +1,46 @@
+"""Add to the record of a run that is over: what people say of it afterwards, each word on the disk at once."""
+
+from __future__ import annotations
+
+import sqlite3
+from collections.abc import Generator, Iterable
+from contextlib import closing, contextmanager, suppress
+from pathlib import Path
+
+from tester.store.chain import Chain
+from tester.store.reader import DATABASE
+from tester.store.schema import StoreError, migrate
+from tester.trouble import in_words
+
+
+@contextmanager
+def amended(folder: Path) -> Generator[sqlite3.Connection]:
+    """Give the record in ``folder`` inside a transaction that is chained and committed at the block's end.
+
+    An older record is brought to the present schema. Raises StoreError.
+    """
+    path = folder / DATABASE
+    try:
+        uri = f"{path.absolute().as_uri()}?mode=rw"
+        with closing(sqlite3.connect(uri, uri=True, isolation_level=None)) as database:
+            # EXTRA: a rollback journal whose deletion is not on the disk would take the row back.
+            database.execute("PRAGMA synchronous = EXTRA")
+            migrate(database)
+            # Not WAL any more, as after the end of a run: the manifest counts what is in the one file. Somebody who
+            # reads a record that is still WAL prevents that; then what is committed waits in the log until they leave.
+            with suppress(sqlite3.OperationalError):
+                database.execute("PRAGMA journal_mode = DELETE")
+            chain = Chain(database)
+            database.execute("BEGIN IMMEDIATE")
+            yield database
+            chain.seal()
+            database.execute("COMMIT")
+    except sqlite3.Error as error:
+        raise StoreError(f"{path} cannot be written: {in_words(error)}") from error
+
+
+def acknowledge_trips(folder: Path, trips: Iterable[int], by: str, utc: str) -> None:
+    """Record who has acknowledged trips (their numbers) of a run that is over. Raises StoreError."""
+    sql = "UPDATE trip SET acknowledged_utc = ?, acknowledged_by = ? WHERE id = ?"
+    with amended(folder) as database:
+        database.executemany(sql, [(utc, by, one) for one in trips])
