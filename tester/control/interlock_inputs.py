@@ -163,6 +163,7 @@ def limits_of(rig: RigConfig) -> RigLimits:
     low_mm, high_mm = rig.axes.press.software_limits or (-inf, inf)
     return RigLimits(
         load_n=limits.load_n,
+        heartbeat_s=rig.can.drive_heartbeat_s,
         wheel_speed_m_s=limits.wheel_speed_m_s,
         belt_speed_m_s=limits.belt_speed_m_s,
         slip_power_w=limits.slip_power_w,

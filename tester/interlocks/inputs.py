@@ -19,6 +19,8 @@ class RigLimits:
     """What conditions compare with beside their own parameters: numbers from the rig file's other sections."""
 
     load_n: float
+    heartbeat_s: float
+    """``can.drive_heartbeat``."""
     wheel_speed_m_s: float
     belt_speed_m_s: float
     slip_power_w: float

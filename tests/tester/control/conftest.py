@@ -15,7 +15,8 @@ from tester.process import Demand, Press, Readings, Setpoints
 from tester.rig import RigConfig, load_rig
 
 STAMPS = ("wheel_at_s", "belt_at_s", "press_at_s", "sideslip_at_s", "camber_at_s", "cell_at_s", "surface_at_s",
-          "jacket_at_s", "cell_changed_s", "surface_changed_s", "inputs_at_s")  # fmt: skip
+          "jacket_at_s", "cell_changed_s", "surface_changed_s", "inputs_at_s",
+          "can_heard_s")  # fmt: skip
 """When each source last reported, and reported something new."""
 
 
@@ -94,7 +95,7 @@ def make_bench(rig: RigConfig) -> Bench:
     readings.contactor_closed = False
     readings.heat_percent = 0.0
     readings.wheel_at_s = readings.belt_at_s = readings.jacket_at_s = readings.surface_at_s = readings.now_s
-    readings.cell_at_s = readings.surface_changed_s = readings.inputs_at_s = readings.now_s
+    readings.cell_at_s = readings.surface_changed_s = readings.inputs_at_s = readings.can_heard_s = readings.now_s
     readings.wheel_speed_m_s = readings.belt_speed_m_s = readings.force_z_n = readings.force_x_n = 0.0
     assert control.start(readings) == ""
     # As the rig would be after a while in this step: rubber in balance with surface and hub.

@@ -104,6 +104,7 @@ def _dropped(bench: Bench) -> None:
 
 CAUSES: dict[str, list[Break]] = {
     "safety chain": [_set(safety_chain=False)],
+    "CAN silent": [_stale("can_heard_s")],
     "drive fault": [_set(drive_fault="wheel drive: heartbeat lost")],
     "bus lost": [_set(bus_fault="bus lost: unplugged")],
     "second master": [_set(foreign_master="NMT 000#0100")],
@@ -118,7 +119,7 @@ CAUSES: dict[str, list[Break]] = {
     "press travel": [_set(press_mm=18.1), _set(press_mm=-1.1), _set(press_mm=NAN)],
     "drive standing under load": [_set(belt_speed_m_s=0.0), _set(wheel_speed_m_s=0.0), _set(belt_speed_m_s=NAN)],
     "belt torn": [_torn],
-    "load cell stale": [_stale("cell_at_s")],
+    "load cell silent": [_stale("cell_at_s"), _set(cell_silent=True, cell_valid=False)],
     "load cell saturated": [_set(cell_valid=False)],
     "load cell frozen": [_stale("cell_changed_s")],
     "overload": [_set(force_z_n=451.0), _set(force_z_n=NAN)],
@@ -136,8 +137,10 @@ CAUSES: dict[str, list[Break]] = {
     "surface sensor jump": [_set(surface_c=46.0), _set(surface_c=34.0)],
     "thermometer frozen": [_frozen_thermometer],
     "surface off model": [_model(8.5), _model(-8.5), _model(NAN)],
-    "surface data stale": [_stale("surface_at_s"), _set(surface_valid=False)],
-    "jacket data stale": [_stale("jacket_at_s"), _set(jacket_valid=False)],
+    "thermometer silent": [_stale("surface_at_s"), _set(surface_silent=True, surface_valid=False)],
+    "surface not valid": [_set(surface_valid=False)],
+    "jacket silent": [_stale("jacket_at_s"), _set(jacket_silent=True, jacket_valid=False)],
+    "hub sensor broken": [_set(jacket_valid=False)],
     "device refused": [_set(device_fault="jacket: exception 2")],
     "line noisy": [_set(line_errors=0.5), _set(line_errors=NAN)],
     "wheel worn": [_set(diameter_mm=77.9), _set(diameter_mm=NAN)],
@@ -150,8 +153,8 @@ OWN_TESTS = {
 }  # fmt: skip
 
 AGES = {
-    "inputs stale": 0.25, "load cell stale": 0.05, "load cell frozen": 0.5, "surface data stale": 1.0,
-    "jacket data stale": 1.0,
+    "CAN silent": 0.025, "inputs stale": 0.25, "load cell silent": 0.05, "load cell frozen": 0.5,
+    "thermometer silent": 1.0, "jacket silent": 1.0,
 }  # fmt: skip
 """What an age adds to the delay, s."""
 
@@ -259,7 +262,7 @@ def test_an_acknowledgement_with_the_cause_still_there_is_refused(bench: Bench, 
     bench.state.cooled = True
     bench.scans(12.0)
     assert bench.state.mode is Mode.LATCHED
-    holding = bench.state.held or name in ("guard open", "surface data stale")  # watched only while wanted, asked now
+    holding = bench.state.held or name in ("guard open", "thermometer silent", "surface not valid")  # watched only while wanted, asked now
     assert bench.control.request_ack(r.now_s) == ""
     bench.scans(1.5)
     assert bench.state.mode is (Mode.LATCHED if holding else Mode.IDLE)
@@ -268,7 +271,7 @@ def test_an_acknowledgement_with_the_cause_still_there_is_refused(bench: Bench, 
 
 
 STANDING_CAUSES = ("safety chain", "drive fault", "bus lost", "second master", "device refused", "line noisy",
-                   "wheel worn", "surface hot", "jacket hot", "jacket data stale")  # fmt: skip
+                   "wheel worn", "surface hot", "jacket hot", "jacket silent", "hub sensor broken")  # fmt: skip
 
 
 @pytest.mark.parametrize("name", STANDING_CAUSES)
