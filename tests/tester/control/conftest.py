@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from math import inf
+from math import inf, pi
 
 import pytest
 
@@ -34,6 +34,8 @@ class Bench:
     demand: Demand
     stale: set[str] = field(default_factory=set[str])
     """Stamps that stand still."""
+    screws: bool = True
+    """The press's torque follows from the force, between the least and the most of its friction."""
     journal: list[Event] = field(default_factory=list[Event])
     """Every event so far."""
 
@@ -44,6 +46,9 @@ class Bench:
     def scan(self, dt: float = 0.01) -> Setpoints:
         r = self.readings
         r.now_s += dt
+        screw = self.control.rig.axes.press.screw
+        if self.screws and screw is not None:
+            r.press_torque_nm = screw.lead_mm / (2000.0 * pi) * (r.force_z_n + screw.spring_n)
         for stamp in STAMPS:
             if stamp not in self.stale:
                 setattr(r, stamp, r.now_s)
