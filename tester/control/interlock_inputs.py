@@ -24,7 +24,7 @@ from tester.interlocks.known import STANDING_M_S
 from tester.interlocks.monitors import JacketMonitor, PressTracker, SpeedTracker, SurfaceMonitor
 from tester.interlocks.motion import RAMP_SHARE
 from tester.interlocks.parameter import Values
-from tester.interlocks.witness import STEP_CROSS_SHARE, STEP_SEEN_SHARE, STEP_UNSEEN_SHARE
+from tester.interlocks.witness import FORCE_STEP_CROSS_SHARE, FORCE_STEP_SEEN_SHARE, FORCE_STEP_UNSEEN_SHARE
 from tester.process import Demand, Press, Readings
 from tester.rig import RigConfig, interlock_values
 
@@ -64,7 +64,10 @@ class InterlockInputs(Inputs):
         self.press = PressTracker(p[RAMP_SHARE] * rig.axes.press.acceleration)
         self.press_band = _press_band(rig)
         self.force = ForceObserver(
-            self.limits.stiffness_n_per_mm, p[STEP_UNSEEN_SHARE], p[STEP_SEEN_SHARE], p[STEP_CROSS_SHARE]
+            self.limits.stiffness_n_per_mm,
+            p[FORCE_STEP_UNSEEN_SHARE],
+            p[FORCE_STEP_SEEN_SHARE],
+            p[FORCE_STEP_CROSS_SHARE],
         )
 
     def look(self, demand: Demand, readings: Readings, scan_s: float, dt: float) -> None:
@@ -177,6 +180,7 @@ def limits_of(rig: RigConfig) -> RigLimits:
         wheel_speed_m_s=limits.wheel_speed_m_s,
         belt_speed_m_s=limits.belt_speed_m_s,
         slip_power_w=limits.slip_power_w,
+        roller_m=0.5e-3 * rig.geometry.belt_roller_diameter_mm,
         jacket_c=limits.jacket_c,
         surface_c=limits.surface_c,
         hub_min_c=rig.loops.heat.hub_min_c,

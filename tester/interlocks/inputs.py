@@ -25,6 +25,8 @@ class RigLimits:
     wheel_speed_m_s: float
     belt_speed_m_s: float
     slip_power_w: float
+    roller_m: float
+    """Radius of the belt's drive roller."""
     jacket_c: float
     surface_c: float
     hub_min_c: float

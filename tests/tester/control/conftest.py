@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from math import inf, pi
+from math import cos, inf, pi, radians, sin
 
 import pytest
 
@@ -36,6 +36,8 @@ class Bench:
     """Stamps that stand still."""
     screws: bool = True
     """The press's torque follows from the force, between the least and the most of its friction."""
+    shafts: bool = True
+    """The torques of wheel and belt follow from the friction."""
     journal: list[Event] = field(default_factory=list[Event])
     """Every event so far."""
 
@@ -49,6 +51,12 @@ class Bench:
         screw = self.control.rig.axes.press.screw
         if self.screws and screw is not None:
             r.press_torque_nm = screw.lead_mm / (2000.0 * pi) * (r.force_z_n + screw.spring_n)
+        if self.shafts:
+            angle = radians(r.sideslip_deg)
+            belt_n = r.force_x_n * cos(angle) - r.force_y_n * sin(angle)
+            r.drive_torque_nm = 0.5e-3 * r.diameter_mm * r.force_x_n
+            r.wheel_rad_s = 2000.0 * r.wheel_speed_m_s / r.diameter_mm
+            r.belt_torque_nm = -0.5e-3 * self.control.rig.geometry.belt_roller_diameter_mm * belt_n
         for stamp in STAMPS:
             if stamp not in self.stale:
                 setattr(r, stamp, r.now_s)

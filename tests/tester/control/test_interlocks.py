@@ -111,6 +111,16 @@ def _stepped(by_n: float) -> Break:
     return apply
 
 
+def _shafts(by_w: float) -> Break:
+    """Let the shafts take this much more than friction and slip."""
+
+    def apply(bench: Bench) -> None:
+        bench.shafts = False
+        bench.readings.drive_torque_nm += by_w / bench.readings.wheel_rad_s
+
+    return apply
+
+
 def _screwed(force_n: float) -> Break:
     """Let the press's drive show the torque for another force, its screw in the middle of its friction."""
 
@@ -149,6 +159,9 @@ CAUSES: dict[str, list[Break]] = {
     "contact lost": [_set(force_z_n=15.0), _set(force_z_n=NAN)],
     "force step": [_stepped(30.0), _stepped(-30.0), _set(press_mm=NAN)],
     "press torque": [_screwed(450.0), _screwed(80.0), _screwed(NAN)],
+    "friction sign": [_set(force_x_n=-30.0), _set(force_x_n=NAN)],
+    "shaft power": [_shafts(60.0), _shafts(-60.0), _shafts(NAN)],
+    "friction beyond load": [_set(force_y_n=640.0, slip_m_s=0.0), _set(force_y_n=NAN)],
     "slip power": [_set(force_x_n=1200.0), _set(slip_m_s=NAN), _set(force_y_n=NAN)],
     "surface hot": [_set(surface_c=95.5), _set(surface_c=NAN)],
     "jacket hot": [_hub(153.5), _hub(NAN)],
@@ -225,8 +238,10 @@ def at_little_load(bench: Bench, load_n: float, friction_n: float, torque_nm: fl
     """Press with little load and return the seconds until something trips, in a second."""
     stiffness = bench.control.rig.loops.load.stiffness_n_per_mm
     r, bench.demand.load_n = bench.readings, load_n
+    bench.shafts = False
     r.press_mm += depth_mm(load_n, stiffness) - depth_mm(r.force_z_n, stiffness)
     r.force_x_n, r.force_z_n, r.drive_torque_nm = friction_n, load_n, torque_nm
+    r.belt_torque_nm = -0.05 * friction_n
     return bench.until_trip(1.0)
 
 
@@ -404,7 +419,7 @@ def test_a_wheel_that_wears_under_load_is_not_too_deep(bench: Bench) -> None:
 
 def test_how_deep_is_judged_only_once_the_wheel_was_touched(bench: Bench) -> None:
     bench.state.load.in_contact = bench.state.load.loaded = False
-    bench.readings.force_z_n = bench.readings.slip_m_s = 0.0
+    bench.readings.force_z_n = bench.readings.slip_m_s = bench.readings.force_x_n = 0.0
     bench.control.view.force.forget()
     _touched(11.8 - 1.4)(bench)
     bench.scans(1.0)
