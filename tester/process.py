@@ -64,8 +64,8 @@ class Press(IntEnum):
 class Readings:
     """Newest value of every signal, with the time stamp of its source (seconds of the scan's clock).
 
-    Speeds of the wheel are rim speeds with the *current* diameter. Forces are in the wheel frame, tare applied:
-    x along the wheel plane (positive = belt drags the wheel back), y lateral, z normal.
+    Speeds of the wheel are rim speeds with the diameter it runs with, warm and worn. Forces are in the wheel frame,
+    tare applied: x along the wheel plane (positive = belt drags the wheel back), y lateral, z normal.
     """
 
     now_s: float = 0.0
@@ -140,8 +140,10 @@ class Readings:
 
     wheel_angle_rev: float = 0.0
     """Turns of the wheel since installation, integrated from the measured speed."""
+    cold_mm: float = NAN
+    """Wheel diameter at the reference temperature: as installed, less the estimated wear."""
     diameter_mm: float = NAN
-    """Current wheel diameter: measured at installation, less the estimated wear."""
+    """Wheel diameter as it runs: the cold one and what heat has added (``tester.engine.wheel_life``)."""
 
 
 @dataclass(slots=True)

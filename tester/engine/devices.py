@@ -172,10 +172,10 @@ class Devices:
                 except BusLost as error:
                     self._lose_line(link, error, now)
 
-    def fill(self, r: Readings, now: float, diameter_mm: float) -> None:
-        """Bring the process image up to date."""
+    def fill(self, r: Readings, now: float) -> None:
+        """Bring the process image up to date; the wheel's diameters in it are (``WheelLife.show``)."""
         r.now_s = now
-        self._fill_motion(r, self.axes, diameter_mm)
+        self._fill_motion(r, self.axes)
         self.news = False
         for drive in self.drives:
             if drive.news:
@@ -207,11 +207,10 @@ class Devices:
         if now >= self._inspector.due_s:
             self._inspector.inspect(r, now)
 
-    def _fill_motion(self, r: Readings, axes: Axes, diameter_mm: float) -> None:
+    def _fill_motion(self, r: Readings, axes: Axes) -> None:
         wheel, belt, press = axes.wheel, axes.belt, axes.press
-        r.diameter_mm = diameter_mm
         r.wheel_rad_s = wheel_rad_s = wheel.actual
-        r.wheel_speed_m_s = wheel_m_s = wheel_rad_s * diameter_mm * 0.5e-3
+        r.wheel_speed_m_s = wheel_m_s = wheel_rad_s * r.diameter_mm * 0.5e-3
         r.drive_torque_nm = wheel.torque_nm
         r.wheel_at_s = stamp_s = wheel.stamp_s
         if stamp_s > self._last_angle_s:

@@ -92,7 +92,7 @@ def healthy_readings() -> Readings:
         drive_torque_nm=6.0, drives_enabled=True, drives_disabled=False, yaw_reached=True, safety_chain=True,
         guard_closed=True, contactor_closed=False, force_x_n=146.0, force_y_n=0.0, force_z_n=200.0, moment_z_nm=0.0,
         cell_valid=True, surface_c=40.0, surface_valid=True, hub_c=50.0, heat_percent=20.0, jacket_valid=True,
-        diameter_mm=90.0,
+        cold_mm=90.0, diameter_mm=90.0,
     )  # fmt: skip
 
 

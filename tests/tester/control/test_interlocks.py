@@ -179,7 +179,7 @@ CAUSES: dict[str, list[Break]] = {
     "hub sensor broken": [_set(jacket_valid=False)],
     "device refused": [_set(device_fault="jacket: exception 2")],
     "line noisy": [_set(line_errors=0.5), _set(line_errors=NAN)],
-    "wheel worn": [_set(diameter_mm=77.9), _set(diameter_mm=NAN)],
+    "wheel worn": [_set(cold_mm=77.9), _set(cold_mm=NAN)],
 }
 """Causes by the row they belong to. Rows of a stop, of rest, of the scan and of the contactor have their own tests."""
 
