@@ -97,6 +97,8 @@ class Readings:
     """First drive fault, loss or emergency, as text; empty while all are healthy."""
     bus_fault: str = ""
     """Which wire is gone (CAN adapter, serial line), as text; empty while all are there."""
+    can_heard_s: float = NEVER
+    """When a frame last came in over CAN."""
     foreign_master: str = ""
     """First frame on the CAN bus that only another master sends, as text; empty while we are alone."""
     device_fault: str = ""
@@ -116,18 +118,24 @@ class Readings:
     force_z_n: float = NAN
     moment_z_nm: float = NAN
     cell_valid: bool = False
+    cell_silent: bool = False
+    """The load cell has not answered several requests in a row, and is not set up again yet."""
     cell_at_s: float = NEVER
     cell_changed_s: float = NEVER
     """When a reading of the cell last differed from the one before."""
 
     surface_c: float = NAN
     surface_valid: bool = False
+    surface_silent: bool = False
+    """The thermometer has not answered several requests in a row."""
     surface_at_s: float = NEVER
     surface_changed_s: float = NEVER
     """When a reading of the thermometer last differed from the one before."""
     hub_c: float = NAN
     heat_percent: float = NAN
     jacket_valid: bool = False
+    jacket_silent: bool = False
+    """The jacket's controller has not answered several requests in a row."""
     jacket_at_s: float = NEVER
 
     wheel_angle_rev: float = 0.0
