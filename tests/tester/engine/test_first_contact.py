@@ -7,6 +7,7 @@ import pytest
 from sim.faults.language import parse
 from tester.engine.activity import MoveFailedError
 from tester.engine.first_contact import OFF, FirstContact
+from tester.recipe.constants import EstimateConstants
 from tests.faults.stage import Stage
 from tests.tester.engine.bench import SHORT, make_bench
 
@@ -17,33 +18,35 @@ OFF_BY_MUCH = (
 )  # fmt: skip
 
 
-def contact(fault: str, compound: str = "1#", seed: int = 3) -> tuple[Stage, float]:
-    """Install a wheel with a fault that was there before; return the stage after it, and the greatest force."""
+def contact(fault: str, compound: str = "1#", seed: int = 3) -> tuple[Stage, float, float]:
+    """Install a wheel with a fault that was there before; return the stage after it, greatest force and beginning."""
     stage = Stage(SHORT.replace("1#", compound), seed=seed)
     if fault:
         stage.inject(parse(f"t=0 s: {fault}"))
-    most_n = 0.0
+    most_n = installing_s = 0.0
     while stage.next_s < 60.0 and not stage.ended and stage.place[0] < 2:
         stage.tick()
         most_n = max(most_n, stage.rig.plant.force_z_n)
-    return stage, most_n
+        installing_s = stage.step_since_s if stage.place[0] == 1 else installing_s
+    return stage, most_n, installing_s
 
 
 @pytest.mark.parametrize("fault", OFF_BY_MUCH)
 def test_what_turns_wrongly_is_told_by_name_at_20_n_or_less(fault: str) -> None:
-    stage, most_n = contact(fault)
+    stage, most_n, _ = contact(fault)
     assert OFF in stage.run.engine.executor.failed and not stage.trip
     assert most_n <= 20.0 and not stage.observer.found
 
 
 @pytest.mark.parametrize("fault", ["", "wheel diameter 97 %", "wheel diameter 103 %", "belt speed scale 103 %"])
-def test_what_is_within_the_sweep_is_not_told_and_costs_20_s_and_no_wear(fault: str) -> None:
-    stage, most_n = contact(fault, "3#")
+def test_what_is_within_the_sweep_is_not_told_and_costs_its_time_and_no_wear(fault: str) -> None:
+    stage, most_n, installing_s = contact(fault, "3#")
     assert stage.place[0] == 2 and not stage.run.engine.executor.failed and not stage.trip
     assert most_n <= 20.0
     assert stage.run.engine.ctx.wheel.sliding_m < 0.1 and stage.run.engine.ctx.wheel.loss_mm < 1e-4
-    constants_s = 19.6
-    assert stage.next_s - stage.step_since_s < 1.0 and abs(stage.next_s - 4.2 - constants_s) < 4.0
+    # The estimate counts its time; a wheel of another diameter is touched some seconds off.
+    took_s = stage.step_since_s - installing_s
+    assert took_s == pytest.approx(EstimateConstants().install_s, abs=5.0 if "diameter" in fault else 0.5)
 
 
 def test_friction_that_turns_round_is_written_down() -> None:
