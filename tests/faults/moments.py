@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from functools import cache
 
-from tests.faults.recipes import RECIPES
+from tests.faults.recipes import setting_of
 from tests.faults.stage import STANDING, Place, Stage
 
 PHASES = ("begin", "middle", "end")
@@ -30,7 +30,7 @@ class Moment:
 @cache
 def rehearse(recipe: str, overrides: tuple[str, ...] = ()) -> tuple[list[Moment], Stage]:
     """Run a recipe to its end, once; return begin, middle and end of every step, and the stage at the end."""
-    stage = Stage(RECIPES[recipe], overrides)
+    stage = _stage(recipe, overrides)
     stretches: list[tuple[Place, str, int, int]] = []
     while not stage.run.finished:
         first = stage.ticks
@@ -42,6 +42,12 @@ def rehearse(recipe: str, overrides: tuple[str, ...] = ()) -> tuple[list[Moment]
             title = stage.run.engine.ctx.progress.title.partition(" ")[0] if place[0] else "connect"
             stretches.append((place, f"{place[0]} {title} {place[1]}", first, first))
     return list(_moments(recipe, stretches)), stage
+
+
+def _stage(recipe: str, overrides: tuple[str, ...]) -> Stage:
+    """Return a stage at the beginning of a recipe, on its rig with ``overrides`` besides."""
+    setting = setting_of(recipe)
+    return Stage(setting.text, (*setting.overrides, *overrides))
 
 
 def _moments(recipe: str, stretches: list[tuple[Place, str, int, int]]) -> Iterator[Moment]:
@@ -64,7 +70,7 @@ def visit(
     recipe: str, moments: Iterable[Moment], look: Callable[[Moment, Twins], None], overrides: tuple[str, ...] = ()
 ) -> None:
     """Run a recipe once and show, before each of the moments' ticks, what gives twins of its stage."""
-    stage = Stage(RECIPES[recipe], overrides)
+    stage = _stage(recipe, overrides)
     for moment in sorted(moments, key=_tick):
         while stage.ticks < moment.tick:
             stage.tick()
@@ -83,7 +89,7 @@ class Twins:
         """Return a twin."""
         if self.stage.copyable:
             return self.stage.copy()
-        twin = Stage(RECIPES[self.recipe], self.overrides)
+        twin = _stage(self.recipe, self.overrides)
         while twin.ticks < self.stage.ticks:
             twin.tick()
         return twin
