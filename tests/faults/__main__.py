@@ -63,7 +63,7 @@ def main(arguments: list[str] | None = None) -> int:
     kind.add_argument("--list", action="store_true", help="the catalogue, one line a fault")
     parser.add_argument("--jobs", type=int, default=1, metavar="N", help="processors to use")
     parser.add_argument("--causes", type=int, default=200, metavar="N", help="lines about failures at most")
-    parser.add_argument("--only", default="", metavar="TEXT", help="faults of --magnitudes whose phrase has this text")
+    parser.add_argument("--only", default="", metavar="TEXT", help="corners of --limits, faults of --magnitudes with this text")
     parser.add_argument("--cases", type=int, default=limits.CASES, metavar="N", help="cases of --limits")
     options = parser.parse_args(arguments)
     if not (options.full or options.limits or options.magnitudes or options.mutants or options.list or options.sample):
@@ -80,7 +80,7 @@ def main(arguments: list[str] | None = None) -> int:
     if options.magnitudes:
         searched(report, options.jobs, options.only)
     elif options.limits:
-        at_the_limits(report, options.jobs, options.causes, options.cases, short=options.sample)
+        at_the_limits(report, options.jobs, options.causes, options.cases, options.only, short=options.sample)
     elif options.full:
         full(report, options.jobs, options.causes)
     else:
@@ -129,13 +129,15 @@ def full(report: Report, jobs: int, most: int) -> None:
         scans(report, tally, len(ticks[::SPARSE]), most)
 
 
-def at_the_limits(report: Report, jobs: int, most: int, cases: int, *, short: bool) -> None:
+def at_the_limits(report: Report, jobs: int, most: int, cases: int, only: str, *, short: bool) -> None:
     """Run the corners without a fault, then every fault in them; ``short``: one corner."""
     began_s = cpu_s()
-    names = [limits.SHORT_CORNER] if short else list(corners())
-    fine = limits.rehearse_all(names, jobs)
-    for line in limits.table(fine):
-        print(f"     {line}", flush=True)
+    names = [limits.SHORT_CORNER] if short else [name for name in corners() if only in name]
+    fine: list[limits.Fine] = []
+    print(f"     {limits.line(limits.HEADER)}", flush=True)
+    for one in limits.rehearse_all(names, jobs):
+        fine.append(one)
+        print(f"     {limits.line(one.cells())}", flush=True)
     wrong = [one for one in fine if not one.well]
     report.figure("limits: corners without a fault that trip, harm or miss a row", f"{len(wrong)} of {len(fine)}", "0",
                   not wrong)

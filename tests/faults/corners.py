@@ -32,7 +32,7 @@ measure:
   wheel_speed: {wheel:g} m/s
   repeats: 1
   min_valid: 1
-  window: 14 rev
+  window: 5 rev
   soak: {{within: 2 degC, for: 2 s}}
 grids:
   - name: greatest

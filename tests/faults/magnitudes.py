@@ -107,7 +107,7 @@ def stages(corner: str) -> dict[tuple[str, str], tuple[Moment, Stage]]:
     wanted = {place for places in _PLACES.values() for place in places}
     found: dict[tuple[str, str], tuple[Moment, Stage]] = {}
     by_moment: dict[Moment, tuple[str, str]] = {}
-    for moment in rehearse(corner)[0]:
+    for moment in rehearse(corner, cooled=False)[0]:
         place = (moment.step.rpartition(" ")[2], moment.phase)
         if place in wanted and place not in by_moment.values():
             by_moment[moment] = place

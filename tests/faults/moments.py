@@ -10,6 +10,8 @@ from tests.faults.recipes import setting_of
 from tests.faults.stage import STANDING, Place, Stage
 
 PHASES = ("begin", "middle", "end")
+WARM_S = 10.0
+"""So much of a cool-down is seen where it is not waited for, s."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,11 +30,16 @@ class Moment:
 
 
 @cache
-def rehearse(recipe: str, overrides: tuple[str, ...] = ()) -> tuple[list[Moment], Stage]:
-    """Run a recipe to its end, once; return begin, middle and end of every step, and the stage at the end."""
+def rehearse(recipe: str, overrides: tuple[str, ...] = (), cooled: bool = True) -> tuple[list[Moment], Stage]:
+    """Run a recipe to its end, once; return begin, middle and end of every step, and the stage at the end.
+
+    Without ``cooled`` the end is WARM_S after the last step: a hot wheel takes most of an hour to cool.
+    """
     stage = _stage(recipe, overrides)
     stretches: list[tuple[Place, str, int, int]] = []
     while not stage.run.finished:
+        if not cooled and stage.mode == "cooldown" and stage.next_s - stage.mode_since_s > WARM_S:
+            break
         first = stage.ticks
         stage.tick()
         place = (stage.place[0], stage.place[1] if stage.running or not stage.run.engine.scans else stage.mode)
