@@ -61,6 +61,7 @@ HOT = (
     "tester/engine/sampler.py",
     "tester/engine/thermal_steps.py",
     "tester/engine/tickers.py",
+    "tester/engine/wheel_life.py",
     "tester/engine/wheel_steps.py",
     "tester/interlocks/*.py",
     "tester/process.py",

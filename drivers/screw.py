@@ -55,5 +55,14 @@ class Screw:
 
     def held_n(self, torque_nm: float) -> float:
         """Return the greatest force under which a press can stand, or be driven back, with a torque shown, N."""
-        driven = self._m * (2.0 - 1.0 / self.efficiency_least)
-        return max(0.0, (torque_nm + self.drag_most_nm) / driven - self.spring_n)
+        return max(0.0, (torque_nm + self.drag_most_nm) * self.held_n_per_nm - self.spring_n)
+
+    @property
+    def reached_n_per_nm(self) -> float:
+        """Least force that a torque brings about by pressing, N per N m beyond ``drag_most_nm``."""
+        return self.efficiency_least / self._m
+
+    @property
+    def held_n_per_nm(self) -> float:
+        """Greatest force that a torque bears, being driven back, N per N m and ``drag_most_nm`` more."""
+        return 1.0 / (self._m * (2.0 - 1.0 / self.efficiency_least))

@@ -64,8 +64,8 @@ class Press(IntEnum):
 class Readings:
     """Newest value of every signal, with the time stamp of its source (seconds of the scan's clock).
 
-    Speeds of the wheel are rim speeds with the *current* diameter. Forces are in the wheel frame, tare applied:
-    x along the wheel plane (positive = belt drags the wheel back), y lateral, z normal.
+    Speeds of the wheel are rim speeds with the diameter it runs with, warm and worn. Forces are in the wheel frame,
+    tare applied: x along the wheel plane (positive = belt drags the wheel back), y lateral, z normal.
     """
 
     now_s: float = 0.0
@@ -97,6 +97,8 @@ class Readings:
     """First drive fault, loss or emergency, as text; empty while all are healthy."""
     bus_fault: str = ""
     """Which wire is gone (CAN adapter, serial line), as text; empty while all are there."""
+    can_heard_s: float = NEVER
+    """When a frame last came in over CAN."""
     foreign_master: str = ""
     """First frame on the CAN bus that only another master sends, as text; empty while we are alone."""
     device_fault: str = ""
@@ -116,24 +118,32 @@ class Readings:
     force_z_n: float = NAN
     moment_z_nm: float = NAN
     cell_valid: bool = False
+    cell_silent: bool = False
+    """The load cell has not answered several requests in a row, and is not set up again yet."""
     cell_at_s: float = NEVER
     cell_changed_s: float = NEVER
     """When a reading of the cell last differed from the one before."""
 
     surface_c: float = NAN
     surface_valid: bool = False
+    surface_silent: bool = False
+    """The thermometer has not answered several requests in a row."""
     surface_at_s: float = NEVER
     surface_changed_s: float = NEVER
     """When a reading of the thermometer last differed from the one before."""
     hub_c: float = NAN
     heat_percent: float = NAN
     jacket_valid: bool = False
+    jacket_silent: bool = False
+    """The jacket's controller has not answered several requests in a row."""
     jacket_at_s: float = NEVER
 
     wheel_angle_rev: float = 0.0
     """Turns of the wheel since installation, integrated from the measured speed."""
+    cold_mm: float = NAN
+    """Wheel diameter at the reference temperature: as installed, less the estimated wear."""
     diameter_mm: float = NAN
-    """Current wheel diameter: measured at installation, less the estimated wear."""
+    """Wheel diameter as it runs: the cold one and what heat has added (``tester.engine.wheel_life``)."""
 
 
 @dataclass(slots=True)

@@ -22,7 +22,7 @@ class WearCheck:
     before: int
     after: int
     diameter_mm: float
-    """At the rubber temperature of the series' first check."""
+    """Cold, at the rig file's ``wear.reference``."""
     u_mm: float
     """Standard uncertainty of the diameter, of this check by itself."""
     rubber_c: float

@@ -80,7 +80,7 @@ class RunNotes:
         wall_s, wheel = clock.monotonic(), self.run.engine.ctx.wheel
         if wheel.wheel and wall_s >= self.wheel_due_s:
             self.wheel_due_s = wall_s + WHEEL_EVERY_S
-            self.recorder.wheel_state(wheel.wheel, wheel.diameter_mm, wheel.sliding_m, now_s)
+            self.recorder.wheel_state(wheel.wheel, wheel.cold_mm, wheel.sliding_m, now_s)
 
 
 def run_part(job: Job, work: Work, part: Part, begin: Begin, watch: Watch, prompts: Prompts) -> PartEnd:

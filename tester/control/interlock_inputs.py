@@ -9,6 +9,7 @@ from typing import Final
 from tester.control.observer import ThermalObserver
 from tester.control.state import ControlState, Mode
 from tester.interlocks.contact import UNLOADED_N
+from tester.interlocks.force_observer import ForceObserver
 from tester.interlocks.heat import (
     BLIND_S,
     OPEN_BELOW_K,
@@ -18,11 +19,12 @@ from tester.interlocks.heat import (
     RATE_SETTLE_S,
     RATE_WINDOW_S,
 )
-from tester.interlocks.inputs import Inputs, RigLimits
+from tester.interlocks.inputs import Inputs, PressBand, RigLimits
 from tester.interlocks.known import STANDING_M_S
 from tester.interlocks.monitors import JacketMonitor, PressTracker, SpeedTracker, SurfaceMonitor
 from tester.interlocks.motion import RAMP_SHARE
 from tester.interlocks.parameter import Values
+from tester.interlocks.witness import FORCE_STEP_CROSS_SHARE, FORCE_STEP_SEEN_SHARE, FORCE_STEP_UNSEEN_SHARE
 from tester.process import Demand, Press, Readings
 from tester.rig import RigConfig, interlock_values
 
@@ -60,6 +62,13 @@ class InterlockInputs(Inputs):
         self.wheel = SpeedTracker(p[RAMP_SHARE] * rig.axes.wheel.acceleration * radius_m)
         self.belt = SpeedTracker(p[RAMP_SHARE] * rig.axes.belt.acceleration)
         self.press = PressTracker(p[RAMP_SHARE] * rig.axes.press.acceleration)
+        self.press_band = _press_band(rig)
+        self.force = ForceObserver(
+            self.limits.stiffness_n_per_mm,
+            p[FORCE_STEP_UNSEEN_SHARE],
+            p[FORCE_STEP_SEEN_SHARE],
+            p[FORCE_STEP_CROSS_SHARE],
+        )
 
     def look(self, demand: Demand, readings: Readings, scan_s: float, dt: float) -> None:
         """Take this scan's demand and readings, and work out what several conditions ask for."""
@@ -78,8 +87,12 @@ class InterlockInputs(Inputs):
             if not -_INF < contact_mm < _INF:
                 contact_mm = self.rig.geometry.touch_mm + 0.5 * (self.rig.geometry.wheel_diameter_mm - r.diameter_mm)
             self.contact_mm = contact_mm
+            if r.cell_at_s > self.force.stamp_s:
+                self.force.update(r)
         elif r.force_z_n < self.least_n:
             self.least_n = r.force_z_n
+        if not pressing and self.force.kept:
+            self.force.forget()
         wheel_m_s = r.wheel_speed_m_s
         still = self.parameters[STANDING_M_S]
         self.turning = wheel_m_s > still or wheel_m_s < -still
@@ -163,9 +176,11 @@ def limits_of(rig: RigConfig) -> RigLimits:
     low_mm, high_mm = rig.axes.press.software_limits or (-inf, inf)
     return RigLimits(
         load_n=limits.load_n,
+        heartbeat_s=rig.can.drive_heartbeat_s,
         wheel_speed_m_s=limits.wheel_speed_m_s,
         belt_speed_m_s=limits.belt_speed_m_s,
         slip_power_w=limits.slip_power_w,
+        roller_m=0.5e-3 * rig.geometry.belt_roller_diameter_mm,
         jacket_c=limits.jacket_c,
         surface_c=limits.surface_c,
         hub_min_c=rig.loops.heat.hub_min_c,
@@ -175,6 +190,13 @@ def limits_of(rig: RigConfig) -> RigLimits:
         deceleration_m_s2=belt.deceleration,
         quick_stop_m_s2=belt.quick_stop_deceleration,
     )
+
+
+def _press_band(rig: RigConfig) -> PressBand:
+    screw = rig.axes.press.screw
+    if screw is None:
+        return PressBand(known=False)
+    return PressBand(True, screw.drag_most_nm, screw.spring_n, screw.reached_n_per_nm, screw.held_n_per_nm)
 
 
 def _jacket_monitor(p: Values) -> JacketMonitor:

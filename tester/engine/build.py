@@ -19,7 +19,7 @@ from tester.control.load_loop import LoadLoop
 from tester.control.state import ControlState
 from tester.control.step import Control
 from tester.engine.connect import Connector
-from tester.engine.context import Attendant, Context, WheelLife
+from tester.engine.context import Attendant, Context
 from tester.engine.devices import Axes, Devices
 from tester.engine.engine import Engine
 from tester.engine.executor import Executor
@@ -30,6 +30,7 @@ from tester.engine.results import StoredResults
 from tester.engine.resume import take_up
 from tester.engine.run import Run
 from tester.engine.sampler import Sampler
+from tester.engine.wheel_life import WheelLife
 from tester.pace import Pace
 from tester.process import Demand, Readings, Setpoints
 from tester.recipe.plan import Plan
@@ -124,7 +125,7 @@ def build_run(
     geometry = rig.geometry
     ctx = Context(
         rig=rig,
-        readings=Readings(diameter_mm=geometry.wheel_diameter_mm),
+        readings=Readings(cold_mm=geometry.wheel_diameter_mm, diameter_mm=geometry.wheel_diameter_mm),
         demand=Demand(),
         gates=Gates(rig.gates),
         prompts=prompts,

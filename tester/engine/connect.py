@@ -13,6 +13,7 @@ from drivers.ports import BusLost
 from tester.engine.arming import Proof
 from tester.engine.devices import INPUT_GUARD, INPUT_SAFETY_CHAIN, Devices
 from tester.engine.unloaded import Unloaded
+from tester.interlocks.wires import CAN_SILENT
 from tester.rig import RigConfig
 
 CONNECT_S = 0.01
@@ -170,6 +171,8 @@ class Connector:
 
     def _unfit(self, now: float) -> str:
         """Return why no axis may move, or go on moving; "" while all may."""
+        if all(drive.lost for drive in self.devices.drives):
+            return f"{CAN_SILENT.name}: {CAN_SILENT.cause}"
         for drive in self.devices.drives:
             name = f"{drive.config.name} drive"
             if drive.lost:

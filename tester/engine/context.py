@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from math import pi
 from typing import Protocol
 
-from tester.analysis.wear_check import WearCheck
 from tester.control.load_loop import LoadLoop
 from tester.engine.gates import Gates
 from tester.engine.prompts import Prompts
+from tester.engine.wheel_life import WheelLife
 from tester.process import Demand, Readings
 from tester.rig import RigConfig
 from tester.store.recorder import Recorder
@@ -56,60 +55,6 @@ class Tare(Protocol):
     def set_tare(self, values: tuple[float, float, float, float]) -> None:
         """Use these offsets from now on."""
         ...
-
-
-@dataclass(frozen=True, slots=True)
-class CheckReference:
-    """The first check of a wheel's diameter in its kind: when, where the press stood, the rubber's temperature."""
-
-    at_s: float
-    press_mm: float
-    rubber_c: float
-    loss_mm: float
-    """What was reckoned to be lost by then, mm."""
-
-
-@dataclass(slots=True)
-class WheelLife:
-    """The wheel on the rig: which one, and what it has lost.
-
-    The loss between measurements is estimated by the wear law dR = k F v dt / (2 pi R w) with the rig file's k
-    (physics: load, wear, transients).
-    """
-
-    specimen: int = 0
-    replicate: int = 0
-    wheel: int = 0
-    compound: str = ""
-    installed_mm: float = float("nan")
-    width_mm: float = 30.0
-    loss_mm: float = 0.0
-    """Estimated loss of diameter since installation, mm."""
-    sliding_m: float = 0.0
-    rate_mm3_per_n_m: float = 0.0
-    """Wear rate that checks of this wheel have shown; 0: none has, the rig file's is reckoned with."""
-    exposure_n_m: float = 0.0
-    """Normal force times distance slid since installation: what wear is proportional to."""
-    condition: int = 0
-    """The last condition that was measured with it; 0: none yet."""
-    reference: CheckReference | None = None
-    """The first roll check since the wheel was put on, which later ones are held against."""
-    by_hand: CheckReference | None = None
-    """The same of a person's measurements."""
-    last_check: WearCheck | None = None
-
-    @property
-    def diameter_mm(self) -> float:
-        """Current diameter in mm."""
-        return self.installed_mm - self.loss_mm
-
-    def slide(self, force_n: float, slip_m_s: float, dt: float, rate_mm3_per_n_m: float) -> None:
-        """Account for ``dt`` seconds of sliding at a normal force in N and a slip speed in m/s."""
-        distance = slip_m_s * dt
-        self.sliding_m += distance
-        self.exposure_n_m += force_n * distance
-        rate_mm3_per_n_m = self.rate_mm3_per_n_m or rate_mm3_per_n_m
-        self.loss_mm += 2.0 * rate_mm3_per_n_m * force_n * distance / (pi * self.diameter_mm * self.width_mm)
 
 
 @dataclass(slots=True)

@@ -77,6 +77,7 @@ class Devices:
     lost: str = ""
     """Why a wire is gone. It is never used again: what waits in its queues must not be sent later."""
     _can_alive: bool = True
+    _can_heard_s: float = NEVER
     _cell_counts: tuple[int, int, int, int] = (0, 0, 0, 0)
     _surface_counts: int = 0
     _inspector: Inspector = field(init=False)
@@ -113,6 +114,7 @@ class Devices:
         else:
             # What comes over a wire that was lost and came back is taken off it, and not believed.
             if frames and self._can_alive:
+                self._can_heard_s = frames[-1][0]
                 self.master.feed(frames, now)
         for port, link, foreseen in self._lines:
             if foreseen is None or foreseen.arrives_s <= now:
@@ -170,10 +172,10 @@ class Devices:
                 except BusLost as error:
                     self._lose_line(link, error, now)
 
-    def fill(self, r: Readings, now: float, diameter_mm: float) -> None:
-        """Bring the process image up to date."""
+    def fill(self, r: Readings, now: float) -> None:
+        """Bring the process image up to date; the wheel's diameters in it are (``WheelLife.show``)."""
         r.now_s = now
-        self._fill_motion(r, self.axes, diameter_mm)
+        self._fill_motion(r, self.axes)
         self.news = False
         for drive in self.drives:
             if drive.news:
@@ -181,6 +183,7 @@ class Devices:
                 self.news = True
         if self.news:
             self._fill_status(r)
+        r.can_heard_s = self._can_heard_s
         if self.lost:
             r.bus_fault = self.lost
         if self.master.foreign_master:
@@ -188,25 +191,26 @@ class Devices:
         cell = self.cell
         r.force_x_n, r.force_y_n, r.force_z_n, r.moment_z_nm = cell.fx_n, cell.fy_n, cell.fz_n, cell.mz_nm
         r.cell_valid, r.cell_at_s = cell.valid, cell.stamp_s
+        r.cell_silent = not cell.ready
         if cell.counts != self._cell_counts:
             self._cell_counts = cell.counts
             r.cell_changed_s = cell.stamp_s
         thermometer = self.thermometer
         r.surface_c, r.surface_valid, r.surface_at_s = thermometer.surface_c, thermometer.valid, thermometer.stamp_s
+        r.surface_silent = not thermometer.ready
         if thermometer.counts != self._surface_counts:
             self._surface_counts = thermometer.counts
             r.surface_changed_s = thermometer.stamp_s
         jacket = self.jacket
         r.hub_c, r.heat_percent = jacket.hub_c, jacket.output_percent
-        r.jacket_valid, r.jacket_at_s = jacket.valid, jacket.stamp_s
+        r.jacket_valid, r.jacket_at_s, r.jacket_silent = jacket.valid, jacket.stamp_s, not jacket.ready
         if now >= self._inspector.due_s:
             self._inspector.inspect(r, now)
 
-    def _fill_motion(self, r: Readings, axes: Axes, diameter_mm: float) -> None:
+    def _fill_motion(self, r: Readings, axes: Axes) -> None:
         wheel, belt, press = axes.wheel, axes.belt, axes.press
-        r.diameter_mm = diameter_mm
         r.wheel_rad_s = wheel_rad_s = wheel.actual
-        r.wheel_speed_m_s = wheel_m_s = wheel_rad_s * diameter_mm * 0.5e-3
+        r.wheel_speed_m_s = wheel_m_s = wheel_rad_s * r.diameter_mm * 0.5e-3
         r.drive_torque_nm = wheel.torque_nm
         r.wheel_at_s = stamp_s = wheel.stamp_s
         if stamp_s > self._last_angle_s:

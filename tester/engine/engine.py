@@ -85,7 +85,8 @@ class Engine:
         self.last_scan_s = now
         ctx.now = now
         self.scans += 1
-        devices.fill(readings, now, ctx.wheel.diameter_mm)
+        ctx.wheel.show(readings, ctx.rig.wear)
+        devices.fill(readings, now)
         if readings.force_z_n > CONTACT_N and readings.slip_m_s > 0.002:
             self._wear(readings)
         ctx.moving = False

@@ -131,7 +131,7 @@ class StoredResults:
         refused = self._judge(step) if self._enough_to_judge(step) else []
         result = self.repeats[-1]
         wheel = ctx.wheel
-        self.recorder.wheel_state(wheel.wheel, wheel.diameter_mm, wheel.sliding_m, ctx.now)
+        self.recorder.wheel_state(wheel.wheel, wheel.cold_mm, wheel.sliding_m, ctx.now)
         if isfinite(measured.warming_k_s):
             self.recorder.condition_rate(step.condition, measured.warming_k_s, measured.holdable_band_k)
         ticket = self.recorder.commit_repeat(key, result, bursts_of(blocks), self._for_the_record())

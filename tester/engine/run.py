@@ -135,7 +135,8 @@ class Run:
         engine.next_scan_s = due
         ctx = engine.ctx
         ctx.now = now
-        engine.devices.fill(ctx.readings, now, ctx.wheel.diameter_mm)
+        ctx.wheel.show(ctx.readings, ctx.rig.wear)
+        engine.devices.fill(ctx.readings, now)
         ctx.journal.event(now, "arming", self.connector.shown)
         self._started = True
         refused = engine.control.start(ctx.readings)

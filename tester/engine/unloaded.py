@@ -78,7 +78,7 @@ class Unloaded:
         self._note()
         bounds = self.rig.interlocks
         if not now - self.good_s <= bounds.stale_cell_s + bounds.stale_cell_delay_s:
-            return "load cell stale: nobody sees whether the wheel touches"
+            return "load cell silent: nobody sees whether the wheel touches"
         return self._shown()
 
     def stop(self) -> None:

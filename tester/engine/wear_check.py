@@ -2,8 +2,9 @@
 
 Rolling, at equal load, the press stands deeper by the radius that was lost. What else moves it is taken off or stated:
 the load in the check (its mean is corrected to the nominal one by the contact's stiffness), the cell's zero (a tare
-just before), runout (whole turns), and heat, which makes the rubber grow (by its mean temperature, with the rig file's
-``wear.growth``). A wheel's first check is the reference of those after it.
+just before), runout (whole turns), and heat, which makes the wheel grow: every check is brought back to the reference
+temperature with the rig file's ``wear.growth``, so that cold is compared with cold. A wheel's first roll check is the
+reference of those after it.
 """
 
 from __future__ import annotations
@@ -15,9 +16,10 @@ from typing import Final, NamedTuple
 
 from tester.analysis.wear_check import NO_CONDITION, WearCheck
 from tester.engine.attended import AskAtRest
-from tester.engine.context import CheckReference, Context, WheelLife
+from tester.engine.context import Context
 from tester.engine.moves import Lift, Load, Power, Sequence, Settle, TakeTare, Turn
 from tester.engine.thermal_steps import Straighten
+from tester.engine.wheel_life import CheckReference, WheelLife, rubber_c
 from tester.interlocks.contact import depth_mm
 from tester.process import NAN
 from tester.recipe.plan import WearCheck as Method
@@ -61,19 +63,19 @@ class RollCheck:
         ctx.moving = True
         if not isfinite(self.angle_rev):
             self.angle_rev = r.wheel_angle_rev
-        for i, value in enumerate((r.press_mm, r.force_z_n, 0.5 * (r.hub_c + r.surface_c))):
+        for i, value in enumerate((r.press_mm, r.force_z_n, rubber_c(r.hub_c, r.surface_c))):
             self.sums[i] += value
         self.count += 1
         if r.wheel_angle_rev - self.angle_rev < ROLL_CHECK_TURNS:
             return False
-        press_mm, load_n, rubber_c = (total / self.count for total in self.sums)
-        if isfinite(press_mm + load_n + rubber_c):
-            self._conclude(ctx, press_mm, load_n, rubber_c)
+        press_mm, load_n, mean_c = (total / self.count for total in self.sums)
+        if isfinite(press_mm + load_n + mean_c):
+            self._conclude(ctx, press_mm, load_n, mean_c)
         else:
             ctx.journal.event(ctx.now, "wear", "roll check without value: a reading was missing", "warning")
         return True
 
-    def _conclude(self, ctx: Context, press_mm: float, load_n: float, rubber_c: float) -> None:
+    def _conclude(self, ctx: Context, press_mm: float, load_n: float, mean_c: float) -> None:
         wear, wheel = ctx.rig.wear, ctx.wheel
         stiffness = ctx.rig.loops.load.stiffness_n_per_mm
         off_mm = depth_mm(load_n, stiffness) - depth_mm(ROLL_CHECK_N, stiffness)
@@ -84,13 +86,12 @@ class RollCheck:
             0.01 * wear.check_stiffness_percent * 2.0 * off_mm,
             wear.growth_mm_per_k * wear.check_rubber_k,
         )
-        at_load_mm = press_mm - off_mm
+        cold_mm = press_mm - off_mm + 0.5 * wear.growth_mm(mean_c)
         reference = wheel.reference
         if reference is None:
-            reference = wheel.reference = CheckReference(ctx.now, at_load_mm, rubber_c, wheel.loss_mm)
-        grown_mm = wear.growth_mm_per_k * (rubber_c - reference.rubber_c)
-        loss_mm = reference.loss_mm + 2.0 * (at_load_mm - reference.press_mm) + grown_mm
-        conclude(ctx, self.before, Taken("roll", reference.at_s, loss_mm, u_mm, rubber_c, press_mm, load_n))
+            reference = wheel.reference = CheckReference(ctx.now, cold_mm, wheel.loss_mm)
+        loss_mm = reference.loss_mm + 2.0 * (cold_mm - reference.press_mm)
+        conclude(ctx, self.before, Taken("roll", reference.at_s, loss_mm, u_mm, mean_c, press_mm, load_n))
 
 
 class CheckByRolling:
@@ -151,14 +152,12 @@ class CheckByPerson:
             self.ask = AskAtRest(f"{text}: {QUESTION}")
             return False
         r, wear = ctx.readings, ctx.rig.wear
-        rubber_c = 0.5 * (r.hub_c + r.surface_c)
-        reference = wheel.by_hand
-        if reference is None:
-            reference = wheel.by_hand = CheckReference(ctx.now, NAN, rubber_c, wheel.installed_mm - found)
-        grown_mm = wear.growth_mm_per_k * (rubber_c - reference.rubber_c)
+        mean_c = rubber_c(r.hub_c, r.surface_c)
+        if not isfinite(wheel.by_hand_s):
+            wheel.by_hand_s = ctx.now
         u_mm = hypot(wear.gauge_mm, wear.growth_mm_per_k * wear.check_rubber_k)
-        loss_mm = wheel.installed_mm - found + grown_mm
-        conclude(ctx, self.before, Taken("person", reference.at_s, loss_mm, u_mm, rubber_c))
+        loss_mm = wheel.installed_mm - (found - wear.growth_mm(mean_c))
+        conclude(ctx, self.before, Taken("person", wheel.by_hand_s, loss_mm, u_mm, mean_c))
         return True
 
 
@@ -217,7 +216,7 @@ def conclude(ctx: Context, before: int, taken: Taken) -> None:
     _learn_rate(wheel, check)
     wheel.last_check = check
     wheel.loss_mm = max(loss_mm, 0.0)
-    ctx.journal.wheel_state(wheel.wheel, wheel.diameter_mm, wheel.sliding_m, ctx.now)
+    ctx.journal.wheel_state(wheel.wheel, wheel.cold_mm, wheel.sliding_m, ctx.now)
 
 
 def _learn_rate(wheel: WheelLife, check: WearCheck) -> None:

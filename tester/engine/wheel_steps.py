@@ -5,9 +5,10 @@ from __future__ import annotations
 from typing import Final
 
 from tester.engine.attended import AskAtRest
-from tester.engine.context import Context, WheelLife
+from tester.engine.context import Context
 from tester.engine.moves import Lift, Load, Power, Sequence, TakeTare, Turn, speeds_reached
 from tester.engine.thermal_steps import Straighten
+from tester.engine.wheel_life import WheelLife
 from tester.recipe.plan import Install, PreGrind, WornState
 from tester.store.records import WheelInfo
 
@@ -87,7 +88,7 @@ class InstallWheel:
             wheel.compound,
             ctx.now,
             wheel.installed_mm,
-            wheel.diameter_mm,
+            wheel.cold_mm,
             updated_s=ctx.now,
         )
         ctx.journal.wheel_installed(record)
@@ -165,5 +166,5 @@ class PreGrindStep:
         if not self.moves.step(ctx):
             return False
         wheel = ctx.wheel
-        ctx.journal.wheel_ground(wheel.wheel, wheel.diameter_mm, wheel.sliding_m, ctx.now)
+        ctx.journal.wheel_ground(wheel.wheel, wheel.cold_mm, wheel.sliding_m, ctx.now)
         return True

@@ -57,13 +57,13 @@ LEAST_DIAMETER_MM: Final = Parameter(
 
 
 def _wheel_worn(v: Inputs) -> bool:
-    return not (v.readings.diameter_mm >= v.parameters[LEAST_DIAMETER_MM])
+    return not (v.readings.cold_mm >= v.parameters[LEAST_DIAMETER_MM])
 
 
 WHEEL_WORN: Final = Interlock(
     name="wheel worn",
     cause="wheel diameter below its least",
-    level="diameter < least_diameter",
+    level="cold diameter < least_diameter",
     condition=_wheel_worn,
     parameters=(LEAST_DIAMETER_MM,),
     reaction=CONTROLLED,

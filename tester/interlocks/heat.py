@@ -327,21 +327,21 @@ STALE_DELAY_S: Final = Parameter(
 )  # fmt: skip
 
 
-def _surface_unknown(v: Inputs) -> bool:
+def _surface_old(v: Inputs) -> bool:
     r = v.readings
-    return not (r.surface_valid and r.now_s - r.surface_at_s <= v.parameters[STALE_IR_S])
+    return r.surface_silent or not (r.now_s - r.surface_at_s <= v.parameters[STALE_IR_S])
 
 
-def _surface_stale(v: Inputs) -> bool:
-    return _surface_unknown(v) and _surface_wanted(v)
+def _surface_missed(v: Inputs) -> bool:
+    return _surface_old(v) and _surface_wanted(v)
 
 
-SURFACE_STALE: Final = Interlock(
-    name="surface data stale",
-    cause="no fresh surface temperature",
-    level="age > stale_ir, or not valid, and wanted",
-    condition=_surface_stale,
-    unseen=_surface_unknown,
+THERMOMETER_SILENT: Final = Interlock(
+    name="thermometer silent",
+    cause="cable, supply or address; the surface temperature is not known",
+    level="age > stale_ir, or several requests without an answer, and wanted",
+    condition=_surface_missed,
+    unseen=_surface_old,
     parameters=(STALE_IR_S,),
     delay=STALE_DELAY_S,
     reaction=CONTROLLED,
@@ -349,17 +349,54 @@ SURFACE_STALE: Final = Interlock(
 )
 
 
-def _hub_unknown(v: Inputs) -> bool:
+def _surface_invalid(v: Inputs) -> bool:
     r = v.readings
-    return not v.attended and not (r.jacket_valid and r.now_s - r.jacket_at_s <= v.parameters[STALE_JACKET_S])
+    return not r.surface_valid and not r.surface_silent
 
 
-JACKET_STALE: Final = Interlock(
-    name="jacket data stale",
-    cause="no fresh hub temperature, sensor broken",
-    level="age > stale_jacket, or not valid",
-    condition=_hub_unknown,
+def _surface_unusable(v: Inputs) -> bool:
+    return _surface_invalid(v) and _surface_wanted(v)
+
+
+SURFACE_NOT_VALID: Final = Interlock(
+    name="surface not valid",
+    cause="the thermometer is out of its range, or reports an error",
+    level="reading not valid, and wanted",
+    condition=_surface_unusable,
+    unseen=_surface_invalid,
+    delay=STALE_DELAY_S,
+    reaction=CONTROLLED,
+    reset=ACK,
+)
+
+
+def _jacket_old(v: Inputs) -> bool:
+    r = v.readings
+    return not v.attended and (r.jacket_silent or not (r.now_s - r.jacket_at_s <= v.parameters[STALE_JACKET_S]))
+
+
+JACKET_SILENT: Final = Interlock(
+    name="jacket silent",
+    cause="cable, supply or address; the hub's temperature is not known",
+    level="age > stale_jacket, or several requests without an answer",
+    condition=_jacket_old,
     parameters=(STALE_JACKET_S,),
+    delay=STALE_DELAY_S,
+    reaction=CONTROLLED,
+    reset=ACK,
+)
+
+
+def _hub_invalid(v: Inputs) -> bool:
+    r = v.readings
+    return not v.attended and not r.jacket_valid and not r.jacket_silent
+
+
+HUB_NOT_VALID: Final = Interlock(
+    name="hub sensor broken",
+    cause="the jacket's controller reports a broken sensor, or a hub out of its range",
+    level="reading not valid",
+    condition=_hub_invalid,
     delay=STALE_DELAY_S,
     reaction=CONTROLLED,
     reset=ACK,
@@ -367,5 +404,6 @@ JACKET_STALE: Final = Interlock(
 
 ROWS: Final[tuple[Interlock, ...]] = (
     SURFACE_HOT, JACKET_HOT, JACKET_RUNAWAY, HEATER_STUCK, HEATER_LINE_OPEN, HEATING_AT_STANDSTILL, HUB_JUMP,
-    SURFACE_JUMP, THERMOMETER_FROZEN, SURFACE_OFF_MODEL, SURFACE_STALE, JACKET_STALE,
+    SURFACE_JUMP, THERMOMETER_FROZEN, SURFACE_OFF_MODEL, THERMOMETER_SILENT, SURFACE_NOT_VALID, JACKET_SILENT,
+    HUB_NOT_VALID,
 )  # fmt: skip

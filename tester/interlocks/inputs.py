@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from math import inf, nan
 
 from tester.interlocks.contact import Contact
+from tester.interlocks.force_observer import ForceObserver
 from tester.interlocks.monitors import JacketMonitor, PressTracker, SpeedTracker, SurfaceMonitor
 from tester.interlocks.parameter import Values
 from tester.process import Demand, Readings, Setpoints
@@ -19,9 +20,13 @@ class RigLimits:
     """What conditions compare with beside their own parameters: numbers from the rig file's other sections."""
 
     load_n: float
+    heartbeat_s: float
+    """``can.drive_heartbeat``."""
     wheel_speed_m_s: float
     belt_speed_m_s: float
     slip_power_w: float
+    roller_m: float
+    """Radius of the belt's drive roller."""
     jacket_c: float
     surface_c: float
     hub_min_c: float
@@ -34,6 +39,28 @@ class RigLimits:
     deceleration_m_s2: float
     quick_stop_m_s2: float
     """Ramps of the belt; those of the wheel are the same at its rim."""
+
+
+@dataclass(slots=True)
+class PressBand:
+    """Between which forces a torque of the press's drive can stand, moving either way or not at all (drivers.screw)."""
+
+    known: bool
+    """The rig file has ``axes.press.screw``."""
+    drag_nm: float = 0.0
+    spring_n: float = 0.0
+    least_n_per_nm: float = 0.0
+    most_n_per_nm: float = 0.0
+
+    def least_n(self, torque_nm: float) -> float:
+        """Return the least force, N; NaN for a torque that is not known."""
+        least = (torque_nm - self.drag_nm) * self.least_n_per_nm - self.spring_n
+        return 0.0 if least < 0.0 else least
+
+    def most_n(self, torque_nm: float) -> float:
+        """Return the greatest force, N; NaN for a torque that is not known."""
+        most = (torque_nm + self.drag_nm) * self.most_n_per_nm - self.spring_n
+        return 0.0 if most < 0.0 else most
 
 
 @dataclass(slots=True)
@@ -72,6 +99,8 @@ class Inputs:
     wheel: SpeedTracker = field(init=False)
     belt: SpeedTracker = field(init=False)
     press: PressTracker = field(init=False)
+    press_band: PressBand = field(init=False)
+    force: ForceObserver = field(init=False)
     model_c: float = nan
     """What the thermal observer has for the rubber's surface."""
     scan_s: float = 0.0

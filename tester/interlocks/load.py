@@ -24,7 +24,7 @@ STALE_CELL_DELAY_S: Final = Parameter(
 
 def _cell_old(v: Inputs) -> bool:
     r = v.readings
-    return not (r.now_s - r.cell_at_s <= v.parameters[STALE_CELL_S])
+    return r.cell_silent or not (r.now_s - r.cell_at_s <= v.parameters[STALE_CELL_S])
 
 
 def _cell_still_old(v: Inputs) -> bool:
@@ -32,10 +32,10 @@ def _cell_still_old(v: Inputs) -> bool:
     return not (r.cell_at_s >= r.now_s - v.parameters[SPEEDS_OLD_S])
 
 
-CELL_STALE: Final = Interlock(
-    name="load cell stale",
-    cause="load unknown while in contact",
-    level="age > stale_cell",
+CELL_SILENT: Final = Interlock(
+    name="load cell silent",
+    cause="cable, supply or address; the load is not known",
+    level="age > stale_cell, or several requests without an answer",
     condition=_cell_old,
     unseen=_cell_still_old,
     parameters=(STALE_CELL_S,),
@@ -47,7 +47,8 @@ CELL_STALE: Final = Interlock(
 
 
 def _cell_invalid(v: Inputs) -> bool:
-    return not v.readings.cell_valid
+    r = v.readings
+    return not r.cell_valid and not r.cell_silent
 
 
 CELL_SATURATED: Final = Interlock(
@@ -248,5 +249,5 @@ SLIP_POWER: Final = Interlock(
 )
 
 ROWS: Final[tuple[Interlock, ...]] = (
-    CELL_STALE, CELL_SATURATED, CELL_FROZEN, OVERLOAD, OVERSHOOT, TOO_DEEP, CONTACT_LOST, SLIP_POWER,
+    CELL_SILENT, CELL_SATURATED, CELL_FROZEN, OVERLOAD, OVERSHOOT, TOO_DEEP, CONTACT_LOST, SLIP_POWER,
 )  # fmt: skip

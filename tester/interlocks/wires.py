@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Final
 
 from tester.interlocks.inputs import Inputs
-from tester.interlocks.parameter import Direction, Parameter
+from tester.interlocks.parameter import AT_LEAST_ONE, Direction, Parameter
 from tester.interlocks.row import ACK, EMERGENCY, FAST, WARN, Interlock
 
 
@@ -19,6 +19,41 @@ SAFETY_CHAIN: Final = Interlock(
     level="input 0x60FD bit 16 = 0",
     condition=_chain_open,
     reaction=EMERGENCY,
+    reset=ACK,
+)
+
+
+SILENT_CAN_SCANS: Final = Parameter(
+    "silent_can_scans", "1", "2.5", "nothing heard over CAN for this many scan periods ...", AT_LEAST_ONE,
+    direction=Direction.LOWER, hardest="5",
+    because="as stale_can_scans",
+)  # fmt: skip
+SILENT_CAN_HEARTBEATS: Final = Parameter(
+    "silent_can_heartbeats", "1", "1.5", "... or, if that is less, for this many heartbeats of a drive [A]",
+    AT_LEAST_ONE, direction=Direction.LOWER, hardest="3",
+    because="after three each drive counts as lost by itself",
+)  # fmt: skip
+
+
+def _nobody_heard(v: Inputs) -> bool:
+    r, p = v.readings, v.parameters
+    allowed_s = p[SILENT_CAN_HEARTBEATS] * v.limits.heartbeat_s
+    # Enabled drives answer every scan's SYNC; without power they only send their heartbeats.
+    if r.drives_enabled:
+        scans_s = p[SILENT_CAN_SCANS] * v.scan_s
+        allowed_s = scans_s if scans_s < allowed_s else allowed_s
+    # A scan that comes late has not listened meanwhile: that is for "scan late" to judge.
+    late_s = v.late_s if v.late_s > 0.0 else 0.0
+    return not (r.now_s - late_s - r.can_heard_s <= allowed_s)
+
+
+CAN_SILENT: Final = Interlock(
+    name="CAN silent",
+    cause="CAN cable, its terminators or the drives' supply: no drive is heard",
+    level="no frame for silent_can_scans periods (drives on), or silent_can_heartbeats",
+    condition=_nobody_heard,
+    parameters=(SILENT_CAN_SCANS, SILENT_CAN_HEARTBEATS),
+    reaction=FAST,
     reset=ACK,
 )
 
@@ -135,7 +170,7 @@ SCAN_DELAYED: Final = Interlock(
 )
 
 ROWS: Final[tuple[Interlock, ...]] = (
-    SAFETY_CHAIN, DRIVE_FAULT, BUS_LOST, SECOND_MASTER, CLOCK_JUMP, SCAN_LATE, GUARD_OPEN,
+    SAFETY_CHAIN, CAN_SILENT, DRIVE_FAULT, BUS_LOST, SECOND_MASTER, CLOCK_JUMP, SCAN_LATE, GUARD_OPEN,
 )  # fmt: skip
 WARNINGS: Final[tuple[Interlock, ...]] = (SCAN_DELAYED,)
 """Only said: they stand last in the table."""

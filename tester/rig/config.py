@@ -32,7 +32,7 @@ class GeometryConfig:
     """Sizes of the machine."""
 
     wheel_diameter_mm: Annotated[float, "mm", _POSITIVE]
-    """Outer diameter of a new wheel."""
+    """Outer diameter of a new wheel, at ``wear.reference``."""
     wheel_width_mm: Annotated[float, "mm", _POSITIVE]
     belt_roller_diameter_mm: Annotated[float, "mm", _POSITIVE]
     touch_mm: Annotated[float, "mm", _POSITIVE]
@@ -255,6 +255,8 @@ class WearConfig:
     rate_mm3_per_n_m: Annotated[float, "mm3/(N m)", _NOT_NEGATIVE]
     growth_mm_per_k: Annotated[float, "mm/K", _NOT_NEGATIVE] = 0.0075
     """The diameter, rubber and hub together, grows by this per K of the rubber's mean temperature."""
+    reference_c: Annotated[float, "degC", Range(ge=0.0, le=40.0)] = 23.0
+    """At which a diameter is called cold: that of a new wheel, of every check and of the record."""
     growth_uncertainty_mm_per_k: Annotated[float, "mm/K", _NOT_NEGATIVE] = 0.0017
     check_press_mm: Annotated[float, "mm", _NOT_NEGATIVE] = 0.002
     """Of where the press stands in a roll check, beside what load and heat do."""
@@ -268,6 +270,10 @@ class WearConfig:
     """Of a diameter that a person measures on rubber."""
     rate_uncertainty_percent: Annotated[float, "%", _NOT_NEGATIVE] = 1.5
     """Of a wear rate from load, slip and width of the tread."""
+
+    def growth_mm(self, rubber_c: float) -> float:
+        """Return what the diameter has gained over the cold one at a mean temperature of the rubber (degC), mm."""
+        return self.growth_mm_per_k * (rubber_c - self.reference_c)
 
 
 @dataclass(frozen=True, slots=True)

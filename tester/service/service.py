@@ -228,7 +228,7 @@ class Service:
                 mounted = mounted_wheel(self.options.runs, rig)
                 hand = take_over(run, mounted.wheel if mounted is not None else None)
                 desk.attach(run, PlanTrack(hand.plan, estimate(hand.plan, rig)), view, hand)
-                record.event(0.0, "wheel", taken_for(mounted, run.engine.ctx.wheel.diameter_mm))
+                record.event(0.0, "wheel", taken_for(mounted, run.engine.ctx.wheel.cold_mm))
                 desk.hub.accept(order)
                 with closing(ports), left_safe(run):
                     seconds = self._by_hand(run, hand, world, ports, record)

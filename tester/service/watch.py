@@ -124,7 +124,7 @@ class RunWatch:
         """Return what the connected rig says of its readiness."""
         r, rig = self.run.engine.ctx.readings, self.rig
         wheel = self.run.engine.ctx.wheel
-        worn = f"{wheel.diameter_mm:.2f} mm, {wheel.loss_mm:.2f} mm worn off"
+        worn = f"{wheel.cold_mm:.2f} mm, {wheel.loss_mm:.2f} mm worn off"
         allowed_mm = self.run.engine.executor.plan.replace_after_mm  # 0: by hand, nothing is planned
         left_mm = allowed_mm - wheel.loss_mm
         wheel_check = Check("wheel", None, worn)

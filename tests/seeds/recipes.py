@@ -84,6 +84,23 @@ ROLLING = recipe(
     repeats=5,
 )
 
+RUBBER = recipe(
+    "what rubber does",
+    ("1#",),
+    """\
+  - name: load
+    slip_velocity: 300 mm/s
+    load: [100 N, 200 N, 300 N, 400 N]
+    temperature: 25 degC
+  - name: temperature
+    slip_velocity: 300 mm/s
+    load: 400 N
+    temperature: [40 degC, 55 degC, 70 degC, 85 degC]
+""",
+    repeats=1,
+).replace("repeats: 1", "repeats: 1\n  min_valid: 1")
+"""Loads on cold rubber, then the greatest load up to the hottest: 8 conditions of one repeat."""
+
 
 def table2_short() -> str:
     """Return the shipped Table 2 with every axis cut short: nine conditions, three repeats."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from math import inf
+from math import cos, inf, pi, radians, sin
 
 import pytest
 
@@ -15,7 +15,8 @@ from tester.process import Demand, Press, Readings, Setpoints
 from tester.rig import RigConfig, load_rig
 
 STAMPS = ("wheel_at_s", "belt_at_s", "press_at_s", "sideslip_at_s", "camber_at_s", "cell_at_s", "surface_at_s",
-          "jacket_at_s", "cell_changed_s", "surface_changed_s", "inputs_at_s")  # fmt: skip
+          "jacket_at_s", "cell_changed_s", "surface_changed_s", "inputs_at_s",
+          "can_heard_s")  # fmt: skip
 """When each source last reported, and reported something new."""
 
 
@@ -33,6 +34,10 @@ class Bench:
     demand: Demand
     stale: set[str] = field(default_factory=set[str])
     """Stamps that stand still."""
+    screws: bool = True
+    """The press's torque follows from the force, between the least and the most of its friction."""
+    shafts: bool = True
+    """The torques of wheel and belt follow from the friction."""
     journal: list[Event] = field(default_factory=list[Event])
     """Every event so far."""
 
@@ -43,6 +48,15 @@ class Bench:
     def scan(self, dt: float = 0.01) -> Setpoints:
         r = self.readings
         r.now_s += dt
+        screw = self.control.rig.axes.press.screw
+        if self.screws and screw is not None:
+            r.press_torque_nm = screw.lead_mm / (2000.0 * pi) * (r.force_z_n + screw.spring_n)
+        if self.shafts:
+            angle = radians(r.sideslip_deg)
+            belt_n = r.force_x_n * cos(angle) - r.force_y_n * sin(angle)
+            r.drive_torque_nm = 0.5e-3 * r.diameter_mm * r.force_x_n
+            r.wheel_rad_s = 2000.0 * r.wheel_speed_m_s / r.diameter_mm
+            r.belt_torque_nm = -0.5e-3 * self.control.rig.geometry.belt_roller_diameter_mm * belt_n
         for stamp in STAMPS:
             if stamp not in self.stale:
                 setattr(r, stamp, r.now_s)
@@ -78,7 +92,7 @@ def healthy_readings() -> Readings:
         drive_torque_nm=6.0, drives_enabled=True, drives_disabled=False, yaw_reached=True, safety_chain=True,
         guard_closed=True, contactor_closed=False, force_x_n=146.0, force_y_n=0.0, force_z_n=200.0, moment_z_nm=0.0,
         cell_valid=True, surface_c=40.0, surface_valid=True, hub_c=50.0, heat_percent=20.0, jacket_valid=True,
-        diameter_mm=90.0,
+        cold_mm=90.0, diameter_mm=90.0,
     )  # fmt: skip
 
 
@@ -94,7 +108,7 @@ def make_bench(rig: RigConfig) -> Bench:
     readings.contactor_closed = False
     readings.heat_percent = 0.0
     readings.wheel_at_s = readings.belt_at_s = readings.jacket_at_s = readings.surface_at_s = readings.now_s
-    readings.cell_at_s = readings.surface_changed_s = readings.inputs_at_s = readings.now_s
+    readings.cell_at_s = readings.surface_changed_s = readings.inputs_at_s = readings.can_heard_s = readings.now_s
     readings.wheel_speed_m_s = readings.belt_speed_m_s = readings.force_z_n = readings.force_x_n = 0.0
     assert control.start(readings) == ""
     # As the rig would be after a while in this step: rubber in balance with surface and hub.

@@ -213,7 +213,7 @@ def test_the_hub_is_watched_again_once_the_person_has_gone(bench: Bench) -> None
     bench.scans(3.0, 0.1)
     bench.demand.attended = False
     bench.scans(0.5, 0.1)
-    assert bench.state.trip is not None and bench.state.trip.name == "jacket data stale"
+    assert bench.state.trip is not None and bench.state.trip.name == "hub sensor broken"
 
 
 def test_an_output_that_is_on_at_rest_is_not_armed(bench: Bench) -> None:

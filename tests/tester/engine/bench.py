@@ -11,12 +11,13 @@ from sim.rig import SimRig
 from tester.control.load_loop import LoadLoop
 from tester.engine.activity import Activity
 from tester.engine.build import build_run
-from tester.engine.context import Context, Nobody, WheelLife
+from tester.engine.context import Context, Nobody
 from tester.engine.gates import Gates
 from tester.engine.prompts import Prompts
 from tester.engine.run import Run
 from tester.engine.sampler import Sampler
 from tester.engine.tickers import next_tick
+from tester.engine.wheel_life import WheelLife
 from tester.process import SAMPLE_COLUMNS, Demand, Press, Readings, Setpoints
 from tester.recipe.expand import expand
 from tester.recipe.loader import load_recipe
@@ -198,9 +199,10 @@ def make_bench(config: RigConfig | None = None, *, automatic: bool = True, ambie
     used = config or rig()
     notes, cell, diameter = Notes(), Cell(), used.geometry.wheel_diameter_mm
     readings = Readings(
-        diameter_mm=diameter, wheel_speed_m_s=0.0, belt_speed_m_s=0.0, press_mm=0.0, slip_m_s=0.0, force_x_n=0.0,
-        force_y_n=0.0, force_z_n=0.0, moment_z_nm=0.0, cell_valid=True, surface_c=24.0, surface_valid=True,
-        hub_c=24.0, heat_percent=0.0, jacket_valid=True, safety_chain=True, guard_closed=True,
+        cold_mm=diameter, diameter_mm=diameter, wheel_speed_m_s=0.0, belt_speed_m_s=0.0, press_mm=0.0,
+        slip_m_s=0.0, force_x_n=0.0, force_y_n=0.0, force_z_n=0.0, moment_z_nm=0.0, cell_valid=True,
+        surface_c=24.0, surface_valid=True, hub_c=24.0, heat_percent=0.0, jacket_valid=True, safety_chain=True,
+        guard_closed=True,
     )  # fmt: skip
     ctx = Context(
         rig=used,

@@ -46,7 +46,7 @@ def test_control_and_context_share_the_press_loop(simulation: Simulation) -> Non
 
 def test_the_wheel_begins_with_the_file_s_diameter() -> None:
     wheel = Simulation(overrides=("geometry.wheel_diameter=88 mm",)).ctx.wheel
-    assert wheel.diameter_mm == 88.0
+    assert wheel.cold_mm == 88.0
 
 
 def test_rolling_contact_costs_more_heat_than_air_alone() -> None:

@@ -23,10 +23,10 @@ def devices() -> Devices:
 
 
 def filled(devices: Devices, diameter_mm: float = 90.0, now: float = 1.0) -> Readings:
-    readings = Readings()
+    readings = Readings(diameter_mm=diameter_mm)
     for drive in devices.drives:
         drive.news = True  # the tests set states by hand
-    devices.fill(readings, now, diameter_mm)
+    devices.fill(readings, now)
     return readings
 
 
@@ -78,7 +78,7 @@ def test_angles_add_up_from_the_drive_s_own_time_stamps(devices: Devices) -> Non
     wheel.actual = 2.0 * 3.141592653589793
     for stamp in (0.0, 0.1, 0.1, 0.2):
         wheel.stamp_s = stamp
-        devices.fill(r, stamp, 90.0)
+        devices.fill(r, stamp)
     assert r.wheel_angle_rev == pytest.approx(0.2)
 
 

@@ -151,7 +151,7 @@ def test_the_rig_is_safe_within_three_seconds_of_a_trip(running: Simulation) -> 
 def test_sliding_and_wear_are_those_of_the_plant(noisy_run: Simulation) -> None:
     wheel, plant = noisy_run.ctx.wheel, noisy_run.world.plant
     assert wheel.sliding_m == pytest.approx(plant.sliding_m, rel=0.02)
-    assert wheel.diameter_mm == pytest.approx(plant.cold_mm, abs=0.01)
+    assert wheel.cold_mm == pytest.approx(plant.cold_mm, abs=0.01)
 
 
 def test_a_copy_in_the_middle_of_a_burst_goes_on_identically(mid_burst: Simulation) -> None:

@@ -65,7 +65,7 @@ def test_a_trip_ends_a_run_with_its_cause(running: Simulation) -> None:
 
 @pytest.mark.parametrize(
     "line, unit_id, interlock",
-    [("load_cell", 1, "load cell stale"), ("heat", 2, "surface data stale"), ("heat", 1, "jacket data stale")],
+    [("load_cell", 1, "load cell silent"), ("heat", 2, "thermometer silent"), ("heat", 1, "jacket silent")],
 )
 def test_a_device_that_falls_silent_is_a_trip(running: Simulation, line: str, unit_id: int, interlock: str) -> None:
     running.world.lines[line].impair = Impairment("silence", count=-1, unit_id=unit_id)

@@ -104,7 +104,7 @@ def test_a_load_cell_that_falls_silent_while_other_axes_move_ends_the_connection
     simulation.world.lines["load_cell"].impair = Impairment("silence", count=-1, unit_id=1)
     began = simulation.now
     simulation.until(lambda s: s.run.connector.failed)
-    assert simulation.now - began <= 0.2 and "load cell stale" in simulation.run.connector.failure
+    assert simulation.now - began <= 0.2 and "load cell silent" in simulation.run.connector.failure
 
 
 def test_one_reply_of_the_load_cell_may_be_lost() -> None:

@@ -7,6 +7,7 @@ import runpy
 from pathlib import Path
 
 from tester.interlocks.table import INTERLOCKS, PARAMETERS
+from tester.interlocks.wires import LATE_WARN_S
 from tester.interlocks.written import WIDTH, interlock_table, key_line, rig_section
 from tester.source import load_tree
 
@@ -39,7 +40,7 @@ def test_a_section_of_a_rig_file_has_every_parameter_once() -> None:
 
 
 def test_a_line_of_a_rig_file_is_key_value_and_comment() -> None:
-    line = key_line(PARAMETERS[0])
+    line = key_line(LATE_WARN_S)
     assert line[:WIDTH].split() == ["late_warn:", "50", "ms"] and line[WIDTH:] == "# a scan this late is a warning ..."
 
 

@@ -87,7 +87,7 @@ def test_upgrade_goes_by_the_indentation_of_the_section(tmp_path: Path) -> None:
     upgrade(path)
     lines = path.read_text(encoding="utf-8").splitlines()
     assert lines[1] == "      jump: 4 K  # mine" and lines[-1] == "# the end"
-    assert lines[2].startswith("      late_warn: 50 ms")
+    assert lines[2].startswith("      silent_can_scans: 2.5")
 
 
 @pytest.mark.parametrize("text", ["rig: mine\n", "interlocks:\n", "rig: mine\ninterlocks:   # none yet"])
