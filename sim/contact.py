@@ -14,8 +14,13 @@ from typing import Final
 
 from sim.parameters import ContactParameters, SimParameters
 
-RELAXATION_TIMES_S: Final = (1.0, 10.0, 100.0, 1000.0, 10_000.0)
-"""One relaxation time a decade: together they lose the same share of the load in every decade between."""
+_A_S: Final = 1.0
+_B_S: Final = 10.0
+_C_S: Final = 100.0
+_D_S: Final = 1000.0
+_E_S: Final = 10_000.0
+"""One relaxation time a decade: together they lose the same share of the load in every decade between. Not a tuple: the
+compiled module does not find a tuple of numbers that is a constant."""
 
 
 class ContactModel:
@@ -51,7 +56,7 @@ class Relaxation:
     """What rubber gives way at held depth, and takes back when it is left alone.
 
     A generalised Maxwell body (quasi-linear viscoelasticity): the load is what the depth asks for less ``share`` times
-    a memory of it for each of RELAXATION_TIMES_S. At held depth that is a loss of ``share`` in every decade of time.
+    a memory of it for each of five relaxation times. At held depth that is a loss of ``share`` in every decade of time.
     """
 
     __slots__ = ("_apart_s", "_gains", "_memory", "share")
@@ -76,9 +81,9 @@ class Relaxation:
 
     def retime(self, dt_s: float) -> None:
         """Set the length of a step in s."""
-        a, b, c, d, e = RELAXATION_TIMES_S
         self._gains = (
-            -expm1(-dt_s / a), -expm1(-dt_s / b), -expm1(-dt_s / c), -expm1(-dt_s / d), -expm1(-dt_s / e),
+            -expm1(-dt_s / _A_S), -expm1(-dt_s / _B_S), -expm1(-dt_s / _C_S), -expm1(-dt_s / _D_S),
+            -expm1(-dt_s / _E_S),
         )  # fmt: skip
 
     @property
@@ -108,10 +113,9 @@ class Relaxation:
         """Forget as much as the time out of contact allows."""
         apart_s = self._apart_s
         a, b, c, d, e = self._memory
-        ta, tb, tc, td, te = RELAXATION_TIMES_S
         self._memory = (
-            a * exp(-apart_s / ta), b * exp(-apart_s / tb), c * exp(-apart_s / tc), d * exp(-apart_s / td),
-            e * exp(-apart_s / te),
+            a * exp(-apart_s / _A_S), b * exp(-apart_s / _B_S), c * exp(-apart_s / _C_S), d * exp(-apart_s / _D_S),
+            e * exp(-apart_s / _E_S),
         )  # fmt: skip
         self._apart_s = 0.0
 
