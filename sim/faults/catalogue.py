@@ -278,14 +278,21 @@ def _misread_rows() -> Iterator[FaultKind]:
         yield _may(f"{name} delay", partial(make, "delay"), "ms", 0.5 * lag_s, slow=slow)
 
 
+ASSEMBLY = (
+    "wheel drive reversed", "belt drive reversed", "wheel speed", "belt speed", "wheel and belt drives swapped",
+    "wheel diameter",
+)  # fmt: skip
+"""Beginnings of the phrases of faults that a machine is put together with: none of them begins in a run."""
+
+
 def _machine_rows() -> Iterator[FaultKind]:
     """Yield faults of how the machine was put together, and of the rubber on its hub."""
     for axis in ("wheel", "belt"):
-        yield _may(f"{axis} drive reversed", partial(k.Reversed, axis))
-        yield _may(f"{axis} speed scale", partial(k.SpeedScale, axis), "%", 110.0)
-        yield _may(f"{axis} speed doubled", partial(k.SpeedScale, axis, 200.0))
-    yield _may("wheel and belt drives swapped", k.DrivesSwapped)
-    yield _may("wheel diameter", k.DiameterOff, "%", 110.0)
+        yield _may(f"{axis} drive reversed", partial(k.Reversed, axis), slow=True)
+        yield _may(f"{axis} speed scale", partial(k.SpeedScale, axis), "%", 110.0, slow=True)
+        yield _may(f"{axis} speed doubled", partial(k.SpeedScale, axis, 200.0), slow=True)
+    yield _may("wheel and belt drives swapped", k.DrivesSwapped, slow=True)
+    yield _may("wheel diameter", k.DiameterOff, "%", 110.0, slow=True)
     yield _may("rubber detached", k.RubberDetached, "mm", 0.3)
     yield _may("rubber relaxation", k.RubberRelaxes, "%", 10.0)
 

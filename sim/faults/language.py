@@ -16,8 +16,8 @@ from dataclasses import dataclass, replace
 from difflib import get_close_matches
 from math import inf, isfinite
 
-from sim.faults.kinds import FaultKind
 from sim.faults.catalogue import CATALOGUE
+from sim.faults.kinds import FaultKind
 
 STEPS = ("connect", "install", "pre-grind", "rest", "heat", "soak", "tare", "roll", "measure", "lift", "cool", "prompt")
 """Names of steps that a fault can wait for."""

@@ -63,7 +63,8 @@ def main(arguments: list[str] | None = None) -> int:
     kind.add_argument("--list", action="store_true", help="the catalogue, one line a fault")
     parser.add_argument("--jobs", type=int, default=1, metavar="N", help="processors to use")
     parser.add_argument("--causes", type=int, default=200, metavar="N", help="lines about failures at most")
-    parser.add_argument("--only", default="", metavar="TEXT", help="corners of --limits, faults of --magnitudes with this text")
+    parser.add_argument("--only", default="", metavar="TEXT",
+                        help="corners of --limits, faults of --magnitudes with this text")
     parser.add_argument("--cases", type=int, default=limits.CASES, metavar="N", help="cases of --limits")
     options = parser.parse_args(arguments)
     if not (options.full or options.limits or options.magnitudes or options.mutants or options.list or options.sample):

@@ -10,6 +10,7 @@ from dataclasses import dataclass, field, replace
 from itertools import combinations
 
 from sim.faults import CATALOGUE
+from sim.faults.catalogue import ASSEMBLY
 from tests.faults.judge import Case, Judge, Verdict
 from tests.faults.moments import Moment, Twins, rehearse, visit
 from tests.faults.recipes import GRID
@@ -74,8 +75,11 @@ class Tally:
 
 
 def all_cases(moments: Iterable[Moment], faults: Sequence[str]) -> list[tuple[Moment, tuple[str, ...]]]:
-    """Return every fault at every moment."""
-    return [(moment, (fault,)) for moment in moments for fault in faults]
+    """Return every fault at every moment; those of assembly are there from the beginning, or not at all."""
+    return [
+        (moment, (fault,)) for moment in moments for fault in faults
+        if moment.step.startswith("0 ") or not fault.startswith(ASSEMBLY)
+    ]  # fmt: skip
 
 
 def sample(cases: list[tuple[Moment, tuple[str, ...]]], count: int) -> list[tuple[Moment, tuple[str, ...]]]:

@@ -11,7 +11,7 @@ from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 
 from sim.faults import PARAMETRIC
-from tests.faults.campaign import Tally, conduct, faults_of_campaign, sample
+from tests.faults.campaign import Tally, all_cases, conduct, faults_of_campaign, sample
 from tests.faults.corners import Corner, corners
 from tests.faults.moments import Moment, rehearse
 
@@ -63,8 +63,9 @@ def fault_free(name: str) -> Fine:
     moments, stage = rehearse(name, cooled=False)
     seen, trips = stage.observer, tuple(f"tripped by {trip}" for trip in stage.ledger.trips)
     wrong = trips + tuple(seen.found.values()) + tuple(stage.invariants.broken.values())
+    outcome = "done" if stage.run.engine.executor.finished else stage.mode
     return Fine(
-        corners()[name], tuple(moments), "done" if stage.run.engine.executor.finished else stage.mode, stage.ledger.committed,
+        corners()[name], tuple(moments), outcome, stage.ledger.committed,
         len(list(stage.plan.conditions())), wrong,
         seen.most_n, seen.most_hub_c, seen.most_contact_c, seen.most_power_w, stage.next_s,
     )  # fmt: skip
@@ -94,5 +95,4 @@ def faults() -> list[str]:
 def attempt(corners_run: Sequence[Fine], cases: int, jobs: int) -> Tally:
     """Try a sample of ``cases`` of every fault at every moment of these corners."""
     moments = [moment for one in corners_run for moment in one.moments]
-    every = [(moment, (fault,)) for moment in moments for fault in faults()]
-    return conduct("limits", sample(every, cases), jobs, parts=1)
+    return conduct("limits", sample(all_cases(moments, faults()), cases), jobs, parts=1)

@@ -15,6 +15,7 @@ from functools import cache
 from pathlib import Path
 
 from sim.faults import PARAMETRIC, Parametric
+from sim.faults.catalogue import ASSEMBLY
 from sim.harm import CONTACT_C, FORCE_N, HUB_C, POWER_W, STANDING_J
 from tests.faults.judge import Case, Judge
 from tests.faults.moments import Moment, rehearse, visit
@@ -96,7 +97,7 @@ class Found:
 
 def kind_of_place(phrase: str) -> str:
     """Return where a fault is looked for: ASSEMBLED, HOT or LOADED."""
-    if phrase.endswith("speed scale") or phrase == "wheel diameter":
+    if phrase.startswith(ASSEMBLY):
         return ASSEMBLED
     return HOT if phrase.startswith(("hub", "thermometer", "common")) else LOADED
 
