@@ -87,7 +87,7 @@ class InterlockInputs(Inputs):
             if not -_INF < contact_mm < _INF:
                 contact_mm = self.rig.geometry.touch_mm + 0.5 * (self.rig.geometry.wheel_diameter_mm - r.diameter_mm)
             self.contact_mm = contact_mm
-            if r.cell_at_s > self.force.stamp_s:
+            if r.cell_valid and r.cell_at_s > self.force.stamp_s:
                 self.force.update(r)
         elif r.force_z_n < self.least_n:
             self.least_n = r.force_z_n

@@ -6,6 +6,7 @@ from typing import Final
 
 from tester.engine.attended import AskAtRest
 from tester.engine.context import Context
+from tester.engine.first_contact import FirstContact
 from tester.engine.moves import Lift, Load, Power, Sequence, TakeTare, Turn, speeds_reached
 from tester.engine.thermal_steps import Straighten
 from tester.engine.wheel_life import WheelLife
@@ -17,7 +18,7 @@ REFERENCE_TARE_S: Final = 2.0
 
 
 class InstallWheel:
-    """Stand still, ask a person to mount the wheel, then take its reference tare with the drives on."""
+    """Stand still, ask a person to mount the wheel, then take its reference tare and show its first contact."""
 
     def __init__(self, step: Install, reference_tare: list[float]) -> None:
         """``reference_tare``: filled with the new wheel's zero."""
@@ -47,14 +48,15 @@ class InstallWheel:
         if self.tare is None:
             self._mount(ctx)
             self._begin_tare(ctx)
-        return self.after.step(ctx)
+        # A zero that is not to be trusted ends the step: nothing is pressed by it.
+        return bool(self.failed) or self.after.step(ctx)
 
     def _begin_tare(self, ctx: Context) -> None:
         if self.install.worn is None:
             self.reference.clear()
         limits = ctx.rig.interlocks
         self.tare = TakeTare(REFERENCE_TARE_S, self.reference, limits.zero_warn_n, limits.zero_stop_n)
-        self.after = Sequence(Power(True), Straighten(), self.tare)
+        self.after = Sequence(Power(True), Straighten(), self.tare, FirstContact())
 
     @property
     def failed(self) -> str:

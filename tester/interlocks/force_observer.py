@@ -10,14 +10,16 @@ from typing import Final
 from tester.interlocks.contact import STIFFNESS_EXPONENT, UNLOADED_N, depth_mm
 from tester.process import Readings
 
-WINDOW_S: Final = 0.15
+WINDOW_S: Final = 0.1
 """Readings are compared with those of this long before, s [A]: a step stands in the comparison for that time."""
 PLACES: Final = 64
 """Readings kept: at the sliding rate of the scan a window takes a quarter of them."""
 LEARNED_N: Final = 15.0
 """A change of force by this much says how stiff the contact is, N [A]: twice the runout's part."""
-LEARNING_S: Final = 0.1
-"""How long such changes must go on until the stiffness counts as seen, and how fast it is taken over, s [A]."""
+SEEN_S: Final = 0.2
+"""How long such changes must go on until the stiffness counts as seen, s [A]."""
+LEARNING_S: Final = 1.0
+"""Over this long it is averaged, s [A]: ten times what a step is in the comparison."""
 SOFTEST: Final = 0.5
 STIFFEST: Final = 2.0
 """Between these shares of ``loops.load.stiffness`` a stiffness is believed [A]: the rubber's own spread is 30 %."""
@@ -88,9 +90,10 @@ class ForceObserver:
         predicted = force_n(depth_mm(before, stiffness) + r.press_mm - self._places[first], stiffness)
         change, expected = r.force_z_n - before, predicted - before
         cross = self.cross_share * abs(r.force_x_n - self._frictions[first])
-        share = self.seen_share if self.seen_s >= LEARNING_S else self.unseen_share
+        share = self.seen_share if self.seen_s >= SEEN_S else self.unseen_share
         self.off_n = abs(change - expected) - cross - share * abs(expected)
         if expected > LEARNED_N and r.force_z_n > UNLOADED_N:
             self.seen_s += elapsed_s
-            seen = self.share * (1.0 + (change / expected - 1.0) * min(1.0, elapsed_s / LEARNING_S))
+            gain = elapsed_s / min(self.seen_s, LEARNING_S)
+            seen = self.share * (1.0 + (change / expected - 1.0) * gain)
             self.share = min(max(seen, SOFTEST), STIFFEST)

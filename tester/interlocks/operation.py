@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from tester.interlocks.parameter import ANY, NOT_NEGATIVE, Direction, Parameter
+from tester.interlocks.parameter import ANY, NOT_NEGATIVE, SHARE, Direction, Parameter
 
 MAX_SLIP_M_S: Final = Parameter(
     "max_slip_m_s", "m/s", "0.6 m/s", "no load is applied at a greater difference of the speeds [A]",
@@ -51,7 +51,42 @@ COOLDOWN_AT_MOST_S: Final = Parameter(
     "cooldown_at_most_s", "s", "45 min", "... and this long at most [A]",
 )  # fmt: skip
 
+FIRST_CONTACT_LOAD_N: Final = Parameter(
+    "first_contact_load_n", "N", "15 N",
+    "load of a wheel's first contact: friction must turn round with the slip ... [A]",
+    direction=Direction.LOWER, hardest="20 N",
+    because="what turns the wrong way rubs at little load: 20 N is what counts as unloaded",
+)  # fmt: skip
+FIRST_CONTACT_SWEEP: Final = Parameter(
+    "first_contact_sweep", "1", "3 %", "... while the belt's speed goes from this share above the wheel's to below ...",
+    SHARE, direction=Direction.LOWER, hardest="5 %",
+    because="a scale or a diameter that is off by 10 % must not be within the sweep",
+)  # fmt: skip
+FIRST_CONTACT_CREEP_M_S: Final = Parameter(
+    "first_contact_creep_m_s", "m/s", "10 mm/s", "... and by this: rolling, rubber creeps by some mm/s [A]",
+    NOT_NEGATIVE, direction=Direction.LOWER, hardest="15 mm/s",
+    because="at 0.4 m/s 10 % are 40 mm/s: sweep, creep and this must stay below",
+)  # fmt: skip
+FIRST_CONTACT_SLOW_M_S: Final = Parameter(
+    "first_contact_slow_m_s", "m/s", "0.1 m/s", "... at this speed: what turns the wrong way makes little slip [A] ...",
+    direction=Direction.LOWER, hardest="0.2 m/s",
+    because="0.4 m/s of slip is what the paper's wear tests slide at under full load",
+)  # fmt: skip
+FIRST_CONTACT_FAST_M_S: Final = Parameter(
+    "first_contact_fast_m_s", "m/s", "0.4 m/s", "... and then at this one: 10 % are clearly more than the creep [A]",
+    direction=Direction.HIGHER, hardest="0.3 m/s",
+    because="at 0.3 m/s 10 % are 30 mm/s, sweep and creep 19 mm/s",
+)  # fmt: skip
+FIRST_CONTACT_PLACE_MM: Final = Parameter(
+    "first_contact_place_mm", "mm", "0.3 mm",
+    "a wheel is touched within this, and half of the sweep's share of its diameter, of geometry.touch [A]",
+    direction=Direction.LOWER, hardest="1 mm",
+    because="10 % of the diameter are 4.5 mm, the sweep's 3 % are 1.35 mm",
+)  # fmt: skip
+
 PARAMETERS: Final[tuple[Parameter, ...]] = (
     MAX_SLIP_M_S, TURNING_CONFIRMED_S, START_K, COLD_K, HOLD_AT_MOST_S, ZERO_WARN_N, ZERO_STOP_N, COOLDOWN_HUB_C,
     COOLDOWN_SPEED_M_S, COOLDOWN_AT_MOST_S,
+    FIRST_CONTACT_LOAD_N, FIRST_CONTACT_SWEEP, FIRST_CONTACT_CREEP_M_S, FIRST_CONTACT_SLOW_M_S, FIRST_CONTACT_FAST_M_S,
+    FIRST_CONTACT_PLACE_MM,
 )  # fmt: skip

@@ -9,8 +9,8 @@ from tester.interlocks.parameter import NOT_NEGATIVE, SHARE, Direction, Paramete
 from tester.interlocks.row import FAST, LOADED, REPAIR, Interlock
 
 FORCE_STEP_N: Final = Parameter(
-    "force_step_n", "N", "15 N",
-    "the force changes within 0.15 s by this, without the press: runout makes 9 N at 400 N [A] ...",
+    "force_step_n", "N", "14 N",
+    "the force changes within 0.1 s by this, without the press: runout makes 7 N at 400 N [A] ...",
     direction=Direction.LOWER, hardest="30 N",
     because="400 N, 30 N and what the press brings until it stops stay below 500 N",
 )  # fmt: skip
@@ -23,7 +23,7 @@ FORCE_STEP_UNSEEN_SHARE: Final = Parameter(
 FORCE_STEP_SEEN_SHARE: Final = Parameter(
     "force_step_seen_share", "1", "0.15", "... or, once it was seen in this contact, this one [A] ...", SHARE,
     direction=Direction.LOWER, hardest="0.3",
-    because="loading at 2 mm/s changes 400 N by 50 N in 0.15 s: a third of that is 17 N",
+    because="loading at 2 mm/s changes 400 N by 34 N in 0.1 s: a third of that is 11 N",
 )  # fmt: skip
 FORCE_STEP_CROSS_SHARE: Final = Parameter(
     "force_step_cross_share", "1", "0.015",
@@ -33,8 +33,8 @@ FORCE_STEP_CROSS_SHARE: Final = Parameter(
 )  # fmt: skip
 FORCE_STEP_DELAY_S: Final = Parameter(
     "force_step_delay_s", "s", "30 ms", "... for this long [A]", NOT_NEGATIVE,
-    direction=Direction.LOWER, hardest="100 ms",
-    because="a step stands in the comparison for 150 ms",
+    direction=Direction.LOWER, hardest="80 ms",
+    because="a step stands in the comparison for 100 ms",
 )  # fmt: skip
 
 
@@ -45,7 +45,7 @@ def _force_steps(v: Inputs) -> bool:
 FORCE_STEP: Final = Interlock(
     name="force step",
     cause="the force has changed without the press: load cell, its amplifier, or the rubber",
-    level="change of Fz in 0.15 s off what press and Fx explain by > force_step (and shares of both)",
+    level="change of Fz in 0.1 s off what press and Fx explain by > force_step (and shares of both)",
     condition=_force_steps,
     parameters=(FORCE_STEP_N, FORCE_STEP_UNSEEN_SHARE, FORCE_STEP_SEEN_SHARE, FORCE_STEP_CROSS_SHARE),
     delay=FORCE_STEP_DELAY_S,

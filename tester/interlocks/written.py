@@ -38,7 +38,7 @@ def rig_section(rows: Iterable[Interlock] = INTERLOCKS) -> str:
         new = [one for one in parameters_of([row]) if one not in said]
         said.update(new)
         lines += [f"  # {row.name}"] * bool(new) + [key_line(one) for one in new]
-    lines += ["  # no row's: what may begin, holds, zero checks, the cool-down"]
+    lines += ["  # no row's: what may begin, holds, zero checks, the cool-down, a wheel's first contact"]
     lines += [key_line(one) for one in operation.PARAMETERS]
     return "\n".join(lines) + "\n"
 

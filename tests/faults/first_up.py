@@ -18,6 +18,8 @@ from tests.faults.stage import Stage
 SLIDE, ROLL, HEAT, WARM = ("short", "measure"), ("short", "wait"), ("heated", "heat"), ("heated", "soak")
 """(recipe, phase): sliding at 0.3 m/s under 200 N; rolling; heating up, lifted; rolling with the hub at 64 degC."""
 LONGEST_S = 20.0
+UNWITNESSED = ("interlocks.force_step=1000 N", "interlocks.press_torque_margin=1000 N")
+"""The witnesses of the force are sooner than the rows that look at the force alone."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,8 +57,14 @@ FIRST: tuple[First, ...] = (
     First("load cell saturated", ("t=0 s: load cell half updated",)),
     First("load cell frozen", ("t=0 s: load cell frozen",)),
     First("overload", ("t=0 s: load cell jumps 300 N",)),
-    First("load overshoot", ("t=0 s: load cell jumps",)),
-    First("contact too deep", ("t=0 s: load cell reads low",)),
+    First("load overshoot", ("t=0 s: load cell jumps",), overrides=UNWITNESSED),
+    First("contact too deep", ("t=0 s: load cell reads low",), overrides=UNWITNESSED),
+    First("force step", ("t=0 s: load cell offset -30 N",)),
+    First("force step", ("t=0 s: load cell offset 30 N",)),
+    First("press torque", ("t=0 s: load cell drift -3 N/s",), within_s=60.0),
+    First("press torque", ("t=0 s: load cell drift 3 N/s",), within_s=60.0),
+    First("friction sign", ("t=0 s: load cell Fx reversed",)),
+    First("shaft power", ("t=0 s: belt drive reversed",)),
     First("contact lost", ("t=0 s: press runs away -5 mm/s",)),
     First("surface hot", ("t=0 s: thermometer drift 0.4 K/s",), WARM, 60.0, ("limits.surface=42 degC",)),
     First("jacket hot", ("t=0 s: jacket output stuck on",), WARM, 120.0,
@@ -87,6 +95,7 @@ FIRST: tuple[First, ...] = (
 )  # fmt: skip
 
 NEVER_FIRST: dict[str, str] = {
+    "friction beyond load": "channels that are crossed step, or deny the press's torque, before they show so much",
     "clock jump": "a scan waits for its time on the same clock: one that goes back delays it, and that shows first",
     "press travel": "a wheel is pressed flat long before 18 mm: force and press speed come first",
     "slip power": "the speeds' own rows are as quick, and friction alone cannot reach 350 W at the speeds of the rig",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
-from math import cos, hypot, inf, isfinite, radians, sin
+from math import copysign, cos, hypot, inf, isfinite, radians, sin
 from typing import NamedTuple
 
 from sim.rig import SimRig
@@ -184,7 +184,8 @@ class Bench:
         self.ctx.contact.in_contact = touching
         r.press_mm = self.pressed_mm if touching else 0.0
         r.force_z_n = d.load_n + self.off_n if touching else self.zero_n - self.cell.tare[2]
-        r.force_x_n = self.mu * r.force_z_n if touching else 0.0
+        along = r.wheel_speed_m_s - r.belt_speed_m_s * cos(angle)
+        r.force_x_n = self.mu * r.force_z_n * copysign(1.0, along) if touching else 0.0
         if touching and r.slip_m_s > 0.1:
             self.surface_c += self.warming_k_s * dt
         elif isfinite(d.surface_c):
