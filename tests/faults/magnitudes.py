@@ -32,11 +32,11 @@ MODERATE = 0.25
 ASSEMBLED, LOADED, HOT = "assembled", "loaded", "hot"
 _PLACES = {
     ASSEMBLED: (("connect", "begin"),),
-    LOADED: (("pre-grind", "middle"), ("roll", "begin"), ("measure", "middle")),
-    HOT: (("heat", "begin"), ("soak", "middle"), ("measure", "begin")),
+    LOADED: (("grind", "middle"), ("roll", "begin"), ("measure", "middle")),
+    HOT: (("soak", "begin"), ("soak", "middle")),
 }
 """Phases and parts of them in which faults begin: of the machine's assembly, of what needs load, of temperatures."""
-_WATCHED_S = {ASSEMBLED: 120.0, LOADED: 150.0, HOT: 1500.0}
+_WATCHED_S = {ASSEMBLED: 120.0, LOADED: 150.0, HOT: 900.0}
 """How long they are watched, s of rig time: through pre-grinding; a soak under load; heating and the first bursts."""
 
 
