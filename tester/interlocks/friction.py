@@ -52,7 +52,7 @@ CLEAR_SLIP_M_S: Final = Parameter(
     because="most conditions of a friction test slide at 0.1 m/s or more: above 0.15 m/s few would be watched",
 )  # fmt: skip
 AGAINST_SHARE: Final = Parameter(
-    "against_share", "1", "0.1", "... and friction of more than this share of the load with it, not against it [A] ...",
+    "against_share", "1", "0.1", "... friction of more than this share of the load with it, not against [A] ...",
     SHARE, direction=Direction.LOWER, hardest="0.3",
     because="the least coefficient of the paper's tests is 0.5",
 )  # fmt: skip
@@ -95,7 +95,7 @@ FRICTION_SIGN: Final = Interlock(
 
 SHAFT_FRICTION_W: Final = Parameter(
     "shaft_friction_w", "W", "30 W",
-    "power that bearings and seals take of both shafts: 0.2 and 0.4 N m at 1.1 and 1.3 m/s take 11 W [A] ...",
+    "taken by the bearings of both shafts: 0.2 and 0.4 N m at 1.1 m/s are 13 W [A] ...",
     NOT_NEGATIVE, direction=Direction.LOWER, hardest="60 W",
     because="limits.slip_power and 60 W stay within what harms after 0.5 s",
 )  # fmt: skip

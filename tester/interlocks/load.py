@@ -70,7 +70,7 @@ FROZEN_CELL_S: Final = Parameter(
 )  # fmt: skip
 TOUCH_MARGIN_MM: Final = Parameter(
     "touch_margin_mm", "mm", "1.8 mm",
-    "... or no force this far beyond the contact: 200 N unseen, 60 N with axes.press.screw [A]",
+    "... or no force this far beyond the contact: 200 N unseen, 60 N with a screw [A]",
     direction=Direction.LOWER, hardest="2 mm",
     because="2 mm press a wheel with about 240 N, which a cell that shows nothing would let grow",
 )  # fmt: skip

@@ -79,7 +79,7 @@ FIRST_CONTACT_FAST_M_S: Final = Parameter(
 )  # fmt: skip
 FIRST_CONTACT_PLACE_MM: Final = Parameter(
     "first_contact_place_mm", "mm", "0.3 mm",
-    "a wheel is touched within this, and half of the sweep's share of its diameter, of geometry.touch [A]",
+    "where it touches is off by this and the sweep's share of the radius at most [A]",
     direction=Direction.LOWER, hardest="1 mm",
     because="10 % of the diameter are 4.5 mm, the sweep's 3 % are 1.35 mm",
 )  # fmt: skip

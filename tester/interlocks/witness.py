@@ -10,7 +10,7 @@ from tester.interlocks.row import FAST, LOADED, REPAIR, Interlock
 
 FORCE_STEP_N: Final = Parameter(
     "force_step_n", "N", "14 N",
-    "the force changes within 0.1 s by this, without the press: runout makes 7 N at 400 N [A] ...",
+    "force changes by this in 0.1 s without the press: runout makes 7 N at 400 N [A]",
     direction=Direction.LOWER, hardest="30 N",
     because="400 N, 30 N and what the press brings until it stops stay below 500 N",
 )  # fmt: skip
@@ -56,7 +56,7 @@ FORCE_STEP: Final = Interlock(
 
 TORQUE_MARGIN_N: Final = Parameter(
     "press_torque_margin_n", "N", "20 N",
-    "Fz outside what the press's torque can mean (axes.press.screw, standing or moving either way) by this [A] ...",
+    "Fz outside what the press's torque and screw can mean, by this [A] ...",
     direction=Direction.LOWER, hardest="40 N",
     because="at the torque's limit 440 N or more press: a cell that shows less than 400 N is told",
 )  # fmt: skip

@@ -72,7 +72,7 @@ def test_a_new_wheel_is_whole_and_its_contact_unknown(bench: Bench) -> None:
     ctx.readings.wheel_angle_rev = 77.0
     bench.run(InstallWheel(INSTALL, []))
     assert (ctx.wheel.wheel, ctx.wheel.cold_mm, ctx.wheel.sliding_m) == (3, 90.0, 0.0)
-    assert isnan(ctx.contact.contact_mm) and ctx.readings.wheel_angle_rev == 0.0
+    assert isnan(ctx.contact.contact_mm) and 0.0 < ctx.readings.wheel_angle_rev < 5.0  # of the first contact
 
 
 def test_an_installed_wheel_is_recorded(bench: Bench) -> None:
