@@ -76,8 +76,13 @@ class Found:
     end: float
     place: str
     unnoticed: Trial | None
-    harming: Trial | None
+    harmed: tuple[Trial, ...]
     noticed_by: str
+
+    @property
+    def harming(self) -> Trial | None:
+        """The least magnitude that harms."""
+        return min(self.harmed, key=lambda trial: abs(trial.value - self.row.normal), default=None)
 
     @property
     def text(self) -> str:
@@ -169,9 +174,8 @@ def search(row: Parametric, end: float) -> Found:
                 least, unnoticed = middle, one
     else:
         unnoticed = one
-    harmed = [trial for trial in trials if trial.harm]
-    harming = min(harmed, key=lambda trial: abs(trial.value - row.normal)) if harmed else None
-    return Found(row, end, f"{corner}; {place[0]}, {place[1]}", unnoticed, harming, noticed_by)
+    harmed = tuple(trial for trial in trials if trial.harm)
+    return Found(row, end, f"{corner}; {place[0]}, {place[1]}", unnoticed, harmed, noticed_by)
 
 
 def _search(one: tuple[str, float]) -> Found:
@@ -203,9 +207,9 @@ class Written:
     why: str
 
     def covers(self, found: Found) -> bool:
-        """Tell whether what harms is in this row."""
-        harming = found.harming
-        return harming is not None and found.row.kind.phrase == self.fault and self.least <= harming.value <= self.most
+        """Tell whether every magnitude that harms is in this row."""
+        mine = bool(found.harmed) and found.row.kind.phrase == self.fault
+        return mine and all(self.least <= trial.value <= self.most for trial in found.harmed)
 
 
 def written() -> tuple[Written, ...]:

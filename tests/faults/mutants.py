@@ -84,7 +84,7 @@ MUTANTS: tuple[Mutant, ...] = (
     Mutant("stale accepted: drives", _MOTION,
            "since = r.now_s - (allowed if allowed < most else most)", "since = r.now_s - 1e9"),
     Mutant("stale accepted: load", _LOAD,
-           "return not (r.now_s - r.cell_at_s <= v.parameters[STALE_CELL_S])",
+           "return r.cell_silent or not (r.now_s - r.cell_at_s <= v.parameters[STALE_CELL_S])",
            "return not (r.now_s - r.cell_at_s <= 1e9)"),
     Mutant("not a number passes: hub", _HEAT,
            "not (r.now_s - r.jacket_at_s <= v.parameters[STALE_JACKET_S])",

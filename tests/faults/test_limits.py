@@ -81,7 +81,7 @@ def test_bisection_finds_the_greatest_unnoticed_magnitude_and_the_least_that_har
 
 def _found(value: float) -> Found:
     harming = Trial(value, "", ("harm: force",), 520.0, 0.0, 0.0, 0.0, 0.0)
-    return Found(PARAMETRIC["load cell gain"], 50.0, "somewhere", harming, harming, "")
+    return Found(PARAMETRIC["load cell gain"], 50.0, "somewhere", harming, (harming,), "")
 
 
 @pytest.mark.parametrize(("value", "covered"), [(80.0, True), (60.0, False), (95.0, False)])
