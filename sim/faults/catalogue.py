@@ -251,7 +251,7 @@ def _computer_rows() -> Iterator[FaultKind]:
     yield FaultKind("operator fast stop", partial(p.Operator, "fast stop"), DRIVES, STOP, SCAN_S)
 
 
-_UNASKED = "no row of the interlock table is asked for it yet: tests/faults/magnitudes.py says what it does"
+_UNASKED = "how much of it goes unnoticed, and what that does, python -m tests.faults --magnitudes says"
 
 
 def _may(phrase: str, make: Callable[..., Effect], unit: str | None = None, value: float = 0.0,

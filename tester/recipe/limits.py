@@ -231,7 +231,7 @@ class _Limits:
                 yield self.tree.problem(given.at, f"{reached} is hotter than the rig allows rubber {source}")
             elif given.value + band > surface_c - OVERHEAT_K:
                 source = self._limit("limits.surface", surface_c, "degC")
-                nearer = f"leaves less than {show(OVERHEAT_K, 'K')}, by which a burst overshoots, to what rubber may get"
+                nearer = f"leaves less than {show(OVERHEAT_K, 'K')}, by which a burst overshoots, to what rubber may be"
                 yield self.tree.problem(given.at, f"{reached} {nearer} {source}")
             if given.value > jacket_c:
                 source = self._limit("limits.jacket", jacket_c, "degC")

@@ -63,7 +63,7 @@ def fault_free(name: str) -> Fine:
     moments, stage = rehearse(name, cooled=False)
     seen, trips = stage.observer, tuple(f"tripped by {trip}" for trip in stage.ledger.trips)
     wrong = trips + tuple(seen.found.values()) + tuple(stage.invariants.broken.values())
-    outcome = "done" if stage.run.engine.executor.finished else stage.mode
+    outcome = "done" if stage.run.engine.executor.finished and not stage.run.reason else stage.mode
     return Fine(
         corners()[name], tuple(moments), outcome, stage.ledger.committed,
         len(list(stage.plan.conditions())), wrong,

@@ -136,10 +136,10 @@ def attempt(row: Parametric, value: float, corner: str, place: tuple[str, str]) 
     case = Case(corner, moment.tick, moment.place, (row.text(value),))
     watched_s = _WATCHED_S[kind_of_place(row.kind.phrase)]
     verdict = Judge(stage, case, budgets=False, watched_s=watched_s).run()
-    ended = stage.ended and not stage.run.engine.executor.finished
+    ended = "a stop" if stage.ended and not stage.run.engine.executor.finished else ""
     seen = stage.observer
     return Trial(
-        value, stage.trip or ("a stop" if ended else ""), tuple(verdict.failures), seen.most_n, seen.most_hub_c,
+        value, stage.trip or stage.run.reason or ended, tuple(verdict.failures), seen.most_n, seen.most_hub_c,
         seen.most_contact_c, seen.most_power_w, seen.most_standing_j,
     )  # fmt: skip
 

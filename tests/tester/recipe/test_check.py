@@ -124,13 +124,14 @@ def test_a_compound_without_a_model_has_no_power_to_check_on_a_real_rig() -> Non
             "[40 degC, 25 degC]",
             "[40 degC, 91 degC]",
             "r.yaml:10:28: temperature: 91 degC with its band of 2 K leaves less than 3 K, by which a burst overshoots,"
-            f" to what rubber may get (limit 95 degC: limits.surface {FROM_RIG}",
+            f" to what rubber may be (limit 95 degC: limits.surface {FROM_RIG}",
         ),
         (
             "slip_velocity: 300 mm/s",
             "slip_velocity: 595 mm/s",
             "r.yaml:8:20: slip_velocity: 0.595 m/s at a wheel speed of 0.8 m/s leaves less than 0.01005 m/s, by which"
-            f" the speeds may be off (gates.speed), to what is ever loaded (limit 0.6 m/s: interlocks.max_slip {FROM_RIG}",
+            " the speeds may be off (gates.speed), to what is ever loaded"
+            f" (limit 0.6 m/s: interlocks.max_slip {FROM_RIG}",
         ),
     ],
 )
