@@ -70,8 +70,10 @@ AGAINST_DELAY_S: Final = Parameter(
 
 def _friction_with_slip(v: Inputs) -> bool:
     r, p = v.readings, v.parameters
-    clear, angle = p[CLEAR_SLIP_M_S], r.sideslip_deg * _RADIANS
-    along, across = r.wheel_speed_m_s - r.belt_speed_m_s * cos(angle), r.belt_speed_m_s * sin(angle)
+    clear, along, across = p[CLEAR_SLIP_M_S], r.wheel_speed_m_s - r.belt_speed_m_s, 0.0
+    if r.sideslip_deg != 0.0:
+        angle = r.sideslip_deg * _RADIANS
+        along, across = r.wheel_speed_m_s - r.belt_speed_m_s * cos(angle), r.belt_speed_m_s * sin(angle)
     with_n = 0.0
     if not -clear <= along <= clear:
         with_n = -r.force_x_n if along > 0.0 else r.force_x_n

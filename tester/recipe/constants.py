@@ -14,8 +14,8 @@ class EstimateConstants:
 
     person_s: float = 600.0
     """A person mounts a wheel or does what a prompt asks; nobody waits on a simulated rig."""
-    install_s: float = 19.6
-    """Standstill, drives off and on, reference tare 2.1; first contact 17.5, the way to the wheel included."""
+    install_s: float = 18.5
+    """Standstill, drives off and on, reference tare 2.1; first contact 16.4, the way to the wheel included."""
     pre_grind_moves_s: float = 10.0
     """Turn, load, bring slip in, take it out, lift."""
     repeat_moves_s: float = 4.8

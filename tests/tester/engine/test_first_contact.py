@@ -42,7 +42,7 @@ def test_what_is_within_the_sweep_is_not_told_and_costs_20_s_and_no_wear(fault: 
     assert stage.place[0] == 2 and not stage.run.engine.executor.failed and not stage.trip
     assert most_n <= 20.0
     assert stage.run.engine.ctx.wheel.sliding_m < 0.1 and stage.run.engine.ctx.wheel.loss_mm < 1e-4
-    constants_s = 19.6
+    constants_s = 18.5
     assert stage.next_s - stage.step_since_s < 1.0 and abs(stage.next_s - 4.2 - constants_s) < 4.0
 
 
