@@ -84,6 +84,14 @@ class HarmObserver:
     rig: SimRig
     planned_w: float = 0.0
     found: dict[str, str] = field(default_factory=dict[str, str])
+    most_n: float = 0.0
+    """The greatest figures so far: force ..."""
+    most_hub_c: float = -inf
+    most_contact_c: float = -inf
+    most_power_w: float = 0.0
+    """... slip speed times normal force, however short ..."""
+    most_standing_j: float = 0.0
+    """... and heat of friction with one axis stopped."""
     _last_s: float = -inf
     _power_since_s: float = inf
     _heat_since_s: float = inf
@@ -99,6 +107,7 @@ class HarmObserver:
         self._last_s = now
         plant = rig.plant
         force_n = plant.force_z_n
+        self._most(force_n)
         if force_n > FORCE_N:
             self._note("force", f"{force_n:.0f} N at {now:.2f} s, at most {FORCE_N:g} N")
         if plant.surface_c > CONTACT_C:
@@ -118,6 +127,19 @@ class HarmObserver:
         else:
             self._press_mm = inf
 
+    def forget(self) -> None:
+        """Begin anew with the greatest figures."""
+        self.most_n = self.most_power_w = self.most_standing_j = 0.0
+        self.most_hub_c = self.most_contact_c = -inf
+
+    def _most(self, force_n: float) -> None:
+        plant = self.rig.plant
+        power_w = plant.slip_m_s * force_n
+        self.most_n = force_n if force_n > self.most_n else self.most_n
+        self.most_power_w = power_w if power_w > self.most_power_w else self.most_power_w
+        self.most_hub_c = plant.heat.hub_c if plant.heat.hub_c > self.most_hub_c else self.most_hub_c
+        self.most_contact_c = plant.surface_c if plant.surface_c > self.most_contact_c else self.most_contact_c
+
     def _rubbing(self, now: float, dt: float, force_n: float, wheel: float, belt: float) -> None:
         plant = self.rig.plant
         if plant.slip_m_s * force_n > max(POWER_W, 1.05 * self.planned_w):
@@ -129,6 +151,7 @@ class HarmObserver:
             self._power_since_s = inf
         if force_n > UNLOADED_N and (wheel < STILL_M_S) != (belt < STILL_M_S):
             self._standing_j += hypot(plant.force_x_n, plant.force_y_n) * plant.slip_m_s * dt
+            self.most_standing_j = max(self.most_standing_j, self._standing_j)
             if self._standing_j > STANDING_J:
                 self._note(
                     "one axis stopped under load", f"{self._standing_j:.0f} J by {now:.2f} s, at most {STANDING_J:g} J"

@@ -215,6 +215,11 @@ class SimRig:
     def _bear(self, drive: Cia402Slave) -> None:
         """Keep the press from going deeper than its drive's torque can: it stalls; a greater load drives it back."""
         limit_nm, plant = drive.torque_limit_nm, self.plant
+        if not drive.energised and self._spring_mm_s:
+            # The spring alone makes coast_deceleration of the screw's inertia; the load pushes the same way.
+            axis = drive.axis
+            rate = drive.coast_deceleration * (1.0 + plant.force_z_n / self._screw.spring_n)
+            axis.acceleration = axis.deceleration = rate
         if limit_nm != self._limit_nm:
             self._limit_nm = limit_nm
             self._pushed_n = max(0.0, self._screw.pushed_n(limit_nm))

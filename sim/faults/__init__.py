@@ -8,11 +8,11 @@ from __future__ import annotations
 
 from sim.faults.catalogue import CATALOGUE
 from sim.faults.language import FaultTextError, Injection, parse, parse_script
-from sim.faults.parametric import FAULTS, PARAMETRIC, Parametric
+from sim.faults.parametric import PARAMETRIC, Parametric
 from sim.faults.scene import Scene
 from sim.faults.script import FaultScript
 
 __all__ = [
-    "CATALOGUE", "FAULTS", "PARAMETRIC", "FaultScript", "FaultTextError", "Injection", "Parametric", "Scene", "parse",
+    "CATALOGUE", "PARAMETRIC", "FaultScript", "FaultTextError", "Injection", "Parametric", "Scene", "parse",
     "parse_script",
 ]  # fmt: skip

@@ -7,7 +7,7 @@ why nothing can be asked of it.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from functools import partial
 
 from drivers.canopen import objects as o
@@ -15,11 +15,13 @@ from drivers.canopen.objects import NmtCommand
 from sim.faults import actuators as a
 from sim.faults import can as c
 from sim.faults import drives as d
+from sim.faults import machine as k
 from sim.faults import modbus as m
 from sim.faults import people as p
 from sim.faults import sdo
 from sim.faults import sensors as s
 from sim.faults.kinds import Exposure, FaultKind, Reaction
+from sim.faults.scene import Effect
 
 AXES = ("wheel", "belt", "press", "sideslip", "camber")
 VELOCITY_AXES = ("wheel", "belt", "press")
@@ -249,6 +251,52 @@ def _computer_rows() -> Iterator[FaultKind]:
     yield FaultKind("operator fast stop", partial(p.Operator, "fast stop"), DRIVES, STOP, SCAN_S)
 
 
+_UNASKED = "how much of it goes unnoticed, and what that does, python -m tests.faults --magnitudes says"
+
+
+def _may(phrase: str, make: Callable[..., Effect], unit: str | None = None, value: float = 0.0,
+         *, slow: bool = False) -> FaultKind:  # fmt: skip
+    return FaultKind(phrase, make, ALWAYS, MAY, 0.0, unit, value, slow=slow, note=_UNASKED)
+
+
+def _misread_rows() -> Iterator[FaultKind]:
+    """Yield sensors that show something else than is: by a share, late, of another channel or sign."""
+    yield _may("load cell gain", partial(s.CellFault, "gain"), "%", 70.0)
+    for channels in s.CROSSED:
+        what, _, which = channels.partition(" ")
+        named = " and ".join(f"F{one}" for one in which.split())
+        yield _may(f"load cell {named} {what}", partial(s.CellFault, channels))
+    yield _may("hub sensor gain", partial(s.HubFault, "gain"), "%", 80.0, slow=True)
+    yield _may("hub sensor partly detached", s.HubDetached, "%", 80.0, slow=True)
+    yield _may("thermometer gain", partial(s.SurfaceFault, "gain"), "%", 80.0, slow=True)
+    yield _may("common supply of hub sensor and thermometer", s.CommonSupplyFault, "%", 80.0, slow=True)
+    for name, make, lag_s in (
+        ("load cell", s.CellFault, 1.0), ("thermometer", s.SurfaceFault, 1.5), ("hub sensor", s.HubFault, 10.0),
+    ):  # fmt: skip
+        slow = name != "load cell"
+        yield _may(f"{name} lag", partial(make, "lag"), "ms", lag_s, slow=slow)
+        yield _may(f"{name} delay", partial(make, "delay"), "ms", 0.5 * lag_s, slow=slow)
+
+
+ASSEMBLY = (
+    "wheel drive reversed", "belt drive reversed", "wheel speed", "belt speed", "wheel and belt drives swapped",
+    "wheel diameter",
+)  # fmt: skip
+"""Beginnings of the phrases of faults that a machine is put together with: none of them begins in a run."""
+
+
+def _machine_rows() -> Iterator[FaultKind]:
+    """Yield faults of how the machine was put together, and of the rubber on its hub."""
+    for axis in ("wheel", "belt"):
+        yield _may(f"{axis} drive reversed", partial(k.Reversed, axis), slow=True)
+        yield _may(f"{axis} speed scale", partial(k.SpeedScale, axis), "%", 110.0, slow=True)
+        yield _may(f"{axis} speed doubled", partial(k.SpeedScale, axis, 200.0), slow=True)
+    yield _may("wheel and belt drives swapped", k.DrivesSwapped, slow=True)
+    yield _may("wheel diameter", k.DiameterOff, "%", 110.0, slow=True)
+    yield _may("rubber detached", k.RubberDetached, "mm", 0.3)
+    yield _may("rubber relaxation", k.RubberRelaxes, "%", 10.0)
+
+
 def _rows() -> Iterator[FaultKind]:
     yield from _drive_rows()
     yield from _bus_rows()
@@ -256,6 +304,8 @@ def _rows() -> Iterator[FaultKind]:
     yield from _sensor_rows()
     yield from _actuator_rows()
     yield from _computer_rows()
+    yield from _misread_rows()
+    yield from _machine_rows()
 
 
 CATALOGUE: dict[str, FaultKind] = {row.phrase: row for row in _rows()}

@@ -16,8 +16,8 @@ from dataclasses import dataclass, replace
 from difflib import get_close_matches
 from math import inf, isfinite
 
+from sim.faults.catalogue import CATALOGUE
 from sim.faults.kinds import FaultKind
-from sim.faults.parametric import FAULTS
 
 STEPS = ("connect", "install", "pre-grind", "rest", "heat", "soak", "tare", "roll", "measure", "lift", "cool", "prompt")
 """Names of steps that a fault can wait for."""
@@ -129,14 +129,14 @@ def _when(text: str, when: str) -> When:
 
 
 def _what(text: str, what: str) -> tuple[FaultKind, float | None]:
-    kind = FAULTS.get(what)
+    kind = CATALOGUE.get(what)
     if kind is not None:
         return kind, None
     match = _VALUE.match(what)
-    if match is None or match["phrase"] not in FAULTS:
+    if match is None or match["phrase"] not in CATALOGUE:
         phrase = match["phrase"] if match is not None else what
-        raise _error(text, f"unknown fault {phrase!r}{_nearest(phrase, FAULTS)}")
-    kind = FAULTS[match["phrase"]]
+        raise _error(text, f"unknown fault {phrase!r}{_nearest(phrase, CATALOGUE)}")
+    kind = CATALOGUE[match["phrase"]]
     if kind.unit is None:
         raise _error(text, f"{kind.phrase!r} takes no value")
     factors = _FACTORS[kind.unit]

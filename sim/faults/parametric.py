@@ -1,23 +1,17 @@
-"""Faults with a magnitude, and those that no row of the interlock table is asked for yet.
-
-``PARAMETRIC`` says between which values a fault can lie, and which one is no fault at all: a search goes from there to
-either end. ``UNANSWERED`` are faults of the machine's assembly without a magnitude. Neither is injected by the campaign
-over the catalogue: some of them do harm today. All of them can be written (``FAULTS``).
+"""Ranges of those rows of the catalogue whose magnitude matters: between which values a fault can lie, and which one is
+none at all. A search goes from there to either end.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import partial
 
-from sim.faults import machine as k
-from sim.faults import sensors as s
 from sim.faults.catalogue import CATALOGUE
-from sim.faults.kinds import Exposure, FaultKind, Reaction
-from sim.faults.scene import Effect
+from sim.faults.kinds import FaultKind
 
-_NOTE = "no row of the interlock table is asked for it yet"
+_LAGS = {"load cell": 4.0, "thermometer": 6.0, "hub sensor": 40.0}
+"""Greatest time constant, or delay, of a sensor that is searched, s."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,54 +43,31 @@ class Parametric:
         return f"{self.kind.phrase} {value:.6g} {'s' if unit == 'ms' else unit}".rstrip()
 
 
-def _new(phrase: str, make: type[Effect] | partial[Effect], unit: str | None = None, value: float = 0.0) -> FaultKind:
-    return FaultKind(phrase, make, Exposure.ALWAYS, Reaction.MAY, 0.0, unit, value, slow=True, note=_NOTE)
-
-
-def _sensors() -> Iterator[Parametric]:
-    yield Parametric(CATALOGUE["load cell offset"], -200.0, 200.0)
-    yield Parametric(CATALOGUE["load cell drift"], -5.0, 5.0)
-    yield Parametric(_new("load cell gain", partial(s.CellFault, "gain"), "%", 70.0), 50.0, 150.0, 100.0)
-    yield Parametric(CATALOGUE["hub sensor offset"], -40.0, 40.0)
-    yield Parametric(_new("hub sensor gain", partial(s.HubFault, "gain"), "%", 80.0), 60.0, 140.0, 100.0)
-    yield Parametric(CATALOGUE["thermometer offset"], -40.0, 40.0)
-    yield Parametric(CATALOGUE["thermometer drift"], -1.0, 1.0)
-    yield Parametric(_new("thermometer gain", partial(s.SurfaceFault, "gain"), "%", 80.0), 60.0, 140.0, 100.0)
-    common = _new("common supply of hub sensor and thermometer", s.CommonSupplyFault, "%", 80.0)
-    yield Parametric(common, 60.0, 140.0, 100.0)
-    for name, make, lag_s in (
-        ("load cell", s.CellFault, 1.0), ("thermometer", s.SurfaceFault, 1.5), ("hub sensor", s.HubFault, 10.0),
-    ):  # fmt: skip
-        yield Parametric(_new(f"{name} lag", partial(make, "lag"), "ms", lag_s), 0.0, 4.0 * lag_s)
-        yield Parametric(_new(f"{name} delay", partial(make, "delay"), "ms", 0.5 * lag_s), 0.0, 4.0 * lag_s)
-
-
-def _mechanics() -> Iterator[Parametric]:
+def _ranges() -> Iterator[tuple[str, float, float, float]]:
+    """Yield phrase, least and greatest magnitude, and the one that is no fault."""
+    yield "load cell offset", -200.0, 200.0, 0.0
+    yield "load cell drift", -5.0, 5.0, 0.0
+    yield "load cell gain", 50.0, 150.0, 100.0
+    yield "hub sensor offset", -40.0, 40.0, 0.0
+    yield "hub sensor gain", 60.0, 140.0, 100.0
+    yield "hub sensor partly detached", 60.0, 100.0, 100.0
+    yield "thermometer offset", -40.0, 40.0, 0.0
+    yield "thermometer drift", -1.0, 1.0, 0.0
+    yield "thermometer gain", 60.0, 140.0, 100.0
+    yield "common supply of hub sensor and thermometer", 60.0, 140.0, 100.0
+    for name in ("load cell", "thermometer", "hub sensor"):
+        for slow in ("lag", "delay"):
+            yield f"{name} {slow}", 0.0, _LAGS[name], 0.0
     for axis in ("wheel", "belt"):
-        yield Parametric(_new(f"{axis} speed scale", partial(k.SpeedScale, axis), "%", 110.0), 50.0, 200.0, 100.0)
-    yield Parametric(_new("wheel diameter", k.DiameterOff, "%", 110.0), 85.0, 115.0, 100.0)
-    yield Parametric(CATALOGUE["belt slips on its roller"], 0.0, 100.0)
-    yield Parametric(_new("rubber detached", k.RubberDetached, "mm", 0.3), 0.0, 1.0)
-    yield Parametric(_new("rubber relaxation", k.RubberRelaxes, "%", 10.0), 3.0, 15.0, 3.0)
-    yield Parametric(CATALOGUE["CAN frames late"], 0.0, 1.0)
+        yield f"{axis} speed scale", 50.0, 200.0, 100.0
+    yield "wheel diameter", 85.0, 115.0, 100.0
+    yield "belt slips on its roller", 0.0, 100.0, 0.0
+    yield "rubber detached", 0.0, 1.0, 0.0
+    yield "rubber relaxation", 3.0, 15.0, 3.0
+    yield "CAN frames late", 0.0, 1.0, 0.0
 
 
-PARAMETRIC: dict[str, Parametric] = {row.kind.phrase: row for row in (*_sensors(), *_mechanics())}
-"""Every fault with a range of magnitudes by its phrase."""
-
-UNANSWERED: dict[str, FaultKind] = {
-    row.phrase: row
-    for row in (
-        _new("load cell Fx and Fz exchanged", partial(s.CellFault, "exchanged x z")),
-        _new("load cell Fx reversed", partial(s.CellFault, "reversed x")),
-        _new("load cell Fy reversed", partial(s.CellFault, "reversed y")),
-        _new("load cell Fz reversed", partial(s.CellFault, "reversed z")),
-        _new("wheel drive reversed", partial(k.Reversed, "wheel")),
-        _new("belt drive reversed", partial(k.Reversed, "belt")),
-        _new("wheel and belt drives swapped", k.DrivesSwapped),
-    )
+PARAMETRIC: dict[str, Parametric] = {
+    phrase: Parametric(CATALOGUE[phrase], least, most, normal) for phrase, least, most, normal in _ranges()
 }
-"""Faults without a magnitude that are not in the catalogue, by phrase."""
-
-FAULTS: dict[str, FaultKind] = CATALOGUE | UNANSWERED | {name: row.kind for name, row in PARAMETRIC.items()}
-"""Every fault that can be written, by its phrase."""
+"""Every fault with a range of magnitudes by its phrase."""

@@ -21,6 +21,8 @@ CROSSED = ("exchanged x z", "reversed x", "reversed y", "reversed z")
 _SLOW = ("lag", "delay")
 _SEED = 402
 """Key of the random numbers of noisy sensors: the same in every run."""
+DETACHED_S = 20.0
+"""Time constant of a hub sensor that has come loose, s [A]: the fixed one's is 1 s."""
 _OFF_SCALE_N = 1e5
 """More than any load cell here can show, N: the transmitter shows the end of its range."""
 
@@ -249,5 +251,25 @@ class CommonSupplyFault(Effect):
 
     def end(self, scene: Scene, now: float) -> None:
         """Let both show what is."""
+        for one in self._both:
+            one.end(scene, now)
+
+
+class HubDetached(Effect):
+    """The hub's sensor sits loose: it takes part in the air's temperature, and follows the hub slowly."""
+
+    __slots__ = ("_both",)
+
+    def __init__(self, percent: float) -> None:
+        """Show ``percent`` of what is above ambient temperature, late by DETACHED_S."""
+        self._both = (HubFault("gain", percent), HubFault("lag", DETACHED_S))
+
+    def begin(self, scene: Scene, now: float) -> None:
+        """Come off."""
+        for one in self._both:
+            one.begin(scene, now)
+
+    def end(self, scene: Scene, now: float) -> None:
+        """Be held again."""
         for one in self._both:
             one.end(scene, now)

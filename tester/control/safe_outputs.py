@@ -10,12 +10,12 @@ def safe_outputs(setpoints: Setpoints, rig: RigConfig, *, fast: bool) -> None:
     """Overwrite the commands with the safe ones, all in this scan; no action waits for another.
 
     Heat off and contactor open, press retracting, both drives to zero on equal linear decelerations (``fast``: by
-    quick stop). Sideslip and camber stay where they are: moving them helps nobody.
+    quick stop, and the press as fast as it goes). Sideslip and camber stay where they are: moving them helps nobody.
     """
     setpoints.heat = False
     setpoints.contactor = False
     setpoints.hub_c = rig.loops.heat.hub_min_c
-    setpoints.press_mm_s = -rig.loops.load.lift_speed_mm_s
+    setpoints.press_mm_s = -rig.axes.press.max_speed if fast else -rig.loops.load.lift_speed_mm_s
     setpoints.wheel_rad_s = 0.0
     setpoints.belt_m_s = 0.0
     setpoints.quick_stop = fast

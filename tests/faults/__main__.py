@@ -12,14 +12,16 @@ from dataclasses import dataclass, field
 
 from sim.faults import CATALOGUE
 from sim.faults.kinds import Exposure
-from tests.faults import every_scan, first_up, late_scans, second_stops
+from tests.faults import every_scan, first_up, late_scans, limits, magnitudes, second_stops
 from tests.faults.campaign import PAIRS, Tally, all_cases, conduct, faults_of_campaign, pairs, rehearsals, sample
+from tests.faults.corners import corners
 from tests.faults.hardware import HARDWARE_MUST_HOLD, UNEXPOSED, held_by_hardware, press_must_lift
-from tests.faults.judge import JUDGED, Verdict
+from tests.faults.judge import JUDGED, Verdict, fault_of
 from tests.faults.moments import rehearse
 
 SAMPLE_CASES = 420
 SAMPLE_CPU_S, FULL_CPU_S = 120.0, 1800.0
+SHORT_LIMITS_CPU_S = 90.0
 SAMPLE_SCANS = 40
 SPARSE = 10
 """Emergency stop and hold come at every tenth scan: abort, fast stop and kill at every one."""
@@ -52,14 +54,21 @@ class Report:
 def main(arguments: list[str] | None = None) -> int:
     """Conduct what is asked for; return the exit status."""
     parser = argparse.ArgumentParser(prog="python -m tests.faults", description=__doc__)
-    kind = parser.add_mutually_exclusive_group(required=True)
+    kind = parser.add_mutually_exclusive_group(required=False)
     kind.add_argument("--full", action="store_true", help="every fault x step x phase, pairs, every scan")
-    kind.add_argument("--sample", action="store_true", help="a sample of each, for every change")
+    kind.add_argument("--limits", action="store_true", help="every fault at the corners of what a rig may do")
+    kind.add_argument("--magnitudes", action="store_true", help="the worst unnoticed magnitude of each fault")
+    parser.add_argument("--sample", action="store_true", help="a sample of each; a short one of --limits")
     kind.add_argument("--mutants", action="store_true", help="does the sample notice seeded bugs of the control code?")
     kind.add_argument("--list", action="store_true", help="the catalogue, one line a fault")
     parser.add_argument("--jobs", type=int, default=1, metavar="N", help="processors to use")
     parser.add_argument("--causes", type=int, default=200, metavar="N", help="lines about failures at most")
+    parser.add_argument("--only", default="", metavar="TEXT",
+                        help="corners of --limits, faults of --magnitudes with this text")
+    parser.add_argument("--cases", type=int, default=limits.CASES, metavar="N", help="cases of --limits")
     options = parser.parse_args(arguments)
+    if not (options.full or options.limits or options.magnitudes or options.mutants or options.list or options.sample):
+        parser.error("one of --full, --sample, --limits, --magnitudes, --mutants, --list is asked for")
     if options.list:
         for row in CATALOGUE.values():
             print(f"{row.phrase}: {row.reaction.value}; within {row.budget_s:g} s, {row.exposure.value}")
@@ -69,7 +78,11 @@ def main(arguments: list[str] | None = None) -> int:
 
         return mutants(options.jobs)
     report = Report()
-    if options.full:
+    if options.magnitudes:
+        searched(report, options.jobs, options.only)
+    elif options.limits:
+        at_the_limits(report, options.jobs, options.causes, options.cases, options.only, short=options.sample)
+    elif options.full:
         full(report, options.jobs, options.causes)
     else:
         short(report, options.jobs, options.causes)
@@ -117,6 +130,54 @@ def full(report: Report, jobs: int, most: int) -> None:
         scans(report, tally, len(ticks[::SPARSE]), most)
 
 
+def at_the_limits(report: Report, jobs: int, most: int, cases: int, only: str, *, short: bool) -> None:
+    """Run the corners without a fault, then every fault in them; ``short``: one corner."""
+    began_s = cpu_s()
+    names = [limits.SHORT_CORNER] if short else [name for name in corners() if only in name]
+    fine: list[limits.Fine] = []
+    print(f"     {limits.line(limits.HEADER)}", flush=True)
+    for one in limits.rehearse_all(names, jobs):
+        fine.append(one)
+        print(f"     {limits.line(one.cells())}", flush=True)
+    wrong = [one for one in fine if not one.well]
+    report.figure("limits: corners without a fault that trip, harm or miss a row", f"{len(wrong)} of {len(fine)}", "0",
+                  not wrong)
+    for one in wrong:
+        print(f"       {one.corner.name}: {one.outcome}, {'; '.join(one.wrong)}", flush=True)
+    asked = limits.SHORT_CASES if short else limits.ASKED_FOR
+    tally = limits.attempt(fine, limits.SHORT_CASES if short else cases, jobs)
+    report.figure("limits: cases", len(tally.verdicts), f">= {asked}", len(tally.verdicts) >= asked)
+    harmed = [v for v in tally.unsafe if any(text.startswith("harm") for text in v.failures)]
+    report.figure("limits: harm", len(harmed), "0", not harmed)
+    report.figure("limits: unsafe otherwise", len(tally.unsafe) - len(harmed), "0", len(tally.unsafe) == len(harmed))
+    report.figure("limits: reaction budgets missed", len(tally.late), "0", not tally.late)
+    report.causes(tally, most)
+    if short:
+        spent(report, began_s, SHORT_LIMITS_CPU_S)
+    else:
+        print(f"     processor time: {cpu_s() - began_s:.0f} s", flush=True)
+
+
+def searched(report: Report, jobs: int, only: str) -> None:
+    """Search every fault with a magnitude; what harms must stand in the written table."""
+    began_s = cpu_s()
+    found: list[magnitudes.Found] = []
+    for one in magnitudes.conduct(jobs, only):
+        found.append(one)
+        print(f"     {one.text}", flush=True)
+    table = magnitudes.written()
+    outside = [one for one in found if one.harming and not any(row.covers(one) for row in table)]
+    inside = [row for row in table if any(row.covers(one) for one in found)]
+    report.figure("magnitudes: faults and signs searched", len(found), ">= 1", bool(found))
+    report.figure("magnitudes: that harm outside the written table", len(outside), "0", not outside)
+    for one in outside:
+        print(f"       {one.text}", flush=True)
+    if not only:
+        report.figure("magnitudes: rows of the written table shown", f"{len(inside)} of {len(table)}", "all",
+                      len(inside) == len(table))
+    print(f"     processor time: {cpu_s() - began_s:.0f} s", flush=True)
+
+
 def cpu_s() -> float:
     """Return the processor time of this process and of its workers that have ended, s."""
     return sum(os.times()[:4])
@@ -139,11 +200,11 @@ def grid(report: Report, tally: Tally, cases: int, most: int) -> None:
 
 
 def _connecting(verdict: Verdict) -> bool:
-    return any(CATALOGUE[name].exposure is Exposure.CONNECTING for name in verdict.case.faults)
+    return any(fault_of(text).kind.exposure is Exposure.CONNECTING for text in verdict.case.faults)
 
 
 def _judged(verdict: Verdict) -> bool:
-    return any(CATALOGUE[name].reaction in JUDGED for name in verdict.case.faults)
+    return any(fault_of(text).kind.reaction in JUDGED for text in verdict.case.faults)
 
 
 def everywhere(report: Report, tally: Tally) -> None:

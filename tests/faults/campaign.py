@@ -10,6 +10,7 @@ from dataclasses import dataclass, field, replace
 from itertools import combinations
 
 from sim.faults import CATALOGUE
+from sim.faults.catalogue import ASSEMBLY
 from tests.faults.judge import Case, Judge, Verdict
 from tests.faults.moments import Moment, Twins, rehearse, visit
 from tests.faults.recipes import GRID
@@ -17,6 +18,8 @@ from tests.faults.recipes import GRID
 SEED = 402
 PAIRS = 720
 """Pairs of faults in the full campaign; at least 700 are asked for."""
+PARTS = 8
+"""Shares that the cases of a recipe are cut into at most."""
 
 SAME_AGAIN = (
     "camber", "sideslip drive data", "sideslip drive of", "sideslip drive SDO", "sideslip drive without",
@@ -72,8 +75,11 @@ class Tally:
 
 
 def all_cases(moments: Iterable[Moment], faults: Sequence[str]) -> list[tuple[Moment, tuple[str, ...]]]:
-    """Return every fault at every moment."""
-    return [(moment, (fault,)) for moment in moments for fault in faults]
+    """Return every fault at every moment; those of assembly are there from the beginning, or not at all."""
+    return [
+        (moment, (fault,)) for moment in moments for fault in faults
+        if moment.step.startswith("0 ") or not fault.startswith(ASSEMBLY)
+    ]  # fmt: skip
 
 
 def sample(cases: list[tuple[Moment, tuple[str, ...]]], count: int) -> list[tuple[Moment, tuple[str, ...]]]:
@@ -156,24 +162,27 @@ def conduct(
     overrides: tuple[str, ...] = (),
     *,
     budgets: bool = True,
+    parts: int = PARTS,
 ) -> Tally:
-    """Judge every case, on ``jobs`` processors."""
+    """Judge every case, on ``jobs`` processors; each share of a recipe, ``parts`` at most, runs it anew."""
     tally = Tally(name)
-    shares = [replace(share, budgets=budgets) for share in _shares(cases, overrides)]
+    shares = [replace(share, budgets=budgets) for share in _shares(cases, overrides, parts)]
     results = _in_turn(shares) if jobs == 1 else _at_once(shares, jobs)
     for verdicts in results:
         tally.verdicts += verdicts
     return tally
 
 
-def _shares(cases: Sequence[tuple[Moment, tuple[str, ...]]], overrides: tuple[str, ...]) -> Iterable[Share]:
+def _shares(
+    cases: Sequence[tuple[Moment, tuple[str, ...]]], overrides: tuple[str, ...], parts: int
+) -> Iterable[Share]:
     """Cut a campaign into shares of a few dozen moments, so that processors can take turns."""
     by_recipe: dict[str, list[tuple[Moment, tuple[str, ...]]]] = {}
     for case in cases:
         by_recipe.setdefault(case[0].recipe, []).append(case)
     for recipe, mine in by_recipe.items():
         mine.sort(key=_moment_tick)
-        size = max(40, -(-len(mine) // 8))
+        size = max(40, -(-len(mine) // parts))
         for start in range(0, len(mine), size):
             yield Share(recipe, tuple(mine[start : start + size]), overrides)
 

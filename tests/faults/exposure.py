@@ -5,6 +5,7 @@ A fault that keeps control from wanting or knowing something must not switch its
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import hypot, inf, isfinite, radians, sin
 
 from sim.contact import ContactModel
@@ -145,13 +146,14 @@ def driven_slip_m_s(stage: Stage) -> float:
 
 
 def excess_mm(stage: Stage) -> float:
-    """Return how much deeper the press is than DEPTH_SHARE of what the load shown needs, mm."""
+    """Return how much deeper the press is than DEPTH_SHARE of what the load shown needs by the rig file, mm."""
     source, plant = stage.rig.cell.source, stage.rig.plant
     shown_n = true_n = plant.force_z_n
     if isinstance(source, SpoiledForces):
         shown_n = source.shown_n(true_n, stage.rig.now_s)
-    contact = ContactModel(plant.parameters.contact)
-    return contact.depth_mm(true_n) - DEPTH_SHARE * contact.depth_mm(max(0.0, shown_n))
+    true, believed_n_mm = plant.parameters.contact, stage.run.engine.ctx.rig.loops.load.stiffness_n_per_mm
+    believed = ContactModel(replace(true, reference_stiffness=believed_n_mm))
+    return ContactModel(true).depth_mm(true_n) - DEPTH_SHARE * believed.depth_mm(max(0.0, shown_n))
 
 
 def misread_k(stage: Stage) -> float:

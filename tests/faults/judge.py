@@ -6,7 +6,7 @@ import zlib
 from dataclasses import dataclass, field
 from math import inf
 
-from sim.faults import CATALOGUE, Injection
+from sim.faults import Injection, parse
 from sim.faults.kinds import Exposure, FaultKind, Reaction
 from sim.faults.language import When
 from sim.harm import SAFE_S, Truth
@@ -35,7 +35,7 @@ HEARTBEAT_S = 0.25
 
 @dataclass(frozen=True, slots=True)
 class Case:
-    """A recipe, a tick of it, the place it is at, and the faults that begin there."""
+    """A recipe, a tick of it, the place it is at, and the faults that begin there, as a script has them."""
 
     recipe: str
     tick: int
@@ -69,6 +69,11 @@ class Verdict:
         return len(self.failures) == 1 and [text.partition(" ")[0] for text in self.missing] == ["force"]
 
 
+def fault_of(text: str) -> Injection:
+    """Return a fault from its phrase and magnitude, if it has one. Raises FaultTextError."""
+    return parse(f"t=0 s: {text}")
+
+
 def _watched_s(stage: Stage, kinds: tuple[FaultKind, ...]) -> float:
     """Return how long a case is watched that does not end, s."""
     if any(kind.slow for kind in kinds):
@@ -81,11 +86,15 @@ def _watched_s(stage: Stage, kinds: tuple[FaultKind, ...]) -> float:
 class Judge:
     """Watches one stage under its faults, tick by tick."""
 
-    def __init__(self, stage: Stage, case: Case, *, budgets: bool = True) -> None:
-        """Begin the faults at the stage's next tick; without ``budgets`` only safety is judged."""
+    def __init__(self, stage: Stage, case: Case, *, budgets: bool = True, watched_s: float | None = None) -> None:
+        """Begin the faults at the stage's next tick; without ``budgets`` only safety is judged.
+
+        ``watched_s``: how long a case is watched that ends nothing, s of rig time, if not as its faults say.
+        """
         self.stage = stage
         self.budgets = budgets
-        self.kinds: tuple[FaultKind, ...] = tuple(CATALOGUE[name] for name in case.faults)
+        faults = [fault_of(text) for text in case.faults]
+        self.kinds: tuple[FaultKind, ...] = tuple(fault.kind for fault in faults)
         self.verdict = Verdict(case)
         self.onset_s = stage.next_s
         self.ended_s = inf
@@ -101,8 +110,9 @@ class Judge:
         self._stays = zlib.crc32(str(case).encode()) % EVERY == 0
         if self._stays:
             stage.run.stays_latched = True
-        stage.inject(*(Injection(When(at_s=self.onset_s), kind, text=kind.phrase) for kind in self.kinds))
-        self.until_s = self.onset_s + _watched_s(stage, self.kinds)
+        stage.inject(*(Injection(When(at_s=self.onset_s), one.kind, one.value, text=text)
+                       for one, text in zip(faults, case.faults, strict=True)))  # fmt: skip
+        self.until_s = self.onset_s + (_watched_s(stage, self.kinds) if watched_s is None else watched_s)
 
     def run(self) -> Verdict:
         """Tick until it is clear what has come of it."""

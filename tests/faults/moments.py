@@ -6,10 +6,12 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from functools import cache
 
-from tests.faults.recipes import RECIPES
+from tests.faults.recipes import setting_of
 from tests.faults.stage import STANDING, Place, Stage
 
 PHASES = ("begin", "middle", "end")
+WARM_S = 10.0
+"""So much of a cool-down is seen where it is not waited for, s."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,11 +30,16 @@ class Moment:
 
 
 @cache
-def rehearse(recipe: str, overrides: tuple[str, ...] = ()) -> tuple[list[Moment], Stage]:
-    """Run a recipe to its end, once; return begin, middle and end of every step, and the stage at the end."""
-    stage = Stage(RECIPES[recipe], overrides)
+def rehearse(recipe: str, overrides: tuple[str, ...] = (), cooled: bool = True) -> tuple[list[Moment], Stage]:
+    """Run a recipe to its end, once; return begin, middle and end of every step, and the stage at the end.
+
+    Without ``cooled`` the end is WARM_S after the last step: a hot wheel takes most of an hour to cool.
+    """
+    stage = _stage(recipe, overrides)
     stretches: list[tuple[Place, str, int, int]] = []
     while not stage.run.finished:
+        if not cooled and stage.mode == "cooldown" and stage.next_s - stage.mode_since_s > WARM_S:
+            break
         first = stage.ticks
         stage.tick()
         place = (stage.place[0], stage.place[1] if stage.running or not stage.run.engine.scans else stage.mode)
@@ -42,6 +49,12 @@ def rehearse(recipe: str, overrides: tuple[str, ...] = ()) -> tuple[list[Moment]
             title = stage.run.engine.ctx.progress.title.partition(" ")[0] if place[0] else "connect"
             stretches.append((place, f"{place[0]} {title} {place[1]}", first, first))
     return list(_moments(recipe, stretches)), stage
+
+
+def _stage(recipe: str, overrides: tuple[str, ...]) -> Stage:
+    """Return a stage at the beginning of a recipe, on its rig with ``overrides`` besides."""
+    setting = setting_of(recipe)
+    return Stage(setting.text, (*setting.overrides, *overrides))
 
 
 def _moments(recipe: str, stretches: list[tuple[Place, str, int, int]]) -> Iterator[Moment]:
@@ -64,7 +77,7 @@ def visit(
     recipe: str, moments: Iterable[Moment], look: Callable[[Moment, Twins], None], overrides: tuple[str, ...] = ()
 ) -> None:
     """Run a recipe once and show, before each of the moments' ticks, what gives twins of its stage."""
-    stage = Stage(RECIPES[recipe], overrides)
+    stage = _stage(recipe, overrides)
     for moment in sorted(moments, key=_tick):
         while stage.ticks < moment.tick:
             stage.tick()
@@ -83,7 +96,7 @@ class Twins:
         """Return a twin."""
         if self.stage.copyable:
             return self.stage.copy()
-        twin = Stage(RECIPES[self.recipe], self.overrides)
+        twin = _stage(self.recipe, self.overrides)
         while twin.ticks < self.stage.ticks:
             twin.tick()
         return twin

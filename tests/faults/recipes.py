@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
+from tests.faults.corners import corners
 from tests.tester.engine.bench import SHORT
 
 QUICK = """\
@@ -66,3 +69,18 @@ GRID = ("quick", "sideslip", "heated")
 
 RECIPES = {"quick": QUICK, "sideslip": SIDESLIP, "heated": HEATED, "short": SHORT}
 """``short`` is the recipe that is stopped and killed at its every scan."""
+
+
+class Setting(NamedTuple):
+    """A recipe's text, and what of the rig is other than packaged."""
+
+    text: str
+    overrides: tuple[str, ...] = ()
+
+
+def setting_of(recipe: str) -> Setting:
+    """Return a recipe of the campaign, or a corner (tests.faults.corners), by its name. Raises KeyError."""
+    if recipe in RECIPES:
+        return Setting(RECIPES[recipe])
+    corner = corners()[recipe]
+    return Setting(corner.text, corner.overrides)

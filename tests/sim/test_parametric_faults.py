@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from copy import deepcopy
 from functools import cache
+from math import exp
 
 import pytest
 
-from sim.faults import CATALOGUE, FAULTS, PARAMETRIC, FaultScript, Parametric, Scene, parse
-from sim.faults.parametric import UNANSWERED
-from sim.faults.sensors import Slow
+from sim.faults import CATALOGUE, PARAMETRIC, FaultScript, Parametric, Scene, parse
+from sim.faults.sensors import DETACHED_S, Slow
 from sim.nodes.motion import VelocityAxis
 from sim.rig import SimRig
 from tester.rig import load_rig
@@ -17,6 +17,12 @@ from tester.simulated import spec_of
 
 QUIET = ["sim.noise=0", "sim.scatter=0", "sim.running_in=0"]
 LOADED_MM = 11.9
+UNDONE = [
+    name for name in CATALOGUE
+    if name.endswith((" gain", " lag", " delay", "reversed", "exchanged", "swapped", " scale", "doubled", "detached"))
+    or name in ("wheel diameter", "common supply of hub sensor and thermometer", "rubber relaxation")
+]  # fmt: skip
+"""Faults that leave the rig as it was when they end."""
 
 
 class Nobody:
@@ -29,6 +35,16 @@ class Nobody:
     def jump(self, seconds: float) -> None: ...
 
     def operate(self, action: str) -> None: ...
+
+
+class Hub:
+    """A hub's temperature, set by hand."""
+
+    def __init__(self, hub_c: float) -> None:
+        self.hub_c = hub_c
+
+    def hub_measured_c(self, t: float) -> float:
+        return self.hub_c
 
 
 @cache
@@ -86,14 +102,16 @@ def test_every_row_can_be_written_at_both_ends_and_between(row: Parametric) -> N
             assert found.kind.effect(found.value) is not found.kind.effect(found.value)
 
 
-@pytest.mark.parametrize("phrase", UNANSWERED)
-def test_faults_without_a_magnitude_can_be_written(phrase: str) -> None:
-    assert parse(f"t=1 s: {phrase} for 2 s").kind is UNANSWERED[phrase]
-
-
-def test_no_fault_of_another_table_is_in_the_catalogue_unless_it_is_the_same_one() -> None:
-    assert not UNANSWERED.keys() & CATALOGUE.keys()
-    assert all(FAULTS[name] is kind for name, kind in CATALOGUE.items())
+def test_a_hub_sensor_that_has_come_loose_shows_too_little_and_late() -> None:
+    rig = deepcopy(sliding())
+    ambient_c = rig.plant.parameters.ambient
+    rig.jacket.source = hub = Hub(ambient_c)
+    play(rig, "hub sensor partly detached 80 %", 0.5)
+    hub.hub_c = ambient_c + 100.0
+    now, shown = rig.now_s, rig.jacket.source
+    assert shown.hub_measured_c(now) < ambient_c + 5.0
+    assert shown.hub_measured_c(now + DETACHED_S) == pytest.approx(ambient_c + 80.0 * (1.0 - exp(-1.0)), abs=2.0)
+    assert shown.hub_measured_c(now + 20.0 * DETACHED_S) == pytest.approx(ambient_c + 80.0)
 
 
 @pytest.mark.parametrize(("least", "most", "normal"), [(1.0, 2.0, 0.0), (0.0, 0.0, 0.0)])
@@ -226,7 +244,7 @@ def test_rubber_that_relaxes_more_begins_where_it_was_and_loses_more() -> None:
     assert bad.plant.force_z_n < sound.plant.force_z_n - 15.0
 
 
-@pytest.mark.parametrize("phrase", [name for name in FAULTS if name not in CATALOGUE])
+@pytest.mark.parametrize("phrase", UNDONE)
 def test_what_ends_is_as_it_was(phrase: str) -> None:
     rig, whole = deepcopy(sliding()), deepcopy(sliding())
     for one in (rig, whole):

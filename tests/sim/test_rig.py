@@ -188,6 +188,19 @@ def test_press_reaches_the_limit_of_the_load_and_its_torque_stops_it_short_of_ha
     assert press.torque_nm == pytest.approx(0.46, rel=0.02)
 
 
+def test_a_press_that_loses_its_power_on_its_way_in_is_driven_back_by_the_load_as_by_its_spring() -> None:
+    world = powered()
+    while world.plant.force_z_n < 300.0:
+        driven(world, 5.0, 0.01)
+    world.axes["press"].set_torque_off(True)
+    before_n, forces = world.plant.force_z_n, []
+    for _ in range(100):
+        world.advance(world.now_s + 0.01)
+        forces.append(world.plant.force_z_n)
+    assert max(forces) < before_n + 30.0, "340 N stop it sooner than 40 N, which take 0.25 mm: 40 N more"
+    assert forces[-1] == 0.0
+
+
 def test_a_press_at_its_limit_comes_back_when_it_is_told_to() -> None:
     world = powered()
     driven(world, 5.0, 2.0)

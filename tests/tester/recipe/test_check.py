@@ -107,8 +107,43 @@ def test_an_angle_on_an_axis_that_is_set_by_hand_is_refused() -> None:
 
 
 def test_a_compound_without_a_model_has_no_power_to_check_on_a_real_rig() -> None:
-    text = SMALL.replace('"1#"', "EPDM").replace("300 mm/s", "500 mm/s").replace("200 N]", "440 N]")
+    text = SMALL.replace('"1#"', "EPDM").replace("300 mm/s", "500 mm/s").replace("200 N]", "430 N]")
     assert check(text, real_rig(), "r.yaml") == []
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "problem"),
+    [
+        (
+            "200 N]",
+            "431 N]",
+            "r.yaml:9:19: load: 431 N is too near to limits.load, 440 N, to be held (expected at most 430 N: 10 N of"
+            f" runout below limits.load {FROM_RIG}",
+        ),
+        (
+            "[40 degC, 25 degC]",
+            "[40 degC, 91 degC]",
+            "r.yaml:10:28: temperature: 91 degC with its band of 2 K leaves less than 3 K, by which a burst overshoots,"
+            f" to what rubber may be (limit 95 degC: limits.surface {FROM_RIG}",
+        ),
+        (
+            "slip_velocity: 300 mm/s",
+            "slip_velocity: 595 mm/s",
+            "r.yaml:8:20: slip_velocity: 0.595 m/s at a wheel speed of 0.8 m/s leaves less than 0.01005 m/s, by which"
+            " the speeds may be off (gates.speed), to what is ever loaded"
+            f" (limit 0.6 m/s: interlocks.max_slip {FROM_RIG}",
+        ),
+    ],
+)
+def test_what_would_trip_at_a_limit_is_refused_before_it(old: str, new: str, problem: str) -> None:
+    assert problem in problems(with_line(old, new))
+
+
+def test_friction_heat_leaves_room_for_the_scatter_of_friction() -> None:
+    text = SMALL.replace('"1#"', '"3#"').replace("200 N]", "430 N]").replace("[40 degC, 25 degC]", "[90 degC]")
+    (problem,) = problems(text.replace("300 mm/s", "480 mm/s"))
+    assert "and with the scatter of friction 15 % more (limit 350 W: limits.slip_power" in problem
+    assert problems(text.replace("300 mm/s", "450 mm/s")) == []
 
 
 def test_pre_grinding_has_the_same_limits() -> None:
