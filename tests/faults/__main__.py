@@ -20,7 +20,7 @@ from tests.faults.judge import JUDGED, Verdict, fault_of
 from tests.faults.moments import rehearse
 
 SAMPLE_CASES = 420
-SAMPLE_CPU_S, FULL_CPU_S = 120.0, 1800.0
+SAMPLE_CPU_S, FULL_CPU_S = 240.0, 3600.0
 SHORT_LIMITS_CPU_S = 90.0
 SAMPLE_SCANS = 40
 SPARSE = 10

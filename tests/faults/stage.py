@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from copy import deepcopy
 from functools import cache
+from math import nan
 
 from sim.faults import FaultScript, Injection
 from sim.faults.can import FaultyCanWire
@@ -56,7 +57,9 @@ class Ledger(NullRecorder):
             self.committed += 1
         return Ticket(done=True)
 
-    def trip(self, t_s: float, interlock: str, text: str, value: float = 0.0, limit: float = 0.0) -> int:
+    def trip(
+        self, t_s: float, interlock: str, text: str, value: float = nan, limit: float = nan, unit: str = ""
+    ) -> int:
         """Note a trip."""
         self.trips.append(interlock)
         return len(self.trips)
