@@ -65,8 +65,7 @@ MUTANTS: tuple[Mutant, ...] = (
     Mutant("a comparison inverted: standing under load", _MOTION,
            "if v.turning is belt_moves:", "if v.turning is not belt_moves:"),
     Mutant("a comparison inverted: overshoot", _LOAD,
-           "return not (force_n <= p[OVERLOAD_FACTOR] * highest_n + p[OVERLOAD_MARGIN_N])",
-           "return force_n <= -(p[OVERLOAD_FACTOR] * highest_n + p[OVERLOAD_MARGIN_N])"),
+           "return not (v.readings.force_z_n <= _most_n(v))", "return v.readings.force_z_n <= -_most_n(v)"),
     Mutant("a comparison inverted: wheel speed", _MOTION,
            "return not (wheel.low_m_s - error <= v.readings.wheel_speed_m_s <= wheel.high_m_s + error)",
            "return wheel.low_m_s - error <= v.readings.wheel_speed_m_s <= wheel.high_m_s + error"),
@@ -82,7 +81,7 @@ MUTANTS: tuple[Mutant, ...] = (
            "    if v.loaded and not v.unpowered:\n", "    if found & 1:\n        return 0\n"
            "    if v.loaded and not v.unpowered:\n"),
     Mutant("stale accepted: drives", _MOTION,
-           "since = r.now_s - (allowed if allowed < most else most)", "since = r.now_s - 1e9"),
+           "return allowed if allowed < most else most", "return 1e9"),
     Mutant("stale accepted: load", _LOAD,
            "return r.cell_silent or not (r.now_s - r.cell_at_s <= v.parameters[STALE_CELL_S])",
            "return not (r.now_s - r.cell_at_s <= 1e9)"),

@@ -12,7 +12,7 @@ from textual.message import Message
 
 from tester.service.address import UnixAddress
 from tester.service.stop_call import NotTakenError
-from tester.service.stop_lane import StopLane, StopWish
+from tester.service.stop_lane import StopLane
 from tester.tui.stop_line import StopLine, stopping
 
 
@@ -65,7 +65,8 @@ def test_it_arrives_over_the_lane_for_stop_and_is_answered(fast: bool, lane: Sto
     sent = line.take()
     assert sent is not None and line.take() is None
     sent.result(10.0)
-    assert lane.taken() == [StopWish("tui of process 7", fast, 0)]
+    (wish,) = lane.taken()
+    assert wish.name.startswith("tui of process 7 (user id ") and (wish.fast, wish.number) == (fast, 0)
     line.close()
 
 
