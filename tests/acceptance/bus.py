@@ -34,6 +34,8 @@ SPEED_SHARE = 0.01
 SLIDING_M_S = 0.02
 """Above this difference of rim and belt, in contact, the wheel slides; wear alone makes 0.004 m/s of it."""
 CONTACT_N = 20.0
+TOUCHED_N = 8.0
+"""Half of a wheel's first contact, well above the noise: the zero is taken before it."""
 
 
 def runs(bench: Bench) -> list[RunSpec]:
@@ -205,8 +207,10 @@ def _pre_grind(record: CanRecord, cell: CellRecord) -> Iterator[Figure]:
     asked = record.commands(belt)["60FF"] / belt.velocity_counts
     times = record.times(0x200 + belt.node)
     at = np.flatnonzero(np.abs(asked - BELT) < 0.005)
-    stops = np.flatnonzero(np.diff(at) > 1)
-    begin, end = at[0], at[stops[0]] if len(stops) else at[-1]
+    # The longest stretch: other moves pass this speed, or hold it for a moment.
+    stretches = np.split(at, np.flatnonzero(np.diff(at) > 1) + 1)
+    longest = max(stretches, key=len)
+    begin, end = longest[0], longest[-1]
     yield near("pre-grind: target of the belt (0x60FF)", float(asked[begin]), BELT, 0.0005, "m/s", 4)
     chosen = _between(record.times(0x200 + wheel.node), times[begin], times[end])
     rim = record.commands(wheel)["60FF"][chosen] / wheel.velocity_counts * WHEEL_RADIUS_M
@@ -219,7 +223,7 @@ def _pre_grind(record: CanRecord, cell: CellRecord) -> Iterator[Figure]:
     wheel_m_s = _speeds(record, "wheel", told) * (WHEEL / rim.mean())
     belt_m_s = _speeds(record, "belt", told)
     reached = (np.abs(wheel_m_s - WHEEL) <= SPEED_SHARE * WHEEL) & (np.abs(belt_m_s - BELT) <= SPEED_SHARE * BELT)
-    first_touch = cell.times_s[np.flatnonzero(cell.raw_n > CONTACT_N)[0]]
+    first_touch = cell.times_s[np.flatnonzero(cell.raw_n > TOUCHED_N)[0]]
     zero = cell.zero_n(first_touch - 1.0)
     loads = cell.trailing_mean_n(told, 1.0) - zero
     in_band = np.abs(loads - LOAD_N) <= 0.02 * LOAD_N
