@@ -1,8 +1,8 @@
 """Real time: how late ticks are beside a bare absolute-deadline loop, with and without a busy core beside them.
 
 Both loops have real-time priority where it is granted, as a run on a machine has: others on this computer do not decide
-the figures then. The rig slides (the rate of that state is 100 Hz). "1 kHz" is the tick with SYNC and polls every 10th
-(rulings): wires and drivers are served every millisecond, a scan follows every 10 ms.
+the figures then. The rig slides (the rate of that state is 100 Hz). "1 kHz" is the tick with SYNC and polls every
+10th: wires and drivers are served every millisecond, a scan follows every 10 ms.
 """
 
 from __future__ import annotations

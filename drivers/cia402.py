@@ -1,4 +1,4 @@
-"""The CiA 402 power state machine, as pure functions of words (CiA 402-2, chapter 8; fieldbus notes 5.1).
+"""The CiA 402 power state machine, as pure functions of words (CiA 402-2, chapter 8).
 
 A client only ever sees the statusword and only ever sends a controlword, one step per frame.
 """

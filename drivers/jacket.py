@@ -12,9 +12,9 @@ from drivers.modbus import Device, ModbusLink, Request
 from drivers.profiles.model import DeviceProfile, ProfileError
 
 RENEW_S: Final = 0.45
-"""The command registers are written again after this: twice a second also with scans at 20 Hz (rulings, 14)."""
+"""The command registers are written again after this: twice a second also with scans at 20 Hz [A]."""
 LEASE_S: Final = 2.0
-"""Without a setpoint for this long the controller stops heating by itself (rulings, 14)."""
+"""Without a setpoint for this long the controller stops heating by itself [A]."""
 STATUS_AGE_S: Final = 2.0
 """A status older than this against the temperature makes the reading invalid [A]."""
 

@@ -1,4 +1,4 @@
-"""What is said to a drive once, outside the scan: bring-up, homing, fault diagnosis (fieldbus notes, 5.2).
+"""What is said to a drive once, outside the scan: bring-up, homing, fault diagnosis (CiA 402-2, CiA 301).
 
 Each function is a conversation for ``CanMaster.start``. Everything written is read back and kept in
 ``drive.parameters``; the first object that reads otherwise ends the conversation with ``drive.refused``.

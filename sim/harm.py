@@ -1,6 +1,6 @@
 """Harm, as the plant sees it: an observer that looks at what is, never at what somebody measured or meant.
 
-The figures are those of the safety concept's rulings (21, 22) [A].
+The figures are those of docs/safety.md [A].
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ COLD_STAND_S = 0.5
 UNLOADED_N = 5.0
 STILL_M_S = 0.01
 CREEP_M_S = 0.12
-"""The creep of a cool-down is 0.1 m/s (rulings, 22)."""
+"""The creep of a cool-down is 0.1 m/s [A]."""
 SAFE_S = 3.0
 """From the trip, or the loss of control, to physically safe (I5)."""
 PRESS_MM = 1.0

@@ -26,11 +26,11 @@ from sim.plant import Plant
 from sim.torque import PressScrew, shafts
 
 PRESS_LAG_S: Final = 0.03
-"""Lag of the press screw behind its velocity command, s [A] (physics, section 5)."""
+"""Lag of the press screw behind its velocity command, s [A]."""
 PRESS_TRAVEL_MM: Final = 30.0
 """Travel of the press from fully lifted, mm [A]: beyond a wheel worn to its hub."""
 PRESS_SPRING_MM_S: Final = -20.0
-"""Speed at which the spring retracts an unpowered press, mm/s [A] (rulings, 22)."""
+"""Speed at which the spring retracts an unpowered press, mm/s [A]."""
 SHORTEST_STEP_S: Final = 1e-3
 LONGEST_STEP_S: Final = 0.1
 """The plant is advanced in steps between these."""

@@ -21,7 +21,7 @@ from drivers.canopen.sdo import SdoClient, SdoError
 
 POLL_S = 0.002
 """How soon the master wants to be served again while an SDO reply is outstanding: a pair of frames takes
-0.54 ms of wire at 500 kbit/s, 2.2 ms at 125 kbit/s (fieldbus notes, section 2)."""
+0.54 ms of wire at 500 kbit/s, 2.2 ms at 125 kbit/s."""
 
 
 class Condition(Enum):

@@ -1,7 +1,7 @@
 """The servo drive's object dictionary, described once.
 
 The client takes the types of its SDO requests from here, the simulated drive its objects and defaults, and
-the EDS writer its text. Contents: fieldbus notes 5.1 (CiA 301, CiA 402-2). Defaults are those of a drive
+the EDS writer its text. Contents: CiA 301, CiA 402-2. Defaults are those of a drive
 out of its box: no heartbeat, no consumer, PDO 1 mapped for profile velocity, PDO 2 off.
 """
 

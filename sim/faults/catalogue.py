@@ -1,7 +1,7 @@
 """The catalogue of faults: one row each. A fault without a row does not exist for language and campaign.
 
-Budgets are those of the safety concept, from the onset (or from when the fault can be noticed) to the safe commands,
-with one scan of 50 ms at the slow rate on top; [A] where the concept gives none. A row that MAY trip has none, and says
+Budgets are those of docs/safety.md, from the onset (or from when the fault can be noticed) to the safe commands,
+with one scan of 50 ms at the slow rate on top; [A] where that page gives none. A row that MAY trip has none, and says
 why nothing can be asked of it.
 """
 
@@ -30,7 +30,7 @@ SCAN_S = 0.05
 """The slow scan's period: what is noticed by a scan is noticed this much later at most, s."""
 
 POLL_S = 0.2 + SCAN_S
-"""A temperature is polled at 5 Hz (rulings, 11) and judged by the next scan, s."""
+"""A temperature is polled at 5 Hz and judged by the next scan, s."""
 HUB_S = 0.2 + 0.125 + 2.0 * SCAN_S
 """The same of the hub, which its controller samples every 125 ms, s."""
 FOLLOW_S = 0.1 + 1.1 + SCAN_S
@@ -122,7 +122,7 @@ def _bus_rows() -> Iterator[FaultKind]:
 
 
 _SILENT_S = {"load cell": 0.1 + SCAN_S, "thermometer": 1.2 + SCAN_S, "jacket": 1.2 + SCAN_S}
-"""Age at which a reading is stale (rulings, 11) and the delay of its interlock, s."""
+"""Age at which a reading is stale and the delay of its interlock, s."""
 _WATCHED = {"load cell": LOADED, "thermometer": HEATING, "jacket": ALWAYS}
 """When the readings of a device are needed."""
 

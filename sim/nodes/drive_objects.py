@@ -25,7 +25,7 @@ _OPTIONS: dict[int, tuple[int, ...]] = {
     o.FAULT_REACTION_OPTION: (0, 1, 2),
     o.HOMING_METHOD: (0, 1, 2, *range(17, 31), 33, 34, 35, 37),
 }
-"""Values accepted; drives support subsets of the standard's (fieldbus notes 5.1)."""
+"""Values accepted; drives support subsets of the standard's."""
 
 _MODES: dict[str, tuple[Mode, ...]] = {
     "velocity": (Mode.PROFILE_VELOCITY,),

@@ -13,7 +13,7 @@ from sim.nodes.pid import Pid
 CYCLE_S: Final = 0.125
 """Time between two runs of the controller's loop [A]."""
 POWER_W: Final = 200.0
-"""Heat of the jacket at 100 % (physics, section 4) [A]."""
+"""Heat of the jacket at 100 % [A]."""
 SETPOINT_MAX_C: Final = 150.0
 """The controller takes no setpoint above this [A]."""
 LIMIT_C: Final = 155.0

@@ -1,4 +1,4 @@
-"""The digital inputs and outputs at a drive: safety chain, guard, and the contactor it switches (rulings.md, 20)."""
+"""The digital inputs and outputs at a drive: safety chain, guard, and the contactor it switches (docs/safety.md)."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """Blocks of one whole wheel revolution: the unit in which samples are counted and averaged.
 
-Wheel runout modulates the load once a revolution (physics.md 5), so only means over whole revolutions are
+Wheel runout modulates the load once a revolution, so only means over whole revolutions are
 free of it.
 
 A *stretch* is a series of accepted samples (gate 0, in a burst) of the same burst and repeat in which no

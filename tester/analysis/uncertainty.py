@@ -47,7 +47,7 @@ class Budget:
 class Instruments:
     """Limits of the measuring chain's errors, each as half the width of an even distribution.
 
-    Defaults are physics.md 5 and 4 (all [A] there); sensitivities of mu are those of the paper's model near
+    Defaults are [A]; sensitivities of mu are those of the paper's model near
     200 N, 300 mm/s, rounded up over the three compounds.
     """
 

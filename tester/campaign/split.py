@@ -1,7 +1,7 @@
 """A plan as parts that do not depend on each other (docs/decisions/0015).
 
 On a simulated rig every specimen, and every replicate of it, is a part with a rig of its own that starts at time 0 and
-at ambient temperature (rulings.md 27). A real rig has one part: the whole plan.
+at ambient temperature. A real rig has one part: the whole plan.
 """
 
 from __future__ import annotations

@@ -2,7 +2,7 @@
 
 The infrared thermometer can lie (misaligned, dirty, wrong emissivity) and a heat loop that believes it overheats the
 rubber. The observer never uses it after the start: the hub's own sensor is its boundary, the measured friction power
-its source, the rig file's ``observer`` section its parameters (rulings, 25). It is coarser than the simulated wheel
+its source, the rig file's ``observer`` section its parameters. It is coarser than the simulated wheel
 on purpose: a few cells and half a second of step are enough to tell 8 K.
 """
 

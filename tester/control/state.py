@@ -14,7 +14,7 @@ from tester.process import Setpoints
 
 
 class Mode(Enum):
-    """Operating mode of the rig (safety concept, "States")."""
+    """Operating mode of the rig (docs/safety.md)."""
 
     IDLE = "idle"
     ARMED = "armed"

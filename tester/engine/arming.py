@@ -1,7 +1,7 @@
 """What is shown before every run: both drives follow, brake alike, and every drive stops without our heartbeat.
 
 CiA 301 starts watching a heartbeat only with the first one it hears, and a wrong parameter shows only when it is
-needed (safety concept, principle 4): so the watchdog is tried out, unloaded (``tester.engine.unloaded`` has seen to
+needed: so the watchdog is tried out, unloaded (``tester.engine.unloaded`` has seen to
 that, and goes on watching) and at creep speed.
 """
 

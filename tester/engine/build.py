@@ -96,7 +96,7 @@ def loss_ratios(rig: RigConfig) -> tuple[float, float]:
     """Return the steady hub-surface difference per kelvin of surface above ambient: lifted, and in rolling contact.
 
     Resistance of hub joint and rubber times the loss conductance of the surface, from the observer's parameters
-    (physics, section 4). The rubber's side faces lose about half of their heat through the surface cells.
+    [A]. The rubber's side faces lose about half of their heat through the surface cells.
     """
     observer, thermal = rig.observer, rig.observer.thermal
     outer, width = 0.5e-3 * rig.geometry.wheel_diameter_mm, 1e-3 * rig.geometry.wheel_width_mm

@@ -2,7 +2,7 @@
 
 Straight running: the wheel stays in rolling contact and the belt brings the slip in and takes it out again (a slip
 pulse). With sideslip there is no matched speed, so every burst lifts, yaws, touches, counts and lifts again
-(rulings, 8). Without slip there is nothing to pulse: one window of rolling.
+(docs/decisions/0013). Without slip there is nothing to pulse: one window of rolling.
 
 A burst begins with the surface below the setpoint and ends as far above it, so that its samples centre on the
 setpoint; how far below is learned, because some conditions heat up before the first sample counts.
@@ -48,7 +48,7 @@ CENTRED_K: Final = 0.2
 """A start this far below the setpoint still lets samples centre on it [A]."""
 MEAN_LIMIT_K: Final = 0.45
 """A burst ends before the mean surface temperature of the repeat's samples is more than this off the setpoint [A]
-(acceptance: within 0.7 K, rulings 29)."""
+(asked: within 0.7 K)."""
 ROLLING_START_K: Final = 0.4
 """Without slip nothing moves the surface during the window: it starts this near to the setpoint, K [A]."""
 BELOW_K: Final = 0.3

@@ -25,7 +25,7 @@ INPUT_SAFETY_CHAIN: Final = 1 << 16
 INPUT_GUARD: Final = 1 << 17
 INPUT_CONTACTOR: Final = 1 << 18
 OUTPUT_CONTACTOR: Final = 1 << 16
-"""Bits of the press drive's digital inputs 0x60FD and outputs 0x60FE (rulings, 20)."""
+"""Bits of the press drive's digital inputs 0x60FD and outputs 0x60FE (docs/safety.md)."""
 
 # Bound once: a look-up on the enum class costs several times as much in every scan (CPython 3.11).
 _OPERATING: Final = State.OPERATION_ENABLED

@@ -144,7 +144,7 @@ class Engine:
                     self.ctx.journal.event(emergency.t, "emergency", text, "alarm")
 
     def _choose_rate(self, now: float) -> None:
-        """Set the period of the next scan: it follows the state (rulings, 10)."""
+        """Set the period of the next scan: it follows the state (docs/decisions/0003)."""
         ctx, state = self.ctx, self.control.state
         mode = state.mode
         # A level that has yet to stand for its delay is looked at often: the delay is not rounded up to slow scans.

@@ -1,7 +1,7 @@
 """The gates: which samples count. Evaluated live in every scan and stored with each sample.
 
 Load within 2 % (1 s average), both speeds within 1 %, slip within max(2 %, 2 mm/s) (0.2 s average), surface
-temperature inside the band with the infrared thermometer's lag allowed for (rulings 7-9; physics, section 6).
+temperature inside the band with the infrared thermometer's lag allowed for.
 """
 
 from __future__ import annotations

@@ -21,7 +21,7 @@ Zero = tuple[float, float, float, float]
 """Offsets of the load cell: Fx, Fy, Fz in N, Mz in N m."""
 
 LIFTED_N: Final = 5.0
-"""Below this force the wheel counts as lifted (safety concept: "F < 5 N")."""
+"""Below this force the wheel counts as lifted [A]."""
 LIFTED_MM: Final = 0.3
 """... or this near to the lifted position: the zero of the cell may have drifted by more than that force [A]."""
 TARE_LEAST: Final = 10
@@ -239,7 +239,7 @@ class TakeTare:
     """Average the unloaded load cell over whole turns and make that its zero.
 
     The reference zero (the first of this wheel) is kept: a zero that has wandered off it by more than ``stop_n``
-    is a damaged or touching cell (safety concept: 5 N warn, 20 N stop). The reference itself is no more than an
+    is a damaged or touching cell (5 N warn, 20 N stop). The reference itself is no more than an
     unloaded cell may show (``arming.unloaded``), else it is not taken.
     """
 

@@ -11,7 +11,7 @@ from tester.engine.moves import Ask, Lift, Load, Power, Sequence, Turn, Yaw
 from tester.recipe.plan import Cool, Heat, Rest, Soak
 
 NEAR_AMBIENT_K: Final = 3.0
-"""A setpoint this near to ambient can be neither heated nor cooled to quickly: it soaks to the band (rulings, 2)."""
+"""A setpoint this near to ambient can be neither heated nor cooled to quickly: it soaks to the band [A]."""
 HEAT_LOAD_N: Final = 200.0
 """Highest load for heating up in rolling contact [A]: the paper's reference load."""
 HEAT_AT_MOST_S: Final = 5400.0

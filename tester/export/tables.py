@@ -1,4 +1,4 @@
-"""The tables of a run: the paper's appendix, conditions, repeats, samples, as rows of cells (interface.md 4).
+"""The tables of a run: the paper's appendix, conditions, repeats, samples, as rows of cells.
 
 Appendix, conditions and repeats hold no wall-clock time, path, host or version: the same data gives the
 same bytes.

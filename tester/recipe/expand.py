@@ -2,7 +2,7 @@
 
 A condition that several grids share is measured once. Temperatures ascend, because cooling a wheel takes far
 longer than heating it. Wheels are changed only between conditions, before one whose predicted wear exceeds what is
-left, and at a temperature boundary where that costs no further wheel (rulings.md 6).
+left, and at a temperature boundary where that costs no further wheel.
 """
 
 from __future__ import annotations

@@ -43,7 +43,7 @@ class Setpoint(NamedTuple):
 
     @property
     def belt_speed_m_s(self) -> float:
-        """Return the belt speed in m/s (interface.md 1: wheel speed - slip velocity)."""
+        """Return the belt speed in m/s: wheel speed less slip velocity."""
         # Rounded to 1 nm/s: 0.8 - 0.3 is to be 0.5 in every output, not 0.5000000000000001.
         return round(self.wheel_speed_m_s - self.slip_velocity_m_s, 9)
 
@@ -171,7 +171,7 @@ class ConditionStep:
 
 @dataclass(frozen=True, slots=True)
 class Cool:
-    """Turn unloaded, without heat, until the hub is below ``hub_below_c`` (rulings.md 6: safe to touch)."""
+    """Turn unloaded, without heat, until the hub is below ``hub_below_c`` [A]: safe to touch."""
 
     kind: ClassVar[Literal["cool"]] = "cool"
     index: int
@@ -207,7 +207,7 @@ class PreparePolicy:
     """What a new wheel goes through before it measures; None where the recipe leaves a step out.
 
     ``person_steps`` are prompts after every installation, in the recipe's order. ``ready_c`` and
-    ``ready_within_k``: the surface is this near to ambient before pre-grinding (rulings.md 6).
+    ``ready_within_k``: the surface is this near to ambient before pre-grinding.
     """
 
     pre_grind: PreGrind | None = None

@@ -26,10 +26,10 @@ INSERTED = -1
 """``index`` of steps that are not in the plan."""
 
 TOUCH = Cool(INSERTED)
-"""The cool-down to a hub that a person may touch (rulings.md 6): before every question at the wheel."""
+"""The cool-down to a hub that a person may touch [A]: before every question at the wheel."""
 
 READY_AT_MOST_S = 5400.0
-"""Longest wait for a new wheel to come to ambient before it is ground (rulings.md 2: 90 min)."""
+"""Longest wait for a new wheel to come to ambient before it is ground [A]."""
 
 
 def wheel_change(plan: Plan, step: ConditionStep, specimen: Specimen, wheel: int) -> tuple[Step, ...]:
@@ -56,7 +56,7 @@ def prepare_wheel(
     """Return the steps of a new wheel; ``numbers`` gives them their ``index``.
 
     ``cool`` where the hub may be hot from what was measured before: then the new rubber, which takes the hub's
-    temperature, also waits until its surface is near ambient before it is ground (rulings.md 6). ``heat_c``
+    temperature, also waits until its surface is near ambient before it is ground. ``heat_c``
     brings it back to the temperature of the conditions that go on; None where a Heat follows anyway.
     """
     grind, rest = prepare.pre_grind, prepare.rest

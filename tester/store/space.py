@@ -19,7 +19,7 @@ IDLE_ROWS_S = 2.0
 FIXED_BYTES = 2_000_000.0
 """Recipe, rig file, journal, device parameters, tables, and the log before it is folded in."""
 MARGIN = 2.0
-"""Free room is to be this many times the estimate (safety concept: PC)."""
+"""Free room is to be this many times the estimate [A]."""
 
 
 def free_bytes(folder: Path) -> int:

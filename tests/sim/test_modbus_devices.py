@@ -166,7 +166,7 @@ def test_what_is_measured_cannot_be_written(address: int) -> None:
 
 
 class Hub:
-    """420 J/K with 20 W/K to 128 J/K of rubber, which loses 0.3 W/K to air; hub sensor lag 1 s (physics, section 4)."""
+    """420 J/K with 20 W/K to 128 J/K of rubber, which loses 0.3 W/K to air; hub sensor lag 1 s."""
 
     def __init__(self, celsius: float = 23.0) -> None:
         self.hub_c = self.rubber_c = self.sensor_c = celsius

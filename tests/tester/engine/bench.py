@@ -51,7 +51,7 @@ QUIET = ("sim.noise=0", "sim.scatter=0", "sim.running_in=0")
 """Overrides for a rig whose coefficient stands still from the first turn."""
 
 HOT = ("sim.friction_heat_fraction=0.5", "sim.belt_conductance=0.3")
-"""The hot rig (physics, section 4): two kelvin take a fraction of a second."""
+"""The hot rig: two kelvin take a fraction of a second."""
 
 
 def plan_of(text: str = SHORT, config: RigConfig | None = None) -> Plan:

@@ -66,7 +66,7 @@ def test_a_rest_lasts_as_long_as_it_must_cool() -> None:
 
 
 def test_friction_heats_the_surface_with_the_square_root_of_time() -> None:
-    # physics.md 4: from equilibrium, 2 K take about 18 s with 1# at 200 N, 300 mm/s, 25 degC.
+    # The plant's time constant: from equilibrium, 2 K take about 18 s with 1# at 200 N, 300 mm/s, 25 degC.
     costs = Estimator(rig()).costs
     power = costs.mu("1#", 25.0, 200.0, 0.3, 0.0) * 200.0 * 0.3
     assert (2.0 / (costs.rise_k * power)) ** 2 == pytest.approx(18.0, rel=0.1)
