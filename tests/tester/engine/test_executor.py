@@ -75,6 +75,14 @@ def test_progress_counts_steps_and_conditions() -> None:
     assert (progress.step, progress.steps, progress.conditions) == (5, 5, 3)
 
 
+def test_a_step_does_not_begin_with_the_phase_of_the_one_before() -> None:
+    bench, plan = make_bench(), plan_of(LOADS)
+    bench.ctx.progress.phase = "first contact"
+    heat = replace(plan, steps=tuple(step for step in plan.steps if isinstance(step, Heat)))
+    Executor(heat, Results(), hardware=False).step(bench.ctx)
+    assert not bench.ctx.progress.phase
+
+
 def test_heating_is_under_the_load_of_the_condition_that_follows() -> None:
     bench = make_bench()
     walk(plan_of(LOADS), Results(), bench)
