@@ -7,9 +7,9 @@ and 0.3 s, the compound's sensitivity to temperature, 2 % between repeats, and t
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from itertools import islice
+from itertools import chain, islice
 from math import exp
 from pathlib import Path
 from random import Random
@@ -25,17 +25,18 @@ from tests.tester.analysis.series import correlated
 
 WINDOW = 30
 LEAST, MOST = 3, 6
+RUNS = 2
+"""A pattern has the repeats of so many runs, each with a seed of its own: one run is one thermometer."""
 MU, BETWEEN = 0.8, 0.02
 
 RECIPE = """recipe: patterns
 specimens: [{{compound: "{compound}"}}]
-pre_grind: {{wheel_speed: 0.8 m/s, belt_speed: 0.6 m/s, load: 200 N, duration: 4 min}}
-rest: {{at_least: 20 min, until: 25 degC, within: 2 degC}}
 measure: {{wheel_speed: 0.8 m/s, repeats: 6, window: 45 rev, temperature_band: 2 degC}}
 grids:
   - {{name: pattern, slip_velocity: 300 mm/s, load: {load} N, temperature: {temperature} degC}}
 """
-"""A window of 45: a repeat then has revolutions to spare for a transient that is left out."""
+"""A window of 45: a repeat then has revolutions to spare for a transient that is left out. Of a wheel not ground in
+only the coefficients are others, and these are not looked at."""
 
 Drift = Callable[[int, int], float]
 """Share of the coefficient by repeat (from 0) and block of it (from 0)."""
@@ -77,13 +78,17 @@ def pattern(name: str, compound: str, load_n: int, temperature_c: int, per_kelvi
     """Return the pattern of a condition; ``run`` carries a recipe (text, seed, folder) out and returns its folder."""
     with TemporaryDirectory() as name_:
         text = RECIPE.format(compound=compound, load=load_n, temperature=temperature_c)
-        with RunReader(run(text, 0, Path(name_))) as reader:
-            repeats = tuple(
-                tuple(blocks_from_samples(reader.samples(one.condition, one.repeat, one.attempt)))
-                for one in reader.repeats()
-                if one.result.revolutions
-            )
+        folders = [run(text, seed, Path(name_)) for seed in range(RUNS)]
+        repeats = tuple(chain.from_iterable(map(_repeats, folders)))
     return Pattern(name, repeats, per_kelvin)
+
+
+def _repeats(folder: Path) -> Iterator[tuple[Block, ...]]:
+    """Yield the blocks of a run's repeats."""
+    with RunReader(folder) as reader:
+        for one in reader.repeats():
+            if one.result.revolutions:
+                yield tuple(blocks_from_samples(reader.samples(one.condition, one.repeat, one.attempt)))
 
 
 def settling(size: float, blocks: float) -> Drift:
