@@ -1,9 +1,10 @@
 """Seeded bugs of the control code: does the campaign notice them?
 
-Each mutant is put into a copy of the source tree, never into the tree itself, and hunted there by a process of its
-own (``--probe``): the recipes must still run to their end, the sample campaign and the stateful test must find
-nothing, and every row of the interlock table must be the first cause of its faults. What notices anything has killed
-the mutant. The unchanged copy is hunted first and must pass.
+Each mutant is put into a copy of the source tree, never into the tree itself, and hunted there by a process of its own
+(``--probe``): the recipes must still run to their end, the sample campaign and the stateful test must find nothing,
+every row of the interlock table must be the first cause of its faults, and a wheel's first contact must tell what
+turns wrongly. What notices anything has killed the mutant. Beside the bugs by hand each row is masked. The unchanged
+copy is hunted first and must pass.
 """
 
 from __future__ import annotations
@@ -16,18 +17,24 @@ import sys
 import unittest
 from collections.abc import Iterable
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import redirect_stdout
 from dataclasses import dataclass
+from io import StringIO
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+import pytest
+
 from tester.interlocks.table import INTERLOCKS
+from tests.faults.first_up import FIRST
 
 ROOT = Path(__file__).resolve().parents[2]
 COPIED = ("tester", "drivers", "sim", "recipes", "tests")
 ASKED_FOR = 0.9
 """Share of the mutants that must be killed: 18 of 20."""
-FIRST, PROBED = 90, 420
+SHORT_CASES, PROBED = 90, 420
 """Cases of the short recipe, and of the three of the grid."""
+FIRST_CONTACT = "tests/tester/engine/test_first_contact.py"
 BATCH = 70
 """Cases between two looks at the result: each batch runs its recipes anew."""
 
@@ -47,6 +54,7 @@ _STEP, _STOPS = "tester/control/step.py", "tester/control/stops.py"
 _SAFE, _MAY = "tester/control/safe_outputs.py", "tester/control/permissives.py"
 _TABLE, _WIRES, _MOTION = "tester/interlocks/table.py", "tester/interlocks/wires.py", "tester/interlocks/motion.py"
 _LOAD, _HEAT = "tester/interlocks/load.py", "tester/interlocks/heat.py"
+_CONTACT = "tester/engine/first_contact.py"
 
 
 def _masked(name: str) -> Mutant:
@@ -59,7 +67,7 @@ def _masked(name: str) -> Mutant:
     )
 
 
-MUTANTS: tuple[Mutant, ...] = (
+BY_HAND: tuple[Mutant, ...] = (
     Mutant("a comparison inverted: overload", _LOAD,
            "not (v.readings.force_z_n <= v.limits.load_n)", "not (v.readings.force_z_n >= v.limits.load_n)"),
     Mutant("a comparison inverted: standing under load", _MOTION,
@@ -108,28 +116,23 @@ MUTANTS: tuple[Mutant, ...] = (
            "now - state.turning_since_s >= p[TURNING_CONFIRMED_S]", "now >= 0.0"),
     Mutant("latched before the contact is open", _STOPS,
            "return standing(view) and lifted and unloaded(view)", "return standing(view)"),
-    _masked("jacket runaway"),
-    _masked("jacket hot"),
-    _masked("heater stuck"),
-    _masked("heater line open"),
-    _masked("thermometer frozen"),
-    _masked("surface off model"),
-    _masked("hub sensor jump"),
-    _masked("belt torn"),
-    _masked("contact too deep"),
-    _masked("force step"),
-    _masked("press torque"),
-    _masked("friction sign"),
-    _masked("shaft power"),
-    _masked("CAN silent"),
-    _masked("load cell silent"),
-    _masked("contactor welded"),
-    _masked("overspeed"),
-    _masked("not lifted"),
-    _masked("stop not ended"),
-    _masked("not stopping"),
-    _masked("quick stop failed"),
+    Mutant("first contact: a wheel touched too early is taken", _CONTACT,
+           "if early or not place_mm <= expected_mm + self.off_mm:",
+           "if not place_mm <= expected_mm + self.off_mm:"),
+    Mutant("first contact: a wheel touched too late is taken", _CONTACT,
+           "if early or not place_mm <= expected_mm + self.off_mm:", "if early:"),
+    Mutant("first contact: friction need not turn round", _CONTACT,
+           "if not (faster.sign < 0.0 < slower.sign):", "if not (faster.sign < 0.0 or 0.0 < slower.sign):"),
+    Mutant("first contact: friction may turn the wrong way round", _CONTACT,
+           "if not (faster.sign < 0.0 < slower.sign):", "if not (faster.sign * slower.sign < 0.0):"),
+    Mutant("first contact: only slowly", _CONTACT,
+           "Sweep(slow, share * slow + creep), Sweep(fast, share * fast + creep),",
+           "Sweep(slow, share * slow + creep),"),
 )  # fmt: skip
+"""Bugs by hand; each row of the interlock table that is the first cause of something is masked besides."""
+
+MASKED = tuple(_masked(name) for name in dict.fromkeys(row.interlock for row in FIRST))
+MUTANTS = (*BY_HAND, *MASKED)
 
 
 def copy_tree(to: Path) -> None:
@@ -173,15 +176,23 @@ def probe(row: str = "") -> str:
     from tests.faults.recipes import GRID
 
     found = _rows(row) if row else ""
-    return found or _recipes(("short",), FIRST) or _late() or _stateful() or _rows() or _recipes(GRID, PROBED)
+    return (
+        found
+        or _recipes(("short",), SHORT_CASES)
+        or _first_contact()
+        or _late()
+        or _stateful()
+        or _rows()
+        or _recipes(GRID, PROBED)
+    )
 
 
 def _rows(only: str = "") -> str:
     """See that rows of the interlock table are the first cause of their faults."""
-    from tests.faults import first_up
+    from tests.faults.first_up import conduct
 
-    rows = [row for row in first_up.FIRST if only in ("", row.interlock)]
-    for row, cause in first_up.conduct(rows).items():
+    rows = [row for row in FIRST if only in ("", row.interlock)]
+    for row, cause in conduct(rows).items():
         if cause != row.interlock:
             return f"{row.faults[0]}: tripped by {cause or 'nothing'}, not by {row.interlock}"
     return ""
@@ -214,6 +225,14 @@ def _late() -> str:
 
     failed = conduct().failed
     return f"late scans: {failed[0].case}: {failed[0].failures[0]}" if failed else ""
+
+
+def _first_contact() -> str:
+    """See that what turns wrongly ends the run at a wheel's first contact, and at a load that a hand can hold."""
+    with redirect_stdout(StringIO()) as said:
+        code = pytest.main(["-q", "-x", "-p", "no:cacheprovider", "--no-header", FIRST_CONTACT])
+    failed = [line for line in said.getvalue().splitlines() if line.startswith(("FAILED", "ERROR"))]
+    return (failed or ["the tests of the first contact could not run"])[0] if code else ""
 
 
 def _stateful() -> str:
