@@ -255,7 +255,7 @@ APART_M_S: Final = Parameter(
 )  # fmt: skip
 STANDING_DELAY_S: Final = Parameter(
     "standing_delay_s", "s", "0 ms",
-    "one drive stands under load while the other turns: 3# takes up to 1 kW, harm is 40 J", NOT_NEGATIVE,
+    "one drive stands under load while the other turns: 3# takes 1 kW, harm is 40 J", NOT_NEGATIVE,
     direction=Direction.LOWER, hardest="0 ms",
     because="a belt that jams under 430 N makes 38 J until it is unloaded, with no delay at all; harm is 40 J",
 )  # fmt: skip
