@@ -47,6 +47,8 @@ class AxisConfig:
     homing_zero_speed: float = 0.0                   # 0x6099:02; 0: a twentieth of max_speed
     home_timeout_s: Annotated[float, "s"] = 60.0
     position_window: float = 0.0                     # position unit; 0x6067; 0: leave the drive's
+    speed_zero: float = 0.0                          # unit; 0x606F: slower than this it stands, and says so at once
+                                                     # by PDO 2, not with the next SYNC; 0: the drive's own, no PDO 2
     digital_io: bool = False                         # PDO 2 carries 0x60FE:01 and 0x60FD
     inputs_period_s: Annotated[float, "s"] = 0.1     # 0x1801:05: 0x60FD comes at least this often, besides by event
     vendor_id: int = VENDOR_ID                       # default: the simulated drive's
@@ -84,6 +86,10 @@ class AxisConfig:
                 problems.append(f"{name} is {value} s, possible are 0.001..65.535 s")
         if not 1 <= self.max_torque_per_mille <= 0xFFFF:
             problems.append(f"max_torque_per_mille is {self.max_torque_per_mille}, possible are 1..65535")
+        if self.speed_zero and (self.feedback != "velocity" or self.digital_io):
+            problems.append("speed_zero needs velocity feedback and a PDO 2 that no inputs take")
+        if not 0.0 <= self.speed_zero * self.velocity_increments <= 0xFFFF:
+            problems.append(f"speed_zero is {self.speed_zero}, which does not fit the 16 bits of 0x606F")
         if self.digital_io and not 0.01 <= self.inputs_period_s <= 65.535:
             problems.append(f"inputs_period is {self.inputs_period_s} s, possible are 0.01..65.535 s")
         return problems

@@ -23,6 +23,8 @@ _TPDO1_SIZE: Final = 8
 _IO_PACK: Final = struct.Struct("<I").pack
 _IO_UNPACK: Final = struct.Struct("<I").unpack
 _IO_SIZE: Final = 4
+_STATUS_UNPACK: Final = struct.Struct("<H").unpack
+_STATUS_SIZE: Final = 2
 _MAX_EMERGENCIES: Final = 64     # kept for the journal between two calls of take_emergencies
 OUTPUTS_AGAIN_S: Final = 0.1       # RPDO2 goes again while its effect does not show: a frame may be lost [A]
 _HOMING_SCANS: Final = 3         # until the statusword surely answers the start bit: sent, sampled, reported
@@ -42,7 +44,8 @@ class ServoDrive(AxisCommand):
     (nothing, once rebooted). ``refused`` says why connect or home failed. ``emergency`` is the last EMCY that
     was neither reset by the device nor acknowledged. ``parameters`` holds what was read back of the device,
     by (index, sub-index). ``inputs_stamp_s`` is the arrival of the last TPDO2, -inf before the first. Whoever sees
-    that outputs have not done what they are for sets ``outputs_unanswered``: they are then sent again.
+    that outputs have not done what they are for sets ``outputs_unanswered``: they are then sent again. ``stands``: it
+    has said between two SYNCs that it stands now; whoever has looked takes it back.
 
     The methods ``on_...``, ``emit...``, ``check_heartbeat`` and ``holds`` are the master's.
     """
@@ -50,7 +53,8 @@ class ServoDrive(AxisCommand):
     __slots__ = ("_nm_per_mille", "_outputs_again_s", "_outputs_sent", "_raw_per_unit", "actual", "booted", "diagnosis",
                  "emergencies_dropped", "emergency", "emergency_log", "heartbeat", "homed", "identity", "inputs",
                  "inputs_stamp_s", "malformed", "nmt_state", "node_id", "online", "outputs_unanswered", "parameters",
-                 "rebooted", "refused", "rpdo1_id", "rpdo2_id", "stamp_s", "torque_nm", "tpdo1_data", "usual_heartbeat")
+                 "rebooted", "refused", "rpdo1_id", "rpdo2_id", "stamp_s", "stands", "torque_nm", "tpdo1_data",
+                 "usual_heartbeat")
 
     def __init__(self, config: AxisConfig) -> None:
         super().__init__(config)
@@ -72,6 +76,7 @@ class ServoDrive(AxisCommand):
         self.actual = math.nan
         self.torque_nm = math.nan
         self.inputs: int = 0
+        self.stands = False
         self.stamp_s = -math.inf
         self.inputs_stamp_s = -math.inf
         self.tpdo1_data = b""
@@ -171,8 +176,10 @@ class ServoDrive(AxisCommand):
         self.tpdo1_data = data
 
     def on_tpdo2(self, t: float, data: bytes) -> None:
-        """Take the digital inputs that arrived at ``t``."""
-        if len(data) != _IO_SIZE:
+        """Take the digital inputs, or the statusword that has changed, that arrived at ``t``."""
+        if self.config.speed_zero:
+            self._on_status(t, data)
+        elif len(data) != _IO_SIZE:
             self.malformed += 1
         elif self.connected:
             fields: tuple[int] = _IO_UNPACK(data)
@@ -181,6 +188,23 @@ class ServoDrive(AxisCommand):
             if inputs != self.inputs:
                 self.inputs = inputs
                 self.news = True
+
+    def _on_status(self, t: float, data: bytes) -> None:
+        """Take a statusword that came by itself: that the axis stands is known now, not with the next SYNC."""
+        if len(data) != _STATUS_SIZE:
+            self.malformed += 1
+        elif self.connected:
+            fields: tuple[int] = _STATUS_UNPACK(data)
+            statusword = fields[0]
+            stood = self.statusword & cia402.SPEED_ZERO
+            if statusword != self.statusword:
+                self.take_statusword(statusword)
+            if statusword & cia402.SPEED_ZERO and not stood:
+                self._raw = 0
+                self.actual = 0.0
+                self.stamp_s = t
+                self.tpdo1_data = b""
+                self.stands = self.news = True
 
     def on_heartbeat(self, t: float, nmt_state: int) -> None:
         """Take a heartbeat or boot-up message that arrived at ``t``."""

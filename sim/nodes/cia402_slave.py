@@ -152,14 +152,18 @@ class Cia402Slave(DrivePower):
         if self._leaving is not None and self._at_rest():
             self._arrived_at_rest()
             self.update(t1)
+        self._watch(t1)
+
+    def _watch(self, t: float) -> None:
+        """See what the axis' motion means for the statusword."""
         mode = self.mode
         if mode is None:
             self.watching = self._leaving is not None
             return
         leaving = self._leaving is not None
-        self.watching = mode.watch(t1, self.state is State.OPERATION_ENABLED and not leaving) or leaving
+        self.watching = mode.watch(t, self.state is State.OPERATION_ENABLED and not leaving) or leaving
         if mode.bits != self._mode_bits:
-            self.update(t1)
+            self.update(t)
 
     def _application_due(self) -> float:
         return inf if self.io is None else self.io.due_s
@@ -215,8 +219,9 @@ class Cia402Slave(DrivePower):
             self.pdos.send_events(self.now_s)
 
     def block(self, blocked: bool) -> None:
-        """Hold the shaft by force, or free it."""
+        """Hold the shaft by force, or free it: the drive sees at once that it stands."""
         self.axis.block(blocked)
+        self._watch(self.now_s)
         self.watching = True
 
     # commands ------------------------------------------------------------------------------------------------

@@ -61,7 +61,7 @@ class InterlockInputs(Inputs):
         radius_m = 0.5e-3 * rig.geometry.wheel_diameter_mm
         self.wheel = SpeedTracker(p[RAMP_SHARE] * rig.axes.wheel.acceleration * radius_m)
         self.belt = SpeedTracker(p[RAMP_SHARE] * rig.axes.belt.acceleration)
-        self.press = PressTracker(p[RAMP_SHARE] * rig.axes.press.acceleration)
+        self.press = PressTracker(p[RAMP_SHARE] * rig.loops.load.acceleration_mm_s2)
         self.press_band = _press_band(rig)
         self.force = ForceObserver(
             self.limits.stiffness_n_per_mm,

@@ -14,13 +14,13 @@ from typing import Final
 
 from tester.interlocks.contact import STIFFNESS_EXPONENT, UNLOADED_N, Contact
 from tester.process import Demand, Press, Readings
-from tester.rig import AxisConfig, LoadLoopConfig
+from tester.rig import LoadLoopConfig
 
 _INF: Final = inf
 _LOAD: Final = Press.LOAD
 _TURN: Final = 2.0 * pi
 DECELERATION_SHARE: Final = 0.6
-"""Share of the press's acceleration limit that approach profiles use, so that the drive can follow them."""
+"""Share of ``loops.load.acceleration`` that profiles to a position use: they come down gently where they end."""
 POSITION_GAIN_PER_S: Final = 6.0
 """Final approach to a press position: mm/s per mm, well below the drive's 30 ms lag [A]."""
 HELD_BAND: Final = 0.03
@@ -43,14 +43,14 @@ class LoadLoop(Contact):
         """Forget where the wheel was touched: another wheel is installed."""
         self.contact_mm = nan
 
-    def velocity(self, demand: Demand, readings: Readings, dt: float, loop: LoadLoopConfig, press: AxisConfig) -> float:
+    def velocity(self, demand: Demand, readings: Readings, dt: float, loop: LoadLoopConfig) -> float:
         """Return the press velocity in mm/s (positive = towards the wheel) for this scan.
 
         Unknown force or position never presses: the result is then a retraction.
         """
         force, position = readings.force_z_n, readings.press_mm
         if demand.press is not _LOAD or not (-_INF < force < _INF and -_INF < position < _INF):
-            return self._lift(force, position, loop, press)
+            return self._lift(force, position, loop)
         change_n = loop.follow_rate_n_s * dt
         self.highest_n = max(demand.load_n, self.highest_n - change_n)
         self.lowest_n = min(demand.load_n, self.lowest_n + change_n)
@@ -59,14 +59,14 @@ class LoadLoop(Contact):
         if not self.in_contact:
             self.integral_mm_s = 0.0
             self.error_n = demand.load_n
-            return self._approach(demand, position, loop, press)
+            return self._approach(demand, position, loop)
         return self._hold(demand, force, dt, loop)
 
     def lifted_mm(self, loop: LoadLoopConfig) -> float:
         """Return the press position that counts as lifted, mm: a clearance off the known contact, else fully back."""
         return max(0.0, self.contact_mm - loop.clearance_mm) if isfinite(self.contact_mm) else 0.0
 
-    def _lift(self, force: float, position: float, loop: LoadLoopConfig, press: AxisConfig) -> float:
+    def _lift(self, force: float, position: float, loop: LoadLoopConfig) -> float:
         """Return the velocity to the lifted position; while the cell shows a load, the press goes back to its end."""
         self.in_contact = self.loaded = False
         self._look_open(force, loop)
@@ -77,7 +77,7 @@ class LoadLoop(Contact):
         distance = (self.lifted_mm(loop) if force < UNLOADED_N else 0.0) - position
         if distance >= 0.0:
             return min(distance * POSITION_GAIN_PER_S, loop.loading_speed_mm_s) if distance > 0.5 else 0.0
-        return -min(loop.lift_speed_mm_s, _profile(-distance, press), -distance * POSITION_GAIN_PER_S)
+        return -min(loop.lift_speed_mm_s, _profile(-distance, loop), -distance * POSITION_GAIN_PER_S)
 
     def _look_open(self, force: float, loop: LoadLoopConfig) -> None:
         if force < loop.open_share * loop.touch_load_n:
@@ -99,7 +99,7 @@ class LoadLoop(Contact):
         elif self.in_contact and not self.loaded and force < 0.3 * loop.touch_load_n:
             self.in_contact = False
 
-    def _approach(self, demand: Demand, position: float, loop: LoadLoopConfig, press: AxisConfig) -> float:
+    def _approach(self, demand: Demand, position: float, loop: LoadLoopConfig) -> float:
         landing = min(
             loop.touch_speed_mm_s if demand.quick_touch else loop.loading_speed_mm_s,
             0.5 * demand.load_n * _gain(loop, loop.bandwidth_hz, 0.0),
@@ -111,7 +111,7 @@ class LoadLoop(Contact):
             return landing
         return min(
             loop.touch_speed_mm_s,
-            sqrt(landing * landing + 2.0 * DECELERATION_SHARE * press.acceleration * distance),
+            sqrt(landing * landing + 2.0 * DECELERATION_SHARE * loop.acceleration_mm_s2 * distance),
         )
 
     def _hold(self, demand: Demand, force: float, dt: float, loop: LoadLoopConfig) -> float:
@@ -133,6 +133,6 @@ def _gain(loop: LoadLoopConfig, bandwidth_hz: float, force_n: float) -> float:
     return _TURN * bandwidth_hz / stiffness
 
 
-def _profile(distance_mm: float, press: AxisConfig) -> float:
+def _profile(distance_mm: float, loop: LoadLoopConfig) -> float:
     """Return the speed in mm/s from which the press can stop within ``distance_mm``."""
-    return sqrt(2.0 * DECELERATION_SHARE * press.acceleration * distance_mm)
+    return sqrt(2.0 * DECELERATION_SHARE * loop.acceleration_mm_s2 * distance_mm)

@@ -68,7 +68,7 @@ class Control:
         self._parameters = self.view.parameters
         self._confirmed_m_s = confirmed_speed_m_s(self._parameters)
         self._delays = tuple(row.delay_s(self._parameters) for row in INTERLOCKS)
-        self._load_loop, self._heat_loop, self._press = rig.loops.load, rig.loops.heat, rig.axes.press
+        self._load_loop, self._heat_loop = rig.loops.load, rig.loops.heat
         self._ambient_c = rig.ambient_c
         state.pending_s = [inf] * len(INTERLOCKS)
 
@@ -315,7 +315,7 @@ class Control:
         elif demand.press is _LOAD and not may_load(state, demand, readings, self._parameters, bounds.load_n):
             out.press_mm_s = -load.lift_speed_mm_s if not (readings.force_z_n <= UNLOADED_N) else 0.0
         else:
-            out.press_mm_s = state.load.velocity(demand, readings, dt, load, self._press)
+            out.press_mm_s = state.load.velocity(demand, readings, dt, load)
         self._heat(demand, readings)
 
     def _hold(self, readings: Readings, dt: float) -> None:

@@ -179,7 +179,7 @@ class Devices:
         self.news = False
         for drive in self.drives:
             if drive.news:
-                drive.news = False
+                drive.news = drive.stands = False
                 self.news = True
         if self.news:
             self._fill_status(r)
@@ -310,7 +310,9 @@ class Devices:
     def alarm(self) -> bool:
         """Tell whether a drive has something to report that the next regular scan should not wait for."""
         for drive in self.drives:
-            if drive.state >= State.FAULT_REACTION or drive.lost or drive.rebooted or drive.emergency is not None:
+            if drive.stands or drive.state >= State.FAULT_REACTION or drive.lost or drive.rebooted:
+                return True
+            if drive.emergency is not None:
                 return True
         return False
 

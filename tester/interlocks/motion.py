@@ -251,13 +251,13 @@ PRESS_TRAVEL: Final = Interlock(
 APART_M_S: Final = Parameter(
     "apart_m_s", "m/s", "0.1 m/s", "one stands, the other is faster than this: no rounding of two equal ramps [A]",
     direction=Direction.LOWER, hardest="0.2 m/s",
-    because="at 0.2 m/s a standing 3# wheel takes a quarter of those 256 W on one spot: 40 J in 0.6 s",
+    because="at 0.2 m/s a standing 3# wheel takes a quarter of that 1 kW on one spot: 40 J in 0.16 s",
 )  # fmt: skip
 STANDING_DELAY_S: Final = Parameter(
     "standing_delay_s", "s", "0 ms",
-    "one drive stands under load while the other turns: 3# takes 256 W, harm is 40 J", NOT_NEGATIVE,
+    "one drive stands under load while the other turns: 3# takes 1 kW, harm is 40 J", NOT_NEGATIVE,
     direction=Direction.LOWER, hardest="0 ms",
-    because="a belt that jams under 400 N makes 41 J until it is unloaded, with no delay at all",
+    because="a belt that jams under 430 N makes 38 J until it is unloaded, with no delay at all; harm is 40 J",
 )  # fmt: skip
 
 

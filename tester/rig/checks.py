@@ -61,6 +61,8 @@ def _speeds(rig: RigConfig) -> _Found:
         yield ("axes", "belt", "max_speed"), f"{rig.axes.belt.max_speed:g} m/s is less than limits.belt_speed"
     if rig.loops.load.lift_speed_mm_s > rig.axes.press.max_speed:
         yield ("loops", "load", "lift_speed"), "is above axes.press.max_speed"
+    if rig.loops.load.acceleration_mm_s2 > min(rig.axes.press.acceleration, rig.axes.press.deceleration):
+        yield ("loops", "load", "acceleration"), "is above what axes.press can follow"
 
 
 def _decelerations(rig: RigConfig) -> _Found:

@@ -161,6 +161,8 @@ class LoadLoopConfig:
     touch_speed_mm_s: Annotated[float, "mm/s", _POSITIVE]
     loading_speed_mm_s: Annotated[float, "mm/s", _POSITIVE]
     lift_speed_mm_s: Annotated[float, "mm/s", _POSITIVE]
+    acceleration_mm_s2: Annotated[float, "mm/s2", _POSITIVE]
+    """Profiles to a position are planned with it: at most ``axes.press.acceleration``, which is what a lift takes."""
     clearance_mm: Annotated[float, "mm", _POSITIVE]
     """Lifted means this far off the last contact."""
 

@@ -94,6 +94,39 @@ def test_the_same_inputs_again_are_fresh_and_no_news() -> None:
     assert (drive.inputs_stamp_s, drive.news) == (2.1, False)
 
 
+def test_a_statusword_that_comes_by_itself_says_that_the_axis_stands() -> None:
+    drive = joined(wheel(speed_zero=0.2))
+    report(drive, ENABLED, value=5800)
+    assert drive.actual != 0.0 and not drive.stands
+    drive.on_tpdo2(2.0, (ENABLED | 0x1000).to_bytes(2, "little"))
+    assert (drive.stands, drive.actual, drive.stamp_s, drive.news) == (True, 0.0, 2.0, True)
+
+
+def test_a_statusword_that_comes_by_itself_leaves_a_speed_alone_that_is_not_zero() -> None:
+    drive = joined(wheel(speed_zero=0.2))
+    report(drive, ENABLED, value=5800)
+    before = (drive.actual, drive.stamp_s)
+    drive.on_tpdo2(2.0, (ENABLED | 0x0400).to_bytes(2, "little"))
+    assert (drive.actual, drive.stamp_s, drive.stands) == (*before, False)
+
+
+def test_the_same_speed_as_before_is_read_again_after_a_standstill() -> None:
+    drive = joined(wheel(speed_zero=0.2))
+    report(drive, ENABLED, value=5800)
+    speed, seen = drive.actual, drive.tpdo1_data
+    drive.on_tpdo2(2.0, (ENABLED | 0x1000).to_bytes(2, "little"))
+    assert drive.tpdo1_data != seen, "the master would take the same bytes for no news"
+    report(drive, ENABLED, value=5800)
+    assert drive.actual == speed
+
+
+@pytest.mark.parametrize("data", [b"", bytes(1), bytes(4)])
+def test_a_status_pdo_of_another_length_is_counted_and_changes_nothing(data: bytes) -> None:
+    drive = joined(wheel(speed_zero=0.2))
+    drive.on_tpdo2(2.0, data)
+    assert (drive.malformed, drive.stands) == (1, False)
+
+
 def test_inputs_that_were_never_sent_are_older_than_anything() -> None:
     assert joined(wheel(digital_io=True)).inputs_stamp_s == -math.inf
 

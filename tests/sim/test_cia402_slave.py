@@ -214,6 +214,18 @@ def test_slippage_shows_a_blocked_shaft() -> None:
     assert not bench.statusword & SLIPPAGE
 
 
+def test_a_blocked_shaft_sends_its_statusword_at_once_where_pdo_2_carries_it() -> None:
+    bench = turning()
+    bench.write(0x6070, 0, 0, 2)
+    bench.map(0x1801, 0x1A01, 0x280 + NODE, 255, (0x60410010,))
+    bench.run(0.1)
+    sent = len(bench.frames(0x280 + NODE))
+    bench.drive.block(True)
+    bench.run(0.001, 0.001)
+    said = [int.from_bytes(data, "little") & ZERO for data in bench.frames(0x280 + NODE)[sent:]]
+    assert said == [ZERO], "within a millisecond, and without a SYNC"
+
+
 # leaving operation
 
 

@@ -39,7 +39,7 @@ def load(
     forces: list[float] = []
     for _ in range(round(seconds / 0.01)):
         readings = Readings(force_z_n=contact.force_n, press_mm=contact.position_mm)
-        command = loop.velocity(demand, readings, 0.01, rig.loops.load, rig.axes.press)
+        command = loop.velocity(demand, readings, 0.01, rig.loops.load)
         contact.move(command, 0.01, rig.axes.press.acceleration)
         forces.append(contact.force_n)
     return forces
@@ -65,7 +65,7 @@ def test_a_known_contact_is_touched_quickly(rig: RigConfig) -> None:
 def lift(rig: RigConfig, loop: LoadLoop, contact: Contact) -> None:
     for _ in range(300):
         readings = Readings(force_z_n=contact.force_n, press_mm=contact.position_mm)
-        command = loop.velocity(Demand(), readings, 0.01, rig.loops.load, rig.axes.press)
+        command = loop.velocity(Demand(), readings, 0.01, rig.loops.load)
         contact.move(command, 0.01, rig.axes.press.acceleration)
 
 
@@ -82,7 +82,7 @@ def test_unknown_force_or_position_never_presses(rig: RigConfig, field: str) -> 
     loop = LoadLoop(in_contact=True, contact_mm=10.0)
     readings = Readings(force_z_n=100.0, press_mm=11.0)
     setattr(readings, field, math.nan)
-    assert loop.velocity(Demand(press=Press.LOAD, load_n=200.0), readings, 0.01, rig.loops.load, rig.axes.press) < 0.0
+    assert loop.velocity(Demand(press=Press.LOAD, load_n=200.0), readings, 0.01, rig.loops.load) < 0.0
 
 
 def test_a_load_that_comes_again_before_the_contact_was_open_does_not_move_the_known_contact(rig: RigConfig) -> None:
@@ -90,7 +90,7 @@ def test_a_load_that_comes_again_before_the_contact_was_open_does_not_move_the_k
     load(rig, loop, contact, 400.0, 15.0)
     before_mm = loop.contact_mm
     readings = Readings(force_z_n=contact.force_n, press_mm=contact.position_mm)
-    loop.velocity(Demand(), readings, 0.01, rig.loops.load, rig.axes.press)
+    loop.velocity(Demand(), readings, 0.01, rig.loops.load)
     load(rig, loop, contact, 400.0, 1.0)
     assert contact.force_n > 300.0
     assert loop.contact_mm == before_mm
@@ -99,7 +99,7 @@ def test_a_load_that_comes_again_before_the_contact_was_open_does_not_move_the_k
 def test_a_contact_first_touched_while_the_cell_was_never_seen_open_stays_unknown(rig: RigConfig) -> None:
     loop = LoadLoop()
     readings = Readings(force_z_n=90.0, press_mm=12.0)
-    loop.velocity(Demand(press=Press.LOAD, load_n=200.0), readings, 0.01, rig.loops.load, rig.axes.press)
+    loop.velocity(Demand(press=Press.LOAD, load_n=200.0), readings, 0.01, rig.loops.load)
     assert loop.in_contact and math.isnan(loop.contact_mm)
     assert loop.lifted_mm(rig.loops.load) == 0.0
 
@@ -107,7 +107,7 @@ def test_a_contact_first_touched_while_the_cell_was_never_seen_open_stays_unknow
 def test_a_press_at_its_clearance_goes_back_further_while_the_cell_shows_a_load(rig: RigConfig) -> None:
     loop = LoadLoop(contact_mm=10.0)
     at_clearance = Readings(force_z_n=95.0, press_mm=8.0)
-    assert loop.velocity(Demand(), at_clearance, 0.01, rig.loops.load, rig.axes.press) < 0.0
+    assert loop.velocity(Demand(), at_clearance, 0.01, rig.loops.load) < 0.0
 
 
 @pytest.mark.parametrize("force", [100.0, 200.0, 400.0])

@@ -94,7 +94,7 @@ def test_a_trip_sends_safe_outputs_in_its_scan(running: Simulation) -> None:
         running.tick()
     out = control.state.setpoints
     assert (out.heat, out.contactor, out.wheel_rad_s, out.belt_m_s) == (False, False, 0.0, 0.0)
-    assert out.press_mm_s == -20.0 and out.quick_stop, "as fast as the press goes"
+    assert out.press_mm_s == -running.ctx.rig.axes.press.max_speed and out.quick_stop, "as fast as the press goes"
     words = {can_id: int.from_bytes(data[:2], "little") for can_id, data in frames.sent if 0x201 <= can_id <= 0x203}
     # Controlword bit 2 clear: quick stop (CiA 402); the press goes on retracting.
     assert not words[0x201] & 4 and words[0x203] & 4
