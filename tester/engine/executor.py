@@ -106,7 +106,7 @@ class Executor:
         ctx.progress.steps = ctx.progress.step + len(self.steps)
         ctx.progress.conditions = self.conditions
         ctx.progress.repeat = ctx.progress.repeats = 0
-        ctx.progress.title = text
+        ctx.progress.title, ctx.progress.phase = text, ""
         ctx.journal.event(ctx.now, "step", ctx.progress.title)
         ctx.journal.flush()
 

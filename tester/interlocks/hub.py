@@ -218,6 +218,8 @@ UNSEEN_HEAT_K: Final = Parameter(
 )  # fmt: skip
 SHOWN_SHARE: Final = 0.5
 """From this share of the heat on, it shows again [A]; less is a heater without current, a row of its own."""
+UNSEEN_LEAST_K: Final = 1.0
+"""A sound sensor hides this at most, K [A]: 1 s behind and read every 0.2 s, 0.6 K at full output."""
 
 
 def _heat_missing(v: Inputs) -> bool:
@@ -230,7 +232,7 @@ def _heat_missing(v: Inputs) -> bool:
 def _unseen_most_k(v: Inputs) -> float:
     """Return by how much the hub may be hotter than shown: never beyond its limit."""
     heat, p = v.heat, v.parameters
-    most_k = v.limits.jacket_c + p[JACKET_MARGIN_K] - v.readings.hub_c
+    most_k = max(v.limits.jacket_c + p[JACKET_MARGIN_K] - v.readings.hub_c, UNSEEN_LEAST_K)
     if heat.shown_w < SHOWN_SHARE * heat.put_w or most_k < p[UNSEEN_HEAT_K]:
         return most_k
     return p[UNSEEN_HEAT_K]
