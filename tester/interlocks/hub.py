@@ -201,18 +201,18 @@ HUB_JUMP: Final = Interlock(
 
 HEAT_SHARE: Final = Parameter(
     "heat_share", "1", "0.3",
-    "heat put in beyond what hub and rubber, as shown, take, and this share of it: what observer believes [A] ...",
+    "heat beyond what hub and rubber show, and this share: observer's error [A] ...",
     SHARE, direction=Direction.LOWER, hardest="0.3",
     because="0.3 hides temperatures that read 27 % low; set to 0.12 where observer.thermal is measured it hides 15 %",
 )  # fmt: skip
 HEAT_LEAK_W: Final = Parameter(
-    "heat_leak_w", "W", "5 W", "... and this power: air 10 K colder than believed takes 4 W [A] ...", NOT_NEGATIVE,
+    "heat_leak_w", "W", "5 W", "... and this: air 10 K colder than believed takes 4 W [A] ...", NOT_NEGATIVE,
     direction=Direction.LOWER, hardest="10 W",
     because="85 degC take some 25 W: 10 W are what a common supply 30 % low puts in besides",
 )  # fmt: skip
 UNSEEN_HEAT_K: Final = Parameter(
     "unseen_heat_k", "K", "5 K",
-    "... adds up to what warms the hub by this: 10 s of full output; a sensor and its heater may be 5 s late [A]",
+    "... adds up to this much of hub: 10 s of full output; a sensor may be 5 s late [A]",
     direction=Direction.LOWER, hardest="8 K",
     because="a hub sensor 20 s late hides 9 K at full output",
 )  # fmt: skip
@@ -244,7 +244,7 @@ HEAT_NOT_SHOWN: Final = Interlock(
     level="heat beyond the shares of what is shown > unseen_heat of hub, while half of it shows; or hub then too hot",
     condition=_heat_missing,
     compared=lambda v: Compared(v.heat.unseen_k, _unseen_most_k(v), "K"),
-    parameters=(HEAT_SHARE, HEAT_LEAK_W, UNSEEN_HEAT_K),
+    parameters=(HEAT_SHARE, HEAT_LEAK_W, UNSEEN_HEAT_K, JACKET_MARGIN_K),
     reaction=CONTROLLED,
     reset=REPAIR,
 )
@@ -292,3 +292,8 @@ HUB_NOT_VALID: Final = Interlock(
     reaction=CONTROLLED,
     reset=ACK,
 )
+
+ROWS: Final[tuple[Interlock, ...]] = (
+    JACKET_HOT, JACKET_RUNAWAY, HEATER_STUCK, HEATER_LINE_OPEN, HEATING_AT_STANDSTILL, HUB_JUMP, HEAT_NOT_SHOWN,
+    JACKET_SILENT, HUB_NOT_VALID,
+)  # fmt: skip

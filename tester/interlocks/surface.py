@@ -191,3 +191,7 @@ SURFACE_NOT_VALID: Final = Interlock(
     reaction=CONTROLLED,
     reset=ACK,
 )
+
+ROWS: Final[tuple[Interlock, ...]] = (
+    SURFACE_HOT, SURFACE_JUMP, THERMOMETER_FROZEN, SURFACE_OFF_MODEL, THERMOMETER_SILENT, SURFACE_NOT_VALID,
+)  # fmt: skip

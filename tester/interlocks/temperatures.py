@@ -1,4 +1,4 @@
-"""What the rows of the hub's sensor and of the thermometer share."""
+"""What the rows of the hub's sensor (``hub``) and of the thermometer (``surface``) share."""
 
 from __future__ import annotations
 
