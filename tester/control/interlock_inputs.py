@@ -10,8 +10,10 @@ from tester.control.observer import ThermalObserver
 from tester.control.state import ControlState, Mode
 from tester.interlocks.contact import UNLOADED_N
 from tester.interlocks.force_observer import ForceObserver
-from tester.interlocks.heat import (
-    BLIND_S,
+from tester.interlocks.heat_balance import HeatBalance
+from tester.interlocks.hub import (
+    HEAT_LEAK_W,
+    HEAT_SHARE,
     OPEN_BELOW_K,
     OPEN_OUTPUT_PERCENT,
     OPEN_RISE_K,
@@ -24,6 +26,7 @@ from tester.interlocks.known import STANDING_M_S
 from tester.interlocks.monitors import JacketMonitor, PressTracker, SpeedTracker, SurfaceMonitor
 from tester.interlocks.motion import RAMP_SHARE
 from tester.interlocks.parameter import Values
+from tester.interlocks.temperatures import BLIND_S
 from tester.interlocks.witness import FORCE_STEP_CROSS_SHARE, FORCE_STEP_SEEN_SHARE, FORCE_STEP_UNSEEN_SHARE
 from tester.process import Demand, Press, Readings
 from tester.rig import RigConfig, interlock_values
@@ -69,6 +72,7 @@ class InterlockInputs(Inputs):
             p[FORCE_STEP_SEEN_SHARE],
             p[FORCE_STEP_CROSS_SHARE],
         )
+        self.heat = _heat_balance(rig, p)
 
     def look(self, demand: Demand, readings: Readings, scan_s: float, dt: float) -> None:
         """Take this scan's demand and readings, and work out what several conditions ask for."""
@@ -116,7 +120,9 @@ class InterlockInputs(Inputs):
         else:
             self.friction_n = self.friction_w = 0.0
         if r.now_s >= observer.due_s:
-            observer.step(r.now_s, r.hub_c if r.jacket_valid else self.jacket.hub_c, wheel_m_s, r.surface_c)
+            hub_c = r.hub_c if r.jacket_valid else self.jacket.hub_c
+            observer.step(r.now_s, hub_c, wheel_m_s, r.surface_c)
+            self.heat.update(r.now_s, hub_c, r.heat_percent if r.contactor_closed else 0.0, observer.given_j)
         if r.jacket_at_s > self.jacket.stamp_s:
             out = state.setpoints
             self.jacket.update(r, out.heat, out.hub_c)
@@ -164,6 +170,7 @@ class InterlockInputs(Inputs):
         """Compare no temperature with the one before."""
         self.surface.forget(now)
         self.jacket.forget(now)
+        self.heat.forget()
 
 
 def limits_of(rig: RigConfig) -> RigLimits:
@@ -197,6 +204,13 @@ def _press_band(rig: RigConfig) -> PressBand:
     if screw is None:
         return PressBand(known=False)
     return PressBand(True, screw.drag_most_nm, screw.spring_n, screw.reached_n_per_nm, screw.held_n_per_nm)
+
+
+def _heat_balance(rig: RigConfig, p: Values) -> HeatBalance:
+    thermal = rig.observer.thermal
+    return HeatBalance(
+        thermal.hub_capacity, thermal.hub_to_shaft, thermal.jacket_power, rig.ambient_c, p[HEAT_SHARE], p[HEAT_LEAK_W]
+    )
 
 
 def _jacket_monitor(p: Values) -> JacketMonitor:

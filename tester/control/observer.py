@@ -27,7 +27,8 @@ LONGEST_S: Final = 60.0
 class ThermalObserver:
     """Temperatures of rubber and belt, degC; ``surface_c`` is NaN before hub and surface have been read once.
 
-    ``rub`` collects what one scan brought; ``step`` is called when ``due_s`` has come.
+    ``rub`` collects what one scan brought; ``step`` is called when ``due_s`` has come, and leaves in ``given_j``
+    the heat that it let flow from hub to rubber, J.
     """
 
     __slots__ = (
@@ -49,6 +50,7 @@ class ThermalObserver:
         "belt_c",
         "cells_c",
         "due_s",
+        "given_j",
         "surface_c",
     )
 
@@ -77,6 +79,7 @@ class ThermalObserver:
         self._ambient_c = rig.ambient_c
         self._energy_j = self._contact_s = 0.0
         self._last_s = nan
+        self.given_j = 0.0
         self.due_s = float("-inf")
         self.belt_c = rig.ambient_c
         self.cells_c: list[float] = []
@@ -96,6 +99,7 @@ class ThermalObserver:
     def step(self, now: float, hub_c: float, wheel_m_s: float, measured_c: float) -> None:
         """Catch up with ``now``; ``measured_c`` is used once, to begin with."""
         self.due_s = now + STEP_S
+        self.given_j = 0.0
         if not isfinite(hub_c):
             return
         if not self.cells_c:
@@ -122,6 +126,7 @@ class ThermalObserver:
         heat = outer * cells[-1] + self._share * power_w + air * ambient + belt * self.belt_c
         self.surface_c = surface = heat / (outer + air + belt)
         flow_in = self._links[0] * (hub_c - cells[0])
+        self.given_j += dt * flow_in
         last = len(cells) - 1
         for i, here in enumerate(cells):
             flow_out = self._links[i + 1] * (here - cells[i + 1]) if i < last else outer * (here - surface)

@@ -11,11 +11,12 @@ from math import cos, pi
 from typing import Final
 
 from tester.control.state import ControlState
-from tester.interlocks.heat import STALE_IR_S, STALE_JACKET_S
+from tester.interlocks.hub import STALE_JACKET_S
 from tester.interlocks.known import STANDING_M_S
 from tester.interlocks.load import STALE_CELL_S
 from tester.interlocks.operation import MAX_SLIP_M_S, TURNING_CONFIRMED_S
 from tester.interlocks.parameter import Values
+from tester.interlocks.surface import STALE_IR_S
 from tester.process import Demand, Readings
 from tester.rig import RigConfig
 

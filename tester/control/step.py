@@ -19,7 +19,7 @@ from tester.control.stops import (
     stop_outputs,
 )
 from tester.interlocks.contact import UNLOADED_N
-from tester.interlocks.heat import RUNAWAY_WINDOW_S
+from tester.interlocks.hub import RUNAWAY_WINDOW_S
 from tester.interlocks.operation import ACK_WAIT_S, COLD_K, HOLD_AT_MOST_S, START_K
 from tester.interlocks.row import NOTHING_COMPARED, Interlock, Reaction
 from tester.interlocks.table import AT_REST, INTERLOCKS, WARNINGS, held, names_of, still_there

@@ -9,7 +9,7 @@ from tester.control.permissives import Bounds, confirmed_speed_m_s
 from tester.control.safe_outputs import mirror_emergency, no_outputs, safe_outputs
 from tester.control.state import ControlState, Mode
 from tester.interlocks.contact import UNLOADED_N
-from tester.interlocks.heat import STALE_JACKET_S
+from tester.interlocks.hub import STALE_JACKET_S
 from tester.interlocks.known import contactor_open, standing, unloaded
 from tester.interlocks.operation import COOLDOWN_AT_MOST_S, COOLDOWN_HUB_C, COOLDOWN_SPEED_M_S
 from tester.interlocks.stops import HEAT_OFF_S, LIFTED_MM, PRESS_LAG_S, SLIP_OUT_S, STOP_TIMEOUT_S

@@ -13,6 +13,7 @@ from tester.engine.context import Context
 from tester.engine.moves import Sequence
 from tester.engine.thermal_steps import SoakTo, roll, soak_within_k
 from tester.engine.wear_check import CheckByRolling
+from tester.engine.zero_check import ZeroCheck, is_due
 from tester.recipe.plan import ConditionStep
 from tester.rig import RigConfig
 
@@ -151,8 +152,9 @@ class MeasureCondition:
             target = sp.temperature_c - (self.offset_k if pulsed else 0.0)
             within = soak_within_k(step.soak, sp.temperature_c, ctx.ambient_c, step.temperature_band_k)
             self.soak = SoakTo(target, within, step.soak.for_s, step.soak.at_most_s)
+            checked = (ZeroCheck(sp.wheel_speed_m_s, self.reference_tare),) if is_due(ctx) else ()
             # A condition that goes on after a hold has had its check.
-            self.before = Sequence(roll(sp.wheel_speed_m_s, sp.load_n))
+            self.before = Sequence(*checked, roll(sp.wheel_speed_m_s, sp.load_n))
             if step.wear_check == "each_condition" and self.repeat == self.done_before and not self.voided:
                 check = CheckByRolling(sp.wheel_speed_m_s, self.reference_tare, step.condition)
                 self.before = Sequence(check, roll(sp.wheel_speed_m_s, sp.load_n))

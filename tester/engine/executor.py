@@ -115,7 +115,7 @@ class Executor:
             case Install():
                 return InstallWheel(step, self.reference_tare)
             case PreGrind():
-                return PreGrindStep(step)
+                return PreGrindStep(step, self.reference_tare)
             case Rest():
                 return RestStep(step, ask_when_late=self.hardware)
             case Heat():

@@ -260,6 +260,8 @@ class TakeTare:
         self.stamp_s = float("-inf")
         self.sums = [0.0, 0.0, 0.0, 0.0]
         self.count = 0
+        self.drift_n = 0.0
+        """How far off the reference the zero is, N: of the three forces the one that has moved most."""
         self.failed = ""
 
     def step(self, ctx: Context) -> bool:
@@ -299,7 +301,7 @@ class TakeTare:
 
     def _wandered(self, ctx: Context, new: Zero) -> str:
         """Return "" or how far a zero is off the reference; one that is worth a warning is written down."""
-        drift = max(abs(n - r) for n, r in zip(new[:3], self.reference[:3], strict=True))
+        self.drift_n = drift = max(abs(n - r) for n, r in zip(new[:3], self.reference[:3], strict=True))
         text = f"load cell zero drifted by {drift:.1f} N since the wheel's reference tare"
         if drift > self.warn_n:
             ctx.journal.event(ctx.now, "tare", text, "warning")

@@ -10,6 +10,7 @@ from tester.engine.first_contact import FirstContact
 from tester.engine.moves import Lift, Load, Power, Sequence, TakeTare, Turn, speeds_reached
 from tester.engine.thermal_steps import Straighten
 from tester.engine.wheel_life import WheelLife
+from tester.engine.zero_check import ZeroCheck, is_due
 from tester.recipe.plan import Install, PreGrind, WornState
 from tester.store.records import WheelInfo
 
@@ -137,9 +138,10 @@ class Grind:
 class PreGrindStep:
     """Run a new wheel in: 4 min at 0.8 / 0.6 m/s and 200 N in the paper (its section 2.2.2)."""
 
-    def __init__(self, step: PreGrind) -> None:
-        """The step of the plan."""
+    def __init__(self, step: PreGrind, reference_tare: list[float] | None = None) -> None:
+        """The step of the plan; ``reference_tare``: the wheel's first zero, None where it has none."""
         self.pre_grind = step
+        self.reference_tare = [] if reference_tare is None else reference_tare
         self.grind = Grind(step.load_n, step.duration_s)
         self.moves = self._moves()
 
@@ -165,6 +167,9 @@ class PreGrindStep:
     def step(self, ctx: Context) -> bool:
         """Done when ground and lifted."""
         ctx.demand.surface_c = float("nan")
+        if self.grind.counting and is_due(ctx):
+            self.grind.counting = False
+            self.moves = Sequence(ZeroCheck(self.pre_grind.wheel_speed_m_s, self.reference_tare), self._moves())
         if not self.moves.step(ctx):
             return False
         wheel = ctx.wheel

@@ -10,6 +10,7 @@ from math import inf, nan
 
 from tester.interlocks.contact import Contact
 from tester.interlocks.force_observer import ForceObserver
+from tester.interlocks.heat_balance import HeatBalance
 from tester.interlocks.monitors import JacketMonitor, PressTracker, SpeedTracker, SurfaceMonitor
 from tester.interlocks.parameter import Values
 from tester.process import Demand, Readings, Setpoints
@@ -101,6 +102,7 @@ class Inputs:
     press: PressTracker = field(init=False)
     press_band: PressBand = field(init=False)
     force: ForceObserver = field(init=False)
+    heat: HeatBalance = field(init=False)
     model_c: float = nan
     """What the thermal observer has for the rubber's surface."""
     scan_s: float = 0.0

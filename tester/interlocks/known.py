@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import isfinite
+from math import isfinite, nan
 from typing import Final
 
 from tester.interlocks.contact import UNLOADED_N
@@ -29,6 +29,11 @@ STALE_INPUTS_S: Final = Parameter(
     direction=Direction.LOWER, hardest="500 ms",
     because="five periods of the drive's input word: four lost in a row are no noise, the drive no longer sends them",
 )  # fmt: skip
+
+
+def answered_s(silent: bool, now_s: float, at_s: float) -> float:
+    """Return how long ago a device last answered, s; NaN where several requests in a row went without an answer."""
+    return nan if silent else now_s - at_s
 
 
 def standing(v: Inputs) -> bool:

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from math import nan
 from typing import Final
 
 from tester.interlocks.contact import UNLOADED_N, depth_mm
 from tester.interlocks.inputs import Inputs
-from tester.interlocks.known import SPEEDS_OLD_S
+from tester.interlocks.known import SPEEDS_OLD_S, answered_s
 from tester.interlocks.parameter import AT_LEAST_ONE, NOT_NEGATIVE, SHARE, Direction, Parameter
 from tester.interlocks.row import ACK, FAST, LOADED, REPAIR, Compared, Interlock
 
@@ -23,9 +22,13 @@ STALE_CELL_DELAY_S: Final = Parameter(
 )  # fmt: skip
 
 
-def _cell_old(v: Inputs) -> bool:
+def _cell_answered_s(v: Inputs) -> float:
     r = v.readings
-    return r.cell_silent or not (r.now_s - r.cell_at_s <= v.parameters[STALE_CELL_S])
+    return answered_s(r.cell_silent, r.now_s, r.cell_at_s)
+
+
+def _cell_old(v: Inputs) -> bool:
+    return not (_cell_answered_s(v) <= v.parameters[STALE_CELL_S])
 
 
 def _cell_still_old(v: Inputs) -> bool:
@@ -33,17 +36,12 @@ def _cell_still_old(v: Inputs) -> bool:
     return not (r.cell_at_s >= r.now_s - v.parameters[SPEEDS_OLD_S])
 
 
-def _cell_age(v: Inputs) -> Compared:
-    r = v.readings
-    return Compared(nan if r.cell_silent else r.now_s - r.cell_at_s, v.parameters[STALE_CELL_S], "s")
-
-
 CELL_SILENT: Final = Interlock(
     name="load cell silent",
     cause="cable, supply or address; the load is not known",
     level="age > stale_cell, or several requests without an answer",
     condition=_cell_old,
-    compared=_cell_age,
+    compared=lambda v: Compared(_cell_answered_s(v), v.parameters[STALE_CELL_S], "s"),
     unseen=_cell_still_old,
     parameters=(STALE_CELL_S,),
     delay=STALE_CELL_DELAY_S,

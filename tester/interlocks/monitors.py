@@ -14,7 +14,7 @@ from tester.process import Readings
 
 @dataclass(slots=True)
 class JacketMonitor:
-    """The hub from poll to poll. The numbers it compares with are parameters of the rows in ``heat``."""
+    """The hub from poll to poll. The numbers it compares with are parameters of the rows in ``hub``."""
 
     blind_s: float
     rate_filter_s: float

@@ -40,6 +40,12 @@ ZERO_STOP_N: Final = Parameter(
     direction=Direction.LOWER, hardest="30 N",
     because="450 N, the most that is asked for, and 30 N unseen are 480 N; harm begins at 500 N",
 )  # fmt: skip
+ZERO_CHECK_EVERY_S: Final = Parameter(
+    "zero_check_every_s", "s", "10 min",
+    "... checked after this long in contact, between steps; besides before each repeat",
+    direction=Direction.LOWER, hardest="30 min",
+    because="the cell warms within 10 min, by 0.1 N/K; the longest soak of the packaged recipes takes half an hour",
+)  # fmt: skip
 COOLDOWN_HUB_C: Final = Parameter(
     "cooldown_hub_c", "degC", "60 degC", "after a stop the wheel keeps turning, unloaded, while the hub is hotter", ANY,
     direction=Direction.LOWER, hardest="80 degC",
@@ -89,7 +95,7 @@ FIRST_CONTACT_PLACE_MM: Final = Parameter(
 
 PARAMETERS: Final[tuple[Parameter, ...]] = (
     MAX_SLIP_M_S, TURNING_CONFIRMED_S, START_K, COLD_K, HOLD_AT_MOST_S, ACK_WAIT_S, ZERO_WARN_N, ZERO_STOP_N,
-    COOLDOWN_HUB_C, COOLDOWN_SPEED_M_S, COOLDOWN_AT_MOST_S,
+    ZERO_CHECK_EVERY_S, COOLDOWN_HUB_C, COOLDOWN_SPEED_M_S, COOLDOWN_AT_MOST_S,
     FIRST_CONTACT_LOAD_N, FIRST_CONTACT_SWEEP, FIRST_CONTACT_CREEP_M_S, FIRST_CONTACT_SLOW_M_S, FIRST_CONTACT_FAST_M_S,
     FIRST_CONTACT_PLACE_MM,
 )  # fmt: skip

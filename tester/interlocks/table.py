@@ -8,14 +8,26 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Final
 
-from tester.interlocks import devices, friction, heat, load, motion, operation, rest, stops, wires, witness
+from tester.interlocks import (
+    devices,
+    friction,
+    hub,
+    load,
+    motion,
+    operation,
+    rest,
+    stops,
+    surface,
+    wires,
+    witness,
+)
 from tester.interlocks.inputs import Inputs
 from tester.interlocks.parameter import Parameter
 from tester.interlocks.row import ALWAYS, ENDING, LOADED, WARN, Condition, Interlock
 
 INTERLOCKS: Final[tuple[Interlock, ...]] = (
-    *wires.ROWS, *motion.ROWS, *load.ROWS, *witness.ROWS, *friction.ROWS, *heat.ROWS, *devices.ROWS, *stops.ROWS,
-    *rest.ROWS, *wires.WARNINGS,
+    *wires.ROWS, *motion.ROWS, *load.ROWS, *witness.ROWS, *friction.ROWS, *surface.ROWS, *hub.ROWS, *devices.ROWS,
+    *stops.ROWS, *rest.ROWS, *wires.WARNINGS,
 )  # fmt: skip
 
 

@@ -78,6 +78,7 @@ FIRST: tuple[First, ...] = (
     First("surface off model", ("t=0 s: thermometer drift",), WARM, 120.0),
     First("surface off model", ("t=0 s: thermometer reads low 50 %",), HEAT, 400.0),
     First("surface off model", ("t=0 s: hub sensor reads low",), HEAT, 300.0),
+    First("heat not shown", ("t=0 s: hub sensor delay 30 s",), HEAT, 60.0),
     First("thermometer silent", ("t=0 s: thermometer silent",)),
     First("surface not valid", ("t=0 s: thermometer open",)),
     First("jacket silent", ("t=0 s: jacket silent",)),

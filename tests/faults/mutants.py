@@ -53,7 +53,7 @@ class Mutant:
 _STEP, _STOPS = "tester/control/step.py", "tester/control/stops.py"
 _SAFE, _MAY = "tester/control/safe_outputs.py", "tester/control/permissives.py"
 _TABLE, _WIRES, _MOTION = "tester/interlocks/table.py", "tester/interlocks/wires.py", "tester/interlocks/motion.py"
-_LOAD, _HEAT = "tester/interlocks/load.py", "tester/interlocks/heat.py"
+_LOAD, _HUB = "tester/interlocks/load.py", "tester/interlocks/hub.py"
 _CONTACT = "tester/engine/first_contact.py"
 
 
@@ -77,7 +77,7 @@ BY_HAND: tuple[Mutant, ...] = (
     Mutant("a comparison inverted: wheel speed", _MOTION,
            "return not (wheel.low_m_s - error <= v.readings.wheel_speed_m_s <= wheel.high_m_s + error)",
            "return wheel.low_m_s - error <= v.readings.wheel_speed_m_s <= wheel.high_m_s + error"),
-    Mutant("a delay x 10: stale temperatures", _HEAT,
+    Mutant("a delay x 10: stale temperatures", _HUB,
            "parameters=(STALE_JACKET_S,),\n    delay=STALE_DELAY_S,",
            "parameters=(STALE_JACKET_S,),\n    delay=JACKET_DELAY_S,"),
     Mutant("a delay x 10: load overshoot", _LOAD,
@@ -91,11 +91,11 @@ BY_HAND: tuple[Mutant, ...] = (
     Mutant("stale accepted: drives", _MOTION,
            "return allowed if allowed < most else most", "return 1e9"),
     Mutant("stale accepted: load", _LOAD,
-           "return r.cell_silent or not (r.now_s - r.cell_at_s <= v.parameters[STALE_CELL_S])",
-           "return not (r.now_s - r.cell_at_s <= 1e9)"),
-    Mutant("not a number passes: hub", _HEAT,
-           "not (r.now_s - r.jacket_at_s <= v.parameters[STALE_JACKET_S])",
-           "r.now_s - r.jacket_at_s > v.parameters[STALE_JACKET_S]"),
+           "return not (_cell_answered_s(v) <= v.parameters[STALE_CELL_S])",
+           "return not (v.readings.now_s - v.readings.cell_at_s <= 1e9)"),
+    Mutant("not a number passes: hub", _HUB,
+           "not (_hub_answered_s(v) <= v.parameters[STALE_JACKET_S])",
+           "_hub_answered_s(v) > v.parameters[STALE_JACKET_S]"),
     Mutant("acknowledged without the cause gone", _STEP,
            "        holding = (state.held | still_there(self.view) & state.tripped) & ~WARNINGS\n        if not",
            "        holding = 0\n        if not"),

@@ -85,6 +85,12 @@ def _line_open(bench: Bench) -> None:
     bench.scans(bench.control.rig.interlocks.open_s - 0.02)
 
 
+def _hidden_heat(bench: Bench) -> None:
+    """The heater gives what nothing shows, then a power that is shown."""
+    heat = bench.control.view.heat
+    heat.unseen_k, heat.put_w = 5.2, heat.shown_w
+
+
 def _torn(bench: Bench) -> None:
     bench.readings.force_x_n = bench.readings.drive_torque_nm = 0.0
 
@@ -173,6 +179,7 @@ CAUSES: dict[str, list[Break]] = {
     "surface sensor jump": [_set(surface_c=46.0), _set(surface_c=34.0)],
     "thermometer frozen": [_frozen_thermometer],
     "surface off model": [_model(8.5), _model(-8.5), _model(NAN)],
+    "heat not shown": [_hidden_heat],
     "thermometer silent": [_stale("surface_at_s"), _set(surface_silent=True, surface_valid=False)],
     "surface not valid": [_set(surface_valid=False)],
     "jacket silent": [_stale("jacket_at_s"), _set(jacket_silent=True, jacket_valid=False)],

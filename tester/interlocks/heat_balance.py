@@ -1,0 +1,75 @@
+"""The heater's energy held against what hub and wheel, as shown, can have stored and lost: what is not shown of it.
+
+A hub sensor that reads low, late or loose, or a supply that it shares with the thermometer, makes the controller put in
+heat that nothing shows. The sum below is that heat: it grows by what the heater gives, shrinks by what the temperatures
+shown explain and by what the beliefs may be off, and never falls below zero. So beliefs that are off by less than the
+share leave it at zero for ever, and what is further off adds up.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import nan
+from typing import Final
+
+SMOOTHED_S: Final = 10.0
+"""Powers are smoothed over this, s [A]: 0.05 K of noise of a hub of 420 J/K is 2 W then."""
+LONGEST_S: Final = 5.0
+"""Looked at more rarely than this, s, nothing is compared with what was before."""
+
+
+@dataclass(slots=True)
+class HeatBalance:
+    """The sum of heat that is not shown, and the powers that it is made from."""
+
+    capacity_j_k: float
+    """``observer.thermal.hub_capacity``."""
+    shaft_w_k: float
+    """``observer.thermal.hub_to_shaft``."""
+    power_w: float
+    """``observer.thermal.jacket_power``: of the heater at 100 %."""
+    ambient_c: float
+    share: float
+    """How far the beliefs may be off, of the heat that is stored and lost."""
+    leak_w: float
+    """What the heat may go astray by besides, W."""
+    unseen_k: float = 0.0
+    """Heat not shown, as the kelvin by which it warms the hub."""
+    put_w: float = 0.0
+    """Smoothed power of the heater ..."""
+    shown_w: float = 0.0
+    """... and the same of what the temperatures explain."""
+    put_j: float = 0.0
+    """Heat of the heater since the comparison began ..."""
+    shown_j: float = 0.0
+    """... and what the temperatures explain of it."""
+    _stored_w: float = 0.0
+    _at_s: float = nan
+    _hub_c: float = nan
+
+    def forget(self) -> None:
+        """Begin anew: a person was at the wheel and its hub, or another wheel is on."""
+        self.unseen_k = self.put_w = self.shown_w = self._stored_w = self.put_j = self.shown_j = 0.0
+        self._at_s = self._hub_c = nan
+
+    def update(self, now_s: float, hub_c: float, output_percent: float, rubber_j: float) -> None:
+        """Take in the hub's temperature shown, the heater's output behind its contactor (%), and the heat that has gone
+        from hub to rubber since the last time (J)."""
+        dt = now_s - self._at_s
+        before_c, self._at_s, self._hub_c = self._hub_c, now_s, hub_c
+        if not (0.0 < dt <= LONGEST_S and before_c == before_c and hub_c == hub_c):
+            return
+        put_w = 0.01 * output_percent * self.power_w
+        stored_w = self.capacity_j_k * (hub_c - before_c) / dt
+        rubber_w = rubber_j / dt
+        shaft_w = self.shaft_w_k * (hub_c - self.ambient_c)
+        shown_w = stored_w + rubber_w + shaft_w
+        smooth = dt / (SMOOTHED_S + dt)
+        self._stored_w += (stored_w - self._stored_w) * smooth
+        self.put_w += (put_w - self.put_w) * smooth
+        self.shown_w += (shown_w - self.shown_w) * smooth
+        self.put_j += put_w * dt
+        self.shown_j += shown_w * dt
+        moved_w = abs(self._stored_w) + abs(rubber_w) + abs(shaft_w)
+        unseen_k = self.unseen_k + (put_w - shown_w - self.share * moved_w - self.leak_w) * dt / self.capacity_j_k
+        self.unseen_k = 0.0 if unseen_k < 0.0 else unseen_k
