@@ -214,6 +214,9 @@ class Session:
         if self._level:
             self.stop(self._level)
 
+    def rested(self) -> None:
+        """Nothing: who is at this screen asks for nothing while a record is closed."""
+
     def poll(self, now_s: float, run: Run, share: float) -> None:
         """Show the part that runs in this process and attend to its prompts."""
         ctx = run.engine.ctx

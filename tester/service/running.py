@@ -93,6 +93,10 @@ class ServiceSession(Session):
         if first:
             self._tell_begun(self.view)
 
+    def rested(self) -> None:
+        """STOP does not wait for the record of this part, nor for the next part to connect."""
+        self.desk.hub.lane.end_ticking()
+
     def poll(self, now_s: float, run: Run, share: float) -> None:
         """Let the desk look, and clients speak."""
         self.desk.tick = self._punctual.look(self.statistics, clock.monotonic())

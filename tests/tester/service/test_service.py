@@ -29,6 +29,7 @@ from tester.service.service import interrupted_runs
 from tester.service.state import StateView
 from tester.session import Session, SessionOptions
 from tester.store.reader import RunReader
+from tester.store.writer import RunWriter
 from tests.tester.engine.bench import QUIET, SHORT
 from tests.tester.service.stage import Script, Stage, play
 from tests.tester.test_session import Screen
@@ -216,6 +217,32 @@ def test_stop_from_its_own_lane_stops_a_run_before_anything_else_is_heard(tmp_pa
     run = stage.views[-1].run
     assert run is not None and (run.outcome, run.reason) == ("stopped", "stop by somebody")
     assert "stopping" in stage.refused["hold"]
+
+
+@pytest.mark.parametrize("begin", [RUN, Arm()])
+def test_stop_does_not_wait_for_a_record_that_is_closed(
+    begin: RunRecipe | Arm, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Nobody polls while a record is closed, which waits for the disk: the lane's own thread answers."""
+    monkeypatch.setattr("tester.service.service.MANUAL_LAPSE", 50.0)
+    ticking: list[bool] = []
+    finish = RunWriter.finish
+
+    def script(stage: Stage) -> Script:
+        def noted(self: RunWriter, status: str, reason: str, ended_s: float) -> None:
+            ticking.append(stage.lane.ticking)
+            finish(self, status, reason, ended_s)
+
+        monkeypatch.setattr(RunWriter, "finish", noted)
+        yield Presence("client 1", 1, 0, False)
+        yield stage.order(begin)
+        yield from stage.until(lambda view: view.mode in ("CONNECTING", "MANUAL", "RUN"))
+        ticking.append(stage.lane.ticking)
+        yield stage.order(Stop(fast=True))
+        yield from stage.until(lambda view: view.mode == "OFFLINE")
+
+    play(tmp_path, script)
+    assert ticking == [True, False]
 
 
 def test_a_stop_while_the_recipe_is_planned_keeps_the_run_from_beginning(tmp_path: Path) -> None:
