@@ -31,6 +31,7 @@ from tester.session import Session, SessionOptions
 from tester.store.reader import RunReader
 from tester.store.writer import RunWriter
 from tests.tester.engine.bench import QUIET, SHORT
+from tests.tester.rig.test_ceilings import NONSENSE
 from tests.tester.service.stage import Script, Stage, play
 from tests.tester.test_session import Screen
 
@@ -601,6 +602,22 @@ def test_commands_are_recorded_with_who_the_system_says_gave_them(tmp_path: Path
         "hold by client 2 (address 192.0.2.7:40000)",
         "stop by client 1 (user id 1000)",
     ]
+
+
+def test_nonsense_in_a_client_s_overrides_begins_nothing(tmp_path: Path) -> None:
+    reasons: dict[str, str] = {}
+
+    def script(stage: Stage) -> Script:
+        for override in NONSENSE:
+            stage.refused.clear()
+            yield stage.order(replace(RUN, overrides=(override,)))
+            while "run" not in stage.refused:
+                yield None
+            reasons[override] = stage.refused["run"]
+
+    stage = play(tmp_path, script)
+    assert len(reasons) == len(NONSENSE) == 20 and stage.accepted == {}
+    assert all(override.partition("=")[0] in reason for override, reason in reasons.items())
 
 
 def test_an_override_of_a_client_that_is_looser_than_it_may_be_begins_nothing(tmp_path: Path) -> None:
