@@ -53,7 +53,8 @@ def note_stops(file: Path) -> None:
     ``kept``: while nothing ticks the lane's thread keeps it, and nothing begins any more. ``done``: it is carried out;
     one that was kept already stood for those that came after it.
     """
-    carry_out, take = Orders.stop, StopLane._take  # pyright: ignore[reportPrivateUsage]
+    carry_out, end = Orders.stop, StopLane.end_ticking
+    take = StopLane._take  # pyright: ignore[reportPrivateUsage]
     written = file.open("w", encoding="utf-8", buffering=1)
     stood_for: list[str] = []
 
@@ -76,7 +77,13 @@ def note_stops(file: Path) -> None:
         if len(self._wishes) == before:  # pyright: ignore[reportPrivateUsage]
             stood_for.append(name)
 
+    def rested(self: StopLane) -> None:
+        for wish in self._wishes:  # pyright: ignore[reportPrivateUsage]
+            written.write(f"{clock.monotonic()} kept {wish.name}\n")
+        end(self)
+
     Orders.stop, StopLane._take = stop, heard  # pyright: ignore[reportPrivateUsage]
+    StopLane.end_ticking = rested
 
 
 def note_scans(file: Path) -> None:
