@@ -48,10 +48,11 @@ LOOP, NICED_LOOP = "loop.txt", "niced.txt"
 """What the bare loops write: one that comes as the owner does, one as the gateway."""
 
 
-def started(*words: str, nice: int = 0) -> subprocess.Popen[bytes]:
-    """Run a module of this package."""
+def started(*words: str, nice: int = 0, mute: bool = False) -> subprocess.Popen[bytes]:
+    """Run a module of this package; ``mute``: nobody reads its troubles."""
     before = ["nice", "-n", str(nice)] if nice else []
-    return subprocess.Popen([*before, sys.executable, "-m", *words], stdin=subprocess.DEVNULL)
+    errors = subprocess.DEVNULL if mute else None
+    return subprocess.Popen([*before, sys.executable, "-m", *words], stdin=subprocess.DEVNULL, stderr=errors)
 
 
 def ended(process: subprocess.Popen[bytes]) -> None:
@@ -91,7 +92,7 @@ class Place:
     @contextmanager
     def attack(self, kinds: Sequence[str] = KINDS) -> Iterator[None]:
         """Let the hostile clients loose while the block lasts. Raises NotReachedError where they have ended."""
-        processes = [started("tests.stop.hostile", kind, str(self.folder), nice=NICE) for kind in kinds]
+        processes = [started("tests.stop.hostile", kind, str(self.folder), nice=NICE, mute=True) for kind in kinds]
         try:
             yield
             if gone := [kind for kind, one in zip(kinds, processes, strict=True) if one.poll() is not None]:
