@@ -46,6 +46,18 @@ def test_screens_look_as_they_did(size: str, tmp_path: Path) -> None:
     play(act, tmp_path, SIZES[size])
 
 
+def test_an_accepted_risk_stands_on_every_screen(tmp_path: Path) -> None:
+    async def act(on: Stage) -> None:
+        view = replace(a_state(), risk="trial of a new cell: limits.load 480 N is looser than 450 N")
+        for name in KEYS:
+            await at_screen(on, name, view)
+            assert "RISK ACCEPTED" in on.line(0), name
+            if name == "run":
+                compare("run-80x24-risk", on.text())
+
+    play(act, tmp_path)
+
+
 def compare(name: str, text: str) -> None:
     """Hold a picture against the one that was looked at."""
     file = GOLDEN / f"{name}.txt"
