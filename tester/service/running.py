@@ -14,13 +14,14 @@ from tester.engine.context import Progress as RunProgress
 from tester.engine.prompts import Prompts
 from tester.engine.run import Run
 from tester.engine.tickers import TickStatistics
+from tester.preparing import Prepared
 from tester.recipe.estimate import Estimate, estimate
 from tester.service.aside import aside
 from tester.service.desk import Desk
 from tester.service.planning import Task, planned
 from tester.service.progress import PlanTrack
 from tester.service.state import RunView, TickView
-from tester.session import Prepared, Session, SessionOptions
+from tester.session import Session, SessionOptions
 from tester.store.space import expected_bytes
 
 Got = TypeVar("Got")
