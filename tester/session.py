@@ -11,7 +11,6 @@ from threading import current_thread, main_thread
 from types import FrameType
 from typing import TypeVar
 
-from recipes import find
 from tester.campaign.claims import enough_room, hold_rig, hold_run
 from tester.campaign.crew import Sight, side_by_side
 from tester.campaign.endings import (
@@ -24,7 +23,7 @@ from tester.campaign.endings import (
     Stop,
     ending_of,
 )
-from tester.campaign.folder import Begin, Job, Work, beginning_of, make_folder, specimens_of, work_of, write_sources
+from tester.campaign.folder import Begin, Job, Work, beginning_of, make_folder, specimens_of, write_sources
 from tester.campaign.latch import acknowledge, open_trips
 from tester.campaign.part_run import run_part
 from tester.campaign.pool import Pool
@@ -38,12 +37,11 @@ from tester.export import doubtful, write_all
 from tester.export.results import TableRow, results_of
 from tester.lock import ExclusiveUse, user
 from tester.plain import plain_text
+from tester.preparing import Prepared, prepared
 from tester.provenance import accepted_risks, recipe_source, rig_source, run_info, session_info
-from tester.recipe.check import load_checked
-from tester.recipe.estimate import Estimate, estimate
 from tester.recipe.loader import LoadedRecipe
 from tester.resume import prepare
-from tester.rig import RigConfig, load_rig
+from tester.rig import RigConfig
 from tester.rig.ceilings import counts_as_simulated
 from tester.rig.load import risks_of
 from tester.screens import LastingScreen, Screen
@@ -80,16 +78,6 @@ class SessionOptions:
     """Lines of a fault script (sim.faults.language), beside those of the rig file."""
 
 
-@dataclass(frozen=True, slots=True)
-class Prepared:
-    """A recipe on a rig: what is to be done, and what it takes."""
-
-    path: Path
-    recipe: LoadedRecipe
-    work: Work
-    expected: Estimate
-
-
 def only_plain(**texts: str) -> None:
     """Raise CannotStartError for a text of a person's that holds more than a line of characters, with its name."""
     try:
@@ -97,15 +85,6 @@ def only_plain(**texts: str) -> None:
             plain_text(text, where)
     except ValueError as error:
         raise CannotStartError(str(error), EXIT_USAGE) from error
-
-
-def prepared(recipe: str, rig_name: str, overrides: tuple[str, ...], accept_risk: str = "") -> Prepared:
-    """Read and plan a recipe. Raises InvalidSource, UnknownRecipe."""
-    rig = load_rig(rig_name, overrides, accept_risk)
-    path = find(recipe)
-    loaded = load_checked(path, rig)
-    work = work_of(loaded.recipe, rig)
-    return Prepared(path, loaded, work, estimate(work.plan, rig))
 
 
 class Session:
@@ -213,6 +192,9 @@ class Session:
         self.run_ = run
         if self._level:
             self.stop(self._level)
+
+    def rested(self) -> None:
+        """Nothing: who is at this screen asks for nothing while a record is closed."""
 
     def poll(self, now_s: float, run: Run, share: float) -> None:
         """Show the part that runs in this process and attend to its prompts."""

@@ -93,6 +93,9 @@ class _Reporting:
         """Obey a stop that was ordered meanwhile."""
         self._obey(run)
 
+    def rested(self) -> None:
+        """Nothing: the parent hears STOP."""
+
     def poll(self, now_s: float, run: Run, share: float) -> None:
         """Report and obey."""
         say(Sight(now_s, run.engine.ctx.progress, share))

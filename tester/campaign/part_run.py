@@ -48,6 +48,10 @@ class Watch(Protocol):
         """Take notice of the run: from now on it can be stopped."""
         ...
 
+    def rested(self) -> None:
+        """Take notice that the run is at rest: nothing ticks any more, its record is not closed yet."""
+        ...
+
     def poll(self, now_s: float, run: Run, share: float) -> None:
         """Look at the run, about ten times a second of wall time; ``share`` of the part that is done, 0..1."""
         ...
@@ -156,6 +160,7 @@ def _execute(
         ticked, lives = _with_faults(run, world, faults) if world is not None and faults else (run, world)
         with left_safe(run):
             seconds = _tick(run, ticked, lives, ports.pace, job.lapse, left, writer, watch)
+        watch.rested()
         record_statistics(run.engine.devices, writer, seconds)
         return run.outcome, run.reason, seconds
     except BusLost as lost:

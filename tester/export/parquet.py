@@ -8,7 +8,7 @@ from math import isfinite
 from pathlib import Path
 from typing import Protocol, cast
 
-from tester.export.tables import SAMPLE_HEADER, WHOLE_COLUMNS
+from tester.export.tables import RISK_COLUMN, SAMPLE_HEADER, WHOLE_COLUMNS
 from tester.process import SAMPLE_COLUMNS
 from tester.store.arrow import arrow_module
 from tester.store.reader import RunReader, SampleBlock
@@ -29,9 +29,10 @@ class _Arrow(Protocol):
     """What is used of pyarrow, which has no type information."""
 
     def schema(self, fields: list[tuple[str, object]]) -> object: ...
-    def table(self, data: _Columns, schema: object) -> object: ...
+    def table(self, data: dict[str, list[float | None] | list[str]], schema: object) -> object: ...
     def int64(self) -> object: ...
     def float64(self) -> object: ...
+    def string(self) -> object: ...
 
 
 class _ParquetWriter(Protocol):
@@ -47,17 +48,25 @@ class _Parquet(Protocol):
 def write_parquet(reader: RunReader, path: Path) -> None:
     """Write every recorded sample to ``path``: float64 columns named as in samples.csv, ids as int64.
 
-    Condition, repeat and attempt are null for samples of no repeat. Raises StoreError, OSError, and MissingExtraError
+    Condition, repeat and attempt are null for samples of no repeat. A run for which a risk was accepted has one column
+    more, which names it, as its other tables have. Raises StoreError, OSError, and MissingExtraError
     without pyarrow.
     """
     pa = cast(_Arrow, arrow_module("pyarrow", _WHAT))
     pq = cast(_Parquet, arrow_module("pyarrow.parquet", _WHAT))
     owners = {repeat.key: repeat for repeat in reader.repeats(attempts=True)}
     whole, real = pa.int64(), pa.float64()
-    schema = pa.schema([(name, real if name in _REAL_COLUMNS else whole) for name in SAMPLE_HEADER])
+    fields = [(name, real if name in _REAL_COLUMNS else whole) for name in SAMPLE_HEADER]
+    risk = reader.run().info.risk
+    if risk:
+        fields.append((RISK_COLUMN, pa.string()))
+    schema = pa.schema(fields)
     with pq.ParquetWriter(path, schema) as writer:
         for group in _groups(reader.sample_blocks()):
-            writer.write_table(pa.table(_columns(group, owners), schema=schema))
+            columns: dict[str, list[float | None] | list[str]] = {**_columns(group, owners)}
+            if risk:
+                columns[RISK_COLUMN] = [risk] * sum(block.rows for block in group)
+            writer.write_table(pa.table(columns, schema=schema))
 
 
 def _groups(blocks: Iterator[SampleBlock]) -> Iterator[list[SampleBlock]]:

@@ -106,14 +106,20 @@ STUCK_DELAY_S: Final = Parameter(
     because="10 s of full output are 5 K",
 )  # fmt: skip
 RATE_FILTER_S: Final = Parameter(
-    "rate_filter_s", "s", "1 s", "the hub's rate is that of readings filtered like this ... [A]"
-)
+    "rate_filter_s", "s", "1 s", "the hub's rate is that of readings filtered like this ... [A]",
+    direction=Direction.LOWER, hardest="10 s",
+    because="as stuck_delay: the rate is known later by so much",
+)  # fmt: skip
 RATE_WINDOW_S: Final = Parameter(
-    "rate_window_s", "s", "4 s", "... over one to two times this: 5 mK/s of noise at 5 readings a second [A]"
-)
+    "rate_window_s", "s", "4 s", "... over one to two times this: 5 mK/s of noise at 5 readings a second [A]",
+    direction=Direction.LOWER, hardest="10 s",
+    because="as stuck_delay: the rate is known later by up to twice so much",
+)  # fmt: skip
 RATE_SETTLE_S: Final = Parameter(
-    "rate_settle_s", "s", "3 s", "after the heat went off, sensor and filter still catch up for this long [A]"
-)
+    "rate_settle_s", "s", "3 s", "after the heat went off, sensor and filter still catch up for this long [A]",
+    direction=Direction.LOWER, hardest="20 s",
+    because="as stuck_off",
+)  # fmt: skip
 
 
 def _hub_rises(v: Inputs) -> bool:

@@ -114,10 +114,15 @@ _OWN: Final = (
     Ceiling("axes.press.max_speed", "", HIGHER, "20",
             "mm/s, of a fast stop; at 20 a wheel in local mode costs 3# 40 J"),
     Ceiling("axes.press.quick_stop_deceleration", "", HIGHER, "100", "mm/s2; from 10 mm/s it comes 0.5 mm further"),
+    Ceiling("loops.load.touch_load", "N", LOWER, "20 N",
+            "what is wrong with direction or scale of wheel and belt is told at 20 N or less"),
+    Ceiling("loops.load.follow_rate", "N/s", HIGHER, "50 N/s",
+            "the load is watched against the one before until a change is followed: 450 N to none take 9 s then"),
     Ceiling("loops.load.touch_speed", "mm/s", LOWER, "15 mm/s", "it comes 0.75 mm in the 50 ms until it is seen"),
     Ceiling("loops.load.loading_speed", "mm/s", LOWER, "4 mm/s", "at 172 N/mm the load rises by 34 N in 50 ms"),
     Ceiling("loops.load.lift_speed", "mm/s", HIGHER, "5 mm/s", "lifting 2.5 mm takes 0.5 s, half of what it may"),
     Ceiling("loops.load.clearance", "mm", HIGHER, "1 mm", "twenty times the runout of the tread"),
+    Ceiling("loops.heat.hub_max", "degC", LOWER, "150 degC", "as limits.jacket"),
 )  # fmt: skip
 
 CEILINGS: Final[tuple[Ceiling, ...]] = (

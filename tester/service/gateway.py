@@ -192,8 +192,8 @@ class Gateway:
         try:
             async for text in connection:
                 if (wait_s := guest.bucket.spend(len(text))) > 0.0:
-                    await asyncio.sleep(wait_s)  # meanwhile nothing more is read of it
-                self._obey(guest, text)
+                    await asyncio.wait({sending}, timeout=wait_s)  # meanwhile nothing more is read of it
+                self._obey(guest, text, gone=sending.done())
         except ConnectionClosed:
             pass  # a client that just disappears is no error of the service's
         finally:
@@ -271,7 +271,8 @@ class Gateway:
 
     # -- commands ---------------------------------------------------------------------------------------------
 
-    def _obey(self, guest: Guest, text: str | bytes) -> None:
+    def _obey(self, guest: Guest, text: str | bytes, *, gone: bool) -> None:
+        """Do what a message says; of what a client that is gone has left behind STOP alone is heard."""
         try:
             message = to_server(text)
         except BadMessageError as error:
@@ -281,6 +282,8 @@ class Gateway:
             self._reply(guest, encode(Goodbye("joined already")))
             return
         action = message.action
+        if gone and not isinstance(action, Stop):
+            return
         if isinstance(action, Control):
             self._control(guest, message.id, action)
         elif isinstance(action, WatchFrames):

@@ -23,8 +23,8 @@ from pydantic import TypeAdapter
 
 from recipes import UnknownRecipe
 from tester.campaign.endings import CannotStartError
+from tester.preparing import Prepared, prepared
 from tester.service.pair import link_of, spawn
-from tester.session import Prepared, prepared
 from tester.source import InvalidSource
 
 STEPS_AT_ONCE = 200

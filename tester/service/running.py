@@ -14,13 +14,14 @@ from tester.engine.context import Progress as RunProgress
 from tester.engine.prompts import Prompts
 from tester.engine.run import Run
 from tester.engine.tickers import TickStatistics
+from tester.preparing import Prepared
 from tester.recipe.estimate import Estimate, estimate
 from tester.service.aside import aside
 from tester.service.desk import Desk
 from tester.service.planning import Task, planned
 from tester.service.progress import PlanTrack
 from tester.service.state import RunView, TickView
-from tester.session import Prepared, Session, SessionOptions
+from tester.session import Session, SessionOptions
 from tester.store.space import expected_bytes
 
 Got = TypeVar("Got")
@@ -92,6 +93,10 @@ class ServiceSession(Session):
         self.desk.stop_first()  # one that came while it was prepared
         if first:
             self._tell_begun(self.view)
+
+    def rested(self) -> None:
+        """STOP does not wait for the record of this part, nor for the next part to connect."""
+        self.desk.hub.lane.end_ticking()
 
     def poll(self, now_s: float, run: Run, share: float) -> None:
         """Let the desk look, and clients speak."""

@@ -242,11 +242,13 @@ class Service:
                 run = build_run(rig, empty_plan(), ports, attendant, record, Prompts())
                 hand = take_over(run, mounted.wheel if mounted is not None else None)
                 desk.attach(run, PlanTrack(hand.plan, estimate(hand.plan, rig)), view, hand)
+                self.orders.lost_control()  # somebody may have taken it since the order
                 record.event(0.0, "wheel", taken_for(mounted, run.engine.ctx.wheel.cold_mm))
                 desk.hub.accept(order)
                 desk.command(f"arm by {order.by}")
                 with closing(ports), left_safe(run):
                     seconds = self._by_hand(run, hand, world, ports, record)
+                    desk.hub.lane.end_ticking()  # STOP does not wait for the record
                 record.finish(run.outcome.value, run.reason, seconds)
         desk.ended(replace(view, outcome=run.outcome.value, reason=run.reason), run.outcome)
 

@@ -20,6 +20,10 @@ WITHIN_S = 3.0
 """Without an answer by then STOP was not taken, s."""
 
 
+AGAIN_S = 0.005
+"""Between two tries to get into a full queue before the door, s: the door lets some hundred in a second."""
+
+
 class NotTakenError(Exception):
     """STOP has not arrived; the message says why."""
 
@@ -114,9 +118,9 @@ def takes_stop(address: Address | None) -> bool:
 def _connected(address: Address) -> socket.socket:
     if isinstance(address, UnixAddress):
         connection = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
-        connection.settimeout(WITHIN_S)
         try:
-            connection.connect(str(stop_path(address.path)))
+            connection.settimeout(WITHIN_S)
+            _queue_up(connection, str(stop_path(address.path)))
         except OSError:
             connection.close()
             raise
@@ -124,3 +128,17 @@ def _connected(address: Address) -> socket.socket:
     connection = socket.create_connection((address.host, address.stop_port), timeout=WITHIN_S)
     connection.sendall(address.token.encode() + b"\n")
     return connection
+
+
+def _queue_up(connection: socket.socket, path: str) -> None:
+    """Connect; where the queue before the door is full, which a Unix socket says at once, try again. Raises OSError."""
+    end_s = clock.monotonic() + WITHIN_S
+    while True:
+        try:
+            connection.connect(path)
+        except BlockingIOError:
+            if clock.monotonic() >= end_s:
+                raise TimeoutError("too many others are calling") from None
+            clock.sleep_until(clock.monotonic() + AGAIN_S)
+        else:
+            return

@@ -31,7 +31,7 @@ from tester.service.pair import link_of
 
 MOST_CALLERS = 256
 """Connections kept; one more, and the process that has the most of them loses its oldest."""
-ACCEPTED_AT_ONCE = 16
+ACCEPTED_AT_ONCE = 64
 """New connections between two looks at those that are there."""
 PAUSE_S = 0.03
 """... after which nobody new is let in for so long: who comes and goes without end gets no more of a core than that."""
@@ -40,7 +40,8 @@ LONGEST = 512
 NAME_LENGTH, NAMES_LENGTH = 100, 400
 """Of one caller's name, and of all that one line gives, characters."""
 TAKEN = b"taken\n"
-BACKLOG = 128
+BACKLOG = ACCEPTED_AT_ONCE
+"""All who stand before the door are let in at once: nobody in the queue waits for longer than the pause."""
 
 
 @dataclass(frozen=True, slots=True)

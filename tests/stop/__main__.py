@@ -1,7 +1,8 @@
 """`python -m tests.stop [--sample] [--tries N]`: STOP among hostile clients.
 
-Twenty clients that send each command in a loop or never read, 32 that are connected and silent and 600 that come and go
-at both doors, all at low priority. Prints a line a figure with its limit, and exits 1 where one misses.
+Twenty clients that send each command in a loop or never read, two that take control by force, 32 that are connected
+and silent and 600 that come and go at both doors, all at low priority. Prints a line a figure with its limit, and exits
+1 where one misses.
 """
 
 from __future__ import annotations
@@ -19,8 +20,8 @@ from tests.acceptance.figure import Figure, holds
 from tests.stop import scenes
 from tests.stop.place import NotReachedError, Place
 
-TRIES, SAMPLE = 50, 8
-"""In each of four scenes."""
+TRIES, SAMPLE = 50, 6
+"""In each of five scenes."""
 CONDITIONS, FEWER = 200_000, 20_000
 
 
@@ -40,6 +41,7 @@ async def figures(folder: Path, tries: int, conditions: int) -> AsyncIterator[Fi
             for scene in (
                 scenes.sliding_and_resting(place, client, place.attack, tries),
                 scenes.by_hand(place, client, place.attack, tries),
+                scenes.torn_away(place, client, place.attack, tries),
                 scenes.planning(place, client, place.attack, tries, conditions),
             ):
                 async for figure in scene:

@@ -1,7 +1,8 @@
 """`python -m tests.stop.hostile KIND FOLDER`: clients that want to keep STOP from the rig, until killed.
 
-KIND: ``talkers`` (each command in a loop, a client each), ``mutes`` (join, command, and never read), ``strangers``
-(idle connections that never join, connections that come and go), ``callers`` (the same at the door for STOP).
+KIND: ``talkers`` (each command in a loop, a client each), ``takers`` (two that tear control away from each other and
+from the operator), ``mutes`` (join, command, and never read), ``strangers`` (idle connections that never join,
+connections that come and go), ``callers`` (the same at the door for STOP).
 """
 
 from __future__ import annotations
@@ -54,10 +55,13 @@ COMMANDS: tuple[Callable[[int], Action], ...] = (
     lambda n: Stop(),
     lambda n: Stop(fast=True),
 )
-"""One client each. Control is asked for and given back; to take it by force is any client's right, and no attack."""
+"""One client each."""
 MUTES = 3
 """With those that talk: twenty."""
-ALL_KINDS = ("talkers", "mutes", "strangers", "callers")
+TAKERS = 2
+"""Besides, where the scene bears it: taking control by force is any client's right, and ends manual mode."""
+KINDS = ("talkers", "mutes", "strangers", "callers")
+BY_FORCE = (*KINDS, "takers")
 
 
 async def for_ever(work: Callable[[], Awaitable[None]]) -> None:
@@ -132,6 +136,8 @@ async def main(kind: str, folder: Path) -> None:
     works: list[Callable[[], Awaitable[None]]] = []
     if kind == "talkers":
         works += [lambda make=make: talk(address, make) for make in COMMANDS]
+    elif kind == "takers":
+        works += [lambda: talk(address, lambda n: Control(force=True))] * TAKERS
     elif kind == "mutes":
         works += [lambda: keep_mute(address)] * MUTES
     else:

@@ -17,8 +17,10 @@ from tester.engine.tickers import Ticked, World, run_simulated
 from tester.service import service
 from tester.service.host import host
 from tester.service.orders import Orders
+from tester.service.service import ServiceOptions
+from tester.service.stop_lane import StopLane
 
-OPERATOR = "operator"
+OPERATOR, PROBE = "operator", "probe-"
 STOPS, SCANS = "stops.txt", "scans.bin"
 
 
@@ -46,18 +48,42 @@ class Noted:
 
 
 def note_stops(file: Path) -> None:
-    """Write who has stopped, and when that was in control (tester.clock.monotonic), a line each."""
-    carry_out = Orders.stop
+    """Write who has stopped, and when that was in control (tester.clock.monotonic), a line each.
+
+    ``kept``: while nothing ticks the lane's thread keeps it, and nothing begins any more. ``done``: it is carried out;
+    one that was kept already stood for those that came after it.
+    """
+    carry_out, end = Orders.stop, StopLane.end_ticking
+    take = StopLane._take  # pyright: ignore[reportPrivateUsage]
     written = file.open("w", encoding="utf-8", buffering=1)
+    stood_for: list[str] = []
 
     def stop(self: Orders, name: str, fast: bool) -> None:
-        if OPERATOR in name or ("probe" in name and self.desk.watch is None):  # what is being planned does not begin
-            carry_out(self, name, fast)
+        names = [name, *stood_for]
+        stood_for.clear()
+        found = [one for one in names if OPERATOR in one or (PROBE in one and self.desk.watch is None)]
+        if found:  # what is being planned does not begin
+            carry_out(self, found[0], fast)
         else:
             self.desk.tell("command", f"stop by {name}", "warning")
-        written.write(f"{clock.monotonic()} {name}\n")
+        written.write("".join(f"{clock.monotonic()} done {one}\n" for one in names))
 
-    Orders.stop = stop
+    def heard(self: StopLane, line: str) -> None:
+        before, ticking = len(self._wishes), self.ticking  # pyright: ignore[reportPrivateUsage]
+        take(self, line)
+        name = line.split(" ", 3)[-1]
+        if not ticking:
+            written.write(f"{clock.monotonic()} kept {name}\n")
+        if len(self._wishes) == before:  # pyright: ignore[reportPrivateUsage]
+            stood_for.append(name)
+
+    def rested(self: StopLane) -> None:
+        for wish in self._wishes:  # pyright: ignore[reportPrivateUsage]
+            written.write(f"{clock.monotonic()} kept {wish.name}\n")
+        end(self)
+
+    Orders.stop, StopLane._take = stop, heard  # pyright: ignore[reportPrivateUsage]
+    StopLane.end_ticking = rested
 
 
 def note_scans(file: Path) -> None:
@@ -79,7 +105,7 @@ def main(folder: Path) -> int:
     """Serve until told to end."""
     note_stops(folder / STOPS)
     note_scans(folder / SCANS)
-    return host("sim", (), str(folder / "runs"), f"unix:{folder / 'service.sock'}", None, "")
+    return host(ServiceOptions(runs=folder / "runs"), f"unix:{folder / 'service.sock'}", None, "")
 
 
 if __name__ == "__main__":

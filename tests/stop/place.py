@@ -6,7 +6,7 @@ import asyncio
 import subprocess
 import sys
 from array import array
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -19,8 +19,8 @@ from tester.service.commands import Control
 from tester.service.gateway_process import NICE as GATEWAY_NICE
 from tester.service.state import StateView
 from tester.service.stop_call import NotTakenError, StopCall
-from tests.stop.hostile import ALL_KINDS
-from tests.stop.owner import OPERATOR, SCANS, STOPS
+from tests.stop.hostile import KINDS
+from tests.stop.owner import OPERATOR, PROBE, SCANS, STOPS
 
 LOOK_S = 0.02
 START_S = 180.0
@@ -48,10 +48,11 @@ LOOP, NICED_LOOP = "loop.txt", "niced.txt"
 """What the bare loops write: one that comes as the owner does, one as the gateway."""
 
 
-def started(*words: str, nice: int = 0) -> subprocess.Popen[bytes]:
-    """Run a module of this package."""
+def started(*words: str, nice: int = 0, mute: bool = False) -> subprocess.Popen[bytes]:
+    """Run a module of this package; ``mute``: nobody reads its troubles."""
     before = ["nice", "-n", str(nice)] if nice else []
-    return subprocess.Popen([*before, sys.executable, "-m", *words], stdin=subprocess.DEVNULL)
+    errors = subprocess.DEVNULL if mute else None
+    return subprocess.Popen([*before, sys.executable, "-m", *words], stdin=subprocess.DEVNULL, stderr=errors)
 
 
 def ended(process: subprocess.Popen[bytes]) -> None:
@@ -89,11 +90,13 @@ class Place:
         raise NotReachedError(f"no service within {START_S:g} s")
 
     @contextmanager
-    def attack(self) -> Iterator[None]:
-        """Let the hostile clients loose while the block lasts."""
-        processes = [started("tests.stop.hostile", kind, str(self.folder), nice=NICE) for kind in ALL_KINDS]
+    def attack(self, kinds: Sequence[str] = KINDS) -> Iterator[None]:
+        """Let the hostile clients loose while the block lasts. Raises NotReachedError where they have ended."""
+        processes = [started("tests.stop.hostile", kind, str(self.folder), nice=NICE, mute=True) for kind in kinds]
         try:
             yield
+            if gone := [kind for kind, one in zip(kinds, processes, strict=True) if one.poll() is not None]:
+                raise NotReachedError(f"an attack to its end: {', '.join(gone)} ended before")
         finally:
             for process in processes:
                 process.kill()
@@ -120,7 +123,7 @@ class Place:
     async def stop(self, call: StopCall, after_s: float = 0.0) -> tuple[str, float, float | None]:
         """Send a probe's STOP; return its name, when it was sent and when it was answered (None: not)."""
         self._probes += 1
-        name = f"probe-{self._probes}"
+        name = f"{PROBE}{self._probes}"
         await asyncio.sleep(after_s)
 
         def say() -> tuple[float, float | None]:
@@ -135,9 +138,12 @@ class Place:
         sent_s, answered_s = await asyncio.to_thread(say)
         return name, sent_s, answered_s
 
-    async def tries(self, count: int) -> list[Try]:
-        """STOP so many times at random moments, over a connection that stays open as a screen's does."""
-        return self.judged(await self.stops(count))
+    async def tries(self, count: int, kept: bool = False) -> list[Try]:
+        """STOP so many times at random moments, over a connection that stays open as a screen's does.
+
+        ``kept``: where nothing ticks it is enough that nothing begins any more.
+        """
+        return self.judged(await self.stops(count), kept)
 
     async def stops(self, count: int) -> list[tuple[str, float, float | None]]:
         """As ``tries``, not judged yet."""
@@ -148,13 +154,13 @@ class Place:
                 made.append(await self.stop(call, 0.05 + 0.2 * self._random.random()))
         return made
 
-    def judged(self, made: list[tuple[str, float, float | None]]) -> list[Try]:
+    def judged(self, made: list[tuple[str, float, float | None]], kept: bool = False) -> list[Try]:
         """Return the tries with when control had them."""
         taken: dict[str, float] = {}
         for line in (self.folder / STOPS).read_text(encoding="utf-8").splitlines():
-            at, names = line.split(" ", 1)
-            for name in names.split(", "):
-                taken.setdefault(name, float(at))
+            at, how, names = line.split(" ", 2)
+            for name in names.split(", ") if kept or how == "done" else ():
+                taken.setdefault(name.split(" ", 1)[0], float(at))  # behind it: the peer
         return [Try(sent_s, taken.get(name), answered_s) for name, sent_s, answered_s in made]
 
     def end_for_real(self) -> None:

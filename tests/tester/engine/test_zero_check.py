@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -29,7 +30,7 @@ def bench() -> Bench:
 def lifts(bench: Bench) -> int:
     """Return how often contact was given up."""
     wanted = [demand.press for demand in bench.demands]
-    return sum(a is Press.LOAD and b is Press.LIFT for a, b in zip(wanted, wanted[1:], strict=False))
+    return sum(a is Press.LOAD and b is Press.LIFT for a, b in pairwise(wanted))
 
 
 def test_it_is_due_after_ten_minutes_of_contact_without_a_break(bench: Bench) -> None:

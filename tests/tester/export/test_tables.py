@@ -182,6 +182,9 @@ def test_a_risk_that_was_accepted_stands_in_every_row_of_every_table(tmp_path: P
     assert "trial of a new cell" in said and "480 N" in said
     assert all(lines and all(line["accepted_risk"] == said for line in lines) for lines in found)
     assert (condition["accepted_risk"], condition["loose_safety_keys"]) == tuple(risk.values())
+    with RunReader(tmp_path) as reader:
+        export.write_parquet_file(tmp_path / "samples.parquet", reader)
+    assert set(pq.read_table(tmp_path / "samples.parquet")["accepted_risk"].to_pylist()) == {said}
 
 
 def test_samples_have_every_column_and_their_repeat(tmp_path: Path) -> None:

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import fields
 from pathlib import Path
 
 import pytest
+import yaml
 
 from drivers.canopen.dictionary import VENDOR_ID
+from tester.config_reader import key_of
+from tester.interlocks.table import PARAMETERS
 from tester.rig import load_rig
 from tester.rig.ceilings import CEILINGS, beyond, counts_as_simulated
 from tester.rig.load import load_rig_text, packaged_text, risks_of
@@ -52,6 +56,59 @@ def test_nonsense_is_refused_by_its_key_on_any_rig(override: str, machine: Path)
     assert len(NONSENSE) == 20
     for rig in ("sim", machine):
         assert f"--set {override}" in refused(rig, override)
+
+
+@pytest.mark.parametrize("override", NONSENSE)
+def test_nonsense_in_a_rig_file_is_refused_without_a_word_for_it(override: str, tmp_path: Path) -> None:
+    key, _, value = override.partition("=")
+    content = yaml.safe_load(packaged_text())
+    *sections, last = key.split(".")
+    section = content
+    for name in sections:
+        section = section.setdefault(name, {})
+    section[last] = yaml.safe_load(value)
+    path = tmp_path / "rig.yaml"
+    path.write_text(yaml.safe_dump(content), encoding="utf-8")
+    said = refused(path)
+    assert last in said or "is not a finite number" in said
+
+
+NO_HARM = {
+    "interlocks": {
+        "late_warn": "a warning", "zero_warn": "a warning", "ack_wait": "how long a repair is waited for",
+        "cold": "when a wheel may be told by its stiffness", "cooldown_at_most": "a wheel that cools for longer",
+        "open_output": "a heater that does not heat", "open": "a heater that does not heat",
+        "open_below": "a heater that does not heat", "open_rise": "a heater that does not heat",
+    },
+    "loops.load": {
+        "bandwidth": "a loop that swings is tripped by the load it makes", "rolling_bandwidth": "as bandwidth",
+        "error_filter": "as bandwidth", "stiffness": "as bandwidth", "integral": "as bandwidth",
+        "acceleration": "as bandwidth",
+        "open_share": "which touch is swept at low load",
+    },
+    "loops.heat": {
+        "outer_gain": "the setpoint ends at hub_max", "outer_integral": "as outer_gain",
+        "integral_band": "as outer_gain", "integral_limit": "as outer_gain", "hub_min": "as outer_gain",
+        "period": "as outer_gain", "rolling_offset": "as outer_gain",
+    },
+    "limits": {}, "arming": {}, "scan": {},
+    "can": dict.fromkeys(("interface", "channel", "bitrate", "node"), "which wire, not what is on it"),
+}  # fmt: skip
+"""Keys that no harm hangs on, and why."""
+
+
+@pytest.mark.parametrize("section", NO_HARM)
+def test_every_key_has_a_ceiling_or_a_reason_for_none(section: str) -> None:
+    """A new key of a row or of a section is in one of both, or fails here."""
+    if section == "interlocks":
+        keys = {one.key for one in PARAMETERS}
+    else:
+        kind = load_rig()
+        for name in section.split("."):
+            kind = getattr(kind, name)
+        keys = {key_of(type(kind), field.name) for field in fields(kind)}
+    bounded = {one.key.removeprefix(f"{section}.") for one in CEILINGS if one.key.startswith(f"{section}.")}
+    assert bounded | set(NO_HARM[section]) == keys and not bounded & set(NO_HARM[section])
 
 
 def test_the_packaged_rig_is_within_every_ceiling() -> None:

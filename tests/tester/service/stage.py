@@ -18,6 +18,7 @@ from pydantic import JsonValue
 
 from recipes import UnknownRecipe
 from tester.campaign.endings import CannotStartError
+from tester.preparing import Prepared, prepared
 from tester.service.address import UnixAddress
 from tester.service.commands import RigAction
 from tester.service.hub import Hub, HubConfig
@@ -26,7 +27,6 @@ from tester.service.planning import Task
 from tester.service.protocol import Event, Frames
 from tester.service.service import Service, ServiceOptions
 from tester.service.state import PlanView, StateView
-from tester.session import Prepared, prepared
 from tester.source import InvalidSource
 
 Script = Generator[Order | Presence | list[Order | Presence] | None]

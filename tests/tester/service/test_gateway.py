@@ -363,6 +363,30 @@ def test_a_client_that_talks_without_a_pause_is_read_at_the_rate_it_has(
     play(tmp_path, story)
 
 
+def test_of_what_a_client_that_is_gone_had_left_to_say_stop_alone_is_heard(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    spent: list[int] = []
+    monkeypatch.setattr(Bucket, "spend", lambda self, size: spent.append(size) or 3600.0)  # pyright: ignore
+
+    async def story(fake: FakeService) -> None:
+        client = await Client.connect(fake.address, name="gone")
+        said = [asyncio.create_task(client.command(action)) for action in (Control(), Control(), Stop())]
+        while not spent:
+            await asyncio.sleep(0)
+        client._connection.transport.abort()  # pyright: ignore[reportPrivateUsage]
+        while fake.gateway.guests:
+            fake.show(state("RUN"))
+            await asyncio.sleep(0)
+        assert len(spent) == 3 and fake.presence.controller == ""
+        while not fake.orders:
+            await asyncio.sleep(0)
+        assert [order.action for order in fake.orders] == [Stop()]
+        await asyncio.gather(*said, return_exceptions=True)
+
+    play(tmp_path, story)
+
+
 def test_a_client_that_does_not_take_its_answers_is_sent_away(tmp_path: Path) -> None:
     async def story(fake: FakeService) -> None:
         client = await Client.connect(fake.address)

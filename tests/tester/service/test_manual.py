@@ -292,6 +292,18 @@ def test_it_disarms_when_its_client_loses_control(tmp_path: Path) -> None:
     assert min(view.manual.left_s for view in stage.views if view.manual.left_s is not None) > 20.0
 
 
+def test_it_ends_at_once_when_control_was_taken_while_it_was_being_armed(tmp_path: Path) -> None:
+    def script(stage: Stage) -> Script:
+        yield ARMED
+        arm = stage.order(Arm())
+        stage.presence = Presence("client 2", 2, 1, False)  # heard with it, before the mode begins
+        yield arm
+        yield from stage.until(off)
+
+    stage = play(tmp_path, script)
+    assert min(view.manual.left_s for view in stage.views if view.manual.left_s is not None) > 50.0
+
+
 def held(stage: Stage) -> Script:
     """Hold the rig while it is moved by hand."""
     yield from armed(stage)

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from tester.campaign.endings import CannotStartError
+from tester.preparing import prepared
 from tester.service.planning import Task, planned
-from tester.session import prepared
 from tests.tester.engine.bench import SHORT
 
 
