@@ -22,7 +22,7 @@ def cpu_s() -> float:
 
 
 class Effort:
-    """Counts the processor time since it was made; ``look`` times the loop again, between the parts of what is counted."""
+    """Counts the processor time since it was made; ``look`` times the loop again, between parts of what is counted."""
 
     def __init__(self) -> None:
         """Begin to count."""
