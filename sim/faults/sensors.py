@@ -235,41 +235,41 @@ class HubFault(SensorFault):
         jacket.source = self._spoiled(jacket.source, "hub sensor", scene, now)
 
 
-class CommonSupplyFault(Effect):
+class _Together(Effect):
+    """Faults that come and go as one."""
+
+    __slots__ = ("_all",)
+
+    def __init__(self, *all_of_them: Effect) -> None:
+        """Of these."""
+        self._all = all_of_them
+
+    def begin(self, scene: Scene, now: float) -> None:
+        """Begin all of them."""
+        for one in self._all:
+            one.begin(scene, now)
+
+    def end(self, scene: Scene, now: float) -> None:
+        """End all of them."""
+        for one in self._all:
+            one.end(scene, now)
+
+
+class CommonSupplyFault(_Together):
     """The supply that hub sensor and thermometer share is off: both show another share of what they should."""
 
-    __slots__ = ("_both",)
+    __slots__ = ()
 
     def __init__(self, percent: float) -> None:
         """Show ``percent`` of what is above ambient temperature."""
-        self._both = (HubFault("gain", percent), SurfaceFault("gain", percent))
-
-    def begin(self, scene: Scene, now: float) -> None:
-        """Let both show it."""
-        for one in self._both:
-            one.begin(scene, now)
-
-    def end(self, scene: Scene, now: float) -> None:
-        """Let both show what is."""
-        for one in self._both:
-            one.end(scene, now)
+        super().__init__(HubFault("gain", percent), SurfaceFault("gain", percent))
 
 
-class HubDetached(Effect):
+class HubDetached(_Together):
     """The hub's sensor sits loose: it takes part in the air's temperature, and follows the hub slowly."""
 
-    __slots__ = ("_both",)
+    __slots__ = ()
 
     def __init__(self, percent: float) -> None:
         """Show ``percent`` of what is above ambient temperature, late by DETACHED_S."""
-        self._both = (HubFault("gain", percent), HubFault("lag", DETACHED_S))
-
-    def begin(self, scene: Scene, now: float) -> None:
-        """Come off."""
-        for one in self._both:
-            one.begin(scene, now)
-
-    def end(self, scene: Scene, now: float) -> None:
-        """Be held again."""
-        for one in self._both:
-            one.end(scene, now)
+        super().__init__(HubFault("gain", percent), HubFault("lag", DETACHED_S))

@@ -151,8 +151,8 @@ def test_every_bad_override_is_told() -> None:
         ("lines.heat.baud=0", "baud rate above 0"),
         ("loops.heat.hub_max=151 degC", "above limits.jacket"),
         ("loops.heat.hub_min=150 degC", "not below hub_max"),
-        ("loops.load.lift_speed=40 mm/s", "above axes.press.max_speed"),
-        ("loops.load.acceleration=500 mm/s2", "above what axes.press can follow"),
+        ("loops.load.lift_speed=70 mm/s", "above axes.press.max_speed"),
+        ("loops.load.acceleration=1.1 m/s2", "above what axes.press can follow"),
         ("lines.heat.port=/dev/ttyUSB0", 'a simulated rig has "sim" here'),
         ("can.interface=socketcan", 'a simulated rig has "sim" here'),
         ("limits.load=501 N", "too large"),
@@ -199,7 +199,7 @@ def test_press_without_a_known_screw_keeps_the_torque_of_its_file(tmp_path: Path
     text = packaged_text()
     begin = text.index("    screw:")
     path = tmp_path / "rig.yaml"
-    path.write_text(text[:begin] + text[text.index("    max_speed: 30   ") :], encoding="utf-8")
+    path.write_text(text[:begin] + text[text.index("    max_speed: 60   ") :], encoding="utf-8")
     press = load_rig(path).axes.press
     assert press.screw is None and press.max_torque_per_mille == 3000
 
