@@ -136,6 +136,7 @@ def build_run(
         contact=load,
         ambient_c=rig.ambient_c,
         wheel_changed=control.view.wheel_changed,
+        heat=control.view.heat,
     )
     results = StoredResults(recorder)
     executor = Executor(plan, results, hardware=not rig.simulated)

@@ -10,6 +10,7 @@ from tester.control.load_loop import LoadLoop
 from tester.engine.gates import Gates
 from tester.engine.prompts import Prompts
 from tester.engine.wheel_life import WheelLife
+from tester.interlocks.heat_balance import HeatBalance
 from tester.process import Demand, Readings
 from tester.rig import RigConfig
 from tester.store.recorder import Recorder
@@ -101,6 +102,8 @@ class Context:
     """Air temperature at the rig, degC."""
     wheel_changed: Callable[[float], None] = nothing_to_tell
     """Tells control that another wheel is on the rig, at ambient temperature (s)."""
+    heat: HeatBalance | None = None
+    """Control's balance of the heater's energy; None on a bench without control."""
     now: float = 0.0
     dt: float = 0.0
     moving: bool = False

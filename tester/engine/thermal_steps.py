@@ -19,6 +19,9 @@ HEAT_AT_MOST_S: Final = 5400.0
 COOL_AT_MOST_S: Final = 3 * 3600.0
 """Longest cooling of a hub before a person may touch it; then a prompt says how warm it is [A]."""
 
+BALANCE_LEAST_J: Final = 10e3
+"""From this heat on its balance says something, J [A]: what a late sensor hides is 2 % of it."""
+
 SHOW_S: Final = 1.0
 """How often people are told how far a wait has come, s."""
 
@@ -106,7 +109,16 @@ class HeatUp:
             return False
         if not self.soak.reached:
             ctx.journal.event(ctx.now, "heat", f"{self.target_c:g} degC not reached in time", "warning")
+        self._note_balance(ctx)
         return True
+
+    def _note_balance(self, ctx: Context) -> None:
+        """Record what ``observer.thermal`` is measured by: heat put in over heat shown, where there was enough."""
+        heat = ctx.heat
+        if heat is not None and heat.shown_j >= BALANCE_LEAST_J:
+            ratio = heat.put_j / heat.shown_j
+            text = f"heat balance: {1e-3 * heat.put_j:.1f} kJ put in, {ratio:.2f} of what the temperatures show"
+            ctx.journal.event(ctx.now, "heat", text)
 
 
 class RestStep:

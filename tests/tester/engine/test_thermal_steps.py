@@ -10,7 +10,7 @@ from tester.engine.moves import Load, Power, Sequence, Turn
 from tester.engine.thermal_steps import CoolDown, HeatUp, RestStep, SoakTo, Straighten, roll, soak_within_k
 from tester.process import Press
 from tester.recipe.plan import Cool, Heat, Rest, Soak
-from tests.tester.engine.bench import Bench, make_bench
+from tests.tester.engine.bench import SHORT, Bench, Simulation, make_bench
 
 SOAK = Soak(1.0, 60.0, 1800.0)
 
@@ -185,3 +185,11 @@ def test_cooling_ends_when_the_hub_is_cool(bench: Bench) -> None:
 def test_cooling_is_given_up_after_hours(bench: Bench) -> None:
     bench.surface_c = 60.0
     assert bench.run(CoolDown(Cool(1, 45.0), 0.1), at_most_s=4 * 3600.0, dt=2.0) > 3 * 3600.0
+
+
+def test_after_heating_up_the_heat_balance_is_on_record() -> None:
+    run = Simulation(SHORT.replace("25 degC", "40 degC"), seed=5)
+    run.until(lambda it: any(text.startswith("heat balance") for text in it.notes.texts("heat")))
+    (text,) = run.notes.texts("heat")
+    ratio = float(text.rpartition(",")[2].split()[0])
+    assert abs(ratio - 1.0) < 0.03
