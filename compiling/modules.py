@@ -48,6 +48,7 @@ HOT = (
     "tester/analysis/blocks.py",
     "tester/control/*.py",
     "tester/engine/attended.py",
+    "tester/engine/burst_state.py",
     "tester/engine/bursts.py",
     "tester/engine/condition.py",
     "tester/engine/context.py",

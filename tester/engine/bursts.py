@@ -10,8 +10,6 @@ setpoint; how far below is learned, because some conditions heat up before the f
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from enum import Enum
 from math import isnan, pi
 from typing import Final
 
@@ -21,6 +19,7 @@ from tester.analysis.drift import fit_drift
 from tester.analysis.judge import ALONE
 from tester.analysis.reduce import counted
 from tester.analysis.stability import filled
+from tester.engine.burst_state import BurstNotes, Ending, Phase
 from tester.engine.context import Context
 from tester.engine.moves import Lift, Load, Power, Sequence, Settle, TakeTare, Turn, Yaw
 from tester.engine.thermal_steps import roll
@@ -69,19 +68,6 @@ WARM_SHARE: Final = 1.2
 """Revolutions a condition must hold, with the ramp, to be called possible: used for the band that would do."""
 
 
-class Phase(Enum):
-    """Where a repeat is."""
-
-    TARE = "tare"
-    ROLL = "roll"
-    READY = "wait for temperature"
-    COOL = "cool lifted"
-    MOVE_IN = "bring slip in"
-    COUNT = "measure"
-    MOVE_OUT = "take slip out"
-    LIFT = "lift"
-
-
 # Bound once: a look-up on the enum class costs several times as much in every scan (CPython 3.11).
 _TARE: Final = Phase.TARE
 _ROLL: Final = Phase.ROLL
@@ -90,33 +76,6 @@ _COOL: Final = Phase.COOL
 _MOVE_IN: Final = Phase.MOVE_IN
 _COUNT: Final = Phase.COUNT
 _MOVE_OUT: Final = Phase.MOVE_OUT
-
-
-class Ending(Enum):
-    """How a repeat ended."""
-
-    COMPLETE = "complete"
-    INCOMPLETE = "incomplete"
-    """Fewer revolutions than the window asks for, after all bursts."""
-    CANNOT_HOLD = "temperature cannot be held"
-    NOT_REACHED = "not reached"
-    ZERO_DRIFT = "load cell zero drifted"
-
-
-@dataclass(slots=True)
-class BurstNotes:
-    """What is known of the burst in progress."""
-
-    began_s: float = 0.0
-    began_c: float = float("nan")
-    blocks_before: int = 0
-    counted_s: float = float("-inf")
-    slid_s: float = float("nan")
-    slid_c: float = float("nan")
-    """When half of the slip was there, and the reading of the surface then."""
-    peak_rate_k_s: float = 0.0
-    sum_before_k: float = 0.0
-    count_before: int = 0
 
 
 class MeasureRepeat:

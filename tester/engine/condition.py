@@ -8,7 +8,8 @@ from typing import Protocol
 
 from tester.analysis.results import RepeatStatus
 from tester.analysis.stability import REPEAT_WINDOWS
-from tester.engine.bursts import Ending, MeasureRepeat
+from tester.engine.burst_state import Ending
+from tester.engine.bursts import MeasureRepeat
 from tester.engine.context import Context
 from tester.engine.moves import Sequence
 from tester.engine.thermal_steps import SoakTo, roll, soak_within_k

@@ -22,7 +22,8 @@ from tester.analysis.results import (
     joined,
 )
 from tester.axes import condition_words
-from tester.engine.bursts import Ending, MeasureRepeat
+from tester.engine.burst_state import Ending
+from tester.engine.bursts import MeasureRepeat
 from tester.engine.condition import ConditionEnd, RepeatOutcome
 from tester.engine.context import Context
 from tester.recipe.estimate import predicted_loss_mm

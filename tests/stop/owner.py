@@ -69,11 +69,11 @@ def note_stops(file: Path) -> None:
         written.write("".join(f"{clock.monotonic()} done {one}\n" for one in names))
 
     def heard(self: StopLane, line: str) -> None:
-        before, ticking = len(self._wishes), self.ticking  # pyright: ignore[reportPrivateUsage]
-        take(self, line)
+        before = len(self._wishes)  # pyright: ignore[reportPrivateUsage]
         name = line.split(" ", 3)[-1]
-        if not ticking:
+        if not self.ticking:  # noted before it is answered: who hears the answer looks for the note
             written.write(f"{clock.monotonic()} kept {name}\n")
+        take(self, line)
         if len(self._wishes) == before:  # pyright: ignore[reportPrivateUsage]
             stood_for.append(name)
 

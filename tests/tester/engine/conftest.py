@@ -33,7 +33,8 @@ def pulsed_run() -> Simulation:
 @pytest.fixture(scope="session")
 def yawed_run() -> Simulation:
     """The short recipe with a sideslip angle, to its end."""
-    return Simulation(SHORT + "    sideslip: 20 deg\n", QUIET).to_the_end()
+    text = SHORT.replace("14 rev", "6 rev") + "    sideslip: 20 deg\n"
+    return Simulation(text, QUIET).to_the_end()
 
 
 @pytest.fixture(scope="session")
@@ -45,7 +46,7 @@ def rolling_run() -> Simulation:
 @pytest.fixture(scope="session")
 def hot_run() -> Simulation:
     """3# at 400 N on the hot rig: what cannot be held."""
-    text = SHORT.replace("1#", "3#").replace("200 N", "400 N")
+    text = SHORT.replace("1#", "3#").replace("200 N", "400 N").replace("14 rev", "14 rev\n  max_bursts: 3")
     return Simulation(text, HOT).to_the_end()
 
 

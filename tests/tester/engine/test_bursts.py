@@ -10,7 +10,8 @@ from statistics import fmean
 import pytest
 
 from tester.analysis.blocks import blocks_from_samples
-from tester.engine.bursts import TARE_FRESH_S, Ending, MeasureRepeat, Phase
+from tester.engine.burst_state import Ending, Phase
+from tester.engine.bursts import TARE_FRESH_S, MeasureRepeat
 from tester.process import SAMPLE_COLUMNS, Press
 from tester.recipe.plan import ConditionStep
 from tests.tester.engine.bench import SHORT, Bench, Simulation, condition_of, make_bench

@@ -7,7 +7,8 @@ from dataclasses import dataclass, field, replace
 import pytest
 
 from tester.analysis.results import RepeatStatus
-from tester.engine.bursts import Ending, MeasureRepeat
+from tester.engine.burst_state import Ending
+from tester.engine.bursts import MeasureRepeat
 from tester.engine.condition import ConditionEnd, MeasureCondition, RepeatOutcome
 from tester.engine.context import Context
 from tester.process import Press

@@ -8,7 +8,8 @@ import pytest
 
 from tester.analysis.blocks import AVERAGED, Block
 from tester.analysis.results import ConditionStatus, RepeatStatus
-from tester.engine.bursts import Ending, MeasureRepeat
+from tester.engine.burst_state import Ending
+from tester.engine.bursts import MeasureRepeat
 from tester.engine.condition import ConditionEnd
 from tester.engine.results import StoredResults, condition_records
 from tester.recipe.plan import ConditionStep
