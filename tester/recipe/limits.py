@@ -217,13 +217,22 @@ class _Limits:
         yield from self._temperatures(at)
         yield from self._slips(at)
         motions = self._motions(at)
-        temperatures = [one.value for one in self._given((*at, "temperature"), "degC")]
+        band_k = self._band_k(at)
+        # Within its band rubber may be colder, and friction the greater by several per cent a kelvin.
+        temperatures = [
+            max(one.value + off_k, self.ambient_c)
+            for one in self._given((*at, "temperature"), "degC")
+            for off_k in (-band_k, 0.0, band_k)
+        ]
         yield from self._powers(loads, motions, temperatures)
+
+    def _band_k(self, at: Location) -> float:
+        bands = self._given((*at, "temperature_band"), "K") or self._given(("measure", "temperature_band"), "K")
+        return bands[0].value if bands else DEFAULT_BAND_K
 
     def _temperatures(self, at: Location) -> Iterator[Problem]:
         surface_c, jacket_c = self.rig.limits.surface_c, self.rig.limits.jacket_c
-        bands = self._given((*at, "temperature_band"), "K") or self._given(("measure", "temperature_band"), "K")
-        band = bands[0].value if bands else DEFAULT_BAND_K
+        band = self._band_k(at)
         for given in self._given((*at, "temperature"), "degC"):
             reached = f"temperature: {show(given.value, 'degC')} with its band of {show(band, 'K')}"
             if given.value + band > surface_c:
