@@ -21,7 +21,7 @@ HEAT = (0.7, 1.3)
 """Of friction, into the rubber, as a share of what the rig file believes."""
 LOAD_STEP_N, SLIP_STEP_MM_S, TEMPERATURE_STEP_K = 1, 10, 1
 GROUND_IN = "sim.running_in=0"
-"""The wheel has been ground in: new rubber grips by a tenth more, and four minutes of grinding would be all of a run."""
+"""The wheel has been ground in: new rubber grips by a tenth more, and to grind takes longer than all the rest."""
 WHEEL_M_S, PRE_GRIND_BELT_M_S = 0.8, 0.6
 """Rim speed of the paper's tests; the belt in pre-grinding."""
 
