@@ -230,7 +230,7 @@ def _late() -> str:
 def _first_contact() -> str:
     """See that what turns wrongly ends the run at a wheel's first contact, and at a load that a hand can hold."""
     with redirect_stdout(StringIO()) as said:
-        code = pytest.main(["-q", "-x", "-p", "no:cacheprovider", "--no-header", FIRST_CONTACT])
+        code = pytest.main(["-q", "-x", "-n", "0", "-p", "no:cacheprovider", "--no-header", FIRST_CONTACT])
     failed = [line for line in said.getvalue().splitlines() if line.startswith(("FAILED", "ERROR"))]
     return (failed or ["the tests of the first contact could not run"])[0] if code else ""
 
