@@ -46,6 +46,14 @@ g       look for runs again.
 class TextTable(DataTable[Text]):
     """A table of texts that are never taken for markup."""
 
+    def measure(self) -> None:
+        """Make the columns as wide as what was filled in.
+
+        A table does that when it has nothing else to do, hence not before its next message: one filled from elsewhere,
+        under a dialog, has none coming.
+        """
+        self.call_later(self.refresh)
+
 
 class ResultsView(View):
     """What is stored."""
@@ -116,6 +124,7 @@ class ResultsView(View):
         self.names = [str(one.get("run", "")) for one in runs]
         for one in runs:
             table.add_row(*(Text(cell) for cell in run_cells(one)))
+        table.measure()
         if before < len(runs):
             table.move_cursor(row=before)
         table.border_title = f"Runs: {len(runs)}"
@@ -172,6 +181,7 @@ class ResultsView(View):
         table.add_columns(*(Text(title) for title in stored.header))
         for row in stored.rows:
             table.add_row(*(Text(clean(cell, 80)) for cell in row.cells))
+        table.measure()
         table.border_title = Text(f"{clean(stored.name)}: {clean(stored.recipe)}, {clean(stored.status)}")
         table.border_subtitle = Text(f"all: {clean(stored.common)}" if stored.common else "")
         table.move_cursor(row=at)
