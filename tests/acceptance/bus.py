@@ -124,13 +124,22 @@ def _started(record: CanRecord, node: int) -> float:
     return start if OPERATIONAL in beats else float("inf")
 
 
+STATUS_BYTES = 2
+"""Length of a TPDO2 that tells the statusword; another tells digital inputs."""
+
+
 def _timed(record: CanRecord, axis: Axis) -> list[tuple[float, str]]:
     """Return the changes of a drive's state: time, name."""
-    words = record.readings(axis)["6041"].astype(int) & 0x6F
+    told = list(zip(record.times(0x180 + axis.node).tolist(), record.readings(axis)["6041"].tolist(), strict=True))
+    # Wheel and belt tell a change at once too: the scan that follows may command the next one before TPDO1 is due.
+    at_once = (frame for frame in record.frames[0x280 + axis.node] if len(frame[1]) == STATUS_BYTES)
+    told += [(t, int.from_bytes(data, "little")) for t, data in at_once]
+    told.sort(key=lambda one: one[0])
+    times, words = [t for t, _ in told], np.array([word for _, word in told])
+    words = words & 0x6F
     words = np.where((words & 0x4F) == 0x40, 0x40, np.where((words & 0x48) == 0x08, words & 0x4F, words))
     changes = np.flatnonzero(np.diff(words, prepend=-1))
-    times = record.times(0x180 + axis.node)
-    return [(float(times[at]), STATES.get(int(words[at]), f"{words[at]:02X}")) for at in changes]
+    return [(times[at], STATES.get(int(words[at]), f"{words[at]:02X}")) for at in changes]
 
 
 def _states(record: CanRecord, axis: Axis) -> Iterator[Figure]:
