@@ -356,8 +356,12 @@ def test_an_unexpected_error_leaves_an_interrupted_run_and_a_safe_rig(tmp_path: 
     assert events[-1] == "the program broke off: KeyError: 'a bug': safe outputs sent"
 
 
+HANDLER_BEFORE = signal.getsignal(signal.SIGINT)
+"""A process that a shell began in the background has the key ignored."""
+
+
 def test_the_handlers_of_before_are_back_after_a_run(done: Ended) -> None:
-    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    assert signal.getsignal(signal.SIGINT) is HANDLER_BEFORE
 
 
 def test_a_store_that_cannot_be_written_fails_the_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
