@@ -5,7 +5,7 @@ from __future__ import annotations
 import gc
 import sys
 from collections.abc import Callable, Generator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass
 from math import ceil, floor
 from typing import Final, Protocol
@@ -15,8 +15,8 @@ from tester.pace import Pace
 
 POLL_S: Final = 0.02
 """Period of ``poll``, s of wall time: a STOP from a screen is heard within it."""
-LEAVE_S: Final = 0.002
-"""No poll begins this shortly before a tick is due, s."""
+LEAVE_S: Final = 0.008
+"""No poll begins this shortly before a tick is due, s: at 100 Hz it follows a tick, and may take long."""
 
 
 class Ticked(Protocol):
@@ -85,15 +85,13 @@ def run_simulated(engine: Ticked, world: World, *, lapse: float | None, poll: Ca
     now = 0.0
     origin = clock.monotonic()
     poll_due = origin
-    with collector_at_rest():
+    with collector_at_rest(), scan_first() if lapse is not None else nullcontext():
         while not engine.finished:
             world.advance(now)
             wanted = engine.tick(now)
             later = next_tick(now, wanted, world.urgent_s)
-            if lapse is not None:
-                poll_due = _wait(origin + later / lapse, now, poll, poll_due)
             wall = clock.monotonic()
-            if wall >= poll_due - LEAVE_S:  # now rather than with a wake-up of its own
+            if wall >= poll_due - LEAVE_S:  # now rather than with a wake-up of its own: never before a tick that is due
                 poll(now)
                 poll_due = wall + POLL_S
             if engine.waiting:
@@ -102,6 +100,8 @@ def run_simulated(engine: Ticked, world: World, *, lapse: float | None, poll: Ca
                     poll(now)
                     clock.sleep_until(clock.monotonic() + POLL_S)
                 origin += clock.monotonic() - asked  # a person's time is not made up for
+            if lapse is not None:
+                poll_due = _wait(origin + later / lapse, now, poll, poll_due)
             now = later
     return now
 
