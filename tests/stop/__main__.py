@@ -20,7 +20,7 @@ from tests.acceptance.figure import Figure, holds
 from tests.stop import scenes
 from tests.stop.place import NotReachedError, Place
 
-TRIES, SAMPLE = 50, 6
+TRIES, SAMPLE = 50, 8
 """In each of five scenes."""
 CONDITIONS, FEWER = 200_000, 20_000
 

@@ -20,6 +20,7 @@ from tester.service.gateway_process import NICE as GATEWAY_NICE
 from tester.service.state import StateView
 from tester.service.stop_call import NotTakenError, StopCall
 from tests.stop.hostile import KINDS
+from tests.stop.loop import PERIOD_S
 from tests.stop.owner import OPERATOR, PROBE, SCANS, STOPS
 
 LOOK_S = 0.02
@@ -44,8 +45,13 @@ class Try:
 
 NICE = 10
 """Of hostile clients."""
-LOOP, NICED_LOOP = "loop.txt", "niced.txt"
-"""What the bare loops write: one that comes as the owner does, one as the gateway."""
+LOOPS = tuple(f"loop{number}.txt" for number in range(4))
+"""What the bare loops write that come as the owner does.
+
+One would be woken half as often as a scan that it is compared with: the worst of few moments says little.
+"""
+NICED_LOOPS = ("niced.txt",)
+"""What the one writes that comes as the gateway does."""
 
 
 def started(*words: str, nice: int = 0, mute: bool = False) -> subprocess.Popen[bytes]:
@@ -66,16 +72,18 @@ def ended(process: subprocess.Popen[bytes]) -> None:
 
 
 class Place:
-    """One folder, one service, one bare loop."""
+    """One folder, one service, bare loops."""
 
     def __init__(self, folder: Path, stack: ExitStack) -> None:
-        """Start both; they end with ``stack``."""
+        """Start them; they end with ``stack``."""
         self.folder = folder
         self.address = UnixAddress(folder / "service.sock")
         self._owner = started("tests.stop.owner", str(folder))
         stack.callback(ended, self._owner)
-        for file, nice in ((LOOP, 0), (NICED_LOOP, GATEWAY_NICE)):
-            stack.callback(ended, started("tests.stop.loop", str(folder / file), nice=nice))
+        for files, nice in ((LOOPS, 0), (NICED_LOOPS, GATEWAY_NICE)):
+            for number, file in enumerate(files):
+                phase_s = PERIOD_S * number / len(files)
+                stack.callback(ended, started("tests.stop.loop", str(folder / file), str(phase_s), nice=nice))
         self._probes = 0
         self._random = Random(7)
 
@@ -170,9 +178,10 @@ class Place:
 
     # -- what was noted ---------------------------------------------------------------------------------------
 
-    def loop_late_s(self, from_s: float, to_s: float, file: str = LOOP) -> float:
-        """Return the worst lateness of a bare loop in a time."""
-        rows = [line.split() for line in (self.folder / file).read_text(encoding="utf-8").splitlines()]
+    def loop_late_s(self, from_s: float, to_s: float, files: Sequence[str] = LOOPS) -> float:
+        """Return the worst lateness of the bare loops in a time."""
+        lines = [line for file in files for line in (self.folder / file).read_text(encoding="utf-8").splitlines()]
+        rows = [line.split() for line in lines]
         return max((float(row[1]) for row in rows if len(row) == 2 and from_s <= float(row[0]) <= to_s), default=0.0)
 
     def scans(self) -> list[tuple[float, float]]:

@@ -14,7 +14,7 @@ from tester.service.state import StateView
 from tests.acceptance.figure import Figure, at_least, at_most, equal, holds
 from tests.stop.hostile import BY_FORCE, KINDS
 from tests.stop.owner import PROBE
-from tests.stop.place import NICED_LOOP, NotReachedError, Place, Try
+from tests.stop.place import NICED_LOOPS, NotReachedError, Place, Try
 
 ASKED_S = 0.1
 QUIET_S = 10.0
@@ -92,7 +92,7 @@ def at_rest(view: StateView) -> bool:
 
 async def sliding_and_resting(place: Place, client: Client, attack: Attack, count: int) -> AsyncIterator[Figure]:
     """100 Hz and 10 Hz: a run that slides, then rests."""
-    slides_s = QUIET_S + SETTLE_S + 0.4 * count + 8.0
+    slides_s = QUIET_S + SETTLE_S + max(QUIET_S, 0.4 * count) + 8.0
     await client.command(RunRecipe("slides", text=SLIDES % slides_s, speed=1.0, yes=True))
     await place.until(client, lambda view: slides(view), "a wheel that slides", 120.0)
     quiet = (clock.monotonic(), clock.monotonic() + QUIET_S)
@@ -101,6 +101,7 @@ async def sliding_and_resting(place: Place, client: Client, attack: Attack, coun
         await asyncio.sleep(SETTLE_S)
         began_s = clock.monotonic()
         tries = await place.tries(count)
+        await asyncio.sleep(began_s + QUIET_S - clock.monotonic())
         loud = (began_s, clock.monotonic())
         yield holds("at 100 Hz: the wheel still slides", slides(client.state), client.state.mode, "RUN")
         for figure in figures_of(place, "at 100 Hz", tries, began_s):
@@ -116,22 +117,17 @@ async def sliding_and_resting(place: Place, client: Client, attack: Attack, coun
 
 
 def scans_of(place: Place, quiet: tuple[float, float], loud: tuple[float, float]) -> list[Figure]:
-    """Compare scans without hostile clients with those beside them.
-
-    One scan may be later: in ten seconds without them not every rare delay of the machine has been seen.
-    """
+    """Compare scans without hostile clients with those beside them, as long watched."""
     scans = place.scans()
     before = [late for at, late in scans if quiet[0] <= at <= quiet[1]]
     beside = [late for at, late in scans if loud[0] <= at <= loud[1]]
-    worst_before = max(before, default=float("nan"))
-    beside.sort()
-    latest, latest_but_one = beside[-1:] or [float("nan")], beside[-2:-1] or [float("nan")]
+    worst_before, worst_beside = max(before, default=float("nan")), max(beside, default=float("nan"))
     loop_s = place.loop_late_s(*loud)
     return [
         at_least("scans beside hostile clients", len(beside), 0.9 * 100.0 * (loud[1] - loud[0])),
         holds("latest scan without them", True, f"{1e3 * worst_before:.1f} ms of {len(before)}", "no limit"),
-        at_most("latest scan beside them but one", 1e3 * latest_but_one[0], 1e3 * (worst_before + loop_s), "ms", 1,
-                note=f" (the latest {1e3 * latest[0]:.1f}, bare loop {1e3 * loop_s:.1f})"),
+        at_most("latest scan beside them", 1e3 * worst_beside, 1e3 * (worst_before + loop_s), "ms", 1,
+                note=f" (bare loop {1e3 * loop_s:.1f})"),
     ]  # fmt: skip
 
 
@@ -168,7 +164,7 @@ async def by_hand(place: Place, client: Client, attack: Attack, count: int) -> A
                 yield figure
         yield equal("by hand: tries while it moves", inside, count)
         yield at_least("by hand: steps taken", hand.steps, 4)
-        niced_s = place.loop_late_s(began_s, to_s, NICED_LOOP)
+        niced_s = place.loop_late_s(began_s, to_s, NICED_LOOPS)
         yield holds("by hand: manual mode stands, or the gateway gets no share of the processor",
                     hand.again == 0 or niced_s > SHARE_S,
                     f"armed {hand.again} times again ({hand.why}); a bare loop beside the gateway is late by "
