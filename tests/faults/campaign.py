@@ -149,7 +149,7 @@ def do_share(share: Share) -> list[Verdict]:
     def look(moment: Moment, twins: Twins) -> None:
         for names in by_tick[moment]:
             case = Case(share.recipe, moment.tick, moment.place, names)
-            verdicts.append(Judge(twins(), case, budgets=share.budgets).run())
+            verdicts.append(twins.do(lambda twin, case=case: Judge(twin, case, budgets=share.budgets).run()))
 
     visit(share.recipe, by_tick, look, share.overrides)
     return verdicts

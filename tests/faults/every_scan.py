@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from tests.faults.campaign import Tally
 from tests.faults.judge import Case, Judge, Verdict
-from tests.faults.moments import Moment, rehearse, visit
+from tests.faults.moments import Moment, Twins, rehearse, visit
 
 NAME = "short"
 """The recipe (tests.faults.recipes)."""
@@ -34,10 +34,10 @@ def do_share(share: Share) -> list[Verdict]:
     """Run the recipe once and inject every event at each of the ticks."""
     verdicts: list[Verdict] = []
 
-    def look(moment: Moment, twins: object) -> None:
-        assert callable(twins)
+    def look(moment: Moment, twins: Twins) -> None:
         for event in share.events:
-            verdicts.append(Judge(twins(), Case(NAME, moment.tick, moment.place, (event,))).run())
+            case = Case(NAME, moment.tick, moment.place, (event,))
+            verdicts.append(twins.do(lambda twin, case=case: Judge(twin, case).run()))
 
     visit(NAME, [Moment(NAME, tick, "scan", str(tick)) for tick in share.ticks], look)
     return verdicts

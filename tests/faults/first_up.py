@@ -129,7 +129,7 @@ def conduct(rows: Iterable[First] = FIRST) -> dict[First, str]:
 
         def look(moment: Moment, twins: Twins, here: dict[Moment, list[First]] = by_moment) -> None:
             for row in here[moment]:
-                found[row] = first_cause(twins(), row)
+                found[row] = twins.do(lambda twin, row=row: first_cause(twin, row))
 
         visit(recipe, by_moment, look, overrides)
     return {row: found[row] for row in rows}

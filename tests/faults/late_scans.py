@@ -27,7 +27,8 @@ def conduct() -> Tally:
 
     def look(moment: Moment, twins: Twins) -> None:
         if twins.stage.running and twins.stage.run.engine.ctx.demand.enabled:
-            tally.verdicts.append(first_up(twins(), Case(NAME, moment.tick, moment.place, (FAULT,))))
+            case = Case(NAME, moment.tick, moment.place, (FAULT,))
+            tally.verdicts.append(twins.do(lambda twin: first_up(twin, case)))
 
     visit(NAME, rehearse(NAME, PATIENT)[0], look, PATIENT)
     return tally

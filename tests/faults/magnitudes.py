@@ -8,7 +8,7 @@ the run while it is watched. What harms, noticed or not, has to stand in the wri
 from __future__ import annotations
 
 import csv
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from functools import cache
@@ -18,7 +18,7 @@ from sim.faults import PARAMETRIC, Parametric
 from sim.faults.catalogue import ASSEMBLY
 from sim.harm import CONTACT_C, FORCE_N, HUB_C, POWER_W, STANDING_J
 from tests.faults.judge import Case, Judge
-from tests.faults.moments import Moment, rehearse, visit
+from tests.faults.moments import Moment, Twins, rehearse, visit
 from tests.faults.stage import Stage
 
 WRITTEN = Path(__file__).resolve().parents[2] / "docs" / "hardware-magnitudes.csv"
@@ -107,22 +107,27 @@ def kind_of_place(phrase: str) -> str:
     return HOT if phrase.startswith(("hub", "thermometer", "common")) else LOADED
 
 
+@dataclass(frozen=True, slots=True)
+class Order:
+    """A fault of this phrase and magnitude is to be tried."""
+
+    phrase: str
+    value: float
+
+
 @cache
-def stages(corner: str) -> dict[tuple[str, str], tuple[Moment, Stage]]:
-    """Return a stage at each place of a corner, to be copied."""
+def places(corner: str) -> dict[tuple[str, str], Callable[[Order], Trial]]:
+    """Return what tries faults, for each place of a corner."""
     wanted = {place for places in _PLACES.values() for place in places}
-    found: dict[tuple[str, str], tuple[Moment, Stage]] = {}
+    found: dict[tuple[str, str], Callable[[Order], Trial]] = {}
     by_moment: dict[Moment, tuple[str, str]] = {}
     for moment in rehearse(corner, cooled=False)[0]:
         place = (moment.step.rpartition(" ")[2], moment.phase)
         if place in wanted and place not in by_moment.values():
             by_moment[moment] = place
 
-    def look(moment: Moment, twins: object) -> None:
-        assert callable(twins)
-        stage: object = twins()
-        assert isinstance(stage, Stage)
-        found[by_moment[moment]] = (moment, stage)
+    def look(moment: Moment, twins: Twins) -> None:
+        found[by_moment[moment]] = twins.stay(lambda twin, order: tried(twin, moment, order))
 
     visit(corner, by_moment, look)
     return found
@@ -130,10 +135,14 @@ def stages(corner: str) -> dict[tuple[str, str], tuple[Moment, Stage]]:
 
 def attempt(row: Parametric, value: float, corner: str, place: tuple[str, str]) -> Trial:
     """Let a fault of this magnitude begin at a place of a corner."""
-    moment, stage = stages(corner)[place]
-    stage = stage.copy()
+    return places(corner)[place](Order(row.kind.phrase, value))
+
+
+def tried(stage: Stage, moment: Moment, order: Order) -> Trial:
+    """Let a fault begin on this stage."""
+    row, value = PARAMETRIC[order.phrase], order.value
     stage.observer.forget()
-    case = Case(corner, moment.tick, moment.place, (row.text(value),))
+    case = Case(moment.recipe, moment.tick, moment.place, (row.text(value),))
     watched_s = _WATCHED_S[kind_of_place(row.kind.phrase)]
     verdict = Judge(stage, case, budgets=False, watched_s=watched_s).run()
     ended = "a stop" if stage.ended and not stage.run.engine.executor.finished else ""
@@ -148,9 +157,9 @@ def search(row: Parametric, end: float) -> Found:
     """Find the worst place of a fault to one side, then the greatest magnitude there that nothing notices."""
     kind = kind_of_place(row.kind.phrase)
     trials: list[Trial] = []
-    places = [(corner, place) for corner in CORNERS for place in _PLACES[kind] if place in stages(corner)]
+    here = [(corner, place) for corner in CORNERS for place in _PLACES[kind] if place in places(corner)]
     worst: tuple[float, tuple[str, tuple[str, str]]] | None = None
-    for corner, place in places:
+    for corner, place in here:
         one = attempt(row, row.between(end, MODERATE), corner, place)
         trials.append(one)
         rank = one.danger + (1.0 if one.harm else 0.0)
@@ -185,8 +194,6 @@ def _search(one: tuple[str, float]) -> Found:
 def conduct(jobs: int = 1, only: str = "") -> Iterable[Found]:
     """Search every fault (those whose phrase has the text ``only``) to both sides, on ``jobs`` processors."""
     ends = [(row.kind.phrase, end) for row in PARAMETRIC.values() for end in row.ends if only in row.kind.phrase]
-    for corner in CORNERS:
-        stages(corner)  # before there are workers: where they are forked they have it
     if jobs == 1:
         yield from map(_search, ends)
         return

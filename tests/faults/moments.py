@@ -5,10 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from functools import cache
+from typing import TypeVar
 
+from tests.faults.apart import FORKS, Post, apart
 from tests.faults.recipes import setting_of
 from tests.faults.stage import STANDING, Place, Stage
 
+Order = TypeVar("Order")
+Result = TypeVar("Result")
 PHASES = ("begin", "middle", "end")
 WARM_S = 10.0
 """So much of a cool-down is seen where it is not waited for, s."""
@@ -76,7 +80,7 @@ def _moments(recipe: str, stretches: list[tuple[Place, str, int, int]]) -> Itera
 def visit(
     recipe: str, moments: Iterable[Moment], look: Callable[[Moment, Twins], None], overrides: tuple[str, ...] = ()
 ) -> None:
-    """Run a recipe once and show, before each of the moments' ticks, what gives twins of its stage."""
+    """Run a recipe once and show, before each of the moments' ticks, what does work with twins of its stage."""
     stage = _stage(recipe, overrides)
     for moment in sorted(moments, key=_tick):
         while stage.ticks < moment.tick:
@@ -86,14 +90,31 @@ def visit(
 
 @dataclass(frozen=True, slots=True)
 class Twins:
-    """Gives independent twins of a stage: copies, or (where it cannot be copied) runs of their own up to there."""
+    """Lets work be done with a stage and leaves it as it was.
+
+    Without forks it is done with a copy or, where the stage cannot be copied, with a run of its own up to there.
+    """
 
     stage: Stage
     recipe: str
     overrides: tuple[str, ...]
 
-    def __call__(self) -> Stage:
-        """Return a twin."""
+    def do(self, work: Callable[[Stage], Result]) -> Result:
+        """Return what work makes of a twin. Raises ApartError."""
+        if FORKS:
+            return apart(lambda: work(self.stage))
+        return work(self.copy())
+
+    def stay(self, work: Callable[[Stage, Order], Result]) -> Callable[[Order], Result]:
+        """Return what does each order with a twin of its own, now and later. Raises ApartError."""
+        if FORKS:
+            post: Post[Order, Result] = Post(lambda order: work(self.stage, order))
+            return post.do
+        kept = self.copy()
+        return lambda order: work(kept.copy(), order)
+
+    def copy(self) -> Stage:
+        """Return a twin in this process."""
         if self.stage.copyable:
             return self.stage.copy()
         twin = _stage(self.recipe, self.overrides)

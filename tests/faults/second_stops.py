@@ -5,7 +5,7 @@ from __future__ import annotations
 from sim.faults import CATALOGUE, Injection
 from sim.faults.language import When
 from tests.faults.campaign import Tally
-from tests.faults.judge import Case, Judge
+from tests.faults.judge import Case, Judge, Verdict
 from tests.faults.moments import Moment, Twins, rehearse, visit
 from tests.faults.stage import Stage
 
@@ -29,10 +29,12 @@ def conduct(second: tuple[str, ...] = SECOND) -> Tally:
     tally = Tally("second stop in the cool-down")
 
     def look(moment: Moment, twins: Twins) -> None:
-        stage = cooling(twins())
-        for name in second:
-            case = Case(NAME, moment.tick, "cool-down", (name,))
-            tally.verdicts.append(Judge(stage.copy(), case, budgets=False).run())
+        tally.verdicts += twins.do(lambda twin: stopped_again(cooling(twin), moment))
+
+    def stopped_again(stage: Stage, moment: Moment) -> list[Verdict]:
+        here = Twins(stage, NAME, ())
+        cases = [Case(NAME, moment.tick, "cool-down", (name,)) for name in second]
+        return [here.do(lambda twin, case=case: Judge(twin, case, budgets=False).run()) for case in cases]
 
     moment = next(m for m in rehearse(NAME)[0] if m.step.endswith(f" {PHASE}") and m.phase == "middle")
     visit(NAME, [moment], look)

@@ -21,7 +21,7 @@ def sliding() -> Stage:
     found: list[Stage] = []
 
     def keep(moment: Moment, twins: Twins) -> None:
-        found.append(twins())
+        found.append(twins.copy())
 
     visit("short", [moment], keep)
     return found[0]

@@ -77,7 +77,7 @@ def test_bisection_finds_the_greatest_unnoticed_magnitude_and_the_least_that_har
 
     monkeypatch.setattr(magnitudes, "attempt", attempt)
     every = {place: None for places in magnitudes._PLACES.values() for place in places}
-    monkeypatch.setattr(magnitudes, "stages", lambda corner: every)
+    monkeypatch.setattr(magnitudes, "places", lambda corner: every)
     found = search(PARAMETRIC["load cell offset"], -200.0)
     assert found.unnoticed is not None and -80.0 < found.unnoticed.value < -76.0
     assert found.noticed_by == "contact too deep"

@@ -12,7 +12,7 @@ from sim.faults import CATALOGUE, Injection
 from sim.faults.kinds import Reaction
 from sim.faults.language import When
 from sim.harm import SAFE_S, Truth
-from tests.faults.moments import Moment, rehearse, visit
+from tests.faults.moments import Moment, Twins, rehearse, visit
 from tests.faults.stage import RUNNING, Stage
 
 SHORT_RUN, LONG_RUN = (14, 12), (400, 20)
@@ -29,9 +29,8 @@ def beginnings() -> tuple[Stage, ...]:
     moments = [moment for moment in rehearse("short")[0] if moment.phase == "middle"]
     found: list[Stage] = []
 
-    def keep(moment: Moment, twins: object) -> None:
-        assert callable(twins)
-        stage: Stage = twins()
+    def keep(moment: Moment, twins: Twins) -> None:
+        stage = twins.copy()
         if stage.copyable:
             stage.run.stays_latched = True
             found.append(stage)
@@ -128,6 +127,6 @@ class AnythingHappens(RuleBasedStateMachine):
 
 AnythingHappens.TestCase.settings = settings(
     max_examples=SHORT_RUN[0], stateful_step_count=SHORT_RUN[1], deadline=None, derandomize=True,
-    suppress_health_check=list(HealthCheck), database=None,
+    suppress_health_check=tuple(HealthCheck), database=None,
 )  # fmt: skip
 TestAnythingHappens = AnythingHappens.TestCase
