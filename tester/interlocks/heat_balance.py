@@ -9,11 +9,13 @@ share leave it at zero for ever, and what is further off adds up.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import nan
+from math import inf, nan
 from typing import Final
 
 SMOOTHED_S: Final = 10.0
 """Powers are smoothed over this, s [A]: 0.05 K of noise of a hub of 420 J/K is 2 W then."""
+STILL_K: Final = 0.15
+"""A reading within this of an earlier one has not moved, K [A]: one count of 0.1 K, and what a float of it is off."""
 LONGEST_S: Final = 5.0
 """Looked at more rarely than this, s, nothing is compared with what was before."""
 
@@ -43,6 +45,21 @@ class HeatBalance:
     """Heat of the heater since the comparison began ..."""
     shown_j: float = 0.0
     """... and what the temperatures explain of it."""
+    still_s: float = 0.0
+    """Since when the reading stands although more is given than at some time since then, beyond beliefs' error, s.
+
+    A hub that stands loses what it lost then: what the beliefs are off in steady losses drops out.
+    """
+    _still_c: float = nan
+    """The reading when it last moved ..."""
+    _still_at_s: float = nan
+    """... and when that was."""
+    _least_w: float = inf
+    """The least given since then beyond losses to rubber and shaft (smoothed) ..."""
+    _least_lost_w: float = 0.0
+    """... and those losses."""
+    _lost_w: float = 0.0
+    """Smoothed heat to rubber and shaft."""
     _stored_w: float = 0.0
     _at_s: float = nan
     _hub_c: float = nan
@@ -50,6 +67,8 @@ class HeatBalance:
     def forget(self) -> None:
         """Begin anew: a person was at the wheel and its hub, or another wheel is on."""
         self.unseen_k = self.put_w = self.shown_w = self._stored_w = self.put_j = self.shown_j = 0.0
+        self.still_s = self._lost_w = 0.0
+        self._still_c = nan  # so that all else begins anew
         self._at_s = self._hub_c = nan
 
     def update(self, now_s: float, hub_c: float, output_percent: float, rubber_j: float) -> None:
@@ -68,8 +87,20 @@ class HeatBalance:
         self._stored_w += (stored_w - self._stored_w) * smooth
         self.put_w += (put_w - self.put_w) * smooth
         self.shown_w += (shown_w - self.shown_w) * smooth
+        self._lost_w += (rubber_w + shaft_w - self._lost_w) * smooth
+        self._follow_still(hub_c)
         self.put_j += put_w * dt
         self.shown_j += shown_w * dt
         moved_w = abs(self._stored_w) + abs(rubber_w) + abs(shaft_w)
         unseen_k = self.unseen_k + (put_w - shown_w - self.share * moved_w - self.leak_w) * dt / self.capacity_j_k
         self.unseen_k = 0.0 if unseen_k < 0.0 else unseen_k
+
+    def _follow_still(self, hub_c: float) -> None:
+        """See how long the reading stands while it should not."""
+        more_w = self.put_w - self._lost_w
+        if not (-STILL_K <= hub_c - self._still_c <= STILL_K):
+            self._still_c, self._still_at_s, self._least_w = hub_c, self._at_s, inf
+        if more_w < self._least_w:
+            self._least_w, self._least_lost_w = more_w, self._lost_w
+        astray_w = self.share * abs(self._lost_w - self._least_lost_w) + self.leak_w
+        self.still_s = self._at_s - self._still_at_s if more_w - self._least_w > astray_w else 0.0

@@ -255,6 +255,29 @@ HEAT_NOT_SHOWN: Final = Interlock(
     reset=REPAIR,
 )
 
+FROZEN_HUB_S: Final = Parameter(
+    "frozen_hub_s", "s", "60 s",
+    "reading unchanged by more than a count for this long while more is given than before [A]: 5 W make 0.7 K of it",
+    direction=Direction.LOWER, hardest="90 s",
+    because="a hub whose reading stands 0.3 K below limits.jacket is 5 K hotter after 90 s",
+)  # fmt: skip
+
+
+def _hub_stands_still(v: Inputs) -> bool:
+    return not v.attended and not (v.heat.still_s <= v.parameters[FROZEN_HUB_S])
+
+
+HUB_FROZEN: Final = Interlock(
+    name="hub sensor frozen",
+    cause="the hub's temperature repeats itself while the heater gives more",
+    level="within a count for frozen_hub, and more given than in that time before, by > heat_share and heat_leak",
+    condition=_hub_stands_still,
+    compared=lambda v: Compared(v.heat.still_s, v.parameters[FROZEN_HUB_S], "s"),
+    parameters=(FROZEN_HUB_S,),
+    reaction=CONTROLLED,
+    reset=REPAIR,
+)
+
 STALE_JACKET_S: Final = Parameter(
     "stale_jacket_s", "s", "1 s", "age of the hub temperature",
     direction=Direction.LOWER, hardest="3 s",
@@ -300,6 +323,6 @@ HUB_NOT_VALID: Final = Interlock(
 )
 
 ROWS: Final[tuple[Interlock, ...]] = (
-    JACKET_HOT, JACKET_RUNAWAY, HEATER_STUCK, HEATER_LINE_OPEN, HEATING_AT_STANDSTILL, HUB_JUMP, HEAT_NOT_SHOWN,
-    JACKET_SILENT, HUB_NOT_VALID,
+    JACKET_HOT, JACKET_RUNAWAY, HEATER_STUCK, HEATER_LINE_OPEN, HEATING_AT_STANDSTILL, HUB_JUMP, HUB_FROZEN,
+    HEAT_NOT_SHOWN, JACKET_SILENT, HUB_NOT_VALID,
 )  # fmt: skip

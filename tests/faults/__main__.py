@@ -180,7 +180,8 @@ def searched(report: Report, jobs: int, only: str) -> None:
     if not only:
         report.figure("magnitudes: rows of the written table shown", f"{len(inside)} of {len(table)}", "all",
                       len(inside) == len(table))
-    print(f"     processor time: {effort.used_s:.0f} s", flush=True)
+    used_s = effort.used_s + sum(one.cpu_s for one in found)
+    print(f"     processor time: {used_s:.0f} s", flush=True)
 
 
 def grid(report: Report, tally: Tally, cases: int, most: int) -> None:

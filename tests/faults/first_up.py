@@ -73,6 +73,7 @@ FIRST: tuple[First, ...] = (
     First("heater stuck", ("t=0 s: jacket relay shorted",), WARM),
     First("heater line open", ("t=0 s: heater line open",), HEAT, 120.0),
     First("hub sensor jump", ("t=0 s: hub sensor jumps",)),
+    First("hub sensor frozen", ("t=0 s: hub sensor frozen",), WARM, 240.0),
     First("surface sensor jump", ("t=0 s: thermometer jumps",)),
     First("thermometer frozen", ("t=0 s: thermometer frozen",), WARM, 80.0),
     First("surface off model", ("t=0 s: thermometer drift",), WARM, 120.0),

@@ -200,6 +200,8 @@ class Judge:
     def _after(self, now: float) -> bool:
         """See that an end state lasts, and that nothing comes of acknowledging it."""
         missing = self._missing()
+        if missing and self._stops_anew(now):
+            return False  # a creeping wheel is tripped by something else now
         if missing:
             when = "acknowledged" if self._acknowledged else "at rest"
             self.verdict.failures.append(f"safe no more, {when}: {', '.join(missing)}{self._why()}")
@@ -212,6 +214,10 @@ class Judge:
         self._after_s, self._acknowledged = now, True
         self.stage.run.request_ack()
         return False
+
+    def _stops_anew(self, now: float) -> bool:
+        """Tell whether another stop has begun, and has its time still."""
+        return self.stage.mode in ("stopping", "fast stop") and now - self.stage.mode_since_s <= SAFE_S
 
     def _missing(self) -> list[str]:
         return Truth.of(self.stage.rig).unsafe(

@@ -17,6 +17,7 @@ from pathlib import Path
 from sim.faults import PARAMETRIC, Parametric
 from sim.faults.catalogue import ASSEMBLY
 from sim.harm import CONTACT_C, FORCE_N, HUB_C, POWER_W, STANDING_J
+from tester.clock import cpu_seconds
 from tests.faults.judge import Case, Judge
 from tests.faults.moments import Moment, Twins, rehearse, visit
 from tests.faults.stage import Stage
@@ -36,6 +37,8 @@ _PLACES = {
     HOT: (("soak", "begin"), ("soak", "middle")),
 }
 """Phases and parts of them in which faults begin: of the machine's assembly, of what needs load, of temperatures."""
+STOPPING, FINISHED = "-> stopping: ", "recipe finished"
+"""What the journal says of a stop, and of the one that ends a recipe."""
 _WATCHED_S = {ASSEMBLED: 120.0, LOADED: 150.0, HOT: 900.0}
 """How long they are watched, s of rig time: through pre-grinding; a soak under load; heating and the first bursts."""
 
@@ -52,6 +55,8 @@ class Trial:
     contact_c: float
     power_w: float
     standing_j: float
+    cpu_s: float = 0.0
+    """What it took."""
 
     @property
     def danger(self) -> float:
@@ -78,6 +83,7 @@ class Found:
     unnoticed: Trial | None
     harmed: tuple[Trial, ...]
     noticed_by: str
+    cpu_s: float = 0.0
 
     @property
     def harming(self) -> Trial | None:
@@ -141,15 +147,17 @@ def attempt(row: Parametric, value: float, corner: str, place: tuple[str, str]) 
 def tried(stage: Stage, moment: Moment, order: Order) -> Trial:
     """Let a fault begin on this stage."""
     row, value = PARAMETRIC[order.phrase], order.value
+    began_s, said = cpu_seconds(), len(stage.ledger.journal)
     stage.observer.forget()
     case = Case(moment.recipe, moment.tick, moment.place, (row.text(value),))
     watched_s = _WATCHED_S[kind_of_place(row.kind.phrase)]
     verdict = Judge(stage, case, budgets=False, watched_s=watched_s).run()
-    ended = "a stop" if stage.ended and not stage.run.engine.executor.finished else ""
+    stops = [text.partition(STOPPING)[2] for text in stage.ledger.journal[said:] if STOPPING in text]
+    ended = next((why for why in stops if why != FINISHED), "")
     seen = stage.observer
     return Trial(
         value, stage.trip or stage.run.reason or ended, tuple(verdict.failures), seen.most_n, seen.most_hub_c,
-        seen.most_contact_c, seen.most_power_w, seen.most_standing_j,
+        seen.most_contact_c, seen.most_power_w, seen.most_standing_j, cpu_seconds() - began_s,
     )  # fmt: skip
 
 
@@ -184,7 +192,8 @@ def search(row: Parametric, end: float) -> Found:
     else:
         unnoticed = one
     harmed = tuple(trial for trial in trials if trial.harm)
-    return Found(row, end, f"{corner}; {place[0]}, {place[1]}", unnoticed, harmed, noticed_by)
+    cpu_s = sum(trial.cpu_s for trial in trials)
+    return Found(row, end, f"{corner}; {place[0]}, {place[1]}", unnoticed, harmed, noticed_by, cpu_s)
 
 
 def _search(one: tuple[str, float]) -> Found:
