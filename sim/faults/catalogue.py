@@ -42,8 +42,8 @@ ALWAYS, DRIVES, CONNECTING, ENABLED, TURNING, LOADED, PRESSING, SLIDING, HEATING
     Exposure.ALWAYS, Exposure.DRIVES, Exposure.CONNECTING, Exposure.ENABLED, Exposure.TURNING, Exposure.LOADED,
     Exposure.PRESSING, Exposure.SLIDING, Exposure.HEATING,
 )  # fmt: skip
-RUNNING, RUBBING, CHANGED, MISWEIGHED, MISREAD, STARVED, UNASKED, OVERHEATED, HOT, WELDED = (
-    Exposure.RUNNING, Exposure.RUBBING, Exposure.CHANGED, Exposure.MISWEIGHED, Exposure.MISREAD, Exposure.STARVED,
+RUNNING, RUBBING, ASTRAY, MISWEIGHED, MISREAD, STARVED, UNASKED, OVERHEATED, HOT, WELDED = (
+    Exposure.RUNNING, Exposure.RUBBING, Exposure.ASTRAY, Exposure.MISWEIGHED, Exposure.MISREAD, Exposure.STARVED,
     Exposure.UNASKED, Exposure.OVERHEATED, Exposure.HOT, Exposure.WELDED,
 )  # fmt: skip
 TRIP, STOP, HOLD, RIDE, MAY, DEVICES = (
@@ -96,8 +96,8 @@ def _frozen_feedback(axis: str) -> FaultKind:
     if axis == "press":
         return FaultKind(name, make, ENABLED, MAY, 0.0,
                          note="its position tells only where to slow down: the force ends pressing and lifting")
-    return FaultKind(name, make, CHANGED, TRIP, FOLLOW_S, axis=axis,
-                     note="seen when the speed is to change: a slow ramp (0.3 of the rig's) is waited for")
+    return FaultKind(name, make, ASTRAY, TRIP, FOLLOW_S, axis=axis,
+                     note="seen when another speed is commanded: a slow ramp (0.3 of the rig's) is waited for")
 
 
 def _bus_rows() -> Iterator[FaultKind]:
@@ -218,9 +218,10 @@ def _actuator_rows() -> Iterator[FaultKind]:
                     note="seen when it is to open")
     yield FaultKind("contactor dead", a.ContactorDead, STARVED, TRIP, 61.0 + POLL_S, slow=True)
     yield FaultKind("press runs away", partial(d.Runaway, "press"), LOADED, TRIP, 0.5, "mm/s", 5.0)
-    yield FaultKind("wheel runs away", partial(d.Runaway, "wheel"), ENABLED, TRIP, FOLLOW_S, "rad/s", 12.0,
-                    note="0.54 m/s")
-    yield FaultKind("belt runs away", partial(d.Runaway, "belt"), ENABLED, TRIP, FOLLOW_S, "m/s", 0.4)
+    yield FaultKind("wheel runs away", partial(d.Runaway, "wheel"), ASTRAY, TRIP, FOLLOW_S, "rad/s", 12.0,
+                    axis="wheel", note="0.54 m/s; seen where that is not its command")
+    yield FaultKind("belt runs away", partial(d.Runaway, "belt"), ASTRAY, TRIP, FOLLOW_S, "m/s", 0.4,
+                    axis="belt", note="seen where that is not its command")
     yield FaultKind("press stuck", partial(d.Jammed, "press"), PRESSING, MAY, 0.0, force_stays=True,
                     note="it holds the load it held: seen when it is to lift, and freed by hand; the rig stands")
     yield FaultKind("belt jammed", partial(d.Jammed, "belt"), LOADED, TRIP, 0.1 + SCAN_S)

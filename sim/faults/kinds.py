@@ -23,7 +23,7 @@ class Exposure(Enum):
     PRESSING = "while a load is held"
     SLIDING = "in contact, with slip"
     RUBBING = "while a load is held, with slip"
-    CHANGED = "once the axis has changed its speed"
+    ASTRAY = "while a drive shows another speed than it was told"
     HEATING = "while the jacket heats"
     MISWEIGHED = "while the press is further than the load shown can need"
     MISREAD = "while the thermometer is off by more than the model allows, turning"

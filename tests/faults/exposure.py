@@ -8,7 +8,9 @@ from __future__ import annotations
 from dataclasses import replace
 from math import hypot, inf, isfinite, radians, sin
 
+from drivers.canopen import objects as o
 from sim.contact import ContactModel
+from sim.faults.can import FaultyCanWire
 from sim.faults.kinds import Exposure, FaultKind
 from sim.faults.sensors import SpoiledForces, SpoiledTemperature
 from sim.harm import Truth
@@ -27,8 +29,8 @@ LIFTS_MM_S = -5.0
 """A press told to go back faster than this lifts; holding a load it moves by 2 mm/s at most."""
 DRIVEN_M_S = 0.06
 """The drives make slip: above the 50 mm/s from which "belt torn" is judged."""
-CHANGED_M_S = 0.1
-"""Twice what a speed may be off."""
+ASTRAY_M_S = 0.1
+"""Twice what a speed may be off its command."""
 DEPTH_SHARE, DEPTH_MM = 1.3, 0.55
 """What "contact too deep" leaves (1.3 times, 0.2 mm), and what a touch may be noted late where the cell reads half."""
 MISREAD_K = 9.5
@@ -59,7 +61,6 @@ class Exposed:
         step = stage.place[0]
         fitted = step > 0 and not isinstance(stage.plan.steps[step - 1], Install)
         self._settled = stage.running and fitted and stage.next_s - stage.step_since_s > FITTED_S
-        self._speed = stage.rig.axes[kind.axis].axis.value if kind.axis else 0.0
 
     def now(self) -> bool:
         """Tell whether the fault can be noticed now."""
@@ -86,9 +87,8 @@ class Exposed:
             return stage.all_on
         if exposure is Exposure.TURNING:
             return abs(truth.wheel_m_s) > TURNS_M_S
-        if exposure is Exposure.CHANGED:
-            off = abs(rig.axes[self.kind.axis].axis.value - self._speed)
-            return stage.all_on and off * (_radius_m(stage) if self.kind.axis == "wheel" else 1.0) > CHANGED_M_S
+        if exposure is Exposure.ASTRAY:
+            return stage.all_on and astray_m_s(stage, self.kind.axis) > ASTRAY_M_S
         if exposure is Exposure.LOADED:
             return truth.force_n > LOADED_N
         lifts = rig.axes["press"].axis.target < LIFTS_MM_S
@@ -143,6 +143,18 @@ def driven_slip_m_s(stage: Stage) -> float:
     rim_m_s, belt_m_s = axes["wheel"].axis.value * _radius_m(stage), axes["belt"].axis.value
     yaw = axes["sideslip"].axis.position if "sideslip" in axes else 0.0
     return hypot(rim_m_s - belt_m_s, belt_m_s * sin(radians(yaw)))
+
+
+def astray_m_s(stage: Stage, axis: str) -> float:
+    """Return how far the speed that a drive shows is off the one that it was last told over the wire, m/s."""
+    rig, drive = stage.rig, stage.rig.axes[axis]
+    per = drive.config.velocity_increments
+    shown = drive.axis.value
+    frozen = rig.can.frozen.get(o.TPDO1_BASE + drive.node_id) if isinstance(rig.can, FaultyCanWire) else None
+    if frozen:  # statusword and speed
+        shown = int.from_bytes(frozen[2:6], "little", signed=True) / per
+    off = abs(shown - drive.store.values[(o.TARGET_VELOCITY, 0)] / per)
+    return off * _radius_m(stage) if axis == "wheel" else off
 
 
 def excess_mm(stage: Stage) -> float:

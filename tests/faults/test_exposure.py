@@ -6,6 +6,7 @@ from functools import cache
 
 import pytest
 
+from drivers.canopen import objects as o
 from sim.faults import CATALOGUE
 from sim.faults.kinds import Exposure, FaultKind, Reaction
 from sim.faults.language import parse
@@ -51,6 +52,35 @@ def test_a_torn_belt_is_exposed_although_nothing_slides_on_it():
     stage = sliding().copy()
     stage.rig.plant.slip_m_s = 0.0
     assert Exposed(stage, kind(Exposure.RUBBING)).now()
+
+
+@pytest.mark.parametrize("axis", ["wheel", "belt"])
+@pytest.mark.parametrize("off_m_s", [-0.15, 0.0, 0.15])
+def test_an_axis_that_runs_away_is_exposed_where_it_runs_at_another_speed_than_it_was_told(axis: str, off_m_s: float):
+    stage = sliding().copy()
+    told, radius_m = stage.rig.axes[axis].axis.value, 0.0005 * stage.rig.plant.diameter_mm
+    stage.inject(parse(f"t=0 s: {axis} runs away {told + off_m_s / (radius_m if axis == 'wheel' else 1.0):.6g}"
+                       f" {'rad/s' if axis == 'wheel' else 'm/s'}").shifted(stage.next_s))  # fmt: skip
+    exposed = Exposed(stage, CATALOGUE[f"{axis} runs away"])
+    assert not exposed.now()
+    seen = False
+    for _ in range(12):
+        stage.tick()
+        seen = seen or exposed.now()
+    assert seen is bool(off_m_s)
+
+
+@pytest.mark.parametrize("axis", ["wheel", "belt"])
+def test_a_frozen_speed_is_exposed_once_another_one_is_commanded(axis: str):
+    stage = sliding().copy()
+    stage.inject(parse(f"t=0 s: {axis} drive feedback frozen").shifted(stage.next_s))
+    exposed = Exposed(stage, CATALOGUE[f"{axis} drive feedback frozen"])
+    for _ in range(3):
+        stage.tick()
+    assert not exposed.now()
+    drive = stage.rig.axes[axis]
+    drive.store.values[(o.TARGET_VELOCITY, 0)] //= 2
+    assert exposed.now()
 
 
 def test_a_press_told_to_lift_holds_no_load():
