@@ -68,7 +68,8 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--causes", type=int, default=200, metavar="N", help="lines about failures at most")
     parser.add_argument("--only", default="", metavar="TEXT",
                         help="corners of --limits, faults of --magnitudes with this text")
-    parser.add_argument("--fault", action="append", metavar="TEXT", help="faults of --limits with this text; may be repeated")
+    parser.add_argument("--fault", action="append", metavar="TEXT",
+                        help="faults of --limits with this text; may be repeated")
     parser.add_argument("--cases", type=int, default=limits.CASES, metavar="N", help="cases of --limits")
     options = parser.parse_args(arguments)
     if not (options.full or options.limits or options.magnitudes or options.mutants or options.list or options.sample):
