@@ -29,6 +29,7 @@ class Exposure(Enum):
     MISREAD = "while the thermometer is off by more than the model allows, turning"
     STARVED = "while full heat is asked for and the hub stays cold"
     UNASKED = "while heat flows that the controller does not give"
+    HIDDEN = "while full heat is given and the hub is far hotter than shown"
     OVERHEATED = "while the hub is hotter than it was ever told to be"
     HOT = "while the hub is far hotter than any recipe needs"
     WELDED = "while the contactor is closed without request"

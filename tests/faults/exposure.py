@@ -37,6 +37,9 @@ MISREAD_K = 9.5
 """Off the truth by this: the model's 8 K, the bias of a session, and what the model itself is off."""
 OUTPUT_PERCENT, BELOW_K = 82.0, 6.0
 """More output, and colder, than "heater line open" asks for (80 %, 5 K)."""
+HIDDEN_K, HIDDEN_SHARE = 6.0, 0.6
+"""Hotter than shown by more than "heat not shown" lets pass (5 K, and 1 K of a sound sensor), and by twice its share of
+what is shown above ambient (0.3)."""
 ABOVE_K = 8.5
 """More than "jacket runaway" asks for (8 K)."""
 HOT_C = 115.0
@@ -113,6 +116,10 @@ class Exposed:
         if exposure is Exposure.STARVED:
             asked = jacket.running and jacket.output >= OUTPUT_PERCENT
             return asked and jacket.pv_c < jacket.setpoint_c - BELOW_K
+        if exposure is Exposure.HIDDEN:
+            shown_k, hidden_k = jacket.pv_c - plant.parameters.ambient, plant.heat.hub_c - jacket.pv_c
+            given = jacket.running and jacket.output >= OUTPUT_PERCENT
+            return given and hidden_k > HIDDEN_K and hidden_k > HIDDEN_SHARE * shown_k
         if exposure is Exposure.OVERHEATED:
             return plant.heat.hub_c > max(stage.hub_most_c, plant.surface_c) + ABOVE_K
         if exposure is Exposure.HOT:
@@ -124,8 +131,8 @@ class Exposed:
 
 
 _THERMAL = frozenset({
-    Exposure.HEATING, Exposure.MISREAD, Exposure.STARVED, Exposure.OVERHEATED, Exposure.HOT, Exposure.UNASKED,
-    Exposure.WELDED,
+    Exposure.HEATING, Exposure.MISREAD, Exposure.STARVED, Exposure.HIDDEN, Exposure.OVERHEATED, Exposure.HOT,
+    Exposure.UNASKED, Exposure.WELDED,
 })  # fmt: skip
 
 

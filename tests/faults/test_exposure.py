@@ -100,8 +100,23 @@ def test_a_cell_that_shows_half_of_it_is_exposed_once_its_load_is_brought():
     assert exposed.now()
 
 
+@pytest.mark.parametrize(
+    ("output", "hidden_k", "exposed"), [(100.0, 7.0, True), (70.0, 7.0, False), (100.0, 5.0, False)]
+)
+def test_heat_is_hidden_where_much_is_given_and_much_of_it_not_shown(output: float, hidden_k: float, exposed: bool):
+    stage = sliding().copy()
+    plant, jacket = stage.rig.plant, stage.rig.jacket
+    jacket.pv_c = plant.parameters.ambient + 5.0
+    plant.heat.hub_c = jacket.pv_c + hidden_k
+    jacket.running, jacket.output = True, output
+    assert Exposed(stage, kind(Exposure.HIDDEN)).now() is exposed
+    jacket.pv_c += 20.0
+    plant.heat.hub_c += 20.0
+    assert not Exposed(stage, kind(Exposure.HIDDEN)).now(), "7 K of 25 K are within twice the row's share"
+
+
 @pytest.mark.parametrize("exposure", [Exposure.MISREAD, Exposure.STARVED, Exposure.UNASKED, Exposure.OVERHEATED,
                                       Exposure.HOT, Exposure.WELDED, Exposure.CONNECTING,
-                                      Exposure.MISWEIGHED])  # fmt: skip
+                                      Exposure.MISWEIGHED, Exposure.HIDDEN])  # fmt: skip
 def test_a_sound_rig_shows_no_fault_of_a_sensor_or_of_the_heat(exposure: Exposure):
     assert not Exposed(sliding().copy(), kind(exposure)).now()
