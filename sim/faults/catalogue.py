@@ -35,6 +35,8 @@ HUB_S = 0.2 + 0.125 + 2.0 * SCAN_S
 """The same of the hub, which its controller samples every 125 ms, s."""
 FOLLOW_S = 0.1 + 1.1 + SCAN_S
 """A speed may lag behind a ramp of 0.3 of the rig's (0.6 m/s2) on its way to another: 0.54 m/s and 50 mm/s more, s."""
+SHOWS_S = 40.0
+"""A hub sensor may show nothing for this long before its heat is missed: the range of delays is 40 s, s."""
 NOISY_S = 2.0 + 3.0 + 1.0
 """A line counts its failures over two seconds, may fail for three, and a slow device is asked once a second [A], s."""
 
@@ -42,9 +44,9 @@ ALWAYS, DRIVES, CONNECTING, ENABLED, TURNING, LOADED, PRESSING, SLIDING, HEATING
     Exposure.ALWAYS, Exposure.DRIVES, Exposure.CONNECTING, Exposure.ENABLED, Exposure.TURNING, Exposure.LOADED,
     Exposure.PRESSING, Exposure.SLIDING, Exposure.HEATING,
 )  # fmt: skip
-RUNNING, RUBBING, CHANGED, MISWEIGHED, MISREAD, STARVED, UNASKED, OVERHEATED, HOT, WELDED = (
-    Exposure.RUNNING, Exposure.RUBBING, Exposure.CHANGED, Exposure.MISWEIGHED, Exposure.MISREAD, Exposure.STARVED,
-    Exposure.UNASKED, Exposure.OVERHEATED, Exposure.HOT, Exposure.WELDED,
+RUNNING, RUBBING, ASTRAY, MISWEIGHED, MISREAD, STARVED, HIDDEN, UNASKED, OVERHEATED, HOT, WELDED = (
+    Exposure.RUNNING, Exposure.RUBBING, Exposure.ASTRAY, Exposure.MISWEIGHED, Exposure.MISREAD, Exposure.STARVED,
+    Exposure.HIDDEN, Exposure.UNASKED, Exposure.OVERHEATED, Exposure.HOT, Exposure.WELDED,
 )  # fmt: skip
 TRIP, STOP, HOLD, RIDE, MAY, DEVICES = (
     Reaction.TRIP, Reaction.STOP, Reaction.HOLD, Reaction.RIDE, Reaction.MAY, Reaction.DEVICES
@@ -96,8 +98,8 @@ def _frozen_feedback(axis: str) -> FaultKind:
     if axis == "press":
         return FaultKind(name, make, ENABLED, MAY, 0.0,
                          note="its position tells only where to slow down: the force ends pressing and lifting")
-    return FaultKind(name, make, CHANGED, TRIP, FOLLOW_S, axis=axis,
-                     note="seen when the speed is to change: a slow ramp (0.3 of the rig's) is waited for")
+    return FaultKind(name, make, ASTRAY, TRIP, FOLLOW_S, axis=axis,
+                     note="seen when another speed is commanded: a slow ramp (0.3 of the rig's) is waited for")
 
 
 def _bus_rows() -> Iterator[FaultKind]:
@@ -218,9 +220,10 @@ def _actuator_rows() -> Iterator[FaultKind]:
                     note="seen when it is to open")
     yield FaultKind("contactor dead", a.ContactorDead, STARVED, TRIP, 61.0 + POLL_S, slow=True)
     yield FaultKind("press runs away", partial(d.Runaway, "press"), LOADED, TRIP, 0.5, "mm/s", 5.0)
-    yield FaultKind("wheel runs away", partial(d.Runaway, "wheel"), ENABLED, TRIP, FOLLOW_S, "rad/s", 12.0,
-                    note="0.54 m/s")
-    yield FaultKind("belt runs away", partial(d.Runaway, "belt"), ENABLED, TRIP, FOLLOW_S, "m/s", 0.4)
+    yield FaultKind("wheel runs away", partial(d.Runaway, "wheel"), ASTRAY, TRIP, FOLLOW_S, "rad/s", 12.0,
+                    axis="wheel", note="0.54 m/s; seen where that is not its command")
+    yield FaultKind("belt runs away", partial(d.Runaway, "belt"), ASTRAY, TRIP, FOLLOW_S, "m/s", 0.4,
+                    axis="belt", note="seen where that is not its command")
     yield FaultKind("press stuck", partial(d.Jammed, "press"), PRESSING, MAY, 0.0, force_stays=True,
                     note="it holds the load it held: seen when it is to lift, and freed by hand; the rig stands")
     yield FaultKind("belt jammed", partial(d.Jammed, "belt"), LOADED, TRIP, 0.1 + SCAN_S)
@@ -259,6 +262,11 @@ def _may(phrase: str, make: Callable[..., Effect], unit: str | None = None, valu
     return FaultKind(phrase, make, ALWAYS, MAY, 0.0, unit, value, slow=slow, note=_UNASKED)
 
 
+def _hides(phrase: str, make: Callable[..., Effect], unit: str, value: float) -> FaultKind:
+    """Return the row of a fault that makes the controller heat what nothing shows; a small one goes unnoticed."""
+    return FaultKind(phrase, make, HIDDEN, TRIP, SHOWS_S, unit, value, slow=True, note=_UNASKED)
+
+
 def _misread_rows() -> Iterator[FaultKind]:
     """Yield sensors that show something else than is: by a share, late, of another channel or sign."""
     yield _may("load cell gain", partial(s.CellFault, "gain"), "%", 70.0)
@@ -266,16 +274,16 @@ def _misread_rows() -> Iterator[FaultKind]:
         what, _, which = channels.partition(" ")
         named = " and ".join(f"F{one}" for one in which.split())
         yield _may(f"load cell {named} {what}", partial(s.CellFault, channels))
-    yield _may("hub sensor gain", partial(s.HubFault, "gain"), "%", 80.0, slow=True)
-    yield _may("hub sensor partly detached", s.HubDetached, "%", 80.0, slow=True)
+    yield _hides("hub sensor gain", partial(s.HubFault, "gain"), "%", 60.0)
+    yield _hides("hub sensor partly detached", s.HubDetached, "%", 60.0)
     yield _may("thermometer gain", partial(s.SurfaceFault, "gain"), "%", 80.0, slow=True)
-    yield _may("common supply of hub sensor and thermometer", s.CommonSupplyFault, "%", 80.0, slow=True)
-    for name, make, lag_s in (
-        ("load cell", s.CellFault, 1.0), ("thermometer", s.SurfaceFault, 1.5), ("hub sensor", s.HubFault, 10.0),
-    ):  # fmt: skip
+    yield _hides("common supply of hub sensor and thermometer", s.CommonSupplyFault, "%", 60.0)
+    for name, make, lag_s in (("load cell", s.CellFault, 1.0), ("thermometer", s.SurfaceFault, 1.5)):
         slow = name != "load cell"
         yield _may(f"{name} lag", partial(make, "lag"), "ms", lag_s, slow=slow)
         yield _may(f"{name} delay", partial(make, "delay"), "ms", 0.5 * lag_s, slow=slow)
+    yield _hides("hub sensor lag", partial(s.HubFault, "lag"), "ms", 20.0)
+    yield _hides("hub sensor delay", partial(s.HubFault, "delay"), "ms", 20.0)
 
 
 ASSEMBLY = (

@@ -68,6 +68,8 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--causes", type=int, default=200, metavar="N", help="lines about failures at most")
     parser.add_argument("--only", default="", metavar="TEXT",
                         help="corners of --limits, faults of --magnitudes with this text")
+    parser.add_argument("--fault", action="append", metavar="TEXT",
+                        help="faults of --limits with this text; may be repeated")
     parser.add_argument("--cases", type=int, default=limits.CASES, metavar="N", help="cases of --limits")
     options = parser.parse_args(arguments)
     if not (options.full or options.limits or options.magnitudes or options.mutants or options.list or options.sample):
@@ -84,7 +86,7 @@ def main(arguments: list[str] | None = None) -> int:
     if options.magnitudes:
         searched(report, options.jobs, options.only)
     elif options.limits:
-        at_the_limits(report, options.jobs, options.causes, options.cases, options.only, short=options.sample)
+        at_the_limits(report, options, short=options.sample)
     elif options.full:
         full(report, options.jobs, options.causes)
     else:
@@ -134,10 +136,10 @@ def full(report: Report, jobs: int, most: int) -> None:
         scans(report, tally, len(ticks[::SPARSE]), most)
 
 
-def at_the_limits(report: Report, jobs: int, most: int, cases: int, only: str, *, short: bool) -> None:
+def at_the_limits(report: Report, options: argparse.Namespace, *, short: bool) -> None:
     """Run the corners without a fault, then every fault in them; ``short``: one corner."""
-    effort = Effort()
-    names = [limits.SHORT_CORNER] if short else [name for name in corners() if only in name]
+    effort, jobs = Effort(), options.jobs
+    names = [limits.SHORT_CORNER] if short else [name for name in corners() if options.only in name]
     fine: list[limits.Fine] = []
     print(f"     {limits.line(limits.HEADER)}", flush=True)
     for one in limits.rehearse_all(names, jobs):
@@ -148,15 +150,15 @@ def at_the_limits(report: Report, jobs: int, most: int, cases: int, only: str, *
                   not wrong)
     for one in wrong:
         print(f"       {one.corner.name}: {one.outcome}, {'; '.join(one.wrong)}", flush=True)
-    asked = limits.SHORT_CASES if short else limits.ASKED_FOR
+    asked = limits.SHORT_CASES if short else 1 if options.fault else limits.ASKED_FOR
     effort.look()
-    tally = limits.attempt(fine, limits.SHORT_CASES if short else cases, jobs)
+    tally = limits.attempt(fine, limits.SHORT_CASES if short else options.cases, jobs, options.fault or [""])
     report.figure("limits: cases", len(tally.verdicts), f">= {asked}", len(tally.verdicts) >= asked)
     harmed = [v for v in tally.unsafe if any(text.startswith("harm") for text in v.failures)]
     report.figure("limits: harm", len(harmed), "0", not harmed)
     report.figure("limits: unsafe otherwise", len(tally.unsafe) - len(harmed), "0", len(tally.unsafe) == len(harmed))
     report.figure("limits: reaction budgets missed", len(tally.late), "0", not tally.late)
-    report.causes(tally, most)
+    report.causes(tally, options.causes)
     if short:
         spent(report, effort, SHORT_LIMITS_CPU_S)
     else:

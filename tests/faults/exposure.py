@@ -8,7 +8,9 @@ from __future__ import annotations
 from dataclasses import replace
 from math import hypot, inf, isfinite, radians, sin
 
+from drivers.canopen import objects as o
 from sim.contact import ContactModel
+from sim.faults.can import FaultyCanWire
 from sim.faults.kinds import Exposure, FaultKind
 from sim.faults.sensors import SpoiledForces, SpoiledTemperature
 from sim.harm import Truth
@@ -27,14 +29,17 @@ LIFTS_MM_S = -5.0
 """A press told to go back faster than this lifts; holding a load it moves by 2 mm/s at most."""
 DRIVEN_M_S = 0.06
 """The drives make slip: above the 50 mm/s from which "belt torn" is judged."""
-CHANGED_M_S = 0.1
-"""Twice what a speed may be off."""
+ASTRAY_M_S = 0.1
+"""Twice what a speed may be off its command."""
 DEPTH_SHARE, DEPTH_MM = 1.3, 0.55
 """What "contact too deep" leaves (1.3 times, 0.2 mm), and what a touch may be noted late where the cell reads half."""
 MISREAD_K = 9.5
 """Off the truth by this: the model's 8 K, the bias of a session, and what the model itself is off."""
 OUTPUT_PERCENT, BELOW_K = 82.0, 6.0
 """More output, and colder, than "heater line open" asks for (80 %, 5 K)."""
+HIDDEN_K, HIDDEN_SHARE = 6.0, 0.6
+"""Hotter than shown by more than "heat not shown" lets pass (5 K, and 1 K of a sound sensor), and by twice its share of
+what is shown above ambient (0.3)."""
 ABOVE_K = 8.5
 """More than "jacket runaway" asks for (8 K)."""
 HOT_C = 115.0
@@ -59,7 +64,6 @@ class Exposed:
         step = stage.place[0]
         fitted = step > 0 and not isinstance(stage.plan.steps[step - 1], Install)
         self._settled = stage.running and fitted and stage.next_s - stage.step_since_s > FITTED_S
-        self._speed = stage.rig.axes[kind.axis].axis.value if kind.axis else 0.0
 
     def now(self) -> bool:
         """Tell whether the fault can be noticed now."""
@@ -86,9 +90,8 @@ class Exposed:
             return stage.all_on
         if exposure is Exposure.TURNING:
             return abs(truth.wheel_m_s) > TURNS_M_S
-        if exposure is Exposure.CHANGED:
-            off = abs(rig.axes[self.kind.axis].axis.value - self._speed)
-            return stage.all_on and off * (_radius_m(stage) if self.kind.axis == "wheel" else 1.0) > CHANGED_M_S
+        if exposure is Exposure.ASTRAY:
+            return stage.all_on and astray_m_s(stage, self.kind.axis) > ASTRAY_M_S
         if exposure is Exposure.LOADED:
             return truth.force_n > LOADED_N
         lifts = rig.axes["press"].axis.target < LIFTS_MM_S
@@ -113,6 +116,10 @@ class Exposed:
         if exposure is Exposure.STARVED:
             asked = jacket.running and jacket.output >= OUTPUT_PERCENT
             return asked and jacket.pv_c < jacket.setpoint_c - BELOW_K
+        if exposure is Exposure.HIDDEN:
+            shown_k, hidden_k = jacket.pv_c - plant.parameters.ambient, plant.heat.hub_c - jacket.pv_c
+            given = jacket.running and jacket.output >= OUTPUT_PERCENT
+            return given and hidden_k > HIDDEN_K and hidden_k > HIDDEN_SHARE * shown_k
         if exposure is Exposure.OVERHEATED:
             return plant.heat.hub_c > max(stage.hub_most_c, plant.surface_c) + ABOVE_K
         if exposure is Exposure.HOT:
@@ -124,8 +131,8 @@ class Exposed:
 
 
 _THERMAL = frozenset({
-    Exposure.HEATING, Exposure.MISREAD, Exposure.STARVED, Exposure.OVERHEATED, Exposure.HOT, Exposure.UNASKED,
-    Exposure.WELDED,
+    Exposure.HEATING, Exposure.MISREAD, Exposure.STARVED, Exposure.HIDDEN, Exposure.OVERHEATED, Exposure.HOT,
+    Exposure.UNASKED, Exposure.WELDED,
 })  # fmt: skip
 
 
@@ -143,6 +150,18 @@ def driven_slip_m_s(stage: Stage) -> float:
     rim_m_s, belt_m_s = axes["wheel"].axis.value * _radius_m(stage), axes["belt"].axis.value
     yaw = axes["sideslip"].axis.position if "sideslip" in axes else 0.0
     return hypot(rim_m_s - belt_m_s, belt_m_s * sin(radians(yaw)))
+
+
+def astray_m_s(stage: Stage, axis: str) -> float:
+    """Return how far the speed that a drive shows is off the one that it was last told over the wire, m/s."""
+    rig, drive = stage.rig, stage.rig.axes[axis]
+    per = drive.config.velocity_increments
+    shown = drive.axis.value
+    frozen = rig.can.frozen.get(o.TPDO1_BASE + drive.node_id) if isinstance(rig.can, FaultyCanWire) else None
+    if frozen:  # statusword and speed
+        shown = int.from_bytes(frozen[2:6], "little", signed=True) / per
+    off = abs(shown - drive.store.values[(o.TARGET_VELOCITY, 0)] / per)
+    return off * _radius_m(stage) if axis == "wheel" else off
 
 
 def excess_mm(stage: Stage) -> float:

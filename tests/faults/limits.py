@@ -92,7 +92,8 @@ def faults() -> list[str]:
     return single + signs
 
 
-def attempt(corners_run: Sequence[Fine], cases: int, jobs: int) -> Tally:
-    """Try a sample of ``cases`` of every fault at every moment of these corners."""
+def attempt(corners_run: Sequence[Fine], cases: int, jobs: int, texts: Sequence[str] = ("",)) -> Tally:
+    """Try a sample of ``cases`` of every fault with one of these texts at every moment of these corners."""
     moments = [moment for one in corners_run for moment in one.moments]
-    return conduct("limits", sample(all_cases(moments, faults()), cases), jobs, parts=1)
+    tried = [name for name in faults() if any(text in name for text in texts)]
+    return conduct("limits", sample(all_cases(moments, tried), cases), jobs, parts=1)

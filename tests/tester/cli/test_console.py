@@ -188,9 +188,10 @@ def test_a_closed_file_is_an_error_like_any_other(monkeypatch: pytest.MonkeyPatc
         console.message("condition 1")
 
 
-def test_an_output_closed_from_the_start_is_missed_by_nobody(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_output_closed_from_the_start_is_missed_by_nobody(monkeypatch: pytest.MonkeyPatch, capsys: Output) -> None:
     monkeypatch.setattr(sys, "stdout", None)
     Console(as_json=True, answer_yes=True).result("runs/one")
+    assert capsys.readouterr() == ("", "")
 
 
 def test_a_broken_progress_line_is_noticed_although_a_thread_draws_it(monkeypatch: pytest.MonkeyPatch) -> None:

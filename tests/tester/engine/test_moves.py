@@ -100,6 +100,7 @@ def test_lift_ends_at_the_lifted_position_where_the_cell_s_zero_has_drifted(turn
     turning.run(Load(200.0))
     turning.zero_n = 7.0
     turning.run(Lift(), at_most_s=1.0)
+    assert turning.ctx.readings.force_z_n == pytest.approx(7.0, abs=1.0)
 
 
 def test_turn_waits_for_both_speeds(bench: Bench) -> None:

@@ -110,8 +110,9 @@ def test_a_load_cell_that_falls_silent_while_other_axes_move_ends_the_connection
 def test_one_reply_of_the_load_cell_may_be_lost() -> None:
     simulation = Simulation()
     simulation.until(in_stage(Stage.HOME))
-    simulation.world.lines["load_cell"].impair = Impairment("silence", count=1, unit_id=1)
+    simulation.world.lines["load_cell"].impair = silent = Impairment("silence", count=1, unit_id=1)
     simulation.until(in_stage(Stage.READY))
+    assert silent.count == 0 and not simulation.run.connector.failed
 
 
 def test_a_rig_without_bump_test_and_proof_is_lifted_all_the_same() -> None:

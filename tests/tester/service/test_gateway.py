@@ -191,6 +191,8 @@ def test_control_is_free_once_its_holder_has_gone(tmp_path: Path) -> None:
                 await asyncio.sleep(0)
             await second.command(Control())
             await second.command(Hold())
+            assert fake.presence.controller == "second"
+            assert (fake.orders[-1].action, fake.orders[-1].name) == (Hold(), "second")
 
     play(tmp_path, story)
 

@@ -19,7 +19,7 @@ from tests.tester.tui.stage import House, Stage, play
 def test_space_holds_from_another_screen_without_a_question(house: House) -> None:
     async def act(on: Stage) -> None:
         await on.pilot.press("space")
-        await on.ordered(Hold)
+        assert await on.ordered(Hold) == Hold() and len(on.app.screen_stack) == 1
 
     house.play(act)
 
@@ -93,7 +93,7 @@ def test_hold_works_while_a_question_stands(house: House) -> None:
     async def act(on: Stage) -> None:
         await on.show(with_prompt(a_state()))
         await on.pilot.press("f3", "enter", "space")
-        await on.ordered(Hold)
+        assert await on.ordered(Hold) == Hold() and len(on.app.screen_stack) == 2
 
     house.play(act)
 
@@ -283,6 +283,7 @@ def test_a_refused_acknowledgement_is_said_with_the_way_out(tmp_path: Path) -> N
     async def act(on: Stage) -> None:
         on.fake.event("acknowledgement", "refused, still there: drive fault")
         await on.until(lambda: "drive fault; F12 ends the run" in on.text(), "the way out is shown")
+        assert not on.fake.orders
 
     play(act, tmp_path)
 
@@ -293,6 +294,8 @@ def test_a_lost_service_is_said_and_found_again(tmp_path: Path) -> None:
         assert client is not None
         await client.close()
         await on.until(lambda: "NO LINK" in on.line(0), "the loss is shown")
+        await on.until(lambda: "NO LINK" not in on.line(0), "the service is found again")
+        assert on.app.link is not None and on.app.link.client not in (None, client)
 
     play(act, tmp_path)
 
@@ -302,5 +305,6 @@ def test_a_refusal_is_shown_with_its_reason(house: House) -> None:
         on.fake.refusals["hold"] = "nothing runs [/x]"
         await on.pilot.press("space")
         await on.until(lambda: "refused: nothing runs [/x]" in on.text(), "the reason is shown")
+        assert [order.action for order in on.fake.orders] == [Hold()]
 
     house.play(act)

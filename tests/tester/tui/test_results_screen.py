@@ -139,6 +139,7 @@ def test_the_head_of_the_record_stands_below_the_runs(tmp_path: Path) -> None:
         view = on.app.screen_stack[0].query_one(ResultsView)
         view.open(read(str(run), run.parent))
         await on.until(lambda: f"record head {head[:16]}" in on.text(), "the head is shown")
+        assert 0 < on.text().index("Runs") < on.text().index("record head")
 
     play(story, tmp_path)
 

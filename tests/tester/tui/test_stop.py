@@ -54,7 +54,7 @@ def test_stop_works_while_the_terminal_is_too_small(tmp_path: Path) -> None:
     async def act(on: Stage) -> None:
         assert "the run continues" in on.text() and "F12 STOP" in on.text()
         await on.pilot.press("f12")
-        await on.ordered(Stop)
+        assert await on.ordered(Stop) == Stop(False)
 
     play(act, tmp_path, (20, 5))
 
@@ -64,6 +64,7 @@ def test_stop_that_a_service_refuses_to_take_is_said_loudly(tmp_path: Path) -> N
         on.fake.refusals["stop"] = "no rig"
         await on.pilot.press("f12")
         await on.until(lambda: "STOP has not reached the service" in on.text(), "the failure is shown")
+        assert [order.action for order in on.fake.orders] == [Stop(False)]
 
     play(act, tmp_path)
 
