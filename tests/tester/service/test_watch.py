@@ -21,7 +21,7 @@ def test_a_soak_is_shown_with_how_long_it_has_been_in_band() -> None:
         stage.tick()
         if (soak := watch.soak(now)) is not None:
             shown.append(soak)
-    # First the surface is brought near, which needs no time in band. Then it soaks, in band from the first near ambient.
+    # First the surface is brought near, which needs no time in band; then it soaks, near ambient in band at once.
     soaking = [soak for soak in shown if soak.for_s]
     assert shown[0].for_s == shown[0].in_band_s == 0.0
     assert {(soak.target_c, soak.within_k, soak.for_s) for soak in soaking} == {(24.0, 2.0, 2.0)}
