@@ -15,6 +15,7 @@ HOT = (
     "drivers/modbus/request.py",
     "drivers/modbus/schedule.py",
     "drivers/servo.py",
+    "sim/can_listeners.py",
     "sim/can_traffic.py",
     "sim/can_wire.py",
     "sim/contact.py",

@@ -10,13 +10,13 @@ from __future__ import annotations
 
 from bisect import bisect_right, insort
 from collections import deque
-from itertools import accumulate
 from math import inf
 from typing import Final
 
 from drivers.canopen.objects import SYNC_ID
 from drivers.ports import BusLost, CanFrame
-from sim.can_traffic import Beat, CanNode, CanTap, Listener, SyncFollower, frame_bits
+from sim.can_listeners import CanListeners
+from sim.can_traffic import Beat, CanTap, frame_bits
 
 _LOAD_MARK_S: Final = 0.1
 """Resolution in s of the one-second bus load."""
@@ -33,11 +33,7 @@ def _same_lengths(payloads: tuple[bytes, ...], others: tuple[bytes, ...]) -> boo
     return same
 
 
-def _rank(entry: tuple[int, object]) -> int:
-    return entry[0]
-
-
-class CanWire:
+class CanWire(CanListeners):
     """The bus and the computer's port on it (``drivers.ports.CanPort``).
 
     ``urgent_s`` is the arrival time of the earliest urgent frame not yet received (emergency, boot-up, change of a
@@ -48,28 +44,14 @@ class CanWire:
     __slots__ = (
         "_beats",
         "_busy_s",
-        "_cycle_ids",
-        "_cycle_listeners",
-        "_cycle_s",
-        "_cycled_s",
-        "_followers",
-        "_frame_s",
         "_inbox",
         "_mark_due_s",
         "_marks",
-        "_offsets_s",
         "_pending",
-        "_ranked",
-        "_ranked_followers",
-        "_repeatable",
-        "_routes",
         "_sequence",
-        "_skipped_s",
-        "_taken",
         "_urgent",
         "bitrate",
         "connected",
-        "nodes",
         "occupied_s",
         "ready_s",
         "tap",
@@ -78,30 +60,17 @@ class CanWire:
 
     def __init__(self, bitrate: int = 500_000) -> None:
         """Create an idle bus; ``bitrate`` in bit/s."""
+        super().__init__(tuple(frame_bits(length) / bitrate for length in range(9)))
         self.bitrate = bitrate
-        self.nodes: list[CanNode] = []
         self.tap: CanTap | None = None
         self.urgent_s = inf
         self.ready_s = inf
         self.connected = True
         self.occupied_s = 0.0
-        self._frame_s = tuple(frame_bits(length) / bitrate for length in range(9))
         self._busy_s = -inf
-        self._routes: dict[int, tuple[Listener, ...]] = {}
-        self._ranked: dict[int, list[tuple[int, Listener]]] = {}
         self._inbox: list[CanFrame] = []
         self._pending: list[tuple[float, int, int, bytes, bool]] = []
         self._beats: list[Beat] = []  # the next one first
-        self._followers: tuple[SyncFollower, ...] = ()
-        self._ranked_followers: list[tuple[int, SyncFollower]] = []
-        self._repeatable: set[int] = set()
-        self._taken: tuple[bytes, ...] | None = None  # payloads of a cycle that every listener has taken already
-        self._cycle_ids: tuple[int, ...] = ()
-        self._cycle_listeners: list[tuple[Listener, ...]] = []
-        self._cycle_s = 0.0
-        self._cycled_s = -inf  # when that cycle last went unheard
-        self._skipped_s: dict[int, float] = {}  # the same of frames of earlier cycles
-        self._offsets_s: tuple[float, ...] = ()
         self._sequence = 0
         self._urgent: list[float] = []
         self._marks: deque[tuple[float, float]] = deque()
@@ -202,61 +171,6 @@ class CanWire:
 
     # the nodes' side -----------------------------------------------------------------------------------------
 
-    def attach(self, node: CanNode) -> None:
-        """Add a node to ``nodes``; it subscribes to identifiers by ``listen``."""
-        self.nodes.append(node)
-
-    def listen(self, can_id: int, listener: Listener, rank: int = 0, *, repeatable: bool = False) -> None:
-        """Call ``listener`` for every frame of the computer with this identifier.
-
-        Listeners are called in the order of ``rank``: nodes that answer a broadcast at the same time give their
-        node id, because the lowest identifier wins the wire. ``repeatable``: the same data again mean nothing to the
-        listener; it need not be called for them (``forget_cycle``) and asks when they came (``skipped_s``).
-        """
-        first = not self._routes.get(can_id)
-        if repeatable and (first or can_id in self._repeatable):
-            self._repeatable.add(can_id)
-        else:
-            self._repeatable.discard(can_id)
-        self.forget_cycle()
-        ranked = self._ranked.setdefault(can_id, [])
-        ranked.append((rank, listener))
-        ranked.sort(key=_rank)
-        self._route(can_id, ranked)
-
-    def forget(self, can_id: int, listener: Listener) -> None:
-        """Stop calling ``listener`` for this identifier; nothing happens when it was not listening."""
-        self.forget_cycle()
-        ranked = [entry for entry in self._ranked.get(can_id, ()) if entry[1] != listener]
-        self._ranked[can_id] = ranked
-        self._route(can_id, ranked)
-
-    def forget_cycle(self) -> None:
-        """Have the next cycle taken by every listener, whatever it holds."""
-        if self._taken is not None:
-            for can_id in self._cycle_ids:
-                self._skipped_s[can_id] = self._cycled_s
-            self._taken = None
-
-    def skipped_s(self, can_id: int) -> float:
-        """Return when a frame last went past its ``repeatable`` listeners because it held nothing new, s; or -inf."""
-        if self._taken is not None and can_id in self._cycle_ids:
-            return self._cycled_s
-        return self._skipped_s.get(can_id, -inf)
-
-    def follow(self, follower: SyncFollower, rank: int) -> None:
-        """Have a device answer SYNC, in the order of ``rank`` (its node id)."""
-        self._ranked_followers.append((rank, follower))
-        self._ranked_followers.sort(key=_rank)
-        self._adopt_followers(self._ranked_followers)
-        self.forget_cycle()
-
-    def unfollow(self, follower: SyncFollower) -> None:
-        """Let a device answer SYNC no more; nothing happens when it did not."""
-        self._ranked_followers = [entry for entry in self._ranked_followers if entry[1] is not follower]
-        self._adopt_followers(self._ranked_followers)
-        self.forget_cycle()
-
     def beat(self, beat: Beat, first_s: float) -> None:
         """Send a node's frame at ``first_s`` s and then in its period, until ``unbeat``."""
         beat.due_s = first_s
@@ -322,26 +236,6 @@ class CanWire:
         return (occupied1 - occupied0) / (t1 - t0)
 
     # inner ---------------------------------------------------------------------------------------------------
-
-    def _route(self, can_id: int, ranked: list[tuple[int, Listener]]) -> None:
-        """Take over who listens to an identifier."""
-        self._routes[can_id] = tuple(entry[1] for entry in ranked)
-
-    def _adopt_followers(self, ranked: list[tuple[int, SyncFollower]]) -> None:
-        """Take over who answers SYNC."""
-        self._followers = tuple(entry[1] for entry in ranked)
-
-    def _remember(self, can_ids: tuple[int, ...], payloads: tuple[bytes, ...]) -> None:
-        """Note a cycle that was taken, if its frames need not be taken again while they stay the same."""
-        self.forget_cycle()
-        if not can_ids or can_ids[-1] != SYNC_ID or self._routes.get(SYNC_ID):
-            return
-        if all(can_id in self._repeatable or not self._routes.get(can_id) for can_id in can_ids[:-1]):
-            self._cycle_ids = can_ids
-            self._taken = payloads
-            self._cycle_listeners = [self._routes.get(can_id, ()) for can_id in can_ids]
-            self._offsets_s = tuple(accumulate(self._frame_s[len(data)] for data in payloads))
-            self._cycle_s = self._offsets_s[-1]
 
     def _answer(self, t: float) -> None:
         """Have every device answer a SYNC that arrived at ``t`` s; the lowest identifier goes first."""

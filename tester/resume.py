@@ -23,9 +23,9 @@ from tester.rig.load import load_rig_text
 from tester.source import read_tree
 from tester.store.files import write_text
 from tester.store.reader import RunReader
-from tester.store.recorder import calibration_sha256, text_sha256
 from tester.store.records import LOOSE_KEYS, Change, ConditionInfo, StoredCondition, StoredRun, risk_text
 from tester.store.resume import ResumePoint, resume_point
+from tester.store.statements import calibration_sha256, text_sha256
 from tester.store.writer import RunWriter
 
 LATER = "asked for when it is known which text the run goes on with"

@@ -18,9 +18,10 @@ one: ``inflation``, the mean over bursts of m blocks of 1 + 2 sum_k (1 - k/m) rh
 themselves, phi = rho_1, takes 2.95 for 2.43 at 0.35 s and 0.3 s.) Bursts are apart by seconds and independent; with
 sideslip each is a contact of its own. The residual degrees of freedom are N / inflation - (repeats + 2).
 
-The condition is stable when |d| + t(0.95) se(d) <= 2 %, an equivalence test. A repeat is refused only where it is
-shown to drift by itself (|d_r| > 2 %, |d_r| - t(0.95) se_r > 0), or to differ from three or more siblings (F test,
-0.1 %); after a refusal the fit is done again without it.
+The condition is stable when |d| + t(0.9875) se(d) <= 2 %, an equivalence test that is made again with every repeat
+more: each of four looks has a quarter of the level of 5 %. A repeat is refused only where it is shown to drift by
+itself (|d_r| > 2 %, |d_r| - t(0.95) se_r > 0), or to differ from three or more siblings (F test, 0.1 %); after a
+refusal the fit is done again without it.
 
 Plain Python: asked once a repeat, at most 2 ms.
 """
@@ -45,6 +46,9 @@ PER_KELVIN_PERCENT = 2.6
 """Standard deviation of the prior of the sensitivity to temperature, %/K."""
 
 CONFIDENCE = 0.95
+LOOK_CONFIDENCE = 1.0 - (1.0 - CONFIDENCE) / 4.0
+"""Of each look at the repeats of a condition: three to six of them, as most recipes have it, are looked at four times,
+and the level of the test is shared out, so that all looks together give away no more than it."""
 SIBLINGS = 3
 """A repeat is compared with its siblings where there are this many."""
 DIFFERENT_LEVEL = 0.001
@@ -66,6 +70,8 @@ class Drift:
     """Between neighbouring blocks, 0..0.95."""
     inflation: float
     """Blocks that say as much about the mean as one independent block."""
+    shown: bool = False
+    """The drift is other than zero, by ``CONFIDENCE``."""
     repeats: tuple[OneDrift, ...] = ()
 
     @property
@@ -288,9 +294,14 @@ def _singles(series: Sequence[_Series], fit: _Fit) -> tuple[OneDrift, ...]:
 
 
 def fit_drift(
-    repeats: Sequence[Sequence[Block]], revolutions: float | None = None, seconds: float | None = None
+    repeats: Sequence[Sequence[Block]],
+    revolutions: float | None = None,
+    seconds: float | None = None,
+    confidence: float = CONFIDENCE,
 ) -> Drift:
     """Return the drift of repeats, each its blocks that count, per window of ``revolutions`` or accepted ``seconds``.
+
+    ``confidence``: of the bound, one-sided.
 
     Neither: the window is the length of each repeat. Repeats of fewer than six blocks or without a coefficient are
     not looked at; ``repeats`` of the result then has NaN for them.
@@ -308,10 +319,11 @@ def fit_drift(
     return Drift(
         drift_percent=100.0 * fit.slope,
         error_percent=100.0 * error,
-        bound_percent=100.0 * (abs(fit.slope) + fit.noise.t * error),
+        bound_percent=100.0 * (abs(fit.slope) + t_quantile(confidence, fit.noise.df) * error),
         per_kelvin_percent=100.0 * fit.per_kelvin,
         correlation=fit.noise.correlation,
         inflation=fit.noise.inflation,
+        shown=abs(fit.slope) > fit.noise.t * error,
         repeats=tuple(next(singles) if use else OneDrift(NAN, NAN, NAN) for use in usable),
     )
 
@@ -326,7 +338,7 @@ def refusals(
     left = list(range(len(repeats)))
     refused: dict[int, OneDrift] = {}
     while left:
-        found = fit_drift([repeats[i] for i in left], revolutions, seconds)
+        found = fit_drift([repeats[i] for i in left], revolutions, seconds, LOOK_CONFIDENCE)
         worst = max(range(len(left)), key=lambda i: found.repeats[i].excess if found.repeats else 0.0)
         if not found.repeats or not found.repeats[worst].reason:
             return found, refused

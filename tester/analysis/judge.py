@@ -15,7 +15,7 @@ from dataclasses import replace
 from math import inf, isfinite, sqrt
 
 from tester.analysis.blocks import Block
-from tester.analysis.drift import CONFIDENCE, Drift, fit_drift, refusals
+from tester.analysis.drift import CONFIDENCE, LOOK_CONFIDENCE, Drift, fit_drift, refusals
 from tester.analysis.quantiles import t_quantile
 from tester.analysis.repeats import REPEATABILITY, counting
 from tester.analysis.results import (
@@ -121,9 +121,8 @@ def _go_the_same_way(results: Sequence[RepeatResult], found: Drift) -> bool:
     """
     if (first := next((r for r in results if r.valid or r.drifts), None)) is not None and first.drifts:
         return True
-    shown = abs(found.drift_percent) > found.bound_percent - abs(found.drift_percent)
     refused = [r.drift_percent * found.drift_percent > 0.0 for r in results if r.drifts]
-    return shown and bool(refused) and all(refused)
+    return found.shown and bool(refused) and all(refused)
 
 
 def _left_with_refused(
@@ -137,7 +136,7 @@ def _left_with_refused(
     if not drifting:
         return NOT_JUDGED
     left = [blocks[i] for i in drifting]
-    found = fit_drift(left, revolutions, seconds)
+    found = fit_drift(left, revolutions, seconds, LOOK_CONFIDENCE)
     judgement = _judgement(results, found, left, revolutions, seconds)
     return replace(judgement, flags=joined([NOT_SHOWN, *flags_in(judgement.flags)]))
 

@@ -76,9 +76,9 @@ class ConditionResult:
     """A condition's coefficient. ``s``: standard deviation between its ``n_valid`` values of ``n``.
 
     ``interval`` is half the 95 % t interval of the mean, ``type_a`` s / sqrt(n); ``standard`` and
-    ``expanded`` (``coverage`` times it, 95 %) are those of the budget. Drift and its
-    90 % bound are per window, the trend over the repeats, all per cent of the coefficient (``Judgement``); ``unsteady``
-    is what they add to the budget. ``measured`` holds the means over
+    ``expanded`` (``coverage`` times it, 95 %) are those of the budget. Drift and its bound (one-sided, 98.75 %;
+    of repeats judged alone 95 %) are per window, the trend over the repeats, all per cent of the coefficient
+    (``Judgement``); ``unsteady`` is what they add to the budget. ``measured`` holds the means over
     the valid repeats of what a block averages (names and units of AVERAGED). ``mu_without_flagged`` leaves
     out flagged outliers.
     """

@@ -13,7 +13,7 @@ from tester.engine.condition import MeasureCondition, Results
 from tester.engine.context import Context
 from tester.engine.thermal_steps import CoolDown, HeatUp, RestStep
 from tester.engine.wear_check import CheckByPerson, CheckByRolling
-from tester.engine.wheel_steps import InstallWheel, PreGrindStep
+from tester.engine.wheel_steps import InstallWheel, PreGrindStep, ShowContact
 from tester.process import Press
 from tester.recipe.plan import (
     ConditionStep,
@@ -143,7 +143,7 @@ class Executor:
     def _end(self, activity: Activity, ctx: Context) -> None:
         if isinstance(activity, CheckByRolling | CheckByPerson):
             self.unchecked = None
-        if isinstance(activity, MeasureCondition | InstallWheel):
+        if isinstance(activity, MeasureCondition | InstallWheel | ShowContact):
             self.failed = activity.failed
         if isinstance(activity, InstallWheel) and not self.failed:
             self._mounted(activity, ctx)
@@ -151,6 +151,9 @@ class Executor:
             self._measured(activity.condition, ctx)
         elif isinstance(activity, AskAtRest | CheckByPerson) and self.steps:
             follower = self.steps[0]
+            if self.reference_tare and not isinstance(follower, Install | Prompt):
+                # The wheel may have been off, the belt another one: before anything else the contact is shown again.
+                self.activity = ShowContact(self.reference_tare)
             if isinstance(follower, ConditionStep):
                 # A person has been at the wheel, and it has cooled: nothing is measured before it is warm again.
                 self.steps.appendleft(Heat(INSERTED, follower.setpoint.temperature_c))

@@ -30,9 +30,10 @@ from tester.recipe.estimate import predicted_loss_mm
 from tester.recipe.plan import ConditionStep, Plan
 from tester.recipe.settings import LEAST_REPEATS
 from tester.rig import RigConfig
-from tester.store.recorder import Judged, Recorder
+from tester.store.recorder import Recorder
 from tester.store.records import ConditionInfo
 from tester.store.resume import ConditionSoFar
+from tester.store.statements import Judged
 
 REPEAT_STATUS: dict[Ending, RepeatStatus] = {
     Ending.CANNOT_HOLD: RepeatStatus.CANNOT_HOLD,

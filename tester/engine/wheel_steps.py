@@ -1,4 +1,4 @@
-"""Steps around a wheel: install it, grind it in."""
+"""Steps around a wheel: install it, show its contact, grind it in."""
 
 from __future__ import annotations
 
@@ -18,6 +18,34 @@ REFERENCE_TARE_S: Final = 2.0
 """Averaging time of a wheel's first tare, s [A]."""
 
 
+class ShowContact:
+    """Take the zero and sweep the first contact: a person has mounted the wheel, or been at it or at the belt."""
+
+    def __init__(self, reference_tare: list[float]) -> None:
+        """``reference_tare``: the wheel's first zero; filled where it is empty."""
+        self.reference = reference_tare
+        self.tare: TakeTare | None = None
+        self.moves = Sequence()
+
+    def resume(self, ctx: Context) -> None:
+        """Begin anew after a hold."""
+        self.tare = None
+
+    def step(self, ctx: Context) -> bool:
+        """Done when shown, or when the zero is not to be trusted: nothing is pressed by it."""
+        ctx.demand.surface_c = float("nan")
+        if self.tare is None:
+            limits = ctx.rig.interlocks
+            self.tare = TakeTare(REFERENCE_TARE_S, self.reference, limits.zero_warn_n, limits.zero_stop_n)
+            self.moves = Sequence(Power(True), Straighten(), self.tare, FirstContact())
+        return bool(self.failed) or self.moves.step(ctx)
+
+    @property
+    def failed(self) -> str:
+        """Why the run cannot go on with this zero, or ""."""
+        return self.tare.failed if self.tare is not None else ""
+
+
 class InstallWheel:
     """Stand still, ask a person to mount the wheel, then take its reference tare and show its first contact."""
 
@@ -31,14 +59,13 @@ class InstallWheel:
             text = f"the run goes on with wheel {step.wheel}: {step.compound}{note}, mounted as it was"
         self.ask = AskAtRest(text)
         self.mounted = False
-        self.tare: TakeTare | None = None
-        self.after = Sequence()
+        self.contact: ShowContact | None = None
 
     def resume(self, ctx: Context) -> None:
         """Take the tare anew, where it had begun."""
         self.ask.resume(ctx)
-        if self.tare is not None:
-            self._begin_tare(ctx)
+        if self.contact is not None:
+            self._begin_contact()
 
     def step(self, ctx: Context) -> bool:
         """Done when mounted and tared."""
@@ -46,23 +73,21 @@ class InstallWheel:
         if not self.mounted:
             self.mounted = self.ask.step(ctx)
             return False
-        if self.tare is None:
+        if self.contact is None:
             self._mount(ctx)
-            self._begin_tare(ctx)
-        # A zero that is not to be trusted ends the step: nothing is pressed by it.
-        return bool(self.failed) or self.after.step(ctx)
+            self.contact = self._begin_contact()
+        return self.contact.step(ctx)
 
-    def _begin_tare(self, ctx: Context) -> None:
+    def _begin_contact(self) -> ShowContact:
         if self.install.worn is None:
             self.reference.clear()
-        limits = ctx.rig.interlocks
-        self.tare = TakeTare(REFERENCE_TARE_S, self.reference, limits.zero_warn_n, limits.zero_stop_n)
-        self.after = Sequence(Power(True), Straighten(), self.tare, FirstContact())
+        self.contact = ShowContact(self.reference)
+        return self.contact
 
     @property
     def failed(self) -> str:
         """Why the run cannot go on with this wheel, or ""."""
-        return self.tare.failed if self.tare is not None else ""
+        return self.contact.failed if self.contact is not None else ""
 
     def _mount(self, ctx: Context) -> None:
         step, old = self.install, ctx.wheel

@@ -16,9 +16,9 @@ from tester.store.chain import ChainFound
 from tester.store.exclusions import problems as exclusion_problems
 from tester.store.exclusions import standing
 from tester.store.reader import RunReader
-from tester.store.recorder import calibration_sha256, text_sha256
 from tester.store.records import StoredExclusion, StoredRun
 from tester.store.schema import StoreError
+from tester.store.statements import calibration_sha256, text_sha256
 from tester.store.status import RunStatus
 from tester.trouble import in_words
 

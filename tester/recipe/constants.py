@@ -15,7 +15,7 @@ class EstimateConstants:
     person_s: float = 600.0
     """A person mounts a wheel or does what a prompt asks; nobody waits on a simulated rig."""
     install_s: float = 18.5
-    """Standstill, drives off and on, reference tare 2.1; first contact 16.4, the way to the wheel included."""
+    """Standstill, drives off and on, tare 2.1; first contact 16.4 with the way to the wheel. After a question, too."""
     pre_grind_moves_s: float = 10.0
     """Turn, load, bring slip in, take it out, lift."""
     repeat_moves_s: float = 4.8

@@ -241,9 +241,9 @@ class Estimator:
         return one._replace(seconds=seconds + warmed.seconds)
 
     def _asking(self, body_c: float) -> tuple[StepEstimate, float]:
-        """Return what a question at the wheel takes: it is cooled, turning, until it may be touched."""
+        """Return what a question at the wheel takes: cooling, turning, until it may be touched; its contact again."""
         cool, body_c = self._preparation(TOUCH, "", body_c)
-        return StepEstimate(cool.seconds + self.person_s), body_c
+        return StepEstimate(cool.seconds + self.person_s + self.constants.install_s), body_c
 
     def pre_grind(self, step: PreGrind, compound: str) -> StepEstimate:
         """Return what grinding a new wheel takes."""

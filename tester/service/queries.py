@@ -10,6 +10,7 @@ import os
 import subprocess
 import tempfile
 from collections.abc import Coroutine
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -93,15 +94,19 @@ async def _ask(arguments: list[str]) -> JsonValue:
         *tester_command(*arguments),
         stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
     )  # fmt: skip
-    if hasattr(os, "setpriority"):
-        os.setpriority(os.PRIO_PROCESS, process.pid, NICE)
     try:
+        with suppress(ProcessLookupError):  # it may be gone already
+            if hasattr(os, "setpriority"):
+                os.setpriority(os.PRIO_PROCESS, process.pid, NICE)
         async with asyncio.timeout(WITHIN_S):
             out, err = await process.communicate()
     except TimeoutError:
-        process.kill()
-        await process.wait()
         raise QueryError(f"no answer within {WITHIN_S:g} s") from None
+    finally:
+        if process.returncode is None:  # given up, or nobody is left to be told
+            with suppress(ProcessLookupError):
+                process.kill()
+            await process.wait()
     if process.returncode not in (0, EXIT_INVALID) or not out.strip():
         raise QueryError(err.decode(errors="replace").strip()[-2000:] or f"exit code {process.returncode}")
     if len(out) > MOST:

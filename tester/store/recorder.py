@@ -6,11 +6,10 @@ are for one thread, the scan's.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, fields, replace
-from hashlib import sha256
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import fields, replace
 
-from tester.analysis.results import Burst, ConditionStatus, Judgement, RepeatResult, RepeatStatus
+from tester.analysis.results import Burst, ConditionStatus, RepeatResult, RepeatStatus
 from tester.analysis.wear_check import WearCheck
 from tester.store.records import (
     NAN,
@@ -22,9 +21,19 @@ from tester.store.records import (
     SpecimenInfo,
     WheelInfo,
 )
-
-Value = str | int | float | None
-Statement = tuple[str, tuple[Value, ...]]
+from tester.store.statements import (
+    Batch,
+    Judged,
+    Statement,
+    Ticket,
+    Value,
+    calibration_rows,
+    calibration_sha256,
+    columns_in,
+    insert,
+    judged_rows,
+    text_sha256,
+)
 
 URGENT_SEVERITIES = frozenset({"alarm", "trip"})
 """Events of these severities are committed at once."""
@@ -32,86 +41,15 @@ URGENT_SEVERITIES = frozenset({"alarm", "trip"})
 _RESULT_FIELDS = tuple(field.name for field in fields(RepeatResult))
 _BURST_FIELDS = tuple(field.name for field in fields(Burst))
 _CONDITION_FIELDS = tuple(field.name for field in fields(ConditionInfo))
-_JUDGEMENT_FIELDS = tuple(field.name for field in fields(Judgement))
 _WHEEL_FIELDS = tuple(field.name for field in fields(WheelInfo))
 _CHECK_FIELDS = tuple(field.name for field in fields(WearCheck))
 _SESSION_FIELDS = tuple(field.name for field in fields(SessionInfo))
 _CHANGE_FIELDS = tuple(field.name for field in fields(Change))
 
 
-class Ticket:
-    """A promise that something will be on disk: ``done`` once COMMIT has returned, ``error`` if it failed."""
-
-    __slots__ = ("done", "error")
-
-    def __init__(self, *, done: bool = False) -> None:
-        """Start open, or done where there is nothing to wait for."""
-        self.done = done
-        self.error: str | None = None
-
-
-@dataclass(slots=True)
-class Batch:
-    """Statements that belong together. An urgent batch is committed without waiting for the second to end."""
-
-    statements: Sequence[Statement]
-    ticket: Ticket
-    urgent: bool = False
-
-
 def no_utc() -> str:
     """Return the wall-clock text of a recorder that was given no clock."""
     return ""
-
-
-def insert(table: str, values: Mapping[str, Value], verb: str = "INSERT") -> Statement:
-    """Return an INSERT of ``values`` (by column name)."""
-    marks = ", ".join("?" * len(values))
-    return f"{verb} INTO {table} ({', '.join(values)}) VALUES ({marks})", tuple(values.values())
-
-
-def text_sha256(text: str) -> str:
-    """Return the SHA-256 of a text's UTF-8 bytes, hexadecimal."""
-    return sha256(text.encode()).hexdigest()
-
-
-def calibration_sha256(calibration: Iterable[Calibration]) -> str:
-    """Return the SHA-256 by which two calibrations are compared."""
-    return text_sha256("".join(f"{c.device}\t{c.quantity}\t{c.value}\t{c.unit}\n" for c in calibration))
-
-
-def _columns(record: object, names: Iterable[str]) -> dict[str, Value]:
-    return {name: getattr(record, name) for name in names}
-
-
-def _calibration(figures: Iterable[Calibration], session: int) -> list[Statement]:
-    return [
-        insert(
-            "calibration",
-            {"session": session, "device": c.device, "quantity": c.quantity, "value": c.value, "unit": c.unit},
-        )
-        for c in figures
-    ]
-
-
-@dataclass(frozen=True, slots=True)
-class Judged:
-    """How a condition was judged, and what that makes of its repeats: result by key."""
-
-    condition: int
-    judgement: Judgement
-    repeats: Mapping[int, RepeatResult]
-
-
-def _judged(judged: Judged | None) -> Iterator[Statement]:
-    if judged is None:
-        return
-    columns = _columns(judged.judgement, _JUDGEMENT_FIELDS)
-    assignments = ", ".join(f"{name} = ?" for name in columns)
-    yield f"UPDATE condition SET {assignments} WHERE condition = ?", (*columns.values(), judged.condition)
-    sql = "UPDATE repeat SET status = ?, reason = ?, drift_percent = ?, bound_percent = ? WHERE id = ?"
-    for key, r in judged.repeats.items():
-        yield sql, (r.status.value, r.reason, r.drift_percent, r.bound_percent, key)
 
 
 class Recorder:
@@ -176,18 +114,18 @@ class Recorder:
         statements += [insert("metadata", {"key": k, "value": v}) for k, v in info.metadata.items()]
         statements += [insert("version", {"component": k, "version": v}) for k, v in info.versions.items()]
         for specimen in specimens:
-            columns = _columns(specimen, ("specimen", "compound", "note"))
+            columns = columns_in(specimen, ("specimen", "compound", "note"))
             statements.append(insert("specimen", columns))
         for condition in conditions:
-            columns = _columns(condition, _CONDITION_FIELDS) | {"status": ConditionStatus.PENDING.value}
+            columns = columns_in(condition, _CONDITION_FIELDS) | {"status": ConditionStatus.PENDING.value}
             statements.append(insert("condition", columns))
-        statements += _calibration(info.calibration, 1)
+        statements += calibration_rows(info.calibration, 1)
         return self._write(*statements, urgent=True)
 
     def begin_session(self, session: SessionInfo) -> None:
         """Record which process works on the run from now on; rig times count from its ``origin_s``."""
         self.origin_s = session.origin_s
-        self._write(insert("session", _columns(session, _SESSION_FIELDS)), urgent=True)
+        self._write(insert("session", columns_in(session, _SESSION_FIELDS)), urgent=True)
 
     def resume_run(self, changes: Iterable[Change] = ()) -> Ticket:
         """Record that an interrupted run goes on: attempts that were cut off become void."""
@@ -195,7 +133,7 @@ class Recorder:
         return self._write(
             ("UPDATE repeat SET status = ?, reason = ? WHERE status = ?", cut_off),
             ("UPDATE run SET status = 'running', reason = '', ended_utc = NULL, rig_seconds = NULL", ()),
-            *(insert("change", _columns(change, _CHANGE_FIELDS)) for change in changes),
+            *(insert("change", columns_in(change, _CHANGE_FIELDS)) for change in changes),
             urgent=True,
         )
 
@@ -207,7 +145,7 @@ class Recorder:
             ("DELETE FROM condition WHERE started_s IS NULL", ()),
         ]
         for condition in to_come:
-            columns = _columns(condition, _CONDITION_FIELDS) | {"status": ConditionStatus.PENDING.value}
+            columns = columns_in(condition, _CONDITION_FIELDS) | {"status": ConditionStatus.PENDING.value}
             statements.append(insert("condition", columns))
         self._write(*statements, urgent=True)
 
@@ -216,7 +154,7 @@ class Recorder:
         figures = tuple(calibration)
         sql = "UPDATE run SET rig_text = ?, rig_sha256 = ?, calibration_sha256 = ?, rig_source = ?"
         replaced: Statement = (sql, (text, text_sha256(text), calibration_sha256(figures), source))
-        self._write(replaced, *_calibration(figures, session), urgent=True)
+        self._write(replaced, *calibration_rows(figures, session), urgent=True)
 
     def add_metadata(self, values: Mapping[str, str]) -> None:
         """Record what is to be known of the run from now on; a key that was there gets its new value."""
@@ -244,7 +182,7 @@ class Recorder:
     def wheel_installed(self, wheel: WheelInfo) -> None:
         """Record that a wheel was mounted."""
         times = {name: getattr(wheel, name) + self.origin_s for name in ("installed_s", "updated_s", "ground_s")}
-        self._write(insert("wheel", _columns(wheel, _WHEEL_FIELDS) | times, "INSERT OR REPLACE"), urgent=True)
+        self._write(insert("wheel", columns_in(wheel, _WHEEL_FIELDS) | times, "INSERT OR REPLACE"), urgent=True)
 
     def wheel_state(self, wheel: int, diameter_mm: float, sliding_m: float, t_s: float) -> None:
         """Record a wheel's present diameter and the distance it has slid since it was new, for a resumed run."""
@@ -260,7 +198,7 @@ class Recorder:
     def wear_check(self, check: WearCheck) -> None:
         """Record a check of a wheel's diameter."""
         times = {name: getattr(check, name) + self.origin_s for name in ("t_s", "reference_s")}
-        self._write(insert("wear_check", _columns(check, _CHECK_FIELDS) | times), urgent=True)
+        self._write(insert("wear_check", columns_in(check, _CHECK_FIELDS) | times), urgent=True)
 
     # Conditions and repeats
 
@@ -292,7 +230,7 @@ class Recorder:
         )
         at_s = t_s + self.origin_s
         left: Statement = (sql, (status.value, reason, at_s, warming_k_s, holdable_band_k, condition))
-        self._write(left, *_judged(judged), urgent=True)
+        self._write(left, *judged_rows(judged), urgent=True)
 
     def begin_repeat(self, condition: int, repeat: int, attempt: int, t_s: float = NAN, wheel: int = 0) -> int:
         """Record the start of an attempt at a repeat and return its key, the ``repeat_key`` of its samples."""
@@ -318,13 +256,13 @@ class Recorder:
         """
         origin = self.origin_s
         times = {"started_s": result.started_s + origin, "ended_s": result.ended_s + origin}
-        columns = _columns(result, _RESULT_FIELDS) | {"status": result.status.value} | times
+        columns = columns_in(result, _RESULT_FIELDS) | {"status": result.status.value} | times
         assignments = ", ".join(f"{name} = ?" for name in columns)
         statements: list[Statement] = [(f"UPDATE repeat SET {assignments} WHERE id = ?", (*columns.values(), key))]
         for burst in bursts:
             at = replace(burst, started_s=burst.started_s + origin, ended_s=burst.ended_s + origin)
-            statements.append(insert("burst", {"repeat_id": key} | _columns(at, _BURST_FIELDS)))
-        return self._write(*statements, *_judged(judged), urgent=True)
+            statements.append(insert("burst", {"repeat_id": key} | columns_in(at, _BURST_FIELDS)))
+        return self._write(*statements, *judged_rows(judged), urgent=True)
 
     def void_repeat(self, key: int, reason: str, t_s: float = NAN) -> Ticket:
         """Record that an attempt was interrupted; a further attempt is to follow."""

@@ -29,9 +29,10 @@ from tester.analysis.results import Burst, RepeatResult
 from tester.process import SAMPLE_COLUMNS
 from tester.store.chain import Chain
 from tester.store.files import sync_folder
-from tester.store.recorder import Batch, Judged, NullRecorder, Recorder, Ticket, no_utc
+from tester.store.recorder import NullRecorder, Recorder, no_utc
 from tester.store.sample_blocks import BLOCK_ROWS, pack
 from tester.store.schema import StoreError, migrate, version_of
+from tester.store.statements import Batch, Judged, Ticket
 from tester.trouble import in_words
 
 COMMIT_EVERY_S = 0.7

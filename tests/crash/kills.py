@@ -26,9 +26,9 @@ from tester.engine.tickers import collector_at_rest
 from tester.export.verify import verify
 from tester.session import Session, SessionOptions
 from tester.store.reader import RunReader
-from tester.store.recorder import Judged, Ticket
 from tester.store.resume import resume_point
 from tester.store.schema import StoreError
+from tester.store.statements import Judged, Ticket
 from tester.store.writer import RunWriter
 from tests.acceptance.figure import Figure, at_most, equal
 

@@ -23,7 +23,8 @@ from tester.recipe.loader import load_recipe
 from tester.recipe.plan import Plan
 from tester.rig import RigConfig, load_rig
 from tester.simulated import simulated_ports
-from tester.store.recorder import Judged, NullRecorder, Ticket
+from tester.store.recorder import NullRecorder
+from tester.store.statements import Judged, Ticket
 from tests.faults.invariants import Invariants
 
 RUNNING = frozenset({"armed", "run", "hold"})

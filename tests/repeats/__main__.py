@@ -18,7 +18,7 @@ from tester.export.results import results_of
 from tester.store.reader import RunReader
 from tests.acceptance.figure import Figure, at_least, at_most, holds
 from tests.repeats.rig import run
-from tests.repeats.series import LEAST, MOST, Case, Drift, Pattern, condition, pattern, settling, steady
+from tests.repeats.series import Case, Drift, Pattern, condition, pattern, settling, steady
 
 CONDITIONS, SAMPLE_CONDITIONS = 200, 40
 SEEDS, SAMPLE_SEEDS = 20, 1
@@ -41,9 +41,6 @@ LEAST_JUDGED = 10
 LEAST_STABLE = 95.0
 """Conditions that drift by 1 % a window or not at all, and are to be stable, per cent [A]."""
 
-LOOKS = MOST - LEAST + 1
-AT_THE_LIMIT = 100.0 * (1.0 - 0.95**LOOKS)
-"""A drift of just the limit is taken for less with 5 % in each look at the condition, per cent: 3, 4, 5, 6 repeats."""
 EXPECTED = {0.0: (100, 100), 0.01: (98, 100), 0.02: (6, 20), 0.04: (0, 0)}
 """Stable conditions, per cent, that a Monte Carlo of the rule gave when it was designed: 100 N, 3# at 55 degC."""
 
@@ -105,15 +102,15 @@ def _refused(found: Sequence[Case]) -> float:
 def _stable(of: Pattern, number: int, drift: float, found: Sequence[Case]) -> Iterator[Figure]:
     """Yield how many conditions are stable, and how many of these carry no flag, beside what the design gave.
 
-    Good ones are to be stable. At 2 % a window, the limit itself, those without a flag are to be at most what the level
-    of the test gives away in all its looks, and 2.5 standard deviations of the count.
+    Good ones are to be stable. At 2 % a window, the limit itself, those without a flag are to be at most what the
+    design's Monte Carlo told, and 2.5 standard deviations of the count.
     """
     stable = 100.0 * sum(case.stable for case in found) / len(found)
     clean = 100.0 * sum(case.stable and not case.carries for case in found) / len(found)
     repeats = sum(len(case.results) for case in found) / len(found)
     expected = EXPECTED[drift][number]
     value = f"{stable:.1f} %, without a flag {clean:.1f} %, {repeats:.2f} repeats, {_refused(found):.1f} % refused"
-    most = AT_THE_LIMIT + 2.5 * sqrt(AT_THE_LIMIT * (100.0 - AT_THE_LIMIT) / len(found))
+    most = expected + 2.5 * sqrt(expected * (100.0 - expected) / len(found))
     asked = f"stable at least {LEAST_STABLE:g} %" if drift < 0.02 else f"without a flag at most {most:.1f} %"
     ok = stable >= LEAST_STABLE if drift < 0.02 else clean <= most
     yield holds(f"{of.name}: {100 * drift:g} % a window, stable", ok, value, f"expected {expected} %, {asked}")

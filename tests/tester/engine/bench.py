@@ -24,7 +24,8 @@ from tester.recipe.loader import load_recipe
 from tester.recipe.plan import ConditionStep, Plan
 from tester.rig import RigConfig
 from tester.simulated import simulated_ports
-from tester.store.recorder import Batch, NullRecorder
+from tester.store.recorder import NullRecorder
+from tester.store.statements import Batch
 from tests.tester.recipe.texts import rig
 
 COLUMN = {name: i for i, name in enumerate(SAMPLE_COLUMNS)}

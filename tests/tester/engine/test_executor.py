@@ -8,6 +8,7 @@ from math import isfinite
 import pytest
 
 from tester.engine.executor import Executor, title
+from tester.engine.first_contact import OFF
 from tester.process import Press
 from tester.recipe.plan import ConditionStep, Cool, Heat, Install, Plan, PreGrind, Prompt, Rest
 from tests.tester.engine.bench import SHORT, Bench, condition_of, make_bench, plan_of
@@ -160,6 +161,36 @@ def test_a_prompt_before_heating_needs_no_other() -> None:
     plan = plan_of(LOADS + "steps:\n  - {prompt: clean debris, every: temperature}\n")
     _, bench = walk(plan, Results())
     assert steps_of(bench) == ["install", "clean", "heat", "1#,", "1#,", "1#,"]
+
+
+@pytest.mark.parametrize(
+    "asked, contacts",
+    [("  wear_check: prompt\n", 4), ("steps:\n  - {prompt: clean debris, every: condition}\n", 4)],
+    ids=["check by hand", "prompt"],
+)
+def test_the_contact_is_shown_again_after_a_person_was_at_the_wheel(asked: str, contacts: int) -> None:
+    text = LOADS + asked if asked.startswith("steps") else LOADS.replace("repeats: 1\n", f"repeats: 1\n{asked}")
+    executor, bench = walk(plan_of(text), Results())
+    assert executor.finished and not executor.failed
+    # The wheel's own, and one before each of three conditions; a contact sweeps at two speeds.
+    assert len(bench.notes.texts("first contact")) == 2 * contacts
+
+
+def test_a_belt_that_a_person_left_running_the_wrong_way_ends_the_run_before_the_condition() -> None:
+    bench, results = make_bench(), Results()
+    plan = plan_of(LOADS + "steps:\n  - {prompt: new belt, every: condition}\n")
+    executor = Executor(plan, results, hardware=False)
+
+    class Exchanged:
+        def step(self, ctx: object) -> bool:
+            bench.surface_c = 39.0 if isfinite(bench.ctx.demand.surface_c) else 20.0
+            executor.step(bench.ctx)
+            if len(bench.ctx.prompts.asked) > 1:  # the wheel was the first
+                bench.mu = -0.7
+            return executor.finished
+
+    bench.run(Exchanged(), 20_000.0, dt=0.02)
+    assert OFF in executor.failed and executor.failed.startswith("new belt: ") and not results.begun
 
 
 @pytest.mark.parametrize(

@@ -97,7 +97,7 @@ def test_a_wheel_whose_cell_is_silent_is_not_moved(bench: Bench) -> None:
 
 def test_a_wheel_whose_cell_falls_silent_in_its_tare_fails(bench: Bench) -> None:
     step = InstallWheel(INSTALL, [])
-    bench.until(step, lambda: step.tare is not None and bench.ctx.demand.enabled)
+    bench.until(step, lambda: step.contact is not None and step.contact.tare is not None and bench.ctx.demand.enabled)
     bench.ctx.readings.cell_valid = False
     bench.run(step)
     assert "load cell" in step.failed

@@ -98,11 +98,6 @@ def test_values_stand_beside_setpoint_gate_and_limit(finished: Stage) -> None:
     assert friction.value is not None and 0.5 < friction.value < 1.2
 
 
-def test_a_soak_is_shown_with_how_long_it_has_been_in_band(finished: Stage) -> None:
-    soaks = [view.soak for view in finished.views if view.soak is not None]
-    assert soaks and all(soak.for_s == 2.0 and 0.0 <= soak.in_band_s <= 2.1 for soak in soaks)
-
-
 def test_devices_and_buses_are_shown(finished: Stage) -> None:
     counting = _counting(finished)
     assert {device.name for device in counting.devices} >= {"wheel", "press", "load cell", "jacket", "thermometer"}

@@ -8,8 +8,9 @@ from pathlib import Path
 
 from tester.analysis.results import Burst, ConditionStatus, Judgement, RepeatResult, RepeatStatus
 from tester.process import SAMPLE_COLUMNS
-from tester.store.recorder import Judged, Recorder
+from tester.store.recorder import Recorder
 from tester.store.records import ConditionInfo, RunInfo, SpecimenInfo
+from tester.store.statements import Judged
 from tester.store.writer import RunWriter
 
 RUN = RunInfo(
