@@ -46,7 +46,7 @@ class HeatBalance:
     shown_j: float = 0.0
     """... and what the temperatures explain of it."""
     still_s: float = 0.0
-    """Since when the reading stands although more is given than at some time since then, beyond beliefs' error, s.
+    """For how long the reading stands, s, while more is given than at some time since then, and than losses explain.
 
     A hub that stands loses what it lost then: what the beliefs are off in steady losses drops out.
     """
@@ -55,12 +55,13 @@ class HeatBalance:
     _still_at_s: float = nan
     """... and when that was."""
     _least_w: float = inf
-    """The least given since then beyond losses to rubber and shaft (smoothed) ..."""
+    """The least given since then (smoothed) ..."""
     _least_lost_w: float = 0.0
-    """... and those losses."""
+    """... and the losses to rubber and shaft with it."""
     _lost_w: float = 0.0
     """Smoothed heat to rubber and shaft."""
     _stored_w: float = 0.0
+    _smoothing: bool = False
     _at_s: float = nan
     _hub_c: float = nan
 
@@ -68,6 +69,7 @@ class HeatBalance:
         """Begin anew: a person was at the wheel and its hub, or another wheel is on."""
         self.unseen_k = self.put_w = self.shown_w = self._stored_w = self.put_j = self.shown_j = 0.0
         self.still_s = self._lost_w = 0.0
+        self._smoothing = False
         self._still_c = nan  # so that all else begins anew
         self._at_s = self._hub_c = nan
 
@@ -83,7 +85,9 @@ class HeatBalance:
         rubber_w = rubber_j / dt
         shaft_w = self.shaft_w_k * (hub_c - self.ambient_c)
         shown_w = stored_w + rubber_w + shaft_w
-        smooth = dt / (SMOOTHED_S + dt)
+        # What is smoothed begins with its first value: from zero it would look like a heater that gives more and more.
+        smooth = dt / (SMOOTHED_S + dt) if self._smoothing else 1.0
+        self._smoothing = True
         self._stored_w += (stored_w - self._stored_w) * smooth
         self.put_w += (put_w - self.put_w) * smooth
         self.shown_w += (shown_w - self.shown_w) * smooth
@@ -97,10 +101,10 @@ class HeatBalance:
 
     def _follow_still(self, hub_c: float) -> None:
         """See how long the reading stands while it should not."""
-        more_w = self.put_w - self._lost_w
         if not (-STILL_K <= hub_c - self._still_c <= STILL_K):
             self._still_c, self._still_at_s, self._least_w = hub_c, self._at_s, inf
-        if more_w < self._least_w:
-            self._least_w, self._least_lost_w = more_w, self._lost_w
-        astray_w = self.share * abs(self._lost_w - self._least_lost_w) + self.leak_w
-        self.still_s = self._at_s - self._still_at_s if more_w - self._least_w > astray_w else 0.0
+        if self.put_w < self._least_w:
+            self._least_w, self._least_lost_w = self.put_w, self._lost_w
+        taken_w = (1.0 + self.share) * (self._lost_w - self._least_lost_w)  # by a rubber that has got colder
+        astray_w = self.leak_w + (taken_w if taken_w > 0.0 else 0.0)
+        self.still_s = self._at_s - self._still_at_s if self.put_w - self._least_w > astray_w else 0.0

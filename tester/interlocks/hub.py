@@ -257,7 +257,7 @@ HEAT_NOT_SHOWN: Final = Interlock(
 
 FROZEN_HUB_S: Final = Parameter(
     "frozen_hub_s", "s", "60 s",
-    "reading unchanged by more than a count for this long while more is given than before [A]: 5 W make 0.7 K of it",
+    "reading within a count for this while more heat is given [A]: 5 W are 0.7 K",
     direction=Direction.LOWER, hardest="90 s",
     because="a hub whose reading stands 0.3 K below limits.jacket is 5 K hotter after 90 s",
 )  # fmt: skip
@@ -270,7 +270,7 @@ def _hub_stands_still(v: Inputs) -> bool:
 HUB_FROZEN: Final = Interlock(
     name="hub sensor frozen",
     cause="the hub's temperature repeats itself while the heater gives more",
-    level="within a count for frozen_hub, and more given than in that time before, by > heat_share and heat_leak",
+    level="within a count for frozen_hub, and more given than within that time, by > heat_leak and what more is lost",
     condition=_hub_stands_still,
     compared=lambda v: Compared(v.heat.still_s, v.parameters[FROZEN_HUB_S], "s"),
     parameters=(FROZEN_HUB_S,),

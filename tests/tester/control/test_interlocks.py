@@ -91,6 +91,13 @@ def _hidden_heat(bench: Bench) -> None:
     heat.unseen_k, heat.put_w = 5.2, heat.shown_w
 
 
+def _frozen_hub(bench: Bench) -> None:
+    """The hub's reading has stood for a minute, and less was given then."""
+    heat = bench.control.view.heat
+    heat._still_at_s -= 61.0
+    heat._least_w -= 50.0
+
+
 def _torn(bench: Bench) -> None:
     bench.readings.force_x_n = bench.readings.drive_torque_nm = 0.0
 
@@ -180,6 +187,7 @@ CAUSES: dict[str, list[Break]] = {
     "thermometer frozen": [_frozen_thermometer],
     "surface off model": [_model(8.5), _model(-8.5), _model(NAN)],
     "heat not shown": [_hidden_heat],
+    "hub sensor frozen": [_frozen_hub],
     "thermometer silent": [_stale("surface_at_s"), _set(surface_silent=True, surface_valid=False)],
     "surface not valid": [_set(surface_valid=False)],
     "jacket silent": [_stale("jacket_at_s"), _set(jacket_silent=True, jacket_valid=False)],
