@@ -30,7 +30,7 @@ class HeatBalance:
     """``observer.thermal.jacket_power``: of the heater at 100 %."""
     ambient_c: float
     share: float
-    """How far the beliefs may be off, of the heat that is stored and lost."""
+    """How far the beliefs may be off, of the heat that is stored and lost; tightened by a history (heat_ratio)."""
     leak_w: float
     """What the heat may go astray by besides, W."""
     unseen_k: float = 0.0
@@ -43,6 +43,8 @@ class HeatBalance:
     """Heat of the heater since the comparison began ..."""
     shown_j: float = 0.0
     """... and what the temperatures explain of it."""
+    begun: int = 0
+    """How often the comparison has begun anew."""
     _stored_w: float = 0.0
     _at_s: float = nan
     _hub_c: float = nan
@@ -51,6 +53,7 @@ class HeatBalance:
         """Begin anew: a person was at the wheel and its hub, or another wheel is on."""
         self.unseen_k = self.put_w = self.shown_w = self._stored_w = self.put_j = self.shown_j = 0.0
         self._at_s = self._hub_c = nan
+        self.begun += 1
 
     def update(self, now_s: float, hub_c: float, output_percent: float, rubber_j: float) -> None:
         """Take in the hub's temperature shown, the heater's output behind its contactor (%), and the heat that has gone
