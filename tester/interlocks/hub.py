@@ -209,7 +209,7 @@ HEAT_SHARE: Final = Parameter(
     "heat_share", "1", "0.3",
     "heat beyond what hub and rubber show, and this share: observer's error [A] ...",
     SHARE, direction=Direction.LOWER, hardest="0.3",
-    because="0.3 hides temperatures that read 26 % low; set to 0.12 where observer.thermal is measured it hides 15 %",
+    because="0.3 hides temperatures that read 26 % low until a rig has a history: heat_share_known",
 )  # fmt: skip
 HEAT_SHARE_KNOWN: Final = Parameter(
     "heat_share_known", "1", "0.12",

@@ -46,15 +46,16 @@ UNLIKE: Final = {
     "as believed": (),
     "hub capacity -25 %": ("sim.thermal.hub_capacity=315 J/K",),
     "hub capacity +25 %": ("sim.thermal.hub_capacity=525 J/K",),
-    "heater power -20 %": ("sim.thermal.jacket_power=160 W",),
-    "air 10 K colder": ("sim.ambient=13 degC",),
-    "air 10 K warmer": ("sim.ambient=33 degC",),
-    "losses +30 %": (
-        "sim.thermal.film_rotating=18.2 W/(m2 K)", "sim.thermal.film_sides=10.4 W/(m2 K)",
-        "sim.thermal.hub_to_shaft=0.195 W/K", "sim.belt_conductance=0.078 W/K",
+    "heater power -20 %": ("observer.thermal.jacket_power=250 W",),
+    "air 6 K colder": ("sim.ambient=17 degC",),
+    "air 6 K warmer": ("sim.ambient=29 degC",),
+    "losses +20 %": (
+        "sim.thermal.film_rotating=16.8 W/(m2 K)", "sim.thermal.film_sides=9.6 W/(m2 K)",
+        "sim.thermal.hub_to_shaft=0.18 W/K", "sim.belt_conductance=0.072 W/K",
     ),
 }  # fmt: skip
-"""What the twin's heat is, where it is not what the file believes."""
+"""What the twin's heat is (``sim``) where it is not what the file believes, or what else that believes (``observer``).
+Air that is 8 K off is told by "surface off model" before anything is heated, and losses of +30 % at 85 degC."""
 
 
 class Heard(NullRecorder):
@@ -91,7 +92,8 @@ class Life:
 
 def live(name: str, seed: int) -> Life:
     """Run the hot recipe, the quickstart, and the hot recipe again, on a rig that is unlike its file."""
-    rig, twin = load_rig("sim"), load_rig("sim", UNLIKE[name])
+    rig = load_rig("sim", [one for one in UNLIKE[name] if one.startswith("observer.")])
+    twin = load_rig("sim", UNLIKE[name])
     known, ratios, trips = NO_HISTORY, list[float](), list[str]()
     quickstart = shipped.find("quickstart").read_text(encoding="utf-8")
     for number, text in enumerate((HOT, quickstart, HOT), start=1):

@@ -35,7 +35,8 @@ PAST = Past("done", "", WHEEL, 90.0, "2026-03-01T09:30:00.000Z")
 def test_every_matter_has_a_line_once() -> None:
     disk = DiskView(5 * 10**9, 0, False)
     names = [check.name for check in known_checks(load_rig("sim"), disk, (), PAST, "", NOW)]
-    assert names == ["disk space", "alarms", "last run", "calibration", "wheel", "zero of the load cell", "heat balance"]
+    assert names[:4] == ["disk space", "alarms", "last run", "calibration"]
+    assert names[4:] == ["wheel", "zero of the load cell", "heat balance"]
 
 
 def test_a_disk_that_is_low_is_wrong() -> None:
