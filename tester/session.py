@@ -47,6 +47,7 @@ from tester.rig.load import risks_of
 from tester.screens import LastingScreen, Screen
 from tester.signals import HANG_UP, QUIT, handled
 from tester.store.catalogue import MANIFEST, cut_off
+from tester.store.heatings import known_heat
 from tester.store.reader import DATABASE, RunReader
 from tester.store.schema import StoreError
 from tester.store.status import WENT_THROUGH
@@ -129,7 +130,7 @@ class Session:
             hold_run(use, folder)
             write_sources(folder, recipe.tree.text, rig)
             begin = self._beginning(folder, found.path, recipe, work)
-            return self._record(self._job(folder, options.seed), work, begin)
+            return self._record(self._job(folder, options.seed, rig), work, begin)
 
     def prepare(self) -> Prepared:
         """Read and plan the recipe; raises as ``run`` does."""
@@ -165,7 +166,7 @@ class Session:
             self.screen.message(resumed.summary)
             # What is left goes on in the run's own record, one specimen after the other.
             work = Work(resumed.rig, resumed.plan, (Part(1, resumed.plan, last_wheel=0),), resumed.point)
-            return self._record(self._job(folder, resumed.seed), work, resumed.begin)
+            return self._record(self._job(folder, resumed.seed, resumed.rig), work, resumed.begin)
 
     def aside(self, work: Callable[[], Got]) -> Got:
         """Do what reads or writes many files while nothing moves; a service hears its clients meanwhile."""
@@ -234,9 +235,10 @@ class Session:
             return "the recipe asks a person, and nobody is at this terminal: use --yes"
         return ""
 
-    def _job(self, folder: Path, seed: int) -> Job:
+    def _job(self, folder: Path, seed: int, rig: RigConfig) -> Job:
         o = self.options
-        return Job(folder, seed, o.lapse, o.bus_log, o.samples, o.faults)
+        heat = self.aside(lambda: known_heat(folder.parent, rig))
+        return Job(folder, seed, o.lapse, o.bus_log, o.samples, o.faults, heat)
 
     def _beginning(self, folder: Path, path: Path, recipe: LoadedRecipe, work: Work) -> Begin:
         """Return what begins the run's record: the whole plan, and where everything comes from."""

@@ -11,6 +11,7 @@ from tester import clock
 from tester.campaign.endings import CannotStartError
 from tester.campaign.split import Part, split
 from tester.engine.results import condition_records
+from tester.interlocks.heat_ratio import NO_HISTORY, KnownRatio
 from tester.recipe.check import load_checked
 from tester.recipe.expand import expand
 from tester.recipe.plan import Plan
@@ -42,6 +43,8 @@ class Job:
     """Whether samples are kept."""
     faults: tuple[str, ...] = ()
     """Lines of a fault script (sim.faults.language), beside those of the rig file."""
+    heat: KnownRatio = NO_HISTORY
+    """What earlier runs make known of the rig's heat balance: the same for every part."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -153,7 +153,7 @@ def _execute(
         faults = rig.sim.faults + job.faults
         spoilable = {"faulty": True} if faults else {}
         ports, world, attendant = connect_ports(rig, job.seed, log, **spoilable)
-        run = build_run(rig, part.plan, ports, attendant, writer, prompts, work.point)
+        run = build_run(rig, part.plan, ports, attendant, writer, prompts, work.point, job.heat)
         _place(run, work, part)
         watch.begun(run)
         left = TimeLeft(part.plan, estimate(part.plan, rig))

@@ -11,9 +11,11 @@ from tester.control.state import ControlState, Mode
 from tester.interlocks.contact import UNLOADED_N
 from tester.interlocks.force_observer import ForceObserver
 from tester.interlocks.heat_balance import HeatBalance
+from tester.interlocks.heat_ratio import KnownRatio
 from tester.interlocks.hub import (
     HEAT_LEAK_W,
     HEAT_SHARE,
+    HEAT_SHARE_KNOWN,
     OPEN_BELOW_K,
     OPEN_OUTPUT_PERCENT,
     OPEN_RISE_K,
@@ -165,6 +167,12 @@ class InterlockInputs(Inputs):
         """Begin anew with a wheel at ambient temperature: nothing is compared with the one before."""
         self.observer.new_wheel()
         self._forget_readings(now)
+
+    def know_heat(self, known: KnownRatio) -> str:
+        """Take over what the rig's own heatings have shown, before the first scan; return it in words."""
+        widest, beyond = self.parameters[HEAT_SHARE], self.parameters[HEAT_SHARE_KNOWN]
+        self.heat.share = known.share(widest, beyond)
+        return known.told(widest, beyond)
 
     def _forget_readings(self, now: float) -> None:
         """Compare no temperature with the one before."""

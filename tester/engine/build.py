@@ -31,6 +31,7 @@ from tester.engine.resume import take_up
 from tester.engine.run import Run
 from tester.engine.sampler import Sampler
 from tester.engine.wheel_life import WheelLife
+from tester.interlocks.heat_ratio import NO_HISTORY, KnownRatio
 from tester.pace import Pace
 from tester.process import Demand, Readings, Setpoints
 from tester.recipe.plan import Plan
@@ -116,8 +117,10 @@ def build_run(
     recorder: Recorder,
     prompts: Prompts,
     point: ResumePoint | None = None,
+    heat: KnownRatio = NO_HISTORY,
 ) -> Run:
-    """Return a run that is ready to be ticked; ``point``: where it goes on, with the remaining plan."""
+    """Return a run that is ready to be ticked; ``point``: where it goes on, with the remaining plan; ``heat``: what
+    earlier runs on this rig make known of its heat balance (tester.store.heatings)."""
     devices = build_devices(rig, ports)
     load = LoadLoop()
     state = ControlState(Setpoints(), load, HeatLoop(rig.loops.heat.hub_min_c))
@@ -137,6 +140,7 @@ def build_run(
         ambient_c=rig.ambient_c,
         wheel_changed=control.view.wheel_changed,
         heat=control.view.heat,
+        heat_known=control.view.know_heat(heat),
     )
     results = StoredResults(recorder)
     executor = Executor(plan, results, hardware=not rig.simulated)

@@ -104,6 +104,8 @@ class Context:
     """Tells control that another wheel is on the rig, at ambient temperature (s)."""
     heat: HeatBalance | None = None
     """Control's balance of the heater's energy; None on a bench without control."""
+    heat_known: str = ""
+    """What earlier runs make known of that balance, in words."""
     now: float = 0.0
     dt: float = 0.0
     moving: bool = False

@@ -138,6 +138,7 @@ class Run:
         ctx.wheel.show(ctx.readings, ctx.rig.wear)
         engine.devices.fill(ctx.readings, now)
         ctx.journal.event(now, "arming", self.connector.shown)
+        ctx.journal.event(now, "arming", f"heat balance: {ctx.heat_known}")
         self._started = True
         refused = engine.control.start(ctx.readings)
         if refused:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from math import isfinite
-from typing import Final
+from typing import Final, NamedTuple
 
 from tester.engine.activity import Activity
 from tester.engine.context import Context
 from tester.engine.moves import Ask, Lift, Load, Power, Sequence, Turn, Yaw
 from tester.recipe.plan import Cool, Heat, Rest, Soak
+from tester.store.heatings import KIND, LEAST_J, LEAST_RISE_K, heating_data
 
 NEAR_AMBIENT_K: Final = 3.0
 """A setpoint this near to ambient can be neither heated nor cooled to quickly: it soaks to the band [A]."""
@@ -18,9 +19,6 @@ HEAT_AT_MOST_S: Final = 5400.0
 """Longest heating up to one temperature [A]."""
 COOL_AT_MOST_S: Final = 3 * 3600.0
 """Longest cooling of a hub before a person may touch it; then a prompt says how warm it is [A]."""
-
-BALANCE_LEAST_J: Final = 10e3
-"""From this heat on its balance says something, J [A]: what a late sensor hides is 2 % of it."""
 
 SHOW_S: Final = 1.0
 """How often people are told how far a wait has come, s."""
@@ -92,11 +90,13 @@ class HeatUp:
         self.rolling_at = (wheel_speed_m_s, min(load_n, HEAT_LOAD_N))
         self.moves = roll(*self.rolling_at)
         self.rolling = False
+        self.start: _Heat | None = None
 
     def resume(self, ctx: Context) -> None:
         """Touch and roll again."""
         self.moves = roll(*self.rolling_at)
         self.rolling = False
+        self.start = None
 
     def step(self, ctx: Context) -> bool:
         """Done when near enough, or out of time."""
@@ -104,21 +104,46 @@ class HeatUp:
         ctx.demand.freeze_heat = False
         if not self.rolling:
             self.rolling = self.moves.step(ctx)
+            if self.rolling:
+                self.start = _heat(ctx)
             return False
         if not self.soak.step(ctx):
             return False
         if not self.soak.reached:
             ctx.journal.event(ctx.now, "heat", f"{self.target_c:g} degC not reached in time", "warning")
-        self._note_balance(ctx)
+        else:
+            self._note_balance(ctx)
         return True
 
     def _note_balance(self, ctx: Context) -> None:
-        """Record what ``observer.thermal`` is measured by: heat put in over heat shown, where there was enough."""
-        heat = ctx.heat
-        if heat is not None and heat.shown_j >= BALANCE_LEAST_J:
-            ratio = heat.put_j / heat.shown_j
-            text = f"heat balance: {1e-3 * heat.put_j:.1f} kJ put in, {ratio:.2f} of what the temperatures show"
-            ctx.journal.event(ctx.now, "heat", text)
+        """Record what this heating says of ``observer.thermal``: heat put in over heat shown, where there was enough.
+
+        A hold, or a person at the wheel, has made it another one: nothing is said of it. With its data it is evidence
+        for runs to come (tester.store.heatings).
+        """
+        start, end = self.start, _heat(ctx)
+        if start is None or end is None or start.begun != end.begun:
+            return
+        put_j, shown_j, rise_k = end.put_j - start.put_j, end.shown_j - start.shown_j, end.hub_c - start.hub_c
+        if shown_j >= LEAST_J and rise_k >= LEAST_RISE_K:
+            text = f"heat balance: {1e-3 * put_j:.1f} kJ put in, {put_j / shown_j:.2f} of what the temperatures show"
+            ctx.journal.event(ctx.now, KIND, text, data=heating_data(ctx.rig, put_j, shown_j, rise_k))
+
+
+class _Heat(NamedTuple):
+    """The heat balance at a moment: heat put in and shown, J, since its ``begun``th beginning, and the hub, degC."""
+
+    begun: int
+    put_j: float
+    shown_j: float
+    hub_c: float
+
+
+def _heat(ctx: Context) -> _Heat | None:
+    heat, r = ctx.heat, ctx.readings
+    if heat is None or not r.jacket_valid:
+        return None
+    return _Heat(heat.begun, heat.put_j, heat.shown_j, r.hub_c)
 
 
 class RestStep:

@@ -32,7 +32,7 @@ class HeatBalance:
     """``observer.thermal.jacket_power``: of the heater at 100 %."""
     ambient_c: float
     share: float
-    """How far the beliefs may be off, of the heat that is stored and lost."""
+    """How far the beliefs may be off, of the heat that is stored and lost; tightened by a history (heat_ratio)."""
     leak_w: float
     """What the heat may go astray by besides, W."""
     unseen_k: float = 0.0
@@ -60,6 +60,8 @@ class HeatBalance:
     """... and the losses to rubber and shaft with it."""
     _lost_w: float = 0.0
     """Smoothed heat to rubber and shaft."""
+    begun: int = 0
+    """How often the comparison has begun anew."""
     _stored_w: float = 0.0
     _smoothing: bool = False
     _at_s: float = nan
@@ -72,6 +74,7 @@ class HeatBalance:
         self._smoothing = False
         self._still_c = nan  # so that all else begins anew
         self._at_s = self._hub_c = nan
+        self.begun += 1
 
     def update(self, now_s: float, hub_c: float, output_percent: float, rubber_j: float) -> None:
         """Take in the hub's temperature shown, the heater's output behind its contactor (%), and the heat that has gone

@@ -209,7 +209,13 @@ HEAT_SHARE: Final = Parameter(
     "heat_share", "1", "0.3",
     "heat beyond what hub and rubber show, and this share: observer's error [A] ...",
     SHARE, direction=Direction.LOWER, hardest="0.3",
-    because="0.3 hides temperatures that read 26 % low; set to 0.12 where observer.thermal is measured it hides 15 %",
+    because="0.3 hides temperatures that read 26 % low until a rig has a history: heat_share_known",
+)  # fmt: skip
+HEAT_SHARE_KNOWN: Final = Parameter(
+    "heat_share_known", "1", "0.12",
+    "... or this beyond the ratio that a rig's own heatings have shown [A] ...",
+    SHARE, direction=Direction.LOWER, hardest="0.15",
+    because="0.15 beyond a ratio of 1 hides temperatures that read 15 % low, and with heat_leak some 2 % more",
 )  # fmt: skip
 HEAT_LEAK_W: Final = Parameter(
     "heat_leak_w", "W", "5 W", "... and this: air 10 K colder than believed takes 4 W [A] ...", NOT_NEGATIVE,
@@ -250,7 +256,7 @@ HEAT_NOT_SHOWN: Final = Interlock(
     level="heat beyond the shares of what is shown > unseen_heat of hub, while half of it shows; or hub then too hot",
     condition=_heat_missing,
     compared=lambda v: Compared(v.heat.unseen_k, _unseen_most_k(v), "K"),
-    parameters=(HEAT_SHARE, HEAT_LEAK_W, UNSEEN_HEAT_K, JACKET_MARGIN_K),
+    parameters=(HEAT_SHARE, HEAT_SHARE_KNOWN, HEAT_LEAK_W, UNSEEN_HEAT_K, JACKET_MARGIN_K),
     reaction=CONTROLLED,
     reset=REPAIR,
 )

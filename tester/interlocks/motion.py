@@ -81,8 +81,8 @@ INPUTS_STALE: Final = Interlock(
 
 DROPPED_DELAY_S: Final = Parameter(
     "dropped_delay_s", "s", "50 ms", "a drive leaves operation by itself [A]", NOT_NEGATIVE,
-    direction=Direction.LOWER, hardest="100 ms",
-    because="one drive down under load rubs with up to 256 W (3# at 400 N): 0.1 s more are 26 J of the 40 J that harm",
+    direction=Direction.LOWER, hardest="50 ms",
+    because="one drive down under load rubs with up to 1 kW (3#, 430 N, 90 degC): 50 ms more are 50 J, and 40 J harm",
 )  # fmt: skip
 
 

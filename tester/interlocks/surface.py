@@ -57,6 +57,11 @@ SURFACE_JUMP: Final = Interlock(
     reset=ACK,
 )
 
+def _measures(v: Inputs) -> bool:
+    """Tell whether the thermometer sees the tread go by: of one spot of a standing wheel the model knows nothing."""
+    return v.readings.surface_valid and v.turning
+
+
 FROZEN_SURFACE_S: Final = Parameter(
     "frozen_surface_s", "s", "60 s", "identical raw counts of the thermometer while turning ...",
     direction=Direction.LOWER, hardest="2 min",
@@ -76,10 +81,9 @@ FROZEN_DELAY_S: Final = Parameter(
 
 
 def _surface_frozen(v: Inputs) -> bool:
-    r = v.readings
-    if not (r.surface_valid and v.turning):
+    if not _measures(v):
         return False
-    p = v.parameters
+    r, p = v.readings, v.parameters
     most = p[FROZEN_MODEL_K]
     return not (r.now_s - r.surface_changed_s <= p[FROZEN_SURFACE_S]) or not (
         -most <= v.model_c - v.surface.model_c <= most
@@ -119,11 +123,10 @@ MODEL_DELAY_S: Final = Parameter(
 
 
 def _surface_off_model(v: Inputs) -> bool:
-    r = v.readings
-    if not (r.surface_valid and v.turning):
+    if not _measures(v):
         return False
     most = v.parameters[MODEL_K]
-    return not (-most <= r.surface_c - v.model_c <= most)
+    return not (-most <= v.readings.surface_c - v.model_c <= most)
 
 
 SURFACE_OFF_MODEL: Final = Interlock(

@@ -96,7 +96,7 @@ _OWN: Final = (
     Ceiling("can.heartbeat", "s", LOWER, "100 ms", "two of the PC's heartbeats within the 200 ms that the drives wait"),
     Ceiling("can.drive_heartbeat", "s", LOWER, "100 ms", "three are missed before a drive is lost: 0.3 s"),
     Ceiling("can.consumer_heartbeat", "s", LOWER, "300 ms",
-            "a rubbing wheel takes up to 256 W: another 0.1 s is 26 J of the 40 J that harm"),
+            "a drive that hears nothing goes on as told: another 0.1 s at 400 W (limits.slip_power) are 40 J: harm"),
     Ceiling(f"{_AXES}heartbeat", "s", LOWER, "100 ms", "as can.drive_heartbeat"),
     Ceiling(f"{_AXES}consumer_heartbeat", "s", LOWER, "300 ms", "as can.consumer_heartbeat"),
     Ceiling(f"{_AXES}proves_watchdog", "", HIGHER, TRUE, "as arming.watchdog_proof, for one drive"),

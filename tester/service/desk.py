@@ -9,6 +9,7 @@ from pathlib import Path
 from tester import clock
 from tester.campaign.latch import acknowledge, open_trips
 from tester.engine.run import Outcome, Run
+from tester.interlocks.heat_ratio import NO_HISTORY, KnownRatio
 from tester.rig import RigConfig
 from tester.service.address import with_peer
 from tester.service.alarms import AlarmList, Cause
@@ -85,6 +86,8 @@ class Desk:
     interrupted: tuple[str, ...] = ()
     past: Past | None = None
     """What the newest run in the store left; looked at while no run ticks."""
+    heat: KnownRatio = NO_HISTORY
+    """What the runs make known of the rig's heat balance; looked at then, too."""
     needed: int = 0
     """Bytes that the run is expected to take."""
     now_s: float = 0.0
@@ -284,7 +287,7 @@ class Desk:
         disk = self._disk_view()
         rig = watch.rig if watch is not None else self.rig
         lapse = (self.run.speed if self.run.simulated else 1.0) if self.run is not None else None
-        known = known_checks(self.rig, disk, self.alarms.listed(), self.past, self.latched, clock.utc_now())
+        known = known_checks(self.rig, disk, self.alarms.listed(), self.past, self.latched, clock.utc_now(), self.heat)
         own = watch.preflight() if watch is not None else ()
         said = {check.name for check in own}
         return StateView(

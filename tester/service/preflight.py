@@ -15,6 +15,7 @@ from math import isfinite
 from pathlib import Path
 
 from tester.export.results import results_of
+from tester.interlocks.heat_ratio import NO_HISTORY, KnownRatio
 from tester.rig import CalibrationConfig, RigConfig
 from tester.service.state import Alarm, Check, DiskView
 from tester.store.catalogue import run_folders
@@ -61,9 +62,16 @@ def _tare_utc(reader: RunReader) -> str:
 
 
 def known_checks(
-    rig: RigConfig, disk: DiskView, alarms: Iterable[Alarm], past: Past | None, latched: str, now_utc: str
+    rig: RigConfig,
+    disk: DiskView,
+    alarms: Iterable[Alarm],
+    past: Past | None,
+    latched: str,
+    now_utc: str,
+    heat: KnownRatio = NO_HISTORY,
 ) -> tuple[Check, ...]:
-    """Return the list without the rig's own part. ``latched``: why nothing may start; ``now_utc``: the wall clock."""
+    """Return the list without the rig's own part. ``latched``: why nothing may start; ``now_utc``: the wall clock;
+    ``heat``: what the runs make known of the rig's heat balance."""
     return (
         disk_check(disk),
         alarms_check(alarms),
@@ -71,6 +79,7 @@ def known_checks(
         calibration_check(rig.calibration, now_utc, simulated=rig.simulated),
         wheel_check(past),
         zero_check(past, now_utc),
+        heat_check(heat, rig),
     )
 
 
@@ -141,6 +150,13 @@ def zero_check(past: Past | None, now_utc: str) -> Check:
     except ValueError:
         return Check("zero of the load cell", None, anew)
     return Check("zero of the load cell", None, f"{age_words(age_s)} old; {anew}")
+
+
+def heat_check(heat: KnownRatio, rig: RigConfig) -> Check:
+    """Return from where on heat that nothing shows is told; a history that tightens nothing is worth a look."""
+    limits = rig.interlocks
+    tighter = heat.share(limits.heat_share, limits.heat_share_known) < limits.heat_share
+    return Check("heat balance", tighter or None, heat.told(limits.heat_share, limits.heat_share_known))
 
 
 def age_words(seconds: float) -> str:

@@ -45,6 +45,7 @@ from tester.session import SessionOptions
 from tester.signals import HANG_UP, QUIT, SUSPENDING
 from tester.source import InvalidSource
 from tester.store.catalogue import find_run, under_way
+from tester.store.heatings import known_heat
 from tester.store.reader import DATABASE, RunReader
 from tester.store.schema import StoreError
 from tester.store.status import RunStatus, run_status
@@ -97,7 +98,7 @@ class Service:
         with Signals(self.end):
             desk.latch_again()  # before anybody is heard
             desk.interrupted = self._aside(lambda: tuple(interrupted_runs(self.options.runs)))
-            desk.past = self._aside(lambda: past_of(self.options.runs))
+            self._look_back()
             for name in desk.interrupted:
                 desk.tell("run", f"{name} was cut off: `tester resume {name}` goes on with it", "warning")
             while not self.orders.ending:
@@ -105,7 +106,7 @@ class Service:
                 if self.orders.job is not None:
                     self._carry_out(self.orders.job)
                     self.orders.job = None
-                    desk.past = self._aside(lambda: past_of(self.options.runs))
+                    self._look_back()
                     self._look_again()
                 else:
                     desk.wait()
@@ -113,6 +114,12 @@ class Service:
                         self._look_again()
         desk.tell("service", "the service ends")
         desk.show()
+
+    def _look_back(self) -> None:
+        """Look at what the runs have left."""
+        runs = self.options.runs
+        self.desk.past = self._aside(lambda: past_of(runs))
+        self.desk.heat = self._aside(lambda: known_heat(runs, self.rig))
 
     def _look_again(self) -> None:
         """Forget the runs that are cut off no longer: resumed here, or by a command."""
@@ -226,6 +233,7 @@ class Service:
                 hold_rig(use, rig, NAME)
                 record = open_record(self.options.runs, rig, order.name, self.options.accept_risk)
                 mounted = self._aside(lambda: mounted_wheel(self.options.runs, rig))
+                heat = self._aside(lambda: known_heat(self.options.runs, rig))
             except REFUSED as error:
                 desk.hub.refuse(order, in_words(error))
                 return
@@ -239,7 +247,7 @@ class Service:
                     record.finish(Outcome.UNREACHABLE.value, str(error), 0.0)
                     desk.hub.refuse(order, str(error))
                     return
-                run = build_run(rig, empty_plan(), ports, attendant, record, Prompts())
+                run = build_run(rig, empty_plan(), ports, attendant, record, Prompts(), heat=heat)
                 hand = take_over(run, mounted.wheel if mounted is not None else None)
                 desk.attach(run, PlanTrack(hand.plan, estimate(hand.plan, rig)), view, hand)
                 self.orders.lost_control()  # somebody may have taken it since the order

@@ -248,6 +248,11 @@ class RunReader:
         for row in self._rows("SELECT * FROM event ORDER BY sequence"):
             yield _record(Event, row)
 
+    def event_data(self, kind: str) -> list[str]:
+        """Return the data of a kind's events, in order, where they have any."""
+        sql = "SELECT data FROM event WHERE kind = ? AND data <> '' ORDER BY sequence"
+        return [_text(row, "data") for row in self._rows(sql, (kind,))]
+
     def commands(self) -> Iterator[Event]:
         """Yield what clients have commanded, and who, in order; steps by hand are left out."""
         for row in self._rows("SELECT * FROM event WHERE kind = 'command' AND severity <> 'debug' ORDER BY sequence"):

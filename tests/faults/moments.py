@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import cache
 from typing import TypeVar
 
+from tester.interlocks.heat_ratio import NO_HISTORY, KnownRatio
 from tests.faults.apart import FORKS, Post, apart
 from tests.faults.recipes import setting_of
 from tests.faults.stage import STANDING, Place, Stage
@@ -55,10 +56,10 @@ def rehearse(recipe: str, overrides: tuple[str, ...] = (), cooled: bool = True) 
     return list(_moments(recipe, stretches)), stage
 
 
-def _stage(recipe: str, overrides: tuple[str, ...]) -> Stage:
-    """Return a stage at the beginning of a recipe, on its rig with ``overrides`` besides."""
+def _stage(recipe: str, overrides: tuple[str, ...], heat: KnownRatio = NO_HISTORY) -> Stage:
+    """Return a stage at the beginning of a recipe, on its rig with ``overrides`` besides and its history ``heat``."""
     setting = setting_of(recipe)
-    return Stage(setting.text, (*setting.overrides, *overrides))
+    return Stage(setting.text, (*setting.overrides, *overrides), heat=heat)
 
 
 def _moments(recipe: str, stretches: list[tuple[Place, str, int, int]]) -> Iterator[Moment]:
@@ -78,14 +79,15 @@ def _moments(recipe: str, stretches: list[tuple[Place, str, int, int]]) -> Itera
 
 
 def visit(
-    recipe: str, moments: Iterable[Moment], look: Callable[[Moment, Twins], None], overrides: tuple[str, ...] = ()
+    recipe: str, moments: Iterable[Moment], look: Callable[[Moment, Twins], None], overrides: tuple[str, ...] = (),
+    heat: KnownRatio = NO_HISTORY,
 ) -> None:
     """Run a recipe once and show, before each of the moments' ticks, what does work with twins of its stage."""
-    stage = _stage(recipe, overrides)
+    stage = _stage(recipe, overrides, heat)
     for moment in sorted(moments, key=_tick):
         while stage.ticks < moment.tick:
             stage.tick()
-        look(moment, Twins(stage, recipe, overrides))
+        look(moment, Twins(stage, recipe, overrides, heat))
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,6 +100,7 @@ class Twins:
     stage: Stage
     recipe: str
     overrides: tuple[str, ...]
+    heat: KnownRatio
 
     def do(self, work: Callable[[Stage], Result]) -> Result:
         """Return what work makes of a twin. Raises ApartError."""
@@ -117,7 +120,7 @@ class Twins:
         """Return a twin in this process."""
         if self.stage.copyable:
             return self.stage.copy()
-        twin = _stage(self.recipe, self.overrides)
+        twin = _stage(self.recipe, self.overrides, self.heat)
         while twin.ticks < self.stage.ticks:
             twin.tick()
         return twin

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from sim.faults import CATALOGUE, Injection
 from sim.faults.language import When
+from tester.interlocks.heat_ratio import NO_HISTORY
 from tests.faults.campaign import Tally
 from tests.faults.judge import Case, Judge, Verdict
 from tests.faults.moments import Moment, Twins, rehearse, visit
@@ -32,7 +33,7 @@ def conduct(second: tuple[str, ...] = SECOND) -> Tally:
         tally.verdicts += twins.do(lambda twin: stopped_again(cooling(twin), moment))
 
     def stopped_again(stage: Stage, moment: Moment) -> list[Verdict]:
-        here = Twins(stage, NAME, ())
+        here = Twins(stage, NAME, (), NO_HISTORY)
         cases = [Case(NAME, moment.tick, "cool-down", (name,)) for name in second]
         return [here.do(lambda twin, case=case: Judge(twin, case, budgets=False).run()) for case in cases]
 

@@ -18,11 +18,13 @@ from tester.engine.prompts import Prompts
 from tester.engine.run import Run
 from tester.engine.tickers import next_tick
 from tester.faulty import RIG_STEP_S, FaultyRun
+from tester.interlocks.heat_ratio import NO_HISTORY, KnownRatio
 from tester.recipe.expand import expand
 from tester.recipe.loader import load_recipe
 from tester.recipe.plan import Plan
 from tester.rig import RigConfig, load_rig
 from tester.simulated import simulated_ports
+from tester.store.heatings import KIND as HEATING
 from tester.store.recorder import NullRecorder
 from tester.store.statements import Judged, Ticket
 from tests.faults.invariants import Invariants
@@ -49,6 +51,7 @@ class Ledger(NullRecorder):
         self.trips: list[str] = []
         self.journal: list[str] = []
         self.warned: set[str] = set()
+        self.heatings: list[str] = []
 
     def commit_repeat(
         self, key: int, result: RepeatResult, bursts: Iterable[Burst] = (), judged: Judged | None = None
@@ -71,6 +74,8 @@ class Ledger(NullRecorder):
             self.journal.append(text)
         elif kind == "warning":
             self.warned.add(text.partition(":")[0])
+        elif kind == HEATING and data:
+            self.heatings.append(data)
 
 
 @cache
@@ -88,14 +93,17 @@ def plan_of(text: str, overrides: tuple[str, ...]) -> Plan:
 class Stage:
     """Run, rig, ledger and observer, with the time of the next tick."""
 
-    def __init__(self, text: str, overrides: Iterable[str] = (), seed: int = 0) -> None:
-        """Build everything; nothing is sent before the first ``tick``."""
+    def __init__(
+        self, text: str, overrides: Iterable[str] = (), seed: int = 0, heat: KnownRatio = NO_HISTORY
+    ) -> None:
+        """Build everything; nothing is sent before the first ``tick``. ``heat``: what the rig's history says."""
         config = rig_of(tuple(overrides))
         self.plan = plan_of(text, tuple(overrides))
         ports, rig, attendant = simulated_ports(config, seed, None, FaultyCanWire)
         self.ledger = Ledger()
         self.rig: SimRig = rig
-        self.run: Run = build_run(config, self.plan, ports, attendant, self.ledger, Prompts(automatic=True))
+        prompts = Prompts(automatic=True)
+        self.run: Run = build_run(config, self.plan, ports, attendant, self.ledger, prompts, heat=heat)
         self.faulty = FaultyRun(self.run, rig, FaultScript())
         planned = max((s.setpoint.slip_velocity_m_s * s.setpoint.load_n for s in self.plan.conditions()), default=0.0)
         self.observer = HarmObserver(rig, planned)

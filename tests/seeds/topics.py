@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from statistics import median
 
 from tests.acceptance.figure import Figure, at_least, at_most, equal, holds
-from tests.seeds import recipes
+from tests.seeds import heat, recipes
 from tests.seeds.rubber import REAL_RUBBER, WEAR_RATES, worn_at
 from tests.seeds.sweeps import Sweeps, SweepSpec, Swept
 
@@ -132,6 +132,7 @@ TOPICS = {
         Topic("loads", "four loads, three compounds, two temperatures: conditions that are lost", _loads),
         Topic("table2", "the paper's 165 conditions: every one is a row or named with its reason", _table2),
         Topic("rubber", "rubber that relaxes, softens, grows and wears, up to 400 N and 85 degC: no trip", _rubber),
+        Topic("heat", "heat unlike the beliefs, three successive runs of a rig: no trip", heat.figures),
         Topic("estimate", "rig time against what the plan says, five recipes", _estimate),
     )
 }

@@ -24,11 +24,12 @@ from tester.engine.build import Ports
 from tester.engine.context import Attendant, Progress
 from tester.engine.prompts import Prompts
 from tester.engine.tickers import World
-from tester.rig import RigConfig
+from tester.rig import RigConfig, load_rig
 from tester.session import Session, SessionOptions
 from tester.signals import HANG_UP
 from tester.simulated import simulated_ports
 from tester.source import InvalidSource
+from tester.store.heatings import heating_data
 from tester.store.reader import RunReader
 from tester.store.writer import RunWriter
 from tests.tester.engine.bench import HOT, QUIET, SHORT
@@ -466,3 +467,18 @@ def test_a_run_without_risks_says_nothing_of_them(done: Ended) -> None:
     with RunReader(Path(done.screen.results[-1])) as reader:
         assert reader.run().info.risk == ""
         assert "accepted_risk" not in reader.run().info.metadata
+
+
+def test_a_run_begins_with_what_the_runs_beside_it_have_shown_of_the_rig_s_heat(tmp_path: Path) -> None:
+    heating = heating_data(load_rig("sim", QUIET), 20.4e3, 20e3, 35.0)
+    before = tmp_path / "runs" / "2024-02-21T14-05-09-small"
+    before.mkdir(parents=True)
+    writer = open_writer(before)
+    writer.begin_run(RUN, [], [])
+    for _ in range(3):
+        writer.event(1.0, "heat", "heat balance", data=heating)
+    writer.finish("done", "", 2.0)
+    writer.close()
+    with RunReader(run(tmp_path, *QUIET).folder) as reader:
+        said = [event.text for event in reader.events() if event.kind == "arming"]
+    assert "heat balance: known from 3 heatings, ratio 1.02, 0.00 apart; a row tells from 14 %" in said

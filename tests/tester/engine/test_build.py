@@ -5,8 +5,12 @@ from __future__ import annotations
 import pytest
 
 from tester.control.state import Mode
-from tester.engine.build import loss_ratios
-from tests.tester.engine.bench import Simulation
+from tester.engine.build import build_run, loss_ratios
+from tester.engine.prompts import Prompts
+from tester.interlocks.heat_ratio import KnownRatio
+from tester.simulated import simulated_ports
+from tester.store.recorder import NullRecorder
+from tests.tester.engine.bench import Simulation, plan_of
 from tests.tester.recipe.texts import rig
 
 
@@ -56,3 +60,19 @@ def test_rolling_contact_costs_more_heat_than_air_alone() -> None:
 
 def test_a_belt_that_draws_more_heat_needs_a_hotter_hub() -> None:
     assert loss_ratios(rig("observer.belt_conductance=0.3"))[1] > 2.0 * loss_ratios(rig())[1]
+
+
+def test_without_a_history_the_heat_balance_takes_the_file_s_share(simulation: Simulation) -> None:
+    heat = simulation.ctx.heat
+    assert heat is not None and heat.share == simulation.ctx.rig.interlocks.heat_share
+    assert simulation.ctx.heat_known == "no history yet; a row tells from 30 %"
+
+
+def test_what_earlier_runs_have_shown_tightens_the_heat_balance() -> None:
+    config = rig()
+    ports, _, attendant = simulated_ports(config, 0, None)
+    prompts = Prompts(automatic=True)
+    run = build_run(config, plan_of(), ports, attendant, NullRecorder(), prompts, heat=KnownRatio(3, 1.0))
+    heat = run.engine.ctx.heat
+    assert heat is not None and heat.share == pytest.approx(0.12)
+    assert run.engine.ctx.heat_known == "known from 3 heatings, ratio 1.00, 0.00 apart; a row tells from 12 %"

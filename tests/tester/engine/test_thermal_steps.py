@@ -8,8 +8,10 @@ import pytest
 
 from tester.engine.moves import Load, Power, Sequence, Turn
 from tester.engine.thermal_steps import CoolDown, HeatUp, RestStep, SoakTo, Straighten, roll, soak_within_k
+from tester.interlocks.heat_balance import HeatBalance
 from tester.process import Press
 from tester.recipe.plan import Cool, Heat, Rest, Soak
+from tester.store.heatings import ratios_of
 from tests.tester.engine.bench import SHORT, Bench, Simulation, make_bench
 
 SOAK = Soak(1.0, 60.0, 1800.0)
@@ -187,9 +189,42 @@ def test_cooling_is_given_up_after_hours(bench: Bench) -> None:
     assert bench.run(CoolDown(Cool(1, 45.0), 0.1), at_most_s=4 * 3600.0, dt=2.0) > 3 * 3600.0
 
 
-def test_after_heating_up_the_heat_balance_is_on_record() -> None:
+def heated() -> Simulation:
+    """Return a run that has just heated up to 40 degC."""
     run = Simulation(SHORT.replace("25 degC", "40 degC"), seed=5)
     run.until(lambda it: any(text.startswith("heat balance") for text in it.notes.texts("heat")))
-    (text,) = run.notes.texts("heat")
-    ratio = float(text.rpartition(",")[2].split()[0])
-    assert abs(ratio - 1.0) < 0.03
+    return run
+
+
+def test_after_heating_up_the_heat_balance_is_on_record_as_numbers() -> None:
+    run = heated()
+    (data,) = (str(values[-1]) for values in run.notes.written("INSERT INTO event") if "heat" in values)
+    (ratio,) = ratios_of([data], run.run.engine.ctx.rig)
+    assert abs(ratio - 1.0) < 0.03 and f"{ratio:.2f} of what" in run.notes.texts("heat")[0]
+
+
+def heats(bench: Bench, hub_c: float, put_j: float, shown_j: float, *, forget: bool = False) -> list[str]:
+    """Heat up from a surface and hub of 24 degC to a hub of ``hub_c``; return what is said of it."""
+    bench.ctx.heat = heat = HeatBalance(420.0, 0.15, 200.0, 23.0, 0.3, 5.0, put_j=7e3, shown_j=6e3)
+    step = heat_up()
+    bench.hold(step, 30.0, dt=0.05)
+    if forget:
+        heat.forget()
+    heat.put_j, heat.shown_j = 7e3 + put_j, 6e3 + shown_j
+    bench.surface_c = hub_c
+    bench.run(step, dt=0.05)
+    return bench.notes.texts("heat")
+
+
+def test_the_heat_of_this_heating_is_told_and_none_from_before(bench: Bench) -> None:
+    told = "heat balance: 22.0 kJ put in, 1.10 of what the temperatures show"
+    assert heats(bench, 45.0, 22e3, 20e3) == [told]
+
+
+@pytest.mark.parametrize(("hub_c", "shown_j"), [(40.0, 20e3), (45.0, 9e3)])
+def test_a_heating_of_little_heat_or_rise_says_nothing(bench: Bench, hub_c: float, shown_j: float) -> None:
+    assert heats(bench, hub_c, 22e3, shown_j) == []
+
+
+def test_a_balance_that_began_anew_meanwhile_says_nothing(bench: Bench) -> None:
+    assert heats(bench, 45.0, 22e3, 20e3, forget=True) == []

@@ -7,12 +7,14 @@ from pathlib import Path
 
 import pytest
 
+from tester.interlocks.heat_ratio import NO_HISTORY, KnownRatio
 from tester.rig import CalibrationConfig, load_rig
 from tester.service.preflight import (
     Past,
     age_words,
     alarms_check,
     calibration_check,
+    heat_check,
     known_checks,
     last_run_check,
     past_of,
@@ -31,8 +33,10 @@ PAST = Past("done", "", WHEEL, 90.0, "2026-03-01T09:30:00.000Z")
 
 
 def test_every_matter_has_a_line_once() -> None:
-    names = [check.name for check in known_checks(load_rig("sim"), DiskView(5 * 10**9, 0, False), (), PAST, "", NOW)]
-    assert names == ["disk space", "alarms", "last run", "calibration", "wheel", "zero of the load cell"]
+    disk = DiskView(5 * 10**9, 0, False)
+    names = [check.name for check in known_checks(load_rig("sim"), disk, (), PAST, "", NOW)]
+    assert names[:4] == ["disk space", "alarms", "last run", "calibration"]
+    assert names[4:] == ["wheel", "zero of the load cell", "heat balance"]
 
 
 def test_a_disk_that_is_low_is_wrong() -> None:
@@ -122,3 +126,17 @@ def test_a_record_that_cannot_be_read_is_passed_over(tmp_path: Path) -> None:
     (tmp_path / "broken").mkdir()
     (tmp_path / "broken" / "run.db").write_bytes(b"no database")
     assert past_of(tmp_path) is None and past_of(tmp_path / "nowhere") is None
+
+
+@pytest.mark.parametrize(
+    ("heat", "ok", "words"),
+    [
+        (NO_HISTORY, None, "no history yet; a row tells from 30 %"),
+        (KnownRatio(3, 1.0), True, "known from 3 heatings, ratio 1.00, 0.00 apart; a row tells from 12 %"),
+        (KnownRatio(3, 1.25), None, "known from 3 heatings, ratio 1.25, 0.00 apart; a row tells from 30 %: measure"
+                                    " observer.thermal, or check the sensors"),
+    ],
+)  # fmt: skip
+def test_what_is_known_of_the_heat_balance_is_told(heat: KnownRatio, ok: bool | None, words: str) -> None:
+    found = heat_check(heat, load_rig("sim"))
+    assert (found.name, found.ok, found.text) == ("heat balance", ok, words)
