@@ -45,17 +45,16 @@ class HeatBalance:
     """Heat of the heater since the comparison began ..."""
     shown_j: float = 0.0
     """... and what the temperatures explain of it."""
-    still_s: float = 0.0
-    """For how long the reading stands, s, while more is given than at some time since then, and than losses explain.
+    still_k: float = 0.0
+    """While the reading stands: heat beyond the least given meanwhile, and beyond what losses explain, as the kelvin by
+    which it warms the hub.
 
     A hub that stands loses what it lost then: what the beliefs are off in steady losses drops out.
     """
     _still_c: float = nan
-    """The reading when it last moved ..."""
-    _still_at_s: float = nan
-    """... and when that was."""
+    """The reading when it last moved."""
     _least_w: float = inf
-    """The least given since then (smoothed) ..."""
+    """The least given since it moved (smoothed) ..."""
     _least_lost_w: float = 0.0
     """... and the losses to rubber and shaft with it."""
     _lost_w: float = 0.0
@@ -70,7 +69,7 @@ class HeatBalance:
     def forget(self) -> None:
         """Begin anew: a person was at the wheel and its hub, or another wheel is on."""
         self.unseen_k = self.put_w = self.shown_w = self._stored_w = self.put_j = self.shown_j = 0.0
-        self.still_s = self._lost_w = 0.0
+        self.still_k = self._lost_w = 0.0
         self._smoothing = False
         self._still_c = nan  # so that all else begins anew
         self._at_s = self._hub_c = nan
@@ -95,19 +94,20 @@ class HeatBalance:
         self.put_w += (put_w - self.put_w) * smooth
         self.shown_w += (shown_w - self.shown_w) * smooth
         self._lost_w += (rubber_w + shaft_w - self._lost_w) * smooth
-        self._follow_still(hub_c)
+        self._follow_still(hub_c, dt)
         self.put_j += put_w * dt
         self.shown_j += shown_w * dt
         moved_w = abs(self._stored_w) + abs(rubber_w) + abs(shaft_w)
         unseen_k = self.unseen_k + (put_w - shown_w - self.share * moved_w - self.leak_w) * dt / self.capacity_j_k
         self.unseen_k = 0.0 if unseen_k < 0.0 else unseen_k
 
-    def _follow_still(self, hub_c: float) -> None:
-        """See how long the reading stands while it should not."""
+    def _follow_still(self, hub_c: float, dt: float) -> None:
+        """Add up the heat that a hub takes without moving."""
         if not (-STILL_K <= hub_c - self._still_c <= STILL_K):
-            self._still_c, self._still_at_s, self._least_w = hub_c, self._at_s, inf
+            self.still_k, self._still_c, self._least_w = 0.0, hub_c, inf
         if self.put_w < self._least_w:
             self._least_w, self._least_lost_w = self.put_w, self._lost_w
         taken_w = (1.0 + self.share) * (self._lost_w - self._least_lost_w)  # by a rubber that has got colder
         astray_w = self.leak_w + (taken_w if taken_w > 0.0 else 0.0)
-        self.still_s = self._at_s - self._still_at_s if self.put_w - self._least_w > astray_w else 0.0
+        still_k = self.still_k + (self.put_w - self._least_w - astray_w) * dt / self.capacity_j_k
+        self.still_k = 0.0 if still_k < 0.0 else still_k

@@ -261,25 +261,39 @@ HEAT_NOT_SHOWN: Final = Interlock(
     reset=REPAIR,
 )
 
-FROZEN_HUB_S: Final = Parameter(
-    "frozen_hub_s", "s", "60 s",
-    "reading within a count for this while more heat is given [A]: 5 W are 0.7 K",
-    direction=Direction.LOWER, hardest="90 s",
-    because="a hub whose reading stands 0.3 K below limits.jacket is 5 K hotter after 90 s",
+FROZEN_HUB_K: Final = Parameter(
+    "frozen_hub_k", "K", "0.5 K", "heat beyond that of before must have moved the reading by now [A] ...",
+    direction=Direction.LOWER, hardest="1 K",
+    because="a hub at limits.jacket is 5 K from harm, and went on for 3 K while the output had begun to rise",
+)  # fmt: skip
+FROZEN_HUB_SHARE: Final = Parameter(
+    "frozen_hub_share", "1", "0.3", "... or this share of what limits.jacket is away, where that is more [A]",
+    SHARE, direction=Direction.LOWER, hardest="0.5",
+    because="a hub that goes by as much again before it is told stays below limits.jacket",
 )  # fmt: skip
 
 
+def _still_most_k(v: Inputs) -> float:
+    """Return how much heat a standing reading may hide, K of hub: little where the hub is close to its limit."""
+    p = v.parameters
+    away_k = v.limits.jacket_c - v.readings.hub_c
+    return max(p[FROZEN_HUB_K], p[FROZEN_HUB_SHARE] * away_k)
+
+
 def _hub_stands_still(v: Inputs) -> bool:
-    return not v.attended and not (v.heat.still_s <= v.parameters[FROZEN_HUB_S])
+    still_k = v.heat.still_k
+    if still_k <= 0.0 or v.attended or not v.readings.jacket_valid:
+        return False
+    return not (still_k <= _still_most_k(v))
 
 
 HUB_FROZEN: Final = Interlock(
     name="hub sensor frozen",
     cause="the hub's temperature repeats itself while the heater gives more",
-    level="within a count for frozen_hub, and more given than within that time, by > heat_leak and what more is lost",
+    level="within a count, and heat beyond the least since, heat_leak and what is lost > frozen_hub, or its share",
     condition=_hub_stands_still,
-    compared=lambda v: Compared(v.heat.still_s, v.parameters[FROZEN_HUB_S], "s"),
-    parameters=(FROZEN_HUB_S,),
+    compared=lambda v: Compared(v.heat.still_k, _still_most_k(v), "K"),
+    parameters=(FROZEN_HUB_K, FROZEN_HUB_SHARE),
     reaction=CONTROLLED,
     reset=REPAIR,
 )

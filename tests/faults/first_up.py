@@ -74,7 +74,7 @@ FIRST: tuple[First, ...] = (
     First("heater line open", ("t=0 s: heater line open",), HEAT, 120.0),
     First("hub sensor jump", ("t=0 s: hub sensor jumps",)),
     First("hub sensor frozen", ("t=0 s: hub sensor frozen", "t=0 s: thermometer offset -4.5 K"), WARM, 240.0,
-          ("interlocks.heat_leak=2 W", "interlocks.frozen_hub=30 s")),
+          ("interlocks.frozen_hub_share=0.01",)),
     First("surface sensor jump", ("t=0 s: thermometer jumps",)),
     First("thermometer frozen", ("t=0 s: thermometer frozen",), WARM, 80.0),
     First("surface off model", ("t=0 s: thermometer drift",), WARM, 120.0),

@@ -92,10 +92,8 @@ def _hidden_heat(bench: Bench) -> None:
 
 
 def _frozen_hub(bench: Bench) -> None:
-    """The hub's reading has stood for a minute, and less was given then."""
-    heat = bench.control.view.heat
-    heat._still_at_s -= 61.0
-    heat._least_w -= 50.0
+    """The hub's reading stands although more is given."""
+    bench.control.view.heat.still_k = 31.0
 
 
 def _torn(bench: Bench) -> None:

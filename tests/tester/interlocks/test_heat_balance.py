@@ -135,3 +135,25 @@ def test_what_a_person_did_to_the_wheel_is_forgotten(rig: RigConfig) -> None:
     balance.forget()
     balance.update(60.0, 20.0, 100.0, 0.0)
     assert balance.unseen_k == 0.0
+
+
+def stands(rig: RigConfig, hub_k: float, percent: Callable[[float], float]) -> float:
+    """Hold the reading at 110 degC, ``hub_k`` to and fro, for 4 min; return the greatest heat that did not move it."""
+    balance, most_k = balance_of(rig, 0.3), 0.0
+    for i in range(480):
+        at_s = 0.5 * i
+        balance.update(at_s, 110.0 + hub_k * (i // 20 % 2), percent(at_s), 10.0)
+        most_k = max(most_k, balance.still_k)
+    return most_k
+
+
+def test_a_reading_that_stands_while_the_output_rises_adds_up(rig: RigConfig) -> None:
+    assert stands(rig, 0.1, lambda at_s: 15.0 + 0.2 * at_s) > 5.0
+
+
+def test_a_reading_that_moves_with_the_output_does_not(rig: RigConfig) -> None:
+    assert stands(rig, 0.3, lambda at_s: 15.0 + 0.2 * at_s) < 0.1
+
+
+def test_a_steady_output_adds_nothing_up_however_far_beliefs_are_off(rig: RigConfig) -> None:
+    assert stands(rig, 0.0, lambda at_s: 90.0) == 0.0

@@ -25,7 +25,7 @@ def tree(tmp_path_factory: pytest.TempPathFactory) -> Path:
         shutil.copytree(ROOT / name, tree / name, ignore=shutil.ignore_patterns("__pycache__", "golden", "pictures"))
     shutil.copy(ROOT / "pyproject.toml", tree)
     steps = list(STEP.finditer(PAGE.read_text(encoding="utf-8")))
-    assert len({step["path"] for step in steps}) == 3 and len(steps) == 4
+    assert len({step["path"] for step in steps}) == 3 and len(steps) == 5
     for step in steps:
         path, place = tree / step["path"], step["place"].replace('\\"', '"')
         text = path.read_text(encoding="utf-8")
