@@ -52,7 +52,7 @@ def wrapped(ledger: Ledger) -> Generator[list[str], None, None]:
                 continue
             for method in methods:
                 replace(owner, method, lambda bare, part=part: ledger.wrap(part, bare))
-        wire: type = import_module("sim.can_wire").CanWire
+        wire: type = import_module("sim.can_listeners").CanListeners
         known: dict[object, Callable[..., Any]] = {}
         replace(wire, "listen", lambda bare: _subscribing(ledger, bare, known))
         replace(wire, "forget", lambda bare: _leaving(bare, known))
@@ -65,7 +65,7 @@ def wrapped(ledger: Ledger) -> Generator[list[str], None, None]:
 def _subscribing(
     ledger: Ledger, listen: Callable[..., Any], known: dict[object, Callable[..., Any]]
 ) -> Callable[..., None]:
-    """Return a ``CanWire.listen`` that subscribes the measured listener in place of the bare one."""
+    """Return a ``CanListeners.listen`` that subscribes the measured listener in place of the bare one."""
 
     def subscribe(wire: object, can_id: int, listener: Callable[..., Any], *rest: Any, **named: Any) -> None:
         if listener not in known:
@@ -76,7 +76,7 @@ def _subscribing(
 
 
 def _leaving(forget: Callable[..., Any], known: dict[object, Callable[..., Any]]) -> Callable[..., None]:
-    """Return a ``CanWire.forget`` that knows which measured listener stands for a bare one."""
+    """Return a ``CanListeners.forget`` that knows which measured listener stands for a bare one."""
 
     def leave(wire: object, can_id: int, listener: Callable[..., Any]) -> None:
         forget(wire, can_id, known.get(listener, listener))
