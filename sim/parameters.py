@@ -139,6 +139,10 @@ class DriveParameters:
     belt_friction: Annotated[float, "N m"] = 0.4  # of both rollers, and bending the belt, at the drive roller
     torque_gain: Annotated[float, "1"] = 0.03  # greatest error of a drive's torque reading
     belt_roller_diameter: Annotated[float, "mm"] = 100.0
+    belt_pretension: Annotated[float, "N"] = 1000.0  # of each strand: carries 641 N (3# at 400 N) and a third
+    belt_grip: Annotated[float, "1"] = 0.3  # coefficient of the belt's back on its drive roller, slipping
+    belt_wrap: Annotated[float, "deg"] = 180.0  # of the drive roller
+    belt_creep: Annotated[float, "1"] = 0.02  # elastic creep at most: a belt slower than its roller by more slips
     screw_lead: Annotated[float, "mm"] = 5.0  # press travel in a turn
     screw_efficiency: Annotated[float, "1"] = 0.90  # a ball screw's
     screw_efficiency_spread: Annotated[float, "1"] = 0.03  # of a session: lubrication, temperature, torque reading
@@ -151,6 +155,8 @@ class DriveParameters:
         _refuse_below_zero(self, frozenset({
             "wheel_friction", "belt_friction", "torque_gain", "screw_efficiency_spread", "screw_drag", "press_spring",
         }))  # fmt: skip
+        if self.belt_creep > 1.0:
+            raise ValueError("DriveParameters.belt_creep is a share of the belt's speed, 0 to 1")
         if not self.screw_efficiency - self.screw_efficiency_spread > 0.5:
             raise ValueError("DriveParameters.screw_efficiency less its spread must be above 0.5: the press is lifted")
         if self.screw_efficiency + self.screw_efficiency_spread > 1.0:

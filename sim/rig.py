@@ -23,7 +23,7 @@ from sim.nodes.jacket_slave import JacketSlave
 from sim.nodes.motion import VelocityAxis
 from sim.parameters import SimParameters
 from sim.plant import Plant
-from sim.torque import PressScrew, shafts
+from sim.torque import PressScrew, capstan_n, shafts
 
 PRESS_LAG_S: Final = 0.03
 """Lag of the press screw behind its velocity command, s [A]."""
@@ -99,6 +99,10 @@ class SimRig:
         self.wheel_shaft, self.belt_shaft, efficiency = shafts(drives, parameters.noise, seed)
         self._screw = PressScrew(drives, efficiency, drives.press_spring if self._spring_mm_s else 0.0)
         self._roller_m = 0.0005 * drives.belt_roller_diameter
+        self._slip_nm = capstan_n(drives) * self._roller_m
+        self._belt_creep = drives.belt_creep
+        self.belt_slip = 0.0
+        """By what share the belt is slower than its drive roller: beyond elastic creep the roller slips under it."""
         self._limit_nm = self._pushed_n = self._held_n = 0.0
         self._pressed_mm = 0.0
         self._stalled = False
@@ -191,6 +195,8 @@ class SimRig:
         """Let three drives show their torques, and the errors of their encoders: those are noisy while they turn."""
         plant, wheel, belt, press = self.plant, self._wheel, self._belt, self._press
         wheel_nm, belt_nm = plant.drive_torque_nm, -plant.belt_force_n * self._roller_m
+        if self.belt_slip > self._belt_creep and self.belt_m_s != 0.0:
+            belt_nm = copysign(self._slip_nm, self.belt_m_s)
         if self.swapped:
             wheel_nm, belt_nm = belt_nm, wheel_nm
         wheel_nm = self.wheel_shaft.shown_nm(wheel_nm, wheel_rad_s) if wheel.energised else 0.0

@@ -1,11 +1,15 @@
 """Torque at the drives' shafts: what load and friction ask of them, and what a limit of torque leaves them.
 
 A drive shows its torque (0x6077) as its current says, hence with an error of gain.
+
+The belt's drive brakes what the wheel pushes on, or pulls what the wheel holds back, as long as its roller grips the
+belt. Under a belt that something holds back the roller slips, and pulls with all that its wrap can, whatever the wheel
+does (``capstan_n``).
 """
 
 from __future__ import annotations
 
-from math import pi
+from math import exp, pi, radians
 from typing import Final
 
 from sim.noise import uniforms
@@ -13,6 +17,16 @@ from sim.parameters import DriveParameters
 
 FRICTION_RAD_S: Final = 0.05
 """The friction of a shaft is there in full from this speed on, rad/s [A]: below it bearings and seals only creep."""
+
+
+def capstan_n(parameters: DriveParameters) -> float:
+    """Return the force of a roller on a belt that slips on it, along the roller's way, N: Euler-Eytelwein.
+
+    The strands differ by the factor q = exp(coefficient x wrap), and keep the sum of their pretensions T (a belt of
+    fixed length): the force is 2 T (q - 1) / (q + 1).
+    """
+    ratio = exp(parameters.belt_grip * radians(parameters.belt_wrap))
+    return 2.0 * parameters.belt_pretension * (ratio - 1.0) / (ratio + 1.0)
 
 
 class ShaftTorque:

@@ -230,8 +230,8 @@ def _actuator_rows() -> Iterator[FaultKind]:
     yield FaultKind("wheel jammed", partial(d.Jammed, "wheel"), LOADED, TRIP, 0.1 + SCAN_S)
     yield FaultKind("belt torn", d.BeltTorn, RUBBING, TRIP, 0.1 + 2.0 * SCAN_S,
                     note="friction and the wheel's torque are gone")
-    yield FaultKind("belt slips on its roller", d.BeltSlips, SLIDING, MAY, 0.0, "%", 40.0,
-                    note="there is no encoder on the belt itself")
+    yield FaultKind("belt slips on its roller", d.BeltSlips, LOADED, TRIP, 0.05 + 2.0 * SCAN_S, "%", 40.0,
+                    note="there is no encoder on the belt itself: by the drive's torque, beyond elastic creep (2 %)")
     yield FaultKind("wheel slips on its shaft", d.WheelSlipsOnShaft, SLIDING, MAY, 0.0,
                     note="the shaft's encoder turns on, and friction does not vanish: held by the clamping")
     yield FaultKind("safety chain opened", a.ChainOpen, DRIVES, TRIP, SCAN_S)

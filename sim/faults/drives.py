@@ -228,7 +228,10 @@ class Runaway(_OnAxis):
 
 
 class BeltSlips(Effect):
-    """The belt slips on its roller: it is slower than its encoder says."""
+    """Something holds the belt back (caught, pressed on its support): it is slower than its roller, and its encoder.
+
+    Beyond elastic creep the roller slips under it, and pulls with all that its wrap can instead of braking the wheel.
+    """
 
     __slots__ = ("_factor", "share")
 
@@ -239,12 +242,15 @@ class BeltSlips(Effect):
 
     def begin(self, scene: Scene, now: float) -> None:
         """Begin to slip."""
-        sensor = scene.rig.plant.belt_speed
+        rig = scene.rig
+        rig.belt_slip = self.share
+        sensor = rig.plant.belt_speed
         self._factor = sensor.factor
         sensor.factor = self._factor / max(1.0 - self.share, 1e-6)
 
     def end(self, scene: Scene, now: float) -> None:
         """Grip again."""
+        scene.rig.belt_slip = 0.0
         scene.rig.plant.belt_speed.factor = self._factor
 
 

@@ -1,4 +1,4 @@
-"""Friction: how much of it a load can make, which way it acts, and the power that both shafts take for it."""
+"""Friction: how much of it a load can make, which way it acts, and what the shafts of wheel and belt take for it."""
 
 from __future__ import annotations
 
@@ -7,7 +7,8 @@ from typing import Final
 
 from tester.interlocks.inputs import Inputs
 from tester.interlocks.parameter import NOT_NEGATIVE, SHARE, Direction, Parameter
-from tester.interlocks.row import FAST, LOADED, REPAIR, Interlock
+from tester.interlocks.row import FAST, LOADED, REPAIR, Compared, Interlock
+from tester.process import Readings
 
 _RADIANS: Final = pi / 180.0
 
@@ -138,4 +139,115 @@ SHAFT_POWER: Final = Interlock(
     reset=REPAIR,
 )
 
-ROWS: Final[tuple[Interlock, ...]] = (FRICTION_SIGN, SHAFT_POWER, FRICTION_BEYOND_LOAD)
+BELT_TORQUE_NM: Final = Parameter(
+    "belt_torque_nm", "N m", "3 N m",
+    "belt drive off friction by this: rollers 0.4, inertia 1 N m, zero of Fx [A] ...",
+    direction=Direction.LOWER, hardest="5 N m",
+    because="a slack belt that stands then hides 100 N of friction: 40 J of heat on one spot in half a second",
+)  # fmt: skip
+BELT_TORQUE_SHARE: Final = Parameter(
+    "belt_torque_share", "1", "0.05",
+    "... and this share of friction's torque: errors of the drive's and of Fx [A] ...",
+    SHARE, direction=Direction.LOWER, hardest="0.1",
+    because="3# at 400 N has 32 N m: a tenth is as much as the rest",
+)  # fmt: skip
+BELT_TORQUE_DELAY_S: Final = Parameter(
+    "belt_torque_delay_s", "s", "40 ms",
+    "... for this long: friction turning round, Fx up to 20 ms later than torque [A]", NOT_NEGATIVE,
+    direction=Direction.LOWER, hardest="45 ms",
+    because="3# at 430 N rubs a held belt with 0.85 kW; and scans of 50 ms must count as slow for \"belt caught\"",
+)  # fmt: skip
+
+
+def _driven(v: Inputs) -> bool:
+    """Tell whether the belt's drive has a torque to judge: without power it shows none ("drive dropped out")."""
+    return v.confirmed and v.readings.drives_enabled
+
+
+def _along_n(r: Readings) -> float:
+    """Return the friction force along the belt, N."""
+    if r.sideslip_deg == 0.0:
+        return r.force_x_n
+    angle = r.sideslip_deg * _RADIANS
+    return r.force_x_n * cos(angle) - r.force_y_n * sin(angle)
+
+
+def _friction_nm(v: Inputs) -> float:
+    """Return what friction asks of the belt's drive while its roller grips the belt, N m."""
+    return -_along_n(v.readings) * v.limits.roller_m
+
+
+def _allowed_nm(v: Inputs, friction_nm: float) -> float:
+    return v.parameters[BELT_TORQUE_NM] + v.parameters[BELT_TORQUE_SHARE] * abs(friction_nm)
+
+
+def _belt_not_gripped(v: Inputs) -> bool:
+    if not _driven(v):
+        return False
+    friction_nm = _friction_nm(v)
+    allowed_nm = _allowed_nm(v, friction_nm)
+    return not (-allowed_nm <= v.readings.belt_torque_nm - friction_nm <= allowed_nm)
+
+
+def _off_friction(v: Inputs) -> Compared:
+    friction_nm = _friction_nm(v)
+    return Compared(abs(v.readings.belt_torque_nm - friction_nm), _allowed_nm(v, friction_nm), "N m")
+
+
+BELT_TORQUE: Final = Interlock(
+    name="belt torque",
+    cause="the belt's drive denies the friction shown: the belt is held and slips on its roller, or the load cell",
+    level="belt drive's torque off - friction along the belt x roller radius by > belt_torque (and share)",
+    condition=_belt_not_gripped,
+    compared=_off_friction,
+    parameters=(BELT_TORQUE_NM, BELT_TORQUE_SHARE),
+    delay=BELT_TORQUE_DELAY_S,
+    when=LOADED,
+    reaction=FAST,
+    reset=REPAIR,
+)
+
+BELT_PULL_NM: Final = Parameter(
+    "belt_pull_nm", "N m", "10 N m",
+    "belt drive pulls with this where friction does, at slip > clear_slip: 200 N [A]",
+    direction=Direction.LOWER, hardest="15 N m",
+    because="300 N are half of what 3# asks of the belt at 400 N: a roller that carries less slips in every test",
+)  # fmt: skip
+
+
+def _sense(v: Inputs) -> float:
+    """Return which way friction acts on the belt for sure: 1 onwards, -1 back, 0 unsure.
+
+    Both speeds say so where it slides clearly. Else the load cell does, as long as scans are slow: then nothing is told
+    to change, and friction does not turn round between two readings.
+    """
+    r, p = v.readings, v.parameters
+    clear, wheel_m_s = p[CLEAR_SLIP_M_S], r.wheel_speed_m_s
+    if r.sideslip_deg != 0.0:
+        wheel_m_s *= cos(r.sideslip_deg * _RADIANS)
+    along_m_s = wheel_m_s - r.belt_speed_m_s
+    if not -clear <= along_m_s <= clear:
+        return 1.0 if along_m_s > 0.0 else -1.0
+    if not v.scan_s > p[BELT_TORQUE_DELAY_S]:
+        return 0.0
+    along_n, least = _along_n(r), p[AGAINST_LEAST_N]
+    return 0.0 if -least <= along_n <= least else 1.0 if along_n > 0.0 else -1.0
+
+
+def _belt_caught(v: Inputs) -> bool:
+    return _driven(v) and not (_sense(v) * v.readings.belt_torque_nm <= v.parameters[BELT_PULL_NM])
+
+
+BELT_CAUGHT: Final = Interlock(
+    name="belt caught",
+    cause="the belt's drive pulls where friction does: the belt is held, its roller slips; or a direction is wrong",
+    level="belt drive's torque > belt_pull the way friction acts on the belt: slip > clear_slip, or scans are slow",
+    condition=_belt_caught,
+    compared=lambda v: Compared(_sense(v) * v.readings.belt_torque_nm, v.parameters[BELT_PULL_NM], "N m"),
+    parameters=(BELT_PULL_NM, CLEAR_SLIP_M_S, AGAINST_LEAST_N, BELT_TORQUE_DELAY_S),
+    when=LOADED,
+    reaction=FAST,
+    reset=REPAIR,
+)
+
+ROWS: Final[tuple[Interlock, ...]] = (FRICTION_SIGN, SHAFT_POWER, BELT_TORQUE, BELT_CAUGHT, FRICTION_BEYOND_LOAD)

@@ -20,6 +20,8 @@ SLIDE, ROLL, HEAT, WARM = ("short", "measure"), ("short", "wait"), ("heated", "h
 LONGEST_S = 20.0
 UNWITNESSED = ("interlocks.force_step=1000 N", "interlocks.press_torque_margin=1000 N")
 """The witnesses of the force are sooner than the rows that look at the force alone."""
+UNGRIPPED = ("interlocks.belt_pull=100 N m", "interlocks.belt_torque=100 N m")
+"""The belt drive's torque denies a direction sooner than friction and power do."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,8 +65,10 @@ FIRST: tuple[First, ...] = (
     First("force step", ("t=0 s: load cell offset 30 N",)),
     First("press torque", ("t=0 s: load cell drift -3 N/s",), within_s=60.0),
     First("press torque", ("t=0 s: load cell drift 3 N/s",), within_s=60.0),
-    First("friction sign", ("t=0 s: load cell Fx reversed",)),
-    First("shaft power", ("t=0 s: belt drive reversed",)),
+    First("friction sign", ("t=0 s: load cell Fx reversed",), overrides=UNGRIPPED),
+    First("shaft power", ("t=0 s: belt drive reversed",), overrides=UNGRIPPED),
+    First("belt caught", ("t=0 s: belt slips on its roller 10 %",)),
+    First("belt torque", ("t=0 s: belt slips on its roller 3 %",), ("short", "roll")),
     First("contact lost", ("t=0 s: press runs away -5 mm/s",)),
     First("surface hot", ("t=0 s: thermometer drift 0.4 K/s",), WARM, 60.0, ("limits.surface=42 degC",)),
     First("jacket hot", ("t=0 s: jacket output stuck on",), WARM, 120.0,

@@ -21,6 +21,7 @@ UNDONE = [
     name for name in CATALOGUE
     if name.endswith((" gain", " lag", " delay", "reversed", "exchanged", "swapped", " scale", "doubled", "detached"))
     or name in ("wheel diameter", "common supply of hub sensor and thermometer", "rubber relaxation")
+    or name == "belt slips on its roller"
 ]  # fmt: skip
 """Faults that leave the rig as it was when they end."""
 
@@ -118,6 +119,12 @@ def test_a_hub_sensor_that_has_come_loose_shows_too_little_and_late() -> None:
 def test_a_range_without_its_normal_value_is_refused(least: float, most: float, normal: float) -> None:
     with pytest.raises(ValueError, match="load cell offset"):
         Parametric(CATALOGUE["load cell offset"], least, most, normal)
+
+
+def test_a_belt_that_slips_is_slower_than_its_roller_and_the_rig_knows_by_how_much() -> None:
+    rig = under("belt slips on its roller 40 %")
+    assert rig.axes["belt"].axis.value == 0.5 and rig.belt_m_s == pytest.approx(0.3)
+    assert rig.belt_slip == pytest.approx(0.4)
 
 
 @pytest.mark.parametrize(("percent", "share"), [(70, 0.7), (130, 1.3)])

@@ -132,6 +132,17 @@ def test_what_both_drives_give_is_what_friction_and_bearings_take() -> None:
     assert rubbed_w > 20.0 and given_w - bearings_w == pytest.approx(rubbed_w, rel=1e-3)
 
 
+@pytest.mark.parametrize(("slip", "held"), [(0.015, False), (0.03, True), (1.0, True)])
+def test_a_belt_that_is_held_back_beyond_creep_takes_the_pull_of_its_roller(slip: float, held: bool) -> None:
+    """878 N at 50 mm, whatever the wheel does; within elastic creep what friction asks for."""
+    world = Simulation(overrides=["sim.noise=0"]).until(sliding).world
+    world.belt_slip = slip
+    world.advance(world.now_s + 0.001)
+    friction_nm = -0.05 * world.plant.belt_force_n
+    assert friction_nm < -2.0
+    assert world.axes["belt"].torque_nm == pytest.approx((43.92 if held else friction_nm) + 0.4, abs=0.01)
+
+
 def sliding(simulation: Simulation) -> bool:
     plant = simulation.world.plant
     return plant.force_z_n > 150.0 and plant.slip_m_s > 0.19

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from sim.parameters import DriveParameters
-from sim.torque import PressScrew, ShaftTorque, shafts
+from sim.torque import PressScrew, ShaftTorque, capstan_n, shafts
 
 K = 0.005 / 6.283185307179586
 """N m per N of a screw of 5 mm lead without friction."""
@@ -32,6 +32,12 @@ def test_a_shaft_that_turns_the_other_way_round_is_loaded_the_other_way_round() 
     shaft = ShaftTorque(0.2, 1.0)
     shaft.way = -1.0
     assert shaft.shown_nm(5.0, 10.0) == pytest.approx(-4.8)
+
+
+@pytest.mark.parametrize(("wrap_deg", "force_n"), [(180.0, 878.4), (90.0, 462.7)])
+def test_a_roller_pulls_a_slipping_belt_by_its_wrap(wrap_deg: float, force_n: float) -> None:
+    """1000 N in each strand and 0.3: with 180 deg the strands have 1439 and 561 N, a factor of exp(0.3 pi) = 2.566."""
+    assert capstan_n(DriveParameters(belt_wrap=wrap_deg)) == pytest.approx(force_n, abs=0.1)
 
 
 def test_pressing_takes_the_force_over_the_efficiency_and_the_drag() -> None:

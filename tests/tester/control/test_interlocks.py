@@ -132,6 +132,16 @@ def _shafts(by_w: float) -> Break:
     return apply
 
 
+def _belt_pulls(torque_nm: float) -> Break:
+    """Let the belt's drive pull with this where it should brake."""
+
+    def apply(bench: Bench) -> None:
+        bench.shafts = False
+        bench.readings.belt_torque_nm = torque_nm
+
+    return apply
+
+
 def _screwed(force_n: float) -> Break:
     """Let the press's drive show the torque for another force, its screw in the middle of its friction."""
 
@@ -172,6 +182,8 @@ CAUSES: dict[str, list[Break]] = {
     "press torque": [_screwed(450.0), _screwed(80.0), _screwed(NAN)],
     "friction sign": [_set(force_x_n=-30.0), _set(force_x_n=NAN)],
     "shaft power": [_shafts(60.0), _shafts(-60.0), _shafts(NAN)],
+    "belt caught": [_belt_pulls(44.0), _belt_pulls(NAN)],
+    "belt torque": [_belt_pulls(-3.0), _belt_pulls(9.0)],
     "friction beyond load": [_set(force_y_n=640.0, slip_m_s=0.0), _set(force_y_n=NAN)],
     "slip power": [_set(force_x_n=1200.0), _set(slip_m_s=NAN), _set(force_y_n=NAN)],
     "surface hot": [_set(surface_c=95.5), _set(surface_c=NAN)],
