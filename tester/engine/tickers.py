@@ -5,13 +5,14 @@ from __future__ import annotations
 import gc
 import sys
 from collections.abc import Callable, Generator
-from contextlib import contextmanager, nullcontext
+from contextlib import closing, contextmanager, nullcontext
 from dataclasses import dataclass
 from math import ceil, floor
 from typing import Final, Protocol
 
 from tester import clock
 from tester.pace import Pace
+from tester.priority import RealTimePriority
 
 POLL_S: Final = 0.02
 """Period of ``poll``, s of wall time: a STOP from a screen is heard within it."""
@@ -85,7 +86,7 @@ def run_simulated(engine: Ticked, world: World, *, lapse: float | None, poll: Ca
     now = 0.0
     origin = clock.monotonic()
     poll_due = origin
-    with collector_at_rest(), scan_first() if lapse is not None else nullcontext():
+    with collector_at_rest(), scan_first() if lapse is not None else nullcontext(), in_time(lapse):
         while not engine.finished:
             world.advance(now)
             wanted = engine.tick(now)
@@ -153,6 +154,20 @@ def scan_first() -> Generator[None, None, None]:
         yield
     finally:
         sys.setswitchinterval(before)
+
+
+@contextmanager
+def in_time(lapse: float | None) -> Generator[None, None, None]:
+    """Keep a simulated rig's time as a machine's is kept: before every ordinary process, where that is granted.
+
+    ``lapse`` as in ``run_simulated``. Faster than a machine lives (above 1) nothing is asked for: such a run takes
+    what the processor gives, and would leave nothing to others.
+    """
+    if lapse is None or lapse > 1.0:
+        yield
+        return
+    with closing(RealTimePriority()):
+        yield
 
 
 def _wait(deadline: float, now: float, poll: Callable[[float], None], poll_due: float) -> float:

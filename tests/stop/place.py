@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import os
 import subprocess
 import sys
 from array import array
@@ -175,6 +176,13 @@ class Place:
         """The operator's STOP, which is carried out. Raises NotTakenError."""
         with StopCall(self.address, OPERATOR) as call:
             call.stop()
+
+    def scheduling(self) -> str:
+        """Return how the operating system schedules whoever ticks now."""
+        if sys.platform != "linux":
+            return f"not known on {sys.platform}"
+        kind = os.sched_getscheduler(self._owner.pid) & ~os.SCHED_RESET_ON_FORK
+        return "real-time priority" if kind == os.SCHED_RR else "an ordinary process: no real-time priority is granted"
 
     # -- what was noted ---------------------------------------------------------------------------------------
 

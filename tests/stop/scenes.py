@@ -103,6 +103,7 @@ async def sliding_and_resting(place: Place, client: Client, attack: Attack, coun
         tries = await place.tries(count)
         await asyncio.sleep(began_s + QUIET_S - clock.monotonic())
         loud = (began_s, clock.monotonic())
+        yield holds("at 100 Hz: the run ticks as", True, place.scheduling(), "no limit")
         yield holds("at 100 Hz: the wheel still slides", slides(client.state), client.state.mode, "RUN")
         for figure in figures_of(place, "at 100 Hz", tries, began_s):
             yield figure

@@ -3,7 +3,11 @@
 from __future__ import annotations
 
 import gc
+import os
+import sys
 from math import inf
+
+import pytest
 
 from tester.engine.tickers import TickStatistics, collector_at_rest, next_tick, run_real_time, run_simulated
 
@@ -62,6 +66,18 @@ def test_a_time_lapse_is_kept() -> None:
     ticks = Ticks(50)
     run_simulated(ticks, Still(), lapse=50.0, poll=lambda _: None)
     assert len(ticks.times) == 50
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="Linux's scheduling classes")
+@pytest.mark.parametrize(("lapse", "asked"), [(1.0, True), (50.0, False), (None, False)])
+def test_priority_is_asked_for_where_a_machines_time_is_kept(
+    lapse: float | None, asked: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    classes: list[int] = []
+    monkeypatch.setattr(os, "sched_setscheduler", lambda _thread, kind, _level: classes.append(kind))
+    run_simulated(Ticks(2), Still(), lapse=lapse, poll=lambda _: None)
+    assert (os.SCHED_RR | os.SCHED_RESET_ON_FORK in classes) is asked
+    assert not asked or classes[-1] == os.SCHED_OTHER  # given back
 
 
 def test_real_time_ticks_are_counted_and_on_time_in_the_mean() -> None:
