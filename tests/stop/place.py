@@ -188,9 +188,13 @@ class Place:
 
     def loop_late_s(self, from_s: float, to_s: float, files: Sequence[str] = LOOPS) -> float:
         """Return the worst lateness of the bare loops in a time."""
+        return max(self.loops_late_s(from_s, to_s, files), default=0.0)
+
+    def loops_late_s(self, from_s: float, to_s: float, files: Sequence[str] = LOOPS) -> list[float]:
+        """Return how late the bare loops were in a time, each time."""
         lines = [line for file in files for line in (self.folder / file).read_text(encoding="utf-8").splitlines()]
         rows = [line.split() for line in lines]
-        return max((float(row[1]) for row in rows if len(row) == 2 and from_s <= float(row[0]) <= to_s), default=0.0)
+        return [float(row[1]) for row in rows if len(row) == 2 and from_s <= float(row[0]) <= to_s]
 
     def scans(self) -> list[tuple[float, float]]:
         """Return every scan of the runs that have ended: when it began by the clock, and how late that was, s."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 from collections.abc import AsyncGenerator, AsyncIterator, Callable, Sequence
 from contextlib import AbstractContextManager, asynccontextmanager, suppress
+from math import ceil
 
 from tester import clock
 from tester.service.client import Client, LostError, RefusedError
@@ -92,11 +93,7 @@ def at_rest(view: StateView) -> bool:
 
 async def sliding_and_resting(place: Place, client: Client, attack: Attack, count: int) -> AsyncIterator[Figure]:
     """100 Hz and 10 Hz: a run that slides, then rests."""
-    slides_s = QUIET_S + SETTLE_S + max(QUIET_S, 0.4 * count) + 8.0
-    await client.command(RunRecipe("slides", text=SLIDES % slides_s, speed=1.0, yes=True))
-    await place.until(client, lambda view: slides(view), "a wheel that slides", 120.0)
-    quiet = (clock.monotonic(), clock.monotonic() + QUIET_S)
-    await asyncio.sleep(QUIET_S)
+    quiet = await begin_to_slide(place, client, max(QUIET_S, 0.4 * count))
     with attack(BY_FORCE):
         await asyncio.sleep(SETTLE_S)
         began_s = clock.monotonic()
@@ -113,23 +110,93 @@ async def sliding_and_resting(place: Place, client: Client, attack: Attack, coun
             yield figure
         yield at_most("rate at a rest", client.state.tick.rate_hz, 10.0, "Hz", 1)
     yield await ended_by_the_operator(place, client)
-    for figure in scans_of(place, quiet, loud):
+    scans = Scans(place, quiet, loud)
+    for figure in scans.figures():
         yield figure
+    rounds = [scans.latest_kept]
+    while not decided(rounds):
+        quiet = await begin_to_slide(place, client, QUIET_S)
+        with attack(BY_FORCE):
+            await asyncio.sleep(SETTLE_S)
+            began_s = clock.monotonic()
+            await asyncio.sleep(QUIET_S)
+            loud = (began_s, clock.monotonic())
+        await ended_by_the_operator(place, client)
+        scans = Scans(place, quiet, loud)
+        rounds.append(scans.latest_kept)
+        yield holds("latest scan once more", True, scans.latest, scans.limit)
+    yield holds("the latest scan is no later than without them by more than a bare loop", sum(rounds) > len(rounds) / 2,
+                f"in {sum(rounds)} of {len(rounds)} rounds", "the first, or two of three")  # fmt: skip
 
 
-def scans_of(place: Place, quiet: tuple[float, float], loud: tuple[float, float]) -> list[Figure]:
-    """Compare scans without hostile clients with those beside them, as long watched."""
-    scans = place.scans()
-    before = [late for at, late in scans if quiet[0] <= at <= quiet[1]]
-    beside = [late for at, late in scans if loud[0] <= at <= loud[1]]
-    worst_before, worst_beside = max(before, default=float("nan")), max(beside, default=float("nan"))
-    loop_s = place.loop_late_s(*loud)
-    return [
-        at_least("scans beside hostile clients", len(beside), 0.9 * 100.0 * (loud[1] - loud[0])),
-        holds("latest scan without them", True, f"{1e3 * worst_before:.1f} ms of {len(before)}", "no limit"),
-        at_most("latest scan beside them", 1e3 * worst_beside, 1e3 * (worst_before + loop_s), "ms", 1,
-                note=f" (bare loop {1e3 * loop_s:.1f})"),
-    ]  # fmt: skip
+async def begin_to_slide(place: Place, client: Client, loud_s: float) -> tuple[float, float]:
+    """Begin a run that slides; return from when to when it did with nobody hostile there (tester.clock.monotonic).
+
+    ``loud_s``: how long it is to slide beside hostile clients.
+    """
+    await place.until(client, alone, "hostile clients gone")
+    if not client.controls:
+        await place.take_control(client)
+    text = SLIDES % (QUIET_S + SETTLE_S + loud_s + 8.0)
+    await client.command(RunRecipe("slides", text=text, speed=1.0, yes=True))
+    await place.until(client, lambda view: slides(view), "a wheel that slides", 120.0)
+    from_s = clock.monotonic()
+    await asyncio.sleep(QUIET_S)
+    return from_s, from_s + QUIET_S
+
+
+def decided(rounds: Sequence[bool]) -> bool:
+    """The latest scan was inside in the first round, or two of three rounds agree.
+
+    A virtual machine's processor is taken away for 4 to 10 ms at any moment, whoever is connected: once in some ten
+    rounds it happens twice to one scan. What hostile clients do, they do in every round.
+    """
+    return rounds[0] or max(sum(rounds), len(rounds) - sum(rounds)) >= 2
+
+
+class Scans:
+    """How late scans were without hostile clients and beside them, as long watched, and how late bare loops, s."""
+
+    def __init__(self, place: Place, quiet: tuple[float, float], loud: tuple[float, float]) -> None:
+        """``quiet``, ``loud``: from when to when (tester.clock.monotonic); the run has ended."""
+        scans = place.scans()
+        self.seconds = loud[1] - loud[0]
+        self.before = sorted(late for at, late in scans if quiet[0] <= at <= quiet[1])
+        self.beside = sorted(late for at, late in scans if loud[0] <= at <= loud[1])
+        self.loops = sorted(place.loops_late_s(*loud))
+
+    @property
+    def latest_kept(self) -> bool:
+        """The latest scan beside them is no later than the latest without them by more than the loops show."""
+        return bool(self.before and self.beside) and self.beside[-1] <= self.before[-1] + self.loops[-1]
+
+    @property
+    def latest(self) -> str:
+        """The latest scan, beside hostile clients."""
+        return f"{1e3 * nth(self.beside, 1.0):.1f} ms (bare loop {1e3 * nth(self.loops, 1.0):.1f})"
+
+    @property
+    def limit(self) -> str:
+        """What it may be."""
+        return f"at most {1e3 * (nth(self.before, 1.0) + nth(self.loops, 1.0)):.1f} ms"
+
+    def figures(self) -> list[Figure]:
+        """What was seen in the first round; the latest scan is judged by itself."""
+        limit_ms = 1e3 * (nth(self.before, 0.99) + nth(self.loops, 0.99))
+        return [
+            at_least("scans beside hostile clients", len(self.beside), 0.9 * 100.0 * self.seconds),
+            at_most("99 % of scans beside them are late by", 1e3 * nth(self.beside, 0.99), limit_ms, "ms", 2,
+                    note=f" (without them {1e3 * nth(self.before, 0.99):.2f}, "
+                    f"bare loops {1e3 * nth(self.loops, 0.99):.2f})"),
+            holds("latest scan without them", True,
+                  f"{1e3 * nth(self.before, 1.0):.1f} ms of {len(self.before)}", "no limit"),
+            holds("latest scan beside them", True, self.latest, self.limit),
+        ]  # fmt: skip
+
+
+def nth(late: Sequence[float], share: float) -> float:
+    """Return what so great a share of sorted numbers does not exceed, NaN for none."""
+    return late[ceil(share * len(late)) - 1] if late else float("nan")
 
 
 def slides(view: StateView) -> bool:
