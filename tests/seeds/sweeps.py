@@ -25,6 +25,8 @@ class SweepSpec:
     """A shipped recipe's name, or the text of a recipe."""
     seeds: int
     overrides: tuple[str, ...] = ()
+    first: int = 0
+    """The first seed; the others follow it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,7 +65,7 @@ class Sweeps:
 
     def _run(self, spec: SweepSpec) -> Swept:
         out = self._place("sweep")
-        extent = ["--seeds", str(spec.seeds), "--jobs", str(self.jobs), "--out", str(out)]
+        extent = ["--seeds", str(spec.seeds), "--seed", str(spec.first), "--jobs", str(self.jobs), "--out", str(out)]
         code, said = self._tester("sweep", self._named(spec.recipe), *extent, *_set(spec))
         lines = said.splitlines()
         folder = self.folder / lines[-1] if lines else out
