@@ -204,10 +204,21 @@ class Place:
             return []
         with file.open("rb") as stream:
             notes.frombytes(stream.read())
-        apart = [(notes[i], notes[i] - notes[i + 1]) for i in range(0, len(notes), 2)]
-        late: list[tuple[float, float]] = []
-        for first in range(0, len(apart), ROLLING):
-            piece = apart[first : first + ROLLING]
-            least = min(difference for _, difference in piece)
-            late += [(at, difference - least) for at, difference in piece]
-        return late
+        return late_scans(list(zip(notes[::2], notes[1::2], strict=True)))
+
+
+def late_scans(scans: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
+    """Return when scans began and how late that was, s, from when they began by the clock and for when they were meant.
+
+    Each run has a clock of its own, which begins at 0: no piece of ``ROLLING`` scans has two of them.
+    """
+    late: list[tuple[float, float]] = []
+    first = 0
+    for end in range(1, len(scans) + 1):
+        if end < len(scans) and end - first < ROLLING and scans[end][1] >= scans[end - 1][1]:
+            continue
+        piece = scans[first:end]
+        least = min(at - meant for at, meant in piece)
+        late += [(at, at - meant - least) for at, meant in piece]
+        first = end
+    return late
