@@ -8,9 +8,9 @@ from threading import Event, Thread
 
 import pytest
 
-from drivers.edges.can_bus import PythonCanPort, open_can
-from drivers.edges.socketcand import settings_of
 from drivers.ports import BusLost
+from drivers.transports.can_bus import PythonCanPort, open_can
+from drivers.transports.socketcand import settings_of
 
 
 class Server:
@@ -109,7 +109,7 @@ def test_a_channel_without_an_address_says_what_was_expected(channel: str) -> No
 
 
 def test_a_server_that_says_nothing_is_a_lost_bus(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("drivers.edges.socketcand.CONNECT_S", 0.05)
+    monkeypatch.setattr("drivers.transports.socketcand.CONNECT_S", 0.05)
     with (
         socket.create_server(("127.0.0.1", 0)) as listener,
         pytest.raises(BusLost, match="timed out"),

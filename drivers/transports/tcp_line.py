@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import socket
 
-from drivers.ports import BusLost
+from drivers.ports import BusLost, WatchedLine
 
 _CHUNK = 4096
 """Bytes fetched at once: a Modbus TCP frame has at most 260."""
 
 
-class TcpLine:
+class TcpLine(WatchedLine):
     """A port (``drivers.ports.LinePort``) over a connected socket. Nothing blocks: the kernel keeps what arrives.
 
     Bytes are stamped with the time they are fetched at, which is no earlier than they arrived.
@@ -18,6 +18,7 @@ class TcpLine:
 
     def __init__(self, connection: socket.socket, peer: str) -> None:
         """Take a connected socket; ``peer`` names it in messages."""
+        super().__init__()
         connection.setblocking(False)
         connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         self._socket = connection
@@ -27,6 +28,11 @@ class TcpLine:
     def write(self, data: bytes, now: float) -> None:
         """Send bytes; what the kernel does not take now goes with the next call. Raises BusLost."""
         self._unsent += data
+        self._send()
+        if self.watchers:
+            self.tell(now, data, True)
+
+    def _send(self) -> None:
         try:
             sent = self._socket.send(self._unsent) if self._unsent else 0
         except (BlockingIOError, InterruptedError):
@@ -38,7 +44,7 @@ class TcpLine:
     def read(self, now: float) -> list[tuple[float, bytes]]:
         """Return what has arrived, stamped ``now`` (s). Raises BusLost, also when the peer closed the connection."""
         if self._unsent:
-            self.write(b"", now)
+            self._send()
         try:
             data = self._socket.recv(_CHUNK)
         except (BlockingIOError, InterruptedError):
@@ -47,6 +53,8 @@ class TcpLine:
             raise BusLost(f"{self._peer}: {error}") from error
         if not data:
             raise BusLost(f"{self._peer}: connection closed by the other side")
+        if self.watchers:
+            self.tell(now, data, False)
         return [(now, data)]
 
     def fileno(self) -> int:

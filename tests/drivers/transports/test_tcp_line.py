@@ -8,8 +8,8 @@ from select import select
 
 import pytest
 
-from drivers.edges.tcp_line import TcpLine, open_tcp_line
 from drivers.ports import BusLost
+from drivers.transports.tcp_line import TcpLine, open_tcp_line
 
 PATIENCE_S = 5.0
 """Bound of every wait for the kernel."""

@@ -9,8 +9,8 @@ from threading import Event
 import can
 import pytest
 
-from drivers.edges.can_bus import PythonCanPort, open_can
 from drivers.ports import BusLost, CanFrame
+from drivers.transports.can_bus import PythonCanPort, open_can
 
 TRIES = 400
 _channels = itertools.count()

@@ -5,13 +5,13 @@ from __future__ import annotations
 import sys
 from typing import TYPE_CHECKING, Literal
 
-from drivers.ports import BusLost
+from drivers.ports import BusLost, WatchedLine
 
 if TYPE_CHECKING:
     from serial import Serial
 
 
-class SerialLine:
+class SerialLine(WatchedLine):
     """A port (``drivers.ports.LinePort``) over pyserial. Nothing blocks: the operating system keeps what arrives.
 
     Bytes are stamped with the time they are fetched at, which is no earlier than they arrived.
@@ -19,14 +19,20 @@ class SerialLine:
 
     def __init__(self, serial: Serial) -> None:
         """Take an open port without time-outs; see ``open_serial_line``."""
+        super().__init__()
         self._serial = serial
         self._unsent = b""
 
     def write(self, data: bytes, now: float) -> None:
         """Send bytes; what the operating system does not take now goes with the next call. Raises BusLost."""
+        self._unsent += data
+        self._send()
+        if self.watchers:
+            self.tell(now, data, True)
+
+    def _send(self) -> None:
         from serial import SerialException
 
-        self._unsent += data
         try:
             sent = self._serial.write(self._unsent) or 0
         except (SerialException, OSError) as error:
@@ -38,13 +44,17 @@ class SerialLine:
         from serial import SerialException
 
         if self._unsent:
-            self.write(b"", now)
+            self._send()
         try:
             waiting = self._serial.in_waiting
             data = self._serial.read(waiting) if waiting else b""
         except (SerialException, OSError) as error:
             raise BusLost(f"serial port {self._serial.name}: {error}") from error
-        return [(now, data)] if data else []
+        if not data:
+            return []
+        if self.watchers:
+            self.tell(now, data, False)
+        return [(now, data)]
 
     def close(self) -> None:
         """Release the port."""

@@ -14,8 +14,8 @@ from threading import Thread
 from typing import TYPE_CHECKING, Any
 
 from drivers.canopen import objects as o
-from drivers.edges import socketcand
 from drivers.ports import BusLost, CanFrame, FrameByFrame
+from drivers.transports import socketcand
 
 if TYPE_CHECKING:
     import can
@@ -50,6 +50,7 @@ class PythonCanPort(FrameByFrame):
     ) -> None:
         import can
 
+        super().__init__()
         self._bus = bus
         self._clock = clock
         self._on_urgent = on_urgent
@@ -73,6 +74,7 @@ class PythonCanPort(FrameByFrame):
         except self._errors as error:
             self._lose(f"sending failed: {error}")
             self._check()
+        self.tell_sent(can_id, data, now)
 
     def receive(self, now: float) -> list[CanFrame]:
         """Return the frames that arrived up to ``now``, oldest first; raises BusLost once none are left."""
@@ -84,6 +86,7 @@ class PythonCanPort(FrameByFrame):
             taken.append((t if stamped else now, can_id, data))
         if not taken:
             self._check()
+        self.tell_received(taken)
         return taken
 
     def close(self) -> None:

@@ -9,8 +9,8 @@ from select import select
 
 import pytest
 
-from drivers.edges.serial_line import SerialLine, open_serial_line
 from drivers.ports import BusLost
+from drivers.transports.serial_line import SerialLine, open_serial_line
 
 if sys.platform == "win32":
     pytest.skip("this system has no pseudo-terminals", allow_module_level=True)
