@@ -2,7 +2,7 @@
 
 The same events as PyYAML's own (a test holds them against each other), at a third of their time for what recipes are
 made of: blanks, comments, keys, plain numbers with units, long lists of them on one line. It holds for texts whose
-only line break is ``\\n`` and that have no byte order mark, which ``tester.source`` sees to.
+only line break is ``\\n`` and that have no byte order mark, which ``tester.base.source`` sees to.
 """
 
 from __future__ import annotations

@@ -70,6 +70,7 @@ _KINDS: tuple[_Kind, ...] = (
     _Kind("a growth with temperature", "0.006 mm/K", {"mm/K": _ONE, "um/K": _MILLI}),
     _Kind("a rate of temperature", "0.05 K/s", {"K/s": _ONE, "K/min": Fraction(1, 60)}),
     _Kind("a drift with temperature", "0.1 N/K", {"N/K": _ONE}),
+    _Kind("a rise with power", "5 K/W", {"K/W": _ONE}),
     _Kind("a change with temperature", "0.4 %/K", {"1/K": _ONE, "%/K": Fraction(1, 100)}),
     _Kind("a rate of force", "100 N/s", {"N/s": _ONE}),
     _Kind("a bit rate", "500 kbit/s", {"bit/s": _ONE, "kbit/s": _K, "Mbit/s": Fraction(10**6)}),

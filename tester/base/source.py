@@ -20,10 +20,10 @@ import yaml.events as ev
 from yaml.error import Mark, MarkedYAMLError
 from yaml.scanner import ScannerError
 
-from tester.plain import FORBIDDEN, harmless
-from tester.trouble import in_words
-from tester.units import shown
-from tester.yaml_events import Events
+from tester.base.plain import FORBIDDEN, harmless
+from tester.base.trouble import in_words
+from tester.base.units import shown
+from tester.base.yaml_events import Events
 
 if TYPE_CHECKING:
     from pydantic import BaseModel, ValidationError
@@ -130,14 +130,17 @@ def printable(text: str) -> str:
     return harmless(text).replace("\n", "?").replace("\t", "?")
 
 
-def problems_from_validation(error: ValidationError, tree: Tree, model: type[BaseModel] | None = None) -> list[Problem]:
+def problems_from_validation(
+    error: ValidationError, tree: Tree, model: type[BaseModel] | None = None, missing: str = ""
+) -> list[Problem]:
     """Return a pydantic error as problems with positions in the file.
 
-    With ``model`` (the class that was validated) unknown and missing keys name the valid ones.
+    With ``model`` (the class that was validated) unknown and missing keys name the valid ones. ``missing`` is said
+    of a missing key, too.
     """
-    from tester.validation import problems_of
+    from tester.base.validation import problems_of
 
-    return problems_of(error, tree, model)
+    return problems_of(error, tree, model, missing)
 
 
 def _read(path: Path, called: str) -> str:

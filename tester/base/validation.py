@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, get_args
 
 from pydantic import BaseModel
 
-from tester.source import MAX_PROBLEMS, Location, Problem, Tree, Value
-from tester.units import Quantity, expected, shown
+from tester.base.source import MAX_PROBLEMS, Location, Problem, Tree, Value
+from tester.base.units import Quantity, expected, shown
 
 if TYPE_CHECKING:
     from pydantic import ValidationError
@@ -35,12 +35,14 @@ _EXPECTED = {
 """What pydantic's type errors mean to somebody who writes YAML."""
 
 
-def problems_of(error: ValidationError, tree: Tree, model: type[BaseModel] | None) -> list[Problem]:
-    """Return the errors as problems, sorted by position; see ``tester.source.problems_from_validation``."""
+def problems_of(
+    error: ValidationError, tree: Tree, model: type[BaseModel] | None, missing: str = ""
+) -> list[Problem]:
+    """Return the errors as problems, sorted by position; see ``tester.base.source.problems_from_validation``."""
     details = islice(error.errors(include_url=False), MAX_PROBLEMS + 1)
     found = list(details)
     meant = {(at[:-1], near) for at, near in _misspelt(found, tree, model)}
-    return sorted({_problem(one, tree, model) for one in found if not _is_meant(one, tree, meant)})
+    return sorted({_problem(one, tree, model, missing) for one in found if not _is_meant(one, tree, meant)})
 
 
 def _misspelt(
@@ -61,13 +63,14 @@ def _is_meant(detail: ErrorDetails, tree: Tree, meant: set[tuple[Location, str]]
     return (_locate(detail["loc"], tree.data)[0], str(detail["loc"][-1])) in meant
 
 
-def _problem(detail: ErrorDetails, tree: Tree, model: type[BaseModel] | None) -> Problem:
+def _problem(detail: ErrorDetails, tree: Tree, model: type[BaseModel] | None, missing: str) -> Problem:
     at, value = _locate(detail["loc"], tree.data)
     kind, key = detail["type"], str(detail["loc"][-1]) if detail["loc"] else ""
     if kind == "extra_forbidden":
         return Problem(tree.name, *tree.key_position(at), _unknown(key, list(_fields(model, at[:-1]))))
     if kind == "missing":
-        return Problem(tree.name, *tree.key_position(at), _missing(key, _fields(model, at).get(key)))
+        said = _missing(key, _fields(model, at).get(key)) + (f"; {missing}" if missing else "")
+        return Problem(tree.name, *tree.key_position(at), said)
     message = _message(detail, value)
     names = [piece for piece in at if isinstance(piece, str)]
     return tree.problem(at, f"{names[-1]}: {message}" if names else message)

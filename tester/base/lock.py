@@ -1,7 +1,7 @@
 """Exclusive use of a rig: one lock a bus, held by the operating system, released by it when a process dies.
 
-The lock files stay where they are (removing one would let two processes lock two files of the same name); what is in
-one says who holds it. POSIX: flock. Windows: a locked byte behind the text (not tried there).
+The locks are filelock's: flock on POSIX, a locked first byte on Windows. The lock files stay where they are, but for a
+run's own. What is in one, from its second byte on, says who holds it.
 """
 
 from __future__ import annotations
@@ -9,16 +9,19 @@ from __future__ import annotations
 import json
 import os
 import re
-import sys
 import tempfile
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import asdict, dataclass
 from getpass import getuser
 from hashlib import sha256
 from pathlib import Path
-from typing import cast
+from typing import TYPE_CHECKING, cast
 
-from tester import clock
+from tester.base import clock
+
+if TYPE_CHECKING:
+    from filelock import FileLock
 
 FOLDER_VARIABLE = "TESTER_LOCKS"
 """Environment variable that names another folder for lock files; everybody at one rig has to use the same."""
@@ -27,7 +30,10 @@ RUN_LOCK = ".lock"
 """Name of the lock file in the folder of a run that is under way."""
 
 _TEXT_AT_MOST = 4096
-"""Bytes of a lock file that say who holds it; a locked byte on Windows lies behind them."""
+"""Bytes of a lock file that say who holds it, behind the first, which nobody else can read on Windows."""
+
+_SETTLES_S = 0.02
+"""By when a lock file is gone whose holder is just removing it, s [A]; whoever holds one for longer has it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,8 +61,7 @@ class ExclusiveUse:
     def __init__(self, folder: Path | None = None) -> None:
         """Hold nothing yet. ``folder``: of the lock files, by default one for the whole machine."""
         self._folder = folder
-        self._held: list[int] = []
-        self._files: list[Path] = []
+        self._held: list[tuple[FileLock, Path | None]] = []
 
     def lock(self, resources: Sequence[str], run: str) -> None:
         """Lock the buses of a rig (texts such as ``can socketcan:can0``); raises RigInUseError at once, OSError.
@@ -68,17 +73,38 @@ class ExclusiveUse:
 
     def lock_file(self, resource: str, path: Path, run: str, *, lasting: bool = True) -> None:
         """Lock one file; one that is not ``lasting`` goes when it is released. Raises RigInUseError, OSError."""
-        holder = Holder(os.getpid(), user(), clock.utc_now(), run)
-        self._held.append(_locked(path, resource, holder, mode=0o666 if lasting else 0o644))
-        if not lasting:
-            self._files.append(path)
+        from filelock import FileLock, Timeout  # only commands that lock pay for it
+
+        said = json.dumps(asdict(Holder(os.getpid(), user(), clock.utc_now(), run)), ensure_ascii=False).encode()
+
+        def say(descriptor: int) -> None:
+            os.ftruncate(descriptor, 0)
+            os.write(descriptor, b"\n" + said[:_TEXT_AT_MOST])
+
+        lock = FileLock(
+            path,
+            mode=0o666 if lasting else 0o644,  # one for the whole machine may be locked by everybody, whoever made it
+            thread_local=False,
+            fallback_to_soft=False,  # a file that merely exists would outlive a process that is killed
+            preserve_lock_file=lasting,
+            on_acquired=say,
+        )
+        try:
+            lock.acquire(timeout=_SETTLES_S, poll_interval=_SETTLES_S / 4)
+        except Timeout:
+            other = holder_of(path)
+            who = other.describe() if other is not None else "another process"
+            raise RigInUseError(f"{resource} is in use: {who}") from None
+        self._held.append((lock, None if lasting else path))
 
     def release(self) -> None:
         """Let go of every lock."""
-        while self._files:
-            self._files.pop().unlink(missing_ok=True)  # while it is still ours
         while self._held:
-            os.close(self._held.pop())
+            lock, path = self._held.pop()
+            if path is not None:
+                with suppress(PermissionError):  # Windows: filelock removes it once it is closed
+                    path.unlink(missing_ok=True)  # while it is still ours
+            lock.release()
 
     def __enter__(self) -> ExclusiveUse:
         """Return the locks."""
@@ -95,8 +121,11 @@ def user_of(path: Path) -> Holder | None:
         descriptor = os.open(path, os.O_RDONLY)
     except OSError:
         return None
+    from filelock import lock_descriptor
+
     try:
-        return None if _try_lock(descriptor) else holder_of(path) or Holder(0, "unknown", "unknown", "")
+        free = lock_descriptor(descriptor, blocking=False)
+        return None if free else holder_of(path) or Holder(0, "unknown", "unknown", "")
     finally:
         os.close(descriptor)
 
@@ -113,7 +142,9 @@ def lock_folder() -> Path:
 def holder_of(path: Path) -> Holder | None:
     """Return who last wrote into a lock file, None where that cannot be read."""
     try:
-        said = cast(object, json.loads(path.read_bytes()[:_TEXT_AT_MOST].rstrip(b"\0 \n")))
+        with path.open("rb") as file:
+            file.seek(1)
+            said = cast(object, json.loads(file.read(_TEXT_AT_MOST)))
     except (OSError, ValueError):
         return None
     if not isinstance(said, dict):
@@ -127,67 +158,6 @@ def _file_name(resource: str) -> str:
     """Return the name of a resource's lock file; the short hash keeps names apart that differ in odd characters."""
     name = re.sub(r"[^A-Za-z0-9]+", "-", resource).strip("-")[:40]
     return f"friction-tester-{name}-{sha256(resource.encode()).hexdigest()[:8]}.lock"
-
-
-def _locked(path: Path, resource: str, holder: Holder, *, mode: int) -> int:
-    """Return the descriptor of a lock file that is ours now."""
-    while True:
-        descriptor = _open(path, mode)
-        try:
-            if not _try_lock(descriptor):
-                other = holder_of(path)
-                who = other.describe() if other is not None else "another process"
-                raise RigInUseError(f"{resource} is in use: {who}")
-            if _still_there(path, descriptor):
-                os.ftruncate(descriptor, 0)
-                os.write(descriptor, json.dumps(asdict(holder), ensure_ascii=False).encode()[:_TEXT_AT_MOST])
-                return descriptor
-        except (RigInUseError, OSError):
-            os.close(descriptor)
-            raise
-        os.close(descriptor)  # its holder removed it between our opening and our locking it
-
-
-def _still_there(path: Path, descriptor: int) -> bool:
-    try:
-        return os.path.samestat(path.stat(), os.fstat(descriptor))
-    except FileNotFoundError:
-        return False
-
-
-def _open(path: Path, mode: int) -> int:
-    """Open a lock file; one for the whole machine may be locked by everybody, whoever made it."""
-    try:
-        # Not O_CREAT where it exists: Linux forbids that for somebody else's file in a sticky folder.
-        return os.open(path, os.O_RDWR)
-    except FileNotFoundError:
-        descriptor = os.open(path, os.O_RDWR | os.O_CREAT, mode)
-    if hasattr(os, "fchmod"):
-        os.fchmod(descriptor, mode)  # whatever the umask is
-    return descriptor
-
-
-if sys.platform == "win32":
-    import msvcrt
-
-    def _try_lock(descriptor: int) -> bool:
-        os.lseek(descriptor, _TEXT_AT_MOST, os.SEEK_SET)
-        try:
-            msvcrt.locking(descriptor, msvcrt.LK_NBLCK, 1)
-        except OSError:
-            return False
-        os.lseek(descriptor, 0, os.SEEK_SET)
-        return True
-
-else:
-    import fcntl
-
-    def _try_lock(descriptor: int) -> bool:
-        try:
-            fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            return False
-        return True
 
 
 def user() -> str:

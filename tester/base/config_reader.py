@@ -16,16 +16,20 @@ import types
 from collections.abc import Mapping
 from dataclasses import MISSING, Field, dataclass, fields, is_dataclass
 from functools import cache
-from typing import TYPE_CHECKING, Annotated, Any, TypeVar, Union, cast, get_args, get_origin, get_type_hints
+from typing import TYPE_CHECKING, Annotated, Any, Final, TypeVar, Union, cast, get_args, get_origin, get_type_hints
 
-from tester.source import InvalidSource, Tree, problems_from_validation
-from tester.units import Quantity, units_like
+from tester.base.source import InvalidSource, Tree, problems_from_validation
+from tester.base.units import Quantity, units_like
 
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
     from pydantic import BaseModel
 
 Config = TypeVar("Config", bound="DataclassInstance")
+
+FURTHER_KEYS: Final = "further keys"
+"""Marks the one field of a dataclass that takes the keys that no other field has:
+``Annotated[Mapping[str, float], FURTHER_KEYS]``. Each is a bare number; in the file they stand beside the others."""
 
 SUFFIXES: dict[str, str] = {
     "m/s": "_m_s", "mm/s": "_mm_s", "rad/s": "_rad_s", "m/s2": "_m_s2", "mm/s2": "_mm_s2",
@@ -53,23 +57,30 @@ def key_of(kind: type[DataclassInstance], name: str) -> str:
     return _key(name, _hints(kind)[name])
 
 
-def read(kind: type[Config], tree: Tree) -> Config:
-    """Return a file's tree as an instance of ``kind``; raises InvalidSource with every problem."""
+def read(kind: type[Config], tree: Tree, missing: str = "") -> Config:
+    """Return a file's tree as an instance of ``kind``; raises InvalidSource with every problem.
+
+    ``missing`` is said of every key that has to be there, beside that it is not.
+    """
     from pydantic import TypeAdapter, ValidationError  # only commands that read a file pay for it
 
     try:
         return cast("Config", TypeAdapter[object](_built(kind)).validate_python(tree.data))
     except ValidationError as error:
-        raise InvalidSource(problems_from_validation(error, tree, _model(kind))) from error
+        raise InvalidSource(problems_from_validation(error, tree, _model(kind), missing)) from error
 
 
 def as_tree(config: DataclassInstance) -> dict[str, object]:
     """Return a configuration as it could stand in a file: every key, quantities as text with their unit."""
     hints = _hints(type(config))
-    return {
-        _key(field.name, hints[field.name]): _plain(getattr(config, field.name), hints[field.name])
-        for field in fields(config)
-    }
+    tree: dict[str, object] = {}
+    for field in fields(config):
+        value, hint = getattr(config, field.name), hints[field.name]
+        if _takes_rest(hint):
+            tree.update({key: _number(number) for key, number in value.items()})
+        elif value or not _may_be_empty(field):
+            tree[_key(field.name, hint)] = _plain(value, hint)
+    return tree
 
 
 def as_text(config: DataclassInstance) -> str:
@@ -82,12 +93,21 @@ def _hints(kind: type[DataclassInstance]) -> dict[str, Any]:
     return get_type_hints(kind, include_extras=True)
 
 
+def _takes_rest(hint: object) -> bool:
+    return get_origin(hint) is Annotated and FURTHER_KEYS in get_args(hint)
+
+
+def _may_be_empty(field: Field[Any]) -> bool:
+    """Tell whether a field is a mapping that is left out where it is empty."""
+    return get_origin(field.default_factory) is dict
+
+
 def _unit(hint: object) -> str | None:
     """Return the unit of a quantity's type, None for any other type.
 
-    ``N.m`` is the table's ``N m``. Raises KeyError for a unit that is not in the table of ``tester.units``.
+    ``N.m`` is the table's ``N m``. Raises KeyError for a unit that is not in the table of ``tester.base.units``.
     """
-    if get_origin(hint) is not Annotated:
+    if get_origin(hint) is not Annotated or _takes_rest(hint):
         return None
     unit = next((one for one in get_args(hint)[1:] if isinstance(one, str)), None)
     if unit is not None:
@@ -101,19 +121,35 @@ def _key(name: str, hint: object) -> str:
 
 
 @cache
+def _base(*, further: bool) -> type[BaseModel]:
+    """Return what every model inherits: a text is no number, true is not 1, an unknown key is an error or a number."""
+    from pydantic import BaseModel, ConfigDict
+
+    strict = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False, protected_namespaces=())
+
+    class Known(BaseModel):
+        model_config = strict
+
+    class Further(BaseModel):
+        model_config = strict | {"extra": "allow"}
+        __pydantic_extra__: dict[str, Annotated[float, Quantity("1", True)]]  # pyright: ignore
+
+    return Further if further else Known
+
+
+@cache
 def _model(kind: type[DataclassInstance]) -> type[BaseModel]:
     """Return the pydantic model that checks a mapping for ``kind``."""
-    from pydantic import ConfigDict, create_model
+    from pydantic import create_model
 
-    # A recipe's rules: a text is no number, true is not 1, an unknown key is an error.
-    config = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False, protected_namespaces=())
     hints = _hints(kind)
+    base = _base(further=any(_takes_rest(hint) for hint in hints.values()))
     definitions: dict[str, Any] = {
         field.name: (_type(hints[field.name]), _field(field, _key(field.name, hints[field.name])))
         for field in fields(kind)
-        if field.init
+        if field.init and not _takes_rest(hints[field.name])
     }
-    return create_model(kind.__name__, __config__=config, **definitions)
+    return create_model(kind.__name__, __base__=base, **definitions)
 
 
 def _field(field: Field[Any], key: str) -> object:
@@ -133,10 +169,15 @@ def _built(kind: type[DataclassInstance]) -> Any:
     """
     from pydantic import AfterValidator
 
+    hints = _hints(kind)
     names = [field.name for field in fields(kind) if field.init]
+    rest = next((name for name in names if _takes_rest(hints[name])), "")
 
     def build(model: BaseModel) -> DataclassInstance:
-        return kind(**{name: getattr(model, name) for name in names})
+        values: dict[str, Any] = {name: getattr(model, name) for name in names if name != rest}
+        if rest:
+            values[rest] = dict(model.model_extra or {})
+        return kind(**values)
 
     return Annotated[_model(kind), AfterValidator(build)]
 

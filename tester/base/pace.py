@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from threading import Event
 
-from tester import clock
+from tester.base import clock
 
 LATE_S = 0.005
 """A wait that ends this late has seen the whole process stand still, s: its other threads are as late [A]."""
