@@ -7,17 +7,17 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-from tester import clock
-from tester.campaign.endings import CannotStartError
-from tester.campaign.split import Part, split
-from tester.engine.results import condition_records
-from tester.interlocks.heat_ratio import NO_HISTORY, KnownRatio
+from tester.base import clock
+from tester.machine.results import condition_records
+from tester.machine.run_parts import Part
+from tester.machine.served import History
 from tester.recipe.check import load_checked
-from tester.recipe.expand import expand
 from tester.recipe.plan import Plan
 from tester.recipe.schema import Recipe
-from tester.rig import RigConfig
-from tester.rig.load import load_rig_text
+from tester.rig import Rig
+from tester.run.endings import CannotStartError
+from tester.run.kinds import recipe_part, run_parts
+from tester.run.rigs import load_rig_text
 from tester.store.files import write_text
 from tester.store.records import RunInfo, SpecimenInfo
 from tester.store.resume import ResumePoint
@@ -43,15 +43,15 @@ class Job:
     """Whether samples are kept."""
     faults: tuple[str, ...] = ()
     """Lines of a fault script (sim.faults.language), beside those of the rig file."""
-    heat: KnownRatio = NO_HISTORY
-    """What earlier runs make known of the rig's heat balance: the same for every part."""
+    history: History | None = None
+    """What earlier runs make known of the rig, None for nothing: the same for every part."""
 
 
 @dataclass(frozen=True, slots=True)
 class Work:
     """What is to be done: rig, plan, and the plan's parts; ``point`` is where an interrupted run goes on."""
 
-    rig: RigConfig
+    rig: Rig
     plan: Plan
     parts: tuple[Part, ...]
     point: ResumePoint | None = None
@@ -61,13 +61,13 @@ class Work:
         return folder if len(self.parts) == 1 else folder / PARTS / str(part.number)
 
 
-def work_of(recipe: Recipe, rig: RigConfig) -> Work:
+def work_of(recipe: Recipe, rig: Rig) -> Work:
     """Return the work that a recipe is on a rig."""
-    plan = expand(recipe, rig)
-    return Work(rig, plan, split(plan, simulated=rig.simulated))
+    plan = recipe_part(rig).expand(recipe, rig)
+    return Work(rig, plan, run_parts(rig).split(plan) if rig.simulated else (Part(1, plan),))
 
 
-def write_sources(folder: Path, recipe_text: str, rig: RigConfig) -> None:
+def write_sources(folder: Path, recipe_text: str, rig: Rig) -> None:
     """Write recipe and rig file, as they are used, into the run's folder."""
     write_text(folder / "recipe.yaml", recipe_text)
     write_text(folder / "rig.yaml", rig.text)
@@ -76,7 +76,7 @@ def write_sources(folder: Path, recipe_text: str, rig: RigConfig) -> None:
 def read_work(folder: Path) -> Work:
     """Return the work of a run's folder; raises InvalidSource where its files are not as they were written."""
     rig = load_rig_text(folder / "rig.yaml")
-    return work_of(load_checked(folder / "recipe.yaml", rig).recipe, rig)
+    return work_of(load_checked(folder / "recipe.yaml", rig, recipe_part(rig)).recipe, rig)
 
 
 def make_folder(out: Path, name: str) -> Path:
@@ -110,6 +110,8 @@ def beginning_of(part: Part, job: Job, work: Work) -> Begin:
             rig_text="",
             started_utc=clock.utc_now(),
             simulated=work.rig.simulated,
+            kind=work.plan.kind,
+            axes=work.plan.axes,
             seed=job.seed,
         )
         writer.begin_run(info, specimens_of(part.plan), condition_records(part.plan))

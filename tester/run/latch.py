@@ -11,11 +11,11 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-from tester import clock
+from tester.base import clock
+from tester.base.source import InvalidSource, load_tree
 from tester.export import write_all
 from tester.export.manifest import MANIFEST, manifest_problems
-from tester.rig import RigConfig
-from tester.source import InvalidSource, load_tree
+from tester.rig import Rig
 from tester.store.amend import acknowledge_trips
 from tester.store.catalogue import run_folders, under_way
 from tester.store.reader import RunReader
@@ -41,7 +41,7 @@ class OpenTrip:
         return f"{self.trip.interlock}{compared} in {self.folder.name}, {self.trip.utc}"
 
 
-def made_on(rig: RigConfig, reader: RunReader) -> bool:
+def made_on(rig: Rig, reader: RunReader) -> bool:
     """Tell whether a stored run was made on a rig of this name: the rest of its file may have changed since."""
     info = reader.run().info
     if info.simulated is not rig.simulated:
@@ -53,7 +53,7 @@ def made_on(rig: RigConfig, reader: RunReader) -> bool:
     return isinstance(tree, dict) and tree.get("rig") == rig.name
 
 
-def open_trips(runs: Path, rig: RigConfig, own: Path | None = None) -> list[OpenTrip]:
+def open_trips(runs: Path, rig: Rig, own: Path | None = None) -> list[OpenTrip]:
     """Return the trips on a hardware rig that nobody has acknowledged; a simulated one is new at every start.
 
     Runs under way are left out, but for ``own``. Older versions did not record acknowledgements: theirs count as given.
@@ -61,7 +61,7 @@ def open_trips(runs: Path, rig: RigConfig, own: Path | None = None) -> list[Open
     return [] if rig.simulated else [*_found(runs, rig, own)]
 
 
-def _found(runs: Path, rig: RigConfig, own: Path | None) -> Iterator[OpenTrip]:
+def _found(runs: Path, rig: Rig, own: Path | None) -> Iterator[OpenTrip]:
     newest = slice(None, -NEWEST_RUNS - 1, -1)
     for folder in (*[*run_folders(runs)][newest], *[*run_folders(runs / MANUAL_RUNS)][newest]):
         if folder != own and under_way(folder) is not None:

@@ -6,20 +6,23 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import IntFlag
 
-from tester.engine.run import Outcome, Run
+from tester.base.exits import (
+    EXIT_DONE,
+    EXIT_FAILED,
+    EXIT_INCOMPLETE,
+    EXIT_INTERRUPTED,
+    EXIT_TRIPPED,
+    EXIT_UNREACHABLE,
+)
+from tester.machine.run import Outcome, Run
 
 EXIT_CODES: dict[Outcome, int] = {
-    Outcome.DONE: 0,
-    Outcome.FAILED: 1,
-    Outcome.UNREACHABLE: 4,
-    Outcome.TRIPPED: 5,
-    Outcome.STOPPED: 5,
+    Outcome.DONE: EXIT_DONE,
+    Outcome.FAILED: EXIT_FAILED,
+    Outcome.UNREACHABLE: EXIT_UNREACHABLE,
+    Outcome.TRIPPED: EXIT_TRIPPED,
+    Outcome.STOPPED: EXIT_TRIPPED,
 }
-EXIT_USAGE = 2
-EXIT_REFUSED = 3
-"""Recipe, rig or calibration are not those of the run that is to go on."""
-EXIT_INCOMPLETE = 6
-EXIT_INTERRUPTED = 130
 
 _BY_SEVERITY = (Outcome.DONE, Outcome.STOPPED, Outcome.UNREACHABLE, Outcome.FAILED, Outcome.TRIPPED)
 
@@ -33,7 +36,7 @@ class CannotStartError(Exception):
         self.code = code
 
 
-class Stop(IntFlag):
+class StopLevel(IntFlag):
     """Who wants a run to stop. Wishes add up: what one has ordered, no other takes back."""
 
     NONE = 0
@@ -53,17 +56,17 @@ class Stop(IntFlag):
 
     def tell(self, run: Run) -> None:
         """Have a run stop. Who sends TERM or closes the terminal gets the end at standstill, without the cool-down."""
-        run.request_stop(self.text, fast=Stop.FAST in self, cool=not self & _NOT_COOLED)
+        run.request_stop(self.text, fast=StopLevel.FAST in self, cool=not self & _NOT_COOLED)
 
 
-_NOT_COOLED = Stop.TERMINATED | Stop.HUNG_UP
+_NOT_COOLED = StopLevel.TERMINATED | StopLevel.HUNG_UP
 _STOP_TEXTS = {
-    Stop.FAST: "interrupted by the operator",
-    Stop.INTERRUPTED: "interrupted by the operator",
-    Stop.TERMINATED: "terminated",
-    Stop.HUNG_UP: "the terminal is gone",
-    Stop.UNSEEN: "the run can no longer be shown",
-    Stop.OTHER_PART: "another part has ended early",
+    StopLevel.FAST: "interrupted by the operator",
+    StopLevel.INTERRUPTED: "interrupted by the operator",
+    StopLevel.TERMINATED: "terminated",
+    StopLevel.HUNG_UP: "the terminal is gone",
+    StopLevel.UNSEEN: "the run can no longer be shown",
+    StopLevel.OTHER_PART: "another part has ended early",
 }
 
 
@@ -78,7 +81,7 @@ class PartEnd:
 
 
 @dataclass(frozen=True, slots=True)
-class Ending:
+class RunEnding:
     """How the whole run ended: the worst of its parts."""
 
     outcome: Outcome
@@ -96,7 +99,7 @@ class Ending:
         return EXIT_CODES[self.outcome]
 
 
-def ending_of(ends: Sequence[PartEnd], parts: int, stop: Stop = Stop.NONE) -> Ending:
+def ending_of(ends: Sequence[PartEnd], parts: int, stop: StopLevel = StopLevel.NONE) -> RunEnding:
     """Return the ending of a run of ``parts`` parts, of which those in ``ends`` were begun; ``stop``: who wanted one.
 
     The first of the worst gives the reason. A run with a part that was not begun has been stopped, if nothing worse.
@@ -104,6 +107,6 @@ def ending_of(ends: Sequence[PartEnd], parts: int, stop: Stop = Stop.NONE) -> En
     failed = next((end.failed for end in ends if end.failed), None)
     worst = max(ends, key=lambda end: (_BY_SEVERITY.index(end.outcome), -end.part), default=None)
     if worst is None or (worst.outcome is Outcome.DONE and len(ends) < parts):
-        return Ending(Outcome.STOPPED, stop.text, failed)
+        return RunEnding(Outcome.STOPPED, stop.text, failed)
     reason = f"part {worst.part}: {worst.reason}" if parts > 1 and worst.reason else worst.reason
-    return Ending(worst.outcome, reason, failed)
+    return RunEnding(worst.outcome, reason, failed)

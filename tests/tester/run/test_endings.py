@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from tester.campaign.endings import PartEnd, Stop, ending_of
-from tester.engine.run import Outcome
+from tester.machine.run import Outcome
+from tester.run.endings import PartEnd, StopLevel, ending_of
 
 DONE, STOPPED, FAILED, TRIPPED = Outcome.DONE, Outcome.STOPPED, Outcome.FAILED, Outcome.TRIPPED
 UNREACHABLE = Outcome.UNREACHABLE
@@ -36,12 +36,12 @@ def test_a_run_of_one_part_gives_its_reason_as_it_is() -> None:
 
 
 def test_a_run_with_a_part_that_was_not_begun_is_stopped() -> None:
-    ending = ending_of([PartEnd(1, DONE)], 2, Stop.INTERRUPTED)
+    ending = ending_of([PartEnd(1, DONE)], 2, StopLevel.INTERRUPTED)
     assert (ending.outcome, ending.reason) == (STOPPED, "interrupted by the operator")
 
 
 def test_a_run_of_which_nothing_was_begun_is_stopped() -> None:
-    assert ending_of([], 2, Stop.TERMINATED).outcome is STOPPED
+    assert ending_of([], 2, StopLevel.TERMINATED).outcome is STOPPED
 
 
 class Told:
@@ -57,16 +57,16 @@ class Told:
 @pytest.mark.parametrize(
     ("stop", "said"),
     [
-        (Stop.INTERRUPTED, ("interrupted by the operator", False, True)),
-        (Stop.TERMINATED, ("terminated", False, False)),
-        (Stop.HUNG_UP, ("the terminal is gone", False, False)),
-        (Stop.UNSEEN, ("the run can no longer be shown", False, True)),
-        (Stop.INTERRUPTED | Stop.TERMINATED, ("interrupted by the operator", False, False)),
-        (Stop.TERMINATED | Stop.FAST, ("interrupted by the operator", True, False)),
-        (Stop.INTERRUPTED | Stop.FAST, ("interrupted by the operator", True, True)),
+        (StopLevel.INTERRUPTED, ("interrupted by the operator", False, True)),
+        (StopLevel.TERMINATED, ("terminated", False, False)),
+        (StopLevel.HUNG_UP, ("the terminal is gone", False, False)),
+        (StopLevel.UNSEEN, ("the run can no longer be shown", False, True)),
+        (StopLevel.INTERRUPTED | StopLevel.TERMINATED, ("interrupted by the operator", False, False)),
+        (StopLevel.TERMINATED | StopLevel.FAST, ("interrupted by the operator", True, False)),
+        (StopLevel.INTERRUPTED | StopLevel.FAST, ("interrupted by the operator", True, True)),
     ],
 )
-def test_what_one_has_ordered_no_other_takes_back(stop: Stop, said: tuple[str, bool, bool]) -> None:
+def test_what_one_has_ordered_no_other_takes_back(stop: StopLevel, said: tuple[str, bool, bool]) -> None:
     run = Told()
     stop.tell(run)  # type: ignore[arg-type]
     assert run.said == [said]

@@ -10,16 +10,16 @@ from pathlib import Path
 
 import pytest
 
-from tester.campaign import crew
-from tester.campaign.crew import Sight, longest_first, side_by_side
-from tester.campaign.endings import PartEnd, Stop
-from tester.campaign.folder import Job, Work
-from tester.campaign.pool import say, stop_level
-from tester.campaign.split import split
-from tester.engine.context import Progress
-from tester.engine.run import Outcome
-from tests.tester.campaign.test_split import PREPARED, THREE, WORN
-from tests.tester.engine.bench import plan_of
+from tester.kinds.wheel_on_belt.split import split
+from tester.machine.context import Progress
+from tester.machine.run import Outcome
+from tester.run import workers as crew
+from tester.run.endings import PartEnd, StopLevel
+from tester.run.folder import Job, Work
+from tester.run.pool import say, stop_level
+from tester.run.workers import Sight, longest_first, side_by_side
+from tests.tester.kinds.wheel_on_belt.bench import plan_of
+from tests.tester.kinds.wheel_on_belt.test_split import PREPARED, THREE, WORN
 from tests.tester.recipe.texts import rig
 
 Result = PartEnd | BaseException | None
@@ -32,14 +32,14 @@ class Pool:
 
     def __init__(self, jobs: int) -> None:
         self.jobs = jobs
-        self.level = Stop.NONE
+        self.level = StopLevel.NONE
         self.said: list[object] = [Sight(1.5, Progress(part=2), 0.25), "something else"]
 
     def __enter__(self) -> Pool:
         return self
 
     def __exit__(self, *_: object) -> None:
-        self.level |= Stop.FAST
+        self.level |= StopLevel.FAST
 
     def submit(self, work: object, job: Job, number: int) -> Future[PartEnd | None]:
         future: Future[PartEnd | None] = Future()
@@ -50,7 +50,7 @@ class Pool:
             future.set_result(result)
         return future
 
-    def stop(self, level: Stop) -> None:
+    def stop(self, level: StopLevel) -> None:
         self.level |= level
 
     def reports(self) -> Iterator[object]:
@@ -65,9 +65,9 @@ class Carried:
         Pool.results = results
         self.sights: list[Sight] = []
         self.pools: list[Pool] = []
-        self.levels: list[Stop] = []
+        self.levels: list[StopLevel] = []
         plan = plan_of(THREE)
-        work = Work(rig(), plan, split(plan, simulated=True))
+        work = Work(rig(), plan, split(plan))
         take: Callable[[object], None] = self.pools.append  # type: ignore[assignment]
         self.ends: list[PartEnd] = []
         for end in side_by_side(Job(Path("run")), work, 9, self.sights.append, take):
@@ -77,7 +77,7 @@ class Carried:
 
 @pytest.fixture
 def carried(monkeypatch: pytest.MonkeyPatch) -> Callable[[dict[int, Result]], Carried]:
-    monkeypatch.setattr(crew, "Pool", Pool)
+    monkeypatch.setattr(crew, "WorkerPool", Pool)
     return Carried
 
 
@@ -87,7 +87,7 @@ def ended(part: int, outcome: Outcome = Outcome.DONE) -> PartEnd:
 
 def test_parts_that_end_well_stop_nobody(carried: Callable[[dict[int, Result]], Carried]) -> None:
     found = carried({1: ended(1), 2: ended(2), 3: ended(3)})
-    assert [end.part for end in found.ends] == [1, 2, 3] and found.levels == [Stop.NONE] * 3
+    assert [end.part for end in found.ends] == [1, 2, 3] and found.levels == [StopLevel.NONE] * 3
 
 
 def test_there_are_no_more_processes_than_parts(carried: Callable[[dict[int, Result]], Carried]) -> None:
@@ -99,7 +99,7 @@ def test_a_part_that_ends_early_stops_the_others(
     carried: Callable[[dict[int, Result]], Carried], outcome: Outcome
 ) -> None:
     found = carried({1: ended(1, outcome), 2: None, 3: None})
-    assert found.ends == [PartEnd(1, outcome)] and found.levels == [Stop.OTHER_PART]
+    assert found.ends == [PartEnd(1, outcome)] and found.levels == [StopLevel.OTHER_PART]
 
 
 def test_a_part_whose_process_is_lost_has_failed(carried: Callable[[dict[int, Result]], Carried]) -> None:
@@ -120,10 +120,10 @@ def test_what_workers_report_is_shown(carried: Callable[[dict[int, Result]], Car
 
 def test_a_process_that_is_no_worker_is_told_nothing_and_says_nothing() -> None:
     say("unheard")
-    assert stop_level() is Stop.NONE
+    assert stop_level() is StopLevel.NONE
 
 
 def test_what_takes_longest_begins_first() -> None:
-    brief, long = split(plan_of(PREPARED), simulated=True)[0], split(plan_of(WORN), simulated=True)[0]
+    brief, long = split(plan_of(PREPARED))[0], split(plan_of(WORN))[0]
     parts = (brief, replace(long, number=2), replace(brief, number=3))
     assert longest_first(Work(rig(), brief.plan, parts)) == [2, 1, 3]

@@ -4,23 +4,24 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from tester.campaign.endings import EXIT_CODES, CannotStartError
-from tester.engine.run import Outcome
-from tester.lock import RUN_LOCK, ExclusiveUse, RigInUseError
-from tester.recipe.estimate import Estimate, estimate
+from tester.base.lock import RUN_LOCK, ExclusiveUse, RigInUseError
+from tester.machine.run import Outcome
+from tester.recipe.estimate import Estimate
 from tester.recipe.plan import Plan
-from tester.rig import RigConfig
+from tester.rig import Rig
+from tester.run.endings import EXIT_CODES, CannotStartError
+from tester.run.kinds import recipe_part
 from tester.store.space import expected_bytes, too_little_room
 
 
-def enough_room(folder: Path, plan: Plan, rig: RigConfig, expected: Estimate | None = None) -> None:
+def enough_room(folder: Path, plan: Plan, rig: Rig, expected: Estimate | None = None) -> None:
     """Raise CannotStartError unless twice what the run will take is free; ``expected``: its estimate."""
-    missing = too_little_room(folder, expected_bytes(plan, expected or estimate(plan, rig)))
+    missing = too_little_room(folder, expected_bytes(plan, expected or recipe_part(rig).estimate(plan, rig)))
     if missing:
         raise CannotStartError(missing, EXIT_CODES[Outcome.FAILED])
 
 
-def hold_rig(use: ExclusiveUse, rig: RigConfig, run: str) -> None:
+def hold_rig(use: ExclusiveUse, rig: Rig, run: str) -> None:
     """Lock a rig's buses; nothing for a rig simulated in this process. Raises CannotStartError."""
     try:
         use.lock(buses_of(rig), run)
@@ -36,7 +37,7 @@ def hold_run(use: ExclusiveUse, folder: Path) -> None:
         raise CannotStartError(str(error)) from error
 
 
-def buses_of(rig: RigConfig) -> list[str]:
+def buses_of(rig: Rig) -> list[str]:
     """Return the buses of a rig that only one process may use."""
     if rig.can.interface == "sim":
         return []

@@ -9,15 +9,17 @@ from dataclasses import replace
 from pathlib import Path
 from shutil import rmtree
 
-from tester import clock
-from tester.campaign.endings import Ending, PartEnd, Stop, ending_of
-from tester.campaign.folder import PARTS, Begin, Job, Work
+from tester.base import clock
+from tester.base.trouble import in_words
+from tester.quantities import Quantities
+from tester.rig.sensors import quantities_on
+from tester.run.endings import PartEnd, RunEnding, StopLevel, ending_of
+from tester.run.folder import PARTS, Begin, Job, Work
 from tester.store.files import sync_folder
 from tester.store.merge import Merge
 from tester.store.reader import DATABASE
 from tester.store.schema import NotBegunError, StoreError
 from tester.store.writer import RunWriter
-from tester.trouble import in_words
 
 MERGED = "parts.merged"
 """The parts' folder once the run's own record holds everything: to be deleted."""
@@ -28,9 +30,9 @@ def put_together(
     work: Work,
     begin: Begin,
     ends: Generator[PartEnd],
-    wanted: Callable[[], Stop],
+    wanted: Callable[[], StopLevel],
     tell: Callable[[PartEnd], None],
-) -> Ending:
+) -> RunEnding:
     """Merge the records of parts, as they end, into the run's own, in the plan's order; return the run's ending.
 
     ``wanted`` says who wants a stop, ``tell`` is told of every part's end. The parts' own records go when all are in.
@@ -39,7 +41,7 @@ def put_together(
     failed: str | None = None
     with closing(ends):
         try:
-            _begin(job.folder, begin)
+            _begin(job.folder, quantities_on(work.rig), begin)
             with Merge(job.folder) as merge:
                 _merge(job, work, ends, ended, merge, tell)
                 ending = ending_of(list(ended.values()), len(work.parts), wanted())
@@ -77,10 +79,10 @@ def drop_parts(folder: Path) -> None:
         rmtree(folder / MERGED)
 
 
-def _begin(folder: Path, begin: Begin) -> None:
+def _begin(folder: Path, quantities: Quantities, begin: Begin) -> None:
     """Record what is going to be done: a run that is cut off shows what it was to be."""
     record = folder / DATABASE
-    with closing(RunWriter(record, clock=clock.monotonic, utc=clock.utc_now, synchronous=True)) as writer:
+    with closing(RunWriter(record, quantities, clock=clock.monotonic, utc=clock.utc_now, synchronous=True)) as writer:
         begin(writer)
 
 

@@ -19,26 +19,26 @@ from threading import Thread, current_thread, main_thread
 from types import TracebackType
 from typing import ParamSpec, TypeVar
 
-from tester.campaign.endings import EXIT_CODES, Stop
-from tester.engine.run import Outcome
-from tester.signals import leave_to_parent, not_inherited
+from tester.base.signals import leave_to_parent, not_inherited
+from tester.machine.run import Outcome
+from tester.run.endings import EXIT_CODES, StopLevel
 
 P = ParamSpec("P")
 R = TypeVar("R")
 
 
-class Pool:
+class WorkerPool:
     """Up to ``jobs`` processes; use in a ``with`` block, whose end stops what runs."""
 
     def __init__(self, jobs: int) -> None:
         """Start nothing yet: a process starts with the first call that needs it."""
         context = multiprocessing.get_context("spawn")
         with _unheard():  # the first of these starts a process that looks after shared memory
-            self._level: Synchronized[int] = context.Value("i", Stop.NONE)
+            self._level: Synchronized[int] = context.Value("i", StopLevel.NONE)
             self._reports: SimpleQueue[object] = context.SimpleQueue()
         self._executor = ProcessPoolExecutor(jobs, context, _enlist, (self._level, self._reports))
 
-    def __enter__(self) -> Pool:
+    def __enter__(self) -> WorkerPool:
         """Return the pool."""
         return self
 
@@ -46,7 +46,7 @@ class Pool:
         self, kind: type[BaseException] | None, value: BaseException | None, trace: TracebackType | None
     ) -> None:
         """Drop what waits; what still runs is told to stop, and waited for."""
-        self.stop(Stop.FAST)
+        self.stop(StopLevel.FAST)
         self._executor.shutdown(cancel_futures=True)
 
     @property
@@ -60,7 +60,7 @@ class Pool:
         with _unheard():
             return self._executor.submit(work, *args, **kwargs)
 
-    def stop(self, level: Stop) -> None:
+    def stop(self, level: StopLevel) -> None:
         """Tell every worker that somebody wants a stop."""
         self._level.value |= level
 
@@ -81,17 +81,17 @@ class _Worker:
 
     level: Synchronized[int]
     reports: SimpleQueue[object]
-    own: Stop = Stop.NONE
+    own: StopLevel = StopLevel.NONE
 
 
 _worker: _Worker | None = None
 
 
-def stop_level() -> Stop:
+def stop_level() -> StopLevel:
     """Return who wants this worker to stop; NONE where there is no pool."""
     if _worker is None:
-        return Stop.NONE
-    return _worker.own | Stop(_worker.level.value)
+        return StopLevel.NONE
+    return _worker.own | StopLevel(_worker.level.value)
 
 
 def say(report: object) -> None:
@@ -111,7 +111,7 @@ def _enlist(level: Synchronized[int], reports: SimpleQueue[object]) -> None:
 
 def _on_term(_number: int, _frame: object) -> None:
     if _worker is not None:
-        _worker.own = Stop.TERMINATED
+        _worker.own = StopLevel.TERMINATED
 
 
 def _leave_with_parent() -> None:

@@ -15,21 +15,21 @@ from pathlib import Path
 
 import pytest
 
-from tester.campaign import part_run
-from tester.campaign.folder import PARTS
-from tester.campaign.together import recover
-from tester.engine.build import Ports
-from tester.engine.context import Attendant
-from tester.engine.tickers import World
-from tester.rig import RigConfig
-from tester.rig.template import hardware_text
-from tester.session import Session, SessionOptions
-from tester.simulated import simulated_ports
+from tester.kinds import hardware_text
+from tester.kinds.wheel_on_belt.context import Attendant
+from tester.kinds.wheel_on_belt.rig import RigConfig
+from tester.machine.ports import Ports
+from tester.machine.tickers import TickedWorld
+from tester.run import part_run
+from tester.run.folder import PARTS
+from tester.run.merge_parts import recover
+from tester.run.session import Session, SessionOptions
+from tester.run.simulated import simulated_ports
 from tester.store import schema
 from tester.store.reader import RunReader
 from tester.store.schema import VERSION
-from tests.tester.engine.bench import SHORT
-from tests.tester.test_session import TABLES, Ended, Screen
+from tests.tester.kinds.wheel_on_belt.bench import SHORT
+from tests.tester.run.test_session import TABLES, Ended, Screen
 
 TWO = SHORT.replace('  - compound: "1#"\n', '  - compound: "1#"\n  - compound: "2#"\n').replace("14 rev", "7 rev")
 STEADY = ("sim.running_in=0", "sim.scatter=0")
@@ -89,7 +89,7 @@ def test_times_of_the_second_part_follow_those_of_the_first(one: Ended) -> None:
     with RunReader(one.folder) as reader:
         first, second = reader.conditions()
         assert first.ended_s < second.started_s < second.ended_s < reader.run().rig_seconds
-        assert [wheel.wheel for wheel in reader.wheels()] == [1, 2]
+        assert [one.piece for one in reader.pieces()] == [1, 2]
         times = reader.samples()["time_s"]
     assert (times[1:] > times[:-1]).all()
 
@@ -145,11 +145,11 @@ class Acting:
 
 
 @pytest.fixture
-def when_mounted(monkeypatch: pytest.MonkeyPatch) -> Callable[[int, Callable[[World], object]], None]:
+def when_mounted(monkeypatch: pytest.MonkeyPatch) -> Callable[[int, Callable[[TickedWorld], object]], None]:
     """Have something done to the simulated rig when a wheel is mounted."""
 
-    def arrange(wheel: int, act: Callable[[World], object]) -> None:
-        def connect(rig: RigConfig, seed: int, log: object) -> tuple[Ports, World, Attendant]:
+    def arrange(wheel: int, act: Callable[[TickedWorld], object]) -> None:
+        def connect(rig: RigConfig, seed: int, log: object) -> tuple[Ports, TickedWorld, Attendant]:
             ports, world, hands = simulated_ports(rig, seed, None)
             return ports, world, Acting(hands, wheel, lambda: act(world))
 
@@ -163,12 +163,12 @@ def statuses(ended: Ended) -> list[str | None]:
         return [condition.status.value if condition.status else None for condition in reader.conditions()]
 
 
-def open_guard(world: World) -> None:
+def open_guard(world: TickedWorld) -> None:
     world.axes["press"].set_guard(False)  # type: ignore[attr-defined]
 
 
 def test_a_trip_in_the_first_part_ends_the_run(
-    tmp_path: Path, when_mounted: Callable[[int, Callable[[World], object]], None]
+    tmp_path: Path, when_mounted: Callable[[int, Callable[[TickedWorld], object]], None]
 ) -> None:
     when_mounted(1, open_guard)
     ended = run(tmp_path)
@@ -178,7 +178,7 @@ def test_a_trip_in_the_first_part_ends_the_run(
 
 
 def test_a_trip_in_the_second_part_keeps_what_the_first_measured(
-    tmp_path: Path, one: Ended, when_mounted: Callable[[int, Callable[[World], object]], None]
+    tmp_path: Path, one: Ended, when_mounted: Callable[[int, Callable[[TickedWorld], object]], None]
 ) -> None:
     when_mounted(2, open_guard)
     ended = run(tmp_path)
@@ -188,19 +188,19 @@ def test_a_trip_in_the_second_part_keeps_what_the_first_measured(
 
 
 def test_an_interrupt_begins_no_further_part(
-    tmp_path: Path, when_mounted: Callable[[int, Callable[[World], object]], None]
+    tmp_path: Path, when_mounted: Callable[[int, Callable[[TickedWorld], object]], None]
 ) -> None:
     when_mounted(1, lambda _: signal.raise_signal(signal.SIGINT))
     ended = run(tmp_path)
     assert ended.code == 130 and ended.status() == "stopped"
     with RunReader(ended.folder) as reader:
-        assert [wheel.wheel for wheel in reader.wheels()] == [1]
+        assert [one.piece for one in reader.pieces()] == [1]
 
 
 def test_a_run_that_is_cut_off_in_its_second_part_keeps_the_first_and_goes_on(
-    tmp_path: Path, one: Ended, when_mounted: Callable[[int, Callable[[World], object]], None]
+    tmp_path: Path, one: Ended, when_mounted: Callable[[int, Callable[[TickedWorld], object]], None]
 ) -> None:
-    def crash(_: World) -> None:
+    def crash(_: TickedWorld) -> None:
         raise MemoryError("as if it had been killed")
 
     when_mounted(2, crash)
@@ -251,4 +251,4 @@ def test_an_interrupt_from_the_terminal_stops_all_processes(tmp_path: Path) -> N
     *_, end, folder = process.stdout.read().splitlines()
     assert process.wait() == 130 and json.loads(end)["outcome"] == "stopped"
     with RunReader(tmp_path / folder) as reader:
-        assert reader.run().status == "stopped" and [wheel.wheel for wheel in reader.wheels()] == [1, 2]
+        assert reader.run().status == "stopped" and [one.piece for one in reader.pieces()] == [1, 2]

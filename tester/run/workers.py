@@ -8,15 +8,15 @@ from concurrent.futures.process import BrokenProcessPool
 from functools import lru_cache
 from typing import NamedTuple
 
-from tester.campaign.endings import PartEnd, Stop
-from tester.campaign.folder import Job, Work, beginning_of, read_work
-from tester.campaign.part_run import run_part
-from tester.campaign.pool import Pool, say, stop_level
-from tester.engine.context import Progress
-from tester.engine.prompts import Prompts
-from tester.engine.run import Outcome, Run
-from tester.engine.tickers import TickStatistics
-from tester.recipe.estimate import estimate
+from tester.machine.context import Progress
+from tester.machine.prompts import Prompts
+from tester.machine.run import Outcome, Run
+from tester.machine.tickers import TickStatistics
+from tester.run.endings import PartEnd, StopLevel
+from tester.run.folder import Job, Work, beginning_of, read_work
+from tester.run.kinds import recipe_part
+from tester.run.part_run import run_part
+from tester.run.pool import WorkerPool, say, stop_level
 
 POLL_S = 0.1
 """How often the parent looks for reports, s of wall time."""
@@ -31,14 +31,14 @@ class Sight(NamedTuple):
 
 
 def side_by_side(
-    job: Job, work: Work, jobs: int, show: Callable[[Sight], None], pool_made: Callable[[Pool], None]
+    job: Job, work: Work, jobs: int, show: Callable[[Sight], None], pool_made: Callable[[WorkerPool], None]
 ) -> Iterator[PartEnd]:
     """Carry out a run's parts in up to ``jobs`` processes; yield how they ended, as they end.
 
     A part that does not end well stops the others in a controlled way; parts that were not begun by then yield nothing.
     ``pool_made`` gets the pool, through which a stop can be ordered.
     """
-    with Pool(min(jobs, len(work.parts))) as pool:
+    with WorkerPool(min(jobs, len(work.parts))) as pool:
         pool_made(pool)
         running = {pool.submit(run_in_worker, job, number): number for number in longest_first(work)}
         while running:
@@ -51,13 +51,13 @@ def side_by_side(
                 if end is None:
                     continue
                 if end.outcome is not Outcome.DONE:
-                    pool.stop(Stop.OTHER_PART)
+                    pool.stop(StopLevel.OTHER_PART)
                 yield end
 
 
 def longest_first(work: Work) -> list[int]:
     """Return the numbers of a run's parts, what is expected to take longest first: it must not be left for the end."""
-    expected_s = {part.number: estimate(part.plan, work.rig).rig_seconds for part in work.parts}
+    expected_s = {part.number: recipe_part(work.rig).estimate(part.plan, work.rig).rig_seconds for part in work.parts}
     return sorted(expected_s, key=lambda number: (-expected_s[number], number))
 
 
@@ -87,7 +87,7 @@ class _Reporting:
 
     def __init__(self) -> None:
         self.statistics = TickStatistics()
-        self._heard = Stop.NONE
+        self._heard = StopLevel.NONE
 
     def begun(self, run: Run) -> None:
         """Obey a stop that was ordered meanwhile."""

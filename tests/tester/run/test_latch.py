@@ -7,11 +7,12 @@ from pathlib import Path
 
 import pytest
 
-from tester.campaign.latch import MANUAL_RUNS, acknowledge, open_trips
+from tester.base.lock import RUN_LOCK, ExclusiveUse
 from tester.export import write_all
 from tester.export.verify import verify
-from tester.lock import RUN_LOCK, ExclusiveUse
-from tester.rig import RigConfig, load_rig
+from tester.kinds import load_rig
+from tester.kinds.wheel_on_belt.rig import RigConfig
+from tester.run.latch import MANUAL_RUNS, acknowledge, open_trips
 from tester.service.commands import Acknowledge, RunRecipe
 from tester.store.reader import RunReader
 from tests.tester.service.stage import Script, Stage, play
@@ -87,7 +88,7 @@ def test_the_latch_of_a_hardware_rig_survives_a_restart_of_the_service(
     tmp_path: Path, rig: RigConfig, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("tester.service.service.load_rig", lambda *_: rig)
-    monkeypatch.setattr("tester.service.desk.SNAPSHOT_S", 0.0)
+    monkeypatch.setattr("tester.service.state_publisher.SNAPSHOT_S", 0.0)
     tripped(tmp_path / "runs" / "one", rig)
 
     def script(stage: Stage) -> Script:

@@ -5,27 +5,28 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 from drivers.ports import BusLost
-from tester import clock
-from tester.bus_log import BusLog
-from tester.campaign.endings import PartEnd
-from tester.campaign.folder import Begin, Job, Work
-from tester.campaign.split import Part
-from tester.engine.build import Ports, build_run
-from tester.engine.context import Attendant, Nobody
-from tester.engine.prompts import Prompts
-from tester.engine.run import Outcome, Run
-from tester.engine.tickers import Ticked, TickStatistics, World, run_real_time, run_simulated
-from tester.engine.time_left import TimeLeft
-from tester.pace import Pace
-from tester.provenance import record_parameters, record_statistics
-from tester.recipe.estimate import estimate
-from tester.rig import RigConfig
+from tester.base import clock
+from tester.base.pace import Pace
+from tester.base.trouble import in_words
+from tester.machine.ports import Ports
+from tester.machine.prompts import Prompts
+from tester.machine.run import Outcome, Run
+from tester.machine.run_parts import Part
+from tester.machine.tickers import Ticked, TickedWorld, TickStatistics, collector_at_rest, run_real_time, run_simulated
+from tester.machine.time_left import TimeLeft
+from tester.rig import Rig
+from tester.rig.sensors import quantities_on
+from tester.run.bus_log import BusLog
+from tester.run.endings import PartEnd
+from tester.run.folder import Begin, Job, Work
+from tester.run.kinds import recipe_part, run_parts
+from tester.run.provenance import record_parameters, record_statistics
+from tester.run.truth import Witnessed, truth_of
 from tester.store.reader import DATABASE
 from tester.store.writer import RESERVE_BYTES, RunWriter
-from tester.trouble import in_words
 
 if TYPE_CHECKING:
     from sim.rig import SimRig
@@ -34,8 +35,8 @@ KILLED = 137
 """Exit status of a process that a fault script kills: what a shell shows for SIGKILL."""
 INTERRUPTED = "interrupted"
 """Status of a run that the program broke off."""
-WHEEL_EVERY_S = 1.0
-"""The wheel's wear is stored this often of wall time: what an interruption loses of it."""
+STATE_EVERY_S = 1.0
+"""The state of the specimen is stored this often of wall time: what an interruption loses of it."""
 
 
 class Watch(Protocol):
@@ -65,26 +66,27 @@ class Unsampled(RunWriter):
 
 
 class RunNotes:
-    """What is stored beside the scan, a few times a second: parameters once they were read back, the wheel's wear."""
+    """What is stored beside the scan: parameters once they were read back, and the state of the specimen."""
 
     def __init__(self, run: Run, recorder: RunWriter) -> None:
         """Nothing is stored before the rig is connected."""
         self.run = run
         self.recorder = recorder
+        self.kind = run_parts(run.engine.ctx.rig)
         self.connected = False
-        self.wheel_due_s = 0.0
+        self.state_due_s = 0.0
 
     def poll(self, now_s: float) -> None:
         """Store what is due; ``now_s`` is rig time."""
         if not self.run.connected:
             return
         if not self.connected:
-            self.connected = True
-            record_parameters(self.run.engine.devices, self.recorder, now_s)
-        wall_s, wheel = clock.monotonic(), self.run.engine.ctx.wheel
-        if wheel.wheel and wall_s >= self.wheel_due_s:
-            self.wheel_due_s = wall_s + WHEEL_EVERY_S
-            self.recorder.wheel_state(wheel.wheel, wheel.cold_mm, wheel.sliding_m, now_s)
+            self.connected, engine = True, self.run.engine
+            record_parameters(engine.ctx.rig, engine.devices, self.recorder, now_s)
+        wall_s = clock.monotonic()
+        if wall_s >= self.state_due_s:
+            self.state_due_s = wall_s + STATE_EVERY_S
+            self.kind.store_state(self.run, self.recorder, now_s)
 
 
 def run_part(job: Job, work: Work, part: Part, begin: Begin, watch: Watch, prompts: Prompts) -> PartEnd:
@@ -93,8 +95,10 @@ def run_part(job: Job, work: Work, part: Part, begin: Begin, watch: Watch, promp
     folder.mkdir(parents=True, exist_ok=True)
     open_record = RunWriter if job.samples else Unsampled
     lossless = work.rig.can.interface == "sim"
-    path = folder / DATABASE
-    writer = open_record(path, clock=clock.monotonic, utc=clock.utc_now, lossless=lossless, reserve=RESERVE_BYTES)
+    path, quantities = folder / DATABASE, quantities_on(work.rig)
+    writer = open_record(
+        path, quantities, clock=clock.monotonic, utc=clock.utc_now, lossless=lossless, reserve=RESERVE_BYTES
+    )
     try:
         with closed_early(writer):
             begin(writer)
@@ -150,16 +154,21 @@ def _execute(
     log = BusLog(_log_folder(job.bus_log, work, part), rig) if job.bus_log is not None else None
     ports: Ports | None = None
     try:
-        faults = rig.sim.faults + job.faults
+        faults = rig.faults + job.faults
         spoilable = {"faulty": True} if faults else {}
         ports, world, attendant = connect_ports(rig, job.seed, log, **spoilable)
-        run = build_run(rig, part.plan, ports, attendant, writer, prompts, work.point, job.heat)
+        truth = truth_of(world, rig.plant) if world is not None else None
+        if truth is not None:
+            attendant = Witnessed(attendant, truth, part.plan, writer)
+        build = run_parts(rig).build
+        run = build(rig, part.plan, ports, attendant, writer, prompts, work.point, job.history)
         _place(run, work, part)
-        watch.begun(run)
-        left = TimeLeft(part.plan, estimate(part.plan, rig))
+        left = TimeLeft(part.plan, recipe_part(rig).estimate(part.plan, rig))
         ticked, lives = _with_faults(run, world, faults) if world is not None and faults else (run, world)
-        with left_safe(run):
-            seconds = _tick(run, ticked, lives, ports.pace, job.lapse, left, writer, watch)
+        with collector_at_rest():  # already: from here to the first tick nothing takes long, and STOP waits for that
+            watch.begun(run)
+            with left_safe(run):
+                seconds = _tick(run, ticked, lives, ports.pace, job.lapse, left, writer, watch)
         watch.rested()
         record_statistics(run.engine.devices, writer, seconds)
         return run.outcome, run.reason, seconds
@@ -177,9 +186,9 @@ def _log_folder(folder: Path, work: Work, part: Part) -> Path:
 
 
 def _place(run: Run, work: Work, part: Part) -> None:
-    """Tell a run which part of the whole it is: numbers of unforeseen wheels, what people are shown."""
+    """Tell a run which part of the whole it is: numbers of unforeseen specimens, what people are shown."""
     executor, progress = run.engine.executor, run.engine.ctx.progress
-    executor.wheels = max(executor.wheels, part.last_wheel)
+    executor.procedures.number_after(part.last_mounted)
     executor.conditions = sum(1 for _ in work.plan.conditions())
     progress.part, progress.parts = part.number, len(work.parts)
 
@@ -187,7 +196,7 @@ def _place(run: Run, work: Work, part: Part) -> None:
 def _tick(
     run: Run,
     ticked: Ticked,
-    world: World | None,
+    world: TickedWorld | None,
     pace: Pace | None,
     lapse: float | None,
     left: TimeLeft,
@@ -209,12 +218,14 @@ def _tick(
     return run_real_time(run, world, poll=poll, statistics=watch.statistics, pace=pace)
 
 
-def _with_faults(run: Run, world: SimRig, texts: Sequence[str]) -> tuple[Ticked, World]:
+def _with_faults(run: Run, world: SimRig, texts: Sequence[str]) -> tuple[Ticked, TickedWorld]:
     """Return what a ticker drives in place of run and rig while faults happen to them."""
-    from sim.faults import FaultScript, parse_script
-    from tester.faulty import FaultyRun
+    from sim import machines
+    from sim.faults import FaultScript
+    from tester.run.fault_injection import FaultyRun
 
-    faulty = FaultyRun(run, world, FaultScript().add(parse_script(texts)), on_kill=_die)
+    language = machines.find(run_parts(run.engine.ctx.rig).plant).language()
+    faulty = FaultyRun(run, world, FaultScript().add(language.parse_script(texts)), on_kill=_die)
     return faulty, faulty
 
 
@@ -224,17 +235,20 @@ def _die() -> None:
 
 
 def connect_ports(
-    rig: RigConfig, seed: int, log: BusLog | None, *, faulty: bool = False
-) -> tuple[Ports, SimRig | None, Attendant]:
-    """Open the wires to the rig: simulated in this process (its bus spoilable where ``faulty``), or real."""
+    rig: Rig, seed: int, log: BusLog | None, *, faulty: bool = False
+) -> tuple[Ports, SimRig | None, Any]:
+    """Open the wires to the rig: simulated in this process (its bus spoilable where ``faulty``), or real.
+
+    Return them, the simulated rig, and the hands at the rig (tester.machine.run_parts).
+    """
     if rig.can.interface == "sim":
-        from tester.simulated import simulated_ports
+        from tester.run.simulated import simulated_ports
 
         if faulty:
             from sim.faults.can import FaultyCanWire
 
             return simulated_ports(rig, seed, log, FaultyCanWire)
         return simulated_ports(rig, seed, log)
-    from tester.hardware import hardware_ports
+    from tester.run.hardware import hardware_ports
 
-    return hardware_ports(rig, log), None, Nobody()
+    return hardware_ports(rig, log), None, run_parts(rig).nobody()
