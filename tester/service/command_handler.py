@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from tester.control.state import Mode
-from tester.engine.prompts import DONE
+from tester.machine.prompts import DONE
+from tester.machine.state import Mode
 from tester.service.commands import (
     Acknowledge,
     Answer,
@@ -16,8 +16,8 @@ from tester.service.commands import (
     Stop,
     Tare,
 )
-from tester.service.desk import Desk
 from tester.service.link import Order
+from tester.service.state_publisher import Desk
 
 
 class Orders:
@@ -37,7 +37,7 @@ class Orders:
         action = order.action
         if isinstance(action, Stop):
             self.stop(order.by, action.fast)
-            self.desk.hub.accept(order)
+            self.desk.gateway.accept(order)
         elif isinstance(action, RunRecipe | ResumeRun):
             self._begin(order)
         elif isinstance(action, Arm):
@@ -52,11 +52,11 @@ class Orders:
             self._reply(order, self._hold(order, action))
 
     def _reply(self, order: Order, refusal: str) -> None:
-        hub = self.desk.hub
+        gateway = self.desk.gateway
         if refusal:
-            hub.refuse(order, refusal)
+            gateway.refuse(order, refusal)
         else:
-            hub.accept(order)
+            gateway.accept(order)
 
     def stop(self, name: str, fast: bool) -> None:
         """STOP: whoever says it, whatever is under way."""
@@ -69,7 +69,7 @@ class Orders:
             desk.watch.run.request_stop(f"{kind} by {name}", fast=fast)
             desk.stop_rest(fast)
         elif self.job is not None:
-            desk.hub.refuse(self.job, f"{kind} by {name}")
+            desk.gateway.refuse(self.job, f"{kind} by {name}")
             self.job = None
 
     def _hold(self, order: Order, action: Hold | Release) -> str:
@@ -122,20 +122,23 @@ class Orders:
         if isinstance(action, Tare):
             desk.command(f"tare by {order.by}")
             return desk.hand.tare(ctx)
+        names = [one.name for one in desk.watch.kind.machine.hand]
+        if action.axis not in names:
+            return f"no axis {action.axis!r} is moved by hand here: {', '.join(names)}"
         desk.command(f"jog {action.axis} {action.direction:+d} by {order.by}", "debug")
         return desk.hand.jog(ctx, action.axis, action.direction)
 
     def lost_control(self) -> None:
         """Disarm manual mode: whoever armed it does not control any more."""
         hand = self.desk.hand
-        if hand is not None and self.desk.hub.presence.controller_id != self.armed_by:
+        if hand is not None and self.desk.gateway.presence.controller_id != self.armed_by:
             hand.disarm()
 
     def _begin(self, order: Order) -> None:
         """Take an order that begins something, if nothing is under way."""
         refusal = self._occupied()
         if refusal:
-            self.desk.hub.refuse(order, refusal)
+            self.desk.gateway.refuse(order, refusal)
         else:
             self.job = order
 

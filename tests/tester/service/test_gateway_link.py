@@ -16,10 +16,10 @@ import pytest
 from tester.service.address import CARD, TcpAddress, UnixAddress, new_tcp_address, read_card
 from tester.service.client import Client, Gone, Link, Lost, NoServiceError
 from tester.service.commands import CheckRecipe, ListRecipes, RunRecipe
+from tester.service.gateway_link import GatewayLink, LinkConfig
 from tester.service.hook import Hook
-from tester.service.hub import Hub, HubConfig
 from tester.service.protocol import Hello, Snapshot
-from tests.tester.engine.bench import SHORT
+from tests.tester.kinds.wheel_on_belt.bench import SHORT
 from tests.tester.service.views import state
 
 ROOT = Path(__file__).parents[3]
@@ -30,8 +30,8 @@ posix = pytest.mark.skipif(os.name != "posix", reason="Unix sockets")
 
 
 @pytest.fixture
-def hub(tmp_path: Path) -> Iterator[Hub]:
-    made = Hub(HubConfig(UnixAddress(tmp_path / "service.sock"), tmp_path / CARD, tmp_path, "sim"))
+def gateway(tmp_path: Path) -> Iterator[GatewayLink]:
+    made = GatewayLink(LinkConfig(UnixAddress(tmp_path / "service.sock"), tmp_path / CARD, tmp_path, "sim"))
     made.open()
     made.event("step", "before anybody came")
     made.state(state(), ROW)
@@ -39,12 +39,12 @@ def hub(tmp_path: Path) -> Iterator[Hub]:
     made.close()
 
 
-async def connected(hub: Hub, address: UnixAddress | TcpAddress | None = None) -> Client:
+async def connected(gateway: GatewayLink, address: UnixAddress | TcpAddress | None = None) -> Client:
     """Connect while the owner goes on talking, as it does between two ticks."""
-    where = address or hub.config.address
+    where = address or gateway.config.address
     for _ in range(400):
-        hub.hear()
-        hub.state(state(), ROW)
+        gateway.hear()
+        gateway.state(state(), ROW)
         try:
             return await Client.connect(where, name="test", control=True)
         except NoServiceError:
@@ -53,30 +53,30 @@ async def connected(hub: Hub, address: UnixAddress | TcpAddress | None = None) -
 
 
 @posix
-def test_a_gateway_process_that_dies_is_replaced_and_knows_what_was(hub: Hub) -> None:
+def test_a_gateway_process_that_dies_is_replaced_and_knows_what_was(gateway: GatewayLink) -> None:
     async def story() -> None:
-        client = await connected(hub)
-        process = hub._process  # pyright: ignore[reportPrivateUsage]
+        client = await connected(gateway)
+        process = gateway._process  # pyright: ignore[reportPrivateUsage]
         assert process is not None
         process.kill()
         async for _ in client:
             pass
-        hub.hear()
-        hub.event("step", "while nobody was there")
-        again = await connected(hub)
+        gateway.hear()
+        gateway.event("step", "while nobody was there")
+        again = await connected(gateway)
         texts = [event.text for event in again.events]
         assert texts[0] == "before anybody came" and "while nobody was there" in texts
         assert len(again.trend) >= 2
-        assert hub.restarts == 1
+        assert gateway.restarts == 1
         await again.close()
 
     asyncio.run(story())
 
 
 @posix
-def test_questions_are_answered_beside_the_rig(hub: Hub) -> None:
+def test_questions_are_answered_beside_the_rig(gateway: GatewayLink) -> None:
     async def story() -> None:
-        async with await connected(hub) as client:
+        async with await connected(gateway) as client:
             listed = await client.command(ListRecipes(), within_s=BUSY_S)
             assert isinstance(listed, dict)
             found = listed["recipes"]
@@ -88,9 +88,9 @@ def test_questions_are_answered_beside_the_rig(hub: Hub) -> None:
 
 
 def test_tcp_needs_the_token(tmp_path: Path) -> None:
-    hub = Hub(HubConfig(new_tcp_address(), tmp_path / CARD, tmp_path, "sim"))
-    hub.open()
-    hub.state(state(), ROW)
+    gateway = GatewayLink(LinkConfig(new_tcp_address(), tmp_path / CARD, tmp_path, "sim"))
+    gateway.open()
+    gateway.state(state(), ROW)
 
     async def story() -> None:
         while not (tmp_path / CARD).exists():
@@ -105,7 +105,7 @@ def test_tcp_needs_the_token(tmp_path: Path) -> None:
     try:
         asyncio.run(story())
     finally:
-        hub.close()
+        gateway.close()
     assert not (tmp_path / CARD).exists()
 
 
@@ -164,17 +164,17 @@ def test_a_client_that_is_killed_leaves_the_run_alone_and_term_leaves_at_standst
 
 
 @posix
-def test_a_sign_of_life_of_whoever_controls_ends_the_silence(hub: Hub) -> None:
+def test_a_sign_of_life_of_whoever_controls_ends_the_silence(gateway: GatewayLink) -> None:
     async def story() -> None:
-        client = await connected(hub)
-        assert hub.silent_s == float("inf")
+        client = await connected(gateway)
+        assert gateway.silent_s == float("inf")
         client.attend()
         for _ in range(1000):
-            hub.hear()
-            if hub.silent_s < float("inf"):
+            gateway.hear()
+            if gateway.silent_s < float("inf"):
                 break
             await asyncio.sleep(0.01)
-        assert hub.silent_s < 10.0
+        assert gateway.silent_s < 10.0
         await client.close()
 
     asyncio.run(story())
@@ -184,39 +184,39 @@ def test_a_sign_of_life_of_whoever_controls_ends_the_silence(hub: Hub) -> None:
 @pytest.mark.parametrize("told", [False, True])
 def test_clients_are_told_an_owner_that_died_from_one_that_was_told_to_end(told: bool, tmp_path: Path) -> None:
     async def story() -> str:
-        hub = Hub(HubConfig(UnixAddress(tmp_path / "service.sock"), tmp_path / CARD, tmp_path, "sim"))
-        hub.open()
-        hub.state(state(), ROW)
-        await (await connected(hub)).close()
-        link = Link(hub.config.address, name="test")
+        gateway = GatewayLink(LinkConfig(UnixAddress(tmp_path / "service.sock"), tmp_path / CARD, tmp_path, "sim"))
+        gateway.open()
+        gateway.state(state(), ROW)
+        await (await connected(gateway)).close()
+        link = Link(gateway.config.address, name="test")
         gone = ""
         async for message in link.messages():
             if isinstance(message, Lost) and message.gone:
                 gone = message.gone
                 break
-            if not told and hub._end is not None:  # pyright: ignore[reportPrivateUsage]
-                hub._end.close()  # pyright: ignore[reportPrivateUsage]  # without a goodbye, as a SIGKILL does
-                hub._end = None  # pyright: ignore[reportPrivateUsage]
+            if not told and gateway._end is not None:  # pyright: ignore[reportPrivateUsage]
+                gateway._end.close()  # pyright: ignore[reportPrivateUsage]  # without a goodbye, as a SIGKILL does
+                gateway._end = None  # pyright: ignore[reportPrivateUsage]
             if isinstance(message, Hello):
-                await asyncio.to_thread(hub.close)
+                await asyncio.to_thread(gateway.close)
         return gone
 
     assert asyncio.run(story()) == ("ended" if told else "died")
 
 
 @posix
-def test_a_gateway_that_is_started_anew_is_no_death_of_the_service(hub: Hub) -> None:
+def test_a_gateway_that_is_started_anew_is_no_death_of_the_service(gateway: GatewayLink) -> None:
     async def story() -> list[Gone]:
-        await (await connected(hub)).close()
+        await (await connected(gateway)).close()
         told: list[Gone] = []
-        messages = Link(hub.config.address, name="test").messages()
+        messages = Link(gateway.config.address, name="test").messages()
         async for message in messages:
             if isinstance(message, Hello):
-                process = hub._process  # pyright: ignore[reportPrivateUsage]
+                process = gateway._process  # pyright: ignore[reportPrivateUsage]
                 assert process is not None
                 process.kill()
                 process.wait()
-                hub.config.address.path.unlink()  # type: ignore[union-attr]
+                gateway.config.address.path.unlink()  # type: ignore[union-attr]
             elif isinstance(message, Lost):
                 told.append(message.gone)
             if len(told) == 2:

@@ -6,26 +6,27 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from tester import clock
-from tester.campaign.latch import acknowledge, open_trips
-from tester.engine.run import Outcome, Run
-from tester.interlocks.heat_ratio import NO_HISTORY, KnownRatio
-from tester.rig import RigConfig
+from tester.base import clock
+from tester.base.trouble import in_words
+from tester.machine.manual import ManualExecutor
+from tester.machine.run import Outcome, Run
+from tester.machine.served import History, ServedKind
+from tester.rig import Rig
+from tester.run.kinds import served_kind
+from tester.run.latch import acknowledge, open_trips
+from tester.screen import Value
 from tester.service.address import with_peer
 from tester.service.alarms import AlarmList, Cause
-from tester.service.alone import left_alone
-from tester.service.hub import Hub
+from tester.service.gateway_link import GatewayLink
 from tester.service.link import Order
-from tester.service.manual import ManualExecutor
 from tester.service.preflight import Past, known_checks
 from tester.service.progress import PlanTrack
 from tester.service.protocol import SNAPSHOT_S
-from tester.service.state import DiskView, ManualView, ProgressView, RunView, StateView, TickView, Value
-from tester.service.values import unknown_values
+from tester.service.state import DiskView, ManualView, ProgressView, RunView, StateView, TickView
+from tester.service.values import trend_row, unknown_values
 from tester.service.watch import RunWatch, risk_of
 from tester.store.schema import StoreError
 from tester.store.space import MARGIN, FreeRoom
-from tester.trouble import in_words
 
 UNWATCHED_S = 1.0
 """Period of states while nobody is connected, s: the gateway's trend goes on, at a rate that costs nothing."""
@@ -36,11 +37,6 @@ DISK_FIRST_S = 1.0
 """The first answer about the disk is waited for so long: the service is only beginning, s."""
 LOW_BYTES = 500_000_000
 """Less than this is low whatever the run needs [A]: one compound of Table 2 takes some tens of MB."""
-TREND = (
-    "friction", "load", "load=", "surface", "surface=", "hub", "hub=", "slip", "slip=", "wheel_speed", "belt_speed",
-    "sideslip", "heat",
-)  # fmt: skip
-"""Where a row of the trend (after its two times) comes from; ``=``: the setpoint. In the order of TREND_COLUMNS."""
 NOTIFIED = frozenset({"trip"})
 """Kinds of events of which the notify hook is told; hold, prompt, finished, disk come from elsewhere."""
 
@@ -66,8 +62,8 @@ class Desk:
     """What is known now. ``obey`` is called with every order, ``lost_control`` when another client controls; ``watch``
     is the run under way."""
 
-    hub: Hub
-    rig: RigConfig
+    gateway: GatewayLink
+    rig: Rig
     runs: Path
     obey: Callable[[Order], None] = field(default=nobody_obeys)
     stop: Callable[[str, bool], None] = field(default=nothing_stops)
@@ -86,8 +82,8 @@ class Desk:
     interrupted: tuple[str, ...] = ()
     past: Past | None = None
     """What the newest run in the store left; looked at while no run ticks."""
-    heat: KnownRatio = NO_HISTORY
-    """What the runs make known of the rig's heat balance; looked at then, too."""
+    history: History | None = None
+    """What the runs make known of the rig; looked at then, too."""
     needed: int = 0
     """Bytes that the run is expected to take."""
     now_s: float = 0.0
@@ -104,13 +100,17 @@ class Desk:
     _unknown: tuple[Value, ...] = ()
     _alone: str = ""
     _risk: str = ""
+    kind: ServedKind = field(init=False)
+    """Of the service's own rig."""
     alarms: AlarmList = field(init=False)
 
     def __post_init__(self) -> None:
         """Begin with no alarm."""
         self.alarms = AlarmList(clock.utc_now, self._alarm_changed)
+        self.kind = served_kind(self.rig)
+        self.gateway.machine(self.kind.machine)
         self._unknown = unknown_values(self.rig)
-        self._alone = left_alone(self.rig)
+        self._alone = self.kind.alone(self.rig)
         self._room = FreeRoom(self.runs)
         self._look_at_disk()
         self._room.wait(DISK_FIRST_S)
@@ -120,28 +120,32 @@ class Desk:
 
     def attach(self, run: Run, track: PlanTrack, view: RunView, hand: ManualExecutor | None = None) -> None:
         """Look after a run from now on."""
-        self.watch, self.hand, self.run = RunWatch(run, track), hand, view
+        kind = served_kind(run.engine.ctx.rig)
+        self.gateway.machine(kind.machine)
+        self.watch, self.hand, self.run = RunWatch(run, track, kind), hand, view
         run.engine.ctx.journal.heard = self.heard
-        self.hub.lane.begin_ticking()
+        self.gateway.lane.begin_ticking()
         self.now_s = 0.0
         self._asked = 0
-        self.hub.plan(None if hand is not None else self.watch.track.view())
+        self.gateway.plan(None if hand is not None else self.watch.track.view())
 
     def specimen(self, run: Run) -> None:
         """Note which compound is on the rig."""
-        wheel, view = run.engine.ctx.wheel, self.run
-        if view is not None and wheel.specimen and view.compound != wheel.compound:
-            note = run.engine.executor.plan.specimen(wheel.specimen).note
-            self.run = replace(view, compound=wheel.compound, note=note)
+        watch, view = self.watch, self.run
+        number, compound = watch.panel.mounted() if watch is not None else (0, "")
+        if view is not None and number and view.compound != compound:
+            note = run.engine.executor.plan.specimen(number).note
+            self.run = replace(view, compound=compound, note=note)
 
     def detach(self, view: RunView | None) -> None:
         """The run is over."""
-        self.hub.lane.end_ticking()
+        self.gateway.lane.end_ticking()
         if self.watch is not None:
             self.watch.run.engine.ctx.journal.heard = None
             for name in self.watch.watched:
                 self.alarms.clear(name)
         self.watch = self.hand = None
+        self.gateway.machine(self.kind.machine)
         self.stop_rest = nothing_rests
         self.run = view
         self._due_s = float("-inf")
@@ -195,7 +199,7 @@ class Desk:
 
     def tell(self, kind: str, text: str, severity: str = "info", t_s: float | None = None) -> None:
         """Tell every client."""
-        self.hub.event(kind, text, severity, self.now_s if t_s is None else t_s, self.run.name if self.run else "")
+        self.gateway.event(kind, text, severity, self.now_s if t_s is None else t_s, self.run.name if self.run else "")
 
     def command(self, text: str, severity: str = "info", kind: str = "command") -> None:
         """Tell what a client has commanded, and by whom; while a run is under way, in its record too."""
@@ -208,7 +212,7 @@ class Desk:
     def notify(self, event: str, text: str) -> None:
         """Have the user's hook run."""
         run = self.run
-        self.hub.notify(event, text, run.name if run else "", run.folder if run else "")
+        self.gateway.notify(event, text, run.name if run else "", run.folder if run else "")
 
     def _alarm_changed(self, kind: str, text: str, severity: str) -> None:
         self.tell(kind, text, severity)
@@ -219,14 +223,14 @@ class Desk:
         """Hear what clients want, and show the state when its time has come. ``now_s``: rig time."""
         self.now_s = now_s
         self.stop_first()
-        for heard in self.hub.hear():
+        for heard in self.gateway.hear():
             if isinstance(heard, Order):
                 self.obey(heard)
             self._due_s = min(self._due_s, self._shown_s + SOONEST_S)  # what has changed is seen soon
         self._notice_control()
         wall_s = clock.monotonic()
         if wall_s >= self._due_s:
-            period_s = SNAPSHOT_S if self.hub.watched else UNWATCHED_S
+            period_s = SNAPSHOT_S if self.gateway.watched else UNWATCHED_S
             late_s = wall_s - self._due_s
             self._due_s = wall_s + (period_s - late_s if late_s < period_s else period_s)
             self._shown_s = wall_s
@@ -234,21 +238,21 @@ class Desk:
 
     def stop_first(self) -> None:
         """Carry out what came through STOP's own lane; the rest waits."""
-        for wish in self.hub.lane.taken():
+        for wish in self.gateway.lane.taken():
             self.stop(wish.name, wish.fast)
-            self.hub.lane.answer(wish)
+            self.gateway.lane.answer(wish)
             self._due_s = min(self._due_s, self._shown_s + SOONEST_S)
 
     def wait(self) -> None:
         """Wait, while no run ticks, until there is something to do."""
-        self.hub.wait(max(self._due_s - clock.monotonic(), 0.0))
+        self.gateway.wait(max(self._due_s - clock.monotonic(), 0.0))
 
     def _notice_control(self) -> None:
-        number = self.hub.presence.controller_id
+        number = self.gateway.presence.controller_id
         if number == self._controller:
             return
         self._controller = number
-        who = with_peer(self.hub.presence.controller, self.hub.presence.peer)
+        who = with_peer(self.gateway.presence.controller, self.gateway.presence.peer)
         self.command(f"{who} has control" if number else "nobody has control", kind="control")
         self.lost_control()
 
@@ -258,18 +262,18 @@ class Desk:
         if watch is not None:
             self._watch_frames(watch)
             if watch.track.look(now, watch.run):
-                self.hub.plan(watch.track.view())
+                self.gateway.plan(watch.track.view())
             watch.watch_trip(self.alarms, now)
         view = self.view()
         if watch is not None:
             watch.watch_values(self.alarms, now, view.values)
-        self.hub.state(view, self._row(view))
+        self.gateway.state(view, self._row(view))
         self._notice_prompt(view)
 
     def _watch_frames(self, watch: RunWatch) -> None:
-        watch.frames.watch(self.hub.presence.frames)
+        watch.frames.watch(self.gateway.presence.frames)
         if watch.frames.watching and (frames := watch.frames.take()) is not None:
-            self.hub.frames(frames)
+            self.gateway.frames(frames)
 
     def _notice_prompt(self, view: StateView) -> None:
         number = view.prompt.number if view.prompt is not None else 0
@@ -282,12 +286,14 @@ class Desk:
 
     def view(self) -> StateView:
         """Return the whole state."""
-        watch, hub, now = self.watch, self.hub, self.now_s
+        watch, gateway, now = self.watch, self.gateway, self.now_s
         mode, text, since_s = self._situation()
         disk = self._disk_view()
         rig = watch.rig if watch is not None else self.rig
         lapse = (self.run.speed if self.run.simulated else 1.0) if self.run is not None else None
-        known = known_checks(self.rig, disk, self.alarms.listed(), self.past, self.latched, clock.utc_now(), self.heat)
+        known = known_checks(
+            self.rig, disk, self.alarms.listed(), self.past, self.latched, clock.utc_now(), self.history
+        )
         own = watch.preflight() if watch is not None else ()
         said = {check.name for check in own}
         return StateView(
@@ -295,7 +301,7 @@ class Desk:
             mode_text=text,
             mode_since_s=since_s,
             t_s=now,
-            wall_s=hub.wall_s,
+            wall_s=gateway.wall_s,
             utc=clock.utc_now(),
             rig=rig.name,
             simulated=rig.simulated,
@@ -311,7 +317,7 @@ class Desk:
             buses=watch.buses.bus_views() if watch is not None else (),
             disk=disk,
             tick=self._tick_view(),
-            clients=hub.clients,
+            clients=gateway.clients,
             interrupted=self.interrupted,
             preflight=(*(check for check in known if check.name not in said), *own),
             alone=watch.alone if watch is not None else self._alone,
@@ -334,12 +340,12 @@ class Desk:
         elif self.interrupted:
             mode, text = "INTERRUPTED", f"{self.interrupted[-1]} was cut off"
         if mode != self._mode:
-            self._mode, self._mode_since_s = mode, self.hub.wall_s
-        return mode, text, self.hub.wall_s - self._mode_since_s
+            self._mode, self._mode_since_s = mode, self.gateway.wall_s
+        return mode, text, self.gateway.wall_s - self._mode_since_s
 
     def _manual_view(self) -> ManualView:
         hand = self.hand
-        return ManualView(None, "") if hand is None else ManualView(hand.left_s(self.now_s), hand.tare_text)
+        return ManualView(None, "") if hand is None else ManualView(hand.left_s(self.now_s), hand.hand.tare_text)
 
     def _tick_view(self) -> TickView:
         if self.watch is None:
@@ -371,7 +377,6 @@ class Desk:
     def _row(self, view: StateView) -> tuple[float | None, ...]:
         found = {value.key: value for value in view.values}
         row: list[float | None] = [round(view.wall_s, 3), round(view.t_s, 3)]
-        for name in TREND:
-            value = found[name.rstrip("=")]
-            row.append(value.setpoint if name.endswith("=") else value.value)
+        kind = self.watch.kind if self.watch is not None else self.kind
+        row += trend_row(kind.quantities, found)
         return tuple(None if x is None else round(x, 4) for x in row)

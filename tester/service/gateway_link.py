@@ -15,11 +15,13 @@ from pathlib import Path
 from pydantic import JsonValue
 from pydantic_core import to_json
 
-from tester import __version__, clock
+from tester import __version__
+from tester.base import clock
+from tester.screen import MachineView
 from tester.service.address import Address, TcpAddress, UnixAddress, stop_path, unlink_socket
-from tester.service.gateway_process import SETTINGS, Settings
+from tester.service.child_socket import spawn
+from tester.service.gateway_process import SETTINGS, GatewaySettings
 from tester.service.link import LinkLost, Order, OwnerEnd, Presence
-from tester.service.pair import spawn
 from tester.service.protocol import EVENTS_KEPT, TREND_ROWS, Accepted, Event, Frames, Refused, encode
 from tester.service.state import ClientsView, PlanView, StateView
 from tester.service.stop_lane import StopLane
@@ -31,7 +33,7 @@ END_S = 5.0
 
 
 @dataclass(frozen=True, slots=True)
-class HubConfig:
+class LinkConfig:
     """Where clients connect, and what the gateway needs for its answers. ``card``: of a TCP address."""
 
     address: Address
@@ -43,15 +45,15 @@ class HubConfig:
 
 
 @dataclass(slots=True)
-class Hub:
+class GatewayLink:
     """Says things to clients, and hears their orders."""
 
-    config: HubConfig
+    config: LinkConfig
     service: str = field(default_factory=lambda: secrets.token_hex(8))
     began_s: float = field(default_factory=clock.monotonic)
     presence: Presence = field(default_factory=lambda: Presence("", 0, 0, False))
     sign_s: float = float("-inf")
-    """When whoever controls gave the newest sign of life (tester.clock.monotonic)."""
+    """When whoever controls gave the newest sign of life (tester.base.clock.monotonic)."""
     sequence: int = 0
     restarts: int = 0
     lane: StopLane = field(default_factory=StopLane)
@@ -61,6 +63,7 @@ class Hub:
     _events: deque[bytes] = field(default_factory=lambda: deque[bytes](maxlen=EVENTS_KEPT))
     _rows: deque[bytes] = field(default_factory=lambda: deque[bytes](maxlen=TREND_ROWS))
     _plan: bytes = b"pnull"
+    _machine: bytes = b""
     _again_s: float = float("-inf")
 
     @property
@@ -106,6 +109,14 @@ class Hub:
                 self._end.say_state(b"s" + to_json(view, inf_nan_mode="null") + b"\t" + made)
             except LinkLost as lost:
                 self._lose(lost)
+
+    def machine(self, machine: MachineView) -> None:
+        """Tell the tables of the kind of rig, before its first state; a trend of another kind's columns ends."""
+        line = b"m" + to_json(machine)
+        if line != self._machine:
+            self._machine = line
+            self._rows.clear()
+            self._say(line)
 
     def plan(self, plan: PlanView | None) -> None:
         """Tell the plan."""
@@ -174,11 +185,13 @@ class Hub:
         self._end = end
         tcp = isinstance(address, TcpAddress)
         path = self.config.card if isinstance(address, TcpAddress) else address.path
-        settings = Settings(
+        settings = GatewaySettings(
             self.service, __version__, str(path), str(self.config.runs), self.config.rig, self.config.notify,
             address.token if tcp else "", address.port if tcp else 0, self.lane.port, self.config.accept_risk,
         )  # fmt: skip
         self._say(SETTINGS.dump_json(settings))
+        if self._machine:
+            self._say(self._machine)
         for row in self._rows:
             self._say(b"t" + row)
         for event in self._events:
