@@ -8,9 +8,9 @@ import pytest
 
 from tester.tui.bar import bar, beyond
 from tester.tui.filters import ascii_text
-from tester.tui.plot import Canvas, Point, Range, round_step, scatter
-from tester.tui.scene import Scene
-from tester.tui.words import clean, count, fit, hours, minutes, number, reflow
+from tester.tui.formatting import clean, count, fit, hours, minutes, number, reflow
+from tester.tui.plot import Canvas, PlotRange, Point, round_step, scatter
+from tester.tui.scene import ScreenScene
 from tests.tester.service.views import HOSTILE, value
 
 
@@ -59,7 +59,7 @@ def test_a_value_outside_the_bar_points_there() -> None:
 
 
 def test_a_range_grows_at_once_and_shrinks_late() -> None:
-    scale = Range(least=1.0)
+    scale = PlotRange(least=1.0)
     scale.cover(10.0, 20.0)
     first = (scale.low, scale.high)
     scale.cover(12.0, 17.0)
@@ -76,14 +76,14 @@ def test_round_steps() -> None:
 
 def test_dots_stand_where_the_values_are() -> None:
     canvas = Canvas(2, 1)
-    scale = Range(0.0, 3.0)
+    scale = PlotRange(0.0, 3.0)
     canvas.bins([(0.0, 0.0), (3.0, 3.0), (0.0, 3.0)], scale)
     assert canvas.lines() == ["\N{BRAILLE PATTERN DOTS-8}\N{BRAILLE PATTERN DOTS-14568}"]
 
 
 def test_a_setpoint_is_drawn_where_there_is_no_data() -> None:
     canvas = Canvas(3, 3, plain=True)
-    scale = Range(0.0, 2.0)
+    scale = PlotRange(0.0, 2.0)
     canvas.level(1.0, "-", scale)
     canvas.bins([(1.0, 1.0)], scale)
     assert canvas.lines() == ["   ", "--*", "   "]
@@ -100,5 +100,5 @@ def test_ascii_keeps_the_width() -> None:
 
 
 def test_a_scene_without_a_service_has_nothing_to_believe() -> None:
-    scene = Scene(now=lambda: 5.0)
+    scene = ScreenScene(now=lambda: 5.0)
     assert not scene.linked and scene.top_alarm() is None and scene.value("load") is None

@@ -11,26 +11,16 @@ from textual.content import Content
 from textual.widgets import OptionList
 from textual.widgets.option_list import Option
 
-from tester.service.commands import Arm, Jog, JogAxis, Tare
+from tester.screen import HandAxis
+from tester.service.commands import Arm, Jog, Tare
 from tester.service.state import StateView
-from tester.tui.scene import Scene
-from tester.tui.views.view import Keys, View
+from tester.tui.formatting import clean
+from tester.tui.pages.view import Keys, View
+from tester.tui.scene import ScreenScene
 from tester.tui.widgets.events import EventsPanel
 from tester.tui.widgets.panel import FAINT, WARNING, Panel, Part, Parts, rows
 from tester.tui.widgets.values import value_row
-from tester.tui.words import clean
 
-AXES: tuple[tuple[JogAxis, str, str], ...] = (
-    ("wheel", "Wheel speed", "0.05 m/s a step, lifted"),
-    ("belt", "Belt speed", "0.05 m/s a step, lifted"),
-    ("both", "Both speeds", "0.05 m/s a step"),
-    ("press", "Load", "10 N a step, speeds equal"),
-    ("sideslip", "Sideslip", "1° a step, lifted"),
-    ("camber", "Camber", "1° a step, lifted"),
-    ("heat", "Heating", "1 K a step, turning"),
-)
-"""Axis, name, the service's step and condition (docs/protocol.md)."""
-SHOWN = ("wheel_speed", "belt_speed", "slip", "load", "press", "sideslip", "camber", "surface", "hub", "heat")
 CALIBRATION = "load cell calibration by a wizard: not here yet, see the rig file"
 SIGN_S = 0.25
 """Signs of life are given this often, s; a second without one ends manual mode."""
@@ -51,7 +41,7 @@ The calibration of the load cell is in the rig file (`tester rig show`); it is n
 class ArmedPanel(Panel):
     """Whether manual mode is armed, for how long, and what the last zero gave."""
 
-    def picture(self, scene: Scene, width: int, height: int) -> Parts:
+    def picture(self, scene: ScreenScene, width: int, height: int) -> Parts:
         """Return some lines."""
         state = scene.state
         if state is None:
@@ -79,14 +69,22 @@ def armed_words(state: StateView) -> Part:
 class ManualValues(Panel):
     """The values that move by hand."""
 
-    def picture(self, scene: Scene, width: int, height: int) -> Parts:
+    def picture(self, scene: ScreenScene, width: int, height: int) -> Parts:
         """Return a row for each."""
-        found = [value for key in SHOWN if (value := scene.value(key)) is not None]
+        found = [value for key in scene.machine.by_hand if (value := scene.value(key)) is not None]
         return rows([value_row(value, width, linked=scene.linked) for value in found[:height]])
 
 
-class ManualView(View):
+def axis_words(axis: HandAxis) -> str:
+    """Return what may be moved, and how far a step of it goes."""
+    return f"{clean(axis.title):<12} {clean(axis.step)}"
+
+
+class ManualPage(View):
     """Jog, zero, heat by hand."""
+
+    axes: tuple[HandAxis, ...] = ()
+    """Those of the machine, as listed."""
 
     KEYS: ClassVar[Keys] = (("m", "Arm"), ("↑↓", "Axis"), ("←→", "Step"), ("t", "Tare"), ("a", "Ack"),
                             ("F1", "Help"), ("q", "Detach"))  # fmt: skip
@@ -102,10 +100,7 @@ class ManualView(View):
         """Lay out values, axes, state."""
         yield ManualValues(id="manual-values", classes="box")
         with Horizontal():
-            yield OptionList(
-                *(Option(Content(f"{title:<12} {step}"), id=axis) for axis, title, step in AXES),
-                id="manual-axes", markup=False,
-            )  # fmt: skip
+            yield OptionList(id="manual-axes", markup=False)
             with Vertical():
                 yield ArmedPanel(id="manual-state", classes="box")
                 yield EventsPanel(id="manual-events", classes="box")
@@ -117,6 +112,15 @@ class ManualView(View):
             self.query_one(f"#{name}").border_title = title
         self.query_one("#manual-values").border_subtitle = CALIBRATION
         self.set_interval(SIGN_S, self._give_sign)
+
+    def show(self, scene: ScreenScene) -> None:
+        """Show the scene, and the axes of its machine."""
+        super().show(scene)
+        if scene.machine.hand != self.axes:
+            self.axes = scene.machine.hand
+            listed = self.query_one("#manual-axes", OptionList)
+            listed.set_options([Option(Content(axis_words(one)), id=one.name) for one in self.axes])
+            listed.highlighted = 0 if self.axes else None
 
     def _give_sign(self) -> None:
         """Say that somebody sees what moves: from the loop that draws, so that one that stands still says nothing."""
@@ -155,4 +159,4 @@ class ManualView(View):
         if not self.armed:
             self.host.say("not armed: m arms manual mode")
             return
-        self.host.order(Jog(AXES[at][0], 1 if direction > 0 else -1))
+        self.host.order(Jog(self.axes[at].name, 1 if direction > 0 else -1))

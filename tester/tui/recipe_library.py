@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TypeAlias
 
 import recipes
-from tester.trouble import in_words
+from tester.base.trouble import in_words
 
 MOST_BYTES = 262_144
 """Longest recipe that is read (safety.md): the service takes no longer one."""
@@ -17,7 +17,7 @@ OWN = "recipes"
 
 
 @dataclass(frozen=True, slots=True)
-class Problem:
+class RecipeProblem:
     """One problem of a recipe: line and column from 1, message with where the limit comes from."""
 
     line: int
@@ -25,12 +25,12 @@ class Problem:
     message: str
 
 
-Checked: TypeAlias = "tuple[Problem, ...] | None"
+Checked: TypeAlias = "tuple[RecipeProblem, ...] | None"
 """The problems that were found; None where nobody has looked yet."""
 
 
 @dataclass(frozen=True, slots=True)
-class Recipe:
+class ListedRecipe:
     """A recipe that can be chosen. ``text``: as it was read; ``unreadable``: why it could not be."""
 
     name: str
@@ -50,7 +50,7 @@ class Recipe:
         return "" if self.shipped else self.text
 
 
-def shelf(folder: Path) -> list[Recipe]:
+def shelf(folder: Path) -> list[ListedRecipe]:
     """Return the shipped recipes, then those in ``folder/recipes`` and ``folder``, each by name."""
     found = [_read(name, recipes.find(name), shipped=True) for name in recipes.names()]
     shipped = recipes.FOLDER.resolve()
@@ -61,12 +61,12 @@ def shelf(folder: Path) -> list[Recipe]:
     return found
 
 
-def read_again(recipe: Recipe) -> Recipe:
+def read_again(recipe: ListedRecipe) -> ListedRecipe:
     """Return the recipe as its file is now."""
     return _read(recipe.name, recipe.path, shipped=recipe.shipped)
 
 
-def own_copy(recipe: Recipe, folder: Path) -> Recipe:
+def own_copy(recipe: ListedRecipe, folder: Path) -> ListedRecipe:
     """Copy a shipped recipe into the user's folder, under a name that is free, and return the copy; raises OSError."""
     where = folder / OWN
     where.mkdir(exist_ok=True)
@@ -78,15 +78,15 @@ def own_copy(recipe: Recipe, folder: Path) -> Recipe:
     return _read(path.stem, path, shipped=False)
 
 
-def _looks_like_one(recipe: Recipe) -> bool:
+def _looks_like_one(recipe: ListedRecipe) -> bool:
     """Return whether a file is a recipe, or one that is being written: other YAML files lie about."""
     return bool(recipe.unreadable) or "recipe:" in recipe.text
 
 
-def _read(name: str, path: Path, *, shipped: bool) -> Recipe:
+def _read(name: str, path: Path, *, shipped: bool) -> ListedRecipe:
     try:
         if path.stat().st_size > MOST_BYTES:
-            return Recipe(name, path, shipped, "", f"longer than {MOST_BYTES} bytes")
-        return Recipe(name, path, shipped, path.read_text(encoding="utf-8"))
+            return ListedRecipe(name, path, shipped, "", f"longer than {MOST_BYTES} bytes")
+        return ListedRecipe(name, path, shipped, path.read_text(encoding="utf-8"))
     except (OSError, UnicodeDecodeError) as error:
-        return Recipe(name, path, shipped, "", in_words(error))
+        return ListedRecipe(name, path, shipped, "", in_words(error))

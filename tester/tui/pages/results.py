@@ -4,29 +4,30 @@ from __future__ import annotations
 
 import asyncio
 import sqlite3
+from collections.abc import Sequence
 from functools import partial
 from typing import ClassVar
 
 from pydantic import JsonValue
+from rich.cells import cell_len
 from rich.text import Text
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.widgets import DataTable
 
-from tester.axes import AXES
+from tester.base.trouble import in_words
 from tester.service.commands import ListRuns
 from tester.store.schema import StoreError
-from tester.trouble import in_words
 from tester.tui.dialogs.export import ExportDialog
 from tester.tui.dialogs.plot import PlotDialog
 from tester.tui.dialogs.repeats import RepeatsDialog
+from tester.tui.formatting import clean, minutes
+from tester.tui.pages.view import Keys, View
 from tester.tui.stored import FIGURES, Row, Stored, read
-from tester.tui.views.view import Keys, View
 from tester.tui.widgets.scatter import PlotPanel
-from tester.tui.words import clean, minutes
 
 RUN_HEADER = ("Run", "Recipe", "Status", "Values", "Rig time", "Started")
-EMPTY = ("Formula", *(one.title for one in AXES if one.paper), *FIGURES)
+EMPTY = ("Formula", *FIGURES)
 """Columns of the conditions while no run is chosen."""
 MISSING = (StoreError, OSError, sqlite3.Error)
 HELP = """\
@@ -37,7 +38,7 @@ from the chosen condition in more than that setpoint is a faint dot.
 
 Enter   on a run: read it. On a condition: its repeats, with traces, and why one is not in the mean; Enter there
         leaves a repeat out, or takes it in again, with a reason that goes on record. Nothing is ever deleted.
-p       plot against load, slip, temperature, angle, and camber or wheel speed where they differ.
+p       plot against one axis of the conditions after another; one that they share is told above instead.
 e       export a table to a file.
 g       look for runs again.
 """
@@ -46,13 +47,18 @@ g       look for runs again.
 class TextTable(DataTable[Text]):
     """A table of texts that are never taken for markup."""
 
-    def measure(self) -> None:
-        """Make the columns as wide as what was filled in.
+    def fill(self, header: Sequence[str], rows: Sequence[Sequence[str]] = ()) -> None:
+        """Show these cells alone, each column as wide as its widest.
 
-        A table does that when it has nothing else to do, hence not before its next message: one filled from elsewhere,
-        under a dialog, has none coming.
+        The widths are given: a table that measures them does so when it has nothing else to do, and what was painted
+        before that, under a dialog for instance, stays on the screen with columns that are too narrow.
         """
-        self.call_later(self.refresh)
+        self.clear(columns=True)
+        for number, title in enumerate(header):
+            self.add_column(Text(title), width=max(cell_len(row[number]) for row in (header, *rows)))
+        for row in rows:
+            self.add_row(*(Text(cell) for cell in row))
+        self.call_later(self.refresh)  # it learns how far it can be scrolled with its next message, and has none coming
 
 
 class ResultsView(View):
@@ -76,9 +82,9 @@ class ResultsView(View):
     def compose(self) -> ComposeResult:
         """Lay out the tables."""
         runs = TextTable(id="runs", cursor_type="row", zebra_stripes=False)
-        runs.add_columns(*(Text(title) for title in RUN_HEADER))
+        runs.fill(RUN_HEADER)
         conditions = TextTable(id="conditions", cursor_type="row")
-        conditions.add_columns(*(Text(title) for title in EMPTY))
+        conditions.fill(EMPTY)
         runs.border_title, conditions.border_title = "Runs", "Conditions"
         yield runs
         yield conditions
@@ -120,11 +126,8 @@ class ResultsView(View):
         """Show these runs, `tester runs --json`, the newest first."""
         table = self.runs_table
         before = table.cursor_row
-        table.clear()
         self.names = [str(one.get("run", "")) for one in runs]
-        for one in runs:
-            table.add_row(*(Text(cell) for cell in run_cells(one)))
-        table.measure()
+        table.fill(RUN_HEADER, [run_cells(one) for one in runs])
         if before < len(runs):
             table.move_cursor(row=before)
         table.border_title = f"Runs: {len(runs)}"
@@ -177,11 +180,7 @@ class ResultsView(View):
         again = self.stored is not None and self.stored.folder == stored.folder
         at, axis = (table.cursor_row, self.query_one(PlotPanel).axis) if again else (0, 0)
         self.stored = stored
-        table.clear(columns=True)
-        table.add_columns(*(Text(title) for title in stored.header))
-        for row in stored.rows:
-            table.add_row(*(Text(clean(cell, 80)) for cell in row.cells))
-        table.measure()
+        table.fill(stored.header, [[clean(cell, 80) for cell in row.cells] for row in stored.rows])
         table.border_title = Text(f"{clean(stored.name)}: {clean(stored.recipe)}, {clean(stored.status)}")
         table.border_subtitle = Text(f"all: {clean(stored.common)}" if stored.common else "")
         table.move_cursor(row=at)

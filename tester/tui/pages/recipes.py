@@ -16,14 +16,14 @@ from textual.content import Content
 from textual.widgets import OptionList, TextArea
 from textual.widgets.option_list import Option
 
+from tester.base.trouble import in_words
 from tester.service.commands import CheckRecipe
-from tester.trouble import in_words
 from tester.tui.dialogs.plan import PlanDialog
 from tester.tui.dialogs.start import StartDialog
-from tester.tui.scene import Scene
-from tester.tui.shelf import Checked, Problem, Recipe, own_copy, read_again, shelf
-from tester.tui.views.view import Keys, View
-from tester.tui.words import clean, clean_lines
+from tester.tui.formatting import clean, clean_lines
+from tester.tui.pages.view import Keys, View
+from tester.tui.recipe_library import Checked, ListedRecipe, RecipeProblem, own_copy, read_again, shelf
+from tester.tui.scene import ScreenScene
 
 FIRST = "quickstart"
 EDITORS = ("VISUAL", "EDITOR")
@@ -58,7 +58,7 @@ class RecipesView(View):
     def __init__(self, *, id: str) -> None:  # noqa: A002 - as in Textual
         """Nothing is read yet."""
         super().__init__(id=id)
-        self.recipes: list[Recipe] = []
+        self.recipes: list[ListedRecipe] = []
         self.checked: dict[str, Checked] = {}
         """By the path of the recipe."""
         self.failed: dict[str, str] = {}
@@ -83,7 +83,7 @@ class RecipesView(View):
         """Begin at the list."""
         self.query_one("#recipe-list").focus()
 
-    def show(self, scene: Scene) -> None:
+    def show(self, scene: ScreenScene) -> None:
         """Have the recipes checked once there is a service."""
         if scene.linked and not self._asked and not scene.replayed and not scene.view_only:
             self._asked = True
@@ -99,7 +99,7 @@ class RecipesView(View):
         options.highlighted = next((at for at, one in enumerate(self.recipes) if one.name == chosen), 0)
         self._open()
 
-    def _label(self, recipe: Recipe) -> Content:
+    def _label(self, recipe: ListedRecipe) -> Content:
         checked = self.checked.get(str(recipe.path))
         if recipe.unreadable or str(recipe.path) in self.failed:
             sign = "✘"
@@ -111,7 +111,7 @@ class RecipesView(View):
         return Content.assemble((f"{sign:<4}", "bold reverse" if bad else ""), clean(recipe.name, 60))
 
     @property
-    def chosen(self) -> Recipe | None:
+    def chosen(self) -> ListedRecipe | None:
         """Return the recipe under the cursor."""
         at = self.query_one("#recipe-list", OptionList).highlighted
         return self.recipes[at] if at is not None and at < len(self.recipes) else None
@@ -137,7 +137,7 @@ class RecipesView(View):
             problems.add_option(Option(clean(failed)))
         problems.add_options([Option(f"{one.line}:{one.column} {clean(one.message)}") for one in found])
 
-    def _relabel(self, recipe: Recipe) -> None:
+    def _relabel(self, recipe: ListedRecipe) -> None:
         for at, one in enumerate(self.recipes):
             if one.path == recipe.path:
                 self.query_one("#recipe-list", OptionList).replace_option_prompt_at_index(at, self._label(one))
@@ -150,16 +150,16 @@ class RecipesView(View):
         order = sorted(self.recipes, key=lambda one: one is not self.chosen)
         self._begin_check(order)
 
-    def _begin_check(self, recipes: list[Recipe]) -> None:
+    def _begin_check(self, recipes: list[ListedRecipe]) -> None:
         """Check these, in the place of what was being checked."""
         self.run_worker(partial(self._check, recipes), group="check", exclusive=True, exit_on_error=False)
 
-    async def _check(self, recipes: list[Recipe]) -> None:
+    async def _check(self, recipes: list[ListedRecipe]) -> None:
         for recipe in recipes:
             if not recipe.unreadable:
                 await self._check_one(recipe)
 
-    async def _check_one(self, recipe: Recipe) -> None:
+    async def _check_one(self, recipe: ListedRecipe) -> None:
         answer = await self.host.ask(CheckRecipe(recipe.reference, recipe.sent))
         found = answer.get("problems") if isinstance(answer, dict) else None
         self.failed.pop(str(recipe.path), None)
@@ -235,7 +235,7 @@ class RecipesView(View):
         others = [one for one in self.recipes if one.path != own.path and str(one.path) not in self.checked]
         self._begin_check([read_again(own), *others])
 
-    def _edit(self, recipe: Recipe) -> None:
+    def _edit(self, recipe: ListedRecipe) -> None:
         command = shlex.split(next((os.environ[name] for name in EDITORS if os.environ.get(name)), DEFAULT_EDITOR))
         found = self.checked.get(str(recipe.path))
         if found and Path(command[0]).name in TAKES_A_LINE:
@@ -244,9 +244,9 @@ class RecipesView(View):
             subprocess.run([*command, str(recipe.path)], check=False)
 
 
-def _problem(found: object) -> Problem:
+def _problem(found: object) -> RecipeProblem:
     match found:
         case {"line": int(line), "column": int(column), "message": str(message)}:
-            return Problem(line, column, message)
+            return RecipeProblem(line, column, message)
         case _:
-            return Problem(1, 1, str(found))
+            return RecipeProblem(1, 1, str(found))

@@ -7,7 +7,7 @@ from typing import ClassVar
 from textual.containers import Vertical
 
 from tester.tui.host import HostApp, host_of
-from tester.tui.scene import Scene
+from tester.tui.scene import ScreenScene
 from tester.tui.widgets.panel import Panel
 
 Keys = tuple[tuple[str, str], ...]
@@ -24,7 +24,7 @@ class View(Vertical):
         """Return the application."""
         return host_of(self)
 
-    def show(self, scene: Scene) -> None:
+    def show(self, scene: ScreenScene) -> None:
         """Show the scene as it is now."""
         for panel in self.query(Panel):
             panel.show(scene)

@@ -8,17 +8,17 @@ from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.widgets import Input
 
-from tester import clock
+from tester.base import clock
+from tester.base.trouble import in_words
 from tester.service.commands import WatchFrames
 from tester.service.protocol import Frame
 from tester.service.state import BusView as BusState
 from tester.service.state import DeviceView
-from tester.trouble import in_words
 from tester.tui.bundle import write_bundle
-from tester.tui.scene import STALE_S, Scene
-from tester.tui.views.view import Keys, View
+from tester.tui.formatting import clean, fit, number
+from tester.tui.pages.view import Keys, View
+from tester.tui.scene import STALE_S, ScreenScene
 from tester.tui.widgets.panel import FAINT, NOTICE, WARNING, Panel, Parts, rows
-from tester.tui.words import clean, fit, number
 
 HELP = """\
 Devices: state, age of the newest data, requests, errors since the run began and per hour. ✘ is a device that does not
@@ -33,7 +33,7 @@ b     support bundle: a zip file with state, events, plan, frames and the servic
 class DevicesPanel(Panel):
     """A row a device."""
 
-    def picture(self, scene: Scene, width: int, height: int) -> Parts:
+    def picture(self, scene: ScreenScene, width: int, height: int) -> Parts:
         """Return the table."""
         devices = scene.state.devices if scene.state is not None else ()
         if not devices:
@@ -62,7 +62,7 @@ def device_row(one: DeviceView, width: int) -> Parts:
 class BusesPanel(Panel):
     """A row a bus; the title says how punctual the scan is."""
 
-    def picture(self, scene: Scene, width: int, height: int) -> Parts:
+    def picture(self, scene: ScreenScene, width: int, height: int) -> Parts:
         """Return the table."""
         if scene.state is None:
             return []
@@ -84,7 +84,7 @@ class FramesPanel(Panel):
     frozen: tuple[Frame, ...] | None = None
     wanted = ""
 
-    def picture(self, scene: Scene, width: int, height: int) -> Parts:
+    def picture(self, scene: ScreenScene, width: int, height: int) -> Parts:
         """Return a row a frame."""
         source = self.frozen if self.frozen is not None else scene.frames
         lines = [frame_row(frame) for frame in source]
@@ -103,7 +103,7 @@ def frame_row(frame: Frame) -> str:
     return f"{frame.t_s:12.4f} {clean(frame.bus):<8} {'>' if frame.sent else '<'} {frame.ident:4X}  {clean(frame.data)}"
 
 
-class BusView(View, can_focus=True):
+class BusPage(View, can_focus=True):
     """What passes on the wires."""
 
     KEYS: ClassVar[Keys] = (("f", "Freeze"), ("/", "Filter"), ("b", "Bundle"), ("space", "Hold"), ("a", "Ack"),
@@ -139,7 +139,7 @@ class BusView(View, can_focus=True):
         self._epoch = self.host.scene.epoch
         self._watch(on=True)
 
-    def show(self, scene: Scene) -> None:
+    def show(self, scene: ScreenScene) -> None:
         """Ask for the frames again where the connection is another one."""
         if scene.epoch != self._epoch:
             self._epoch = scene.epoch

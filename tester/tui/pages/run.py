@@ -10,7 +10,7 @@ from textual.containers import Horizontal, Vertical
 
 from tester.tui.dialogs.log import LogDialog
 from tester.tui.dialogs.prompt import PromptDialog
-from tester.tui.views.view import Keys, View
+from tester.tui.pages.view import Keys, View
 from tester.tui.widgets.events import EventsPanel
 from tester.tui.widgets.progress import ProgressPanel
 from tester.tui.widgets.prompt import PromptPanel
@@ -22,7 +22,7 @@ HELP = """\
 Each row: measured value, setpoint, unit, and a bar. On the bar ● is the value, ┼ the setpoint, ═ the band in which
 samples count, ├ and ┤ the limits at which something happens. A dim value with ? is old: it is not a value.
 
-space   HOLD: lift, slip to zero, keep the temperature. Costs at most the repeat under way, which is done again.
+space   HOLD: lift, nothing slides, keep the temperature. Costs at most the repeat under way, which is done again.
 r       resume after HOLD, or a run that was cut off: shows the pre-flight list first.
 x       abort: controlled stop of the run; type the word.
 a       acknowledge the alarm of line 2. Nothing moves by it.
@@ -31,7 +31,7 @@ l       event log.
 """
 
 
-class RunView(View, can_focus=True):
+class RunPage(View, can_focus=True):
     """The run under way."""
 
     KEYS: ClassVar[Keys] = (("space", "Hold"), ("r", "Resume"), ("x", "Abort…"), ("a", "Ack"), ("l", "Log"),
@@ -55,11 +55,11 @@ class RunView(View, can_focus=True):
                 yield ValuesPanel(id="values", classes="box")
                 yield ProgressPanel(id="progress")
                 with Horizontal(id="trends-1"):
-                    yield TrendPanel("friction", "friction", 0.1, plain=self.plain, id="trend-friction")
-                    yield TrendPanel("surface", "surface_c", 4.0, plain=self.plain, id="trend-surface")
+                    yield TrendPanel(0, plain=self.plain, id="trend-first")
+                    yield TrendPanel(1, plain=self.plain, id="trend-second")
                 with Horizontal(id="trends-2"):
-                    yield TrendPanel("load", "load_n", 10.0, plain=self.plain, id="trend-load")
-                    yield TrendPanel("slip", "slip_mm_s", 10.0, plain=self.plain, id="trend-slip")
+                    yield TrendPanel(2, plain=self.plain, id="trend-third")
+                    yield TrendPanel(3, plain=self.plain, id="trend-fourth")
             with Vertical(id="run-right"):
                 yield StepsPanel(id="steps", classes="box")
                 yield EventsPanel(id="events", classes="box")
