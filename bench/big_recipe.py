@@ -12,6 +12,7 @@ from bench.child import peak_memory_mb, run
 from bench.effort import Effort, TopicFailedError
 from bench.figures import Figure, Limit, at_most, unavailable
 from bench.stopwatch import cpu_ns
+from tester.kinds.wheel_on_belt.recipe.part import PART
 
 CONDITIONS = 100_000
 CHECK_LIMIT_S = 1.0
@@ -89,16 +90,17 @@ grids:
 
 def work(text: str) -> dict[str, float]:
     """Read, check and expand a recipe; return CPU seconds of each, and the conditions found."""
+    from tester.kinds import load_rig
+    from tester.kinds.wheel_on_belt.recipe.expand import expand
     from tester.recipe.check import load_checked
-    from tester.recipe.expand import conditions_of, expand
-    from tester.rig import load_rig
+    from tester.recipe.conditions import conditions_of
 
     rig = load_rig("sim")
-    load_checked(recipe_text(2000), rig, "few.yaml")  # the validator is made with the first recipe
+    load_checked(recipe_text(2000), rig, PART, "few.yaml")  # the validator is made with the first recipe
     marks = [cpu_ns()]
-    loaded = load_checked(text, rig, "many.yaml")
+    loaded = load_checked(text, rig, PART, "many.yaml")
     marks.append(cpu_ns())
-    found = len(conditions_of(loaded.recipe))
+    found = len(conditions_of(loaded.recipe, PART.settings))
     marks.append(cpu_ns())
     expand(loaded.recipe, rig)
     marks.append(cpu_ns())

@@ -145,7 +145,7 @@ class MemoryPort(FrameByFrame):
 
 def _cycle(live: LiveRun, count: int, runs: int) -> list[Figure]:
     master = live.engine.devices.master
-    drives = master.drives
+    drives = live.engine.devices.drives
     t = live.now
     answers = [
         [(t, o.TPDO1_BASE + drive.node_id, TPDO1(drive.statusword, 1000 + change, 100)) for drive in drives]

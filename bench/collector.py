@@ -9,7 +9,7 @@ from bench.figures import Figure, at_most
 from bench.live import SLIDING_RECIPE, LiveRun, live_run
 from bench.stopwatch import wall_ns
 from recipes import find
-from tester.engine.tickers import run_simulated
+from tester.machine.tickers import run_simulated
 
 PAUSE_LIMIT_MS = 1.0
 

@@ -19,9 +19,9 @@ from bench.effort import Effort, TopicFailedError
 from bench.figures import Figure, at_most, ratio
 from bench.live import SLIDING_RECIPE, LiveRun, live_run
 from bench.stopwatch import cpu_ns
-from tester import clock
-from tester.engine.tickers import TickStatistics, collector_at_rest, run_real_time
-from tester.priority import RealTimePriority
+from tester.base import clock
+from tester.base.priority import RealTimePriority
+from tester.machine.tickers import TickStatistics, collector_at_rest, run_real_time
 
 
 class Rate(NamedTuple):

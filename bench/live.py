@@ -9,14 +9,16 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from bench.effort import TopicFailedError
-from tester import clock
-from tester.campaign.folder import Job, beginning_of, work_of
-from tester.engine.build import build_run
-from tester.engine.prompts import Prompts
-from tester.engine.tickers import next_tick
+from tester.base import clock
+from tester.kinds import load_rig
+from tester.kinds.wheel_on_belt.build import build_run
+from tester.kinds.wheel_on_belt.quantities import QUANTITIES
+from tester.kinds.wheel_on_belt.recipe.part import PART
+from tester.machine.prompts import Prompts
+from tester.machine.tickers import next_tick
 from tester.recipe.check import load_checked
-from tester.rig import load_rig
-from tester.simulated import simulated_ports
+from tester.run.folder import Job, beginning_of, work_of
+from tester.run.simulated import simulated_ports
 from tester.store.writer import RunWriter
 
 SLIDING_RECIPE = """\
@@ -54,10 +56,10 @@ class LiveRun:
     def __init__(self, text: str, folder: Path, seed: int = 1) -> None:
         """Build everything; nothing is ticked yet."""
         rig = load_rig("sim")
-        loaded = load_checked(text, rig, "bench.yaml")
+        loaded = load_checked(text, rig, PART, "bench.yaml")
         work = work_of(loaded.recipe, rig)
         plan = work.plan
-        self.writer = RunWriter(folder / "run.db", clock=clock.monotonic, utc=clock.utc_now, lossless=True)
+        self.writer = RunWriter(folder / "run.db", QUANTITIES, clock=clock.monotonic, utc=clock.utc_now, lossless=True)
         beginning_of(work.parts[0], Job(folder, seed), work)(self.writer)
         ports, self.world, attendant = simulated_ports(rig, seed, None)
         self.run = build_run(rig, plan, ports, attendant, self.writer, Prompts(automatic=True))
@@ -76,7 +78,7 @@ class LiveRun:
         return ctx.moving and readings.force_z_n > _CONTACT_N and readings.slip_m_s > _SLIDING_M_S
 
     def tick(self) -> None:
-        """Do what the simulated ticker does in one turn (``tester.engine.tickers.run_simulated``)."""
+        """Do what the simulated ticker does in one turn (``tester.machine.tickers.run_simulated``)."""
         now = self.now
         self.ticks += 1
         self.world.advance(now)

@@ -22,7 +22,7 @@ def built_with_pgo() -> str:
 
 def scan_is_compiled() -> str:
     """Return "yes" or "no": are the modules of the scan machine code (setup.py) or Python."""
-    found = importlib.util.find_spec("tester.control.step")
+    found = importlib.util.find_spec("tester.kinds.wheel_on_belt.control.step")
     origin = found.origin if found is not None else None
     return "yes" if origin is not None and not origin.endswith(".py") else "no"
 

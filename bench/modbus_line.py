@@ -23,10 +23,10 @@ from bench.figures import Figure, at_most, ratio, unavailable
 from bench.modbus_far_end import PROFILE, READY, UNIT_ID
 from bench.stopwatch import cpu_ns, wall_ns
 from drivers.crc16 import with_crc
-from drivers.edges.serial_line import open_serial_line
-from drivers.load_cell import LoadCell
 from drivers.modbus import ModbusLink
 from drivers.profiles import load_profile
+from drivers.sensor import Sensor
+from drivers.transports.serial_line import open_serial_line
 
 LIMIT = 3.0
 """Asked of a transaction through our driver beside the raw one."""
@@ -166,7 +166,7 @@ def _ours(terminal: str) -> tuple[Transact, Callable[[], None]]:
 
     line = open_serial_line(terminal, BAUD)
     link = ModbusLink("rtu", BAUD)
-    cell = LoadCell(load_profile(PROFILE), UNIT_ID, link)
+    cell = Sensor(load_profile(PROFILE), UNIT_ID, link)
     descriptor = os.open(terminal, os.O_RDWR | os.O_NOCTTY)  # to wait on
     cell.period_s = 0.0
     waiting = [descriptor]

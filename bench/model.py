@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from bench.effort import Effort
 from bench.figures import Figure, ratio
 from bench.stopwatch import cpu_us_per
-from sim.friction import COMPOUNDS, FrictionModel, coefficients
+from sim.physics.friction import COMPOUNDS, FrictionModel, coefficients
 
 Array = NDArray[np.float64]
 

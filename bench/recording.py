@@ -13,9 +13,9 @@ from bench.effort import Effort, TopicFailedError
 from bench.figures import Figure, at_most
 from bench.lateness import bare_loop
 from bench.stopwatch import cpu_ns
-from tester import clock
-from tester.engine.tickers import collector_at_rest
-from tester.process import SAMPLE_COLUMNS
+from tester.base import clock
+from tester.kinds.wheel_on_belt.quantities import QUANTITIES
+from tester.machine.tickers import collector_at_rest
 from tester.store.reader import RunReader
 from tester.store.writer import RunWriter
 
@@ -61,7 +61,7 @@ def measure(effort: Effort) -> list[Figure]:
 
 def sample_rows() -> list[tuple[float, ...]]:
     """Return rows of which no two are alike, as scans make them."""
-    width = len(SAMPLE_COLUMNS)
+    width = len(QUANTITIES.names)
     return [(*(i * 0.01 + column * 1.7 for column in range(width - 1)), 1.0) for i in range(DIFFERENT_ROWS)]
 
 
@@ -69,7 +69,7 @@ def bulk_us(rows: list[tuple[float, ...]], count: int) -> float:
     """Write ``count`` rows as fast as it goes and return the CPU us for one, commits and close included."""
     with TemporaryDirectory(prefix="bench-", ignore_cleanup_errors=True) as folder:
         begun = cpu_ns()
-        with closing(RunWriter(Path(folder) / "run.db", clock=clock.monotonic, lossless=True)) as writer:
+        with closing(RunWriter(Path(folder) / "run.db", QUANTITIES, clock=clock.monotonic, lossless=True)) as writer:
             sample = writer.sample
             for i in range(count):
                 sample(rows[i % DIFFERENT_ROWS])
@@ -81,7 +81,10 @@ def bulk_us(rows: list[tuple[float, ...]], count: int) -> float:
 def paced_share(rows: list[tuple[float, ...]], seconds: float) -> float:
     """Write a row every 10 ms in real time and return the share of a core, 0..1, of loop and recorder."""
     with TemporaryDirectory(prefix="bench-", ignore_cleanup_errors=True) as folder:
-        with closing(RunWriter(Path(folder) / "run.db", clock=clock.monotonic)) as writer, collector_at_rest():
+        with (
+            closing(RunWriter(Path(folder) / "run.db", QUANTITIES, clock=clock.monotonic)) as writer,
+            collector_at_rest(),
+        ):
             begun, origin = cpu_ns(), clock.monotonic()
             for number in range(round(seconds / PERIOD_S)):
                 clock.sleep_until(origin + number * PERIOD_S)
@@ -95,7 +98,10 @@ def lost_samples(rows: list[tuple[float, ...]], seconds: float) -> int:
     """Write a row every millisecond in real time and return how many are not in the file."""
     count = round(seconds / FAST_PERIOD_S)
     with TemporaryDirectory(prefix="bench-", ignore_cleanup_errors=True) as folder:
-        with closing(RunWriter(Path(folder) / "run.db", clock=clock.monotonic)) as writer, collector_at_rest():
+        with (
+            closing(RunWriter(Path(folder) / "run.db", QUANTITIES, clock=clock.monotonic)) as writer,
+            collector_at_rest(),
+        ):
             origin = clock.monotonic()
             for number in range(count):
                 clock.sleep_until(origin + number * FAST_PERIOD_S)
@@ -110,7 +116,7 @@ def beside_disk_hog(rows: list[tuple[float, ...]], seconds: float) -> tuple[floa
     """Return the longest call of the recorder, and how much later the latest scan was than a bare loop's, in ms."""
     with TemporaryDirectory(prefix="bench-", ignore_cleanup_errors=True) as folder, disk_hog(Path(folder)):
         bare, _ = latest(None, rows, seconds)
-        with closing(RunWriter(Path(folder) / "run.db", clock=clock.monotonic)) as writer:
+        with closing(RunWriter(Path(folder) / "run.db", QUANTITIES, clock=clock.monotonic)) as writer:
             late, longest = latest(writer, rows, seconds)
         _check(writer)
     return 1e3 * longest, 1e3 * max(late - bare, 0.0)

@@ -19,7 +19,7 @@ from bench.live import SLIDING_RECIPE, LiveRun, live_run
 from bench.machine import scan_is_compiled
 from bench.stopwatch import cpu_seconds_of
 from bench.wrapping import wrapped
-from tester.engine.tickers import collector_at_rest
+from tester.machine.tickers import collector_at_rest
 
 DRIVERS_LIMIT_US = 12.0
 DECIDING_LIMIT_US = 10.0

@@ -14,8 +14,8 @@ from bench.effort import Effort
 from bench.figures import Figure, Limit
 from bench.live import SLIDING_RECIPE, LiveRun, live_run
 from bench.stopwatch import cpu_us_per, wall_ns
-from drivers.ports import CanFrame, CanPort, ForeseeingPort
-from tester.engine.tickers import collector_at_rest, next_tick
+from drivers.ports import CanFrame, CanPort, CanWatcher, ForeseeingPort, LineWatcher, Unwatch
+from tester.machine.tickers import collector_at_rest, next_tick
 
 REPEATED = 2000
 """Calls at one moment."""
@@ -62,6 +62,10 @@ class TimedCan:
         self.toll.pay(begun)
         return frames
 
+    def watch(self, watcher: CanWatcher) -> Unwatch:
+        """Watch the port itself."""
+        return self.port.watch(watcher)
+
 
 class TimedLine:
     """A simulated Modbus line that notes how long it takes."""
@@ -89,6 +93,10 @@ class TimedLine:
         self.toll.pay(begun)
         return chunks
 
+    def watch(self, watcher: LineWatcher) -> Unwatch:
+        """Watch the port itself."""
+        return self.port.watch(watcher)
+
 
 class Empty:
     """A bus on which nothing happens, to know what timing it costs."""
@@ -102,6 +110,10 @@ class Empty:
     def receive(self, now: float) -> list[CanFrame]:
         """Return nothing."""
         return []
+
+    def watch(self, watcher: CanWatcher) -> Unwatch:
+        """Have nothing to tell."""
+        return lambda: None
 
 
 def measure(effort: Effort, limits: dict[str, Limit]) -> list[Figure]:

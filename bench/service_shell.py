@@ -20,15 +20,15 @@ from bench.child import ROOT, command
 from bench.effort import Effort, TopicFailedError
 from bench.figures import Figure, at_most, ratio, unavailable
 from bench.lateness import percentile
-from tester import clock
-from tester.engine.tickers import collector_at_rest
+from tester.base import clock
+from tester.machine.tickers import collector_at_rest
 from tester.service.address import UnixAddress
+from tester.service.child_socket import INHERITS
 from tester.service.client import Client, NoServiceError
 from tester.service.commands import RunRecipe, Stop
+from tester.service.gateway_link import GatewayLink, LinkConfig
 from tester.service.gateway_process import serve_link
-from tester.service.hub import Hub, HubConfig
 from tester.service.link import OwnerEnd
-from tester.service.pair import INHERITS
 from tester.service.service import Service, ServiceOptions
 
 PERIOD_S = 0.01
@@ -102,7 +102,7 @@ def lateness(own_process: bool, clients: bool, seconds: float) -> list[float]:
     """Return how late each tick of a 100 Hz loop was that talks to clients as the service does."""
     with TemporaryDirectory(prefix="bench-", ignore_cleanup_errors=True) as folder:
         path = Path(folder) / "service.sock"
-        hub = Hub(HubConfig(UnixAddress(path), Path(folder) / "service.json", Path(folder), "sim"))
+        hub = GatewayLink(LinkConfig(UnixAddress(path), Path(folder) / "service.json", Path(folder), "sim"))
         service = Service(ServiceOptions(runs=Path(folder)), hub)
         if own_process:
             hub.open()
@@ -115,7 +115,7 @@ def lateness(own_process: bool, clients: bool, seconds: float) -> list[float]:
     return late
 
 
-def _open_in_thread(hub: Hub) -> None:
+def _open_in_thread(hub: GatewayLink) -> None:
     """Let the same gateway run as a thread of this process."""
     import socket
 

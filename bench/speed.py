@@ -12,11 +12,11 @@ from bench.figures import Figure, at_least
 from bench.live import SLIDING_RECIPE, live_run
 from bench.stopwatch import cpu_seconds_of
 from recipes import find
-from tester.engine.context import Progress
-from tester.engine.prompts import Prompts
-from tester.engine.run import Outcome
-from tester.engine.tickers import collector_at_rest
-from tester.session import Session, SessionOptions
+from tester.machine.context import Progress
+from tester.machine.prompts import Prompts
+from tester.machine.run import Outcome
+from tester.machine.tickers import collector_at_rest
+from tester.run.session import Session, SessionOptions
 
 COMPOUND_LIMIT = 800.0
 """Asked of one compound of Table 2, rig s per CPU s; 1,500 is the stretch."""

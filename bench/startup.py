@@ -15,7 +15,7 @@ HELP_LIMIT = 7.0
 TESTER = "import sys; from tester.cli.main import main; main()"
 FIRST_SCAN = """\
 import os, sys
-from tester.engine.engine import Engine
+from tester.machine.engine import Engine
 
 def stop(engine, now):
     os._exit(0 if engine.scans == 0 else 1)

@@ -1,4 +1,4 @@
-"""The clocks of the measurements: a benchmark reads them inside a scan, the product has ``tester.clock``."""
+"""The clocks of the measurements: a benchmark reads them inside a scan, the product has ``tester.base.clock``."""
 
 from __future__ import annotations
 

@@ -11,19 +11,18 @@ from collections.abc import Callable
 from bench.effort import Effort
 from bench.figures import Figure
 from bench.stopwatch import cpu_us_per
-from drivers.ir_thermometer import IrThermometer
 from drivers.jacket import HeatingJacket
-from drivers.load_cell import LoadCell
 from drivers.modbus import ModbusLink
 from drivers.profiles import load_profile
-from sim.contact import ContactModel
-from sim.modbus_wire import ModbusWire
+from drivers.sensor import Sensor
+from sim.machines.wheel_on_belt.plant import Plant
 from sim.nodes.cell_slave import CellSlave
 from sim.nodes.ir_slave import IrSlave
 from sim.nodes.jacket_slave import JacketSlave
-from sim.parameters import SimParameters
-from sim.plant import Plant
-from tester.engine.tickers import collector_at_rest
+from sim.physics.contact import ContactModel
+from sim.physics.parameters import SimParameters
+from sim.wires.modbus_wire import ModbusWire
+from tester.machine.tickers import collector_at_rest
 
 TURNING_RAD_S = 0.8 / 0.045
 HEATER_W = 50.0
@@ -68,7 +67,7 @@ def _plant() -> Plant:
 
 
 def _tick(wire: ModbusWire, link: ModbusLink, now: float) -> None:
-    """Serve a line as ``tester.engine.devices`` does."""
+    """Serve a line as ``tester.kinds.wheel_on_belt.devices`` does."""
     if wire.arrives_s <= now:
         link.feed(wire.read(now), now)
     if now >= link.wants_s:
@@ -78,7 +77,7 @@ def _tick(wire: ModbusWire, link: ModbusLink, now: float) -> None:
 def _cell_line() -> Work:
     wire = ModbusWire(115200, "N", [CellSlave(load_profile(CELL), 1, _plant())])
     link = ModbusLink("rtu", 115200)
-    LoadCell(load_profile(CELL), 1, link)
+    Sensor(load_profile(CELL), 1, link)
     now = 0.0
 
     def work(count: int) -> None:
@@ -97,7 +96,7 @@ def _slow_line() -> tuple[Work, Callable[[int], int]]:
     jacket, thermometer = JacketSlave(load_profile(JACKET), 1, plant), IrSlave(load_profile(THERMOMETER), 2, plant)
     wire, link = ModbusWire(38400, "N", [jacket, thermometer]), ModbusLink("rtu", 38400)
     driver = HeatingJacket(load_profile(JACKET), 1, link)
-    IrThermometer(load_profile(THERMOMETER), 2, link)
+    Sensor(load_profile(THERMOMETER), 2, link)
     now = 0.0
 
     def work(count: int) -> None:

@@ -10,22 +10,23 @@ from typing import Any
 from bench.ledger import Ledger
 
 ENTRY_POINTS: tuple[tuple[str, str, str, tuple[str, ...]], ...] = (
-    ("twin", "sim.rig", "SimRig", ("advance",)),
-    ("plant", "sim.plant", "Plant", ("advance", "forces_measured", "surface_measured_c", "hub_measured_c")),
+    ("twin", "sim.rig", "World", ("advance",)),
+    ("plant", "sim.machines.wheel_on_belt.plant", "Plant",
+     ("advance", "forces_measured", "surface_measured_c", "hub_measured_c")),
     ("nodes: drives", "sim.nodes.cia402_slave", "Cia402Slave", ("advance",)),
     ("nodes: Modbus slaves", "sim.nodes.jacket_slave", "JacketSlave", ("advance",)),
     ("nodes: Modbus slaves", "sim.nodes.modbus_slave", "ModbusSlave", ("answer",)),
-    ("bus: CAN", "sim.can_wire", "CanWire", ("send", "send_cycle", "receive", "transmit")),
-    ("bus: Modbus", "sim.modbus_wire", "ModbusWire", ("write", "read")),
-    ("drivers: receive", "tester.engine.devices", "Devices", ("receive",)),
-    ("drivers: image", "tester.engine.devices", "Devices", ("fill",)),
-    ("drivers: apply", "tester.engine.devices", "Devices", ("apply",)),
-    ("drivers: transmit", "tester.engine.devices", "Devices", ("transmit",)),
-    ("control", "tester.control.step", "Control", ("step",)),
-    ("executor", "tester.engine.executor", "Executor", ("step",)),
-    ("executor", "tester.engine.gates", "Gates", ("update",)),
-    ("recorder", "tester.engine.sampler", "Sampler", ("record",)),
-    ("engine", "tester.engine.run", "Run", ("tick",)),
+    ("bus: CAN", "sim.wires.can_wire", "CanWire", ("send", "send_cycle", "receive", "transmit")),
+    ("bus: Modbus", "sim.wires.modbus_wire", "ModbusWire", ("write", "read")),
+    ("drivers: receive", "tester.machine.devices", "DeviceList", ("receive",)),
+    ("drivers: image", "tester.kinds.wheel_on_belt.devices", "Devices", ("fill",)),
+    ("drivers: apply", "tester.kinds.wheel_on_belt.devices", "Devices", ("apply",)),
+    ("drivers: transmit", "tester.machine.devices", "DeviceList", ("transmit",)),
+    ("control", "tester.machine.control", "Control", ("step",)),
+    ("executor", "tester.machine.executor", "Executor", ("step",)),
+    ("executor", "tester.kinds.wheel_on_belt.procedures.gates", "Gates", ("update",)),
+    ("recorder", "tester.machine.sampler", "Sampler", ("record",)),
+    ("engine", "tester.machine.run", "Run", ("tick",)),
 )
 """Part, module, class, methods. Nodes that listen on CAN are wrapped where they subscribe."""
 
@@ -52,7 +53,7 @@ def wrapped(ledger: Ledger) -> Generator[list[str], None, None]:
                 continue
             for method in methods:
                 replace(owner, method, lambda bare, part=part: ledger.wrap(part, bare))
-        wire: type = import_module("sim.can_listeners").CanListeners
+        wire: type = import_module("sim.wires.can_listeners").CanListeners
         known: dict[object, Callable[..., Any]] = {}
         replace(wire, "listen", lambda bare: _subscribing(ledger, bare, known))
         replace(wire, "forget", lambda bare: _leaving(bare, known))

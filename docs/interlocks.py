@@ -1,6 +1,7 @@
-"""Write what is made from interlock rows and ceilings: tables of docs/safety.md, ``interlocks`` of sim/rig.yaml.
+"""Write what is made from interlock rows and safety keys: tables of each kind's page, ``interlocks`` of its rig files.
 
-``python docs/interlocks.py`` writes, ``--check`` only says what is out of date and exits 1.
+``python docs/interlocks.py`` writes those of every packaged kind, ``python docs/interlocks.py KIND`` those of one.
+``--check`` only says what is out of date and exits 1.
 """
 
 from __future__ import annotations
@@ -8,38 +9,46 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-from tester.interlocks.written import HEADER, interlock_table, rig_section
+from tester.kind import Kind
+from tester.kinds import PACKAGED, find
+from tester.machine.interlock_sheet import HEADER
 from tester.rig.ceilings import ceiling_table
 
 ROOT = Path(__file__).resolve().parents[1]
-SAFETY, RIG = ROOT / "docs" / "safety.md", ROOT / "sim" / "rig.yaml"
 
 
-def safety_text(text: str) -> str:
-    """Return the page with its tables anew."""
-    for name, table in (("interlocks", interlock_table()), ("ceilings", ceiling_table())):
+def page_text(kind: Kind, text: str) -> str:
+    """Return a kind's page with its tables anew."""
+    for name, table in (("interlocks", kind.interlocks().table()), ("ceilings", ceiling_table(kind.rig().ceilings))):
         begin, end = f"<!-- {name}: begin -->\n", f"<!-- {name}: end -->"
         before, _, rest = text.partition(begin)
         text = before + begin + table + end + rest.partition(end)[2]
     return text
 
 
-def rig_text(text: str) -> str:
-    """Return the packaged rig file with its section anew: from its header to the blank line after it."""
+def rig_text(kind: Kind, text: str) -> str:
+    """Return a packaged rig file with its section anew: from its header to the blank line after it."""
     before, _, rest = text.partition(HEADER[0])
-    return before + rig_section() + "\n" + rest.partition("\n\n")[2]
+    return before + kind.interlocks().section() + "\n" + rest.partition("\n\n")[2]
 
 
-def outdated() -> list[tuple[Path, str]]:
+def outdated(kinds: tuple[str, ...] = PACKAGED) -> list[tuple[Path, str]]:
     """Return the files that are out of date, each with the text that belongs there."""
-    texts = [(path, path.read_text(encoding="utf-8")) for path in (SAFETY, RIG)]
-    due = [(SAFETY, safety_text(texts[0][1])), (RIG, rig_text(texts[1][1]))]
-    return [new for old, new in zip(texts, due, strict=True) if old != new]
+    found: list[tuple[Path, str]] = []
+    for kind in map(find, kinds):
+        made = [(ROOT / kind.page, page_text)]
+        made += [(ROOT / place.partition(":")[0].replace(".", "/") / place.partition(":")[2], rig_text)
+                 for place in kind.rigs.values()]  # fmt: skip
+        for path, anew in made:
+            text = path.read_text(encoding="utf-8")
+            due = anew(kind, text)
+            found += [(path, due)] * (due != text)
+    return found
 
 
 def main(arguments: list[str]) -> int:
     """Write, or with ``--check`` only look."""
-    found = outdated()
+    found = outdated(tuple(one for one in arguments if one != "--check") or PACKAGED)
     for path, text in found:
         if "--check" not in arguments:
             path.write_text(text, encoding="utf-8", newline="\n")

@@ -18,7 +18,7 @@ from tempfile import TemporaryDirectory
 
 from textual.pilot import Pilot
 
-from tester import clock
+from tester.base import clock
 from tester.cli.main import invoke
 from tester.export.exclude import Word, record_word
 from tester.tui.playback import Playback, load

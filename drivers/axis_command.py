@@ -8,6 +8,7 @@ from typing import Final
 
 from drivers import cia402
 from drivers.axis import AxisConfig
+from drivers.canopen.node import CanNode
 from drivers.cia402 import Goal, State
 
 # All axes share this layout (drivers.canopen.pdo): controlword, target velocity or target position.
@@ -27,7 +28,7 @@ _STOPPED_BY_ITSELF: Final = frozenset(
 """A drive that leaves one of these for less, with the goal still ENABLED, is not enabled again by itself."""
 
 
-class AxisCommand:
+class AxisCommand(CanNode):
     """The command side of a drive: composes RPDO1 from what is wanted and from the last statusword.
 
     The bytes are composed again only when something they depend on has changed.
@@ -39,10 +40,11 @@ class AxisCommand:
 
     __slots__ = ("_at_rest", "_goal", "_halt", "_high", "_homing", "_homing_start", "_low",
                  "_new_set_point", "_outputs", "_per_unit", "_position_mode", "_raw", "_resetting", "_rpdo",
-                 "_set_point", "_target", "_target_counts", "aimed", "config", "connected", "dirty", "homing_scans",
-                 "inhibited", "lost", "news", "state", "statusword")
+                 "_set_point", "_target", "_target_counts", "aimed", "config", "homing_scans", "inhibited", "news",
+                 "state", "statusword")
 
     def __init__(self, config: AxisConfig) -> None:
+        super().__init__(config.name, config.node_id, config.heartbeat_s, config.digital_io)
         self.config = config
         self._position_mode = config.mode == "position"
         self._per_unit = config.position_increments if self._position_mode else config.velocity_increments

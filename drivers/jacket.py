@@ -15,6 +15,7 @@ RENEW_S: Final = 0.45
 """The command registers are written again after this: twice a second also with scans at 20 Hz [A]."""
 LEASE_S: Final = 2.0
 """Without a setpoint for this long the controller stops heating by itself [A]."""
+UNHEARD: Final = "our setpoint does not reach it, its lease has run out"
 STATUS_AGE_S: Final = 2.0
 """A status older than this against the temperature makes the reading invalid [A]."""
 
@@ -58,8 +59,7 @@ class HeatingJacket(Device):
         self.has_lease = "lease" in profile.writes
         self.counts = 0
         self.status = 0
-        self.valid = False
-        self.stamp_s = self._status_s = -inf
+        self._status_s = -inf
         self.hub_c = self.output_percent = self.setpoint_c = nan
         self.sensor_break = self.remote_failed = False
 
@@ -125,6 +125,7 @@ class HeatingJacket(Device):
             self._status_s = t
             self.sensor_break = status & self._sensor_bits != 0
             self.remote_failed = status & self._remote_bits != 0
+            self.complaint = UNHEARD if self.remote_failed else ""
         if block == 0:
             self.counts = found[self._pv]
             self.output_percent = found[self._output] * self._output_scale

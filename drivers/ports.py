@@ -1,16 +1,31 @@
 """What a driver needs of a wire: frames or bytes in and out, with time stamps.
 
-A port never blocks. Real ports live in ``drivers.edges``; simulated ones in ``sim``. Times are seconds on the
+Whoever wants to see the frames of a port (a log, a screen) watches the port itself; any number may.
+
+A port never blocks. Real ports live in ``drivers.transports``; simulated ones in ``sim``. Times are seconds on the
 caller's monotonic clock (simulated or real); the caller passes ``now`` and no port reads a clock for it.
 """
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from typing import Protocol, runtime_checkable
+from collections.abc import Callable
+from functools import partial
+from typing import Protocol, TypeVar, runtime_checkable
 
 CanFrame = tuple[float, int, bytes]
 """(arrival time in s, CAN identifier, data of 0..8 bytes)."""
+
+CanWatcher = Callable[[float, int, bytes, bool], None]
+"""Told of each frame: time in s, CAN identifier, data, and whether the computer sent it."""
+
+LineWatcher = Callable[[float, bytes, bool], None]
+"""Told of each piece on a line: time of its last byte in s, bytes, and whether the computer sent it."""
+
+Unwatch = Callable[[], None]
+"""Ends a watch; calling it again does nothing."""
+
+Watcher = TypeVar("Watcher", CanWatcher, LineWatcher)
 
 
 class BusLost(Exception):  # noqa: N818 - it names what happened
@@ -35,11 +50,30 @@ class CanPort(Protocol):
         """Return every frame that arrived up to ``now``, oldest first; raises BusLost."""
         ...
 
+    def watch(self, watcher: CanWatcher) -> Unwatch:
+        """Have ``watcher`` told of every frame in both directions, until the returned way to stop is taken."""
+        ...
+
+
+def add_watcher(watchers: list[Watcher], watcher: Watcher) -> Unwatch:
+    """Add to a port's watchers; return how to take this one off again."""
+    watchers.append(watcher)
+    return partial(_drop, watchers, watcher)
+
+
+def _drop(watchers: list[Watcher], watcher: Watcher) -> None:
+    if watcher in watchers:
+        watchers.remove(watcher)
+
 
 class FrameByFrame(ABC):
-    """A port that sends the frames of a cycle one by one."""
+    """A port that sends the frames of a cycle one by one; who implements it tells the ``watchers``."""
 
-    __slots__ = ()
+    __slots__ = ("watchers",)
+
+    def __init__(self) -> None:
+        """Nobody watches."""
+        self.watchers: list[CanWatcher] = []
 
     @abstractmethod
     def send(self, can_id: int, data: bytes, now: float) -> None:
@@ -49,6 +83,21 @@ class FrameByFrame(ABC):
         """Queue the frames of one bus cycle."""
         for can_id, data in zip(can_ids, payloads, strict=True):
             self.send(can_id, data, now)
+
+    def watch(self, watcher: CanWatcher) -> Unwatch:
+        """Have ``watcher`` told of every frame."""
+        return add_watcher(self.watchers, watcher)
+
+    def tell_sent(self, can_id: int, data: bytes, now: float) -> None:
+        """Tell the watchers of a frame that ``send`` handed over."""
+        for watcher in self.watchers:
+            watcher(now, can_id, data, True)
+
+    def tell_received(self, frames: list[CanFrame]) -> None:
+        """Tell the watchers of what ``receive`` returns."""
+        for watcher in self.watchers:
+            for t, can_id, data in frames:
+                watcher(t, can_id, data, False)
 
 
 class LinePort(Protocol):
@@ -61,6 +110,27 @@ class LinePort(Protocol):
     def read(self, now: float) -> list[tuple[float, bytes]]:
         """Return (arrival time of the last byte in s, bytes) for every chunk that arrived up to ``now``."""
         ...
+
+    def watch(self, watcher: LineWatcher) -> Unwatch:
+        """Have ``watcher`` told of all bytes in both directions, until the returned way to stop is taken."""
+        ...
+
+
+class WatchedLine:
+    """What lines have in common: who is told of their bytes."""
+
+    def __init__(self) -> None:
+        """Nobody watches."""
+        self.watchers: list[LineWatcher] = []
+
+    def watch(self, watcher: LineWatcher) -> Unwatch:
+        """Have ``watcher`` told of all bytes."""
+        return add_watcher(self.watchers, watcher)
+
+    def tell(self, t: float, data: bytes, sent: bool) -> None:
+        """Tell the watchers of bytes that were handed over or fetched at ``t`` s."""
+        for watcher in self.watchers:
+            watcher(t, data, sent)
 
 
 @runtime_checkable

@@ -12,7 +12,7 @@ from drivers.axis import DeviceIdentity, Diagnosis
 from drivers.axis_command import AxisCommand
 from drivers.canopen import emcy
 from drivers.canopen import objects as o
-from drivers.canopen.conversation import Condition, Conversation
+from drivers.canopen.conversation import AwaitedCondition, Conversation
 from drivers.canopen.emcy import Emergency
 from drivers.canopen.heartbeat import HeartbeatMonitor
 from drivers.cia402 import Goal, State
@@ -50,24 +50,18 @@ class ServoDrive(AxisCommand):
     The methods ``on_...``, ``emit...``, ``check_heartbeat`` and ``holds`` are the master's.
     """
 
-    __slots__ = ("_nm_per_mille", "_outputs_again_s", "_outputs_sent", "_raw_per_unit", "actual", "booted", "diagnosis",
-                 "emergencies_dropped", "emergency", "emergency_log", "heartbeat", "homed", "identity", "inputs",
-                 "inputs_stamp_s", "malformed", "nmt_state", "node_id", "online", "outputs_unanswered", "parameters",
-                 "rebooted", "refused", "rpdo1_id", "rpdo2_id", "stamp_s", "stands", "torque_nm", "tpdo1_data",
-                 "usual_heartbeat")
+    __slots__ = ("_nm_per_mille", "_outputs_again_s", "_outputs_sent", "_raw_per_unit", "actual", "diagnosis",
+                 "emergencies_dropped", "emergency", "emergency_log", "homed", "identity", "inputs",
+                 "inputs_stamp_s", "outputs_unanswered", "parameters", "rebooted", "stands", "torque_nm")
 
     def __init__(self, config: AxisConfig) -> None:
         super().__init__(config)
-        self.node_id = config.node_id
-        self.rpdo1_id = o.RPDO1_BASE + config.node_id
-        self.rpdo2_id = o.RPDO2_BASE + config.node_id
         by_position = config.feedback == "position"
         self._raw_per_unit = config.position_increments if by_position else config.velocity_increments
         self._nm_per_mille = config.rated_torque_nm / 1000.0
         self.diagnosis: Diagnosis | None = None
         self.emergency_log: list[Emergency] = []
         self.emergencies_dropped = 0
-        self.malformed = 0
         self._forget()
 
     def _forget(self) -> None:
@@ -89,7 +83,7 @@ class ServoDrive(AxisCommand):
         self.usual_heartbeat = b""
         self.emergency: Emergency | None = None
         self.identity: DeviceIdentity | None = None
-        self.refused: str | None = None
+        self.refused = None
         self.parameters: dict[tuple[int, int], int] = {}
         self._outputs_sent = 0
         self._outputs_again_s = math.inf
@@ -251,15 +245,15 @@ class ServoDrive(AxisCommand):
         self._outputs_again_s = now + OUTPUTS_AGAIN_S
         return _IO_PACK(wanted)
 
-    def holds(self, condition: Condition) -> bool:
+    def holds(self, condition: AwaitedCondition) -> bool:
         """Whether a condition a conversation waits for is true."""
-        if condition is Condition.BOOTED:
+        if condition is AwaitedCondition.BOOTED:
             return self.booted
-        if condition is Condition.OPERATIONAL:
+        if condition is AwaitedCondition.OPERATIONAL:
             return self.nmt_state == o.NmtState.OPERATIONAL
-        if condition is Condition.DISABLED:
+        if condition is AwaitedCondition.DISABLED:
             return self.state in (State.SWITCH_ON_DISABLED, State.FAULT)
-        if condition is Condition.ENABLED:
+        if condition is AwaitedCondition.ENABLED:
             return self.state is State.OPERATION_ENABLED
         if self.state is not State.OPERATION_ENABLED:
             return True

@@ -14,19 +14,19 @@ from drivers.axis import AxisConfig, DeviceIdentity, Diagnosis
 from drivers.canopen import heartbeat, nmt, pdo
 from drivers.canopen import objects as o
 from drivers.canopen.conversation import (
-    Condition,
+    AwaitedCondition,
     Conversation,
+    Pause,
     Reply,
     Request,
     RequestError,
     SdoWrite,
     SendNmt,
     Until,
-    Wait,
     read_number,
 )
 from drivers.canopen.dictionary import describe
-from drivers.canopen.objects import Mode, NmtCommand
+from drivers.canopen.objects import NmtCommand, OperationMode
 from drivers.canopen.pdo import PdoMap
 from drivers.canopen.sdo import NO_OBJECT, NO_SUB_INDEX
 from drivers.cia402 import Goal, State
@@ -51,7 +51,7 @@ Step = Generator[Request, Reply, None]
 Read = Generator[Request, Reply, int]
 
 
-class RefusedError(Exception):
+class SetupRefusedError(Exception):
     """The device is not what the configuration says, or does not do as told."""
 
 
@@ -67,7 +67,7 @@ def connect(drive: ServoDrive, pc_node_id: int) -> Conversation:
         yield from _make_quiet(drive)
         yield from _configure(drive, pc_node_id)
         yield from _start(drive)
-    except (RequestError, RefusedError) as error:
+    except (RequestError, SetupRefusedError) as error:
         drive.disconnect()
         drive.refused = _refusal(drive, error)
         yield SendNmt(NmtCommand.PRE_OPERATIONAL)      # where it takes no process data
@@ -79,20 +79,20 @@ def _refusal(drive: ServoDrive, error: Exception) -> str:
 
 def _boot() -> Step:
     yield SendNmt(NmtCommand.RESET_COMMUNICATION)
-    booted = yield Until(Condition.BOOTED, BOOT_TIMEOUT_S)
+    booted = yield Until(AwaitedCondition.BOOTED, BOOT_TIMEOUT_S)
     if booted:
         return
     try:
         yield from read_number(o.DEVICE_TYPE)      # a boot-up can be missed; an answer cannot
     except RequestError as error:
-        raise RefusedError(f"no boot-up message within {BOOT_TIMEOUT_S:g} s; {error}") from error
+        raise SetupRefusedError(f"no boot-up message within {BOOT_TIMEOUT_S:g} s; {error}") from error
 
 
 def _identify(drive: ServoDrive) -> Step:
     config = drive.config
     device_type = yield from _keep(drive, o.DEVICE_TYPE)
     if device_type & 0xFFFF != o.DEVICE_PROFILE:
-        raise RefusedError(f"{describe(o.DEVICE_TYPE, 0)}: read 0x{device_type:08X}, no CiA 402 drive")
+        raise SetupRefusedError(f"{describe(o.DEVICE_TYPE, 0)}: read 0x{device_type:08X}, no CiA 402 drive")
     highest = yield from _keep(drive, o.IDENTITY)
     values = [0, 0, 0, 0]
     for sub in range(1, min(highest, 4) + 1):
@@ -100,11 +100,11 @@ def _identify(drive: ServoDrive) -> Step:
     drive.identity = DeviceIdentity(device_type, *values)
     for sub, expected in ((1, config.vendor_id), (2, config.product_code), (4, config.serial_number)):
         if expected and values[sub - 1] != expected:
-            raise RefusedError(f"{describe(o.IDENTITY, sub)}: read 0x{values[sub - 1]:08X}, "
+            raise SetupRefusedError(f"{describe(o.IDENTITY, sub)}: read 0x{values[sub - 1]:08X}, "
                                f"the configuration has 0x{expected:08X}: wrong or swapped drive")
     modes = yield from _keep(drive, o.SUPPORTED_MODES)
     if not modes >> (_mode(config) - 1) & 1:
-        raise RefusedError(f"{describe(o.SUPPORTED_MODES, 0)}: read 0x{modes:08X}, without {_mode(config).name}")
+        raise SetupRefusedError(f"{describe(o.SUPPORTED_MODES, 0)}: read 0x{modes:08X}, without {_mode(config).name}")
 
 
 def _make_quiet(drive: ServoDrive) -> Step:
@@ -135,9 +135,9 @@ def _await(condition: Callable[[int], bool], timeout_s: float) -> Read:
         statusword = yield from read_number(o.STATUSWORD)
         if condition(statusword):
             return statusword
-        yield Wait(POLL_S)
+        yield Pause(POLL_S)
     statusword = yield from read_number(o.STATUSWORD)
-    raise RefusedError(f"{describe(o.STATUSWORD, 0)}: read 0x{statusword:04X} "
+    raise SetupRefusedError(f"{describe(o.STATUSWORD, 0)}: read 0x{statusword:04X} "
                        f"({cia402.decode(statusword).name}), not SWITCH_ON_DISABLED after {timeout_s:g} s")
 
 
@@ -240,10 +240,10 @@ def _map(drive: ServoDrive, communication: int, mapping_index: int, cob_id: int,
 def _start(drive: ServoDrive) -> Step:
     config = drive.config
     yield SendNmt(NmtCommand.START)
-    started = yield Until(Condition.OPERATIONAL, START_TIMEOUT_S)
+    started = yield Until(AwaitedCondition.OPERATIONAL, START_TIMEOUT_S)
     if not started:
         said = f"the heartbeat says {nmt.state_name(drive.nmt_state)}" if drive.nmt_state >= 0 else "no heartbeat"
-        raise RefusedError(f"not OPERATIONAL within {START_TIMEOUT_S:g} s of NMT start: {said}")
+        raise SetupRefusedError(f"not OPERATIONAL within {START_TIMEOUT_S:g} s of NMT start: {said}")
     statusword = yield from _await(_is_off, START_TIMEOUT_S)
     raw = yield from read_number(o.POSITION_ACTUAL if config.feedback == "position" else o.VELOCITY_ACTUAL)
     inputs = 0
@@ -261,18 +261,18 @@ def home(drive: ServoDrive) -> Conversation:
     drive.refused = None
     drive.homed = False
     modes = drive.parameters.get((o.SUPPORTED_MODES, 0), 0)
-    if not (drive.online and config.feedback == "position" and modes >> (Mode.HOMING - 1) & 1):
+    if not (drive.online and config.feedback == "position" and modes >> (OperationMode.HOMING - 1) & 1):
         text = "homing needs a drive online, with position feedback and homing mode"
-        drive.refused = _refusal(drive, RefusedError(text))
+        drive.refused = _refusal(drive, SetupRefusedError(text))
         return
     failure: Exception | None = None
     try:
         yield from _power_off(drive)
         for index, sub, value in homing_settings(config):
             yield from _write(drive, index, sub, value)
-        yield from _set_mode(drive, Mode.HOMING)
+        yield from _set_mode(drive, OperationMode.HOMING)
         yield from _run_homing(drive)
-    except (RequestError, RefusedError) as error:
+    except (RequestError, SetupRefusedError) as error:
         failure = error
         drive.goal = Goal.QUICK_STOP
     try:
@@ -282,7 +282,7 @@ def home(drive: ServoDrive) -> Conversation:
         raw = yield from read_number(o.POSITION_ACTUAL)
         if failure is None:
             drive.finish_homing(raw)
-    except (RequestError, RefusedError) as error:
+    except (RequestError, SetupRefusedError) as error:
         drive.disconnect()                    # in an unknown mode it must not be commanded
         failure = failure or error
     if failure is not None:
@@ -304,24 +304,24 @@ def homing_settings(config: AxisConfig) -> list[tuple[int, int, int]]:
 def _power_off(drive: ServoDrive) -> Step:
     if drive.goal is Goal.ENABLED:
         drive.goal = Goal.DISABLED
-    done = yield Until(Condition.DISABLED, STOP_TIMEOUT_S)
+    done = yield Until(AwaitedCondition.DISABLED, STOP_TIMEOUT_S)
     if not done:
-        raise RefusedError(f"still {drive.state.name} {STOP_TIMEOUT_S:g} s after it was told to stop")
+        raise SetupRefusedError(f"still {drive.state.name} {STOP_TIMEOUT_S:g} s after it was told to stop")
 
 
 def _run_homing(drive: ServoDrive) -> Step:
     drive.set_homing(active=True)
     drive.goal = Goal.DISABLED                # ends an earlier inhibition
     drive.goal = Goal.ENABLED
-    enabled = yield Until(Condition.ENABLED, ENABLE_TIMEOUT_S)
+    enabled = yield Until(AwaitedCondition.ENABLED, ENABLE_TIMEOUT_S)
     if not enabled:
-        raise RefusedError(f"homing: {drive.state.name} instead of OPERATION_ENABLED after {ENABLE_TIMEOUT_S:g} s")
+        raise SetupRefusedError(f"homing: {drive.state.name} instead of OPERATION_ENABLED after {ENABLE_TIMEOUT_S:g} s")
     drive.set_homing(active=True, start=True)
-    ended = yield Until(Condition.HOMING_ENDED, drive.config.home_timeout_s)
+    ended = yield Until(AwaitedCondition.HOMING_ENDED, drive.config.home_timeout_s)
     if not ended:
-        raise RefusedError(f"homing: not finished within {drive.config.home_timeout_s:g} s")
+        raise SetupRefusedError(f"homing: not finished within {drive.config.home_timeout_s:g} s")
     if not (drive.state is State.OPERATION_ENABLED and drive.homing_succeeded):
-        raise RefusedError(f"homing failed: statusword 0x{drive.statusword:04X} ({drive.state.name})")
+        raise SetupRefusedError(f"homing failed: statusword 0x{drive.statusword:04X} ({drive.state.name})")
 
 
 def diagnose(drive: ServoDrive) -> Conversation:
@@ -351,15 +351,15 @@ def release(drive: ServoDrive) -> Conversation:
     try:
         yield from _power_off(drive)
         yield from _write(drive, o.CONSUMER_HEARTBEAT, 1, 0)
-    except (RequestError, RefusedError) as error:
+    except (RequestError, SetupRefusedError) as error:
         drive.refused = _refusal(drive, error)
         return
     drive.disconnect()
     yield SendNmt(NmtCommand.PRE_OPERATIONAL)
 
 
-def _mode(config: AxisConfig) -> Mode:
-    return Mode.PROFILE_POSITION if config.mode == "position" else Mode.PROFILE_VELOCITY
+def _mode(config: AxisConfig) -> OperationMode:
+    return OperationMode.PROFILE_POSITION if config.mode == "position" else OperationMode.PROFILE_VELOCITY
 
 
 def _keep(drive: ServoDrive, index: int, sub: int = 0) -> Read:
@@ -374,7 +374,7 @@ def _write(drive: ServoDrive, index: int, sub: int, value: int, mask: int = -1) 
     yield SdoWrite(index, sub, value)
     back = yield from _keep(drive, index, sub)
     if back & mask != value & mask:
-        raise RefusedError(f"{describe(index, sub)}: wrote {value}, read {back}")
+        raise SetupRefusedError(f"{describe(index, sub)}: wrote {value}, read {back}")
 
 
 def _write_where_present(drive: ServoDrive, index: int, sub: int, value: int) -> Step:
@@ -386,14 +386,14 @@ def _write_where_present(drive: ServoDrive, index: int, sub: int, value: int) ->
             raise
 
 
-def _set_mode(drive: ServoDrive, mode: Mode) -> Step:
+def _set_mode(drive: ServoDrive, mode: OperationMode) -> Step:
     """Select a mode of operation and see it confirmed by 0x6061."""
     yield from _write(drive, o.MODE, 0, mode)
     shown = yield from _keep(drive, o.MODE_DISPLAY)
     for _ in range(round(MODE_TIMEOUT_S / POLL_S)):
         if shown == mode:
             return
-        yield Wait(POLL_S)
+        yield Pause(POLL_S)
         shown = yield from _keep(drive, o.MODE_DISPLAY)
     if shown != mode:
-        raise RefusedError(f"{describe(o.MODE_DISPLAY, 0)}: wrote mode {int(mode)} ({mode.name}), read {shown}")
+        raise SetupRefusedError(f"{describe(o.MODE_DISPLAY, 0)}: wrote mode {int(mode)} ({mode.name}), read {shown}")

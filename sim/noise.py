@@ -16,8 +16,6 @@ from typing import Final
 
 import numpy as np
 
-from sim.parameters import SimParameters
-
 _SEED_MASK: Final = 0xFFFF_FFFF_FFFF_FFFF
 BLOCKS: Final = (128, 1024)
 """Numbers drawn at a time, the first time and from then on (multiples of four): the hot path steps through a list."""
@@ -120,37 +118,7 @@ class Autoregressive:
         return value
 
 
-def wheel_factor(parameters: SimParameters, seed: int, specimen: int, wheel: int) -> float:
-    """Return what multiplies the friction of one wheel."""
-    sigma = parameters.scatter * parameters.variability.wheel
-    return 1.0 + sigma * normal(seed, "wheel", specimen, wheel)
-
-
-def condition_factor(parameters: SimParameters, seed: int, compound: str, condition: int) -> float:
-    """Return what multiplies the friction of a compound in one condition: how far the model misses it."""
-    sigma = parameters.scatter * parameters.variability.condition(compound)
-    return 1.0 + sigma * normal(seed, "condition", zlib.crc32(compound.encode()), condition)
-
-
-def run_factor(parameters: SimParameters, seed: int, *place: int) -> float:
-    """Return what multiplies the friction of one repeat (specimen, wheel, condition, repeat, attempt)."""
-    return 1.0 + parameters.scatter * parameters.variability.run * normal(seed, "run", *place)
-
-
 def mean_of_autoregressive(sigma: float, time_s: float, window_s: float) -> float:
     """Return the standard deviation of the mean of an AR(1) fluctuation over a window of more than 0 s."""
     share = time_s / window_s
     return sigma * math.sqrt(2.0 * share * (1.0 - share * -math.expm1(-1.0 / share)))
-
-
-def stated_sigma(parameters: SimParameters, compound: str, repeats: int, window_s: float) -> float:
-    """Return the relative standard deviation by which the mean of a condition's repeats misses the model.
-
-    Wheel and condition scatter in full, repeat-to-repeat scatter and the fluctuation within a window of
-    ``window_s`` (total accepted time of one repeat, s) divided by the root of ``repeats``. Sensor
-    imperfections are not in it. Raises KeyError for a compound without a friction model.
-    """
-    v = parameters.variability
-    within = mean_of_autoregressive(v.within, v.within_time, window_s)
-    variance = v.wheel**2 + v.condition(compound) ** 2 + (v.run**2 + within**2) / repeats
-    return parameters.scatter * math.sqrt(variance)

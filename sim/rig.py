@@ -1,41 +1,30 @@
-"""The whole simulated rig: wires, nodes and plant, advanced together.
+"""The world of a simulated machine: wires, drives and Modbus devices, advanced together with what they are mounted on.
 
-Order within one advance: drives move (and send what falls due), the jacket controller heats, the plant follows, and
-what it answers with (torque, forces, temperatures) is there when the next request arrives on a wire. The press goes no
-deeper than the torque that its drive is allowed (0x6072) brings it; wheel and belt have torque enough for any friction.
+Order within one advance: drives move (and send what falls due), devices with a loop of their own run it, the machine
+follows, and what it answers with (torque, forces, temperatures) is there when the next request arrives on a wire. What
+kind of machine it is this module does not know: see ``sim.machines``.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
-from math import copysign, floor
-from typing import Final, Literal
+from collections.abc import Container, Mapping, Sequence
+from dataclasses import dataclass, field
+from math import floor, inf
+from typing import Final, Literal, Protocol
 
 from drivers.axis import AxisConfig
-from drivers.profiles import load_profile
-from sim.can_wire import CanWire
-from sim.modbus_wire import ModbusWire
-from sim.nodes.cell_slave import CellSlave
+from drivers.canopen.node_config import NodeConfig
+from drivers.profiles import DeviceProfile
 from sim.nodes.cia402_slave import Cia402Slave
-from sim.nodes.ir_slave import IrSlave
-from sim.nodes.jacket_slave import JacketSlave
-from sim.nodes.motion import VelocityAxis
-from sim.parameters import SimParameters
-from sim.plant import Plant
-from sim.torque import PressScrew, capstan_n, shafts
+from sim.nodes.modbus_slave import ModbusSlave
+from sim.nodes.profile_slave import PlantQuantity, ProfileSlave, Quantity
+from sim.nodes.sensor_node import SimulatedSensorNode
+from sim.wires.can_wire import CanWire
+from sim.wires.modbus_wire import ModbusWire
 
-PRESS_LAG_S: Final = 0.03
-"""Lag of the press screw behind its velocity command, s [A]."""
-PRESS_TRAVEL_MM: Final = 30.0
-"""Travel of the press from fully lifted, mm [A]: beyond a wheel worn to its hub."""
-PRESS_SPRING_MM_S: Final = -20.0
-"""Speed at which the spring retracts an unpowered press, mm/s [A]."""
 SHORTEST_STEP_S: Final = 1e-3
 LONGEST_STEP_S: Final = 0.1
-"""The plant is advanced in steps between these."""
-_NEAR_LIMIT: Final = 0.5
-"""Below this share of the force that the press can bring about no single step brings it there."""
+"""The machine is advanced in steps between these."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,9 +39,11 @@ class LineSpec:
 class DeviceSpec:
     """One Modbus device: profile, line and address."""
 
-    profile: str
+    profile: DeviceProfile
     line: str
     unit_id: int
+    shows: Mapping[str, str | float] = field(default_factory=dict[str, str | float])
+    """Of a further sensor, by channel: a quantity of the plant, or a number in the channel's unit."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,70 +53,75 @@ class RigSpec:
     bitrate: int
     axes: Mapping[str, AxisConfig]
     lines: Mapping[str, LineSpec]
-    load_cell: DeviceSpec
-    jacket: DeviceSpec
-    ir_thermometer: DeviceSpec
+    devices: Mapping[str, DeviceSpec]
+    """By the names of the rig file's section ``devices``."""
+    nodes: tuple[NodeConfig, ...] = ()
+    """Further nodes on the CAN bus, which measure."""
 
 
-class SimRig:
-    """A rubber friction tester on simulated wires.
+class Machine(Protocol):
+    """What is between the drives' shafts and the sensors."""
 
-    ``can`` and ``lines`` are the ports a program opens. ``install`` and ``begin_repeat`` are the hands of the person
-    at the rig.
+    def follow(self, t1: float, still: bool) -> None:
+        """Move on to ``t1`` s with the drives where they are then, and load their shafts; ``still``: none moves."""
+        ...
+
+
+class SimRig(Protocol):
+    """A simulated rig, whatever its kind: what servers, tickers and faults need of it.
+
+    ``can`` and ``lines`` are the ports a program opens; ``devices`` are by the names that people use of them.
     """
 
-    def __init__(
-        self, spec: RigSpec, parameters: SimParameters, seed: int, can_wire: type[CanWire] = CanWire
-    ) -> None:
-        """Switch everything on at time 0; ``can_wire``: the kind of bus, another one where it can be faulty."""
-        self.plant = Plant(parameters, seed)
-        self.can = can_wire(spec.bitrate)
-        self._spring_mm_s = PRESS_SPRING_MM_S if parameters.press_on_power_loss == "retract" else 0.0
-        self.axes = {name: self._drive(name, config) for name, config in spec.axes.items()}
-        self.cell = CellSlave(load_profile(spec.load_cell.profile), spec.load_cell.unit_id, self.plant)
-        ir = spec.ir_thermometer
-        self.ir = IrSlave(load_profile(ir.profile), ir.unit_id, self.plant, sensor_c=parameters.ambient)
-        self.jacket = JacketSlave(load_profile(spec.jacket.profile), spec.jacket.unit_id, self.plant)
-        slaves = (
-            (spec.load_cell.line, self.cell),
-            (spec.ir_thermometer.line, self.ir),
-            (spec.jacket.line, self.jacket),
-        )
-        self.lines = {
-            name: ModbusWire(line.baud, line.parity, [slave for where, slave in slaves if where == name])
-            for name, line in spec.lines.items()
-        }
-        drives = parameters.drives
-        self.wheel_shaft, self.belt_shaft, efficiency = shafts(drives, parameters.noise, seed)
-        self._screw = PressScrew(drives, efficiency, drives.press_spring if self._spring_mm_s else 0.0)
-        self._roller_m = 0.0005 * drives.belt_roller_diameter
-        self._slip_nm = capstan_n(drives) * self._roller_m
-        self._belt_creep = drives.belt_creep
-        self.belt_slip = 0.0
-        """By what share the belt is slower than its drive roller: beyond elastic creep the roller slips under it."""
-        self._limit_nm = self._pushed_n = self._held_n = 0.0
-        self._pressed_mm = 0.0
-        self._stalled = False
-        self.swapped = False
-        """The drives of wheel and belt are connected the wrong way round: each moves what the other should."""
-        self.now_s = 0.0
-        self._plant_s = 0.0
-        self._wheel, self._belt, self._press = self.axes["wheel"], self.axes["belt"], self.axes["press"]
-        self._sideslip, self._camber = self.axes.get("sideslip"), self.axes.get("camber")
-        self._drives = tuple(self.axes.values())
+    can: CanWire
+    lines: dict[str, ModbusWire]
+    axes: dict[str, Cia402Slave]
+    devices: dict[str, ModbusSlave]
+    nodes: list[SimulatedSensorNode]
 
-    def _drive(self, name: str, config: AxisConfig) -> Cia402Slave:
-        if name != "press":
-            return Cia402Slave(config, self.can, serial_number=config.node_id)
-        screw = VelocityAxis(config.acceleration, config.deceleration, lag_s=PRESS_LAG_S, low=0.0, high=PRESS_TRAVEL_MM)
-        return Cia402Slave(config, self.can, screw, serial_number=config.node_id, unpowered_velocity=self._spring_mm_s)
-
-    # -- the wires' side ------------------------------------------------------------------------------------------
+    @property
+    def now_s(self) -> float:
+        """Until when everything has lived, s."""
+        ...
 
     @property
     def urgent_s(self) -> float:
         """When the next frame arrives that a scan should not wait for, s."""
-        return self.can.urgent_s
+        ...
+
+    @property
+    def ambient_c(self) -> float:
+        """Temperature of the air around the rig, degC."""
+        ...
+
+    def advance(self, now: float) -> None:
+        """Let everything live until ``now`` (s); a step shorter than a millisecond waits for the next one."""
+        ...
+
+
+class World:
+    """Drives and devices on their wires, and the machine that they are on. A machine has one."""
+
+    def __init__(
+        self,
+        can: CanWire,
+        axes: Mapping[str, Cia402Slave],
+        devices: Mapping[str, ModbusSlave],
+        machine: Machine,
+        nodes: Sequence[SimulatedSensorNode] = (),
+    ) -> None:
+        """Switch everything on at time 0."""
+        self._can = can
+        self._nodes = tuple(nodes)
+        self._drives = tuple(axes.values())
+        self._timed = tuple(device for device in devices.values() if device.due_s < inf)
+        self._machine = machine
+        self.now_s = 0.0
+
+    @property
+    def urgent_s(self) -> float:
+        """When the next frame arrives that a scan should not wait for, s."""
+        return self._can.urgent_s
 
     def advance(self, now: float) -> None:
         """Let everything live until ``now`` (s); a step shorter than a millisecond waits for the next one."""
@@ -146,114 +142,34 @@ class SimRig:
                 still = still and drive.axis.still
             else:
                 drive.now_s = t1
-        jacket = self.jacket
-        if jacket.due_s <= t1:
-            jacket.advance(t0, t1)
-        plant = self.plant
-        elapsed = t1 - self._plant_s
-        if still and elapsed < LONGEST_STEP_S - 1e-6 and plant.force_z_n == 0.0:
-            return  # nothing but temperatures changes, and they take their time
-        self._plant_s = t1
-        wheel_axis, belt_axis, press = self._wheel.axis, self._belt.axis, self._press.axis
-        io = self._press.io
-        if plant.force_z_n > 0.0 or self._stalled:
-            self._bear(self._press)
-        self._pressed_mm = press.position
-        wheel_rad_s, belt_m_s = wheel_axis.value, belt_axis.value
-        if self.swapped:
-            wheel_rad_s, belt_m_s = belt_m_s / self._roller_m, wheel_rad_s * self._roller_m
-        plant.advance(
-            elapsed,
-            wheel_rad_s / plant.wheel_speed.factor,
-            belt_m_s / plant.belt_speed.factor,
-            press.position,
-            press.value,
-            self._sideslip.axis.position if self._sideslip is not None else 0.0,
-            self._camber.axis.position if self._camber is not None else 0.0,
-            jacket.heater_w if io is not None and io.contactor_closed else 0.0,
+        for node in self._nodes:
+            node.advance(t0, t1)
+        for device in self._timed:
+            if device.due_s <= t1:
+                device.advance(t0, t1)
+        self._machine.follow(t1, still)
+
+
+def further_sensors(spec: RigSpec, own: Container[str], plant: object) -> dict[str, ProfileSlave]:
+    """Return the sensors of a wiring besides the machine's ``own`` devices, by the wiring's names.
+
+    Raises UnknownQuantityError for a quantity that the plant does not have.
+    """
+    found: dict[str, ProfileSlave] = {}
+    for name, device in spec.devices.items():
+        if name not in own:
+            quantities: dict[str, Quantity | float] = {}
+            for channel, shown in device.shows.items():
+                quantities[channel] = PlantQuantity(plant, shown) if isinstance(shown, str) else shown
+            found[name] = ProfileSlave(device.profile, device.unit_id, quantities)
+    return found
+
+
+def lines_of(spec: RigSpec, devices: Mapping[str, ModbusSlave]) -> dict[str, ModbusWire]:
+    """Return the Modbus lines of a wiring, each with its devices; ``devices`` by the wiring's names."""
+    return {
+        name: ModbusWire(
+            line.baud, line.parity, [slave for key, slave in devices.items() if spec.devices[key].line == name]
         )
-        self._show(wheel_axis.value, belt_axis.value)
-
-    @property
-    def wheel_rad_s(self) -> float:
-        """How fast the wheel turns, rad/s: what its drive shows, but for the error of its scale."""
-        shaft = self._belt.axis.value / self._roller_m if self.swapped else self._wheel.axis.value
-        return shaft / self.plant.wheel_speed.factor
-
-    @property
-    def belt_m_s(self) -> float:
-        """How fast the belt's surface moves, m/s."""
-        surface = self._wheel.axis.value * self._roller_m if self.swapped else self._belt.axis.value
-        return surface / self.plant.belt_speed.factor
-
-    @property
-    def rim_m_s(self) -> float:
-        """How fast the wheel's tread moves, m/s."""
-        return 0.0005 * self.plant.diameter_mm * self.wheel_rad_s
-
-    def _show(self, wheel_rad_s: float, belt_m_s: float) -> None:
-        """Let three drives show their torques, and the errors of their encoders: those are noisy while they turn."""
-        plant, wheel, belt, press = self.plant, self._wheel, self._belt, self._press
-        wheel_nm, belt_nm = plant.drive_torque_nm, -plant.belt_force_n * self._roller_m
-        if self.belt_slip > self._belt_creep and self.belt_m_s != 0.0:
-            belt_nm = copysign(self._slip_nm, self.belt_m_s)
-        if self.swapped:
-            wheel_nm, belt_nm = belt_nm, wheel_nm
-        wheel_nm = self.wheel_shaft.shown_nm(wheel_nm, wheel_rad_s) if wheel.energised else 0.0
-        belt_nm = self.belt_shaft.shown_nm(belt_nm, belt_m_s / self._roller_m) if belt.energised else 0.0
-        if wheel_rad_s != 0.0:
-            wheel.load(wheel_nm, plant.wheel_speed.error() * 2000.0 / plant.diameter_mm)
-        elif wheel.encoder_error != 0.0 or wheel.torque_nm != wheel_nm:
-            wheel.load(wheel_nm, 0.0)
-        if belt_m_s != 0.0:
-            belt.load(belt_nm, plant.belt_speed.error())
-        elif belt.encoder_error != 0.0 or belt.torque_nm != belt_nm:
-            belt.load(belt_nm, 0.0)
-        press_nm = 0.0
-        if press.energised:
-            axis = press.axis
-            press_nm = self._screw.torque_nm(plant.force_z_n, axis.position)
-            if axis.blocked and axis.demand != 0.0:
-                press_nm = copysign(press.torque_limit_nm, axis.demand)
-        if press.torque_nm != press_nm:
-            press.load(press_nm, 0.0)
-
-    def _bear(self, drive: Cia402Slave) -> None:
-        """Keep the press from going deeper than its drive's torque can: it stalls; a greater load drives it back."""
-        limit_nm, plant = drive.torque_limit_nm, self.plant
-        if not drive.energised and self._spring_mm_s:
-            # The spring alone makes coast_deceleration of the screw's inertia; the load pushes the same way.
-            axis = drive.axis
-            rate = drive.coast_deceleration * (1.0 + plant.force_z_n / self._screw.spring_n)
-            axis.acceleration = axis.deceleration = rate
-        if limit_nm != self._limit_nm:
-            self._limit_nm = limit_nm
-            self._pushed_n = max(0.0, self._screw.pushed_n(limit_nm))
-            self._held_n = max(0.0, self._screw.held_n(limit_nm))
-        if plant.force_z_n > _NEAR_LIMIT * self._pushed_n and drive.energised:
-            place_mm = drive.axis.position
-            reached_mm = max(self._pressed_mm, plant.press_at_mm(self._pushed_n))
-            borne_mm = min(place_mm, reached_mm, plant.press_at_mm(self._held_n))
-            if borne_mm < place_mm:
-                self._stalled = True
-                drive.stall(borne_mm)
-                return
-        if self._stalled:
-            self._stalled = False
-            drive.unstall()
-
-    # -- the person's side ----------------------------------------------------------------------------------------
-
-    def install(self, specimen: int, wheel: int, compound: str, *, new_specimen: bool) -> None:
-        """Mount a new wheel."""
-        self._plant_s = self.now_s
-        self.plant.install(specimen, wheel, compound, new_specimen)
-
-    def remount(self, specimen: int, wheel: int, compound: str, diameter_mm: float, sliding_m: float) -> None:
-        """Put a worn wheel on: diameter in mm, sliding distance in m; the rig is at ambient temperature."""
-        self.plant.install(specimen, wheel, compound, True, diameter_mm, sliding_m)
-
-    def begin_repeat(self, condition: int, repeat: int, attempt: int) -> None:
-        """Begin a repeat: the random streams, and the sensors' dither, start anew with it."""
-        self.plant.begin_repeat(condition, repeat, attempt)
-        self.cell.dither = self.ir.dither = 0
+        for name, line in spec.lines.items()
+    }

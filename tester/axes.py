@@ -1,62 +1,30 @@
 """The axes of a condition: what is held while it is measured, and the one way to say it in words and columns.
 
-Two conditions that differ in any axis read differently everywhere, because every line, table and plot asks here.
+An axis is one row of a kind's table, the table is an ``Axes``, what is held is a ``Setpoint``: the compound and a value
+for each axis, looked up by the axis's name. Two conditions that differ in any axis read differently everywhere, because
+every line, table and plot asks here.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Final, Protocol
+from operator import itemgetter
+from typing import NamedTuple, TypeAlias, cast
 
-
-class Held(Protocol):
-    """What is held during a condition, in the units of the names; a plan's setpoint and a stored condition are one."""
-
-    @property
-    def compound(self) -> str:
-        """Name of the rubber."""
-        ...
-
-    @property
-    def slip_velocity_m_s(self) -> float:
-        """Wheel speed less belt speed at no sideslip, m/s."""
-        ...
-
-    @property
-    def load_n(self) -> float:
-        """Normal load, N."""
-        ...
-
-    @property
-    def sideslip_deg(self) -> float:
-        """Angle of the wheel's plane to the belt's travel, degrees."""
-        ...
-
-    @property
-    def camber_deg(self) -> float:
-        """Tilt of the wheel's plane, degrees."""
-        ...
-
-    @property
-    def temperature_c(self) -> float:
-        """Temperature of the surface, degC."""
-        ...
-
-    @property
-    def wheel_speed_m_s(self) -> float:
-        """Line speed of the wheel, m/s."""
-        ...
+AxisValue: TypeAlias = float | str
+"""What an axis is held at: a number in the axis's ``recipe_unit``, or one of its ``choices``."""
 
 
 @dataclass(frozen=True, slots=True)
 class Axis:
     """One axis.
 
-    ``name`` is its key in a recipe, in ``recipe_unit``; ``field`` its attribute of ``Held``, which ``scale`` turns into
-    ``unit``, as people read it. ``column`` is its column in the project's tables, ``header`` in the paper's table,
-    ``title`` on a narrow screen. ``word`` stands before the number where the unit does not tell which axis it is.
-    ``default`` is a value that needs no words; None: there is none. ``paper``: the paper's table has a column for it.
+    ``name`` is its key in a recipe, in ``recipe_unit``; ``field`` its column in the record of a run, in the same unit,
+    which ``scale`` turns into ``unit``, as people read it. ``column`` is its column in the project's tables, ``header``
+    in the paper's table, ``title`` on a narrow screen. ``word`` stands before the value where the unit does not tell
+    which axis it is. ``default`` is a value (in ``unit``) that needs no words and may be left out of a recipe; None:
+    there is none. ``paper``: the paper's table has a column for it.
     """
 
     name: str
@@ -68,78 +36,227 @@ class Axis:
     header: str
     title: str
     word: str
-    default: float | None
+    default: AxisValue | None
     paper: bool
+    plotted: int = 0
+    """Its turn among those that the coefficient is plotted against, from the least on."""
+    ge: float | None = None
+    gt: float | None = None
+    le: float | None = None
+    """What a recipe may ask for on any rig, in ``recipe_unit``: at least, more than, at most."""
+    choices: tuple[str, ...] = ()
+    """The values of an axis that is not a number."""
+    in_measure: bool = False
+    """A recipe says it in ``measure``, for all grids that do not say it themselves."""
+    limit: str = ""
+    """The key of the rig's limit on it, such as ``limits.load``; "" where the kind knows what limits it."""
+    drive: str = ""
+    """The rig's drive that holds it, such as ``axes.camber``, where a person may set it instead; only 0 is then held
+    without it. "" where it is always held by a device."""
 
-    def of(self, held: Held) -> float:
+    @property
+    def recipe_default(self) -> AxisValue | None:
+        """The default in ``recipe_unit``."""
+        return self.default / self.scale if isinstance(self.default, float) else self.default
+
+    def of(self, held: Setpoint) -> AxisValue:
         """Return the axis's value in ``unit``, without the noise of a float's last digits."""
-        value: float = getattr(held, self.field)
-        return round(self.scale * value, 6) + 0.0
+        value = held.value(self.name)
+        return value if isinstance(value, str) else round(self.scale * value, 6) + 0.0
 
-    def at_default(self, held: Held) -> bool:
+    def number(self, held: Setpoint) -> float:
+        """Return the axis's value in ``unit``; raises TypeError for an axis of choices."""
+        return _number(self.of(held), self.name)
+
+    def at_default(self, held: Setpoint) -> bool:
         """Tell whether a condition needs no words for this axis."""
         return self.default is not None and self.of(held) == self.default
 
-    def words(self, held: Held) -> str:
+    def words(self, held: Setpoint) -> str:
         """Return the value with its unit, e.g. ``300 mm/s``, ``camber 5 deg``."""
-        return f"{self.word} {plain(self.of(held))} {self.unit}".lstrip()
+        return f"{self.word} {plain(self.of(held))} {self.unit}".strip()
 
 
-AXES: Final[tuple[Axis, ...]] = (
-    Axis("slip_velocity", "m/s", "slip_velocity_m_s", "mm/s", 1e3, "slip_velocity_mm_s", "Slip Velocity /mm·s⁻¹",
-         "Slip mm/s", "", None, True),
-    Axis("load", "N", "load_n", "N", 1.0, "load_n", "Load /N", "Load N", "", None, True),
-    Axis("sideslip", "deg", "sideslip_deg", "deg", 1.0, "sideslip_deg", "Sideslip Angle /°", "Angle °", "sideslip",
-         0.0, True),
-    Axis("camber", "deg", "camber_deg", "deg", 1.0, "camber_deg", "Camber Angle /°", "Camber °", "camber", 0.0, False),
-    Axis("temperature", "degC", "temperature_c", "degC", 1.0, "temperature_c", "Temperature /°C", "Temp °C", "", None,
-         True),
-    Axis("wheel_speed", "m/s", "wheel_speed_m_s", "m/s", 1.0, "wheel_speed_m_s", "Wheel Speed /m·s⁻¹", "Wheel m/s",
-         "wheel", 0.8, False),
-)  # fmt: skip
-"""All axes in the order in which they are told. The paper held the wheel at 0.8 m/s and without camber throughout."""
+class Setpoint(NamedTuple):
+    """What is held during a condition: the compound, and a value for each axis of a table.
+
+    A tuple: plans have tens of thousands of them and look conditions up by setpoint. ``values`` lie in the order of
+    ``Axes.nested``, which only ``Axes`` and ``value`` need to know.
+    """
+
+    compound: str
+    values: tuple[AxisValue, ...]
+    axes: Axes
+
+    def value(self, name: str) -> AxisValue:
+        """Return what an axis is held at, in its ``recipe_unit``; raises KeyError."""
+        return self.values[self.axes.places[name]]
+
+    def number(self, name: str) -> float:
+        """Return what an axis of numbers is held at; raises KeyError, and TypeError for an axis of choices."""
+        return _number(self.value(name), name)
+
+    def but(self, compound: str | None = None, /, **values: AxisValue) -> Setpoint:
+        """Return the setpoint with other values, by axis name; raises KeyError."""
+        mine = list(self.values)
+        for name, value in values.items():
+            mine[self.axes.places[name]] = value
+        return Setpoint(self.compound if compound is None else compound, tuple(mine), self.axes)
 
 
-def axis(name: str) -> Axis:
-    """Return the axis of a recipe's key; raises KeyError."""
-    for one in AXES:
-        if one.name == name:
-            return one
-    raise KeyError(name)
+class Axes:
+    """A kind's table of axes, in the order in which they are told.
+
+    ``blocks`` is the axis by which conditions are measured in blocks, ascending, because it changes slowest; in a
+    recipe's rows it is innermost. Tables with the same names in the same order are equal: a record's and its kind's.
+    """
+
+    __slots__ = ("blocks", "nested", "places", "table")
+
+    def __init__(self, table: Iterable[Axis], blocks: str) -> None:
+        """Make a table; raises ValueError where a name stands twice or ``blocks`` is not in it."""
+        self.table = tuple(table)
+        self.blocks = blocks
+        names = [one.name for one in self.table]
+        if len(set(names)) < len(names) or blocks not in names:
+            raise ValueError(f"axes {', '.join(names)}: each once, and {blocks} among them")
+        self.nested = (*(name for name in names if name != blocks), blocks)
+        """Names in the order in which a grid's values nest, and in which a setpoint's values lie."""
+        self.places: Mapping[str, int] = {name: place for place, name in enumerate(self.nested)}
+
+    def __iter__(self) -> Iterator[Axis]:
+        return iter(self.table)
+
+    def __len__(self) -> int:
+        return len(self.table)
+
+    def __getitem__(self, name: str) -> Axis:
+        """Return the axis of a name; raises KeyError."""
+        for one in self.table:
+            if one.name == name:
+                return one
+        raise KeyError(name)
+
+    def __eq__(self, other: object) -> bool:
+        return self is other or (isinstance(other, Axes) and self.nested == other.nested)
+
+    def __repr__(self) -> str:
+        return f"Axes({', '.join(self.nested)})"
+
+    def __hash__(self) -> int:
+        return hash(self.nested)
+
+    def __reduce__(self) -> tuple[type[Axes], tuple[tuple[Axis, ...], str]]:
+        return Axes, (self.table, self.blocks)
+
+    def setpoint(self, compound: str, /, **values: AxisValue) -> Setpoint:
+        """Return a setpoint of values by axis name; what is left out is at its default. Raises KeyError."""
+        unknown = values.keys() - self.places.keys()
+        if unknown:
+            raise KeyError(f"no axis {', '.join(sorted(unknown))} (expected {', '.join(self.nested)})")
+        defaults = {one.name: one.recipe_default for one in self.table if one.recipe_default is not None}
+        found: Mapping[str, AxisValue] = defaults | values
+        return Setpoint(compound, tuple(found[name] for name in self.nested), self)
+
+    def numbers_of(self, *names: str) -> Callable[[tuple[AxisValue, ...]], tuple[float, ...]]:
+        """Return what takes the numbers of these axes (two or more) out of a setpoint's ``values``, fast."""
+        taken = itemgetter(*(self.places[name] for name in names))
+        return cast("Callable[[tuple[AxisValue, ...]], tuple[float, ...]]", taken)
+
+    def number_of(self, name: str) -> Callable[[tuple[AxisValue, ...]], float]:
+        """Return what takes the number of an axis out of a setpoint's ``values``, fast."""
+        return cast("Callable[[tuple[AxisValue, ...]], float]", itemgetter(self.places[name]))
+
+    def as_data(self) -> list[dict[str, object]]:
+        """Return the table as plain data, from which ``axes_from`` makes one that tells conditions in the same words.
+
+        What a recipe may ask for on a rig of the kind is left out: it says nothing of what was held.
+        """
+        found: list[dict[str, object]] = []
+        for one in self.table:
+            row: dict[str, object] = {name: getattr(one, name) for name in TOLD}
+            found.append(row | {"choices": list(one.choices), "blocks": one.name == self.blocks})
+        return found
+
+    def differing(self, conditions: Iterable[Setpoint]) -> tuple[Axis, ...]:
+        """Return the axes in which conditions differ from each other."""
+        listed = list(conditions)
+        return tuple(one for one in self.table if len({one.of(held) for held in listed}) > 1)
+
+    def columns(self, conditions: Iterable[Setpoint]) -> tuple[Axis, ...]:
+        """Return the axes that a table of these conditions needs: the paper's, and any other that is off its default.
+
+        An axis that differs between them is off its default in one of them.
+        """
+        listed = list(conditions)
+        return tuple(one for one in self.table if one.paper or not all(one.at_default(held) for held in listed))
 
 
-def plain(value: float) -> str:
+TOLD = ("name", "recipe_unit", "field", "unit", "scale", "column", "header", "title", "word", "default", "paper",
+        "plotted")  # fmt: skip
+"""Fields of an axis that say how it is told; with its choices and which one is of blocks, a table as plain data."""
+
+
+def axes_from(rows: Iterable[Mapping[str, object]]) -> Axes:
+    """Return a table from plain data (``Axes.as_data``); raises KeyError and ValueError for anything else."""
+    listed = list(rows)
+    table = [_axis_from(row) for row in listed]
+    blocks = [one.name for one, row in zip(table, listed, strict=True) if row["blocks"]]
+    return Axes(table, blocks[0] if blocks else "")
+
+
+def _axis_from(row: Mapping[str, object]) -> Axis:
+    text = {name: str(row[name]) for name in TOLD}
+    scale, default, choices, plotted = row["scale"], row["default"], row["choices"], row["plotted"]
+    if not isinstance(scale, int | float) or not isinstance(plotted, int) or not isinstance(choices, list | tuple):
+        raise ValueError(f"no axis: {row}")
+    known = default if isinstance(default, str) else float(default) if isinstance(default, int | float) else None
+    listed = cast("Sequence[object]", choices)
+    return Axis(
+        text["name"], text["recipe_unit"], text["field"], text["unit"], float(scale), text["column"], text["header"],
+        text["title"], text["word"], known, bool(row["paper"]), plotted, choices=tuple(map(str, listed)),
+    )  # fmt: skip
+
+
+def _number(value: AxisValue, name: str) -> float:
+    if isinstance(value, str):
+        raise TypeError(f"{name} is {value}, not a number")
+    return value
+
+
+def numbers(values: Iterable[AxisValue]) -> tuple[float, ...]:
+    """Return the values of an axis of numbers; raises TypeError for a choice."""
+    return tuple(_number(value, "the axis") for value in values)
+
+
+def plain(value: AxisValue) -> str:
     """Return a setpoint as people write it: an integer where it is integral, else the shortest decimal."""
+    if isinstance(value, str):
+        return value
     return str(int(value)) if value == int(value) else repr(value)
 
 
-def condition_words(held: Held, axes: Sequence[Axis] | None = None, *, compound: bool = True) -> str:
+def condition_words(held: Setpoint, axes: Sequence[Axis] | None = None, *, compound: bool = True) -> str:
     """Return a condition in words: ``1#, 300 mm/s, 200 N, sideslip 10 deg, 40 degC``.
 
     An axis at its default is left out, any other is told. In a list of conditions ``axes`` says which are told of each,
     at their default or not: those in which they differ.
     """
-    told = [one for one in AXES if not one.at_default(held)] if axes is None else axes
+    told = [one for one in held.axes if not one.at_default(held)] if axes is None else axes
     return ", ".join([*([held.compound] if compound else []), *(one.words(held) for one in told)])
-
-
-def differing(conditions: Iterable[Held]) -> tuple[Axis, ...]:
-    """Return the axes in which conditions differ from each other."""
-    listed = list(conditions)
-    return tuple(one for one in AXES if len({one.of(held) for held in listed}) > 1)
 
 
 class ListWords:
     """How the conditions of one list are told: by what differs between them, which fits where all of it would not."""
 
-    def __init__(self, conditions: Iterable[Held]) -> None:
-        """Find out what differs."""
+    def __init__(self, conditions: Iterable[Setpoint]) -> None:
+        """Find out what differs; all conditions have the same axes."""
         listed = list(conditions)
         self.compound = len({held.compound for held in listed}) > 1
-        self.axes = differing(listed)
         self.first = listed[0] if listed else None
+        self.axes = self.first.axes.differing(listed) if self.first is not None else ()
 
-    def of(self, held: Held) -> str:
+    def of(self, held: Setpoint) -> str:
         """Return what tells a condition from the others; all of it where it is the only one."""
         if not self.axes and not self.compound:
             return condition_words(held)
@@ -150,14 +267,5 @@ class ListWords:
         """What all of them share, for the list's heading; "" where ``of`` tells everything."""
         if self.first is None or not (self.axes or self.compound):
             return ""
-        shared = [one for one in AXES if one not in self.axes and not one.at_default(self.first)]
+        shared = [one for one in self.first.axes if one not in self.axes and not one.at_default(self.first)]
         return condition_words(self.first, shared, compound=not self.compound)
-
-
-def columns(conditions: Iterable[Held]) -> tuple[Axis, ...]:
-    """Return the axes that a table of these conditions needs: the paper's, and any other that is off its default.
-
-    An axis that differs between them is off its default in one of them.
-    """
-    listed = list(conditions)
-    return tuple(one for one in AXES if one.paper or not all(one.at_default(held) for held in listed))

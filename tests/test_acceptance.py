@@ -9,15 +9,15 @@ from pathlib import Path
 
 import pytest
 
-from tests import wear
-from tests.acceptance.__main__ import main
-from tests.acceptance.bench import Bench
-from tests.acceptance.figure import Figure, at_least, at_most, equal, near
-from tests.acceptance.topic import Topic
-from tests.acceptance.topics import TOPICS
+from tests.campaigns import wear
+from tests.campaigns.acceptance.__main__ import main
+from tests.campaigns.acceptance.bench import Bench
+from tests.campaigns.acceptance.figure import Figure, at_least, at_most, equal, near
+from tests.campaigns.acceptance.topic import Topic
+from tests.campaigns.acceptance.topics import TOPICS
 
 QUICK = {name: TOPICS[name] for name in ("predict", "plan", "check", "startup")}
-"""Those that need no run; the others in their short form: ``python -m tests.acceptance``."""
+"""Those that need no run; the others in their short form: ``python -m tests.campaigns.acceptance``."""
 
 NAN = float("nan")
 

@@ -1,4 +1,4 @@
-"""A page that the project cites is in the project, so that a reader can look it up."""
+"""What the project cites is in the project, so that a reader can look it up: pages, files, modules and their names."""
 
 from __future__ import annotations
 
@@ -7,12 +7,20 @@ from pathlib import Path
 
 import pytest
 
+from tests.tester.recipe.texts import rig
+
 ROOT = Path(__file__).parents[1]
 SOURCES = ("tester", "drivers", "sim", "recipes", "bench", "compiling", "docs", "tests")
 ENDINGS = {".py", ".md", ".yaml", ".toml"}
 PATHS = re.compile(r"(?<![\w./-])docs/[\w./-]*\w")
 PAGES = re.compile(r"(?<![\w./*{}-])[\w-]+\.md\b")
 DECISION = re.compile(r"docs/decisions/(\d{4})$")
+CODE = r"(?:tester|drivers|sim|recipes|compiling|bench|tests)"
+FILES = re.compile(rf"(?<![\w./:@-]){CODE}/[\w./*<>-]*[\w*>]")
+"""A file or folder below the root; ``<kind>`` and ``*`` stand for any."""
+MODULES = re.compile(rf"(?<![\w./-]){CODE}(?:\.\w+)+(?![\w/-])")
+BARE = re.compile(r"(?<=`)(?!tester/|drivers/|sim/|tests/)[\w/]+\.py\b")
+"""A file below a folder that the page has named before: ``process.py``, ``control/step.py``."""
 
 
 def files() -> list[Path]:
@@ -54,3 +62,55 @@ def test_a_citation_of_nothing_is_found(text: str) -> None:
 @pytest.mark.parametrize("text", ["docs/safety.md", "docs/decisions/0020", "README.md"])
 def test_a_citation_of_a_page_is_none_of_those(text: str) -> None:
     assert not cited_wrongly(text)
+
+
+def is_named(dotted: str) -> bool:
+    """Tell whether a dotted name leads to a module, to a name that stands in one, or to a key of the packaged rig."""
+    parts = dotted.split(".")
+    for length in range(len(parts), 0, -1):
+        place = ROOT.joinpath(*parts[:length])
+        module = place / "__init__.py" if place.is_dir() else place.with_suffix(".py")
+        if module.is_file() or (place.is_dir() and length == len(parts)):
+            text = module.read_text(encoding="utf-8") if module.is_file() else ""
+            if all(re.search(rf"\b{name}\b", text) for name in parts[length:]):
+                return True
+    return is_key(parts)
+
+
+def is_key(parts: list[str]) -> bool:
+    """Tell whether a name is that of a key of the packaged rig file, such as ``sim.growth``."""
+    place: object = rig()
+    for part in parts:
+        if not hasattr(place, part):
+            return False
+        place = getattr(place, part)
+    return True
+
+
+def led_nowhere(text: str) -> list[str]:
+    """Return the files, folders, modules and names of code in a text that are not there."""
+    known = ["/" + path.relative_to(ROOT).as_posix() for path in files()]
+    return sorted(
+        {path for path in FILES.findall(text) if not any(ROOT.glob(re.sub(r"<[^>]*>", "*", path)))}
+        | {name for name in MODULES.findall(text) if not is_named(name)}
+        | {name for name in BARE.findall(text) if not any(path.endswith("/" + name) for path in known)}
+    )
+
+
+@pytest.mark.parametrize(
+    "page", sorted([*ROOT.glob("*.md"), *(ROOT / "docs").rglob("*.md")]), ids=lambda page: str(page.relative_to(ROOT))
+)
+def test_code_that_a_page_names_is_there(page: Path) -> None:
+    assert led_nowhere(page.read_text(encoding="utf-8")) == []
+
+
+@pytest.mark.parametrize("text", ["`tester/gone/step.py`", "tester.machine.gone", "tests.faults", "`no_such.py`"])
+def test_code_that_is_not_there_is_found(text: str) -> None:
+    assert led_nowhere(text)
+
+
+@pytest.mark.parametrize(
+    "text", ["`sim/machines/<kind>`", "tester.base.plugins", "tester.kind.Kind", "tests.campaigns.faults", "`kind.py`"]
+)
+def test_code_that_is_there_is_not(text: str) -> None:
+    assert not led_nowhere(text)

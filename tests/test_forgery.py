@@ -8,8 +8,8 @@ import pytest
 
 from tester.cli.main import invoke
 from tester.export.verify import verify
-from tests.forgery.forge import FORGERIES, Forgery, remake_all, told
-from tests.forgery.run import finished_run
+from tests.campaigns.forgery.forge import FORGERIES, Forgery, remake_all, told
+from tests.campaigns.forgery.run import finished_run
 
 
 @pytest.fixture(scope="module")

@@ -36,7 +36,7 @@ def loaded_by(code: str) -> set[str]:
     return set(json.loads(output_of(code + LOADED).splitlines()[-1]))
 
 
-@pytest.mark.parametrize("package", ["tester.engine", "tester.control", "tester.recipe", "sim"])
+@pytest.mark.parametrize("package", ["tester.machine", "tester.kinds", "tester.recipe", "sim"])
 def test_no_module_of_a_package_loads_a_screen_plotting_or_fitting_library(package: str) -> None:
     assert not loaded_by(EVERY_MODULE.format(names=[package])) & {"textual", "matplotlib", "scipy", "pandas"}
 
@@ -56,6 +56,11 @@ def test_simulator_does_not_load_the_application() -> None:
 def test_help_loads_nothing_heavy() -> None:
     loaded = loaded_by(HELP)
     assert not loaded & {"pydantic", "numpy", "yaml", "rich", "can", "pymodbus", "pyarrow", "sqlite3", "drivers", "sim"}
+
+
+def test_a_plan_loads_no_wire_and_no_numbers_library() -> None:
+    plan = HELP.replace('["--help"]', '["plan", "quickstart"]')
+    assert not loaded_by(plan) & {"numpy", "can", "pymodbus", "pyarrow", "serial"}
 
 
 def test_help_takes_less_than_150_ms_of_cpu() -> None:

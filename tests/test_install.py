@@ -8,10 +8,10 @@ from pathlib import Path
 
 import pytest
 
-from tests.acceptance.figure import Figure, equal
-from tests.install.__main__ import main
-from tests.install.place import carry_out, fresh_copy, readme_command
-from tests.install.topics import TOPICS, differing, interpreter
+from tests.campaigns.acceptance.figure import Figure, equal
+from tests.campaigns.install.__main__ import main
+from tests.campaigns.install.place import carry_out, fresh_copy, readme_command
+from tests.campaigns.install.topics import TOPICS, differing, interpreter
 
 posix = pytest.mark.skipif(os.name != "posix", reason="the README's POSIX commands are measured, by bash")
 

@@ -24,7 +24,7 @@ POLL_S = 0.002
 0.54 ms of wire at 500 kbit/s, 2.2 ms at 125 kbit/s."""
 
 
-class Condition(Enum):
+class AwaitedCondition(Enum):
     """What a conversation can wait for; the drive answers whether it holds."""
 
     BOOTED = auto()              # boot-up message heard since the reset
@@ -64,18 +64,18 @@ class SendNmt:
 class Until:
     """Wait until a condition holds, ``timeout_s`` at most."""
 
-    condition: Condition
+    condition: AwaitedCondition
     timeout_s: float
 
 
 @dataclass(frozen=True, slots=True)
-class Wait:
+class Pause:
     """Let ``seconds`` pass."""
 
     seconds: float
 
 
-Request = SdoRead | SdoWrite | SendNmt | Until | Wait
+Request = SdoRead | SdoWrite | SendNmt | Until | Pause
 Reply = int | str | bool | None
 Conversation = Generator[Request, Reply, None]
 
@@ -96,7 +96,7 @@ class Peer(Protocol):
         """CANopen node id, 1..127."""
         ...
 
-    def holds(self, condition: Condition) -> bool:
+    def holds(self, condition: AwaitedCondition) -> bool:
         """Whether a condition is true now."""
         ...
 
@@ -156,7 +156,7 @@ class Dialogue:
                 return False
             self._resume(holds, now, send)
             return True
-        if isinstance(request, Wait) and now < self._until:
+        if isinstance(request, Pause) and now < self._until:
             self.due = self._until
             return False
         self._resume(None, now, send)

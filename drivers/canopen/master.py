@@ -1,4 +1,4 @@
-"""The PC's side of one CAN bus: process data of all drives, heartbeats, and conversations with each of them."""
+"""The PC's side of one CAN bus: process data of all nodes, heartbeats, and conversations with each of them."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from drivers.canopen import objects as o
 from drivers.canopen.conversation import Conversation, Dialogue
 
 if TYPE_CHECKING:
+    from drivers.canopen.node import CanNode
     from drivers.ports import CanFrame, CanPort
-    from drivers.servo import ServoDrive
 
 EARLY_S: Final = 0.0005
 """Work due within half a millisecond is done at once: it saves a tick of its own and hides rounding of times."""
@@ -28,7 +28,7 @@ _SYNC_ID: Final = o.SYNC_ID
 
 
 class CanMaster:
-    """Commands the drives of one bus; sans-IO: frames and times come in as arguments, frames go out to the port.
+    """Serves the nodes of one bus; sans-IO: frames and times come in as arguments, frames go out to the port.
 
     Each tick: ``feed`` what the port received, decide, then ``scan``. Between ticks, when ``deadline`` has
     come or frames arrived: ``feed`` and ``service``. Heartbeats leave only from these two: no scan, no
@@ -46,11 +46,11 @@ class CanMaster:
         "_cycle_key",
         "_cycle_syncs",
         "_dialogues",
-        "_drives",
         "_heartbeat",
         "_heartbeat_due",
         "_heartbeats",
-        "_io_drives",
+        "_io_nodes",
+        "_nodes",
         "_payloads",
         "_tpdo1",
         "_withheld",
@@ -81,17 +81,17 @@ class CanMaster:
         self._cycle_key: int = 0                # whose commands are in the cycle, and whether SYNC is
         self._payloads: tuple[bytes, ...] = ()
         self._cycle_syncs = False
-        self._drives: list[ServoDrive] = []
-        self._io_drives: list[ServoDrive] = []
-        self._by_node: dict[int, ServoDrive] = {}
-        self._tpdo1: dict[int, ServoDrive] = {}
-        self._heartbeats: dict[int, ServoDrive] = {}
+        self._nodes: list[CanNode] = []
+        self._io_nodes: list[CanNode] = []
+        self._by_node: dict[int, CanNode] = {}
+        self._tpdo1: dict[int, CanNode] = {}
+        self._heartbeats: dict[int, CanNode] = {}
         self._dialogues: dict[int, Dialogue] = {}
 
     @property
-    def drives(self) -> tuple[ServoDrive, ...]:
-        """The drives of the bus in the order added."""
-        return tuple(self._drives)
+    def nodes(self) -> tuple[CanNode, ...]:
+        """The nodes of the bus in the order added."""
+        return tuple(self._nodes)
 
     @property
     def withhold_heartbeat(self) -> bool:
@@ -103,33 +103,33 @@ class CanMaster:
         self._withheld = withhold
         self.deadline = -math.inf
 
-    def add(self, drive: ServoDrive) -> None:
-        """Take a drive onto the bus; raises ValueError where its node id is taken."""
-        node_id = drive.node_id
+    def add(self, node: CanNode) -> None:
+        """Take a node onto the bus; raises ValueError where its id is taken."""
+        node_id = node.node_id
         if node_id == self.node_id or node_id in self._by_node:
-            raise ValueError(f"{drive.config.name}: node id {node_id} is taken")
-        self._drives.append(drive)
+            raise ValueError(f"{node.name}: node id {node_id} is taken")
+        self._nodes.append(node)
         self._commands.append(None)
-        if drive.config.digital_io:
-            self._io_drives.append(drive)
-        self._by_node[node_id] = drive
-        self._tpdo1[o.TPDO1_BASE + node_id] = drive
-        self._heartbeats[o.HEARTBEAT_BASE + node_id] = drive
+        if node.has_outputs:
+            self._io_nodes.append(node)
+        self._by_node[node_id] = node
+        self._tpdo1[o.TPDO1_BASE + node_id] = node
+        self._heartbeats[o.HEARTBEAT_BASE + node_id] = node
 
-    def start(self, drive: ServoDrive, conversation: Conversation) -> None:
-        """Begin a conversation with a drive at the next service; raises ValueError while another one runs."""
-        if self.busy(drive):
-            raise ValueError(f"{drive.config.name}: a conversation is still running")
-        self._dialogues[drive.node_id] = Dialogue(drive, conversation, self.sdo_timeout_s)
+    def start(self, node: CanNode, conversation: Conversation) -> None:
+        """Begin a conversation with a node at the next service; raises ValueError while another one runs."""
+        if self.busy(node):
+            raise ValueError(f"{node.name}: a conversation is still running")
+        self._dialogues[node.node_id] = Dialogue(node, conversation, self.sdo_timeout_s)
         self.deadline = -math.inf
 
-    def busy(self, drive: ServoDrive) -> bool:
-        """Whether a conversation with this drive runs."""
-        return drive.node_id in self._dialogues
+    def busy(self, node: CanNode) -> bool:
+        """Whether a conversation with this node runs."""
+        return node.node_id in self._dialogues
 
-    def cancel(self, drive: ServoDrive) -> None:
-        """End this drive's conversation where it stands, if one runs."""
-        dialogue = self._dialogues.pop(drive.node_id, None)
+    def cancel(self, node: CanNode) -> None:
+        """End this node's conversation where it stands, if one runs."""
+        dialogue = self._dialogues.pop(node.node_id, None)
         if dialogue is not None:
             dialogue.close()
 
@@ -138,37 +138,37 @@ class CanMaster:
         tpdo1, heartbeats = self._tpdo1, self._heartbeats
         talking = bool(self._dialogues)
         for t, can_id, data in frames:
-            drive = tpdo1.get(can_id)
-            if drive is not None:
-                if data == drive.tpdo1_data:
-                    drive.stamp_s = t
+            node = tpdo1.get(can_id)
+            if node is not None:
+                if data == node.tpdo1_data:
+                    node.stamp_s = t
                 else:
-                    drive.on_tpdo1(t, data)
+                    node.on_tpdo1(t, data)
                 continue
-            drive = heartbeats.get(can_id)
-            if drive is not None and data == drive.usual_heartbeat and not talking:
-                monitor = drive.heartbeat
+            node = heartbeats.get(can_id)
+            if node is not None and data == node.usual_heartbeat and not talking:
+                monitor = node.heartbeat
                 monitor.heard_s = t
                 monitor.due = t + monitor.timeout_s
             else:
                 self._route(t, can_id, data)
 
     def scan(self, port: CanPort, now: float, until: float = -math.inf) -> None:
-        """Send every drive's commands, then SYNC (while ``sync``), then what ``service`` sends.
+        """Send every node's commands, then SYNC (while ``sync``), then what ``service`` sends.
 
         A heartbeat that would fall due before ``until`` (s), the next scan, leaves with this one: it keeps its
         period at most, and needs no tick of its own.
         """
         sync = self.sync
-        for drive in self._io_drives:
-            outputs = drive.emit_outputs(now)
+        for node in self._io_nodes:
+            outputs = node.emit_outputs(now)
             if outputs is not None:
-                port.send(drive.rpdo2_id, outputs, now)
+                port.send(node.rpdo2_id, outputs, now)
         changed = sync is not self._cycle_syncs
-        for i, drive in enumerate(self._drives):
-            if drive.dirty:
+        for i, node in enumerate(self._nodes):
+            if node.dirty:
                 changed = True
-                self._commands[i] = drive.emit(sync)
+                self._commands[i] = node.emit(sync)
         if changed:
             self._compose(sync)
         port.send_cycle(self._cycle_ids, self._payloads, now)
@@ -178,7 +178,7 @@ class CanMaster:
             self._serve(port, now)
 
     def _compose(self, sync: bool) -> None:
-        """Put the commands of all drives, and SYNC, into the cycle; what has not changed stays the same object."""
+        """Put the commands of all nodes, and SYNC, into the cycle; what has not changed stays the same object."""
         payloads: list[bytes] = []
         key = bit = 1
         for command in self._commands:
@@ -194,12 +194,12 @@ class CanMaster:
         self._cycle_syncs = sync
         if key != self._cycle_key:
             self._cycle_key = key
-            commanded = zip(self._drives, self._commands, strict=True)
-            can_ids = [drive.rpdo1_id for drive, command in commanded if command is not None]
+            commanded = zip(self._nodes, self._commands, strict=True)
+            can_ids = [node.rpdo1_id for node, command in commanded if command is not None]
             self._cycle_ids = (*can_ids, _SYNC_ID) if sync else tuple(can_ids)
 
     def service(self, port: CanPort, now: float) -> None:
-        """Send our heartbeat when due and go on with the conversations; notice drives that fell silent."""
+        """Send our heartbeat when due and go on with the conversations; notice nodes that fell silent."""
         if self._dialogues or now + EARLY_S >= self.deadline:
             self._serve(port, now)
 
@@ -210,9 +210,9 @@ class CanMaster:
             self._heartbeat_due = now + self.heartbeat_s
         if self._dialogues:
             self._converse(port, now)
-        for drive in self._drives:
-            if now >= drive.heartbeat.due:
-                drive.check_heartbeat(now)
+        for node in self._nodes:
+            if now >= node.heartbeat.due:
+                node.check_heartbeat(now)
         self._set_deadline()
 
     def _converse(self, port: CanPort, now: float) -> None:
@@ -224,49 +224,49 @@ class CanMaster:
 
     def _set_deadline(self) -> None:
         deadline = math.inf if self._withheld else self._heartbeat_due
-        for drive in self._drives:
-            if drive.heartbeat.due < deadline:
-                deadline = drive.heartbeat.due
+        for node in self._nodes:
+            if node.heartbeat.due < deadline:
+                deadline = node.heartbeat.due
         for dialogue in self._dialogues.values():
             if dialogue.due < deadline:
                 deadline = dialogue.due
         self.deadline = deadline
 
     def _route(self, t: float, can_id: int, data: bytes) -> None:
-        """Take a frame that is no TPDO1 of a drive of ours, by its function code."""
+        """Take a frame that is no TPDO1 of a node of ours, by its function code."""
         function = can_id & _FUNCTION
         if can_id in (o.NMT_ID, o.SYNC_ID) or function in _MASTER_FUNCTIONS:
             self._foreign(can_id, data)
             return
-        drive = self._by_node.get(can_id & _NODE)
-        if drive is None:
+        node = self._by_node.get(can_id & _NODE)
+        if node is None:
             if can_id == self._heartbeat[0]:
                 self._foreign(can_id, data)
             else:
                 self.unknown_frames += 1
         elif function == o.HEARTBEAT_BASE:
-            self._on_heartbeat(drive, t, data)
+            self._on_heartbeat(node, t, data)
         elif function == o.SDO_REPLY_BASE:
-            dialogue = self._dialogues.get(drive.node_id)
+            dialogue = self._dialogues.get(node.node_id)
             if dialogue is not None:
                 dialogue.receive(data)
                 self.deadline = min(self.deadline, t)
         elif function == o.TPDO2_BASE:
-            drive.on_tpdo2(t, data)
+            node.on_tpdo2(t, data)
         elif function == o.EMERGENCY_BASE:
-            drive.on_emergency(t, data)
+            node.on_emergency(t, data)
         else:
             self.unknown_frames += 1
 
-    def _on_heartbeat(self, drive: ServoDrive, t: float, data: bytes) -> None:
+    def _on_heartbeat(self, node: CanNode, t: float, data: bytes) -> None:
         state = heartbeat.state_of(data)
         if state is None:
             self.unknown_frames += 1
             return
-        drive.on_heartbeat(t, state)
+        node.on_heartbeat(t, state)
         # While it is online, the same byte again says only that it is still there.
-        drive.usual_heartbeat = data if drive.online else b""
-        if drive.node_id in self._dialogues:
+        node.usual_heartbeat = data if node.online else b""
+        if node.node_id in self._dialogues:
             self.deadline = min(self.deadline, t)
 
     def _foreign(self, can_id: int, data: bytes) -> None:

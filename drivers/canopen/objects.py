@@ -171,7 +171,7 @@ DEVICE_PROFILE = 402
 """Low half of 0x1000: the device follows CiA 402."""
 
 
-class Mode(IntEnum):
+class OperationMode(IntEnum):
     """Modes of operation, 0x6060 and 0x6061; 0x6502 has bit (mode - 1) set for each one supported."""
 
     NONE = 0

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from drivers.modbus.device import Device, Step
+from drivers.modbus.device import Device, SetupStep
 from drivers.modbus.link import ModbusLink
 from drivers.modbus.request import Counters, Owner, Request, Station
 
-__all__ = ["Counters", "Device", "ModbusLink", "Owner", "Request", "Station", "Step"]
+__all__ = ["Counters", "Device", "ModbusLink", "Owner", "Request", "SetupStep", "Station"]

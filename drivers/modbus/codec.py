@@ -73,7 +73,7 @@ _FRAMERS: dict[str, FramerRTU | FramerSocket] = {
 }
 
 
-class Answer(Enum):
+class DecodedAnswer(Enum):
     """What a well-formed frame is to the request that waits for it."""
 
     GOOD = 1
@@ -136,12 +136,12 @@ def next_frame(framing: Framing, buffer: bytes) -> tuple[int, int, int, bytes]:
     return used, unit_id, transaction, pdu
 
 
-def classify(pdu: bytes, function: int, address: int, values: Sequence[int], count: int) -> Answer:
+def classify(pdu: bytes, function: int, address: int, values: Sequence[int], count: int) -> DecodedAnswer:
     """Tell what ``pdu`` is to a request of ``function`` from ``address``: to read ``count``, or to write ``values``."""
     if pdu[0] == function | 0x80 and len(pdu) == 2:
-        return Answer.EXCEPTION
+        return DecodedAnswer.EXCEPTION
     if pdu[0] != function:
-        return Answer.OTHER
+        return DecodedAnswer.OTHER
     good = False
     if function in (READ_HOLDING, READ_INPUT):
         good = len(pdu) == 2 + 2 * count and pdu[1] == 2 * count
@@ -154,7 +154,7 @@ def classify(pdu: bytes, function: int, address: int, values: Sequence[int], cou
             many = WriteMultipleRegistersResponse()
             many.decode(pdu[1:])
             good = many.address == address and many.count == count
-    return Answer.GOOD if good else Answer.OTHER
+    return DecodedAnswer.GOOD if good else DecodedAnswer.OTHER
 
 
 def exception_code(pdu: bytes) -> int:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
+from math import inf
 
 from drivers.modbus.codec import READ_HOLDING
 from drivers.modbus.link import ModbusLink
@@ -13,7 +14,7 @@ from drivers.profiles.model import DeviceProfile
 
 
 @dataclass(frozen=True, slots=True)
-class Step:
+class SetupStep:
     """One exchange of the set-up."""
 
     what: str
@@ -25,7 +26,8 @@ class Step:
 class Device(ABC):
     """A slave with a profile. It is set up when it first answers, and again whenever it was lost in between.
 
-    ``ready``: set up, being read. ``refused``: why it cannot be used, None if it can.
+    ``ready``: set up, being read. ``refused``: why it cannot be used, None if it can. ``valid``: the last reading can
+    be believed; ``stamp_s``: when it arrived (-inf = never). ``complaint``: what it says that it lacks, "" = nothing.
     """
 
     def __init__(self, profile: DeviceProfile, unit_id: int, link: ModbusLink) -> None:
@@ -34,13 +36,16 @@ class Device(ABC):
         self.link = link
         self.station = link.station(unit_id, profile.timing, self)
         self.ready = False
+        self.valid = False
+        self.complaint = ""
+        self.stamp_s: float = -inf
         self._polls = [
             link.read(self.station, block.function, block.address, block.count, block.period_s)
             for block in profile.blocks
         ]
         for number, poll in enumerate(self._polls):
             poll.block = number
-        self._steps: list[Step] = []
+        self._steps: list[SetupStep] = []
         self._step = 0
 
     @property
@@ -58,17 +63,17 @@ class Device(ABC):
         identity = self.profile.identity
         if identity is not None:
             request = self.link.read(self.station, identity.function, identity.address, 1)
-            self._steps.insert(0, Step("device type", request, identity.value))
+            self._steps.insert(0, SetupStep("device type", request, identity.value))
         if not self._steps:
-            self._steps.append(Step("first reading", self._polls[0]))
+            self._steps.append(SetupStep("first reading", self._polls[0]))
         self.link.enable(self._steps[0].request)
 
     def add_write(self, what: str, address: int, words: tuple[int, ...], read_back: bool) -> None:
         """Add a write to the set-up, and a comparison of what the first register then holds."""
         function = self.profile.write_function
-        self._steps.append(Step(what, self.link.write(self.station, function, address, words)))
+        self._steps.append(SetupStep(what, self.link.write(self.station, function, address, words)))
         if read_back:
-            self._steps.append(Step(what, self.link.read(self.station, READ_HOLDING, address, 1), words[0]))
+            self._steps.append(SetupStep(what, self.link.read(self.station, READ_HOLDING, address, 1), words[0]))
 
     def received(self, request: Request, data: bytes, t: float) -> None:
         """Take a good reply that arrived at ``t`` s: go on with the set-up, or update the readings."""
@@ -89,7 +94,7 @@ class Device(ABC):
         if self.refused is None:
             self.link.enable(self._steps[0].request, t + PROBE_S)
 
-    def _proceed(self, step: Step, data: bytes) -> None:
+    def _proceed(self, step: SetupStep, data: bytes) -> None:
         """End a step of the set-up and begin the next one."""
         if step.expected is not None:
             found = int.from_bytes(data[:2], "big")

@@ -289,12 +289,12 @@ class ModbusLink:
                 counters.late += 1
             elif unit_id != request.station.unit_id:
                 counters.garbage += 1
-            elif answer is codec.Answer.OTHER:
+            elif answer is codec.DecodedAnswer.OTHER:
                 counters.late += 1
             else:
                 if data:
                     counters.garbage += 1
-                if answer is codec.Answer.EXCEPTION:
+                if answer is codec.DecodedAnswer.EXCEPTION:
                     self._except(request, codec.exception_code(pdu), t)
                 else:
                     self._succeed(request, b"" if request.writes else pdu[2:], t)

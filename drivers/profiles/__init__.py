@@ -1,7 +1,7 @@
 """Device profiles: one TOML file for each type of Modbus device, and their strict reader.
 
 ``load_profile("calex_pyrominibus")`` reads a file of this folder, ``load_profile("devices/my_cell.toml")`` one of your
-own. A new device is a new file, not a new class.
+own, and ``read_profile`` a text that comes from elsewhere. A new device is a new file, not a new class.
 """
 
 from __future__ import annotations
@@ -12,13 +12,13 @@ from typing import Any, Literal, cast, get_args
 
 from drivers.profiles.model import (
     SIZES,
-    Block,
     DeviceProfile,
     Identity,
     Kind,
     LineData,
     Number,
     ProfileError,
+    RegisterBlock,
     SetupWrite,
     Signal,
     Switch,
@@ -26,11 +26,26 @@ from drivers.profiles.model import (
     WordOrder,
 )
 
-__all__ = ["Block", "DeviceProfile", "ProfileError", "Signal", "Timing", "load_profile", "profile_names"]
+__all__ = [
+    "DeviceProfile",
+    "ProfileError",
+    "RegisterBlock",
+    "Signal",
+    "Timing",
+    "load_profile",
+    "profile_names",
+    "read_profile",
+]  # fmt: skip
 
 _FOLDER = Path(__file__).parent
 _MOST_REGISTERS = 125
 """Registers in one read (Modbus application protocol V1.1b3, 6.3)."""
+SATURATED_SHARE = 0.98
+"""Share of a load cell's range from which a channel counts as saturated, unless its profile says otherwise [A]."""
+_FORCES = ("fx", "fy", "fz", "mz")
+"""Longitudinal, lateral and normal force (N), moment about the vertical (N m), in the wheel's frame."""
+_FIRST_READ: dict[Kind, tuple[str, ...]] = {"load_cell": _FORCES, "ir_thermometer": ("surface",)}
+"""Of these channels the first read of a kind must hold one at least, and the status."""
 UNKNOWN = "unknown"
 """Stands in a profile where we do not know the manufacturer's value; such a profile cannot be used as it is."""
 
@@ -52,11 +67,17 @@ def load_profile(name: str) -> DeviceProfile:
     except (OSError, UnicodeDecodeError) as error:
         known = ", ".join(profile_names())
         raise ProfileError(f"no device profile {name!r} (there are {known})") from error
+    return read_profile(path.stem, text)
+
+
+def read_profile(name: str, text: str) -> DeviceProfile:
+    """Return the profile that a text in TOML describes, under this name; raises ProfileError as ``load_profile``."""
+    where = f"{name}.toml"
     try:
         data = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
-        raise ProfileError(f"{path.name}: {error}") from error
-    return _profile(path.stem, _Table(path.name, data))
+        raise ProfileError(f"{where}: {error}") from error
+    return _profile(name, _Table(where, data))
 
 
 class _Table:
@@ -109,6 +130,15 @@ class _Table:
             raise self.error(key, f"must be a number, not {value!r}")
         return float(value)
 
+    def share(self, key: str, default: float | None) -> float | None:
+        """Take a number above 0 and at most 1, or nothing."""
+        if key not in self:
+            return default
+        value = self.number(key)
+        if not 0.0 < value <= 1.0:
+            raise self.error(key, f"must be above 0 and at most 1, not {value:g}")
+        return value
+
     def flag(self, key: str, default: bool) -> bool:
         """Take true or false."""
         value = self._take(key, default)
@@ -160,10 +190,16 @@ def _profile(name: str, top: _Table) -> DeviceProfile:
     blocks = tuple(_block(read, signals, order) for read in top.tables("reads"))
     if not blocks:
         raise top.error("reads", "is missing")
+    for block in blocks:
+        if block.function not in functions:
+            expected = f"the device knows {', '.join(map(str, sorted(functions)))}"
+            raise top.error("reads", f"{block.signals[0].name} is read with function {block.function}, and {expected}")
     status = top.table("status")
     status_bits = {key: status.integer(key, 0, 31) for key in status.keys() if key != "invalid"}  # noqa: SIM118
     invalid = sum(1 << _whole(status, "invalid", item, 31) for item in status.items("invalid"))
     status.end()
+    _look_at_first_read(top, kind, blocks[0])
+    cell = kind == "load_cell"
     profile = DeviceProfile(
         name=name,
         kind=kind,
@@ -180,9 +216,21 @@ def _profile(name: str, top: _Table) -> DeviceProfile:
         setup=tuple(_setup(write) for write in top.tables("setup")),
         writes=_signals(top.table("writes")),
         switches=_switches(top.table("switches")),
+        tare=top.flag("tare", cell),
+        saturated=top.share("saturated", SATURATED_SHARE if cell else None),
     )
     top.end()
     return profile
+
+
+def _look_at_first_read(top: _Table, kind: Kind, first: RegisterBlock) -> None:
+    """Refuse a sensor whose first read does not hold what it is read for."""
+    names = {signal.name for signal in first.signals}
+    if kind == "sensor" and names == {"status"}:
+        raise top.error("reads", "the first read must hold a channel")
+    wanted = _FIRST_READ.get(kind, ())
+    if wanted and not ("status" in names and names.intersection(wanted)):
+        raise top.error("reads", f"the first read must hold status and {' or '.join(wanted)}")
 
 
 def _whole(table: _Table, key: str, item: object, greatest: int) -> int:
@@ -207,12 +255,13 @@ def _signals(table: _Table) -> dict[str, Signal]:
             least=row.number("least", float("-inf")),
             greatest=row.number("greatest", float("inf")),
             sign_bit=row.integer("sign_bit", 0, 31) if "sign_bit" in row else None,
+            default=row.number("default") if "default" in row else None,
         )
         row.end()
     return found
 
 
-def _block(table: _Table, signals: dict[str, Signal], order: WordOrder) -> Block:
+def _block(table: _Table, signals: dict[str, Signal], order: WordOrder) -> RegisterBlock:
     chosen: list[Signal] = []
     for item in table.items("signals"):
         if not isinstance(item, str) or item not in signals:
@@ -232,7 +281,7 @@ def _block(table: _Table, signals: dict[str, Signal], order: WordOrder) -> Block
     function = table.integer("function", 3, 4, 3)
     period_s = 1e-3 * table.integer("period_ms", 0, 10_000)
     table.end()
-    return Block(function, address, end - address, period_s, tuple(chosen), order)
+    return RegisterBlock(function, address, end - address, period_s, tuple(chosen), order)
 
 
 def _line(table: _Table) -> LineData:

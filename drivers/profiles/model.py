@@ -8,7 +8,8 @@ from math import isfinite
 from struct import Struct
 from typing import Literal
 
-Kind = Literal["load_cell", "ir_thermometer", "jacket"]
+Kind = Literal["load_cell", "ir_thermometer", "jacket", "chamber", "sensor"]
+"""What a device is to a rig; ``sensor`` is one that measures anything else."""
 Number = Literal["u16", "i16", "u32", "i32", "f32"]
 WordOrder = Literal["high_first", "low_first"]
 
@@ -42,10 +43,12 @@ class Signal:
     """Value of one count, in ``unit``."""
     unit: str
     least: float = float("-inf")
-    """A value below it is not plausible; at a load cell it is saturated."""
+    """A value below it is not plausible; of a parameter, the device does not take it."""
     greatest: float = float("inf")
     sign_bit: int | None = None
     """Status bit that makes it negative, where the register holds the magnitude."""
+    default: float | None = None
+    """Of a parameter: what is written where the rig file does not state it; None = it must."""
 
     @property
     def size(self) -> int:
@@ -68,7 +71,7 @@ class Signal:
 
 
 @dataclass(frozen=True, slots=True)
-class Block:
+class RegisterBlock:
     """Registers read in one request, and how they become numbers."""
 
     function: int
@@ -98,7 +101,7 @@ class Block:
         object.__setattr__(self, "unpack", unpack)
         object.__setattr__(self, "pack", pack)
 
-    def __deepcopy__(self, memo: dict[int, object]) -> Block:
+    def __deepcopy__(self, memo: dict[int, object]) -> RegisterBlock:
         """Return itself: nothing in it changes."""
         return self
 
@@ -115,7 +118,7 @@ class _WordSwapper:
 
     __slots__ = ("_layout", "_order")
 
-    def __init__(self, layout: Struct, block: Block) -> None:
+    def __init__(self, layout: Struct, block: RegisterBlock) -> None:
         self._layout = layout
         order = list(range(layout.size))
         for signal in block.signals:
@@ -195,7 +198,7 @@ class DeviceProfile:
     word_order: WordOrder
     line: LineData
     timing: Timing
-    blocks: tuple[Block, ...]
+    blocks: tuple[RegisterBlock, ...]
     """What is read again and again; the first is the one that matters."""
     invalid_bits: int
     """Mask of the status bits that make a reading invalid."""
@@ -204,9 +207,14 @@ class DeviceProfile:
     identity: Identity | None = None
     setup: tuple[SetupWrite, ...] = ()
     writes: dict[str, Signal] = field(default_factory=dict[str, Signal])
-    """Registers to write by name: ``setpoint``, ``emissivity``, ``lease``."""
+    """Registers to write by name: ``setpoint`` and ``lease`` of a jacket; a sensor's parameters (``emissivity``)."""
     switches: dict[str, Switch] = field(default_factory=dict[str, Switch])
     """Registers with an on and an off value: ``run``."""
+    tare: bool = False
+    """The computer may take a zero off a sensor's channels."""
+    saturated: float | None = None
+    """Share of its range, to either side, from which a channel counts as saturated and the reading as invalid; None =
+    a value is plausible from ``least`` to ``greatest``."""
 
     def __deepcopy__(self, memo: dict[int, object]) -> DeviceProfile:
         """Return itself: nothing in it changes."""
@@ -216,6 +224,16 @@ class DeviceProfile:
         """Raise ProfileError unless this is a profile of ``kind``."""
         if self.kind != kind:
             raise ProfileError(f"profile {self.name} describes a {self.kind}, not a {kind}")
+
+    def expect_sensor(self) -> None:
+        """Raise ProfileError unless this is a profile of a sensor."""
+        if self.kind == "jacket":
+            raise ProfileError(f"profile {self.name} describes a {self.kind}, not a sensor")
+
+    @property
+    def channels(self) -> tuple[str, ...]:
+        """What a sensor measures: the names in its first read but for the status, in order of address."""
+        return tuple(signal.name for signal in self.blocks[0].signals if signal.name != "status")
 
     def signal(self, name: str) -> Signal:
         """Return a signal that is read. Raises ProfileError where the device has none of this name."""

@@ -7,21 +7,16 @@ from typing import Final
 
 from drivers.canopen import emcy
 from drivers.canopen import objects as o
-from sim.can_traffic import Listener, SyncFollower
-from sim.can_wire import CanWire
 from sim.faults.scene import Effect, Scene
+from sim.wires.can_traffic import Listener, SyncFollower
+from sim.wires.can_wire import CanWire
 
 _NODE: Final = 0x7F
 _FUNCTION: Final = 0x780
 
 
-class Unseen:
-    """A tap that sees nothing."""
-
-    __slots__ = ()
-
-    def frame(self, t: float, can_id: int, data: bytes, from_pc: bool) -> None:
-        """Take no note of a frame."""
+def unseen(t: float, can_id: int, data: bytes, sent: bool) -> None:
+    """Watch, and take no note of a frame."""
 
 
 class FaultyCanWire(CanWire):
@@ -32,12 +27,11 @@ class FaultyCanWire(CanWire):
     identifier; ``repeated`` doubles every frame; ``silent`` loses everything and tells nobody.
     """
 
-    __slots__ = ("_counted", "_cut", "_own_tap", "frozen", "late_s", "loss", "lost", "repeated", "silent", "spoiled")
+    __slots__ = ("_counted", "_cut", "frozen", "late_s", "loss", "lost", "repeated", "silent", "spoiled")
 
     def __init__(self, bitrate: int = 500_000) -> None:
         """Create an idle bus without faults; ``bitrate`` in bit/s."""
         self._cut: frozenset[int] = frozenset()
-        self._own_tap = Unseen()
         super().__init__(bitrate)
         self.spoiled = False
         self.lost: frozenset[int] = frozenset()
@@ -53,11 +47,11 @@ class FaultyCanWire(CanWire):
         self.spoiled = bool(
             self.lost or self.frozen or self.late_s or self.loss or self.repeated or self.silent or self._cut
         )
-        # A bus with a tap takes no short cuts: each frame of it comes through ``send`` or ``transmit``.
-        if self.spoiled and self.tap is None:
-            self.tap = self._own_tap
-        elif not self.spoiled and self.tap is self._own_tap:
-            self.tap = None
+        # A bus that is watched takes no short cuts: each frame of it comes through ``send`` or ``transmit``.
+        if self.spoiled and unseen not in self.watchers:
+            self.watchers.append(unseen)
+        elif not self.spoiled and unseen in self.watchers:
+            self.watchers.remove(unseen)
         self.forget_cycle()
 
     def cut(self, node_id: int, off: bool) -> None:

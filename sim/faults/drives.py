@@ -47,7 +47,7 @@ class DriveFault(_OnAxis):
         self.drive(scene).clear_cause(self.code)
 
 
-class Emergency(_OnAxis):
+class EmcyReport(_OnAxis):
     """The drive reports an error and goes on."""
 
     __slots__ = ("code",)
@@ -66,7 +66,7 @@ class Emergency(_OnAxis):
         self.drive(scene).recovered(self.code, now)
 
 
-class ShortEmergency(Emergency):
+class ShortEmergency(EmcyReport):
     """The drive reports an error in a frame that is too short."""
 
     __slots__ = ("length",)
@@ -225,94 +225,3 @@ class Runaway(_OnAxis):
         drive = self.drive(scene)
         if drive.state in ENERGISED and isinstance(drive.axis, VelocityAxis):
             drive.axis.aim(self.speed)
-
-
-class BeltSlips(Effect):
-    """Something holds the belt back (caught, pressed on its support): it is slower than its roller, and its encoder.
-
-    Beyond elastic creep the roller slips under it, and pulls with all that its wrap can instead of braking the wheel.
-    """
-
-    __slots__ = ("_factor", "share")
-
-    def __init__(self, percent: float) -> None:
-        """By this much, percent of the speed."""
-        self.share = 0.01 * percent
-        self._factor = 1.0
-
-    def begin(self, scene: Scene, now: float) -> None:
-        """Begin to slip."""
-        rig = scene.rig
-        rig.belt_slip = self.share
-        sensor = rig.plant.belt_speed
-        self._factor = sensor.factor
-        sensor.factor = self._factor / max(1.0 - self.share, 1e-6)
-
-    def end(self, scene: Scene, now: float) -> None:
-        """Grip again."""
-        scene.rig.belt_slip = 0.0
-        scene.rig.plant.belt_speed.factor = self._factor
-
-
-class BeltTorn(Effect):
-    """The belt is torn: its roller turns on, the belt itself goes with whatever touches it and stands otherwise.
-
-    Nothing holds the belt against the wheel any more: no friction, and no torque at either drive.
-    """
-
-    __slots__ = ("_factor",)
-
-    every_step = True
-
-    def __init__(self) -> None:
-        """In one piece so far."""
-        self._factor = 1.0
-
-    def begin(self, scene: Scene, now: float) -> None:
-        """Tear."""
-        plant = scene.rig.plant
-        self._factor = plant.belt_speed.factor
-        plant.set_grip(0.0)
-
-    def end(self, scene: Scene, now: float) -> None:
-        """Have a new belt."""
-        plant = scene.rig.plant
-        plant.belt_speed.factor = self._factor
-        plant.set_grip(1.0)
-
-    def renew(self, scene: Scene, now: float) -> None:
-        """Let the belt go with the wheel where it is touched, through the encoder's scale: no other place is needed."""
-        rig = scene.rig
-        plant, roller_m_s = rig.plant, rig.axes["belt"].axis.value
-        rim_m_s = 0.0005 * plant.diameter_mm * rig.axes["wheel"].axis.value / plant.wheel_speed.factor
-        carried_m_s = rim_m_s if plant.force_z_n > 0.0 else 0.0
-        plant.belt_speed.factor = roller_m_s / carried_m_s if carried_m_s and roller_m_s else 1e9
-
-
-class WheelSlipsOnShaft(Effect):
-    """The wheel's clamping has come loose: in contact it rolls with the belt, whatever its shaft does."""
-
-    __slots__ = ("_factor",)
-
-    every_step = True
-
-    def __init__(self) -> None:
-        """Clamped so far."""
-        self._factor = 1.0
-
-    def begin(self, scene: Scene, now: float) -> None:
-        """Come loose."""
-        self._factor = scene.rig.plant.wheel_speed.factor
-
-    def end(self, scene: Scene, now: float) -> None:
-        """Be clamped again."""
-        scene.rig.plant.wheel_speed.factor = self._factor
-
-    def renew(self, scene: Scene, now: float) -> None:
-        """Let the wheel roll on the belt in contact, and go with its shaft out of it."""
-        rig = scene.rig
-        plant, shaft = rig.plant, rig.axes["wheel"].axis.value
-        belt_m_s = rig.axes["belt"].axis.value / plant.belt_speed.factor
-        rolling = belt_m_s / (0.0005 * plant.diameter_mm)
-        loose = plant.force_z_n > 0.0 and shaft != 0.0 and rolling != 0.0
-        plant.wheel_speed.factor = shaft / rolling if loose else self._factor

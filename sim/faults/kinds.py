@@ -10,32 +10,7 @@ from math import inf
 from sim.faults.scene import Effect
 
 
-class Exposure(Enum):
-    """When a fault can be noticed at all: its budget counts from then on."""
-
-    ALWAYS = "at once, once the run has begun"
-    RUNNING = "at once, where it begins in a run and no wheel was just changed"
-    DRIVES = "at once, once every drive is configured"
-    CONNECTING = "at the next connection"
-    ENABLED = "while the drives are on"
-    TURNING = "while the wheel turns"
-    LOADED = "in contact"
-    PRESSING = "while a load is held"
-    SLIDING = "in contact, with slip"
-    RUBBING = "while a load is held, with slip"
-    ASTRAY = "while a drive shows another speed than it was told"
-    HEATING = "while the jacket heats"
-    MISWEIGHED = "while the press is further than the load shown can need"
-    MISREAD = "while the thermometer is off by more than the model allows, turning"
-    STARVED = "while full heat is asked for and the hub stays cold"
-    UNASKED = "while heat flows that the controller does not give"
-    HIDDEN = "while full heat is given and the hub is far hotter than shown"
-    OVERHEATED = "while the hub is hotter than it was ever told to be"
-    HOT = "while the hub is far hotter than any recipe needs"
-    WELDED = "while the contactor is closed without request"
-
-
-class Reaction(Enum):
+class Expected(Enum):
     """What has to come of it."""
 
     TRIP = "trips: the run ends latched"
@@ -51,7 +26,8 @@ class FaultKind:
     """One fault: its name, how it is applied, what has to come of it and by when.
 
     ``make`` gets the value, where the fault has one (``unit`` not None), and ``value`` where none is given.
-    ``budget_s`` counts from the onset, or from when the fault can be noticed (``exposure``), to the safe commands.
+    ``budget_s`` counts from the onset, or from when the fault can be noticed (``exposure``, each
+    machine's own words), to the safe commands.
     ``force_stays`` and ``heat_stays``: the force, or the heat, cannot go by any command (the reason is in ``note``).
     ``lasts_s``: it is over by itself after this time.
     ``slow``: a matter of temperature, watched for two minutes and more.
@@ -61,8 +37,8 @@ class FaultKind:
 
     phrase: str
     make: Callable[..., Effect]
-    exposure: Exposure
-    reaction: Reaction
+    exposure: Enum
+    reaction: Expected
     budget_s: float
     unit: str | None = None
     value: float = 0.0

@@ -5,22 +5,20 @@
     step measure: load cell frozen
     step heat + 20 s: thermometer offset -15 K for 1 min
 
-When, a colon, the fault's phrase, its value where it has one, and how long it lasts (else to the end of the run).
+When, a colon, the fault's phrase, its value where it has one, and how long it lasts (else to the end of the run). Which
+phrases and which steps there are, a kind of machine says.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
 from math import inf, isfinite
 
-from sim.faults.catalogue import CATALOGUE
 from sim.faults.kinds import FaultKind
 
-STEPS = ("connect", "install", "pre-grind", "rest", "heat", "soak", "tare", "roll", "measure", "lift", "cool", "prompt")
-"""Names of steps that a fault can wait for."""
 _SECONDS = {"ms": 1e-3, "s": 1.0, "min": 60.0, "h": 3600.0}
 _FACTORS: dict[str, dict[str, float]] = {
     "ms": _SECONDS,
@@ -50,7 +48,7 @@ class FaultTextError(ValueError):
 
 
 @dataclass(frozen=True, slots=True)
-class When:
+class FaultTime:
     """When a fault begins: at a time (s), a scan (from 1), or some time (s) after a step has begun."""
 
     at_s: float = inf
@@ -63,7 +61,7 @@ class When:
 class Injection:
     """One line of a script."""
 
-    when: When
+    when: FaultTime
     kind: FaultKind
     value: float | None = None
     lasts_s: float = inf
@@ -75,75 +73,80 @@ class Injection:
         return replace(self, when=replace(self.when, at_s=self.when.at_s + by_s), lasts_s=lasts_s)
 
 
-def parse_script(texts: Iterable[str]) -> list[Injection]:
-    """Return the faults of a script. Raises FaultTextError with every line that cannot be read."""
-    found: list[Injection] = []
-    problems: list[str] = []
-    for text in texts:
-        try:
-            found.append(parse(text))
-        except FaultTextError as error:
-            problems.append(str(error))
-    if problems:
-        raise FaultTextError("\n".join(problems))
-    return found
+@dataclass(frozen=True, slots=True)
+class FaultLanguage:
+    """What the scripts of one kind of machine can say: its faults by their phrases, and the steps they can wait for."""
 
+    catalogue: Mapping[str, FaultKind]
+    steps: Sequence[str]
 
-def parse(text: str) -> Injection:
-    """Return one line's fault. Raises FaultTextError."""
-    when_text, colon, what = text.partition(":")
-    if not colon:
-        raise _error(text, 'expected "WHEN: FAULT", e.g. "t=130 s: belt drive heartbeat lost for 3 s"')
-    when = _when(text, " ".join(when_text.split()))
-    what = " ".join(what.split())
-    lasts_s = inf
-    duration = _DURATION.match(what)
-    if duration is not None:
-        what = duration["rest"]
-        lasts_s = _seconds(text, duration["number"], duration["unit"])
-        if lasts_s <= 0.0:
-            raise _error(text, "a duration is above 0 s")
-    kind, value = _what(text, what)
-    return Injection(when, kind, value, lasts_s, text.strip())
+    def parse_script(self, texts: Iterable[str]) -> list[Injection]:
+        """Return the faults of a script. Raises FaultTextError with every line that cannot be read."""
+        found: list[Injection] = []
+        problems: list[str] = []
+        for text in texts:
+            try:
+                found.append(self.parse(text))
+            except FaultTextError as error:
+                problems.append(str(error))
+        if problems:
+            raise FaultTextError("\n".join(problems))
+        return found
 
+    def parse(self, text: str) -> Injection:
+        """Return one line's fault. Raises FaultTextError."""
+        when_text, colon, what = text.partition(":")
+        if not colon:
+            raise _error(text, 'expected "WHEN: FAULT", e.g. "t=130 s: emergency stop pressed"')
+        when = self._when(text, " ".join(when_text.split()))
+        what = " ".join(what.split())
+        lasts_s = inf
+        duration = _DURATION.match(what)
+        if duration is not None:
+            what = duration["rest"]
+            lasts_s = _seconds(text, duration["number"], duration["unit"])
+            if lasts_s <= 0.0:
+                raise _error(text, "a duration is above 0 s")
+        kind, value = self._what(text, what)
+        return Injection(when, kind, value, lasts_s, text.strip())
 
-def _when(text: str, when: str) -> When:
-    at_time = _AT_TIME.match(when)
-    if at_time is not None:
-        seconds = _seconds(text, at_time["number"], at_time["unit"])
-        if seconds < 0.0:
-            raise _error(text, "a run begins at t=0 s")
-        return When(at_s=seconds)
-    at_scan = _AT_SCAN.match(when)
-    if at_scan is not None:
-        if int(at_scan["number"]) < 1:
-            raise _error(text, "scans count from 1")
-        return When(scan=int(at_scan["number"]))
-    at_step = _AT_STEP.match(when)
-    if at_step is not None:
-        if at_step["name"] not in STEPS:
-            raise _error(text, f"unknown step {at_step['name']!r}{_nearest(at_step['name'], STEPS)}; {_listed(STEPS)}")
-        after_s = _seconds(text, at_step["number"], at_step["unit"]) if at_step["number"] else 0.0
-        return When(step=at_step["name"], after_s=after_s)
-    raise _error(text, f'{when!r} is no time: expected "t=130 s", "at scan 1200" or "step measure + 2 s"')
+    def _when(self, text: str, when: str) -> FaultTime:
+        at_time = _AT_TIME.match(when)
+        if at_time is not None:
+            seconds = _seconds(text, at_time["number"], at_time["unit"])
+            if seconds < 0.0:
+                raise _error(text, "a run begins at t=0 s")
+            return FaultTime(at_s=seconds)
+        at_scan = _AT_SCAN.match(when)
+        if at_scan is not None:
+            if int(at_scan["number"]) < 1:
+                raise _error(text, "scans count from 1")
+            return FaultTime(scan=int(at_scan["number"]))
+        at_step = _AT_STEP.match(when)
+        if at_step is not None:
+            if at_step["name"] not in self.steps:
+                near = _nearest(at_step["name"], self.steps)
+                raise _error(text, f"unknown step {at_step['name']!r}{near}; {_listed(self.steps)}")
+            after_s = _seconds(text, at_step["number"], at_step["unit"]) if at_step["number"] else 0.0
+            return FaultTime(step=at_step["name"], after_s=after_s)
+        raise _error(text, f'{when!r} is no time: expected "t=130 s", "at scan 1200" or "step measure + 2 s"')
 
-
-def _what(text: str, what: str) -> tuple[FaultKind, float | None]:
-    kind = CATALOGUE.get(what)
-    if kind is not None:
-        return kind, None
-    match = _VALUE.match(what)
-    if match is None or match["phrase"] not in CATALOGUE:
-        phrase = match["phrase"] if match is not None else what
-        raise _error(text, f"unknown fault {phrase!r}{_nearest(phrase, CATALOGUE)}")
-    kind = CATALOGUE[match["phrase"]]
-    if kind.unit is None:
-        raise _error(text, f"{kind.phrase!r} takes no value")
-    factors = _FACTORS[kind.unit]
-    if match["unit"] not in factors:
-        expected = " or ".join(factors) if kind.unit else "a plain number"
-        raise _error(text, f"{kind.phrase!r}: unit {match['unit']!r}, expected {expected}")
-    return kind, _number(match["number"]) * factors[match["unit"]]
+    def _what(self, text: str, what: str) -> tuple[FaultKind, float | None]:
+        kind = self.catalogue.get(what)
+        if kind is not None:
+            return kind, None
+        match = _VALUE.match(what)
+        if match is None or match["phrase"] not in self.catalogue:
+            phrase = match["phrase"] if match is not None else what
+            raise _error(text, f"unknown fault {phrase!r}{_nearest(phrase, self.catalogue)}")
+        kind = self.catalogue[match["phrase"]]
+        if kind.unit is None:
+            raise _error(text, f"{kind.phrase!r} takes no value")
+        factors = _FACTORS[kind.unit]
+        if match["unit"] not in factors:
+            expected = " or ".join(factors) if kind.unit else "a plain number"
+            raise _error(text, f"{kind.phrase!r}: unit {match['unit']!r}, expected {expected}")
+        return kind, _number(match["number"]) * factors[match["unit"]]
 
 
 def _number(text: str) -> float:

@@ -3,36 +3,22 @@
 from __future__ import annotations
 
 from sim.faults.scene import Effect, Scene
-from sim.modbus_wire import Impairment, Kind, ModbusWire
 from sim.nodes.modbus_slave import ENDURANCE, ModbusSlave
+from sim.wires.modbus_wire import Impairment, Kind, ModbusWire
 
-DEVICES = ("load cell", "thermometer", "jacket")
 REBOOT_S = 2.0
 """A transmitter or controller is silent this long after a dip in its supply, s [A]."""
 
 
 def slave_of(scene: Scene, device: str) -> ModbusSlave:
     """Return the simulated device of this name."""
-    rig = scene.rig
-    slaves: dict[str, ModbusSlave] = {"load cell": rig.cell, "thermometer": rig.ir, "jacket": rig.jacket}
-    return slaves[device]
+    return scene.rig.devices[device]
 
 
 def line_of(scene: Scene, device: str) -> ModbusWire:
     """Return the line that a device is on."""
     slave = slave_of(scene, device)
     return next(line for line in scene.rig.lines.values() if line.has(slave))
-
-
-def switch(scene: Scene, device: str, on: bool) -> None:
-    """Switch a device's supply."""
-    rig = scene.rig
-    if device == "jacket":
-        rig.jacket.power(on)
-    elif device == "thermometer" and on:
-        rig.ir.power_up()
-    else:
-        slave_of(scene, device).powered = on
 
 
 class Impaired(Effect):
@@ -113,11 +99,11 @@ class DeviceOff(Effect):
 
     def begin(self, scene: Scene, now: float) -> None:
         """Switch it off."""
-        switch(scene, self.device, False)
+        slave_of(scene, self.device).power(False)
 
     def end(self, scene: Scene, now: float) -> None:
         """Switch it on."""
-        switch(scene, self.device, True)
+        slave_of(scene, self.device).power(True)
 
 
 class DeviceReset(Effect):
@@ -135,12 +121,12 @@ class DeviceReset(Effect):
     def begin(self, scene: Scene, now: float) -> None:
         """Switch it off for its restart."""
         self._until_s = now + REBOOT_S
-        switch(scene, self.device, False)
+        slave_of(scene, self.device).power(False)
 
     def renew(self, scene: Scene, now: float) -> None:
         """Have it start when it is time."""
         if now >= self._until_s and not slave_of(scene, self.device).powered:
-            switch(scene, self.device, True)
+            slave_of(scene, self.device).power(True)
 
 
 class MemoryWorn(Effect):

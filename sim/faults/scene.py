@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import inf
 from typing import Protocol
 
 from sim.rig import SimRig
@@ -57,5 +56,3 @@ class Effect:
     def renew(self, scene: Scene, now: float) -> None:
         """Do what has to be done before the rig is advanced from ``now`` s."""
 
-
-FOREVER = inf

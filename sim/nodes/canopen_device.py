@@ -10,14 +10,14 @@ from typing import Final
 
 from drivers.canopen import objects as o
 from drivers.canopen.objects import NmtCommand, NmtState
-from sim.can_traffic import Beat
-from sim.can_wire import CanWire
 from sim.nodes import communication_objects
 from sim.nodes.emergencies import Emergencies
 from sim.nodes.object_store import ObjectStore
 from sim.nodes.pdo_channels import ReceivePdo, TransmitPdo
 from sim.nodes.pdo_exchange import RPDO_TIMED_OUT, PdoExchange
 from sim.nodes.sdo_server import SdoServer
+from sim.wires.can_traffic import Beat
+from sim.wires.can_wire import CanWire
 
 HEARTBEAT_LOST: Final = 0x8130
 COMMUNICATION_BOOT_S: Final = 0.02

@@ -13,10 +13,9 @@ from typing import Final
 from drivers import cia402
 from drivers.axis import AxisConfig
 from drivers.canopen import objects as o
-from drivers.canopen.objects import Mode
+from drivers.canopen.objects import OperationMode
 from drivers.canopen.pdo import RPDO1_VELOCITY, TPDO1_POSITION, TPDO1_VELOCITY
 from drivers.cia402 import State
-from sim.can_wire import CanWire
 from sim.nodes import drive_objects
 from sim.nodes.drive_modes import ProfileVelocity
 from sim.nodes.drive_objects import clamped_i16, wrapped_i32
@@ -27,6 +26,7 @@ from sim.nodes.motion import PositionAxis, VelocityAxis
 from sim.nodes.object_store import ObjectStore
 from sim.nodes.pdo_channels import ReceivePdo, TransmitPdo
 from sim.nodes.safety_io import SafetyIo
+from sim.wires.can_wire import CanWire
 
 _CONTROLWORD: Final = (o.CONTROLWORD, 0)
 _MODE: Final = (o.MODE, 0)
@@ -113,10 +113,13 @@ class Cia402Slave(DrivePower):
         self._velocity: ProfileVelocity | None = None
         if isinstance(axis, PositionAxis):
             self.homing = Homing(self, axis, home_position)
-            self.modes = {Mode.PROFILE_POSITION: ProfilePosition(self, axis), Mode.HOMING: self.homing}
+            self.modes = {
+                OperationMode.PROFILE_POSITION: ProfilePosition(self, axis),
+                OperationMode.HOMING: self.homing,
+            }
         else:
             self._velocity = ProfileVelocity(self, axis)
-            self.modes = {Mode.PROFILE_VELOCITY: self._velocity}
+            self.modes = {OperationMode.PROFILE_VELOCITY: self._velocity}
         self._mode_bits = 0
         self._by_position = config.feedback == "position"
         self._increments = config.position_increments if self._by_position else config.velocity_increments

@@ -63,7 +63,7 @@ class Ramps:
         self.following_error_s = values[(o.FOLLOWING_ERROR_TIME, 0)] * 1e-3
 
 
-class Held:
+class Lasting:
     """A condition that counts once it has held for some time."""
 
     __slots__ = ("since_s", "true")

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from drivers.axis import AxisConfig
 from drivers.canopen import objects as o
-from drivers.canopen.objects import Mode
+from drivers.canopen.objects import OperationMode
 from drivers.cia402 import State
 from sim.nodes import sdo_server as sdo
 from sim.nodes.motion import PositionAxis, VelocityAxis
@@ -27,9 +27,9 @@ _OPTIONS: dict[int, tuple[int, ...]] = {
 }
 """Values accepted; drives support subsets of the standard's."""
 
-_MODES: dict[str, tuple[Mode, ...]] = {
-    "velocity": (Mode.PROFILE_VELOCITY,),
-    "position": (Mode.PROFILE_POSITION, Mode.HOMING),
+_MODES: dict[str, tuple[OperationMode, ...]] = {
+    "velocity": (OperationMode.PROFILE_VELOCITY,),
+    "position": (OperationMode.PROFILE_POSITION, OperationMode.HOMING),
 }
 """Modes a drive offers, by what its axis is configured for."""
 

@@ -6,7 +6,7 @@ from typing import Final
 
 from drivers import cia402
 from drivers.canopen import objects as o
-from sim.nodes.drive_modes import Held, ModeOwner
+from sim.nodes.drive_modes import Lasting, ModeOwner
 from sim.nodes.motion import PositionAxis
 
 FOLLOWING_ERROR_CODE: Final = 0x8611
@@ -43,8 +43,8 @@ class ProfilePosition:
         self._new = False
         self._acknowledged = False
         self._halt = False
-        self._reached = Held()
-        self._late = Held()
+        self._reached = Lasting()
+        self._late = Lasting()
         self.bits = 0
         self.limited = False
 

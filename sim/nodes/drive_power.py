@@ -10,7 +10,6 @@ from typing import Final
 from drivers import cia402
 from drivers.canopen import objects as o
 from drivers.cia402 import State
-from sim.can_wire import CanWire
 from sim.nodes.canopen_device import CanopenDevice
 from sim.nodes.drive_modes import ProfileVelocity, Ramps
 from sim.nodes.drive_positioning import Homing, ProfilePosition
@@ -18,6 +17,7 @@ from sim.nodes.drive_state import ENERGISED, FAULTY, commanded
 from sim.nodes.motion import PositionAxis, VelocityAxis
 from sim.nodes.object_store import ObjectStore
 from sim.nodes.safety_io import SafetyIo
+from sim.wires.can_wire import CanWire
 
 Axis = VelocityAxis | PositionAxis
 DriveMode = ProfileVelocity | ProfilePosition | Homing

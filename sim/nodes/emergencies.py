@@ -6,10 +6,10 @@ from math import inf
 
 from drivers.canopen import emcy
 from drivers.canopen import objects as o
-from sim.can_wire import CanWire
 from sim.nodes import sdo_server as sdo
 from sim.nodes.object_store import ObjectStore
 from sim.nodes.sdo_server import SdoAbortError
+from sim.wires.can_wire import CanWire
 
 _HISTORY_LENGTH = 8
 

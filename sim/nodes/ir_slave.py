@@ -50,12 +50,12 @@ class IrSlave(ModbusSlave):
         if profile.identity is not None:
             self._read_only.add(profile.identity.address)
         self._error = profile.bit("measurement_error")
-        self.power_up()
+        self.power(True)
 
-    def power_up(self) -> None:
-        """Start: answer, with an emissivity of 1 [A]."""
-        self.powered = True
-        if self._emissivity is not None:
+    def power(self, on: bool) -> None:
+        """Switch the supply; it starts with an emissivity of 1 [A]."""
+        self.powered = on
+        if on and self._emissivity is not None:
             self.put(self._emissivity.address, round(1.0 / self._emissivity.scale).to_bytes(2, "big"))
 
     @property

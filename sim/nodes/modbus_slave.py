@@ -6,6 +6,7 @@ Independent of the library under the drivers: frames are taken apart and put tog
 from __future__ import annotations
 
 from collections.abc import Iterable
+from math import inf
 from struct import Struct
 from typing import Final
 
@@ -34,7 +35,7 @@ _WORD: Final = Struct(">H")
 _REQUEST: Final = Struct(">BBHH")
 
 
-class Window:
+class RegisterWindow:
     """Registers without a gap. ``data`` holds them as they go over the wire."""
 
     __slots__ = ("count", "data", "start")
@@ -51,7 +52,7 @@ class _Read:
 
     __slots__ = ("block", "head", "last", "payload", "reply", "start", "window")
 
-    def __init__(self, window: Window, address: int, count: int, head: bytes, block: int) -> None:
+    def __init__(self, window: RegisterWindow, address: int, count: int, head: bytes, block: int) -> None:
         self.window = window
         self.block = block
         self.start = 2 * (address - window.start)
@@ -72,6 +73,8 @@ class ModbusSlave:
         self.turnaround_s = turnaround_s
         self.functions = functions
         self.powered = True
+        self.due_s = inf
+        """When a device with a loop of its own runs it next, s."""
         self.windows = _windows(registers)
         self._reads: dict[bytes, _Read] = {}
         self._writes: dict[bytes, tuple[bytes, int, tuple[int, ...]]] = {}
@@ -83,6 +86,13 @@ class ModbusSlave:
         """Numbers by (address, count) of what is usually read in one request: ``sample`` is asked for these."""
 
     # what a device adds ----------------------------------------------------------------------------------------
+
+    def advance(self, t0: float, t1: float) -> None:
+        """Live from ``t0`` to ``t1`` s: run what falls due (``due_s``)."""
+
+    def power(self, on: bool) -> None:
+        """Switch the supply; a device without it is silent."""
+        self.powered = on
 
     def refresh(self, t: float) -> None:
         """Bring the registers up to date: they are read at ``t`` s."""
@@ -97,7 +107,7 @@ class ModbusSlave:
 
     # registers -------------------------------------------------------------------------------------------------
 
-    def window(self, address: int, count: int = 1) -> Window | None:
+    def window(self, address: int, count: int = 1) -> RegisterWindow | None:
         """Return the window that holds all of these registers, or None."""
         for window in self.windows:
             if window.start <= address and address + count <= window.start + window.count:
@@ -218,7 +228,7 @@ class ModbusSlave:
         return reply
 
 
-def _windows(registers: Iterable[tuple[int, int]]) -> list[Window]:
+def _windows(registers: Iterable[tuple[int, int]]) -> list[RegisterWindow]:
     """Return windows over registers given as (address, count), joined where they touch."""
     joined: list[tuple[int, int]] = []
     for address, count in sorted(registers):
@@ -227,4 +237,4 @@ def _windows(registers: Iterable[tuple[int, int]]) -> list[Window]:
             joined[-1] = (start, max(length, address + count - start))
         else:
             joined.append((address, count))
-    return [Window(start, count) for start, count in joined]
+    return [RegisterWindow(start, count) for start, count in joined]

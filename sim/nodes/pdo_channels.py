@@ -13,10 +13,10 @@ from typing import Final, Protocol
 from drivers.canopen import objects as o
 from drivers.canopen.dictionary import DICTIONARY
 from drivers.canopen.pdo import PdoMap, PdoMapError
-from sim.can_traffic import Listener
 from sim.nodes import sdo_server as sdo
 from sim.nodes.object_store import Key, ObjectStore
 from sim.nodes.sdo_server import SdoAbortError
+from sim.wires.can_traffic import Listener
 
 LAST_CYCLIC: Final = 240
 """Transmission types up to this one follow the SYNC; 254 and 255 are event driven, those between are refused."""

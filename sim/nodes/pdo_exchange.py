@@ -7,10 +7,10 @@ from math import inf
 from typing import Final, Protocol
 
 from drivers.canopen import objects as o
-from sim.can_traffic import Listener, SyncFollower
-from sim.can_wire import CanWire
 from sim.nodes.object_store import ObjectStore
 from sim.nodes.pdo_channels import ReceivePdo, TransmitPdo
+from sim.wires.can_traffic import Listener, SyncFollower
+from sim.wires.can_wire import CanWire
 
 PDO_TOO_SHORT: Final = 0x8210
 PDO_TOO_LONG: Final = 0x8220
@@ -59,7 +59,7 @@ class PdoExchange(SyncFollower):
 
     ``due_s`` is the next deadline or event timer; ``urgent`` marks the next synchronous TPDO as urgent for the wire.
     ``plain`` says that the next SYNC asks for nothing but ``sample``, the TPDO ``sample_id``; while it is ``stale`` it
-    has to be taken anew (``sim.can_traffic.SyncFollower``).
+    has to be taken anew (``sim.wires.can_traffic.SyncFollower``).
     """
 
     __slots__ = (

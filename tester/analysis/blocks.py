@@ -1,145 +1,123 @@
-"""Blocks of one whole wheel revolution: the unit in which samples are counted and averaged.
+"""Blocks of one whole turn: the unit in which samples are counted and averaged.
 
-Wheel runout modulates the load once a revolution, so only means over whole revolutions are
-free of it.
+Runout of what turns modulates the load once a revolution, so only means over whole revolutions are free of it. What
+does not turn is counted in stretches of way or of time: which channel is counted by, and how much of it is one block,
+is a role in the table of channels (``Roles.turn``, ``Roles.block``).
 
-A *stretch* is a series of accepted samples (gate 0, in a burst) of the same burst and repeat in which no
-step of the wheel angle exceeds ``MAX_STEP_REV``. The angle a0 of its first sample is its origin; block k
-holds the samples with k <= |angle - a0| < k + 1, and exists once an accepted sample of the same stretch
-lies beyond its end. What is left at the end of a stretch, less than a revolution, is not counted. Blocks
-are anchored to the stretch's origin, so rounding to whole samples does not accumulate.
+A *stretch* is a series of accepted samples (gate 0, in a burst) of the same burst and repeat in which no step of that
+position exceeds ``MAX_STEP`` of a block. The position p0 of its first sample is its origin; block k holds the samples
+with k <= |p - p0| / block < k + 1, and exists once an accepted sample of the same stretch lies beyond its end. What is
+left at the end of a stretch, less than a block, is not counted. Blocks are anchored to the stretch's origin, so
+rounding to whole samples does not accumulate.
 
-Two implementations of this one definition: ``RevolutionCounter`` is fed sample by sample in the scan (plain
-Python), ``blocks_from_samples`` works on stored arrays (NumPy).
+Two implementations of this one definition: ``BlockCounter`` is fed sample by sample in the scan (plain Python),
+``blocks_from_samples`` works on stored arrays (NumPy).
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from math import hypot
 from typing import TYPE_CHECKING, Final
 
-from tester.process import SAMPLE_COLUMNS
+from tester.quantities import BURST, GATE, KEY, TIME, Means, Quantities
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-MAX_STEP_REV: Final = 0.25
-"""A wider step of the wheel angle, in revolutions, ends a stretch: the ripple of the runout would not be
-sampled. At 20 Hz and 1.1 m/s, the slowest sampling in contact and the fastest wheel, a step is 0.20."""
-
-_TIME: Final = SAMPLE_COLUMNS.index("time_s")
-_ANGLE: Final = SAMPLE_COLUMNS.index("wheel_angle_rev")
-_GATE: Final = SAMPLE_COLUMNS.index("gate")
-_BURST: Final = SAMPLE_COLUMNS.index("burst")
-_KEY: Final = SAMPLE_COLUMNS.index("repeat_key")
-
-AVERAGED: Final[tuple[str, ...]] = (
-    "force_x_n",
-    "force_y_n",
-    "force_z_n",
-    "moment_z_nm",
-    "drive_torque_nm",
-    "wheel_speed_m_s",
-    "belt_speed_m_s",
-    "slip_m_s",
-    "sideslip_deg",
-    "camber_deg",
-    "surface_c",
-    "hub_c",
-)
-"""Columns of a sample that a block averages; fields of the same name in Block."""
-
-_AVERAGED: Final = tuple(SAMPLE_COLUMNS.index(name) for name in AVERAGED)
+MAX_STEP: Final = 0.25
+"""A wider step of the position, in blocks, ends a stretch: the ripple of the runout would not be sampled. At 20 Hz and
+1.1 m/s, the slowest sampling in contact and the fastest wheel of 88 mm, a step is 0.20 revolutions."""
 
 
 @dataclass(slots=True)
 class Block:
-    """Means over one whole accepted revolution; not changed once made.
+    """Means over one whole accepted block; not changed once made.
 
-    ``started_s`` and ``ended_s`` are rig seconds of its first sample and of the first sample after it,
-    ``angle_rev`` the cumulative wheel angle at its start, ``mu`` the resultant coefficient hypot(mean Fx,
-    mean Fy) / mean Fz.
+    ``started_s`` and ``ended_s`` are rig seconds of its first sample and of the first sample after it, ``position`` the
+    counted position at its start, ``mu`` the resultant coefficient hypot(along, across) / normal of its mean forces.
     """
 
     burst: int
     samples: int
     started_s: float
     ended_s: float
-    angle_rev: float
+    position: float
     mu: float
-    force_x_n: float
-    force_y_n: float
-    force_z_n: float
-    moment_z_nm: float
-    drive_torque_nm: float
-    wheel_speed_m_s: float
-    belt_speed_m_s: float
-    slip_m_s: float
-    sideslip_deg: float
-    camber_deg: float
-    surface_c: float
-    hub_c: float
+    means: Means
 
 
-def resultant(force_x_n: float, force_y_n: float, force_z_n: float) -> float:
-    """Return the resultant coefficient sqrt(Fx^2 + Fy^2) / Fz of mean forces; NaN without a load."""
-    return hypot(force_x_n, force_y_n) / force_z_n if force_z_n > 0.0 else float("nan")
+def resultant(along_n: float, across_n: float, normal_n: float) -> float:
+    """Return the resultant coefficient of mean forces, N; NaN without a load."""
+    return hypot(along_n, across_n) / normal_n if normal_n > 0.0 else float("nan")
 
 
-def _block(burst: int, samples: int, t0: float, t1: float, angle: float, means: Sequence[float]) -> Block:
-    return Block(burst, samples, t0, t1, angle, resultant(means[0], means[1], means[2]), *means)
+def _block(burst: int, samples: int, t0: float, t1: float, position: float, means: Means) -> Block:
+    return Block(burst, samples, t0, t1, position, resultant(means.along, means.across, means.normal), means)
 
 
-class RevolutionCounter:
+class BlockCounter:
     """Collects the blocks of one repeat, sample by sample.
 
     Fed with the rows that are recorded, so that what is counted live is what the store can be asked about
     later.
     """
 
-    __slots__ = ("_angle", "_burst", "_key", "_limit", "_origin", "_rows", "blocks", "seconds")
+    __slots__ = (
+        "_at", "_averaged", "_block", "_burst", "_burst_at", "_counted_at", "_gate_at", "_key", "_key_at", "_limit",
+        "_origin", "_rows", "_step", "_table", "_time_at", "blocks", "seconds",
+    )  # fmt: skip
 
-    def __init__(self) -> None:
+    def __init__(self, quantities: Quantities) -> None:
         """Start with no blocks."""
         self.blocks: list[Block] = []
         self.seconds = 0.0
         """Accepted seconds in ``blocks``."""
+        self._table = quantities
+        self._time_at = quantities.index(TIME)
+        self._gate_at = quantities.index(GATE)
+        self._burst_at = quantities.index(BURST)
+        self._key_at = quantities.index(KEY)
+        self._counted_at = quantities.index(quantities.roles.turn)
+        self._averaged: list[int] = [quantities.index(one.name) for one in quantities.averaged]
+        self._block = quantities.roles.block
+        self._step = MAX_STEP * quantities.roles.block
         self._rows: list[tuple[float, ...]] = []
         self._burst = 0.0
         self._key = 0.0
         self._origin = 0.0
-        self._angle = 0.0
+        self._at = 0.0
         self._limit = 1.0
 
     def add(self, sample: tuple[float, ...]) -> Block | None:
-        """Take in one sample (columns of SAMPLE_COLUMNS) and return the block that it completed, if any.
+        """Take in one sample (a value for each recorded channel) and return the block that it completed, if any.
 
         Every scan is to be given, also those whose gates are closed: they end a stretch.
         """
         rows = self._rows
-        if sample[_GATE] != 0.0 or sample[_BURST] == 0.0:
+        burst, key = sample[self._burst_at], sample[self._key_at]
+        if sample[self._gate_at] != 0.0 or burst == 0.0:
             if rows:
                 rows.clear()
             return None
-        angle = sample[_ANGLE]
+        at = sample[self._counted_at]
         if (
             not rows
-            or sample[_BURST] != self._burst
-            or sample[_KEY] != self._key
-            or not -MAX_STEP_REV <= angle - self._angle <= MAX_STEP_REV
+            or burst != self._burst
+            or key != self._key
+            or not -self._step <= at - self._at <= self._step
         ):
             rows.clear()
             rows.append(sample)
-            self._burst = sample[_BURST]
-            self._key = sample[_KEY]
-            self._origin = self._angle = angle
+            self._burst = burst
+            self._key = key
+            self._origin = self._at = at
             self._limit = 1.0
             return None
-        self._angle = angle
-        if abs(angle - self._origin) < self._limit:
+        self._at = at
+        if abs(at - self._origin) / self._block < self._limit:
             rows.append(sample)
             return None
         self._limit += 1.0
@@ -149,8 +127,9 @@ class RevolutionCounter:
         rows = self._rows
         count = len(rows)
         columns = list(zip(*rows, strict=True))
-        means = [sum(columns[i]) / count for i in _AVERAGED]
-        block = _block(int(self._burst), count, columns[_TIME][0], sample[_TIME], columns[_ANGLE][0], means)
+        means = Means(self._table, [sum(columns[i]) / count for i in self._averaged])
+        started_s, ended_s = columns[self._time_at][0], sample[self._time_at]
+        block = _block(int(self._burst), count, started_s, ended_s, columns[self._counted_at][0], means)
         self.blocks.append(block)
         self.seconds += block.ended_s - block.started_s
         rows.clear()
@@ -158,32 +137,33 @@ class RevolutionCounter:
         return block
 
 
-def blocks_from_samples(columns: Mapping[str, NDArray[np.float64]]) -> list[Block]:
-    """Return the blocks in stored samples, arrays of equal length by SAMPLE_COLUMNS, in order of time."""
+def blocks_from_samples(columns: Mapping[str, NDArray[np.float64]], quantities: Quantities) -> list[Block]:
+    """Return the blocks in stored samples, arrays of equal length by channel, in order of time."""
     import numpy as np
 
-    accepted = (columns["gate"] == 0.0) & (columns["burst"] != 0.0)
-    angle, burst, key = columns["wheel_angle_rev"], columns["burst"], columns["repeat_key"]
+    size = quantities.roles.block
+    accepted = (columns[GATE] == 0.0) & (columns[BURST] != 0.0)
+    at, burst, key = columns[quantities.roles.turn], columns[BURST], columns[KEY]
     # A sample continues a stretch when it and the one before are accepted and nothing broke between them.
-    joined = np.zeros(len(angle), dtype=bool)
+    joined = np.zeros(len(at), dtype=bool)
     joined[1:] = (
         accepted[1:]
         & accepted[:-1]
         & (burst[1:] == burst[:-1])
         & (key[1:] == key[:-1])
-        & (np.abs(np.diff(angle)) <= MAX_STEP_REV)
+        & (np.abs(np.diff(at)) <= MAX_STEP * size)
     )
     origins = np.flatnonzero(accepted & ~joined)
-    ends = np.append(origins, len(angle))[1:]
-    times = columns["time_s"]
-    averaged = np.stack([columns[name] for name in AVERAGED])
+    ends = np.append(origins, len(at))[1:]
+    times = columns[TIME]
+    averaged = np.stack([columns[one.name] for one in quantities.averaged])
     blocks: list[Block] = []
     for first, end in zip(origins.tolist(), ends.tolist(), strict=True):
         stop = first + 1 + int(np.argmin(np.append(joined[first + 1 : end], False)))
         # A reading that steps back over a boundary does not reopen the block behind it.
-        turn = np.maximum.accumulate(np.floor(np.abs(angle[first:stop] - angle[first])))
+        turn = np.maximum.accumulate(np.floor(np.abs(at[first:stop] - at[first]) / size))
         edges = first + np.flatnonzero(np.diff(turn, prepend=-1.0))
         for a, b in zip(edges[:-1].tolist(), edges[1:].tolist(), strict=True):
-            means = averaged[:, a:b].mean(axis=1).tolist()
-            blocks.append(_block(int(burst[a]), b - a, float(times[a]), float(times[b]), float(angle[a]), means))
+            means = Means(quantities, averaged[:, a:b].mean(axis=1).tolist())
+            blocks.append(_block(int(burst[a]), b - a, float(times[a]), float(times[b]), float(at[a]), means))
     return blocks

@@ -38,6 +38,7 @@ from tester.analysis.blocks import Block
 from tester.analysis.quantiles import t_quantile
 from tester.analysis.results import NAN
 from tester.analysis.stability import MIN_BLOCKS
+from tester.quantities import temperatures
 
 DRIFT_LIMIT_PERCENT = 2.0
 """Largest drift over a window that counts as standing still, per cent of the coefficient [A]."""
@@ -180,7 +181,7 @@ def _series(blocks: Sequence[Block], revolutions: float | None, seconds: float |
     window_s = revolutions * per_block if revolutions is not None else seconds or elapsed
     y = [value / mean - 1.0 for value in mu]
     t = [time / window_s for time in _centred(times)]
-    c = _centred([block.surface_c for block in blocks])
+    c = _centred(temperatures(block.means for block in blocks))
     return _Series(y, t, c, burst_lengths(blocks), _dot(t, t), _dot(t, c), _dot(c, c), _dot(t, y), _dot(c, y))
 
 
@@ -229,12 +230,11 @@ def _noise(series: Sequence[_Series], slopes: Sequence[float], per_kelvin: float
 
 @dataclass(slots=True)
 class _Fit:
-    """Pooled slope and sensitivity with their variances, as shares of the coefficient."""
+    """Pooled slope, its variance, and sensitivity, as shares of the coefficient."""
 
     slope: float
     per_kelvin: float
     slope_variance: float
-    per_kelvin_variance: float
     noise: _Noise
 
 
@@ -244,19 +244,19 @@ def _fit(series: Sequence[_Series]) -> _Fit:
     ty, cy = sum(s.ty for s in series), sum(s.cy for s in series)
     count = sum(len(s.y) for s in series)
     variance = sum(_dot(s.y, s.y) for s in series) / count
-    slope = per_kelvin = slope_of = kelvin_of = 0.0
+    slope = per_kelvin = slope_of = 0.0
     noise = _Noise(variance, 0.0, 1.0, 1.0)
     for _ in range(3):
         held = cc + variance / (0.01 * PER_KELVIN_PERCENT) ** 2
         determinant = tt * held - tc * tc
         if determinant > 1e-9 * tt * held:
             slope, per_kelvin = (ty * held - cy * tc) / determinant, (cy * tt - ty * tc) / determinant
-            slope_of, kelvin_of = held / determinant, tt / determinant
+            slope_of = held / determinant
         else:
-            slope, per_kelvin, slope_of, kelvin_of = ty / tt, 0.0, 1.0 / tt, 0.0
+            slope, per_kelvin, slope_of = ty / tt, 0.0, 1.0 / tt
         noise = _noise(series, [slope] * len(series), per_kelvin, len(series) + 2)
         variance = noise.variance
-    return _Fit(slope, per_kelvin, variance * slope_of, variance * kelvin_of, noise)
+    return _Fit(slope, per_kelvin, variance * slope_of, noise)
 
 
 def _singles(series: Sequence[_Series], fit: _Fit) -> tuple[OneDrift, ...]:

@@ -30,6 +30,7 @@ from tester.analysis.results import (
     joined,
 )
 from tester.analysis.stability import seconds_of
+from tester.quantities import temperatures
 
 ALONE = 2
 """Up to this many repeats are judged each alone: there is nothing to pool."""
@@ -176,7 +177,7 @@ def trend_of(results: Sequence[RepeatResult], per_kelvin_percent: float) -> tupl
     middles: list[float] = []
     slid = 0.0
     for result in results:
-        own = abs(result.slip_m_s) * result.window_s
+        own = abs(result.means.sliding) * result.window_s
         own = own if isfinite(own) and own > 0.0 else 1.0
         middles.append(slid + 0.5 * own)
         slid += own
@@ -190,9 +191,11 @@ def trend_of(results: Sequence[RepeatResult], per_kelvin_percent: float) -> tupl
     x = [value - at for value in x]
     span = x[-1] - x[0]
     kelvin = per_kelvin_percent if isfinite(per_kelvin_percent) else 0.0
-    surface = sum(results[i].surface_c for i in seen) / len(seen)
+    surface = temperatures(results[i].means for i in seen)
+    middle = sum(surface) / len(surface)
     values = [
-        results[i].mu_resultant * (1.0 - 0.01 * kelvin * (results[i].surface_c - surface)) for i in seen
+        results[i].mu_resultant * (1.0 - 0.01 * kelvin * (at_c - middle))
+        for i, at_c in zip(seen, surface, strict=True)
     ]
     mean = sum(values) / len(values)
     y = [100.0 * (value / mean - 1.0) for value in values]

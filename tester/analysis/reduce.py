@@ -4,9 +4,9 @@ mu is a ratio of means, which noise of the forces does not bias (a mean of ratio
 
     longitudinal = mean(Fx) / mean(Fz)    lateral = mean(Fy) / mean(Fz)    resultant = hypot of the two
 
-with the measured load Fz, over the whole revolutions that are left after truncation, each of equal weight.
-The tare was subtracted before the samples were recorded. The paper's tabulated coefficient is the
-resultant.
+with Fx along the sliding, Fy across it and the measured load Fz (``tester.quantities.Roles``), over the whole
+revolutions that are left after truncation, each of equal weight. The tare was subtracted before the samples were
+recorded. The paper's tabulated coefficient is the resultant.
 
 The uncertainty comes from 10 batch means: consecutive revolutions correlate, so s / sqrt(n) of raw samples
 covers 33 % where 95 % is claimed. Where the blocks' own standard error, their correlation allowed for, is larger, it
@@ -19,10 +19,11 @@ from collections.abc import Sequence
 from itertools import pairwise
 from math import isfinite, sqrt
 
-from tester.analysis.blocks import AVERAGED, Block, resultant
+from tester.analysis.blocks import Block, resultant
 from tester.analysis.drift import Drift, fit_drift
 from tester.analysis.results import NAN, NOT_SHOWN, Burst, RepeatResult, RepeatStatus, joined
 from tester.analysis.stability import REPEAT_WINDOWS, enough, left_out
+from tester.quantities import mean_of
 
 BATCHES = 10
 """Number of batch means per repeat."""
@@ -37,12 +38,8 @@ def batch_means(blocks: Sequence[Block]) -> list[float]:
 
 
 def _resultant(blocks: Sequence[Block]) -> float:
-    n = len(blocks)
-    return resultant(
-        sum(block.force_x_n for block in blocks) / n,
-        sum(block.force_y_n for block in blocks) / n,
-        sum(block.force_z_n for block in blocks) / n,
-    )
+    means = mean_of(block.means for block in blocks)
+    return resultant(means.along, means.across, means.normal)
 
 
 def standard_deviation(values: Sequence[float]) -> float:
@@ -61,7 +58,7 @@ def bursts_of(blocks: Sequence[Block]) -> list[Burst]:
     for end in range(1, len(blocks) + 1):
         if end == len(blocks) or blocks[end].burst != blocks[first].burst:
             a, b = blocks[first], blocks[end - 1]
-            found.append(Burst(a.burst, end - first, a.started_s, b.ended_s, a.surface_c, b.surface_c))
+            found.append(Burst(a.burst, end - first, a.started_s, b.ended_s, a.means.temperature, b.means.temperature))
             first = end
     return found
 
@@ -96,9 +93,9 @@ def reduce_repeat(
     used = counted(blocks, revolutions, seconds)
     n = len(used)
     drift = fit_drift([used], revolutions, seconds)
-    means: dict[str, float] = {name: sum(getattr(block, name) for block in used) / n for name in AVERAGED}
+    means = mean_of(block.means for block in used)
     batches = batch_means(used)
-    mu, load, spread = _resultant(used), means["force_z_n"], standard_deviation(batches)
+    mu, load, spread = _resultant(used), means.normal, standard_deviation(batches)
     status, reason = _status(blocks, used, revolutions, seconds)
     if not isfinite(mu) or not (mu > 0.0 or rolling):
         status, reason = RepeatStatus.REFUSED, "coefficient without a value"
@@ -110,8 +107,8 @@ def reduce_repeat(
         reason=reason,
         flags=joined(flags),
         mu_resultant=mu,
-        mu_longitudinal=means["force_x_n"] / load if load > 0.0 else NAN,
-        mu_lateral=means["force_y_n"] / load if load > 0.0 else NAN,
+        mu_longitudinal=means.along / load if load > 0.0 else NAN,
+        mu_lateral=means.across / load if load > 0.0 else NAN,
         uncertainty=_uncertainty(used, batches, drift),
         fluctuation_percent=100.0 * spread / mu if mu > 0.0 else NAN,
         batches=len(batches),
@@ -123,7 +120,7 @@ def reduce_repeat(
         bursts=len(bursts_of(used)),
         started_s=blocks[0].started_s,
         ended_s=blocks[-1].ended_s,
-        **means,
+        means=means,
     )
 
 

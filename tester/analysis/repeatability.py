@@ -30,6 +30,10 @@ class Pool:
             return self
         return Pool(self.squares + sum((value / mean - 1.0) ** 2 for value in values), self.df + n - 1)
 
+    def with_spread(self, spread: float, n: int) -> Pool:
+        """Return the pool with one more condition of ``n`` values with this relative standard deviation."""
+        return Pool(self.squares + (n - 1) * spread * spread, self.df + n - 1) if n >= 2 and spread >= 0.0 else self
+
     @property
     def s_percent(self) -> float:
         """Return the pooled standard deviation between repeats, per cent; inf where nothing is known."""

@@ -10,17 +10,19 @@ What a person leaves out, for a reason that is on record, is flagged ``excluded`
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import astuple, dataclass, field, replace
+from dataclasses import astuple, dataclass, replace
 from math import isfinite, sqrt
 from statistics import median
 from types import MappingProxyType
 
-from tester.analysis.blocks import AVERAGED
+from tester.analysis import closest
+from tester.analysis.closest import Combining, taken
 from tester.analysis.quantiles import f_quantile, t_quantile
 from tester.analysis.reduce import standard_deviation
 from tester.analysis.results import (
     DOUBTS,
     NAN,
+    NO_MEANS,
     NOT_JUDGED,
     SHORT,
     ConditionStatus,
@@ -30,16 +32,8 @@ from tester.analysis.results import (
     flags_in,
     joined,
 )
-from tester.analysis.uncertainty import (
-    CONFIDENCE,
-    INSTRUMENTS,
-    STEADY,
-    Contribution,
-    Instruments,
-    Unsteadiness,
-    friction_budget,
-    unsteadiness,
-)
+from tester.analysis.uncertainty import CONFIDENCE, NO_BUDGET, STEADY, Budget, Unsteadiness, unsteadiness
+from tester.quantities import Means, mean_of
 
 COCHRAN_ALPHA = 0.01
 """Level at which ISO 5725-2 calls a variance an outlier."""
@@ -75,11 +69,13 @@ class Exclusion:
 class ConditionResult:
     """A condition's coefficient. ``s``: standard deviation between its ``n_valid`` values of ``n``.
 
-    ``interval`` is half the 95 % t interval of the mean, ``type_a`` s / sqrt(n); ``standard`` and
-    ``expanded`` (``coverage`` times it, 95 %) are those of the budget. Drift and its bound (one-sided, 98.75 %;
+    ``interval`` is half the 95 % t interval of the mean, ``type_a`` s / sqrt(n). ``budget`` is that of what was
+    mounted, in this condition, ``compound_budget`` that of the compound (module ``measurand``, which makes both);
+    ``standard``, ``coverage`` and ``expanded`` (95 %) are the former's. ``mu_corrected`` is the resultant at the
+    temperature that was asked for, which the budgets are of. Drift and its bound (one-sided, 98.75 %;
     of repeats judged alone 95 %) are per window, the trend over the repeats, all per cent of the coefficient
     (``Judgement``); ``unsteady`` is what they add to the budget. ``measured`` holds the means over
-    the valid repeats of what a block averages (names and units of AVERAGED). ``mu_without_flagged`` leaves
+    the valid repeats of what a block averages. ``mu_without_flagged`` leaves
     out flagged outliers.
     """
 
@@ -95,16 +91,31 @@ class ConditionResult:
     n: int = 0
     interval: float = NAN
     type_a: float = NAN
-    standard: float = NAN
-    expanded: float = NAN
-    coverage: float = NAN
-    measured: dict[str, float] = field(default_factory=dict[str, float])
+    measured: Means = NO_MEANS
     excluded: tuple[Exclusion, ...] = ()
     flagged: tuple[int, ...] = ()
     drift_percent: float = NAN
     drift_bound_percent: float = NAN
     trend_percent: float = NAN
     unsteady: Unsteadiness = STEADY
+    mu_corrected: float = NAN
+    budget: Budget = NO_BUDGET
+    compound_budget: Budget = NO_BUDGET
+
+    @property
+    def standard(self) -> float:
+        """Return the standard uncertainty of what was mounted, in this condition."""
+        return self.budget.standard
+
+    @property
+    def coverage(self) -> float:
+        """Return its coverage factor, 95 %."""
+        return self.budget.coverage
+
+    @property
+    def expanded(self) -> float:
+        """Return its expanded uncertainty, 95 %."""
+        return self.budget.expanded
 
     @property
     def ok(self) -> bool:
@@ -183,7 +194,7 @@ def combine_repeats(
     judged: Judgement = NOT_JUDGED,
     by_hand: Mapping[int, str] = _NOTHING,
     repeatability: float = REPEATABILITY,
-    instruments: Instruments = INSTRUMENTS,
+    combining: Combining = "mean",
 ) -> ConditionResult:
     """Return a condition's result from its repeats (one result per repeat: its last attempt; none void).
 
@@ -193,6 +204,7 @@ def combine_repeats(
     are what the run said when it left the condition (None: it has not), ``judged`` what its repeats say of its drift.
     ``by_hand``: positions that a person has left
     out, each with the reason. ``repeatability`` is the historic standard deviation between repeats as a share of mu.
+    ``combining``: the mean of all that count, or the paper's way (``tester.analysis.closest``).
     """
     excluded = _exclusions(results, by_hand)
     left_out = {exclusion.position for exclusion in excluded}
@@ -209,15 +221,19 @@ def combine_repeats(
     values = [results[i].mu_resultant for i in kept]
     flagged = outliers(values, repeatability)
     flags = {flag for i in kept for flag in flags_in(results[i].flags)} | set(flags_in(judged.flags))
-    flags |= {word for word, on in (("outlier", flagged), (EXCLUDED, by_hand), (SHORT, short)) if on}
+    used = taken(values, combining)
+    fewer = len(used) < len(values)
+    marks = (("outlier", flagged), (EXCLUDED, by_hand), (SHORT, short), (closest.FLAG, fewer))
+    flags |= {word for word, on in marks if on}
+    in_mean = [results[kept[i]] for i in used]
     shell = ConditionResult(
         status=status,
         reason=why,
         flags=joined(flags),
-        mu_longitudinal=_mean([results[i].mu_longitudinal for i in kept]),
-        mu_lateral=_mean([results[i].mu_lateral for i in kept]),
+        mu_longitudinal=_mean([one.mu_longitudinal for one in in_mean]),
+        mu_lateral=_mean([one.mu_lateral for one in in_mean]),
         n=planned,
-        measured={name: _mean([getattr(results[i], name) for i in kept]) for name in AVERAGED},
+        measured=mean_of(one.means for one in in_mean),
         excluded=tuple(excluded),
         flagged=tuple(kept[i] for i in flagged),
         drift_percent=judged.drift_percent,
@@ -225,12 +241,10 @@ def combine_repeats(
         trend_percent=judged.trend_percent,
     )
     shell = replace(shell, unsteady=unsteadiness(judged))
-    return _with_statistics(shell, values, flagged, instruments)
+    return _with_statistics(shell, values, flagged, used)
 
 
-def combine_replicates(
-    results: Sequence[ConditionResult], *, instruments: Instruments = INSTRUMENTS
-) -> ConditionResult:
+def combine_replicates(results: Sequence[ConditionResult]) -> ConditionResult:
     """Return one result for a condition measured on several wheels, from the results of the wheels.
 
     The wheels' means count alike; ``s`` is the deviation between wheels. OK needs two wheels that are.
@@ -253,11 +267,11 @@ def combine_replicates(
         mu_longitudinal=_mean([result.mu_longitudinal for result in kept]),
         mu_lateral=_mean([result.mu_lateral for result in kept]),
         n=len(results),
-        measured={name: _mean([result.measured[name] for result in kept]) for name in AVERAGED},
+        measured=mean_of(result.measured for result in kept),
         # Wheels run in alike: what drifts on one drifts on the others, the same way.
         unsteady=Unsteadiness(*(_mean(values) for values in zip(*(astuple(r.unsteady) for r in kept), strict=True))),
     )
-    return _with_statistics(shell, [result.mu_resultant for result in kept], [], instruments)
+    return _with_statistics(shell, [result.mu_resultant for result in kept], [])
 
 
 def _mean(values: Sequence[float]) -> float:
@@ -265,22 +279,18 @@ def _mean(values: Sequence[float]) -> float:
 
 
 def _with_statistics(
-    shell: ConditionResult, values: Sequence[float], flagged: Sequence[int], instruments: Instruments
+    shell: ConditionResult, values: Sequence[float], flagged: Sequence[int], used: Sequence[int] | None = None
 ) -> ConditionResult:
-    """Return ``shell`` with mean, scatter and uncertainty of ``values``; a single value shows no scatter."""
+    """Return ``shell`` with mean and scatter of ``values``; a single value shows no scatter.
+
+    ``used``: positions of those in the mean, where not all are; the scatter is that of all.
+    """
     n = len(values)
-    mu, s = _mean(values), standard_deviation(values)
-    type_a = s / sqrt(n)
+    used = range(n) if used is None else used
+    mu, s = _mean([values[i] for i in used]), standard_deviation(values)
+    type_a = s / sqrt(n) if len(used) == n else s * closest.STANDARD
     others = [value for i, value in enumerate(values) if i not in flagged]
     df = float(max(n - 1, 1))
-    total = friction_budget(
-        mu,
-        shell.measured["force_z_n"],
-        shell.measured["slip_m_s"],
-        Contribution("type A", type_a, df),
-        instruments,
-        shell.unsteady,
-    )
     return replace(
         shell,
         mu_resultant=mu,
@@ -289,9 +299,6 @@ def _with_statistics(
         n_valid=n,
         interval=t_quantile(0.5 + 0.5 * CONFIDENCE, df) * type_a,
         type_a=type_a,
-        standard=total.standard,
-        expanded=total.expanded,
-        coverage=total.coverage,
     )
 
 

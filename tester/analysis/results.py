@@ -11,7 +11,11 @@ from enum import StrEnum
 from math import isfinite
 from typing import Final, Literal
 
+from tester.quantities import Means
+
 NAN = float("nan")
+NO_MEANS: Final = Means()
+"""Of a repeat in which nothing was measured."""
 
 Flag = Literal["rolling", "extended", "truncated", "drift not shown"]
 
@@ -79,8 +83,7 @@ class ConditionStatus(StrEnum):
 class RepeatResult:
     """One repeat's coefficient and what was measured with it.
 
-    The coefficients are ratios of means (module ``reduce``). Forces in N, moments in N m, speeds in m/s,
-    angles in degrees, temperatures in degC; times in rig seconds. ``uncertainty`` is the standard
+    The coefficients are ratios of means (module ``reduce``); times are rig seconds. ``uncertainty`` is the standard
     uncertainty of ``mu_resultant`` from ``batches`` batch means, ``fluctuation_percent`` the batch means'
     standard deviation in per cent of it. ``drift_percent`` and ``bound_percent`` (90 %) are per window, in
     per cent of the coefficient: of the repeat alone until its condition is judged, then with the condition's
@@ -106,18 +109,8 @@ class RepeatResult:
     window_s: float = NAN
     """Accepted seconds that the coefficient rests on."""
     bursts: int = 0
-    force_x_n: float = NAN
-    force_y_n: float = NAN
-    force_z_n: float = NAN
-    moment_z_nm: float = NAN
-    drive_torque_nm: float = NAN
-    wheel_speed_m_s: float = NAN
-    belt_speed_m_s: float = NAN
-    slip_m_s: float = NAN
-    sideslip_deg: float = NAN
-    camber_deg: float = NAN
-    surface_c: float = NAN
-    hub_c: float = NAN
+    means: Means = NO_MEANS
+    """Of what a block averages, over the blocks that count."""
     started_s: float = NAN
     ended_s: float = NAN
 

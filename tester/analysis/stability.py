@@ -17,10 +17,11 @@ from collections.abc import Sequence
 from math import inf, isfinite
 
 from tester.analysis.blocks import Block
+from tester.quantities import temperatures
 
 REPEAT_WINDOWS = 1.5
 """Windows that a repeat collects. With one window in each of three repeats a steady condition is often left undecided,
-with 1.5 nearly never (python -m tests.repeats)."""
+with 1.5 nearly never (python -m tests.campaigns.repeats)."""
 
 MIN_BLOCKS = 6
 """Fewer blocks leave no degrees of freedom to speak of for trend, temperature and correlation."""
@@ -88,8 +89,9 @@ def _transient(blocks: Sequence[Block], mu: list[float]) -> int:
     mean = sum(mu) / n
     values = [value - mean for value in mu]
     if blocks[0].burst != blocks[-1].burst:
-        middle = sum(block.surface_c for block in blocks) / n
-        surface = [block.surface_c - middle for block in blocks]
+        surface = temperatures(block.means for block in blocks)
+        middle = sum(surface) / n
+        surface = [celsius - middle for celsius in surface]
         squares = sum(kelvin * kelvin for kelvin in surface)
         if squares > 0.0:
             per_kelvin = sum(a * b for a, b in zip(surface, values, strict=True)) / squares

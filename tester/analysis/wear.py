@@ -57,7 +57,7 @@ class ConditionWear:
     rate: WearRate
 
 
-def wheel_wear(checks: Sequence[WearCheck]) -> WearRate:
+def wear_rate(checks: Sequence[WearCheck]) -> WearRate:
     """Return the rate over a wheel's life: a line through the volume worn off against load times distance.
 
     A rate that is not the same in all conditions scatters the checks about the line by more than they state; the
@@ -97,7 +97,7 @@ def condition_wear(checks: Sequence[WearCheck], condition: int) -> ConditionWear
         return None
     earlier = [
         one for one in used
-        if one.before == condition and one.reference_s == after.reference_s and one.wheel == after.wheel
+        if one.before == condition and one.reference_s == after.reference_s and one.piece == after.piece
     ]  # fmt: skip
     if not earlier:
         return None

@@ -15,7 +15,8 @@ class WearCheck:
     the series' first check, rig seconds. ``before``, ``after``: the conditions that it lies between, 0 for none.
     """
 
-    wheel: int
+    piece: int
+    """What was checked."""
     method: str
     t_s: float
     reference_s: float

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import platform
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -9,13 +10,15 @@ from math import isfinite
 from pathlib import Path
 from typing import Protocol
 
+from tester.axes import Axes, AxisValue, Setpoint, axes_from
 from tester.export.results import Measured, results_of
+from tester.store import older
 from tester.store.catalogue import run_folders, under_way
 from tester.store.reader import DATABASE, RunReader
 from tester.store.schema import StoreError
 from tester.store.status import RunStatus
 
-_MADE_BY = "2"
+_MADE_BY = "4"
 """Raised when the same record gives other entries than before: then all are made anew."""
 
 
@@ -50,6 +53,14 @@ class RunEntry:
     trusted: int
     """Conditions that have a coefficient to be trusted."""
     problem: str = ""
+    kind: str = ""
+    """Of the rig."""
+    axes: str = ""
+    """Of the run's conditions, as JSON (``Axes.as_data``); "" of a run of which an older version wrote."""
+
+    def table(self) -> Axes:
+        """Return the axes of the run's conditions."""
+        return axes_from(json.loads(self.axes)) if self.axes else older.AXES
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,12 +70,8 @@ class ConditionEntry:
     condition: int
     replicate: int
     compound: str
-    slip_velocity_mm_s: float
-    load_n: float
-    sideslip_deg: float
-    camber_deg: float
-    temperature_c: float
-    wheel_speed_m_s: float
+    held: str
+    """What was held, as JSON: a value for each axis, by its column in the project's tables."""
     status: str
     mu: float | None
     s: float | None
@@ -75,14 +82,18 @@ class ConditionEntry:
     flags: str = ""
     """With ``status`` says how far the coefficient can be trusted (tester.analysis.trust)."""
 
-    @property
-    def slip_velocity_m_s(self) -> float:
-        """Return the slip velocity in m/s."""
-        return 1e-3 * self.slip_velocity_mm_s
+    def setpoint(self, axes: Axes) -> Setpoint:
+        """Return what was held, on the axes of the condition's run."""
+        held: dict[str, AxisValue] = json.loads(self.held)
+        found = {axis.name: held[axis.column] for axis in axes}
+        scaled = {
+            axis.name: value if isinstance(value := found[axis.name], str) else value / axis.scale for axis in axes
+        }
+        return axes.setpoint(self.compound, **scaled)
 
 
 @dataclass(frozen=True, slots=True)
-class Wanted:
+class WantedRuns:
     """Which runs: every field that is not empty narrows. ``since`` and ``until`` are the beginnings of ISO dates."""
 
     compound: str = ""
@@ -106,7 +117,7 @@ class Catalogue(Protocol):
         """Forget a run."""
         ...
 
-    def runs(self, wanted: Wanted) -> list[RunEntry]:
+    def runs(self, wanted: WantedRuns) -> list[RunEntry]:
         """Return the runs that are wanted, by start."""
         ...
 
@@ -175,8 +186,15 @@ def read_entries(folder: Path, origin: str, print_: str) -> tuple[RunEntry, list
         repeats=sum(len(measured.repeats) for measured in conditions),
         repeats_planned=sum(measured.info.repeats for measured in conditions),
         trusted=sum(measured.result.ok for measured in conditions),
+        kind=run.info.kind,
+        axes=json.dumps(results.axes.as_data(), ensure_ascii=False),
     )
     return entry, [_condition(measured) for measured in conditions]
+
+
+def held_text(setpoint: Setpoint) -> str:
+    """Return what was held as ``ConditionEntry.held`` has it."""
+    return json.dumps({axis.column: axis.of(setpoint) for axis in setpoint.axes})
 
 
 def _condition(measured: Measured) -> ConditionEntry:
@@ -185,12 +203,7 @@ def _condition(measured: Measured) -> ConditionEntry:
         condition=i.condition,
         replicate=i.replicate,
         compound=i.compound,
-        slip_velocity_mm_s=round(1e3 * i.slip_velocity_m_s, 6),
-        load_n=i.load_n,
-        sideslip_deg=i.sideslip_deg,
-        camber_deg=i.camber_deg,
-        temperature_c=i.temperature_c,
-        wheel_speed_m_s=i.wheel_speed_m_s,
+        held=held_text(i.setpoint),
         status=r.status.value,
         mu=_number(r.mu_resultant),
         s=_number(r.s),

@@ -9,11 +9,11 @@ from dataclasses import fields
 from pathlib import Path
 from typing import TypeVar
 
-from tester.catalogue.entries import CatalogueError, ConditionEntry, RunEntry, Wanted
+from tester.catalogue.entries import CatalogueError, ConditionEntry, RunEntry, WantedRuns
 
 INDEX = ".catalogue.db"
 
-_VERSION = 2
+_VERSION = 3
 
 _RUN = tuple(field.name for field in fields(RunEntry))
 _CONDITION = tuple(field.name for field in fields(ConditionEntry))
@@ -61,7 +61,7 @@ class LocalIndex:
         with self._connection:
             self._delete(origin, name)
 
-    def runs(self, wanted: Wanted) -> list[RunEntry]:
+    def runs(self, wanted: WantedRuns) -> list[RunEntry]:
         """Return the runs that are wanted, by start."""
         where: list[str] = ["1"]
         values: list[str] = []

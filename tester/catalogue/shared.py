@@ -6,12 +6,14 @@ those of others stay as they are.
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterable
 from dataclasses import asdict, fields
 from typing import Any
 
-from tester.catalogue.entries import CatalogueError, ConditionEntry, RunEntry, Wanted
-from tester.extras import needs
+from tester.base.extras import needs
+from tester.catalogue.entries import CatalogueError, ConditionEntry, RunEntry, WantedRuns
+from tester.store import older
 
 try:
     import sqlalchemy as sa
@@ -55,19 +57,12 @@ class SharedCatalogue:
         """Connect, and make the tables where they are not there yet; raises CatalogueError."""
         try:
             self._engine = sa.create_engine(_with_driver(url))
-            _METADATA.create_all(self._engine)
-            self._add_flags()
+            with self._engine.begin() as connection:
+                _migrate(connection)
         except ImportError as error:  # the database's driver
             raise CatalogueError(f"{needs('this shared catalogue', 'a driver', 'catalogue')} ({error})") from error
         except SQLAlchemyError as error:
             raise CatalogueError(f"the shared catalogue cannot be used: {error}") from error
-
-    def _add_flags(self) -> None:
-        """Give a table of conditions that an earlier version made the column of the flags."""
-        if any(column["name"] == "flags" for column in sa.inspect(self._engine).get_columns(CONDITION.name)):
-            return
-        with self._engine.begin() as connection:
-            connection.execute(sa.text(f"ALTER TABLE {CONDITION.name} ADD COLUMN flags TEXT NOT NULL DEFAULT ''"))
 
     def fingerprints(self, origin: str) -> dict[str, str]:
         """Return the fingerprint of every run of an origin, by name."""
@@ -93,7 +88,7 @@ class SharedCatalogue:
         with self._engine.begin() as connection:
             self._delete(connection, origin, name)
 
-    def runs(self, wanted: Wanted) -> list[RunEntry]:
+    def runs(self, wanted: WantedRuns) -> list[RunEntry]:
         """Return the runs that are wanted, by start."""
         query = sa.select(RUN).order_by(RUN.c.started_utc, RUN.c.name)
         if wanted.compound:
@@ -127,6 +122,39 @@ class SharedCatalogue:
     def _delete(connection: sa.Connection, origin: str, name: str) -> None:
         for table in (RUN, CONDITION):
             connection.execute(table.delete().where(table.c.origin == origin, table.c.name == name))
+
+
+_AT_ONCE = 10_000
+"""Rows of an older table that are held in memory at once."""
+
+
+def _migrate(connection: sa.Connection) -> None:
+    """Make the tables; those that an earlier version made are brought to the present form, with every row."""
+    there = sa.inspect(connection)
+    if not there.has_table(CONDITION.name):
+        _METADATA.create_all(connection)
+        return
+    found = {column["name"] for column in there.get_columns(CONDITION.name)}
+    if "held" in found:
+        return
+    if "flags" not in found:
+        connection.execute(sa.text(f"ALTER TABLE {CONDITION.name} ADD COLUMN flags TEXT NOT NULL DEFAULT ''"))
+    for name, default in (("kind", older.KIND), ("axes", "")):
+        connection.execute(sa.text(f"ALTER TABLE {RUN.name} ADD COLUMN {name} TEXT NOT NULL DEFAULT '{default}'"))
+    before = f"{CONDITION.name}_before"
+    connection.execute(sa.text(f"CREATE TABLE {before} AS SELECT * FROM {CONDITION.name}"))
+    connection.execute(sa.text(f"DROP TABLE {CONDITION.name}"))
+    CONDITION.create(connection)
+    rows = connection.execute(sa.text(f"SELECT * FROM {before}")).mappings()
+    while some := rows.fetchmany(_AT_ONCE):
+        connection.execute(CONDITION.insert(), [_as_now(dict(row)) for row in some])
+    connection.execute(sa.text(f"DROP TABLE {before}"))
+
+
+def _as_now(row: dict[str, Any]) -> dict[str, Any]:
+    """Return a row of an older table as it is now."""
+    held = {axis.column: row.pop(axis.column) for axis in older.AXES}
+    return row | {"held": json.dumps(held)}
 
 
 def _with_driver(url: str) -> str:

@@ -15,11 +15,11 @@ from rich.console import Console as RichConsole
 from rich.progress import BarColumn, Progress, TaskID, TextColumn
 from rich.text import Text
 
+from tester.base.keys import FAST_STOP, HELP, HOLD, STOP, commands_of, pieces_of
 from tester.cli.ending import ending_lines
 from tester.cli.keys import keys_of
-from tester.engine.context import Progress as RunProgress
-from tester.engine.prompts import DONE, Prompt, Prompts
-from tester.keys import FAST_STOP, HELP, HOLD, STOP, commands_of, pieces_of
+from tester.machine.context import Progress as RunProgress
+from tester.machine.prompts import DONE, Prompt, Prompts
 
 ASKED = f'type "{DONE}" and Enter when it is done'
 MOST_TYPED = 20

@@ -12,8 +12,8 @@ from textwrap import wrap
 from rich.cells import cell_len
 
 from tester.analysis.trust import mark_of
-from tester.axes import Axis, columns, plain
-from tester.cli.showing import shown
+from tester.axes import Axis, plain
+from tester.cli.formatting import shown
 from tester.export.results import RunResults, TableRow, results_of
 from tester.store.reader import RunReader
 from tester.store.schema import StoreError
@@ -41,15 +41,16 @@ def ending_lines(folder: Path) -> list[str]:
 def table_lines(results: RunResults, folder: Path) -> Iterator[str]:
     """Yield the table, 80 columns wide: a row for each condition of which something was tried.
 
-    Setpoints are nominal, the coefficient is the resultant; U is its expanded uncertainty (coverage 95 %). A row
-    without a value that can be trusted has a dash and its status, a value to be taken with care the mark ``?``.
-    Conditions that the run did not come to are one line.
+    Setpoints are nominal, the coefficient is the resultant; U is its expanded uncertainty (coverage 95 %) for what was
+    mounted, in this condition, which a line below says; the compound's is in ``conditions.csv``. A row without a value
+    that can be trusted has a dash and its status, a value to be taken with care the mark ``?``. Conditions
+    that the run did not come to are one line.
     """
     yield from risk_lines(results)
     tried = [row for row in results.rows if row.tried]
     listed = tried[:ROWS_AT_MOST]
     if listed:
-        axes = columns(row.info for row in listed)
+        axes = results.axes.columns(row.info.setpoint for row in listed)
         pad = " " if any(row.result.doubts for row in listed) else ""
         titles = [axis.title.rpartition(" ") for axis in axes]
         lines: list[tuple[Sequence[str], str]] = [
@@ -60,6 +61,7 @@ def table_lines(results: RunResults, folder: Path) -> Iterator[str]:
         widths = [max(map(cell_len, column)) for column in zip(*(cells for cells, _ in lines), strict=True)]
         for cells, remarks in lines:
             yield from _line(cells, widths, remarks)
+        yield shown(f"U: of this {results.worn} in this condition; conditions.csv has the compound's, too")
     if len(tried) > ROWS_AT_MOST:
         yield f"and {len(tried) - ROWS_AT_MOST} more conditions: {folder / 'conditions.csv'}"
     if len(tried) < len(results.rows):
@@ -77,7 +79,7 @@ def _cells(row: TableRow, axes: Sequence[Axis], pad: str) -> Sequence[str]:
     i, r = row.info, row.result
     return (
         _cut(shown(i.compound)),
-        *(plain(axis.of(i)) for axis in axes),
+        *(plain(axis.of(i.setpoint)) for axis in axes),
         f"{r.mu_resultant:.3f}{mark_of(r.status, r.flags) or pad}" if r.ok else f"-{pad}",
         f"{r.expanded:.3f}" if r.ok and isfinite(r.expanded) else "-",
         f"{r.n_valid} of {r.n}",

@@ -7,8 +7,8 @@ from typing import Any, TypeVar
 
 import click
 
-from tester.cli.finding import run_folder
-from tester.cli.showing import shown
+from tester.cli.formatting import shown
+from tester.cli.run_lookup import run_folder
 
 Decorated = TypeVar("Decorated", bound=Callable[..., Any])
 
@@ -39,9 +39,9 @@ def include(run: str, repeat: str, reason: str, operator: str | None) -> None:
 
 
 def _say(run: str, repeat: str, reason: str, operator: str | None, *, excluded: bool) -> None:
+    from tester.base.lock import user
     from tester.export.exclude import CannotExcludeError, Word, parse_target, record_word
     from tester.export.results import results_of
-    from tester.lock import user
     from tester.store.reader import RunReader
     from tester.store.schema import StoreError
 

@@ -16,7 +16,7 @@ def repeatability(under: Path, compounds: Iterable[str], *, simulated: bool) -> 
     Runs of the simulated rig count for it alone, and those of a machine for machines.
     """
     from tester.catalogue import open_catalogue
-    from tester.catalogue.entries import CatalogueError, Wanted, refresh
+    from tester.catalogue.entries import CatalogueError, WantedRuns, refresh
 
     pools: dict[str, Pool] = {}
     if not under.is_dir():
@@ -27,7 +27,7 @@ def repeatability(under: Path, compounds: Iterable[str], *, simulated: bool) -> 
             refresh(catalogue, under)
             for compound in compounds:
                 pool = Pool()
-                for run in catalogue.runs(Wanted(compound)):
+                for run in catalogue.runs(WantedRuns(compound)):
                     if run.simulated != simulated:
                         continue
                     for one in catalogue.conditions(run):

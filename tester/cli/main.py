@@ -15,17 +15,7 @@ from typing import NamedTuple
 import click
 
 from tester import __version__
-
-EXIT_DONE = 0
-EXIT_FAILED = 1
-EXIT_USAGE = 2
-EXIT_INVALID = 3
-EXIT_UNREACHABLE = 4
-EXIT_TRIPPED = 5
-EXIT_INCOMPLETE = 6
-EXIT_INTERRUPTED = 130
-EXIT_READER_GONE = 141
-"""Nobody reads the output any more (`tester runs | head -1`): what a shell calls the end by SIGPIPE."""
+from tester.base.exits import EXIT_DONE, EXIT_FAILED, EXIT_INTERRUPTED, EXIT_INVALID, EXIT_READER_GONE
 
 
 class CommandEntry(NamedTuple):
@@ -57,6 +47,9 @@ COMMANDS: dict[str, CommandEntry] = {
     "compare": CommandEntry("tester.cli.compare_command", "compare", "Hold two runs' conditions against each other."),
     "verify": CommandEntry("tester.cli.verify_command", "verify", "Check that a run is as it was left."),
     "export": CommandEntry("tester.cli.result_commands", "export", "Write a run's results as a table."),
+    "fit": CommandEntry("tester.cli.fit_command", "fit", "Fit a law of friction to measured conditions."),
+    "paper": CommandEntry("tester.cli.fit_command", "paper", "Hold the paper's equations against its own data."),
+    "figure": CommandEntry("tester.cli.figure_command", "figure", "Draw a run's results."),
     "predict": CommandEntry("tester.cli.predict_command", "predict", "The friction model's value for one condition."),
     "sim": CommandEntry("tester.cli.sim_command", "sim", "A simulated rig in real time, on CAN and Modbus over TCP."),
     "rig": CommandEntry("tester.cli.rig_commands", "rig", "Write or show a rig file."),
@@ -130,7 +123,7 @@ def _invalid_source() -> type[Exception]:
     An `except` clause evaluates its class only once something was raised, so a run of a command that reads no file
     never imports the loader.
     """
-    from tester.source import InvalidSource
+    from tester.base.source import InvalidSource
 
     return InvalidSource
 
@@ -168,7 +161,7 @@ def invoke(arguments: list[str] | None = None) -> int:
         click.echo(str(error), err=True)
         return EXIT_INVALID
     except OSError as error:
-        from tester.trouble import in_words
+        from tester.base.trouble import in_words
 
         click.echo(f"Error: {in_words(error)}", err=True)
         return EXIT_FAILED
@@ -183,7 +176,7 @@ def _flushed(code: int) -> int:
         except BrokenPipeError:
             code = code or EXIT_READER_GONE
         except OSError as error:
-            from tester.trouble import in_words
+            from tester.base.trouble import in_words
 
             code = code or EXIT_FAILED
             if stream is sys.stdout:

@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 
 import click
 
-from tester.units import UnitError, parse
+from tester.base.units import UnitError, parse
 
 Decorated = TypeVar("Decorated", bound=Callable[..., Any])
 
@@ -17,7 +17,7 @@ class QuantityType(click.ParamType[float]):
     """A number with a unit, e.g. "300 mm/s"; the command gets the value in ``unit``."""
 
     def __init__(self, unit: str) -> None:
-        """``unit`` is one of the table in tester.units."""
+        """``unit`` is one of the table in tester.base.units."""
         self.name = "quantity"
         self.unit = unit
 
@@ -65,6 +65,18 @@ def risk_option(command: Decorated) -> Decorated:
     )(command)
 
 
+def seed_option(command: Decorated) -> Decorated:
+    """Add --seed: where all randomness of the simulated rig comes from."""
+    return click.option(
+        "--seed",
+        default=0,
+        show_default=True,
+        metavar="N",
+        type=click.IntRange(0, 2**63 - 1),
+        help="Seed of the simulated rig.",
+    )(command)
+
+
 def json_option(command: Decorated) -> Decorated:
     """Add --json: data for programs on stdout."""
     return click.option("--json", "as_json", is_flag=True, help="Print JSON on stdout.")(command)
@@ -77,7 +89,7 @@ def print_json(data: object) -> None:
 
 def say_packaged_keys(rig_name: str, overrides: Sequence[str]) -> None:
     """Say on stderr for which keys the packaged value counts, because the rig file does not have them."""
-    from tester.rig.upgrade import packaged_keys
+    from tester.kinds import packaged_keys
 
     keys = packaged_keys(rig_name, overrides)
     if keys:

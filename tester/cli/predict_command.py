@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import click
 
-from sim.parameters import MODEL_NAMES, FrictionModelName
-from sim.slip import predict as model_value
+from sim.physics import laws
+from sim.physics.data_range import caveats
+from sim.physics.friction import MODEL_NAMES
+from sim.physics.slip import predict as model_value
 from tester.cli.options import QuantityType, json_option, print_json
+from tester.rig.laws import extension_law
 
 
 @click.command()
@@ -23,10 +26,10 @@ from tester.cli.options import QuantityType, json_option, print_json
 @click.option("--wheel-speed", type=QuantityType("m/s"), default="0.8 m/s", show_default=True, help="Wheel speed.")
 @click.option(
     "--model",
-    type=click.Choice(MODEL_NAMES),
+    metavar="LAW",
     default="paper",
     show_default=True,
-    help="The paper's equations 4-9, or the better fit to the same data.",
+    help="Law of friction: paper (equations 4-9), v2 (a better fit to the same data), or one of an installed package.",
 )
 @json_option
 def predict(
@@ -36,18 +39,28 @@ def predict(
     temperature: float,
     sideslip: float,
     wheel_speed: float,
-    model: FrictionModelName,
+    model: str,
     as_json: bool,
 ) -> None:
     """Print the friction coefficient that the model gives for one condition.
 
     The model is the thermo-coupled one of Polymers 2024, 16(5), 596, doi 10.3390/polym16050596 (CC BY 4.0); with a
-    sideslip angle the slip is the vector between the wheel's plane and the belt's travel.
+    sideslip angle the slip is the vector between the wheel's plane and the belt's travel. What the value rests on,
+    where it lies outside the paper's data, is said on stderr.
     """
+    if slip > wheel_speed:
+        raise click.UsageError(
+            f"--slip: {1e3 * slip:g} mm/s at a wheel speed of {wheel_speed:g} m/s needs a belt that runs backwards "
+            f"(expected at most {1e3 * wheel_speed:g} mm/s, or a larger --wheel-speed)"
+        )
+    laws.look_up_with(extension_law)
     try:
         mu = model_value(compound, slip, load, temperature, sideslip, wheel_speed, model)
     except ValueError as error:
         raise click.UsageError(str(error)) from error
+    if model in MODEL_NAMES:
+        for caveat in caveats(compound, slip, load, temperature, sideslip):
+            click.echo(f"warning: {caveat}", err=True)
     if as_json:
         print_json({"mu": mu})
     else:

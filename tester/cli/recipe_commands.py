@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import click
 
 import recipes
+from tester.base.exits import EXIT_INVALID
 from tester.cli.options import (
     QuantityType,
     json_option,
@@ -24,10 +25,8 @@ from tester.cli.options import (
 
 if TYPE_CHECKING:
     from tester.analysis.repeatability import Pool
+    from tester.base.source import Problem
     from tester.recipe.schema import Recipe
-    from tester.source import Problem
-
-EXIT_INVALID = 3
 
 
 def recipe_file(name_or_path: str) -> tuple[Path, str]:
@@ -51,22 +50,24 @@ def check(recipe: str, rig_name: str, overrides: tuple[str, ...], accept_risk: s
 
     Every problem at once, as file:line:col: message, and exit code 3.
     """
+    from tester.base.source import InvalidSource
     from tester.recipe.check import load_checked
-    from tester.recipe.expand import conditions_of
-    from tester.rig import load_rig
-    from tester.source import InvalidSource
+    from tester.recipe.conditions import conditions_of
+    from tester.run.kinds import recipe_part
+    from tester.run.rigs import load_rig
 
     path, name = recipe_file(recipe)
     rig = load_rig(rig_name, overrides, accept_risk)
+    part = recipe_part(rig)
     try:
-        loaded = load_checked(path, rig, name)
+        loaded = load_checked(path, rig, part, name)
     except InvalidSource as error:
         if not as_json:
             raise
         print_json({"valid": False, "problems": [_fields(problem) for problem in error.problems]})
         return EXIT_INVALID
     valid = loaded.recipe
-    count = len(conditions_of(valid)) * len(valid.specimens) * valid.replicates
+    count = len(conditions_of(valid, part.settings)) * len(valid.specimens) * valid.replicates
     if as_json:
         print_json({"valid": True, "problems": [], "conditions": count})
     else:
@@ -109,11 +110,11 @@ def plan(
     """List the steps of RECIPE (a file, or the name of a packaged recipe) with durations and totals."""
     from tester.recipe.check import load_checked
     from tester.recipe.describe import lines
-    from tester.recipe.estimate import Estimator, estimate
-    from tester.recipe.expand import expand
+    from tester.recipe.estimate import estimate
     from tester.recipe.plan_json import json_chunks
     from tester.recipe.precision import PrecisionError, precision_lines, s_percents, until_for_total, with_precision
-    from tester.rig import load_rig
+    from tester.run.kinds import recipe_part
+    from tester.run.rigs import load_rig
 
     if precision is not None and total is not None:
         raise click.UsageError("--precision and --total exclude each other")
@@ -122,10 +123,11 @@ def plan(
             raise click.BadParameter(f"{percent:g} % is not within 0.1 % to 50 %", param_hint=option)
     path, name = recipe_file(recipe)
     rig = load_rig(rig_name, overrides, accept_risk)
-    wanted = load_checked(path, rig, name).recipe
+    part = recipe_part(rig)
+    wanted = load_checked(path, rig, part, name).recipe
     if total is not None:
         try:
-            precision = until_for_total(total, expand(wanted, rig), Estimator(rig))
+            precision = until_for_total(total, part.expand(wanted, rig), part.estimator(rig))
         except PrecisionError as error:
             raise click.UsageError(str(error)) from error
     if precision is not None:
@@ -137,14 +139,14 @@ def plan(
 
         compounds = dict.fromkeys(one.compound for one in wanted.specimens)
         pools = repeatability(out or RUNS, compounds, simulated=rig.simulated)
-    estimator = Estimator(rig, repeatability=s_percents(pools))
+    estimator = part.estimator(rig, s_percents(pools))
     with _nothing_collected():
-        steps = expand(wanted, rig, estimator)
-        figures = estimate(steps, rig, estimator)
+        steps = part.expand(wanted, rig, estimator)
+        figures = estimate(steps, estimator)
         if as_json:
-            sys.stdout.writelines(json_chunks(steps, figures))
+            sys.stdout.writelines(json_chunks(steps, figures, part))
             return
-        sys.stdout.writelines(f"{line}\n" for line in lines(steps, figures))
+        sys.stdout.writelines(f"{line}\n" for line in lines(steps, figures, part))
         sys.stdout.writelines(f"{line}\n" for line in precision_lines(steps, figures, estimator, pools))
 
 
@@ -169,9 +171,12 @@ def _nothing_collected() -> Generator[None, None, None]:
 @click.command()
 def schema() -> None:
     """Print the JSON Schema of recipes, for editors and other programs."""
+    from tester import kinds
     from tester.recipe.schema import schema_text
 
-    click.echo(schema_text(), nl=False)
+    part = kinds.find(kinds.DEFAULT).recipe
+    assert part is not None
+    click.echo(schema_text(part()), nl=False)
 
 
 def _fields(problem: Problem) -> dict[str, object]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import click
 
-from tester.cli.finding import run_folder
+from tester.cli.run_lookup import run_folder
 from tester.cli.tui_command import need_terminal
 
 

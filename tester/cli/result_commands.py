@@ -3,33 +3,42 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
-from tester.cli.finding import run_folder
-from tester.cli.showing import Json, dump, duration, number, shown
+from tester.cli.formatting import Json, dump, duration, number, shown
+from tester.cli.run_lookup import run_folder
 
 if TYPE_CHECKING:
+    from tester.analysis.repeats import ConditionResult
+    from tester.analysis.uncertainty import Contribution
     from tester.analysis.wear import WearRate
+    from tester.export.formats import Format
     from tester.export.results import Measured, RunResults, TableRow
-    from tester.store.reader import RunReader
-    from tester.store.records import Change, SessionInfo, StoredExclusion, StoredTrip, WheelInfo
-
-FORMATS = ("appendix", "conditions", "repeats", "wheel", "wear", "samples", "parquet")
+    from tester.store.records import PieceInfo, StoredTrip
 
 
 # tester show
 
+_SESSION = "session origin_s started_utc host operator software_version git_revision"
+_CHANGE = "session utc subject before_sha256 after_sha256 reason"
+_WORD = "condition repeat attempt excluded reason operator utc software_version"
+"""Fields of the records of these names that ``show --json`` tells."""
 
 @click.command()
 @click.argument("run")
 @click.option("--json", "as_json", is_flag=True, help="As JSON.")
-def show(run: str, as_json: bool) -> None:
-    """Show what RUN holds: a run's folder, its name under runs, or latest."""
+@click.option("--budget", "with_budget", is_flag=True, help="What each uncertainty is made of, term by term.")
+def show(run: str, as_json: bool, with_budget: bool) -> None:
+    """Show what RUN holds: a run's folder, its name under runs, or latest.
+
+    Behind a coefficient stand two expanded uncertainties (95 %): of what was mounted, in this condition, and of the
+    compound, which any other piece of it comes with.
+    """
     from tester.export.results import results_of
     from tester.store.reader import RunReader
     from tester.store.schema import StoreError
@@ -42,11 +51,20 @@ def show(run: str, as_json: bool) -> None:
     except StoreError as error:
         raise click.ClickException(str(error)) from error
     if as_json:
-        history: dict[str, Json] = {"sessions": [*map(_session, sessions)], "changes": [*map(_change, changes)]}
-        history["exclusions"] = [*map(_word, said)]
+        history: dict[str, Json] = {
+            "sessions": [_fields(session, _SESSION) for session in sessions],
+            "changes": [_fields(change, _CHANGE) for change in changes],
+            "exclusions": [_fields(word, _WORD, excluded=bool(word.excluded)) for word in said],
+        }
         history["trips"] = [*map(_trip, trips)]
         history["commands"] = [{"t_s": number(one.t_s), "utc": one.utc, "text": one.text} for one in commands]
         dump(_summary(folder.name, results) | history)
+        return
+    if with_budget:
+        from tester.cli.budget import budget_lines
+
+        for text in budget_lines(results):
+            click.echo(text)
         return
     for text in _lines(folder.name, results):
         click.echo(text)
@@ -67,27 +85,9 @@ def show(run: str, as_json: bool) -> None:
         click.echo(f"{word.condition}/{word.repeat} {what} {word.utc}{who}: {shown(word.reason)}")
 
 
-def _session(session: SessionInfo) -> Json:
-    return {
-        "session": session.session,
-        "origin_s": session.origin_s,
-        "started_utc": session.started_utc,
-        "host": session.host,
-        "operator": session.operator,
-        "software_version": session.software_version,
-        "git_revision": session.git_revision,
-    }
-
-
-def _change(change: Change) -> Json:
-    return {
-        "session": change.session,
-        "utc": change.utc,
-        "subject": change.subject,
-        "before_sha256": change.before_sha256,
-        "after_sha256": change.after_sha256,
-        "reason": change.reason,
-    }
+def _fields(record: object, names: str, **instead: Json) -> Json:
+    """Return some of a record's fields, by their names; ``instead``: values that take the place of a field's."""
+    return {name: getattr(record, name) for name in names.split()} | instead
 
 
 def _trip(trip: StoredTrip) -> Json:
@@ -102,19 +102,6 @@ def _trip(trip: StoredTrip) -> Json:
         "acknowledged_s": number(trip.acknowledged_s),
         "acknowledged_utc": trip.acknowledged_utc or None,
         "acknowledged_by": trip.acknowledged_by,
-    }
-
-
-def _word(word: StoredExclusion) -> Json:
-    return {
-        "condition": word.condition,
-        "repeat": word.repeat,
-        "attempt": word.attempt,
-        "excluded": bool(word.excluded),
-        "reason": word.reason,
-        "operator": word.operator,
-        "utc": word.utc,
-        "software_version": word.software_version,
     }
 
 
@@ -142,7 +129,7 @@ def _summary(name: str, results: RunResults) -> dict[str, Json]:
         "rows": len(results.rows) - len(results.missing()),
         "missing": [row.describe() for row in results.missing()],
         "conditions": [_condition(measured, results) for measured in results.conditions()],
-        "wheels": [_wheel(wheel, results) for wheel in results.wheels],
+        "wheels": [_wheel(wheel, results) for wheel in results.pieces],
     }
 
 
@@ -150,20 +137,21 @@ def _rate(found: WearRate) -> dict[str, Json]:
     return {"wear_mm3_n_m": number(found.rate), "wear_u_expanded": number(found.expanded), "checks": found.checks}
 
 
-def _wheel(wheel: WheelInfo, results: RunResults) -> Json:
+def _wheel(wheel: PieceInfo, results: RunResults) -> Json:
     return {
-        "wheel": wheel.wheel,
+        "wheel": wheel.piece,
         "compound": wheel.compound,
         "installed_diameter_mm": number(wheel.installed_diameter_mm),
         "diameter_mm": number(wheel.diameter_mm),
         "sliding_m": number(wheel.sliding_m),
-        **_rate(results.wear_of(wheel.wheel)),
+        **_rate(results.wear_of(wheel.piece)),
     }
 
 
 def _condition(measured: Measured, results: RunResults) -> Json:
     from tester.analysis.results import flags_in
     from tester.analysis.trust import mark_of
+    from tester.export.budget import terms_of
 
     i, r = measured.info, measured.result
     worn = results.condition_wear(i.condition)
@@ -172,19 +160,17 @@ def _condition(measured: Measured, results: RunResults) -> Json:
         "specimen": i.specimen,
         "replicate": i.replicate,
         "compound": i.compound,
-        "slip_velocity_mm_s": round(1e3 * i.slip_velocity_m_s, 6),
-        "load_n": i.load_n,
-        "sideslip_deg": i.sideslip_deg,
-        "camber_deg": i.camber_deg,
-        "temperature_c": i.temperature_c,
-        "wheel_speed_m_s": i.wheel_speed_m_s,
+        **{axis.column: axis.of(i.setpoint) for axis in i.setpoint.axes},
         "status": r.status.value,
         "reason": r.reason,
         "mu": number(r.mu_resultant),
         "mark": mark_of(r.status, r.flags) if isfinite(r.mu_resultant) else "",
         "flags": [*flags_in(r.flags)],
         "s": number(r.s),
+        "mu_corrected": number(r.mu_corrected),
         "u_expanded": number(r.expanded),
+        "u_expanded_compound": number(r.compound_budget.expanded),
+        "budget": [_term(one, r) for one in terms_of(r)],
         "n_valid": r.n_valid,
         "n": r.n,
         "diameter_before_mm": number(worn.before_mm) if worn is not None else None,
@@ -205,6 +191,23 @@ def _condition(measured: Measured, results: RunResults) -> Json:
     }
 
 
+def _term(one: Contribution, r: ConditionResult) -> Json:
+    from tester.export.budget import share_of
+
+    return {
+        "term": one.name,
+        "source": one.source,
+        "distribution": one.distribution,
+        "standard_uncertainty": number(one.input_u),
+        "unit": one.unit,
+        "degrees_of_freedom": number(one.df),
+        "sensitivity": number(one.sensitivity),
+        "u_mu": number(one.standard),
+        "share_this": number(share_of(one, r.budget)),
+        "share_compound": number(share_of(one, r.compound_budget)),
+    }
+
+
 def _lines(name: str, results: RunResults) -> Iterator[str]:
     from tester.cli.ending import risk_lines
 
@@ -214,12 +217,14 @@ def _lines(name: str, results: RunResults) -> Iterator[str]:
     yield from risk_lines(results)
     ended = f", ended {run.ended_utc}" if run.ended_utc else ""
     yield f"rig time {duration(run.rig_seconds)}, started {run.info.started_utc}{ended}"
+    for name, described in run.info.extensions.items():
+        yield f"loaded   {shown(name)}: {shown(described)}"
     if run.overruns:
         yield f"overruns {run.overruns} samples dropped"
     yield f"values   {len(results.rows) - len(results.missing())} of {len(results.rows)} conditions"
     for row in results.rows:
         if row.tried:
-            yield shown(_row(row))
+            yield shown(_row(row, results.worn))
             yield from _worn(row, results)
     left = sum(not row.tried for row in results.rows)
     if left:
@@ -238,14 +243,16 @@ def _worn(row: TableRow, results: RunResults) -> Iterator[str]:
             yield f"    {found.before_mm:.3f} mm to {found.after_mm:.3f} mm, wear {rate}{below}"
 
 
-def _row(row: TableRow) -> str:
+def _row(row: TableRow, worn: str) -> str:
     from tester.analysis.trust import mark_of
 
     r = row.result
     if not r.ok:
         return f"  {row.describe()}"
     setpoints = row.describe().removesuffix(f": {r.reason}").removesuffix(f": {r.status.value}")
-    spread = f" ± {r.expanded:.3f}" if isfinite(r.expanded) else ""
+    compound = r.compound_budget.expanded
+    spread = f" ± {r.expanded:.3f} (this {worn})" if isfinite(r.expanded) else ""
+    spread += f", ± {compound:.3f} (compound)" if isfinite(compound) else ""
     mu = f"{r.mu_resultant:.3f}{mark_of(r.status, r.flags)}"
     return f"  {setpoints}: {mu}{spread} (n {r.n_valid} of {r.n}) {r.flags}".rstrip()
 
@@ -253,68 +260,61 @@ def _row(row: TableRow) -> str:
 # tester export
 
 
+class FormatName(click.ParamType["Format"]):
+    """The name of an export format: one that is shipped, or one of an installed package."""
+
+    name = "format"
+
+    def get_metavar(self, param: click.Parameter, ctx: click.Context) -> str:
+        """Return the names there are; nothing is loaded for it."""
+        from tester.export.formats import format_names
+
+        return f"[{'|'.join(format_names())}]"
+
+    def convert(self, value: str | Format, param: click.Parameter | None, ctx: click.Context | None) -> Format:
+        """Return the format, loaded."""
+        from tester.base.plugins import PluginError
+        from tester.export.formats import FORMATS, Format, format_of
+
+        if isinstance(value, Format):
+            return value
+        try:
+            return format_of(value)
+        except PluginError as error:
+            self.fail(f"no format {value!r} (there are {', '.join(FORMATS)}); {error}", param, ctx)
+
+
 @click.command()
 @click.argument("run")
-@click.option("--format", "kind", type=click.Choice(FORMATS), required=True, help="Which table.")
+@click.option("--format", "kind", type=FormatName(), required=True, help="Which table.")
 @click.option("--out", type=click.Path(dir_okay=False, path_type=Path), default=None, help="File to write (stdout).")
 @click.option(
     "--decimals", type=click.IntRange(0, 10), default=2, show_default=True, help="Of the appendix's coefficient."
 )
-def export(run: str, kind: str, out: Path | None, decimals: int) -> None:
+def export(run: str, kind: Format, out: Path | None, decimals: int) -> None:
     """Write a table of RUN: a run's folder, its name under runs, or latest.
 
     Conditions without a value that can be trusted are not in the appendix and are named on stderr; so are values that
     are to be taken with care.
     """
-    from tester.extras import MissingExtraError
+    from tester.base.extras import MissingExtraError
+    from tester.export import Record, write_format
     from tester.store.reader import RunReader
     from tester.store.schema import StoreError
 
-    if kind == "parquet" and out is None:
-        raise click.UsageError("parquet is not text: name a file with --out")
-    folder = run_folder(run)
+    if out is None and not kind.is_text:
+        raise click.UsageError(f"{kind.name} is not text: name a file with --out")
     try:
-        with RunReader(folder) as reader:
-            _export(reader, kind, out, decimals)
+        with RunReader(run_folder(run)) as reader:
+            record = Record(reader, decimals)
+            if out is not None:
+                write_format(out, kind, record)
+            else:
+                kind.write(record, sys.stdout.buffer)
+                sys.stdout.flush()
+            for remark in kind.remarks(record):
+                click.echo(shown(remark), err=True)
     except MissingExtraError as error:
         raise click.UsageError(str(error)) from error
     except StoreError as error:
         raise click.ClickException(str(error)) from error
-
-
-def _export(reader: RunReader, kind: str, out: Path | None, decimals: int) -> None:
-    from tester import export as tables
-
-    if kind == "parquet" and out is not None:
-        tables.write_parquet_file(out, reader)
-        return
-    if kind == "samples":
-        _deliver(tables.samples(reader), out)
-        return
-    results = tables.results_of(reader)
-    if kind == "conditions":
-        _deliver(tables.conditions(results), out)
-    elif kind == "repeats":
-        _deliver(tables.repeats(results), out)
-    elif kind == "wheel":
-        _deliver(tables.wheels(results), out)
-    elif kind == "wear":
-        _deliver(tables.wear(results), out)
-    else:
-        _deliver(tables.appendix(results, decimals), out)
-        for row in results.missing():
-            click.echo(f"not in the appendix: {shown(row.describe())}", err=True)
-        for row in results.doubtful():
-            click.echo(f"to be taken with care: {shown(row.advise())}", err=True)
-
-
-def _deliver(chunks: Iterable[bytes], out: Path | None) -> None:
-    from tester.export import write_file
-
-    if out is not None:
-        write_file(out, chunks)
-        return
-    stream = sys.stdout.buffer
-    for chunk in chunks:
-        stream.write(chunk)
-    stream.flush()

@@ -35,9 +35,9 @@ def resume(
     from pathlib import Path
 
     from tester.cli.console import Console
-    from tester.cli.finding import run_folder
     from tester.cli.run_command import carried_out, time_lapse
-    from tester.session import Session, SessionOptions
+    from tester.cli.run_lookup import run_folder
+    from tester.run.session import Session, SessionOptions
 
     options = SessionOptions(
         accept_risk=accept_risk,

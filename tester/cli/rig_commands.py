@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 from tester.cli.options import json_option, print_json, rig_option, risk_option, say_packaged_keys, set_option
+from tester.kinds import DEFAULT
 
 
 @click.group()
@@ -17,17 +18,26 @@ def rig() -> None:
 @rig.command()
 @click.argument("file", type=click.Path(dir_okay=False, path_type=Path))
 @click.option("--force", is_flag=True, help="Replace the file if there is one.")
-def init(file: Path, force: bool) -> None:
+@click.option("--kind", default=DEFAULT, show_default=True, metavar="KIND", help="Kind of rig.")
+@click.option("--like", default="", metavar="RIG", help="Packaged rig of that kind; else its first.")
+def init(file: Path, force: bool, kind: str, like: str) -> None:
     """Write a commented rig file for a real machine to FILE, to be completed there."""
-    from tester.rig.template import hardware_text
+    from tester.kinds import UnknownKindError, find, hardware_text
 
     try:
+        text = hardware_text(kind, like)
+    except UnknownKindError as error:
+        raise click.UsageError(str(error)) from error
+    except KeyError as error:
+        known = ", ".join(find(kind).rigs)
+        raise click.UsageError(f"no packaged rig of the kind {kind} is called {like} (expected {known})") from error
+    try:
         with file.open("w" if force else "x", encoding="utf-8", newline="\n") as stream:
-            stream.write(hardware_text())
+            stream.write(text)
     except FileExistsError as error:
         raise click.UsageError(f"{file} exists already; --force replaces it") from error
     except OSError as error:
-        from tester.trouble import in_words
+        from tester.base.trouble import in_words
 
         raise click.UsageError(f"the rig file cannot be written: {in_words(error)}") from error
     click.echo(str(file))
@@ -40,7 +50,7 @@ def init(file: Path, force: bool) -> None:
 @json_option
 def show(rig_name: str, overrides: tuple[str, ...], accept_risk: str, as_json: bool) -> None:
     """Check a rig file and print it with everything resolved."""
-    from tester.rig import load_rig
+    from tester.kinds import load_rig
 
     config = load_rig(rig_name, overrides, accept_risk)
     if as_json:
@@ -57,7 +67,7 @@ def upgrade(file: Path) -> None:
 
     Nothing else of the file changes.
     """
-    from tester.rig.upgrade import upgrade as complete
+    from tester.kinds import upgrade as complete
 
     try:
         keys = complete(file)

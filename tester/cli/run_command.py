@@ -7,7 +7,7 @@ from collections.abc import Callable
 import click
 from click.core import ParameterSource
 
-from tester.cli.options import json_option, rig_option, risk_option, set_option
+from tester.cli.options import json_option, rig_option, risk_option, seed_option, set_option
 
 NOT_DETACHED = {
     "out": "--out", "bus_log": "--bus-log", "faults": "--fault", "jobs": "--jobs", "as_json": "--json",
@@ -23,14 +23,7 @@ NOT_DETACHED = {
 @risk_option
 @click.option("--out", default="runs", show_default=True, metavar="DIR", help="Folder that gets the run's folder.")
 @click.option("--yes", is_flag=True, help="Answer prompts with yes, but those that ask a person to a real rig.")
-@click.option(
-    "--seed",
-    default=0,
-    show_default=True,
-    metavar="N",
-    type=click.IntRange(0, 2**63 - 1),
-    help="Seed of the simulated rig.",
-)
+@seed_option
 @click.option("--speed", default=None, metavar="max|X", help="Simulated rig: as fast as it goes, or X times real time.")
 @click.option(
     "--jobs",
@@ -96,7 +89,7 @@ def run(
     from pathlib import Path
 
     from tester.cli.console import Console
-    from tester.session import Session, SessionOptions
+    from tester.run.session import Session, SessionOptions
 
     options = SessionOptions(
         recipe=recipe,
@@ -143,7 +136,7 @@ def _detached(
 def carried_out(work: Callable[[], int]) -> int:
     """Do the work and return its exit code; what keeps it from beginning goes to stderr. Raises OSError."""
     from recipes import UnknownRecipe
-    from tester.session import CannotStartError
+    from tester.run.session import CannotStartError
     from tester.store.schema import StoreError
 
     try:

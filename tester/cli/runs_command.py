@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from tester.cli.showing import Json, dump, duration, shown
+from tester.cli.formatting import Json, dump, duration, shown
 from tester.store.status import RunStatus
 
 if TYPE_CHECKING:
@@ -32,11 +32,11 @@ def runs(
     With TESTER_CATALOGUE=postgresql://... the runs of everybody who shares that catalogue.
     """
     from tester.catalogue import open_catalogue
-    from tester.catalogue.entries import CatalogueError, Wanted, refresh
+    from tester.catalogue.entries import CatalogueError, WantedRuns, refresh
     from tester.store.catalogue import RUNS
 
     under = out or RUNS
-    wanted = Wanted(compound, _date(since, "--since"), _end_of(_date(until, "--until")), recipe)
+    wanted = WantedRuns(compound, _date(since, "--since"), _end_of(_date(until, "--until")), recipe)
     try:
         catalogue = open_catalogue(under)
         try:

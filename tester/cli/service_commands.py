@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
+from tester.base.exits import EXIT_FAILED, EXIT_UNREACHABLE
 from tester.cli.options import json_option, print_json, rig_option, risk_option, set_option
 
 if TYPE_CHECKING:
@@ -15,8 +16,6 @@ if TYPE_CHECKING:
     from tester.service.commands import Action
     from tester.service.state import StateView
 
-EXIT_REFUSED = 1
-EXIT_UNREACHABLE = 4
 NO_SERVICE = "no service is running: start one with `tester serve`"
 Decorated = TypeVar("Decorated", bound=Callable[..., Any])
 
@@ -41,6 +40,8 @@ def take_option(command: Decorated) -> Decorated:
 @click.option("--connect", "address", default="", metavar="URL", help="Listen at unix:PATH instead of the user's own.")
 @click.option("--tcp", "port", default=None, metavar="PORT", type=click.IntRange(0, 65535),
               help="Listen on loopback TCP with a token instead of a Unix socket; 0 = any port.")  # fmt: skip
+@click.option("--allow", "allowed", multiple=True, metavar="NAME",
+              help="Extension that may be loaded: entry point or package.module:object.")  # fmt: skip
 @click.option("--notify", default="", metavar="COMMAND",
               help="Command to run on a trip, hold, prompt, end or full disk; JSON on its standard input.")  # fmt: skip
 def serve(
@@ -50,6 +51,7 @@ def serve(
     out: str,
     address: str,
     port: int | None,
+    allowed: tuple[str, ...],
     notify: str,
 ) -> int:
     """Own the rig, run what clients ask for, and go on when they disconnect.
@@ -61,7 +63,7 @@ def serve(
     from tester.service.host import host
     from tester.service.service import ServiceOptions
 
-    return host(ServiceOptions(rig_name, overrides, Path(out), accept_risk), address, port, notify)
+    return host(ServiceOptions(rig_name, overrides, Path(out), accept_risk, allowed), address, port, notify)
 
 
 @click.command(short_help="Say what the rig is doing.")
@@ -142,11 +144,11 @@ def run_detached(address: str, action: Action, take: bool) -> int:
 def _command(address: str, action: Action, take: bool, *, control: bool = True, show_folder: bool = False) -> int:
     """Give one command; return the exit code."""
     from tester.service.client import LostError, NoServiceError, RefusedError
-    from tester.service.commands import Control
+    from tester.service.commands import TakeControl
 
     async def give(client: Client) -> None:
         if control and take:
-            await client.command(Control(force=True))
+            await client.command(TakeControl(force=True))
         result = await client.command(action)
         if show_folder and isinstance(result, dict):
             click.echo(str(result["folder"]))
@@ -160,7 +162,7 @@ def _command(address: str, action: Action, take: bool, *, control: bool = True, 
         may_take = control and not take
         hint = ": `--take` takes control" if may_take and "has control" in str(error) else ""
         click.echo(f"refused: {error}{hint}" if isinstance(error, RefusedError) else f"no answer: {error}", err=True)
-        return EXIT_REFUSED
+        return EXIT_FAILED
     return 0
 
 

@@ -4,21 +4,14 @@ from __future__ import annotations
 
 import click
 
-from tester.cli.options import rig_option, set_option
+from tester.cli.options import rig_option, seed_option, set_option
 
 
 @click.command("sim", short_help="A simulated rig in real time, on CAN and Modbus over TCP.")
 @rig_option
 @set_option
-@click.option(
-    "--seed",
-    default=0,
-    show_default=True,
-    metavar="N",
-    type=click.IntRange(0, 2**63 - 1),
-    help="Seed of the simulated rig.",
-)
-@click.option("--compound", default="1#", show_default=True, metavar="NAME", help="Rubber of the wheel on the rig.")
+@seed_option
+@click.option("--compound", default="", metavar="NAME", help="Rubber of the specimen on the rig (the kind's first).")
 @click.option(
     "--listen",
     default="127.0.0.1",
@@ -46,8 +39,7 @@ def sim(
     """
     from pathlib import Path
 
-    from sim.friction import UnknownCompoundError
-    from tester.sim_process import SimOptions, run_sim
+    from tester.run.sim_process import SimOptions, run_sim
 
     host, port = _loopback(listen)
     options = SimOptions(
@@ -63,10 +55,10 @@ def sim(
     )
     try:
         latest_s = run_sim(options, _say)
-    except (UnknownCompoundError, FileNotFoundError) as error:
+    except (ValueError, FileNotFoundError) as error:  # a rubber that the kind does not have
         raise click.UsageError(str(error)) from error
     except OSError as error:
-        from tester.trouble import in_words
+        from tester.base.trouble import in_words
 
         click.echo(f"cannot listen on {listen} or write a file: {in_words(error)}", err=True)
         return 1

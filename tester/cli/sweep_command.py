@@ -104,9 +104,11 @@ class _Printer:
 
     def ran(self, result: CaseResult, done: int) -> None:
         """Say how a run ended, and name what is missing."""
+        from tester.sweep.tables import row_record
+
         record = {key: _json(value) for key, value in asdict(result).items() if key not in ("point", "rows")}
         record["set"] = dict(zip(self.keys, result.point, strict=True))
-        rows = [{key: _json(value) for key, value in asdict(row).items()} for row in result.rows]
+        rows = [{key: _json(value) for key, value in row_record(row).items()} for row in result.rows]
         self._emit({"event": "run", **record, "missing": result.missing, "rows": rows})
         point = "".join(f"{key}={value}, " for key, value in zip(self.keys, result.point, strict=True))
         missing = f", {result.missing} of {len(result.rows)} conditions missing" if result.missing else ""

@@ -7,14 +7,12 @@ from typing import TYPE_CHECKING
 
 import click
 
-from tester.cli.finding import run_folder
+from tester.base.exits import EXIT_DONE, EXIT_FAILED, EXIT_INCOMPLETE
 from tester.cli.options import json_option, print_json
+from tester.cli.run_lookup import run_folder
 
 if TYPE_CHECKING:
     from tester.export.verify import Verification
-
-EXIT_DIFFERS = 1
-EXIT_INCOMPLETE = 6
 
 
 def _hash(_context: click.Context, _parameter: click.Parameter, value: str) -> str:
@@ -41,7 +39,7 @@ def verify(run: str, head: str, as_json: bool) -> int:
 
     folder = run_folder(run)
     found = check(folder, head)
-    code = EXIT_DIFFERS if found.problems else 0 if found.status.over else EXIT_INCOMPLETE
+    code = EXIT_FAILED if found.problems else EXIT_DONE if found.status.over else EXIT_INCOMPLETE
     if as_json:
         print_json(_record(folder.name, found, code))
     elif not found.problems:

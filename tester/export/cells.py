@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from math import isfinite
 
-from tester.plain import harmless
+from tester.base.plain import harmless
 
 BOM = b"\xef\xbb\xbf"
 
@@ -52,8 +52,10 @@ def exact(value: float) -> Number:
     return Number(repr(value)) if isfinite(value) else Number("")
 
 
-def nominal(value: float) -> Number:
-    """Return a setpoint: an integer where it is integral (to a millionth), else the shortest decimal."""
+def nominal(value: float | str) -> str:
+    """Return a setpoint: an integer where it is integral (to a millionth), else the shortest decimal; or a choice."""
+    if isinstance(value, str):
+        return value
     rounded = round(value, 6)
     return Number(int(rounded)) if rounded == int(rounded) else Number(repr(rounded))
 

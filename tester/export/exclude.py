@@ -6,17 +6,19 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
-from tester import __version__, clock
+from tester import __version__
+from tester.base import clock
+from tester.base.lock import RUN_LOCK, ExclusiveUse, RigInUseError
+from tester.base.plain import plain_text
+from tester.base.trouble import in_words
 from tester.export import write_all
+from tester.export.formats import FORMATS
 from tester.export.manifest import MANIFEST, manifest_problems
-from tester.lock import RUN_LOCK, ExclusiveUse, RigInUseError
-from tester.plain import plain_text
 from tester.store.exclusions import add_exclusion, standing
-from tester.store.reader import RunReader
+from tester.store.reader import DATABASE, RunReader
 from tester.store.records import StoredExclusion, StoredRepeat
-from tester.trouble import in_words
 
-MADE_ANEW = frozenset({"run.db", "appendix.csv", "conditions.csv", "repeats.csv", "wheel.csv", "wear.csv"})
+MADE_ANEW = frozenset({DATABASE, *(one.file for one in FORMATS.values() if one.kept is not None)})
 """Files of a run's folder that an exclusion changes, beside the manifest."""
 LONGEST = 2000
 """Characters of a reason."""

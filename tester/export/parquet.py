@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import islice
 from math import isfinite
-from pathlib import Path
-from typing import Protocol, cast
+from typing import BinaryIO, Protocol, cast
 
-from tester.export.tables import RISK_COLUMN, SAMPLE_HEADER, WHOLE_COLUMNS
-from tester.process import SAMPLE_COLUMNS
+from tester.export.tables import OWNER, RISK_COLUMN
+from tester.quantities import Channel
 from tester.store.arrow import arrow_module
 from tester.store.reader import RunReader, SampleBlock
 from tester.store.records import StoredRepeat
@@ -19,13 +18,10 @@ _BLOCKS_PER_GROUP = 128
 
 _WHAT = "the format parquet"
 
-
-_REAL_COLUMNS = frozenset(SAMPLE_COLUMNS) - WHOLE_COLUMNS
-
 _Columns = dict[str, list[float | None]]
 
 
-class _Arrow(Protocol):
+class _ParquetModules(Protocol):
     """What is used of pyarrow, which has no type information."""
 
     def schema(self, fields: list[tuple[str, object]]) -> object: ...
@@ -42,28 +38,29 @@ class _ParquetWriter(Protocol):
 
 
 class _Parquet(Protocol):
-    def ParquetWriter(self, where: Path, schema: object) -> _ParquetWriter: ...  # noqa: N802
+    def ParquetWriter(self, where: BinaryIO, schema: object) -> _ParquetWriter: ...  # noqa: N802
 
 
-def write_parquet(reader: RunReader, path: Path) -> None:
-    """Write every recorded sample to ``path``: float64 columns named as in samples.csv, ids as int64.
+def write_parquet(reader: RunReader, file: BinaryIO) -> None:
+    """Write every recorded sample to ``file``: float64 columns named as in samples.csv, ids as int64.
 
     Condition, repeat and attempt are null for samples of no repeat. A run for which a risk was accepted has one column
     more, which names it, as its other tables have. Raises StoreError, OSError, and MissingExtraError
     without pyarrow.
     """
-    pa = cast(_Arrow, arrow_module("pyarrow", _WHAT))
+    pa = cast(_ParquetModules, arrow_module("pyarrow", _WHAT))
     pq = cast(_Parquet, arrow_module("pyarrow.parquet", _WHAT))
     owners = {repeat.key: repeat for repeat in reader.repeats(attempts=True)}
     whole, real = pa.int64(), pa.float64()
-    fields = [(name, real if name in _REAL_COLUMNS else whole) for name in SAMPLE_HEADER]
+    channels = reader.quantities().recorded
+    fields = [(one.name, whole if one.whole else real) for one in channels] + [(name, whole) for name in OWNER]
     risk = reader.run().info.risk
     if risk:
         fields.append((RISK_COLUMN, pa.string()))
     schema = pa.schema(fields)
-    with pq.ParquetWriter(path, schema) as writer:
+    with pq.ParquetWriter(file, schema) as writer:
         for group in _groups(reader.sample_blocks()):
-            columns: dict[str, list[float | None] | list[str]] = {**_columns(group, owners)}
+            columns: dict[str, list[float | None] | list[str]] = {**_columns(group, owners, channels)}
             if risk:
                 columns[RISK_COLUMN] = [risk] * sum(block.rows for block in group)
             writer.write_table(pa.table(columns, schema=schema))
@@ -74,14 +71,14 @@ def _groups(blocks: Iterator[SampleBlock]) -> Iterator[list[SampleBlock]]:
         yield group
 
 
-def _columns(group: list[SampleBlock], owners: dict[int, StoredRepeat]) -> _Columns:
-    columns: _Columns = {name: [] for name in SAMPLE_HEADER}
+def _columns(group: list[SampleBlock], owners: dict[int, StoredRepeat], channels: tuple[Channel, ...]) -> _Columns:
+    columns: _Columns = {name: [] for name in (*(one.name for one in channels), *OWNER)}
     for block in group:
-        for name in SAMPLE_COLUMNS:
-            values = block.columns[name]
-            columns[name].extend(values if name in _REAL_COLUMNS else map(_whole, values))
+        for one in channels:
+            values = block.columns[one.name]
+            columns[one.name].extend(map(_whole, values) if one.whole else values)
         owner = owners.get(block.repeat_key)
-        for name in SAMPLE_HEADER[len(SAMPLE_COLUMNS) :]:
+        for name in OWNER:
             value = None if owner is None else getattr(owner, name)
             columns[name].extend([value] * block.rows)
     return columns

@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Callable, Iterable, Iterator
-from io import StringIO
+from collections.abc import Iterable, Iterator
+from io import BytesIO, StringIO
 from itertools import zip_longest
 from math import isclose, isfinite
 from pathlib import Path
 
-from tester.analysis.blocks import AVERAGED, blocks_from_samples
+from tester.analysis.blocks import blocks_from_samples
 from tester.analysis.reduce import reduce_repeat
-from tester.analysis.results import RepeatResult, RepeatStatus
-from tester.export import appendix, conditions, repeats, wear, wheels
-from tester.export.results import RunResults
+from tester.analysis.results import RepeatResult, RepeatStatus, flags_in
+from tester.export.formats import FORMATS, Record
 from tester.store.reader import RunReader
 from tester.store.records import ConditionInfo, StoredRepeat
 
@@ -21,14 +20,7 @@ TOLERANCE = 1e-9
 """Relative. Stored are doubles, bit by bit; a mean over a revolution is summed in another order, and merged parts have
 their times put back on a grid of a microsecond."""
 
-_FIGURES = ("mu_resultant", "mu_longitudinal", "mu_lateral", *AVERAGED)
-_TABLES: dict[str, Callable[[RunResults], Iterator[bytes]]] = {
-    "appendix.csv": appendix,
-    "conditions.csv": conditions,
-    "repeats.csv": repeats,
-    "wheel.csv": wheels,
-    "wear.csv": wear,
-}
+_FIGURES = ("mu_resultant", "mu_longitudinal", "mu_lateral")
 
 
 def coefficient_problems(reader: RunReader) -> tuple[int, list[str]]:
@@ -48,8 +40,9 @@ def coefficient_problems(reader: RunReader) -> tuple[int, list[str]]:
 
 def _recomputed(reader: RunReader, one: StoredRepeat, info: ConditionInfo) -> RepeatResult:
     samples = reader.samples(one.condition, one.repeat, one.attempt)
-    rolling = info.slip_velocity_m_s == 0.0
-    return reduce_repeat(blocks_from_samples(samples), info.window_revolutions, info.window_s, rolling=rolling)
+    rolling = "rolling" in flags_in(one.result.flags)
+    blocks = blocks_from_samples(samples, reader.quantities())
+    return reduce_repeat(blocks, info.window_revolutions, info.window_s, rolling=rolling)
 
 
 def _differing(one: StoredRepeat, again: RepeatResult) -> Iterator[str]:
@@ -57,8 +50,9 @@ def _differing(one: StoredRepeat, again: RepeatResult) -> Iterator[str]:
     if not isfinite(again.mu_resultant):
         yield f"{place}: its samples give no coefficient, on record is {one.result.mu_resultant:.6g}"
         return
-    for name in _FIGURES:
-        stored, found = getattr(one.result, name), getattr(again, name)
+    said, by_samples = _figures(one.result), _figures(again)
+    for name, stored in said.items():
+        found = by_samples[name]
         if not isclose(stored, found, rel_tol=TOLERANCE, abs_tol=TOLERANCE) and (isfinite(stored) or isfinite(found)):
             yield f"{place}: {name} is {found:.6g} by its samples, on record is {stored:.6g}"
     if one.result.revolutions != again.revolutions:
@@ -67,17 +61,23 @@ def _differing(one: StoredRepeat, again: RepeatResult) -> Iterator[str]:
         yield f"{place}: {again.status.value} by its samples ({again.reason}), on record is valid"
 
 
-def table_problems(folder: Path, results: RunResults) -> Iterator[tuple[str, str]]:
+def _figures(result: RepeatResult) -> dict[str, float]:
+    return {name: getattr(result, name) for name in _FIGURES} | dict(result.means)
+
+
+def table_problems(folder: Path, record: Record) -> Iterator[tuple[str, str]]:
     """Yield the tables of a folder that do not say what the record does, each with a line that says so."""
-    for name, made in _TABLES.items():
-        path = folder / name
-        if path.is_file():
+    for kind in FORMATS.values():
+        path = folder / kind.file
+        if kind.kept is not None and path.is_file():
+            made = BytesIO()
+            kind.write(record, made)
             try:
-                found = _first_difference(path.read_text("utf-8-sig"), b"".join(made(results)).decode("utf-8-sig"))
+                found = _first_difference(path.read_text("utf-8-sig"), made.getvalue().decode("utf-8-sig"))
             except (UnicodeDecodeError, csv.Error):
                 found = "it cannot be read"
             if found:
-                yield name, f"{name}: not what the record says: {found}"
+                yield kind.file, f"{kind.file}: not what the record says: {found}"
 
 
 def _first_difference(there: str, by_record: str) -> str:

@@ -3,21 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import groupby
 from math import isfinite
 
+from tester.analysis.closest import Combining, combining_of
+from tester.analysis.measurand import pooled, with_budget, with_budget_of_replicates
 from tester.analysis.repeats import ConditionResult, combine_repeats, combine_replicates
 from tester.analysis.results import CARRY_OVER, IMPRECISE, NOT_SHOWN, SHORT, ConditionStatus
-from tester.analysis.uncertainty import Instruments, instruments_of
-from tester.analysis.wear import ConditionWear, WearRate, condition_wear, wheel_wear
+from tester.analysis.wear import ConditionWear, WearRate, condition_wear, wear_rate
 from tester.analysis.wear_check import WearCheck
-from tester.axes import condition_words
+from tester.axes import Axes, condition_words
+from tester.export.surroundings import SurroundingsOf
+from tester.quantities import Quantities
+from tester.store import older
 from tester.store.catalogue import under_way
 from tester.store.exclusions import standing
 from tester.store.reader import RunReader
-from tester.store.records import ConditionInfo, StoredCondition, StoredExclusion, StoredRepeat, StoredRun, WheelInfo
-from tester.store.schema import StoreError
+from tester.store.records import ConditionInfo, PieceInfo, StoredCondition, StoredExclusion, StoredRepeat, StoredRun
 from tester.store.status import RunStatus, run_status
 
 
@@ -70,7 +73,7 @@ class TableRow:
             c = measured.condition
             if not measured.result.ok and isfinite(c.warming_k_s) and not c.reason:
                 parts.append(f"warming {c.warming_k_s:.2g} K/s; {c.holdable_band_k:.2g} K of band would do")
-        return ": ".join([condition_words(self.info), *[part for part in parts if part]])
+        return ": ".join([condition_words(self.info.setpoint), *[part for part in parts if part]])
 
     def advise(self) -> str:
         """Return what is wrong with the row, or to be taken with care, and what to do about it, for people."""
@@ -82,7 +85,7 @@ class TableRow:
 
 
 _WHAT_TO_DO: Mapping[ConditionStatus, str] = {
-    ConditionStatus.CANNOT_HOLD: "a wider temperature_band, a lower load or a lower slip_velocity would help",
+    ConditionStatus.CANNOT_HOLD: "a wider temperature_band, a lower load or a lower speed would help",
     ConditionStatus.NOT_REACHED: "check heating and cooling, or allow more time (soak.at_most)",
     ConditionStatus.INSUFFICIENT: "a wider temperature_band or more max_bursts would help",
     ConditionStatus.PENDING: "tester resume goes on with the run",
@@ -110,28 +113,41 @@ class RunResults:
     rows: tuple[TableRow, ...]
     status: RunStatus
     """How the run stood when this was read."""
-    wheels: tuple[WheelInfo, ...] = ()
+    quantities: Quantities
+    """The record's own channels."""
+    pieces: tuple[PieceInfo, ...] = ()
+    """What was mounted to be measured."""
     checks: tuple[WearCheck, ...] = ()
-    """Of the wheels' diameters, in the order in which they were made."""
+    """Of their diameters, in the order in which they were made."""
     record_head: str = ""
     """The last head of the record's chain, hexadecimal; "" where an older version recorded without one."""
 
-    def wear_of(self, wheel: int) -> WearRate:
-        """Return the wear rate over a wheel's life."""
-        return wheel_wear([one for one in self.checks if one.wheel == wheel])
+    @property
+    def axes(self) -> Axes:
+        """Return the axes of the run's conditions."""
+        return self.run.info.axes or older.AXES
+
+    @property
+    def worn(self) -> str:
+        """Return what people call what is mounted: the part of the machine that wears."""
+        return self.run.info.worn
+
+    def wear_of(self, piece: int) -> WearRate:
+        """Return the wear rate over the life of what was mounted under a number."""
+        return wear_rate([one for one in self.checks if one.piece == piece])
 
     def condition_wear(self, condition: int) -> ConditionWear | None:
-        """Return what a condition took off its wheel; None where no check says."""
+        """Return what a condition took off; None where no check says."""
         return condition_wear(self.checks, condition) if self.checks else None
 
     def wear_lines(self) -> Iterator[str]:
-        """Yield, for every wheel that was checked, its diameter and its wear rate in a line for people."""
-        for wheel in self.wheels:
-            checks = [one for one in self.checks if one.wheel == wheel.wheel]
+        """Yield, for everything mounted that was checked, its diameter and its wear rate in a line for people."""
+        for one in self.pieces:
+            checks = [check for check in self.checks if check.piece == one.piece]
             if not checks:
                 continue
-            found = wheel_wear(checks)
-            text = f"wheel {wheel.wheel} ({wheel.compound}): {wheel.diameter_mm:.3f} mm after {len(checks)} checks"
+            found = wear_rate(checks)
+            text = f"{self.worn} {one.piece} ({one.compound}): {one.diameter_mm:.3f} mm after {len(checks)} checks"
             if isfinite(found.rate):
                 text += f", wear {found.rate:.3g} ± {found.expanded:.2g} mm3/(N m)"
                 text += "" if found.resolved else ", not resolved from 0"
@@ -154,36 +170,42 @@ class RunResults:
 def results_of(reader: RunReader) -> RunResults:
     """Reduce a run's committed repeats; raises StoreError where the record cannot be read."""
     run = reader.run()
-    try:
-        instruments = instruments_of(run.info.metadata)
-    except ValueError as error:
-        raise StoreError(f"{reader.path}: {error}") from error
+    combining = combining_of(run.info.metadata)
     left_out = standing(reader.exclusions())
     repeats: dict[int, list[StoredRepeat]] = {}
     for repeat in reader.repeats():
         repeats.setdefault(repeat.condition, []).append(repeat)
+    stored = reader.conditions()
+    found = [_measured(one, repeats.get(one.info.condition, []), left_out, combining) for one in stored]
+    pieces, checks = tuple(reader.pieces()), tuple(reader.wear_checks())
+    surroundings = SurroundingsOf(reader, run, pieces, checks, pooled([one.result for one in found]))
+    for one in found:
+        surroundings.add(one.info.setpoint, one.result)
     rows: list[TableRow] = []
-    for _, group in groupby(reader.conditions(), key=lambda stored: stored.info.row):
+    for _, group in groupby(found, key=lambda one: one.info.row):
         replicates = tuple(
-            _measured(stored, repeats.get(stored.info.condition, []), instruments, left_out) for stored in group
+            replace(one, result=with_budget(one.result, surroundings.of(one.info, one.repeats, one.result)))
+            for one in group
         )
         if len(replicates) == 1:
             rows.append(TableRow(replicates, replicates[0].result))
-        else:
-            combined = combine_replicates([m.result for m in replicates], instruments=instruments)
-            rows.append(TableRow(replicates, combined))
+            continue
+        results = [one.result for one in replicates]
+        combined = combine_replicates(results)
+        measured = [repeat for one in replicates for repeat in one.repeats]
+        by = surroundings.of(replicates[0].info, measured, combined)
+        rows.append(TableRow(replicates, with_budget_of_replicates(combined, results, by)))
     missing = any(not row.result.ok for row in rows)
     held = under_way(reader.path.parent) is not None
     status = run_status(run.status, held=held, missing=missing)
-    wheels, checks = tuple(reader.wheels()), tuple(reader.wear_checks())
-    return RunResults(run, tuple(rows), status, wheels, checks, reader.record_head())
+    return RunResults(run, tuple(rows), status, reader.quantities(), pieces, checks, reader.record_head())
 
 
 def _measured(
     stored: StoredCondition,
     repeats: list[StoredRepeat],
-    instruments: Instruments,
     left_out: dict[tuple[int, int, int], StoredExclusion],
+    combining: Combining,
 ) -> Measured:
     info = stored.info
     by_hand = {i: left_out[one.target] for i, one in enumerate(repeats) if one.target in left_out}
@@ -195,6 +217,6 @@ def _measured(
         reason=stored.reason,
         judged=stored.judged,
         by_hand={i: one.reason for i, one in by_hand.items()},
-        instruments=instruments,
+        combining=combining,
     )
     return Measured(stored, tuple(repeats), result, by_hand)

@@ -10,25 +10,16 @@ from collections.abc import Iterator
 from dataclasses import fields
 from math import isnan
 
-from tester.analysis.blocks import AVERAGED
 from tester.analysis.repeats import ConditionResult
 from tester.analysis.wear import ConditionWear
 from tester.analysis.wear_check import WearCheck
-from tester.axes import AXES, columns
 from tester.export.cells import Cell, Number, exact, nominal
 from tester.export.results import Measured, RunResults
-from tester.process import SAMPLE_COLUMNS
+from tester.quantities import Means, Quantities
 from tester.store.reader import RunReader
 from tester.store.records import ConditionInfo, RunInfo, StoredRepeat
 
-_SETPOINTS = (
-    "specimen",
-    "replicate",
-    "grid",
-    "compound",
-    "note",
-    *(axis.column for axis in AXES),
-)
+_OF_CONDITION = ("specimen", "replicate", "grid", "compound", "note")
 
 _CONDITION = (
     "status",
@@ -49,7 +40,12 @@ _CONDITION = (
     "drift_percent",
     "drift_bound_percent",
     "trend_percent",
+    "mu_corrected",
 )
+
+_COMPOUND = ("u_standard_compound", "u_expanded_compound", "coverage_factor_compound")
+"""Of the compound: what any piece of it would show. Before them stands the expanded uncertainty of this piece in this
+condition once more, under its name: that of ``u_expanded``."""
 
 _REPEAT = (
     "status",
@@ -72,21 +68,17 @@ _REPEAT = (
     "ended_s",
 )
 
-_MEASURED = tuple("measured_slip_mm_s" if name == "slip_m_s" else f"measured_{name}" for name in AVERAGED)
-
 _WEAR = ("diameter_before_mm", "diameter_after_mm", "u_worn_mm", "wear_mm3_n_m", "wear_u_expanded")
-"""Of a condition that lies between two checks of its wheel. ``u_worn_mm``: standard, of the difference."""
+"""Of a condition that lies between two checks of a diameter. ``u_worn_mm``: standard, of the difference."""
 
-_CHECK = tuple(field.name for field in fields(WearCheck))
+_CHECK = tuple(field.name for field in fields(WearCheck) if field.name != "piece")
 
 HEAD_COLUMN = "record_head"
 RISK_COLUMN = "accepted_risk"
 """Last column of every table of a run for which a risk was accepted; ``conditions.csv`` has it among the metadata."""
 
-WHOLE_COLUMNS = frozenset({"gate", "burst", "repeat_key"})
-"""Columns of a sample whose values are whole numbers."""
-
-SAMPLE_HEADER: tuple[str, ...] = (*SAMPLE_COLUMNS, "condition", "repeat", "attempt")
+OWNER = ("condition", "repeat", "attempt")
+"""Last columns of the samples: whose they are."""
 
 
 def marked(rows: Iterator[tuple[Cell, ...]], run: RunInfo) -> Iterator[tuple[Cell, ...]]:
@@ -104,74 +96,76 @@ def appendix_rows(results: RunResults, decimals: int = 2) -> Iterator[tuple[Cell
 
     The paper's six columns, and one more for every axis that is off its default in any condition of the recipe.
     """
-    axes = columns(row.info for row in results.rows)
+    axes = results.axes.columns(row.info.setpoint for row in results.rows)
     yield ("Formula", *(axis.header for axis in axes), "Friction Coefficient")
     for row in results.rows:
         if row.result.ok:
             yield (
                 row.info.compound,
-                *(nominal(axis.of(row.info)) for axis in axes),
+                *(nominal(axis.of(row.info.setpoint)) for axis in axes),
                 Number(f"{row.result.mu_resultant:.{decimals}f}"),
             )
 
 
 def condition_rows(results: RunResults) -> Iterator[tuple[Cell, ...]]:
-    """Yield one row for each condition, and for one measured on several wheels a row that combines them.
+    """Yield one row for each condition, and for one measured in replicates a row that combines them.
 
     ``level`` is ``condition`` or ``combined``; what the recipe says of the test follows, a column each, and last the
     head of the record's chain: empty for a simulated run, which its seed proves, byte for byte.
     """
     metadata = dict(sorted(results.run.info.metadata.items()))
     last = (*metadata.values(), "" if results.run.info.simulated else results.record_head)
-    own = ("level", "condition", *_SETPOINTS, *_CONDITION, "warming_k_s", "holdable_band_k", *_MEASURED, *_WEAR)
+    rate = ("warming_k_s", "holdable_band_k")
+    means = _measured_header(results.quantities)
+    own = ("level", "condition", *setpoint_header(results), *_CONDITION, *_measurands(results), *rate, *means, *_WEAR)
     yield (*own, *(key if key not in (*own, HEAD_COLUMN) else f"recipe_{key}" for key in metadata), HEAD_COLUMN)
     for row in results.rows:
         for measured in row.replicates:
-            rate = (measured.condition.warming_k_s, measured.condition.holdable_band_k)
-            setpoints = _setpoints(measured.info, measured.info.replicate)
-            result = _condition(measured.result)
+            held = (measured.condition.warming_k_s, measured.condition.holdable_band_k)
+            held_at = setpoints(measured.info, measured.info.replicate)
+            result = _condition(measured.result, results.quantities)
             wear = _wear(results.condition_wear(measured.info.condition))
-            cells = (*setpoints, *result[0], *rate, *result[1], *wear)
+            cells = (*held_at, *result[0], *held, *result[1], *wear)
             yield ("condition", measured.info.condition, *cells, *last)
         if len(row.replicates) > 1:
-            result = _condition(row.result)
-            setpoints = _setpoints(row.info, None)
-            yield ("combined", None, *setpoints, *result[0], None, None, *result[1], *_wear(None), *last)
+            result = _condition(row.result, results.quantities)
+            held_at = setpoints(row.info, None)
+            yield ("combined", None, *held_at, *result[0], None, None, *result[1], *_wear(None), *last)
 
 
 def repeat_rows(results: RunResults) -> Iterator[tuple[Cell, ...]]:
     """Yield one row for each committed repeat: its last attempt."""
-    yield ("condition", "repeat", "attempt", "wheel", *_SETPOINTS, *_REPEAT, *_MEASURED)
+    held = setpoint_header(results)
+    yield ("condition", "repeat", "attempt", results.worn, *held, *_REPEAT, *_measured_header(results.quantities))
     for measured in results.conditions():
         for repeat in measured.repeats:
             yield (
                 repeat.condition,
                 repeat.repeat,
                 repeat.attempt,
-                repeat.wheel,
-                *_setpoints(measured.info, measured.info.replicate),
-                *_repeat(measured, repeat),
+                repeat.piece,
+                *setpoints(measured.info, measured.info.replicate),
+                *_repeat(measured, repeat, results.quantities),
             )
 
 
-def wheel_rows(results: RunResults) -> Iterator[tuple[Cell, ...]]:
-    """Yield one row for each wheel: what it was and is, and its wear rate over all its checks (95 % interval)."""
-    own = ("wheel", "specimen", "replicate", "compound", "installed_diameter_mm", "diameter_mm", "sliding_m")
-    yield (*own, "checks", "wear_mm3_n_m", "wear_u_standard", "wear_u_expanded")
-    for wheel in results.wheels:
-        found = results.wear_of(wheel.wheel)
-        yield (*(getattr(wheel, name) for name in own), found.checks, found.rate, found.standard, found.expanded)
+def piece_rows(results: RunResults) -> Iterator[tuple[Cell, ...]]:
+    """Yield one row for each piece that was mounted: what it was and is, and its wear rate over all its checks (95 %
+    interval)."""
+    own = ("specimen", "replicate", "compound", "installed_diameter_mm", "diameter_mm", "sliding_m")
+    yield (results.worn, *own, "checks", "wear_mm3_n_m", "wear_u_standard", "wear_u_expanded")
+    for one in results.pieces:
+        found = results.wear_of(one.piece)
+        cells = (getattr(one, name) for name in own)
+        yield (one.piece, *cells, found.checks, found.rate, found.standard, found.expanded)
 
 
 def check_rows(results: RunResults) -> Iterator[tuple[Cell, ...]]:
-    """Yield one row for each check of a wheel's diameter; ``before`` and ``after`` are conditions, empty for none."""
-    yield _CHECK
+    """Yield one row for each check of a diameter; ``before`` and ``after`` are conditions, empty for none."""
+    yield (results.worn, *_CHECK)
     for check in results.checks:
-        yield tuple(None if name in ("before", "after") and not value else value for name, value in _cells(check))
-
-
-def _cells(check: WearCheck) -> Iterator[tuple[str, Cell]]:
-    return ((name, getattr(check, name)) for name in _CHECK)
+        cells = ((name, getattr(check, name)) for name in _CHECK)
+        yield (check.piece, *(None if name in ("before", "after") and not value else value for name, value in cells))
 
 
 def _wear(found: ConditionWear | None) -> tuple[Cell, ...]:
@@ -182,16 +176,14 @@ def _wear(found: ConditionWear | None) -> tuple[Cell, ...]:
 
 def sample_rows(reader: RunReader) -> Iterator[tuple[Cell, ...]]:
     """Yield every recorded sample with the condition, repeat and attempt it belongs to (empty: none)."""
-    yield SAMPLE_HEADER
+    channels = reader.quantities().recorded
+    yield (*(one.name for one in channels), *OWNER)
     owners = {repeat.key: repeat for repeat in reader.repeats(attempts=True)}
     for block in reader.sample_blocks():
         owner = owners.get(block.repeat_key)
         ids = (owner.condition, owner.repeat, owner.attempt) if owner is not None else (None, None, None)
         columns = [
-            [_whole(value) for value in block.columns[name]]
-            if name in WHOLE_COLUMNS
-            else [exact(value) for value in block.columns[name]]
-            for name in SAMPLE_COLUMNS
+            [_whole(value) if one.whole else exact(value) for value in block.columns[one.name]] for one in channels
         ]
         for cells in zip(*columns, strict=True):
             yield (*cells, *ids)
@@ -201,19 +193,37 @@ def _whole(value: float) -> Number:
     return Number("") if isnan(value) else Number(int(value))
 
 
-def _setpoints(i: ConditionInfo, replicate: int | None) -> tuple[Cell, ...]:
+def _measurands(results: RunResults) -> tuple[str, ...]:
+    return (f"u_expanded_this_{results.worn}", *_COMPOUND)
+
+
+def setpoint_header(results: RunResults) -> tuple[str, ...]:
+    """Return the columns that say which condition a row is of."""
+    return (*_OF_CONDITION, *(axis.column for axis in results.axes))
+
+
+def setpoints(i: ConditionInfo, replicate: int | None) -> tuple[Cell, ...]:
+    """Return their cells; ``replicate`` None for what stands for all replicates."""
     return (
         i.specimen,
         replicate,
         i.grid,
         i.compound,
         i.note,
-        *(nominal(axis.of(i)) for axis in AXES),
+        *(nominal(axis.of(i.setpoint)) for axis in i.setpoint.axes),
     )
 
 
-def _condition(r: ConditionResult) -> tuple[tuple[Cell, ...], tuple[Cell, ...]]:
-    """Return the cells of _CONDITION and of _MEASURED."""
+def _measured_header(quantities: Quantities) -> tuple[str, ...]:
+    return tuple(one.measured_column for one in quantities.averaged)
+
+
+def _measured(means: Means, quantities: Quantities) -> tuple[Cell, ...]:
+    return tuple(one.scaled(means.get(one.name)) for one in quantities.averaged)
+
+
+def _condition(r: ConditionResult, quantities: Quantities) -> tuple[tuple[Cell, ...], tuple[Cell, ...]]:
+    """Return the cells of _CONDITION, of the measurands, and of what was measured."""
     found = (
         r.status.value,
         r.reason,
@@ -233,12 +243,17 @@ def _condition(r: ConditionResult) -> tuple[tuple[Cell, ...], tuple[Cell, ...]]:
         r.drift_percent,
         r.drift_bound_percent,
         r.trend_percent,
+        r.mu_corrected,
+        r.expanded,
+        r.compound_budget.standard,
+        r.compound_budget.expanded,
+        r.compound_budget.coverage,
     )
-    return found, tuple(_scaled(name, r.measured.get(name)) for name in AVERAGED)
+    return found, _measured(r.measured, quantities)
 
 
-def _repeat(measured: Measured, repeat: StoredRepeat) -> tuple[Cell, ...]:
-    """Return the cells of _REPEAT and of _MEASURED."""
+def _repeat(measured: Measured, repeat: StoredRepeat, quantities: Quantities) -> tuple[Cell, ...]:
+    """Return the cells of _REPEAT and of what was measured."""
     r = repeat.result
     exclusion = measured.exclusion(repeat)
     return (
@@ -260,9 +275,5 @@ def _repeat(measured: Measured, repeat: StoredRepeat) -> tuple[Cell, ...]:
         r.bursts,
         r.started_s,
         r.ended_s,
-        *(_scaled(name, getattr(r, name)) for name in AVERAGED),
+        *_measured(r.means, quantities),
     )
-
-
-def _scaled(name: str, value: float | None) -> float | None:
-    return 1e3 * value if name == "slip_m_s" and value is not None else value

@@ -6,11 +6,13 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from tester import __version__
+from tester.base.source import InvalidSource, read_tree
+from tester.base.trouble import in_words
 from tester.export.exclude import is_unfinished
+from tester.export.formats import Record
 from tester.export.manifest import MANIFEST, manifest_head, manifest_problems
 from tester.export.recomputed import coefficient_problems, table_problems
-from tester.export.results import RunResults, results_of
-from tester.source import InvalidSource, read_tree
+from tester.export.results import RunResults
 from tester.store.catalogue import under_way
 from tester.store.chain import ChainFound
 from tester.store.exclusions import problems as exclusion_problems
@@ -20,7 +22,6 @@ from tester.store.records import StoredExclusion, StoredRun
 from tester.store.schema import StoreError
 from tester.store.statements import calibration_sha256, text_sha256
 from tester.store.status import RunStatus
-from tester.trouble import in_words
 
 LISTED = 5
 """The newest rows since a kept head that are named."""
@@ -54,7 +55,8 @@ def verify(folder: Path, kept: str = "") -> Verification:
     problems = _manifest(folder)
     try:
         with RunReader(folder) as reader:
-            results = results_of(reader)
+            record = Record(reader)
+            results = record.results
             run = results.run
             chain = reader.chain()
             problems += _chain(chain, kept)
@@ -64,7 +66,7 @@ def verify(folder: Path, kept: str = "") -> Verification:
                 problems += _finished(folder, results, chain)
                 if _made_by(reader) == __version__:  # another version may write other tables of the same record
                     told = {problem.partition(":")[0] for problem in problems}
-                    problems += [line for name, line in table_problems(folder, results) if name not in told]
+                    problems += [line for name, line in table_problems(folder, record) if name not in told]
                 coefficients, differing = coefficient_problems(reader)
                 problems += differing
             problems += [f"run.db: {problem}" for problem in reader.integrity_problems()]

@@ -2,24 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 
-from tester.axes import condition_words
-from tester.recipe.cost import StepEstimate
 from tester.recipe.estimate import Estimate
-from tester.recipe.plan import (
-    ConditionStep,
-    Cool,
-    Heat,
-    Install,
-    Plan,
-    PreGrind,
-    Prompt,
-    Rest,
-    Step,
-    Window,
-)
+from tester.recipe.part import RecipePart
+from tester.recipe.plan import ConditionStep, Plan, Step, Window
 
 _WIDTH = 76
 """Columns of a line before its duration."""
@@ -33,21 +20,21 @@ def duration(seconds: float) -> str:
     return f"{minutes} min" if minutes < 100 else f"{minutes // 60} h {minutes % 60:02d} min"
 
 
-def lines(plan: Plan, estimate: Estimate) -> Iterator[str]:
+def lines(plan: Plan, estimate: Estimate, part: RecipePart) -> Iterator[str]:
     """Yield the plan line by line: every step with its duration, then the totals."""
     yield plan.name
-    replicated = any(one.replicate > 1 for one in plan.wear)
     for step, one in zip(plan.steps, estimate.steps, strict=True):
-        if isinstance(step, Install):
+        heading = part.heading(plan, step)
+        if heading:
             yield ""
-            yield f"wheel {step.wheel}: {_wheel(plan, step, replicated)}"
-        text = f"{_indent(step)}{words(step, one)}"
+            yield heading
+        text = f"{_indent(step)}{part.words(step, one)}"
         yield f"{text:<{_WIDTH}} {duration(one.seconds):>10}" if one.seconds else text
     yield ""
-    yield from totals(plan, estimate)
+    yield from totals(plan, estimate, part)
 
 
-def totals(plan: Plan, estimate: Estimate) -> Iterator[str]:
+def totals(plan: Plan, estimate: Estimate, part: RecipePart) -> Iterator[str]:
     """Yield what the plan comes to, one figure a line."""
     conditions = list(plan.conditions())
     repeats = sum(step.repeats for step in conditions)
@@ -55,38 +42,7 @@ def totals(plan: Plan, estimate: Estimate) -> Iterator[str]:
     least, most = duration(estimate.rig_seconds_low), duration(estimate.rig_seconds_high)
     yield f"rig time          {duration(estimate.rig_seconds)} ({least} to {most} in 95 % of runs)"
     yield f"sliding distance  {estimate.sliding_m:.0f} m"
-    wheels = "wheel" if estimate.wheels == 1 else "wheels"
-    yield f"wear              {estimate.loss_mm:.2f} mm of diameter on {estimate.wheels} {wheels}"
-    yield f"                  (a wheel is replaced after {plan.replace_after_mm:g} mm)"
-    if math.isfinite(estimate.peak_c):
-        yield f"peak temperature  {estimate.peak_c:.0f} degC on the rubber"
-    if estimate.not_held:
-        listed = ", ".join(str(number) for number in estimate.not_held[:20])
-        more = f" and {len(estimate.not_held) - 20} more" if len(estimate.not_held) > 20 else ""
-        yield f"not expected to hold their temperature for one revolution: conditions {listed}{more}"
-
-
-def words(step: Step, one: StepEstimate) -> str:
-    """Return one line that says what a step does."""
-    match step:
-        case Install():
-            return f"install wheel {step.wheel}"
-        case PreGrind():
-            speeds = f"{step.wheel_speed_m_s:g} / {step.belt_speed_m_s:g} m/s"
-            return f"pre-grind {duration(step.duration_s)}, {step.load_n:g} N, wheel / belt {speeds}"
-        case Rest():
-            least = f"rest at least {duration(step.at_least_s)}" if step.at_least_s else "rest"
-            return least if step.until_c is None else f"{least}, to {step.until_c:g} degC +- {step.within_k:g} K"
-        case Heat():
-            return f"heat to {step.temperature_c:g} degC"
-        case ConditionStep():
-            held = condition_words(step.setpoint, compound=False)
-            bursts = f", {one.bursts} bursts" if one.bursts > 1 else ""
-            return f"{step.condition:>4}  {held}  {repeats_words(step)} x {window_words(step.window)}{bursts}"
-        case Cool():
-            return f"cool the hub below {step.hub_below_c:g} degC"
-        case Prompt():
-            return f"ask: {step.text}"
+    yield from part.totals(plan, estimate)
 
 
 def repeats_words(step: ConditionStep) -> str:
@@ -101,12 +57,3 @@ def window_words(window: Window) -> str:
 
 def _indent(step: Step) -> str:
     return "    " if isinstance(step, ConditionStep) else "  "
-
-
-def _wheel(plan: Plan, step: Install, replicated: bool) -> str:
-    """Say what is on a wheel: compound, note, replicate, and what it is predicted to lose."""
-    note = f" ({step.note})" if step.note else ""
-    replicate = f", replicate {step.replicate}" if replicated else ""
-    worn = plan.wear[step.wheel - 1]
-    conditions = "1 condition" if worn.conditions == 1 else f"{worn.conditions} conditions"
-    return f"{step.compound}{note}{replicate}, {conditions}, {worn.loss_mm:.2f} mm of diameter"

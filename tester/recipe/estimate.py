@@ -1,35 +1,64 @@
-"""How long a plan takes, what it rubs off and how warm it gets: closed formulas, no simulation.
-
-The times are sums of the moves that the executor makes; those of a condition are in ``tester.recipe.cost``.
-"""
+"""How long a plan takes, what it rubs off and how warm it gets: sums of what a kind's estimator says of each step."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
-from tester.recipe.body import Body
-from tester.recipe.constants import CONSTANTS, EstimateConstants
-from tester.recipe.cost import ConditionCosts, StepEstimate
-from tester.recipe.order import Before, OrderCosts
-from tester.recipe.plan import (
-    ConditionStep,
-    Cool,
-    Heat,
-    Install,
-    Plan,
-    PreGrind,
-    Prompt,
-    Rest,
-    Step,
-)
-from tester.recipe.repeats import MADE_UP, POOLED_DF, SURE, expected
-from tester.recipe.wheel_change import TOUCH
+from tester.recipe.plan import ConditionStep, Plan
 
 if TYPE_CHECKING:
-    from tester.rig import RigConfig
+    from tester.analysis.uncertainty import Budget
+
+
+class StepEstimate(NamedTuple):
+    """What one step takes: rig time s, sliding m, rubber worn off mm, friction heat J, surface peak degC.
+
+    ``bursts``: contacts a repeat; ``held`` is False where the temperature does not hold long enough to measure.
+    ``waiting_s``: what of the time waits for a temperature, and spreads with it. ``heat_w``: friction heat in the
+    rubber during a contact. ``repeats``: expected, with those made up for. A kind leaves out what it does not
+    know.
+    """
+
+    seconds: float
+    sliding_m: float = 0.0
+    loss_mm: float = 0.0
+    friction_j: float = 0.0
+    peak_c: float = -math.inf
+    bursts: int = 0
+    held: bool = True
+    waiting_s: float = 0.0
+    heat_w: float = 0.0
+    repeats: float = 0.0
+
+
+class Estimator(Protocol):
+    """What a kind knows of the time that steps take on one rig."""
+
+    def walk(self, plan: Plan) -> Sequence[StepEstimate]:
+        """Return an estimate for every step of a plan."""
+        ...
+
+    def shut_down_s(self, plan: Plan) -> float:
+        """Return the seconds from the last step to standstill."""
+        ...
+
+    def range_s(self, plan: Plan, steps: Sequence[StepEstimate], down_s: float) -> tuple[float, float]:
+        """Return the range of the rig time, s, that is to hold 95 % of runs; ``down_s``: ``shut_down_s``."""
+        ...
+
+    def s_percent(self, compound: str) -> float:
+        """Return the standard deviation between repeats that is expected, per cent of the coefficient."""
+        ...
+
+    def budget(self, step: ConditionStep) -> tuple[float, Budget] | None:
+        """Return the coefficient expected of a condition, and what the instruments add to its uncertainty.
+
+        None for a condition without a coefficient, such as one that does not slide.
+        """
+        ...
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,17 +75,15 @@ class Estimate:
     """Range of the rig time, 95 % of runs."""
     sliding_m: float
     loss_mm: float
-    """Loss of diameter, summed over all wheels."""
+    """Rubber worn off, summed over all specimens."""
     friction_j: float
     peak_c: float
-    wheels: int
     not_held: tuple[int, ...] = field(default=())
     """Numbers of the conditions whose temperature is not expected to hold within the band."""
 
 
-def estimate(plan: Plan, rig: RigConfig, estimator: Estimator | None = None) -> Estimate:
-    """Return what a plan takes on a rig; ``estimator``: the one that expanded it, or one with other constants."""
-    estimator = estimator or Estimator(rig)
+def estimate(plan: Plan, estimator: Estimator) -> Estimate:
+    """Return what a plan takes, by its kind's estimator for the rig."""
     steps = estimator.walk(plan)
     not_held = [
         step.condition
@@ -75,211 +102,5 @@ def estimate(plan: Plan, rig: RigConfig, estimator: Estimator | None = None) -> 
         loss_mm=math.fsum(one.loss_mm for one in steps),
         friction_j=math.fsum(one.friction_j for one in steps),
         peak_c=max((one.peak_c for one in steps), default=-math.inf),
-        wheels=sum(isinstance(step, Install) for step in plan.steps),
         not_held=tuple(not_held),
     )
-
-
-def predicted_loss_mm(step: ConditionStep, rig: RigConfig) -> float:
-    """Return the loss of diameter, mm, that a condition is expected to cost."""
-    return Estimator(rig).condition(step).loss_mm
-
-
-def _precision_range_s(plan: Plan, steps: Sequence[StepEstimate]) -> tuple[float, float]:
-    """Return by how much sooner and later, s, precisions are reached that a run's own deviation decides."""
-    sooner_s = later_s = 0.0
-    least, most = SURE
-    for step, one in zip(plan.steps, steps, strict=True):
-        if isinstance(step, ConditionStep) and step.until_percent is not None and one.repeats:
-            moves_s = one.seconds - one.waiting_s
-            sooner_s += (1.0 - min(max(least * least, step.repeats / one.repeats), 1.0)) * moves_s
-            later_s += (max(min(most * most, step.at_most / one.repeats), 1.0) - 1.0) * moves_s
-    return sooner_s, later_s
-
-
-class Estimator:
-    """Estimates for one rig; the costs of conditions are remembered."""
-
-    def __init__(
-        self,
-        rig: RigConfig,
-        constants: EstimateConstants = CONSTANTS,
-        repeatability: Mapping[str, float] | None = None,
-    ) -> None:
-        """Work out what depends on the rig alone. ``repeatability``: s between repeats, per cent, by compound."""
-        self.constants = constants
-        self.ambient_c = rig.ambient_c
-        self.cool_c, self.cool_at_most_s = rig.interlocks.cooldown_hub_c, rig.interlocks.cooldown_at_most_s
-        self.parts = rig.simulated
-        """Each specimen, and each replicate of it, is a part of the run, on a rig of its own."""
-        self.person_s = 0.0 if rig.simulated else constants.person_s
-        self.body = Body(rig)
-        self.costs = ConditionCosts(rig, constants, self.body, repeatability)
-        self.order = OrderCosts(rig, constants, self.body)
-
-    def walk(self, plan: Plan) -> list[StepEstimate]:
-        """Return an estimate for every step; the wheel's temperature is carried from one to the next."""
-        compound = ""
-        part = (0, 0)
-        body_c = self.ambient_c
-        cold_rubber = False
-        last: ConditionStep | None = None
-        before = Before(self.ambient_c)
-        prompted = False
-        result: list[StepEstimate] = []
-        for place, step in enumerate(plan.steps):
-            if isinstance(step, ConditionStep):
-                one = self.condition(step)
-                looked_at = step.wear_check == "prompt"
-                if looked_at or prompted:
-                    if last is not None:
-                        body_c = self.body.steady_c(last.setpoint.temperature_c)
-                    one = self._after_person(one, step, body_c, asked=looked_at)
-                    prompted = False
-                if step.until_percent is not None:
-                    one = self._until(before, step, one)
-                one = self.order.after(before, step.setpoint, one)
-                last = step
-                result.append(one)
-                continue
-            prompted = isinstance(step, Prompt)
-            if last is not None:
-                body_c = self.body.steady_c(last.setpoint.temperature_c)
-                last = None
-            if self._begins_part(plan, place, part):
-                body_c, before = self.ambient_c, Before(self.ambient_c)
-            if cold_rubber and isinstance(step, Rest):
-                one = StepEstimate(step.at_least_s)  # new rubber is at ambient, whatever the hub below it
-            else:
-                if isinstance(step, Install):
-                    compound, part = step.compound, (step.specimen, step.replicate)
-                cold_rubber = isinstance(step, Install) or (cold_rubber and isinstance(step, Prompt))
-                if isinstance(step, Heat):
-                    before.heat(self.body.surface_c(body_c))
-                one, body_c = self._preparation(step, compound, body_c)
-            result.append(one)
-        return result
-
-    def _begins_part(self, plan: Plan, place: int, part: tuple[int, int]) -> bool:
-        """Tell whether a step is the first of a further part on a rig of its own: its wheel, or a cool-down before.
-
-        ``part``: specimen and replicate before, zeros for none. A rig of its own is at ambient, with nothing to cool.
-        """
-        if not self.parts or part == (0, 0):
-            return False
-        step = plan.steps[place]
-        if isinstance(step, Cool) and place + 1 < len(plan.steps):
-            step = plan.steps[place + 1]
-        return isinstance(step, Install) and (step.specimen, step.replicate) != part
-
-    def _until(self, before: Before, step: ConditionStep, one: StepEstimate) -> StepEstimate:
-        """Return an estimate with the repeats that a precision takes so early in a run: little is pooled yet."""
-        repeats = one.repeats
-        if one.held and before.pooled < POOLED_DF:
-            repeats = expected(step, self.costs.s_percent(step.setpoint.compound), before.pooled)
-        before.pooled += int(repeats) - 1
-        if repeats == one.repeats:
-            return one
-        share = repeats / one.repeats
-        soak_s = step.soak.for_s + self.constants.next_condition_s
-        return one._replace(
-            seconds=soak_s + share * (one.seconds - soak_s),
-            sliding_m=share * one.sliding_m,
-            loss_mm=share * one.loss_mm,
-            friction_j=share * one.friction_j,
-            waiting_s=share * one.waiting_s,
-            repeats=repeats,
-        )
-
-    def range_s(self, plan: Plan, steps: Sequence[StepEstimate], down_s: float) -> tuple[float, float]:
-        """Return the range of the rig time, s, that is to hold 95 % of runs.
-
-        What waits for temperatures follows the thermometer's bias, one for all of a session, hence adds up;
-        repeats that are made up for come one by one (Poisson); a precision's repeats follow the run's own deviation.
-        """
-        seconds, waits_s, scattered = 0.0, down_s, 0.0
-        for one in steps:
-            took_s = one.seconds
-            seconds += took_s
-            waits_s += one.waiting_s
-            if one.repeats:
-                scattered += MADE_UP * took_s * took_s / one.repeats
-        sooner_s, later_s = _precision_range_s(plan, steps)
-        seconds += down_s
-        low = seconds - (1.0 - self.constants.waits_least) * waits_s - sooner_s
-        return low, seconds + (self.constants.waits_most - 1.0) * waits_s + later_s + 2.0 * math.sqrt(scattered)
-
-    def shut_down_s(self, plan: Plan) -> float:
-        """Return the seconds from the last step to standstill: a hot jacket is cooled turning."""
-        last: dict[tuple[int, int], ConditionStep] = {}
-        for step in plan.steps:
-            if isinstance(step, ConditionStep):
-                last[(step.specimen, step.replicate) if self.parts else (0, 0)] = step
-        cool_c = self.body.mean_at_hub_c(self.cool_c)
-        return math.fsum(
-            min(
-                self.body.cooling_s(self.body.steady_c(step.setpoint.temperature_c), cool_c, turning=True),
-                self.cool_at_most_s,
-            )
-            for step in last.values()
-        )
-
-    def condition(self, step: ConditionStep) -> StepEstimate:
-        """Return what a condition takes, without the heating before it."""
-        return self.costs.of(step.setpoint, step)
-
-    def _after_person(self, one: StepEstimate, step: ConditionStep, body_c: float, *, asked: bool) -> StepEstimate:
-        """Return a condition's estimate with what a person at the wheel costs: cooling, his time, warming again.
-
-        ``asked``: the cooling and the person are not in a prompt's step before it, but in the condition's own check.
-        """
-        seconds = one.seconds
-        if asked:
-            person, body_c = self._asking(body_c)
-            seconds += person.seconds
-        warmed, _ = self._preparation(Heat(step.index, step.setpoint.temperature_c), "", body_c)
-        return one._replace(seconds=seconds + warmed.seconds)
-
-    def _asking(self, body_c: float) -> tuple[StepEstimate, float]:
-        """Return what a question at the wheel takes: cooling, turning, until it may be touched; its contact again."""
-        cool, body_c = self._preparation(TOUCH, "", body_c)
-        return StepEstimate(cool.seconds + self.person_s + self.constants.install_s), body_c
-
-    def pre_grind(self, step: PreGrind, compound: str) -> StepEstimate:
-        """Return what grinding a new wheel takes."""
-        slip = abs(step.wheel_speed_m_s - step.belt_speed_m_s)
-        power = self.costs.mu(compound, self.ambient_c, step.load_n, slip, 0.0) * step.load_n * slip
-        sliding = slip * step.duration_s
-        return StepEstimate(
-            seconds=step.duration_s + self.constants.pre_grind_moves_s,
-            sliding_m=sliding,
-            loss_mm=self.costs.ground_mm(step.load_n, sliding),
-            friction_j=power * step.duration_s,
-            peak_c=self.ambient_c + self.costs.rise_k * power * math.sqrt(step.duration_s),
-        )
-
-    def _preparation(self, step: Step, compound: str, body_c: float) -> tuple[StepEstimate, float]:
-        """Return what a step other than a condition takes, and the wheel's mean temperature after it."""
-        c = self.constants
-        match step:
-            case Install():
-                return StepEstimate(c.install_s + self.person_s), self.body.with_new_rubber(body_c)
-            case PreGrind():
-                one = self.pre_grind(step, compound)
-                return one, body_c + self.body.warmed_k(self.costs.rubber_share * one.friction_j)
-            case Rest():
-                cooled = math.inf if step.until_c is None else step.until_c + step.within_k
-                wait = max(step.at_least_s, self.body.cooling_s(body_c, cooled, turning=False))
-                wait = min(wait, step.at_most_s)
-                return StepEstimate(wait), self.body.after_c(body_c, wait)
-            case Heat():
-                seconds = self.order.heat_s(self.body.surface_c(body_c), step.temperature_c)
-                heated = StepEstimate(seconds, peak_c=step.temperature_c, waiting_s=seconds)
-                return heated, self.body.steady_c(step.temperature_c)
-            case Cool():
-                seconds = self.body.cooling_s(body_c, step.hub_below_c, turning=True)
-                return StepEstimate(seconds), min(body_c, step.hub_below_c)
-            case Prompt():
-                return self._asking(body_c)
-            case ConditionStep():
-                return self.condition(step), body_c

@@ -7,9 +7,10 @@ from pathlib import Path
 
 from pydantic import ValidationError
 
-from tester.recipe.schema import Recipe
+from tester.base.source import InvalidSource, Problem, Tree, problems_from_validation, read_tree
+from tester.recipe.part import RecipePart
+from tester.recipe.schema import Recipe, recipe_model
 from tester.recipe.semantics import semantic_problems
-from tester.source import InvalidSource, Problem, Tree, problems_from_validation, read_tree
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,24 +21,27 @@ class LoadedRecipe:
     tree: Tree
 
 
-def load_recipe(source: Path | str, name: str | None = None) -> LoadedRecipe:
+def load_recipe(source: Path | str, part: RecipePart, name: str | None = None) -> LoadedRecipe:
     """Read a recipe file (Path) or text (str); raises InvalidSource with every problem.
+
+    ``part``: of the kind that it is for.
 
     The recipe makes sense by itself; whether a rig can do it is ``tester.recipe.check``'s question.
     """
     tree, problems = read_tree(source, name)
-    recipe, more = validated(tree)
+    recipe, more = validated(tree, part)
     if recipe is None or problems or more:
         raise InvalidSource([*problems, *more])
     return LoadedRecipe(recipe, tree)
 
 
-def validated(tree: Tree) -> tuple[Recipe | None, list[Problem]]:
+def validated(tree: Tree, part: RecipePart) -> tuple[Recipe | None, list[Problem]]:
     """Return the recipe of a tree (None where a value is not valid) and the problems found."""
     if not isinstance(tree.data, dict):
         return None, [tree.problem((), "a recipe is a list of keys: recipe, specimens, measure, grids and others")]
+    model = recipe_model(part)
     try:
-        recipe = Recipe.model_validate(tree.data)
+        recipe = model.model_validate(tree.data)
     except ValidationError as error:
-        return None, problems_from_validation(error, tree, Recipe) + semantic_problems(None, tree)
-    return recipe, semantic_problems(recipe, tree)
+        return None, problems_from_validation(error, tree, model) + semantic_problems(None, tree, part)
+    return recipe, semantic_problems(recipe, tree, part)

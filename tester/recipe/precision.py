@@ -9,15 +9,16 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from math import inf, sqrt
+from typing import TypeVar
 
-from sim.slip import slip_velocity
 from tester.analysis.repeatability import Pool
-from tester.analysis.uncertainty import Contribution, friction_budget
-from tester.recipe.cost import ROLLING_M_S
+from tester.axes import condition_words
 from tester.recipe.estimate import Estimate, Estimator
 from tester.recipe.plan import ConditionStep, Plan
 from tester.recipe.repeats import HISTORIC_PERCENT, needed, reached_percent
 from tester.recipe.schema import MAX_REPEATS, Recipe, RepeatsModel
+
+AnyRecipe = TypeVar("AnyRecipe", bound=Recipe)
 
 
 class PrecisionError(Exception):
@@ -36,21 +37,26 @@ class Floor:
 
 
 def floors(plan: Plan, estimator: Estimator) -> Iterator[Floor]:
-    """Yield the floor of every condition that slips."""
-    known: dict[tuple[str, float, float, float, float, float], Floor] = {}
+    """Yield the floor of every condition that slides."""
+    known: dict[tuple[object, ...], Floor] = {}
     for step in plan.conditions():
-        sp = step.setpoint
-        slip_m_s = slip_velocity(sp.wheel_speed_m_s, sp.belt_speed_m_s, sp.sideslip_deg)[2]
-        if slip_m_s < ROLLING_M_S:
-            continue
-        key = (sp.compound, sp.temperature_c, sp.load_n, slip_m_s, sp.sideslip_deg, sp.camber_deg)
+        key = step.setpoint.compound, step.setpoint.values
         if key not in known:
-            mu = estimator.costs.mu(sp.compound, sp.temperature_c, sp.load_n, slip_m_s, sp.sideslip_deg)
-            found = friction_budget(mu, sp.load_n, slip_m_s, Contribution("repeatability", 0.0))
-            worst = max(found.contributions, key=lambda one: one.standard)
-            share = 100.0 * found.coverage / mu
-            known[key] = Floor(share * found.standard, worst.name, share * worst.standard, step)
+            found = _floor(step, estimator)
+            if found is None:
+                continue
+            known[key] = found
         yield known[key]
+
+
+def _floor(step: ConditionStep, estimator: Estimator) -> Floor | None:
+    found = estimator.budget(step)
+    if found is None:
+        return None
+    mu, budget = found
+    worst = max(budget.contributions, key=lambda one: one.standard)
+    share = 100.0 * budget.coverage / mu
+    return Floor(share * budget.standard, worst.name, share * worst.standard, step)
 
 
 def until_for_total(total_percent: float, plan: Plan, estimator: Estimator) -> float:
@@ -62,8 +68,7 @@ def until_for_total(total_percent: float, plan: Plan, estimator: Estimator) -> f
     if highest is None:
         return total_percent
     if total_percent <= highest.percent:
-        sp = highest.step.setpoint
-        where = f"{sp.compound}, {1e3 * sp.slip_velocity_m_s:g} mm/s, {sp.load_n:g} N, {sp.temperature_c:g} degC"
+        where = condition_words(highest.step.setpoint)
         largest = f"{highest.largest} {highest.largest_percent:.2f} %"
         raise PrecisionError(
             f"a total uncertainty of {total_percent:g} % cannot be reached: {where} has {highest.percent:.2f} % from "
@@ -72,7 +77,7 @@ def until_for_total(total_percent: float, plan: Plan, estimator: Estimator) -> f
     return sqrt(total_percent**2 - highest.percent**2)
 
 
-def with_precision(recipe: Recipe, percent: float) -> Recipe:
+def with_precision(recipe: AnyRecipe, percent: float) -> AnyRecipe:
     """Return a recipe that repeats each condition until its expanded repeatability is this, however often it takes."""
 
     def unbounded(repeats: RepeatsModel) -> RepeatsModel:
@@ -104,11 +109,11 @@ def precision_lines(plan: Plan, estimate: Estimate, estimator: Estimator, pools:
     for compound in dict.fromkeys(step.setpoint.compound for step in asked):
         pool = pools.get(compound)
         source = f"{pool.df} degrees of freedom in stored runs" if pool else "assumed: nothing is stored"
-        yield f"                  {compound}: s = {estimator.costs.s_percent(compound):.2g} % between repeats, {source}"
+        yield f"                  {compound}: s = {estimator.s_percent(compound):.2g} % between repeats, {source}"
     short = [step for step in asked if _short(step, estimator)]
     if short:
         step = short[0]
-        most = reached_percent(step, estimator.costs.s_percent(step.setpoint.compound))
+        most = reached_percent(step, estimator.s_percent(step.setpoint.compound))
         yield f"                  at_most {step.at_most} repeats reach {most:.2g} % only, in {len(short)} conditions"
     highest = max(floors(plan, estimator), key=lambda one: one.percent, default=None)
     if highest is not None:
@@ -118,7 +123,7 @@ def precision_lines(plan: Plan, estimate: Estimate, estimator: Estimator, pools:
 
 
 def _short(step: ConditionStep, estimator: Estimator) -> bool:
-    return needed(step.until_percent or inf, estimator.costs.s_percent(step.setpoint.compound)) > step.at_most
+    return needed(step.until_percent or inf, estimator.s_percent(step.setpoint.compound)) > step.at_most
 
 
 def s_percents(pools: Mapping[str, Pool]) -> dict[str, float]:

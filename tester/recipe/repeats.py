@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import lru_cache
 from math import inf, sqrt
-from typing import TYPE_CHECKING, Final
+from typing import Final, Protocol
 
 from tester.analysis.judge import ALONE
 from tester.analysis.quantiles import t_quantile
@@ -13,18 +13,34 @@ from tester.analysis.uncertainty import CONFIDENCE
 from tester.recipe.schema import MAX_REPEATS
 from tester.recipe.settings import LEAST_REPEATS
 
-if TYPE_CHECKING:
-    from tester.recipe.cost import Procedure
-
 MADE_UP: Final = 0.01
 """Share of good repeats that is refused and made up for, where the coefficient stands still [A]; show it with
-`python -m tests.repeats`."""
+`python -m tests.campaigns.repeats`."""
 HISTORIC_PERCENT: Final = 100.0 * REPEATABILITY
 """Standard deviation between repeats where nothing is stored, per cent of the coefficient [A]."""
 POOLED_DF: Final = 30
 """Degrees of freedom from which on a run's pooled standard deviation counts as known: t is within 5 % of its limit."""
 SURE: Final = (0.75, 1.3)
 """A run's own standard deviation over the one expected, 95 % of runs: chi-square with the degrees of freedom above."""
+
+
+class Counted(Protocol):
+    """How often a condition is measured: a ConditionStep, or a grid's Settings."""
+
+    @property
+    def repeats(self) -> int:
+        """Repeats."""
+        ...
+
+    @property
+    def at_most(self) -> int:
+        """Repeats made in all, at most."""
+        ...
+
+    @property
+    def until_percent(self) -> float | None:
+        """Expanded repeatability to be reached, per cent; None where the number of repeats is what counts."""
+        ...
 
 
 @lru_cache(maxsize=1024)
@@ -40,7 +56,7 @@ def needed(until_percent: float, s_percent: float, df: int = POOLED_DF) -> int:
     return MAX_REPEATS
 
 
-def expected(how: Procedure, s_percent: float, df: int = POOLED_DF) -> float:
+def expected(how: Counted, s_percent: float, df: int = POOLED_DF) -> float:
     """Return the repeats that are expected to be made, up to ``at_most``."""
     n = float(how.repeats)
     if how.until_percent is not None:
@@ -50,7 +66,7 @@ def expected(how: Procedure, s_percent: float, df: int = POOLED_DF) -> float:
     return min(n, float(how.at_most))
 
 
-def reached_percent(how: Procedure, s_percent: float) -> float:
+def reached_percent(how: Counted, s_percent: float) -> float:
     """Return the expanded repeatability (95 %) expected of ``at_most`` repeats, per cent; inf for a single one."""
     n = how.at_most
     return t_quantile(0.5 + 0.5 * CONFIDENCE, float(POOLED_DF)) * s_percent / sqrt(n) if n > 1 else inf

@@ -1,47 +1,61 @@
 """What a recipe may say: the validated model of the YAML file.
 
 Every quantity is a text with a unit in the file and a float here; the unit is in the annotation. Lists are
-axes, a scalar is an axis of one. The JSON Schema for editors is generated from these classes.
+axes, a scalar is an axis of one. The JSON Schema for editors is generated from these classes. A kind
+adds sections of its own (``tester.recipe.part``).
 """
 
 from __future__ import annotations
 
 import json
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated, Literal, TypeAlias, cast
+from functools import lru_cache
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, TypeAlias, cast
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema, model_validator
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema, create_model, model_validator
 
-from tester.units import Quantity, UnitError, as_text, expected, parse_one_of
+from tester.axes import Axes, Axis
+from tester.base.units import Quantity, UnitError, as_text, expected, parse_one_of
 
 if TYPE_CHECKING:
     from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
     from pydantic.json_schema import JsonSchemaValue
     from pydantic_core import CoreSchema
 
-LEAST_SPEED_M_S = 0.05
-"""Slowest wheel or belt that is ever loaded: below it the control cannot be sure that they turn [A]."""
+    from tester.recipe.part import RecipePart
 
 MAX_REPEATS = 1000
 MAX_FREE_FIELD = 500
+MAX_GRIDS = 1000
 MAX_CONDITIONS = 250_000
 """Conditions of one plan, over all specimens and replicates: some five years of rig time."""
 
 
 @dataclass(frozen=True, slots=True)
-class Axis(Quantity):
-    """Mark a field as an axis: a list of quantities, or one quantity for a list of one."""
+class Listed(Quantity):
+    """Mark a field as an axis: a list of quantities or of ``choices``, or a single one for a list of one."""
+
+    choices: tuple[str, ...] = ()
 
     def __get_pydantic_core_schema__(self, source: object, handler: GetCoreSchemaHandler) -> CoreSchema:
-        """Give pydantic a list of at least one quantity; errors carry the index of the element."""
+        """Give pydantic a list of at least one value; errors carry the index of the element."""
         from pydantic_core import core_schema
 
-        items = Quantity.__get_pydantic_core_schema__(self, float, handler)
+        items: CoreSchema = (
+            core_schema.literal_schema(list(self.choices))
+            if self.choices
+            else Quantity.__get_pydantic_core_schema__(self, float, handler)
+        )
         return core_schema.no_info_before_validator_function(_as_list, core_schema.list_schema(items, min_length=1))
 
     def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
         """Describe both forms to editors."""
-        one = Quantity.__get_pydantic_json_schema__(self, schema, handler)
+        one: JsonSchemaValue = (
+            {"enum": list(self.choices)}
+            if self.choices
+            else Quantity.__get_pydantic_json_schema__(self, schema, handler)
+        )
         return {"anyOf": [one, {"type": "array", "items": one, "minItems": 1}]}
 
 
@@ -51,7 +65,7 @@ def _as_list(value: object) -> list[object]:
 
 @dataclass(frozen=True, slots=True)
 class Extent:
-    """How much of a window: ``value`` wheel revolutions (unit "rev") or seconds (unit "s")."""
+    """How much of a window: ``value`` revolutions (unit "rev") or seconds (unit "s")."""
 
     value: float
     unit: Literal["rev", "s"]
@@ -90,15 +104,12 @@ class Extent:
 
 
 Text: TypeAlias = Annotated[str, Field(min_length=1, max_length=200)]
-Speed: TypeAlias = Annotated[float, Quantity("m/s", ge=LEAST_SPEED_M_S)]
 Load: TypeAlias = Annotated[float, Quantity("N", gt=0)]
 Seconds: TypeAlias = Annotated[float, Quantity("s", ge=0)]
 Band: TypeAlias = Annotated[float, Quantity("K", gt=0, le=20)]
 Temperature: TypeAlias = Annotated[float, Quantity("degC", ge=-50, le=200)]
 Count: TypeAlias = Annotated[int, Field(ge=1, le=MAX_REPEATS)]
 Precision: TypeAlias = Annotated[float, Quantity("%", ge=0.1, le=50)]
-MaxBursts: TypeAlias = Annotated[int, Field(ge=1, le=10_000)]
-WearCheckName: TypeAlias = Literal["never", "each_condition", "prompt"]
 
 
 def _free_field(value: object) -> str:
@@ -120,52 +131,29 @@ FreeField: TypeAlias = Annotated[
 ]
 
 
-class _Strict(BaseModel):
-    model_config = ConfigDict(extra="forbid", strict=True, frozen=True, use_attribute_docstrings=True)
+class Section(BaseModel, frozen=True):
+    """A section of a recipe: no key beyond its fields, whose docstrings editors show."""
+
+    model_config = ConfigDict(extra="forbid", strict=True, use_attribute_docstrings=True)
 
 
-class SpecimenModel(_Strict):
-    """A compound to test; each specimen (and each replicate of it) starts on a new wheel."""
+class SpecimenModel(Section, frozen=True):
+    """A compound to test; each specimen (and each replicate of it) starts on new rubber."""
 
     compound: Text
     """name of the rubber compound; 1#, 2#, 3# have a friction model in the simulator"""
     note: Annotated[str, Field(max_length=500)] = ""
 
 
-class AbrasiveModel(_Strict):
-    """The belt; recorded with every condition."""
+class AbrasiveModel(Section, frozen=True):
+    """What the rubber slides on; recorded with every condition."""
 
     name: Text
     mesh: Annotated[int, Field(ge=1, le=10_000)] | None = None
     id: Text | None = None
 
 
-class PreGrindModel(_Strict):
-    """Grinding of a new wheel before it measures."""
-
-    wheel_speed: Speed
-    belt_speed: Speed
-    load: Load
-    duration: Annotated[float, Quantity("s", gt=0, le=24 * 3600)]
-
-
-class RestModel(_Strict):
-    """Standing lifted after pre-grinding, until the surface is at a temperature again."""
-
-    at_least: Seconds = 0.0
-    until: Temperature | None = None
-    within: Band = 2.0
-    at_most: Annotated[float, Quantity("s", gt=0)] = 5400.0
-    """longest wait (default 90 min), then a prompt on hardware and "not reached" otherwise"""
-
-    @model_validator(mode="after")
-    def _long_enough(self) -> RestModel:
-        if self.at_most < self.at_least:
-            raise ValueError(f"at_most, {self.at_most:g} s, is shorter than at_least, {self.at_least:g} s")
-        return self
-
-
-class SoakModel(_Strict):
+class SoakModel(Section, frozen=True):
     """When a temperature counts as reached."""
 
     within: Band = 1.0
@@ -180,7 +168,7 @@ class SoakModel(_Strict):
         return self
 
 
-class RepeatsModel(_Strict):
+class RepeatsModel(Section, frozen=True):
     """How many repeats a condition gets: as many as it needs to count, within bounds."""
 
     at_least: Count
@@ -206,37 +194,43 @@ Repeats: TypeAlias = Annotated[
 ]
 
 
-class MeasureModel(_Strict):
+class MeasureModel(Section, frozen=True):
     """How a condition is measured; the defaults of every grid."""
 
-    wheel_speed: Speed
     repeats: Repeats = RepeatsModel(at_least=5)
     """repeats that count, such as 5; or {at_least: 5, at_most: 10}"""
     until: Precision | None = None
     """repeated until the expanded repeatability (type A, 95 %) of the coefficient is this, such as 2 %"""
+    combine: Literal["mean", "paper"] = "mean"
+    """the mean of all repeats that count; or, as in the paper, of the closest two of three, which is less precise"""
     min_valid: Count | None = None
     """least valid repeats for a value without a flag (default 3, at most repeats)"""
     window: Extent = Extent(30.0, "rev")
-    """wheel revolutions (or seconds) over which drift is judged, such as "30 rev"; a repeat collects 1.5 windows"""
+    """revolutions (or seconds) over which drift is judged, such as "30 rev"; a repeat collects 1.5 windows"""
     extend_to: Extent | None = None
     """the most that a repeat collects, such as one of repeats: 1 that is judged alone (default 3 x window)"""
     temperature_band: Band = 2.0
     soak: SoakModel = SoakModel()
-    max_bursts: MaxBursts = 40
-    """slip pulses in which a repeat may collect its window"""
-    wear_check: WearCheckName = "never"
 
 
-class GridModel(_Strict):
-    """All combinations of its axes; what is not said here is as in ``measure``."""
+class GridName(Section, frozen=True):
+    """What a grid is called."""
 
     name: Text
-    slip_velocity: Annotated[list[float], Axis("m/s")]
-    load: Annotated[list[float], Axis("N", gt=0)]
-    temperature: Annotated[list[float], Axis("degC", ge=-50, le=200)]
-    sideslip: Annotated[list[float], Axis("deg", ge=-90, le=90)] = [0.0]
-    camber: Annotated[list[float], Axis("deg", ge=-90, le=90)] = [0.0]
-    wheel_speed: Annotated[list[float], Axis("m/s", ge=LEAST_SPEED_M_S)] | None = None
+
+
+class GridModel(GridName, frozen=True):
+    """All combinations of its axes; what is not said here is as in ``measure``."""
+
+    axes: ClassVar[Axes]
+    """Of the kind of rig whose grids these are."""
+    base: ClassVar[type[GridModel]]
+    """What the kind has in a grid beside them."""
+
+    def __reduce__(self) -> tuple[object, ...]:
+        """Be pickled by what the class itself is made from."""
+        return _unpickled, (grid_model, (self.axes, self.base), self.__getstate__())
+
     repeats: Repeats | None = None
     until: Precision | None = None
     min_valid: Count | None = None
@@ -244,15 +238,37 @@ class GridModel(_Strict):
     extend_to: Extent | None = None
     temperature_band: Band | None = None
     soak: SoakModel | None = None
-    max_bursts: MaxBursts | None = None
-    wear_check: WearCheckName | None = None
 
 
-class OrderModel(_Strict):
-    """In which order a wheel goes through its conditions."""
+@lru_cache
+def grid_model(axes: Axes, base: type[GridModel] = GridModel) -> type[GridModel]:
+    """Return the model of a grid over a kind's axes: its keys are their names, and what ``base`` has."""
+    fields: dict[str, Any] = {one.name: _axis_field(one) for one in axes}
+    due_first = dict(sorted(fields.items(), key=lambda entry: entry[1][1] is not ...))
+    listed = create_model("GridAxes", __base__=GridName, **due_first)
+    made = create_model("GridModel", __base__=(base, listed), __doc__=GridModel.__doc__)
+    grid = cast("type[GridModel]", made)
+    grid.axes, grid.base = axes, base
+    return grid
+
+
+def _axis_field(axis: Axis) -> tuple[object, object]:
+    """Return annotation and default of an axis: left out, it is as in ``measure``, at its default, or missing."""
+    if axis.choices:
+        listed: Any = Annotated[list[str], Listed("1", choices=axis.choices)]
+    else:
+        listed = Annotated[list[float], Listed(axis.recipe_unit, gt=axis.gt, ge=axis.ge, le=axis.le)]
+    if axis.in_measure:
+        return listed | None, None
+    default = axis.recipe_default
+    return listed, ... if default is None else [default]
+
+
+class OrderModel(Section, frozen=True):
+    """In which order a specimen goes through its conditions."""
 
     temperature: Literal["ascending"] = "ascending"
-    """ascending only: cooling a wheel takes far longer than heating it"""
+    """ascending only: cooling takes far longer than heating"""
     within: Literal["listed", "snake", "shuffled"] = "listed"
     """order at one temperature: as listed, back and forth, or shuffled (with a seed)"""
     seed: Annotated[int, Field(ge=0, le=2**63 - 1)] | None = None
@@ -266,55 +282,65 @@ class OrderModel(_Strict):
         return self
 
 
-class WheelModel(_Strict):
-    """When a wheel is worn."""
-
-    replace_after: Annotated[float, Quantity("mm", gt=0, le=20)] = 2.0
-    """loss of diameter after which a wheel is replaced"""
-
-
-class PersonStepModel(_Strict):
-    """Something a person does, again and again."""
-
-    prompt: Text
-    """what to do; it is shown and waits to be acknowledged"""
-    every: Literal["condition", "temperature", "wheel"]
-    """before every condition, before every temperature, or after every installed wheel"""
-
-
-class Recipe(_Strict):
+class Recipe(Section, frozen=True):
     """A recipe of the friction tester."""
+
+    axes: ClassVar[Axes]
+    """Of the kind of rig that it is for."""
+    part: ClassVar[RecipePart]
+    """What that kind says about recipes."""
+
+    def __reduce__(self) -> tuple[object, ...]:
+        """Be pickled by what the class itself is made from."""
+        return _unpickled, (recipe_model, (self.part,), self.__getstate__())
 
     recipe: Text
     """the recipe's name"""
+    kind: Text = ""
+    """kind of the rig that it is for"""
     specimens: Annotated[list[SpecimenModel], Field(min_length=1, max_length=1000)]
     """a list with one compound each"""
     replicates: Annotated[int, Field(ge=1, le=100)] = 1
-    """how often every specimen is tested as a whole, each time on a new wheel"""
+    """how often every specimen is tested as a whole, each time on new rubber"""
     abrasive: AbrasiveModel | None = None
     humidity: Annotated[float, Quantity("%", ge=0, le=100)] | None = None
     ambient: Temperature | None = None
     experiment: dict[Annotated[str, Field(min_length=1, max_length=60)], FreeField] = {}
     """free fields, stored with the run and in conditions.csv"""
-    pre_grind: PreGrindModel | None = None
-    rest: RestModel | None = None
     measure: MeasureModel | None = None
-    grids: Annotated[list[GridModel], Field(max_length=1000)] = []
-    steps: Annotated[list[PersonStepModel], Field(max_length=100)] = []
+    grids: Sequence[GridModel] = ()
     order: OrderModel = OrderModel()
-    wheel: WheelModel = WheelModel()
 
 
-def recipe_schema() -> dict[str, object]:
-    """Return the JSON Schema (2020-12) of recipes, for editors."""
+def _unpickled(make: Callable[..., type[BaseModel]], of: tuple[object, ...], state: dict[Any, Any]) -> BaseModel:
+    model = make(*of)
+    one = model.__new__(model)
+    one.__setstate__(state)
+    return one
+
+
+@lru_cache
+def recipe_model(part: RecipePart) -> type[Recipe]:
+    """Return the model of a kind's recipes: its sections, and grids over its axes."""
+    fields: dict[str, Any] = {
+        "kind": (Text, Field(default=part.kind, description="kind of the rig that it is for")),
+        "grids": (Annotated[list[grid_model(part.axes, part.grid)], Field(max_length=MAX_GRIDS)], []),
+    }
+    recipe = create_model("Recipe", __base__=part.recipe, __doc__=Recipe.__doc__, **fields)
+    recipe.axes, recipe.part = part.axes, part
+    return recipe
+
+
+def recipe_schema(part: RecipePart) -> dict[str, object]:
+    """Return the JSON Schema (2020-12) of a kind's recipes, for editors."""
     schema: dict[str, object] = {"$schema": "https://json-schema.org/draft/2020-12/schema"}
-    schema.update(cast("dict[str, object]", _tidy(Recipe.model_json_schema(by_alias=True))))
+    schema.update(cast("dict[str, object]", _tidy(recipe_model(part).model_json_schema(by_alias=True))))
     return schema
 
 
-def schema_text() -> str:
-    """Return the JSON Schema as the text of ``recipes/recipe.schema.json``."""
-    return json.dumps(recipe_schema(), indent=2, ensure_ascii=False) + "\n"
+def schema_text(part: RecipePart) -> str:
+    """Return the JSON Schema as the text of a file, such as ``recipes/recipe.schema.json``."""
+    return json.dumps(recipe_schema(part), indent=2, ensure_ascii=False) + "\n"
 
 
 def _tidy(node: object) -> object:

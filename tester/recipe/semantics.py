@@ -2,33 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import combinations
 from math import prod
 from typing import NamedTuple, TypeVar
 
 from pydantic import BaseModel, ValidationError
 
-from tester.axes import axis
-from tester.recipe.schema import LEAST_SPEED_M_S, MAX_CONDITIONS, GridModel, MeasureModel, Recipe
+from tester.analysis import closest
+from tester.axes import Axis, AxisValue, plain
+from tester.base.source import Location, Problem, Tree, Value
+from tester.base.units import show, shown
+from tester.recipe.part import RecipePart
+from tester.recipe.schema import MAX_CONDITIONS, GridModel, MeasureModel, Recipe, grid_model
 from tester.recipe.settings import (
     DEFAULT_MIN_VALID,
     LEAST_REPEATS,
     at_most_of,
     extents_of,
-    settings_of,
-    wheel_speeds_of,
+    values_of,
 )
-from tester.source import Location, Problem, Tree, Value
-from tester.units import show, shown
 
 Part = TypeVar("Part", bound=BaseModel)
-
-AXES: tuple[tuple[str, str], ...] = tuple(
-    (name, axis(name).recipe_unit)
-    for name in ("slip_velocity", "load", "sideslip", "camber", "wheel_speed", "temperature")
-)
-"""The axes of a grid with their units, in the order in which they nest: temperature innermost."""
 
 
 class Parts(NamedTuple):
@@ -38,29 +33,32 @@ class Parts(NamedTuple):
     grids: list[tuple[int, GridModel]]
 
 
-def semantic_problems(recipe: Recipe | None, tree: Tree) -> list[Problem]:
-    """Return what does not make sense in the values of a recipe, with positions.
+def semantic_problems(recipe: Recipe | None, tree: Tree, part: RecipePart) -> list[Problem]:
+    """Return what does not make sense in the values of a recipe for a kind of rig, with positions.
 
     ``recipe`` None: some of it is not valid; then what is valid in itself is looked at.
     """
-    parts = _salvaged(tree) if recipe is None else Parts(recipe.measure, list(enumerate(recipe.grids)))
-    problems = [*_whole(recipe, tree), *_names(parts.grids, tree)]
+    parts = _salvaged(tree, part) if recipe is None else Parts(recipe.measure, list(enumerate(recipe.grids)))
+    problems = [*_whole(recipe, tree, part), *part.whole(recipe, tree), *_names(parts.grids, tree)]
     if parts.measure is not None:
         problems += _measure(parts.measure, None, ("measure",), tree)
         for index, grid in parts.grids:
             at = ("grids", index)
             problems += _measure(parts.measure, grid, at, tree)
-            problems += _axes(parts.measure, grid, at, tree)
-        problems += _shared(parts.measure, parts.grids, tree)
+            problems += _axes(grid, at, tree)
+            problems += part.sense(parts.measure, grid, at, tree)
+        problems += _shared(parts.measure, parts.grids, tree, part)
+        problems += _combined(parts.measure, parts.grids, tree)
     return sorted(set(problems))
 
 
-def _salvaged(tree: Tree) -> Parts:
+def _salvaged(tree: Tree, part: RecipePart) -> Parts:
     """Return the parts of an invalid recipe that are valid but for unknown keys."""
     top = tree.data if isinstance(tree.data, dict) else {}
     listed = top.get("grids")
-    grids = [(index, _known(GridModel, one)) for index, one in enumerate(listed if isinstance(listed, list) else [])]
-    measure = _known(MeasureModel, top.get("measure"))
+    model = grid_model(part.axes, part.grid)
+    grids = [(index, _known(model, one)) for index, one in enumerate(listed if isinstance(listed, list) else [])]
+    measure = _known(part.measure, top.get("measure"))
     return Parts(measure, [(index, grid) for index, grid in grids if grid is not None])
 
 
@@ -75,31 +73,28 @@ def _known(model: type[Part], data: Value) -> Part | None:
         return None
 
 
-def axis_values(measure: MeasureModel, grid: GridModel) -> tuple[tuple[float, ...], ...]:
-    """Return a grid's axes in the order of ``AXES``, each value once."""
-    lists = (
-        grid.slip_velocity,
-        grid.load,
-        grid.sideslip,
-        grid.camber,
-        wheel_speeds_of(measure, grid),
-        grid.temperature,
-    )
-    return tuple(tuple(dict.fromkeys(values)) for values in lists)
+def axis_values(measure: MeasureModel, grid: GridModel) -> dict[str, tuple[AxisValue, ...]]:
+    """Return the values of a grid's axes by name, in the order in which they nest, each value once."""
+    return {name: values_of(grid.axes[name], measure, grid) for name in grid.axes.nested}
 
 
-def _whole(recipe: Recipe | None, tree: Tree) -> Iterator[Problem]:
+def _whole(recipe: Recipe | None, tree: Tree, part: RecipePart) -> Iterator[Problem]:
     top = tree.data if isinstance(tree.data, dict) else {}
     if top.get("grids") and top.get("measure") is None:
-        yield tree.problem(("grids",), 'measure is missing (expected at least "wheel_speed: 0.8 m/s" in it)')
-    if not top.get("grids") and top.get("pre_grind") is None:
-        yield tree.problem((), "there is nothing to do: neither grids nor pre_grind")
+        yield tree.problem(("grids",), f"measure is missing{_due(part)}")
     if recipe is None or recipe.measure is None:
         return
-    sizes = [prod(map(len, axis_values(recipe.measure, grid))) for grid in recipe.grids]
+    sizes = [prod(map(len, axis_values(recipe.measure, grid).values())) for grid in recipe.grids]
     count = sum(sizes) * len(recipe.specimens) * recipe.replicates
     if count > MAX_CONDITIONS:
         yield tree.problem(("grids",), f"{count} conditions are too many for one recipe (at most {MAX_CONDITIONS})")
+
+
+def _due(part: RecipePart) -> str:
+    """Return what ``measure`` has to say at least, in words: an example of each axis that has no default there."""
+    due = [axis for axis in part.axes if axis.in_measure]
+    said = ", ".join(f"{one.name}: {plain(one.default)} {one.unit}" for one in due if one.default is not None)
+    return f' (expected at least "{said}" in it)' if said else ""
 
 
 def _names(grids: list[tuple[int, GridModel]], tree: Tree) -> Iterator[Problem]:
@@ -140,32 +135,41 @@ def _measure(measure: MeasureModel, grid: GridModel | None, at: Location, tree: 
         yield tree.problem((*place("soak", "temperature_band"), "within"), message)
 
 
-def _axes(measure: MeasureModel, grid: GridModel, at: Location, tree: Tree) -> Iterator[Problem]:
-    for name, unit in AXES:
-        seen: set[float] = set()
-        for index, value in enumerate(getattr(grid, name) or ()):
+def _combined(measure: MeasureModel, grids: list[tuple[int, GridModel]], tree: Tree) -> Iterator[Problem]:
+    """Refuse the closest two of three where not three repeats are to count."""
+    if measure.combine != "paper":
+        return
+    used = {(grid.repeats or measure.repeats).at_least for _, grid in grids}
+    for count in sorted(used - {closest.OF}):
+        message = f"combine: paper takes the closest two of {closest.OF} repeats, and {count} are asked for"
+        yield tree.problem(("measure", "combine"), f"{message} (expected repeats: {closest.OF})")
+
+
+def _axes(grid: GridModel, at: Location, tree: Tree) -> Iterator[Problem]:
+    for axis in grid.axes:
+        seen: set[AxisValue] = set()
+        for index, value in enumerate(listed(grid, axis)):
             if value in seen:
-                yield tree.problem((*at, name, index), f"{name}: {show(value, unit)} is listed twice")
+                told = value if isinstance(value, str) else show(value, axis.recipe_unit)
+                yield tree.problem((*at, axis.name, index), f"{axis.name}: {told} is listed twice")
             seen.add(value)
-    for index, slip in enumerate(grid.slip_velocity):
-        for wheel in wheel_speeds_of(measure, grid):
-            belt = round(wheel - slip, 9)
-            if belt < LEAST_SPEED_M_S:
-                message = (
-                    f"slip_velocity: {show(slip, 'm/s')} leaves {show(belt, 'm/s')} for the belt at a wheel speed of "
-                    f"{show(wheel, 'm/s')} (expected at least {LEAST_SPEED_M_S} m/s: a standing belt is never loaded)"
-                )
-                yield tree.problem((*at, "slip_velocity", index), message)
 
 
-def _shared(measure: MeasureModel, grids: list[tuple[int, GridModel]], tree: Tree) -> Iterator[Problem]:
+def listed(grid: GridModel, axis: Axis) -> Sequence[AxisValue]:
+    """Return an axis as a grid lists it; nothing where it is left to ``measure``."""
+    return getattr(grid, axis.name) or ()
+
+
+def _shared(
+    measure: MeasureModel, grids: list[tuple[int, GridModel]], tree: Tree, part: RecipePart
+) -> Iterator[Problem]:
     """Refuse two grids that share a condition and measure it differently: it is measured once."""
-    settings = [settings_of(measure, grid) for _, grid in grids]
+    settings = [part.settings(measure, grid) for _, grid in grids]
     if len(set(settings)) < 2:
         return
-    axes = [tuple(map(frozenset, axis_values(measure, grid))) for _, grid in grids]
+    axes = [{name: frozenset(held) for name, held in axis_values(measure, grid).items()} for _, grid in grids]
     for first, second in combinations(range(len(grids)), 2):
-        shared = all(a & b for a, b in zip(axes[first], axes[second], strict=True))
+        shared = all(values & axes[second][name] for name, values in axes[first].items())
         if shared and settings[first] != settings[second]:
             message = f"shares conditions with grid {shown(grids[first][1].name)} but measures them differently"
             problem = f"{message}; a shared condition is measured once"

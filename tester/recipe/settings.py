@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
-from tester.recipe.plan import Soak, WearCheck, Window
+from tester.axes import Axis, AxisValue
+from tester.recipe.plan import Soak, Window
 from tester.recipe.schema import Extent, GridModel, MeasureModel, RepeatsModel, SoakModel
 
 DEFAULT_MIN_VALID = 3
@@ -22,7 +24,7 @@ DEFAULT_EXTENSION = 3.0
 
 @dataclass(frozen=True, slots=True)
 class Settings:
-    """How every condition of a grid is measured."""
+    """How every condition of a grid is measured; a kind's subclass adds what its own sections say of it."""
 
     repeats: int
     at_most: int
@@ -31,8 +33,6 @@ class Settings:
     window: Window
     temperature_band_k: float
     soak: Soak
-    max_bursts: int
-    wear_check: WearCheck
 
 
 def settings_of(measure: MeasureModel, grid: GridModel) -> Settings:
@@ -46,8 +46,6 @@ def settings_of(measure: MeasureModel, grid: GridModel) -> Settings:
         window=_window(measure, grid),
         temperature_band_k=grid.temperature_band or measure.temperature_band,
         soak=_soak(grid.soak or measure.soak),
-        max_bursts=grid.max_bursts or measure.max_bursts,
-        wear_check=grid.wear_check or measure.wear_check,
     )
 
 
@@ -56,9 +54,13 @@ def at_most_of(repeats: RepeatsModel) -> int:
     return repeats.at_most or DEFAULT_AT_MOST * repeats.at_least
 
 
-def wheel_speeds_of(measure: MeasureModel, grid: GridModel) -> tuple[float, ...]:
-    """Return a grid's wheel speeds in m/s: its own axis, or the one speed of ``measure``."""
-    return tuple(grid.wheel_speed or [measure.wheel_speed])
+def values_of(axis: Axis, measure: MeasureModel, grid: GridModel) -> tuple[AxisValue, ...]:
+    """Return what a grid holds an axis at, each value once: its own list, or the one value of ``measure``."""
+    own: Sequence[AxisValue] | None = getattr(grid, axis.name)
+    if own is None:
+        value: AxisValue = getattr(measure, axis.name)
+        return (value,)
+    return tuple(dict.fromkeys(own))
 
 
 def extents_of(measure: MeasureModel, grid: GridModel | None) -> tuple[Extent, Extent | None]:

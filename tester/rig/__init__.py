@@ -1,53 +1,28 @@
-"""The rig file: a machine's description, read once, frozen (sections: tester.rig.config)."""
+"""The rig file as far as it is the same for all kinds: sections, reader, checks, safety keys, missing keys.
+
+A kind adds its sections (tester.kinds.*.rig); which kind a file is of, ``tester.kinds.load_rig`` finds out.
+"""
 
 from __future__ import annotations
 
 from drivers.axis import AxisConfig
 from tester.rig.config import (
-    ArmingConfig,
-    AxesConfig,
     CalibrationConfig,
     CanConfig,
     DeviceConfig,
-    DevicesConfig,
-    GatesConfig,
-    GeometryConfig,
-    HeatLoopConfig,
-    InterlocksConfig,
-    IrThermometerConfig,
-    LimitsConfig,
     LineConfig,
-    LoadLoopConfig,
-    LoopsConfig,
-    ObserverConfig,
-    RigConfig,
+    Rig,
     ScanConfig,
-    WearConfig,
-    interlock_values,
+    WrongKindError,
 )
-from tester.rig.load import load_rig
 
 __all__ = [
-    "ArmingConfig",
-    "AxesConfig",
     "AxisConfig",
     "CalibrationConfig",
     "CanConfig",
     "DeviceConfig",
-    "DevicesConfig",
-    "GatesConfig",
-    "GeometryConfig",
-    "HeatLoopConfig",
-    "InterlocksConfig",
-    "IrThermometerConfig",
-    "LimitsConfig",
     "LineConfig",
-    "LoadLoopConfig",
-    "LoopsConfig",
-    "ObserverConfig",
-    "RigConfig",
+    "Rig",
     "ScanConfig",
-    "WearConfig",
-    "interlock_values",
-    "load_rig",
+    "WrongKindError",
 ]

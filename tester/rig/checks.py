@@ -1,50 +1,65 @@
-"""What must hold between the sections of a rig file; each section alone is checked by its types."""
+"""What must hold between the sections that every rig has; each section alone is checked by its types."""
 
 from __future__ import annotations
 
 import difflib
+import re
 from collections.abc import Iterator
 
-from drivers.profiles import ProfileError, load_profile
-from tester.rig.config import DeviceConfig, IrThermometerConfig, RigConfig
-from tester.rig.press import torque_problem
-from tester.source import Location, Problem, Tree
+from drivers.profiles import ProfileError
+from drivers.profiles.model import DeviceProfile
+from tester.base.source import Location, Problem, Tree
+from tester.rig.config import DeviceConfig, Rig
+from tester.rig.profiles import profile_of
+from tester.rig.sensors import channels_of, further_sensors
 
-EQUAL_DECELERATIONS = 0.05
-"""Wheel and belt slow down alike, in m/s2, within this share [A]: unequal, one stands while the other still turns."""
 MAX_BUS_LOAD = 0.5
 """Above this share of the bus the scan rate is refused: bursts of SDO and EMCY need the rest (fieldbus, wire sums)."""
+COMMANDED = frozenset({"jacket", "chamber"})
+"""Kinds of profiles whose devices take commands: none of them is a mere further sensor."""
+EMISSIVITIES = (0.1, 1.0)
+"""Least and greatest emissivity that a surface can be taken to have [A]."""
 SYNC_BITS, RPDO_BITS, TPDO_BITS = 55, 115, 135
 """Bits of a frame of 0, 6 and 8 bytes with worst-case stuffing and the space between frames."""
-
-
-def problems_of(rig: RigConfig, tree: Tree) -> list[Problem]:
-    """Return what does not fit together, with positions."""
-    found = [*_nodes(rig), *_bus_load(rig), *_speeds(rig), *_decelerations(rig), *_lines(rig), *_units(rig)]
-    found += [*_profiles(rig), *_press(rig), *_temperatures(rig), *_simulation(rig)]
-    return [tree.problem(location, message) for location, message in found]
-
 
 _Found = Iterator[tuple[Location, str]]
 
 
-def _nodes(rig: RigConfig) -> _Found:
+def problems_of(rig: Rig, tree: Tree) -> list[Problem]:
+    """Return what does not fit together, the kind's own included, with positions."""
+    found = [*_packaged(rig), *_nodes(rig), *_bus_load(rig), *_lines(rig), *_profiles(rig), *_channels(rig)]
+    found += [*_simulation(rig), *rig.problems()]
+    return [tree.problem(location, message) for location, message in found]
+
+
+def _packaged(rig: Rig) -> _Found:
+    if rig.like and rig.like not in rig.packaged:
+        yield ("like",), f"{rig.like} is no packaged rig of the kind {rig.kind} (expected {', '.join(rig.packaged)})"
+
+
+def _nodes(rig: Rig) -> _Found:
     taken = {rig.can.node: "the PC"}
-    for name, axis in rig.axes.driven().items():
-        if axis.node_id in taken:
-            yield ("axes", name, "node_id"), f"node {axis.node_id} is {taken[axis.node_id]} already"
-        taken.setdefault(axis.node_id, name)
+    found = [(("axes", name), name, axis.node_id) for name, axis in rig.drives().items()]
+    found += [(("can", "nodes", name), name, node.node_id) for name, node in rig.can.nodes.items()]
+    for place, name, node_id in found:
+        if node_id in taken:
+            yield (*place, "node_id"), f"node {node_id} is {taken[node_id]} already"
+        taken.setdefault(node_id, name)
+    for name, node in rig.can.nodes.items():
+        if not 1 <= node.node_id <= 126:
+            yield ("can", "nodes", name, "node_id"), f"node {node.node_id} (expected 1 to 126)"
     if not 1 <= rig.can.node <= 127:
         yield ("can", "node"), f"node {rig.can.node} is not a CANopen node (expected 1 to 127)"
 
 
-def bus_load(rig: RigConfig, scan_hz: float) -> float:
+def bus_load(rig: Rig, scan_hz: float) -> float:
     """Return the share of the CAN bus that cyclic traffic takes at a scan rate, with worst-case stuffing."""
-    cycle = SYNC_BITS + len(rig.axes.driven()) * (RPDO_BITS + TPDO_BITS)
-    return cycle * scan_hz / rig.can.bitrate
+    cycle = SYNC_BITS + len(rig.drives()) * (RPDO_BITS + TPDO_BITS)
+    nodes = sum(TPDO_BITS / node.period_s for node in rig.can.nodes.values())
+    return (cycle * scan_hz + nodes) / rig.can.bitrate
 
 
-def _bus_load(rig: RigConfig) -> _Found:
+def _bus_load(rig: Rig) -> _Found:
     load = bus_load(rig, rig.scan.sliding_hz)
     if load > MAX_BUS_LOAD:
         rate = f"{rig.scan.sliding_hz:g} Hz"
@@ -52,32 +67,9 @@ def _bus_load(rig: RigConfig) -> _Found:
         yield ("scan", "sliding"), f"{message}: raise can.bitrate or lower the rate"
 
 
-def _speeds(rig: RigConfig) -> _Found:
-    """A drive that clamps below the rig's limit would run slower than it is asked, silently."""
-    wheel = rig.axes.wheel.max_speed * 0.5e-3 * rig.geometry.wheel_diameter_mm
-    if wheel < rig.limits.wheel_speed_m_s:
-        yield ("axes", "wheel", "max_speed"), f"gives {wheel:.3f} m/s, less than limits.wheel_speed"
-    if rig.axes.belt.max_speed < rig.limits.belt_speed_m_s:
-        yield ("axes", "belt", "max_speed"), f"{rig.axes.belt.max_speed:g} m/s is less than limits.belt_speed"
-    if rig.loops.load.lift_speed_mm_s > rig.axes.press.max_speed:
-        yield ("loops", "load", "lift_speed"), "is above axes.press.max_speed"
-    if rig.loops.load.acceleration_mm_s2 > min(rig.axes.press.acceleration, rig.axes.press.deceleration):
-        yield ("loops", "load", "acceleration"), "is above what axes.press can follow"
-
-
-def _decelerations(rig: RigConfig) -> _Found:
-    radius_m = 0.5e-3 * rig.geometry.wheel_diameter_mm
-    for key in ("deceleration", "quick_stop_deceleration"):
-        wheel = float(getattr(rig.axes.wheel, key)) * radius_m
-        belt = float(getattr(rig.axes.belt, key))
-        if abs(wheel - belt) > EQUAL_DECELERATIONS * belt:
-            message = f"wheel {wheel:.3g} m/s2 at the rim, belt {belt:.3g} m/s2: they must be equal within 5 %"
-            yield ("axes", "wheel", key), message
-
-
-def _lines(rig: RigConfig) -> _Found:
+def _lines(rig: Rig) -> _Found:
     used: dict[tuple[str, int], str] = {}
-    for name, device in _devices(rig).items():
+    for name, device in rig.devices.items():
         line, unit_id = device.line, device.unit_id
         if line not in rig.lines:
             near = difflib.get_close_matches(line, rig.lines, n=1)
@@ -93,49 +85,85 @@ def _lines(rig: RigConfig) -> _Found:
             yield ("lines", name, "baud"), "expected a baud rate above 0"
 
 
-def _devices(rig: RigConfig) -> dict[str, DeviceConfig | IrThermometerConfig]:
-    devices = rig.devices
-    return {"load_cell": devices.load_cell, "jacket": devices.jacket, "ir_thermometer": devices.ir_thermometer}
-
-
-def _profiles(rig: RigConfig) -> _Found:
-    for name, device in _devices(rig).items():
+def _profiles(rig: Rig) -> _Found:
+    for name, own in rig.own.items():
+        if name not in rig.devices and not own.optional:
+            yield ("devices",), f"{name} is missing"
+    for name, device in rig.devices.items():
         try:
-            kind = load_profile(device.profile).kind
+            profile = profile_of(device.profile)
         except ProfileError as error:
             yield ("devices", name, "profile"), str(error)
             continue
-        if kind != name:
-            yield ("devices", name, "profile"), f"{device.profile} is a profile of kind {kind} (expected {name})"
+        expected = rig.own[name].profile if name in rig.own else "sensor"
+        if profile.kind != expected and (name in rig.own or profile.kind in COMMANDED):
+            message = f"{device.profile} is a profile of kind {profile.kind} (expected {expected})"
+            yield ("devices", name, "profile"), message
+        if name in rig.own and (device.channels or device.simulated):
+            yield ("devices", name), "channels and simulated are for further sensors"
+        yield from _parameters(name, device, profile, own=name in rig.own)
 
 
-def _units(rig: RigConfig) -> _Found:
-    due = {"wheel": "rad/s", "belt": "m/s", "press": "mm/s", "sideslip": "deg", "camber": "deg"}
-    for name, axis in rig.axes.driven().items():
-        if axis.unit != due[name]:
-            yield ("axes", name, "unit"), f"the {name} axis is in {due[name]}, not {axis.unit}"
-    if not rig.axes.press.digital_io:
-        yield ("axes", "press", "digital_io"), "the press drive carries the safety chain's inputs (expected true)"
-    if rig.interlocks.stale_inputs_s < 2.0 * rig.axes.press.inputs_period_s:
-        message = "is less than two of axes.press.inputs_period: a single lost frame would stop the rig"
-        yield ("interlocks", "stale_inputs"), message
+def _parameters(name: str, device: DeviceConfig, profile: DeviceProfile, *, own: bool) -> _Found:
+    """Check what is written to a sensor; one that heats takes nothing from its section."""
+    registers = profile.writes if profile.kind not in COMMANDED else {}
+    optical = profile.kind == "ir_thermometer"
+    for key, value in device.parameters.items():
+        place = ("devices", name, key)
+        register = registers.get(key)
+        if optical and key == "emissivity" and not EMISSIVITIES[0] <= value <= EMISSIVITIES[1]:
+            yield place, f"{value:g} is no emissivity (expected {EMISSIVITIES[0]:g} to {EMISSIVITIES[1]:g})"
+        elif register is not None and not register.least <= value <= register.greatest:
+            yield place, f"{value:g} is beyond {profile.title} (expected {register.least:g} to {register.greatest:g})"
+        elif register is None and not (optical and key == "emissivity"):
+            keys = ("profile", "line", "unit_id", "channels", "simulated", *registers)
+            near = difflib.get_close_matches(key, keys, n=1)
+            meant = f", did you mean {near[0]}?" if near else ""
+            yield place, f'unknown key "{key}"{meant}'
+    stated = {*device.parameters, *(key for key, register in registers.items() if register.default is not None)}
+    for key in {**registers, **({"emissivity": None} if optical else {})}:
+        if key not in stated or (key == "emissivity" and own and key not in device.parameters):
+            yield ("devices", name), f"{key} is missing"
 
 
-def _press(rig: RigConfig) -> _Found:
-    problem = torque_problem(rig)
-    if problem:
-        yield ("axes", "press", "screw"), problem
+def _channels(rig: Rig) -> _Found:
+    """Every channel of a further sensor has a name of its own, of which a column can be made."""
+    taken: dict[str, str] = {}
+    for name, device in further_sensors(rig).items():
+        try:
+            measured, own = channels_of(device), profile_of(device.profile).channels
+        except ProfileError:
+            continue
+        for place, known in (("channels", device.channels), ("simulated", device.simulated)):
+            for key in known:
+                if key not in own:
+                    yield ("devices", name, place, key), f"no such channel (the profile has {', '.join(own)})"
+        for channel in measured:
+            if _is_own(rig, channel):
+                yield ("devices", name), f"channel {channel} is one of the machine's own: rename it by `channels`"
+            if channel in taken:
+                message = f"channel {channel} is one of {taken[channel]} already: rename it by `channels`"
+                yield ("devices", name), message
+            taken.setdefault(channel, name)
+    for name, node in rig.can.nodes.items():
+        for channel in node.channels:
+            if _is_own(rig, channel):
+                yield ("can", "nodes", name), f"channel {channel} is one of the machine's own"
+            if channel in taken:
+                yield ("can", "nodes", name), f"channel {channel} is one of {taken[channel]} already"
+            taken.setdefault(channel, name)
+    for channel, name in taken.items():
+        if not re.fullmatch("[a-z][a-z0-9_]*", channel):
+            place = ("devices", name) if name in rig.devices else ("can", "nodes", name)
+            yield place, f"channel {channel}: expected small letters, digits and _"
 
 
-def _temperatures(rig: RigConfig) -> _Found:
-    heat = rig.loops.heat
-    if heat.hub_max_c > rig.limits.jacket_c:
-        yield ("loops", "heat", "hub_max"), f"{heat.hub_max_c:g} degC is above limits.jacket"
-    if heat.hub_min_c >= heat.hub_max_c:
-        yield ("loops", "heat", "hub_min"), "is not below hub_max"
+def _is_own(rig: Rig, channel: str) -> bool:
+    """Tell whether a channel of the kind has this name, in the record or on screens."""
+    return any(channel in (one.name, one.screen.key if one.screen is not None else "") for one in rig.quantities)
 
 
-def _simulation(rig: RigConfig) -> _Found:
+def _simulation(rig: Rig) -> _Found:
     """A simulated rig has no real wire and a real one no simulated wire: half of each is a mistake."""
     wires = [(("can", "interface"), rig.can.interface)]
     wires += [(("lines", name, "port"), line.port) for name, line in rig.lines.items()]

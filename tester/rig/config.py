@@ -1,59 +1,34 @@
-"""What a rig file says, as frozen dataclasses. Units are in the names; keys in the file have none (config_reader).
+"""What every rig file says, whatever its kind: buses, scan rates, lines, and what a kind's own sections build upon.
 
-Nothing here has a default: a limit never comes from the program, always from a file that a person can read. The
-numbers and their sources stand in the packaged file of the simulated rig, ``sim/rig.yaml``. Only the section
-``interlocks`` is declared elsewhere, each key beside the interlock that it belongs to (tester.interlocks): a key that a
-file lacks takes the packaged value, and ``tester check`` says which.
+A kind declares its sections as frozen dataclasses and its rig as a subclass of ``Rig``. Units are in the names; keys in
+the file have none (tester.base.config_reader). Nothing of it has a default: a limit never comes from the program,
+always from a file that a person can read, the rig's own or the packaged one of its kind (``Rig.may_lack``).
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field, make_dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, fields, make_dataclass
 from datetime import date
-from typing import TYPE_CHECKING, Annotated, Final, Literal
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, TypeVar
 
 from drivers.axis import AxisConfig
-from sim.parameters import SimParameters, ThermalParameters, WheelParameters
-from tester.config_reader import Range, as_text, as_tree
-from tester.interlocks.parameter import Values
-from tester.interlocks.table import PARAMETERS
+from drivers.canopen.node_config import NodeConfig
+from tester.base.config_reader import FURTHER_KEYS, Range, as_text, as_tree
+from tester.base.source import Location
+from tester.quantities import Quantities
+from tester.rig.ceilings import Ceiling
+from tester.rig.parameter import Parameter, Values
 
-HARMFUL_N: Final = 500.0
-"""From here on a force on the wheel counts as harm (sim.harm)."""
+if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
 
 _POSITIVE = Range(gt=0.0)
-_NOT_NEGATIVE = Range(ge=0.0)
-_SHARE = Range(gt=0.0, le=1.0)
+OneRig = TypeVar("OneRig", bound="Rig")
 
 
-@dataclass(frozen=True, slots=True)
-class GeometryConfig:
-    """Sizes of the machine."""
-
-    wheel_diameter_mm: Annotated[float, "mm", _POSITIVE]
-    """Outer diameter of a new wheel, at ``wear.reference``."""
-    wheel_width_mm: Annotated[float, "mm", _POSITIVE]
-    belt_roller_diameter_mm: Annotated[float, "mm", _POSITIVE]
-    touch_mm: Annotated[float, "mm", _POSITIVE]
-    """Press travel from fully lifted to touching a new wheel."""
-
-
-@dataclass(frozen=True, slots=True)
-class LimitsConfig:
-    """Hard limits: no recipe and no loop gets past them."""
-
-    load_n: Annotated[float, "N", Range(gt=0.0, le=HARMFUL_N)]
-    """At most 500 N: above it docs/safety.md counts harm."""
-    wheel_speed_m_s: Annotated[float, "m/s", _POSITIVE]
-    belt_speed_m_s: Annotated[float, "m/s", _POSITIVE]
-    slip_power_w: Annotated[float, "W", _POSITIVE]
-    jacket_c: Annotated[float, "degC", Range(gt=0.0, le=155.0)]
-    """At most 155 degC: above it docs/safety.md counts harm."""
-    surface_c: Annotated[float, "degC", Range(gt=0.0, le=130.0)]
-    """At most 130 degC: above it docs/safety.md counts harm."""
-    sideslip_deg: Annotated[float, "deg", Range(ge=0.0, le=45.0)]
-    camber_deg: Annotated[float, "deg", Range(ge=0.0, le=45.0)]
+class WrongKindError(TypeError):
+    """A rig of one kind came to where another kind's is needed; the message says which."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,28 +54,8 @@ class CanConfig:
     """The drives' heartbeat period (0x1017)."""
     consumer_heartbeat_s: Annotated[float, "s", _POSITIVE]
     """How long a drive waits for the PC's heartbeat before it stops (0x1016)."""
-
-
-@dataclass(frozen=True, slots=True)
-class AxesConfig:
-    """The drives; None for an axis that is set by hand (``manual: true`` in the file)."""
-
-    wheel: AxisConfig
-    belt: AxisConfig
-    press: AxisConfig
-    sideslip: AxisConfig | None
-    camber: AxisConfig | None
-
-    def driven(self) -> dict[str, AxisConfig]:
-        """Return the axes that have a drive, by name."""
-        axes = {
-            "wheel": self.wheel,
-            "belt": self.belt,
-            "press": self.press,
-            "sideslip": self.sideslip,
-            "camber": self.camber,
-        }
-        return {name: axis for name, axis in axes.items() if axis is not None}
+    nodes: Mapping[str, NodeConfig] = field(default_factory=dict[str, NodeConfig])
+    """Further nodes, which measure; ``drive_heartbeat`` is theirs too, unless they state one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,187 +75,38 @@ class DeviceConfig:
     profile: str
     line: str
     unit_id: int
+    channels: Mapping[str, str] = field(default_factory=dict[str, str])
+    """Other names for channels of the profile, where two sensors of a kind are on the rig."""
+    simulated: Mapping[str, str | float] = field(default_factory=dict[str, str | float])
+    """What channels show on a simulated rig: a quantity of its plant by name, or a number in the channel's unit."""
+    parameters: Annotated[Mapping[str, float], FURTHER_KEYS] = field(default_factory=dict[str, float])
+    """What is written to a sensor at every connect, by the profile's names (``emissivity``), in its units."""
 
 
 @dataclass(frozen=True, slots=True)
-class IrThermometerConfig:
-    """The infrared thermometer on the rubber surface."""
+class OwnDevice:
+    """A device that a kind of machine has: what people call it, its profile's kind, whether a rig can be without it."""
 
+    title: str
     profile: str
-    line: str
-    unit_id: int
-    emissivity: Annotated[float, "1", Range(ge=0.1, le=1.0)]
-
-
-@dataclass(frozen=True, slots=True)
-class DevicesConfig:
-    """The measuring and heating devices."""
-
-    load_cell: DeviceConfig
-    jacket: DeviceConfig
-    ir_thermometer: IrThermometerConfig
-
-
-@dataclass(frozen=True, slots=True)
-class LoadLoopConfig:
-    """Press control: approach, touch, hold (tester.control.load_loop)."""
-
-    bandwidth_hz: Annotated[float, "Hz", _POSITIVE]
-    rolling_bandwidth_hz: Annotated[float, "Hz", _POSITIVE]
-    """While holding in band: too slow to chase the wheel's runout."""
-    error_filter_s: Annotated[float, "s", _POSITIVE]
-    """The load error is averaged over this time before it decides between the two bandwidths."""
-    stiffness_n_per_mm: Annotated[float, "N/mm", _POSITIVE]
-    """Tangent stiffness of the contact at 200 N."""
-    integral_s: Annotated[float, "s", _POSITIVE]
-    touch_load_n: Annotated[float, "N", _POSITIVE]
-    open_share: Annotated[float, "1", _SHARE]
-    """Below this share of the touching force the contact was seen open: only then is the next touch a first one."""
-    follow_rate_n_s: Annotated[float, "N/s", _POSITIVE]
-    """A change of load is expected to be followed at this rate at least: what the load is watched against."""
-    touch_speed_mm_s: Annotated[float, "mm/s", _POSITIVE]
-    loading_speed_mm_s: Annotated[float, "mm/s", _POSITIVE]
-    lift_speed_mm_s: Annotated[float, "mm/s", _POSITIVE]
-    acceleration_mm_s2: Annotated[float, "mm/s2", _POSITIVE]
-    """Profiles to a position are planned with it: at most ``axes.press.acceleration``, which is what a lift takes."""
-    clearance_mm: Annotated[float, "mm", _POSITIVE]
-    """Lifted means this far off the last contact."""
-
-
-@dataclass(frozen=True, slots=True)
-class HeatLoopConfig:
-    """Outer heat loop: surface error to hub setpoint (tester.control.heat_loop)."""
-
-    outer_gain: Annotated[float, "1", _NOT_NEGATIVE]
-    """Kelvin of hub setpoint per kelvin of surface error."""
-    outer_integral_s: Annotated[float, "s", _POSITIVE]
-    integral_band_k: Annotated[float, "K", _POSITIVE]
-    """The integral moves only inside this error."""
-    integral_limit_k: Annotated[float, "K", _NOT_NEGATIVE]
-    hub_min_c: Annotated[float, "degC"]
-    hub_max_c: Annotated[float, "degC"]
-    period_s: Annotated[float, "s", _POSITIVE]
-    rolling_offset_k: Annotated[float, "K", _NOT_NEGATIVE]
-    """While rolling between slip pulses the target is this much below the setpoint."""
-
-
-@dataclass(frozen=True, slots=True)
-class LoopsConfig:
-    """Gains and times of the loops."""
-
-    load: LoadLoopConfig
-    heat: HeatLoopConfig
-
-
-@dataclass(frozen=True, slots=True)
-class GatesConfig:
-    """When a sample counts (tester.engine.gates)."""
-
-    load_percent: Annotated[float, "%", _POSITIVE]
-    load_filter_s: Annotated[float, "s", _POSITIVE]
-    speed_percent: Annotated[float, "%", _POSITIVE]
-    slip_percent: Annotated[float, "%", _POSITIVE]
-    slip_floor_mm_s: Annotated[float, "mm/s", _NOT_NEGATIVE]
-    slip_filter_s: Annotated[float, "s", _POSITIVE]
-    ir_lag_s: Annotated[float, "s", _NOT_NEGATIVE]
-    contact_transient_s: Annotated[float, "s", _NOT_NEGATIVE]
-
-
-if TYPE_CHECKING:
-
-    @dataclass(frozen=True, slots=True)
-    class InterlocksConfig:
-        """The section ``interlocks``: a field for each parameter of the interlock table (tester.interlocks)."""
-
-        def __getattr__(self, name: str) -> float:
-            """Return a parameter's value in its unit, by the name of its field (``Parameter.name``)."""
-            ...
-
-else:
-    InterlocksConfig = make_dataclass(
-        "InterlocksConfig",
-        [(one.name, Annotated[float, one.unit, one.bounds], field(default=one.value)) for one in PARAMETERS],
-        frozen=True,
-        slots=True,
-        namespace={"__module__": __name__, "__doc__": "The section interlocks; a missing key has its default."},
-    )
-
-
-def interlock_values(section: InterlocksConfig) -> Values:
-    """Return what a rig's section ``interlocks`` says, by parameter."""
-    return {one: float(getattr(section, one.name)) for one in PARAMETERS}
-
-
-@dataclass(frozen=True, slots=True)
-class ArmingConfig:
-    """What is shown before a run may move anything (tester.engine.arming)."""
-
-    listen_s: Annotated[float, "s", _NOT_NEGATIVE]
-    """Nothing is sent for this long at first: another master on the bus would be heard."""
-    bump_test: bool
-    """Turn wheel and belt a little, one after the other: each must follow, and only it."""
-    watchdog_proof: bool
-    """Withhold the PC's heartbeat with the drives enabled and creeping: every drive must report it and stop."""
-    withhold_s: Annotated[float, "s", _POSITIVE]
-    creep_m_s: Annotated[float, "m/s", _POSITIVE]
-    """Wheel and belt, unloaded, in the bump test and in the proof."""
-    unloaded_n: Annotated[float, "N", Range(gt=0.0, le=50.0)]
-    """Normal force and friction of an unloaded load cell without tare, at most: at connecting and at a reference tare.
-
-    At most 50 N: a contact firmer than that must not pass for the cell's zero.
-    """
-
-
-@dataclass(frozen=True, slots=True)
-class WearConfig:
-    """Wear law V = k F s: what the plan predicts and the current diameter is estimated with.
-
-    Then what a check of the diameter reckons with (tester.engine.wear_check); uncertainties are standard ones.
-    """
-
-    rate_mm3_per_n_m: Annotated[float, "mm3/(N m)", _NOT_NEGATIVE]
-    growth_mm_per_k: Annotated[float, "mm/K", _NOT_NEGATIVE] = 0.0075
-    """The diameter, rubber and hub together, grows by this per K of the rubber's mean temperature."""
-    reference_c: Annotated[float, "degC", Range(ge=0.0, le=40.0)] = 23.0
-    """At which a diameter is called cold: that of a new wheel, of every check and of the record."""
-    growth_uncertainty_mm_per_k: Annotated[float, "mm/K", _NOT_NEGATIVE] = 0.0017
-    check_press_mm: Annotated[float, "mm", _NOT_NEGATIVE] = 0.002
-    """Of where the press stands in a roll check, beside what load and heat do."""
-    check_load_n: Annotated[float, "N", _NOT_NEGATIVE] = 0.2
-    """Of the mean load in a roll check, from one check to another."""
-    check_stiffness_percent: Annotated[float, "%", _NOT_NEGATIVE] = 30.0
-    """Of the contact's stiffness, with which a load off its nominal value is corrected."""
-    check_rubber_k: Annotated[float, "K", _NOT_NEGATIVE] = 1.0
-    """Of the rubber's mean temperature, taken as that of hub and surface by halves."""
-    gauge_mm: Annotated[float, "mm", _NOT_NEGATIVE] = 0.05
-    """Of a diameter that a person measures on rubber."""
-    rate_uncertainty_percent: Annotated[float, "%", _NOT_NEGATIVE] = 1.5
-    """Of a wear rate from load, slip and width of the tread."""
-
-    def growth_mm(self, rubber_c: float) -> float:
-        """Return what the diameter has gained over the cold one at a mean temperature of the rubber (degC), mm."""
-        return self.growth_mm_per_k * (rubber_c - self.reference_c)
+    optional: bool = False
 
 
 @dataclass(frozen=True, slots=True)
 class CalibrationConfig:
     """The last days on which the certificates of the sensors hold, as 2027-01-31; "" is not known.
 
-    Nothing is computed with them: the list before a start shows them.
+    A kind declares a text for each certificate. Nothing is computed with them: the list before a start shows them.
     """
-
-    load_cell: str = ""
-    thermometer: str = ""
-    jacket: str = ""
 
     def __post_init__(self) -> None:
         """Refuse what is no date."""
         self.ends()
 
     def ends(self) -> dict[str, date | None]:
-        """Return the last day of each certificate; raises ValueError for a text that is no date."""
-        texts = {"load cell": self.load_cell, "thermometer": self.thermometer, "jacket": self.jacket}
-        return {name: _day(name, text) for name, text in texts.items()}
+        """Return the last day of each certificate by its name; raises ValueError for a text that is no date."""
+        names = {one.name: one.name.replace("_", " ") for one in fields(self)}
+        return {words: _day(words, getattr(self, name)) for name, words in names.items()}
 
 
 def _day(name: str, text: str) -> date | None:
@@ -310,46 +116,69 @@ def _day(name: str, text: str) -> date | None:
         raise ValueError(f'{name}: expected a date such as 2027-01-31, or "", got "{text}"') from None
 
 
-@dataclass(frozen=True, slots=True)
-class ObserverConfig:
-    """What software believes of the wheel's thermal behaviour: heat loop, estimates and thermal interlocks use it.
+def section_of(name: str, parameters: tuple[Parameter, ...], module: str) -> Any:
+    """Return the class of a section with a field for each parameter: a kind's ``interlocks``."""
+    return make_dataclass(
+        name,
+        [(one.name, Annotated[float, one.unit, one.bounds]) for one in parameters],
+        frozen=True,
+        slots=True,
+        namespace={"__module__": module, "__doc__": "A section of the rig file: a field for each parameter."},
+    )
 
-    The simulated wheel has parameters of its own (``sim``), so that a wrong belief can be tested.
+
+def values_of(section: DataclassInstance, parameters: tuple[Parameter, ...]) -> Values:
+    """Return what such a section says, by parameter."""
+    return {one: float(getattr(section, one.name)) for one in parameters}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Rig:
+    """A rig: everything about the machine that software needs to know, and nothing about a test.
+
+    A kind's subclass adds its sections and answers what is declared here without a value.
     """
 
-    ambient_c: Annotated[float, "degC", Range(ge=-40.0, le=60.0)]
-    """The air around a real rig; a simulated one has its own (``RigConfig.ambient_c``)."""
-    friction_heat_fraction: Annotated[float, "1", Range(ge=0.0, le=1.0)]
-    """The rubber's share of friction heat."""
-    belt_conductance: Annotated[float, "W/K", _NOT_NEGATIVE]
-    """Rubber to belt, in contact."""
-    wheel: WheelParameters
-    thermal: ThermalParameters
-
-
-@dataclass(frozen=True, slots=True)
-class RigConfig:
-    """A rig: everything about the machine that software needs to know, and nothing about a test."""
+    packaged: ClassVar[Mapping[str, str]]
+    """Rig files that ship with the kind, by the names that ``--rig`` takes: ``package:file``. The first is the one
+    that a file of the kind is compared with and completed from, unless its key ``like`` names another."""
+    may_lack: ClassVar[tuple[str, ...]] = ("scan", "can.heartbeat", "can.drive_heartbeat", "can.consumer_heartbeat")
+    """Keys, or whole sections, that a file may lack: they take the value of the packaged file, and ``tester check``
+    says which did. ``*`` stands for one key. Every other key is only known to those who built the machine."""
+    stated: ClassVar[tuple[str, ...]] = ()
+    """Sections of which every key has to be in the file, although their class, which others use, too, has defaults."""
+    manual: ClassVar[tuple[str, ...]] = ()
+    """Axes that a person may set instead of a drive: ``manual: true``."""
+    own: ClassVar[Mapping[str, OwnDevice]] = {}
+    """Devices of the kind by their keys in ``devices``; any other there is a further sensor (tester.rig.sensors)."""
+    parameters: ClassVar[tuple[Parameter, ...]] = ()
+    """Of the section ``interlocks``. One that the packaged file does not have counts there with its default."""
+    quantities: ClassVar[Quantities]
+    """The kind's table of channels, without those of further sensors (tester.rig.sensors.quantities_on)."""
+    ceilings: ClassVar[tuple[Ceiling, ...]] = ()
+    """Every key on which safety hangs, in the order of the kind's safety page."""
+    real: ClassVar[tuple[tuple[str, str], ...]] = ()
+    """(text of the packaged file, what a real machine's has there), beside what is the same for all kinds
+    (tester.rig.template); each must be there exactly once."""
 
     rig: str
     """What the rig is called."""
+    kind: str
+    """The kind of machine that it is."""
+    like: str = ""
+    """Name of the packaged rig that it is built like; "" is the first of its kind."""
     simulated: bool
-    geometry: GeometryConfig
-    limits: LimitsConfig
     scan: ScanConfig
     can: CanConfig
-    axes: AxesConfig
-    lines: Mapping[str, LineConfig]
-    devices: DevicesConfig
-    loops: LoopsConfig
-    gates: GatesConfig
-    interlocks: InterlocksConfig
-    arming: ArmingConfig
-    wear: WearConfig
-    observer: ObserverConfig
-    calibration: CalibrationConfig = field(default_factory=CalibrationConfig)
-    sim: SimParameters = field(default_factory=SimParameters)
-    """The simulated rig's physics; without meaning on a real one."""
+    lines: Mapping[str, LineConfig] = field(default_factory=dict[str, LineConfig])
+    devices: Mapping[str, DeviceConfig] = field(default_factory=dict[str, DeviceConfig])
+
+    @classmethod
+    def of(cls: type[OneRig], rig: Rig) -> OneRig:
+        """Return a rig as one of this kind; raises WrongKindError."""
+        if not isinstance(rig, cls):
+            raise WrongKindError(f"{rig.rig} is a rig of the kind {rig.kind}: it cannot be used as {cls.__module__}")
+        return rig
 
     @property
     def name(self) -> str:
@@ -359,7 +188,37 @@ class RigConfig:
     @property
     def ambient_c(self) -> float:
         """Temperature of the air around the rig, degC: of the simulated rig's air, else as the file states it."""
-        return self.sim.ambient if self.simulated else self.observer.ambient_c
+        raise NotImplementedError
+
+    def in_air(self: OneRig, ambient_c: float) -> OneRig:
+        """Return a rig whose file states this temperature of the air around a real one, degC."""
+        raise NotImplementedError
+
+    def certificates(self) -> CalibrationConfig:
+        """Return the days on which the certificates of the sensors end."""
+        return CalibrationConfig()
+
+    def drives(self) -> Mapping[str, AxisConfig]:
+        """Return the axes that have a drive on the bus, by name."""
+        raise NotImplementedError
+
+    @property
+    def plant(self) -> Any:
+        """Parameters of the simulated machine, as the kind's twin takes them (sim.machines); nothing on a real rig."""
+        raise NotImplementedError
+
+    @property
+    def faults(self) -> tuple[str, ...]:
+        """Lines of a fault script (sim.faults.language) that the file states for a simulated rig."""
+        return ()
+
+    def settled(self: OneRig) -> OneRig:
+        """Return the rig with what follows from its file."""
+        return self
+
+    def problems(self) -> Iterator[tuple[Location, str]]:
+        """Yield what does not fit together between the kind's sections, with its place."""
+        yield from ()
 
     @property
     def tree(self) -> dict[str, object]:
@@ -368,5 +227,5 @@ class RigConfig:
 
     @property
     def text(self) -> str:
-        """The configuration with everything resolved, as YAML: what a run stores, and what ``load_rig`` reads back."""
+        """The configuration with everything resolved, as YAML: what a run stores, and what reads back as this rig."""
         return as_text(self)

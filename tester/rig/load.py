@@ -1,65 +1,63 @@
-"""A rig file, with `--set` overrides, to a checked RigConfig."""
+"""A rig file's tree, with `--set` overrides, to a checked rig of its kind."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from copy import deepcopy
 from functools import cache
-from importlib.resources import files
-from pathlib import Path
+from typing import TypeVar
 
-from tester.config_reader import read
+from sim.physics import laws
+from tester.base.config_reader import read
+from tester.base.source import InvalidSource, Problem, Tree, Value, load_tree
 from tester.rig.ceilings import Risk, beyond, counts_as_simulated, loosened
 from tester.rig.checks import problems_of
-from tester.rig.config import RigConfig
-from tester.rig.press import with_torque_limit
-from tester.source import InvalidSource, Problem, Tree, Value, load_tree
+from tester.rig.config import Rig
+from tester.rig.laws import extension_law
+from tester.rig.missing import complete, unstated
+from tester.rig.packaged import new_tree
 
-SIMULATED = "sim"
-"""Name of the packaged simulated rig."""
+OneRig = TypeVar("OneRig", bound=Rig)
+laws.look_up_with(extension_law)
+MISSING = "only those who built the machine know it: no packaged value stands in"
+"""Said of a key that has to be in the file."""
 
-_AXES = ("wheel", "belt", "press", "sideslip", "camber")
-_MAY_BE_MANUAL = ("sideslip", "camber")
 
-
-def load_rig(
-    name_or_path: str | Path = SIMULATED, overrides: Sequence[str] = (), accept_risk: str = ""
-) -> RigConfig:
-    """Return the rig of a file, or the packaged simulated one for "sim".
+def load(kind: type[OneRig], tree: Tree, overrides: Sequence[str] = (), accept_risk: str = "") -> OneRig:
+    """Return the rig of a file's tree; changes the tree.
 
     ``overrides`` are ``a.b.c=value`` texts, each replacing one key of the file; the value is read as in the file.
     ``accept_risk``: why safety keys may be looser than they should be (``risks_of``), "" = they may not. On a real rig
     only its file may say so: ``overrides`` can but tighten what it says. Raises InvalidSource with every problem; one
     that an override brought in is named by it.
     """
-    tree = load_tree(packaged_text(), "sim/rig.yaml") if name_or_path == SIMULATED else load_tree(Path(name_or_path))
     texts = tuple(overrides)
     if not texts:
-        return _accepted(_checked(tree), None, tree, accept_risk)
-    stated = _checked(deepcopy(tree))  # what is wrong with the file itself is told first, and as such
+        return _accepted(checked(kind, tree), None, tree, accept_risk)
+    stated = checked(kind, deepcopy(tree))  # what is wrong with the file itself is told first, and as such
     problems = [problem for number, text in enumerate(texts) for problem in _override(tree, text, number)]
     if problems:
         raise InvalidSource(problems)
     try:
-        return _accepted(_checked(tree), stated, tree, accept_risk)
+        return _accepted(checked(kind, tree), stated, tree, accept_risk)
     except InvalidSource as error:
         raise InvalidSource([_attributed(problem, texts) for problem in error.problems]) from error
 
 
-def risks_of(rig: RigConfig) -> tuple[Risk, ...]:
+def risks_of(rig: Rig) -> tuple[Risk, ...]:
     """Return the safety keys for which a rig needs somebody's word: those looser than the packaged values.
 
     Where nobody can be hurt (``counts_as_simulated``) only those looser than their hardest values.
     """
-    return beyond(rig) if counts_as_simulated(rig) else loosened(rig, _packaged())
+    return beyond(rig) if counts_as_simulated(rig) else loosened(rig, _packaged(type(rig), rig.like))
 
 
 @cache
-def _packaged() -> RigConfig:
-    return _checked(load_tree(packaged_text(), "sim/rig.yaml"))
+def _packaged(kind: type[OneRig], like: str) -> OneRig:
+    return checked(kind, new_tree(kind, like))
 
 
-def _accepted(rig: RigConfig, stated: RigConfig | None, tree: Tree, reason: str) -> RigConfig:
+def _accepted(rig: OneRig, stated: OneRig | None, tree: Tree, reason: str) -> OneRig:
     """Return a rig whose risks are accepted; ``stated``: what the file says without overrides."""
     real = not counts_as_simulated(rig)
     loose = loosened(rig, stated) if real and stated is not None else ()
@@ -86,27 +84,19 @@ def _accepted(rig: RigConfig, stated: RigConfig | None, tree: Tree, reason: str)
     return rig
 
 
-def load_rig_text(text: str | Path, name: str | None = None) -> RigConfig:
-    """Return the rig of a text or a file that a run has stored; raises InvalidSource with every problem.
-
-    Its risks were accepted when the run began, or are asked for where it goes on (tester.session).
-    """
-    return _checked(load_tree(text, name or ("rig.yaml" if isinstance(text, str) else None)))
-
-
-def _checked(tree: Tree) -> RigConfig:
-    """Return a tree as a rig whose sections fit together; changes the tree."""
-    _complete(tree)
-    rig = with_torque_limit(read(RigConfig, tree))
-    problems = problems_of(rig, tree)
+def checked(kind: type[OneRig], tree: Tree) -> OneRig:
+    """Return a tree as a rig whose sections fit together, risks or not; changes the tree. Raises InvalidSource."""
+    complete(kind, tree)
+    _resolve(kind, tree)
+    unsaid = [tree.problem(place[:-1], f"{place[-1]} is missing; {MISSING}") for place in unstated(kind, tree)]
+    try:
+        rig = read(kind, tree, MISSING).settled()
+    except InvalidSource as error:
+        raise InvalidSource([*error.problems, *unsaid]) from error
+    problems = [*unsaid, *problems_of(rig, tree)]
     if problems:
         raise InvalidSource(problems)
     return rig
-
-
-def packaged_text() -> str:
-    """Return the file of the simulated rig as it is shipped."""
-    return (files("sim") / "rig.yaml").read_text(encoding="utf-8")
 
 
 def _override(tree: Tree, text: str, number: int) -> list[Problem]:
@@ -115,6 +105,8 @@ def _override(tree: Tree, text: str, number: int) -> list[Problem]:
     keys = [key.strip() for key in path.split(".")]
     if not equals or not all(keys):
         return [_problem(text, "expected key.key=value")]
+    if keys[0] == "kind":
+        return [_problem(text, "the kind of a rig stands in its file")]
     try:
         value = load_tree(value_text).data if value_text.strip() else None
     except InvalidSource as error:
@@ -137,18 +129,22 @@ def _override(tree: Tree, text: str, number: int) -> list[Problem]:
     return []
 
 
-def _complete(tree: Tree) -> None:
+def _resolve(kind: type[Rig], tree: Tree) -> None:
     """Write into every axis what the file says once for all: its name and the heartbeats; ``manual`` becomes None."""
     if not isinstance(tree.data, dict):
         return
     axes, can = tree.data.get("axes"), tree.data.get("can")
     if not isinstance(axes, dict) or not isinstance(can, dict):
         return
-    for name in _AXES:
-        axis = axes.get(name)
+    nodes = can.get("nodes")
+    for name, node in nodes.items() if isinstance(nodes, dict) else ():
+        if isinstance(node, dict):
+            node.setdefault("name", name)
+            node.setdefault("heartbeat", can.get("drive_heartbeat", ""))
+    for name, axis in axes.items():
         if not isinstance(axis, dict):
             continue
-        if name in _MAY_BE_MANUAL and axis.get("manual") is True and len(axis) == 1:
+        if name in kind.manual and axis.get("manual") is True and len(axis) == 1:
             axes[name] = None
             continue
         axis.setdefault("name", name)

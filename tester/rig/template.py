@@ -1,8 +1,11 @@
-"""The rig file that `tester rig init` writes: the simulated rig's, with what a real machine has in its place."""
+"""The rig file that `tester rig init` writes: a packaged one with a real machine's wires in place of simulated ones."""
 
 from __future__ import annotations
 
-from tester.rig.load import packaged_text
+import re
+
+from tester.rig.config import Rig
+from tester.rig.packaged import packaged_text
 
 HEADER = """\
 # A rig: the machine's sizes, limits, buses, devices, loops and interlocks. No number of a test is here.
@@ -21,38 +24,42 @@ HEADER = """\
 """
 
 REPLACED = (
-    ("rig: simulated rubber friction tester\n", "rig: rubber friction tester\n"),
-    ("simulated: true\n", "simulated: false\n"),
-    ("  interface: sim  ", "  interface: socketcan  "),
-    ('  channel: ""  ', "  channel: can0  "),
-    ("    port: sim                       # sim, a", "    port: /dev/ttyUSB0              # a"),
-    ("    port: sim\n", "    port: /dev/ttyUSB1\n"),
-    ("# sim, or a python-can interface", "# a python-can interface"),
-    ("the estimates and the thermal interlocks believe of the wheel. The simulated wheel behaves by `sim`\n",
-     "the estimates and the thermal interlocks believe of the wheel. All [A].\n"),
-    ("# below, so a wrong belief can be tried out: --set observer.friction_heat_fraction=0.2. All [A].\n", ""),
-    ("# air around a real rig; the simulated rig's is sim.ambient", "# air around the rig"),
-)  # fmt: skip
-"""(text of the packaged file, what stands there for a real machine); each must be there exactly once."""
+    (r"^rig: simulated ", "rig: "),
+    (r"^simulated: true$", "simulated: false"),
+    (r"^  interface: sim  ", "  interface: socketcan  "),
+    (r'^  channel: ""  ', "  channel: can0  "),
+    (r"# sim, or a python-can interface", "# a python-can interface"),
+)
+"""(what the packaged file says, what stands there for a real machine); each must be there exactly once."""
+PORT = re.compile(r"^    port: sim( *# sim, )?", re.MULTILINE)
+"""A line's port in the packaged file, the first with a comment that names the simulation."""
 
 FIRST_KEY = "rig: "
 SIMULATION = "# The simulated rig's physics."
 """From here on the packaged file is about the simulation only."""
 
 
-def hardware_text() -> str:
+def hardware_text(kind: type[Rig], like: str = "") -> str:
     """Return the commented file for a real machine; raises ValueError if the packaged file has lost a marked place."""
-    text = packaged_text()
-    text = HEADER + text[_place(text, "\n" + FIRST_KEY) + 1 :]
-    text = text[: _place(text, SIMULATION)].rstrip() + "\n"
-    for packaged, own in REPLACED:
+    text = packaged_text(kind, like)
+    text = HEADER + text[_place(text, "\n" + re.escape(FIRST_KEY)) + 1 :]
+    text = text[: _place(text, re.escape(SIMULATION))].rstrip() + "\n"
+    for packaged, own in (*REPLACED, *((re.escape(before), after) for before, after in kind.real)):
         _place(text, packaged)
-        text = text.replace(packaged, own)
-    return text
+        text = re.sub(packaged, lambda _, own=own: own, text, count=1, flags=re.MULTILINE)
+    ports = iter(range(len(text)))
+    return PORT.sub(lambda found: _port(next(ports), found[1]), text)
+
+
+def _port(number: int, comment: str | None) -> str:
+    """Return the line of a real port; the comment behind it stays in its column."""
+    named = f"    port: /dev/ttyUSB{number}"
+    return named + (" " * (len("    port: sim") + len(comment) - len(named) - len("# sim, ")) + "# " if comment else "")
 
 
 def _place(text: str, marked: str) -> int:
-    """Return where a text that must be there exactly once begins."""
-    if text.count(marked) != 1:
-        raise ValueError(f"the packaged rig file holds {marked!r} {text.count(marked)} times, not once")
-    return text.index(marked)
+    """Return where a pattern that must be there exactly once begins."""
+    found = [match.start() for match in re.finditer(marked, text, re.MULTILINE)]
+    if len(found) != 1:
+        raise ValueError(f"the packaged rig file holds {marked!r} {len(found)} times, not once")
+    return found[0]

@@ -1,96 +1,126 @@
-"""Keys that a rig file lacks: which they are, and the file with them written in.
-
-Only the section ``interlocks`` has keys that may be missing: a new interlock brings its parameters, and a file from
-before it takes their packaged values.
-"""
+"""A rig file with the keys that it lacks written in, from the packaged file of its kind and with the comments there."""
 
 from __future__ import annotations
 
 import os
 import shutil
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from tempfile import NamedTemporaryFile
 
-from tester.interlocks.parameter import Parameter
-from tester.interlocks.table import PARAMETERS
-from tester.interlocks.written import SECTION, key_line, rig_section
-from tester.rig.load import SIMULATED
-from tester.source import InvalidSource, Tree, Value, load_tree
+from tester.base.source import InvalidSource, Tree, Value, load_tree
+from tester.rig.config import Rig
+from tester.rig.missing import Place, complete, lacking, like
+from tester.rig.packaged import packaged_tree
 
 
-def packaged_keys(name_or_path: str | Path, overrides: Sequence[str] = ()) -> tuple[str, ...]:
-    """Return the keys for which a rig takes the packaged value because its file and ``overrides`` do not have them.
-
-    As ``interlocks.pushed``, in the order of the packaged file. Raises InvalidSource for a file that cannot be read.
-    """
-    if name_or_path == SIMULATED:
-        return ()
-    given = {text.partition("=")[0].strip() for text in overrides}
-    keys = (f"{SECTION}.{one.key}" for one in lacking(load_tree(Path(name_or_path))))
-    return tuple(key for key in keys if key not in given)
-
-
-def lacking(tree: Tree) -> tuple[Parameter, ...]:
-    """Return the parameters of interlocks that a file does not have."""
-    section = tree.data.get(SECTION) if isinstance(tree.data, dict) else None
-    has = section if isinstance(section, dict) else {}
-    return tuple(one for one in PARAMETERS if one.key not in has)
-
-
-def upgrade(path: Path) -> tuple[str, ...]:
+def upgrade(kind: type[Rig], path: Path) -> tuple[str, ...]:
     """Write the missing keys with their comments into a rig file and return them; everything else stays as it is.
 
-    Raises InvalidSource for a file that is not YAML or whose section is written so that no line can be added to it,
+    Raises InvalidSource for a file that is not YAML or whose sections are written so that no line can be added to them,
     OSError where it cannot be written. The file is replaced in one step.
     """
     tree = load_tree(path)
-    missing = lacking(tree)
+    _refuse_what_is_no_section(kind, tree)
+    missing = lacking(kind, tree)
     if not missing:
         return ()
     with path.open(encoding="utf-8", newline="") as stream:
         text = stream.read()
-    _replace(path, _with_keys(text, tree, missing))
-    return tuple(one.key for one in missing)
+    whole = _with_keys(text, tree, packaged_tree(kind, like(tree)), missing)
+    complete(kind, tree)
+    if not _reads_as(whole, tree.data):
+        what = "no key can be added to it as it is written: put each key on a line of its own"
+        raise InvalidSource([tree.problem(missing[0][:-1], what)])
+    _replace(path, whole)
+    return tuple(".".join(place) for place in missing)
 
 
-def _with_keys(text: str, tree: Tree, missing: Sequence[Parameter]) -> str:
-    """Return a file's text with keys added; what is then read back has to be the file and these keys, no more."""
+def _refuse_what_is_no_section(kind: type[Rig], tree: Tree) -> None:
     if not isinstance(tree.data, dict):
         raise InvalidSource([tree.problem((), "expected the sections of a rig file")])
+    packaged = packaged_tree(kind, like(tree)).data
+    assert isinstance(packaged, dict)
+    for key, value in tree.data.items():
+        if isinstance(packaged.get(key), dict) and not isinstance(value, dict | None):
+            raise InvalidSource([tree.problem((key,), f"{key}: expected a section with keys")])
+
+
+def _with_keys(text: str, tree: Tree, packaged: Tree, missing: Sequence[Place]) -> str:
+    """Return a file's text with keys added: each at the end of the section that it belongs to."""
     end = "\r\n" if "\r\n" in text else "\n"
     lines = text.splitlines(keepends=True)
-    if SECTION in tree.data:
-        last, indent = _end_of_section(tree)
-        new = [key_line(one, indent) for one in missing]
-    else:
-        last, new = len(lines), ["", *rig_section().splitlines()]
-    if last and not lines[last - 1].endswith("\n"):
-        lines[last - 1] += end
-    whole = "".join([*lines[:last], *(line + end for line in new), *lines[last:]])
-    if not _adds_only(whole, tree.data, missing):
-        what = "no key can be added to it as it is written: put each key on a line of its own"
-        raise InvalidSource([tree.problem((SECTION,), what)])
-    return whole
+    if lines and not lines[-1].endswith("\n"):
+        lines[-1] += end
+    added: dict[Place, list[str]] = {}
+    for place in missing:
+        section = _nearest_section(tree, place)
+        indent = _end_of_section(tree, section)[1] if section else ""
+        new = added.setdefault(section, [])
+        new += [indent + line if line else "" for line in _lines(packaged, place, section, missing)]
+    last = len(lines)
+    ends = {section: _end_of_section(tree, section)[0] if section else last for section in added}
+    # From the end of the file, so that places before stay; of two at one place the inner one is written last, above.
+    for section in sorted(added, key=lambda one: (ends[one], -len(one)), reverse=True):
+        lines[ends[section] : ends[section]] = [line + end for line in added[section]]
+    return "".join(lines)
 
 
-def _adds_only(text: str, before: Mapping[str, Value], missing: Sequence[Parameter]) -> bool:
-    """Tell whether a text reads as the file before with the missing keys."""
-    section = before.get(SECTION)
-    added = {one.key: load_tree(one.default).data for one in missing}
+def _nearest_section(tree: Tree, place: Place) -> Place:
+    """Return the innermost section above a key that the file has; () is the file itself."""
+    return next(place[:n] for n in range(len(place) - 1, -1, -1) if n == 0 or place[:n] in tree.keys)
+
+
+def _lines(packaged: Tree, place: Place, section: Place, missing: Sequence[Place]) -> Iterator[str]:
+    """Yield the lines of a key as the packaged file has them, under the names of the sections that are missing, too.
+
+    They are indented from the section on that the file has. A section's name comes with the first of its keys.
+    """
+    for n in range(len(section) + 1, len(place)):
+        if next(one for one in missing if one[:n] == place[:n]) == place:
+            if n == 1:
+                yield from ("", *_comment_above(packaged, place[:1]))
+            yield "  " * (n - 1 - len(section)) + packaged.text.splitlines()[packaged.keys[place[:n]][0] - 1].strip()
+    own, indent = _block(packaged, place), "  " * (len(place) - 1 - len(section))
+    column = len(own[0]) - len(own[0].lstrip())
+    yield from (indent + line[column:] for line in own)
+
+
+def _block(packaged: Tree, place: Place) -> list[str]:
+    """Return the lines of a key of the packaged file: its own, and comments that go on below it."""
+    line, column = packaged.keys[place]
+    text = packaged.text.splitlines()
+    after = line
+    while after < len(text) and text[after].lstrip().startswith("#") and not text[after][:column].strip():
+        after += 1
+    return text[line - 1 : after]
+
+
+def _comment_above(packaged: Tree, place: Place) -> list[str]:
+    text, last = packaged.text.splitlines(), packaged.keys[place][0] - 1
+    first = last
+    while first > 0 and text[first - 1].startswith("#"):
+        first -= 1
+    return text[first:last]
+
+
+def _reads_as(text: str, data: Value) -> bool:
     try:
-        return load_tree(text).data == {**before, SECTION: {**(section if isinstance(section, dict) else {}), **added}}
+        return load_tree(text).data == data
     except InvalidSource:
         return False
 
 
-def _end_of_section(tree: Tree) -> tuple[int, str]:
-    """Return the last line of the section (from 1) and the indentation of its keys."""
-    inside = [place for where, place in tree.keys.items() if where[0] == SECTION and len(where) == 2]
+def _end_of_section(tree: Tree, section: Place) -> tuple[int, str]:
+    """Return the last line of a section (from 1) and the indentation of its keys."""
+    depth = len(section)
+    inside = [place for where, place in tree.keys.items() if where[:depth] == section and len(where) == depth + 1]
+    line, column = tree.key_position(section)
     if not inside:
-        return tree.key_position((SECTION,))[0], "  "
-    values = [place for where, place in tree.positions.items() if where and where[0] == SECTION and len(where) > 1]
-    return max(line for line, _ in inside + values), " " * (inside[0][1] - 1)
+        return line, " " * (column + 1)
+    below = [place for where, place in tree.positions.items() if where[:depth] == section and len(where) > depth]
+    below += [place for where, place in tree.keys.items() if where[:depth] == section and len(where) > depth]
+    return max(line for line, _ in below), " " * (inside[0][1] - 1)
 
 
 def _replace(path: Path, text: str) -> None:

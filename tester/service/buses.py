@@ -5,15 +5,11 @@ from __future__ import annotations
 from math import inf
 from typing import Protocol, runtime_checkable
 
-from drivers.ir_thermometer import IrThermometer
-from drivers.jacket import HeatingJacket
-from drivers.load_cell import LoadCell
+from drivers.canopen.sensor_node import SensorNode
 from drivers.servo import ServoDrive
-from tester.engine.devices import Devices
-from tester.rig import RigConfig
+from tester.machine.devices import DeviceList, FieldDevice
+from tester.rig import Rig
 from tester.service.state import BusView, DeviceView
-
-Reader = LoadCell | HeatingJacket | IrThermometer
 
 
 @runtime_checkable
@@ -29,17 +25,11 @@ class LoadedWire(Protocol):
 class BusWatch:
     """Looks at the devices of one run."""
 
-    def __init__(self, devices: Devices, rig: RigConfig) -> None:
+    def __init__(self, devices: DeviceList, rig: Rig) -> None:
         """Look only: nothing is sent by it."""
         self.devices = devices
         self.rig = rig
         self._emergencies: dict[str, int] = {}
-        named = rig.devices
-        self._readers: tuple[tuple[str, str, Reader], ...] = (
-            ("load cell", named.load_cell.line, devices.cell),
-            ("jacket", named.jacket.line, devices.jacket),
-            ("thermometer", named.ir_thermometer.line, devices.thermometer),
-        )
 
     def count_emergency(self, text: str) -> None:
         """Count an emergency by the drive's name, with which its text begins."""
@@ -50,7 +40,8 @@ class BusWatch:
         """Return every device at ``now`` s of the run."""
         hours = max(now, 60.0) / 3600.0
         drives = [self._drive(drive, now, hours) for drive in self.devices.drives]
-        return (*drives, *(self._reader(*one, now, hours) for one in self._readers))
+        nodes = [self._node(node, now, hours) for node in self.devices.nodes]
+        return (*drives, *nodes, *(self._reader(device, now, hours) for device in self.devices.modbus))
 
     def _drive(self, drive: ServoDrive, now: float, hours: float) -> DeviceView:
         name = drive.config.name
@@ -62,7 +53,14 @@ class BusWatch:
         return DeviceView(name, "drive", "can", drive.config.node_id, state, drive.online,
                           _age(now, drive.stamp_s), 0, errors, errors / hours, detail)  # fmt: skip
 
-    def _reader(self, label: str, line: str, device: Reader, now: float, hours: float) -> DeviceView:
+    def _node(self, node: SensorNode, now: float, hours: float) -> DeviceView:
+        state = "refused" if node.refused else "lost" if node.lost else "operational" if node.online else "set up"
+        detail = node.refused or ("heartbeat lost" if node.lost else "")
+        return DeviceView(node.name, "sensor", "can", node.node_id, state, node.online,
+                          _age(now, node.stamp_s), 0, node.malformed, node.malformed / hours, detail)  # fmt: skip
+
+    def _reader(self, listed: FieldDevice, now: float, hours: float) -> DeviceView:
+        device, title = listed.driver, listed.title
         counters = device.station.counters
         exceptions = sum(counters.exceptions.values())
         errors = counters.timeouts + counters.crc_errors + counters.garbage + counters.late + exceptions
@@ -71,7 +69,7 @@ class BusWatch:
         if errors and not detail:
             detail = f"time-outs {counters.timeouts}, CRC {counters.crc_errors}, late {counters.late}"
             detail += f", garbage {counters.garbage}, exceptions {exceptions}"
-        return DeviceView(label, label, line, device.station.unit_id, state, device.ready and not device.is_lost,
+        return DeviceView(title, title, listed.line, device.station.unit_id, state, device.ready and not device.is_lost,
                           _age(now, device.stamp_s), counters.requests, errors, errors / hours, detail)  # fmt: skip
 
     def bus_views(self) -> tuple[BusView, ...]:

@@ -23,7 +23,9 @@ from pydantic import JsonValue
 from websockets.asyncio.client import ClientConnection, connect, unix_connect
 from websockets.exceptions import ConnectionClosed, InvalidHandshake
 
-from tester import clock
+from tester.base import clock
+from tester.base.trouble import in_words
+from tester.screen import MachineView
 from tester.service.address import Address, AddressError, UnixAddress, default_address
 from tester.service.commands import Action, Attend, Command, Join, Stop
 from tester.service.protocol import (
@@ -35,6 +37,7 @@ from tester.service.protocol import (
     Frames,
     Goodbye,
     Hello,
+    MachineMessage,
     PlanMessage,
     Refused,
     ServerMessage,
@@ -44,7 +47,6 @@ from tester.service.protocol import (
 )
 from tester.service.state import PlanView, StateView
 from tester.service.stop_call import takes_stop
-from tester.trouble import in_words
 
 MAX_INCOMING = 64 * 1024 * 1024
 """Longest message taken from the service, bytes: a hello holds ten minutes and two thousand events."""
@@ -92,10 +94,11 @@ class Client:
         self.events: deque[Event] = deque(hello.events, maxlen=EVENTS_KEPT)
         self.complete = hello.complete
         """No event is missing between those seen before and ``events``."""
-        self.trend: deque[tuple[float | None, ...]] = deque(hello.trend.rows, maxlen=TREND_ROWS)
-        self.trend_columns = hello.trend.columns
+        self.trend: deque[tuple[float | None, ...]] = deque(hello.trend, maxlen=TREND_ROWS)
+        self.machine: MachineView = hello.machine
+        """Tables of the kind of rig; ``machine.trend`` names the columns of ``trend``."""
         self.received_s = clock.monotonic()
-        """When the newest state came (tester.clock.monotonic)."""
+        """When the newest state came (tester.base.clock.monotonic)."""
         self.lost = ""
         """Why the connection has ended, "" while it stands."""
         self.ended = False
@@ -105,7 +108,7 @@ class Client:
         self._sending: set[asyncio.Task[None]] = set()
         self._answers: dict[int, asyncio.Future[Accepted]] = {}
         self._events_due: deque[Event] = deque()
-        self._newest: dict[type, Hello | Snapshot | PlanMessage | Frames] = {Hello: hello}
+        self._newest: dict[type, Hello | Snapshot | PlanMessage | MachineMessage | Frames] = {Hello: hello}
         self._something = asyncio.Event()
         self._something.set()
         self._reading = asyncio.create_task(self._read())
@@ -239,6 +242,9 @@ class Client:
                 self.trend.append(message.row)
             elif isinstance(message, PlanMessage):
                 self.plan = message.plan
+            elif isinstance(message, MachineMessage):
+                self.machine = message.machine
+                self.trend.clear()
             self._newest[type(message)] = message
         self._something.set()
 
@@ -251,8 +257,8 @@ class Client:
 
     async def _messages(self) -> AsyncIterator[ServerMessage]:
         while True:
-            if Hello in self._newest:
-                yield self._newest.pop(Hello)
+            if (first := next((kind for kind in (Hello, MachineMessage) if kind in self._newest), None)) is not None:
+                yield self._newest.pop(first)
             elif self._events_due:
                 yield self._events_due.popleft()
             elif self._newest:

@@ -8,9 +8,9 @@ from typing import Annotated, ClassVar, Literal, TypeAlias
 
 from pydantic import AfterValidator, ConfigDict, Field
 
-from tester.plain import plain_text
+from tester.base.plain import plain_text
 
-VERSION = 1
+VERSION = 2
 """Of this protocol. A change that an older client cannot ignore raises it."""
 MAX_MESSAGE = 400_000
 """Longest message that the service takes, bytes: a recipe of the greatest size, escaped."""
@@ -136,15 +136,15 @@ class Attend:
     command: Literal["attend"] = "attend"
 
 
-JogAxis = Literal["wheel", "belt", "both", "press", "sideslip", "camber", "heat"]
-
-
 @dataclass(frozen=True, slots=True)
 class Jog:
-    """One bounded step by hand, up or down: a key press. More than five a second are refused."""
+    """One bounded step by hand, up or down: a key press. More than five a second are refused.
+
+    ``axis``: a name of the machine's table (``hello``).
+    """
 
     __pydantic_config__: ClassVar[ConfigDict] = _STRICT
-    axis: JogAxis
+    axis: Name
     direction: Literal[-1, 1]
     command: Literal["jog"] = "jog"
 
@@ -158,7 +158,7 @@ class Tare:
 
 
 @dataclass(frozen=True, slots=True)
-class Control:
+class TakeControl:
     """Take control (``take``; ``force``: also from a client that has it), or give it back."""
 
     __pydantic_config__: ClassVar[ConfigDict] = _STRICT
@@ -220,7 +220,7 @@ RigAction: TypeAlias = RunRecipe | ResumeRun | Hold | Release | Acknowledge | St
 """What the rig's owner does; everything but ``stop`` is for the controller alone."""
 Query: TypeAlias = CheckRecipe | ShowPlan | ListRecipes | ListRuns
 """What is worked out beside the rig, by a process of its own."""
-Action: TypeAlias = Annotated[RigAction | Control | WatchFrames | Attend | Query, Field(discriminator="command")]
+Action: TypeAlias = Annotated[RigAction | TakeControl | WatchFrames | Attend | Query, Field(discriminator="command")]
 
 
 @dataclass(frozen=True, slots=True)

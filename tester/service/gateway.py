@@ -12,6 +12,7 @@ import re
 import socket
 from collections import deque
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import cast
 
@@ -19,12 +20,12 @@ from pydantic_core import from_json, to_json
 from websockets.asyncio.server import ServerConnection
 from websockets.exceptions import ConnectionClosed
 
+from tester.screen import UNKNOWN
 from tester.service.address import peer_text
 from tester.service.commands import (
     VERSION,
     Attend,
     CheckRecipe,
-    Control,
     Join,
     ListRecipes,
     ListRuns,
@@ -32,6 +33,7 @@ from tester.service.commands import (
     RigAction,
     ShowPlan,
     Stop,
+    TakeControl,
     WatchFrames,
 )
 from tester.service.hook import Hook
@@ -46,10 +48,11 @@ from tester.service.protocol import (
     Goodbye,
     Refused,
     encode,
+    foreign_join,
+    stop_in,
     to_server,
 )
 from tester.service.queries import Queries, QueryError
-from tester.service.state import TREND_COLUMNS
 
 EVENTS_AT_FIRST = 200
 """Events that a client which has seen none is told."""
@@ -61,6 +64,12 @@ QUESTIONS = 4
 """Questions of one client that may be worked out, or wait for that."""
 FULL = 1013
 """Close code for a client that finds no place (try again later)."""
+LAST_WORDS, LAST_WORDS_S = 8, 1.0
+"""A client that is turned away is listened to for so many more messages, and for so long: one may be STOP."""
+STRANGER = 0
+"""Number of a client that has not joined."""
+NOT_JOINED = "a client that has not joined"
+"""Name of one, on record."""
 GREETED_WITHIN_S = 30.0
 """The owner's first state is there by then, s."""
 AT_REST = frozenset({"OFFLINE", "INTERRUPTED"})
@@ -113,6 +122,8 @@ class Gateway:
         self._next = 1
         self._state = b""
         self._plan = b"null"
+        self._machine = to_json(UNKNOWN)
+        """Tables of the kind of rig; told by the owner before its first state."""
         self._events: deque[tuple[int, bytes]] = deque(maxlen=EVENTS_KEPT)
         self._rows: deque[bytes] = deque(maxlen=TREND_ROWS)
         self._greeted = asyncio.Event()
@@ -140,6 +151,8 @@ class Gateway:
             self._plan = rest
             for guest in self.guests.values():
                 guest.outbox.newest("plan", b'{"plan":' + rest + b',"type":"plan"}')
+        elif kind == b"m":
+            self._take_machine(rest)
         elif kind == b"a":
             number, _, reply = rest.partition(b" ")
             if (asker := self.guests.get(int(number))) is not None:
@@ -157,6 +170,15 @@ class Gateway:
                 if guest.frames:
                     guest.outbox.newest("frames", rest)
 
+    def _take_machine(self, machine: bytes) -> None:
+        """Take the tables of a kind of rig; a trend of another one's columns is none any more."""
+        if machine == self._machine:
+            return
+        self._machine = machine
+        self._rows.clear()
+        for guest in self.guests.values():
+            self._reply(guest, b'{"machine":' + machine + b',"type":"machine"}')
+
     def farewell(self) -> None:
         """Tell everybody that the owner has ended, or died: it said goodbye, or not."""
         last = Goodbye("the service has ended", ended=True) if self._ended else Goodbye("the service has died")
@@ -172,17 +194,17 @@ class Gateway:
 
     async def serve(self, connection: ServerConnection) -> None:
         """Serve one client until it or the service ends."""
+        found = cast("socket.socket | None", connection.transport.get_extra_info("socket"))
+        peer = peer_text(found) if found is not None else "peer not known"
         try:
-            joined = await self._joined(connection)
+            joined = await self._joined(connection, peer)
         except (ConnectionClosed, TimeoutError, BadMessageError) as error:
-            await self._turn_away(connection, str(error) or "no join")
+            await self._turn_away(connection, peer, str(error) or "no join")
             return
         self.strangers.known(connection)
         if len(self.guests) >= MOST_CLIENTS:
-            await self._turn_away(connection, f"{MOST_CLIENTS} clients are here already", FULL)
+            await self._turn_away(connection, peer, f"{MOST_CLIENTS} clients are here already", FULL)
             return
-        found = cast("socket.socket | None", connection.transport.get_extra_info("socket"))
-        peer = peer_text(found) if found is not None else "peer not known"
         guest = Guest(connection, self._next, joined.name, peer, joined.control)
         self._next += 1
         guest.outbox.reply(self._hello(joined, guest))
@@ -204,23 +226,38 @@ class Gateway:
                 self._lender = 0
             self._tell_presence()
 
-    async def _joined(self, connection: ServerConnection) -> Join:
+    async def _joined(self, connection: ServerConnection, peer: str) -> Join:
         async with asyncio.timeout(JOIN_WITHIN_S):
-            message = to_server(await connection.recv())
+            text = await connection.recv()
+        if self._stop_of_stranger(text, peer):
+            raise BadMessageError("STOP was taken; anything else needs a join first")
+        if foreign := foreign_join(text):
+            raise BadMessageError(foreign)
+        message = to_server(text)
         if not isinstance(message, Join):
             raise BadMessageError("the first message is a join")
-        if message.version != VERSION:
-            raise BadMessageError(f"this service speaks version {VERSION}, not {message.version}")
         async with asyncio.timeout(GREETED_WITHIN_S):
             await self._greeted.wait()
         return message
 
-    async def _turn_away(self, connection: ServerConnection, reason: str, code: int = 1008) -> None:
-        try:
+    async def _turn_away(self, connection: ServerConnection, peer: str, reason: str, code: int = 1008) -> None:
+        """Send a client away with the reason, after it has said STOP if it wants to."""
+        with suppress(ConnectionClosed):
             await connection.send(encode(Goodbye(reason)), text=True)
+        with suppress(ConnectionClosed, TimeoutError):
+            async with asyncio.timeout(LAST_WORDS_S):
+                for _ in range(LAST_WORDS):
+                    self._stop_of_stranger(await connection.recv(), peer)
+        with suppress(ConnectionClosed):
             await connection.close(code, reason[:100])
-        except ConnectionClosed:
-            return
+
+    def _stop_of_stranger(self, text: str | bytes, peer: str) -> bool:
+        """Pass on the STOP of a client that is none of ours, or not yet; return whether it was one."""
+        stop = stop_in(text)
+        if stop is None or not isinstance(stop.action, Stop):
+            return False
+        self.owner.stop(Order(STRANGER, NOT_JOINED, stop.id, stop.action, peer))
+        return True
 
     def _hello(self, joined: Join, guest: Guest) -> bytes:
         if joined.control and not self.controller:
@@ -233,17 +270,15 @@ class Gateway:
         else:
             told = [event for _, event in events[-EVENTS_AT_FIRST:]]
         complete = (first <= joined.since + 1) if known else len(told) == len(events) and first == 1
-        columns = ",".join(f'"{name}"' for name in TREND_COLUMNS).encode()
         return b"".join(
             (
                 b'{"version":%d,' % VERSION,
                 b'"service":' + to_json(self.service) + b',"software":' + to_json(self.software),
                 b',"client":%d,' % guest.number,
                 b'"control":' + (b"true" if self.controller == guest.number else b"false"),
-                b',"state":' + self._state + b',"plan":' + self._plan,
+                b',"machine":' + self._machine + b',"state":' + self._state + b',"plan":' + self._plan,
                 b',"events":[' + b",".join(told) + b'],"complete":' + (b"true" if complete else b"false"),
-                b',"trend":{"columns":[' + columns + b'],"rows":[' + b",".join(self._rows) + b"]}",
-                b',"type":"hello"}',
+                b',"trend":[' + b",".join(self._rows) + b'],"type":"hello"}',
             )
         )
 
@@ -276,15 +311,18 @@ class Gateway:
         try:
             message = to_server(text)
         except BadMessageError as error:
-            self._reply(guest, encode(Refused(_id_of(text), str(error))))
-            return
+            stop = stop_in(text)  # whatever else is wrong with it
+            if stop is None:
+                self._reply(guest, encode(Refused(_id_of(text), str(error))))
+                return
+            message = stop
         if isinstance(message, Join):
             self._reply(guest, encode(Goodbye("joined already")))
             return
         action = message.action
         if gone and not isinstance(action, Stop):
             return
-        if isinstance(action, Control):
+        if isinstance(action, TakeControl):
             self._control(guest, message.id, action)
         elif isinstance(action, WatchFrames):
             guest.frames = action.on
@@ -324,7 +362,7 @@ class Gateway:
         self._tell_presence()
         return True
 
-    def _control(self, guest: Guest, number: int, action: Control) -> None:
+    def _control(self, guest: Guest, number: int, action: TakeControl) -> None:
         self._lender = 0
         holder = self.guests.get(self.controller)
         if not action.take:

@@ -14,12 +14,12 @@ from pathlib import Path
 from pydantic import TypeAdapter
 
 from tester.service.address import TcpAddress, UnixAddress, write_card
+from tester.service.child_socket import link_of
 from tester.service.gateway import Gateway
 from tester.service.hook import Hook
 from tester.service.link import MOST_QUEUED
 from tester.service.listening import CLOSE_S, listening
 from tester.service.manners import sparse_logger
-from tester.service.pair import link_of
 from tester.service.queries import Queries
 
 NICE = 5
@@ -27,7 +27,7 @@ NICE = 5
 
 
 @dataclass(frozen=True, slots=True)
-class Settings:
+class GatewaySettings:
     """What the owner tells its gateway. ``path`` is a Unix socket, or with ``token`` the card of a TCP service."""
 
     service: str
@@ -42,10 +42,10 @@ class Settings:
     accept_risk: str = ""
 
 
-SETTINGS: TypeAdapter[Settings] = TypeAdapter(Settings)
+SETTINGS: TypeAdapter[GatewaySettings] = TypeAdapter(GatewaySettings)
 
 
-async def _serve(reader: asyncio.StreamReader, writer: asyncio.StreamWriter, settings: Settings) -> None:
+async def _serve(reader: asyncio.StreamReader, writer: asyncio.StreamWriter, settings: GatewaySettings) -> None:
     queries = Queries(Path(settings.runs), settings.rig, settings.accept_risk)
 
     def tell(line: bytes) -> None:

@@ -15,7 +15,7 @@ import sys
 from pydantic import JsonValue
 from pydantic_core import from_json
 
-from tester.trouble import in_words
+from tester.base.trouble import in_words
 
 WITHIN_S = 30.0
 """A command that takes longer is ended [A]."""

@@ -5,7 +5,9 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-from tester.lock import ExclusiveUse, RigInUseError
+from tester.base.exits import EXIT_FAILED, EXIT_USAGE
+from tester.base.lock import ExclusiveUse, RigInUseError
+from tester.base.plugins import allow_only
 from tester.service.address import (
     CARD,
     HAS_UNIX,
@@ -17,15 +19,13 @@ from tester.service.address import (
     folder,
     new_tcp_address,
 )
-from tester.service.hub import Hub, HubConfig
+from tester.service.gateway_link import GatewayLink, LinkConfig
 from tester.service.service import Service, ServiceOptions
-
-EXIT_FAILED = 1
-EXIT_USAGE = 2
 
 
 def host(options: ServiceOptions, url: str, port: int | None, notify: str) -> int:
     """Serve until told to end; return the exit code. Raises InvalidSource for the rig file."""
+    allow_only(options.allowed)
     try:
         where, address = _place(url, port)
     except AddressError as error:
@@ -37,15 +37,15 @@ def host(options: ServiceOptions, url: str, port: int | None, notify: str) -> in
         except RigInUseError as error:
             sys.stderr.write(f"{error}\n")
             return EXIT_FAILED
-        hub = Hub(HubConfig(address, where / CARD, options.runs, options.rig, notify, options.accept_risk))
-        service = Service(options, hub)
-        hub.open()
+        gateway = GatewayLink(LinkConfig(address, where / CARD, options.runs, options.rig, notify, options.accept_risk))
+        service = Service(options, gateway)
+        gateway.open()
         sys.stderr.write(f'rig "{service.rig.name}" is served at {address}\n')
         sys.stderr.flush()
         try:
             service.serve()
         finally:
-            hub.close()
+            gateway.close()
     return 0
 
 

@@ -3,6 +3,7 @@
 The owner's side never waits. What it says: a letter, then JSON; the gateway passes most of it on unread.
 
     s STATE \\t ROW    the state and its row of the trend; only the newest counts
+    m MACHINE         the tables of the kind of rig, before the first state, and when a run is on another kind
     p PLAN            the plan, or null
     e SEQ EVENT       an event message
     a CLIENT REPLY    the answer to a client's command

@@ -85,7 +85,7 @@ async def listening(gateway: Gateway, address: Address, uid: int | None = None) 
 def _counted(gateway: Gateway) -> type[ServerConnection]:
     """Return what a connection is made of: the gateway knows of it from its first byte on."""
 
-    class Counted(ServerConnection):
+    class CountedConnection(ServerConnection):
         """A connection that cannot be one of any number of strangers."""
 
         def connection_made(self, transport: asyncio.BaseTransport) -> None:
@@ -96,7 +96,7 @@ def _counted(gateway: Gateway) -> type[ServerConnection]:
             gateway.strangers.known(self)
             super().connection_lost(exc)
 
-    return Counted
+    return CountedConnection
 
 
 def _port(server: Server) -> int:

@@ -9,7 +9,7 @@ from collections.abc import Callable
 
 from websockets.asyncio.server import ServerConnection
 
-from tester import clock
+from tester.base import clock
 
 MOST_CLIENTS = 32
 """Clients that have joined, at most."""

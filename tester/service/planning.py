@@ -22,10 +22,10 @@ from dataclasses import dataclass
 from pydantic import TypeAdapter
 
 from recipes import UnknownRecipe
-from tester.campaign.endings import CannotStartError
-from tester.preparing import Prepared, prepared
-from tester.service.pair import link_of, spawn
-from tester.source import InvalidSource
+from tester.base.source import InvalidSource
+from tester.run.endings import CannotStartError
+from tester.run.preparing import Prepared, prepared
+from tester.service.child_socket import link_of, spawn
 
 STEPS_AT_ONCE = 200
 """Steps of one piece: some milliseconds of the owner's time."""

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from tester.axes import ListWords
-from tester.engine.executor import title
-from tester.engine.time_left import TimeLeft
+from tester.machine.served import ServedKind
+from tester.machine.time_left import TimeLeft
 from tester.recipe.estimate import Estimate
 from tester.recipe.plan import ConditionStep, Plan, Step
 from tester.service.state import PlanStep, PlanView, StepState
@@ -18,10 +18,11 @@ BEFORE = 100
 class PlanTrack(TimeLeft):
     """The plan beside the clock, to be shown. Times are rig seconds."""
 
-    def __init__(self, plan: Plan, estimate: Estimate) -> None:
-        """Begin before the first step."""
+    def __init__(self, plan: Plan, estimate: Estimate, kind: ServedKind) -> None:
+        """Begin before the first step. ``kind``: the rig's, which has the words for a step."""
         super().__init__(plan, estimate)
         self.plan = plan
+        self.kind = kind
         self._words = ListWords(step.setpoint for step in plan.conditions())
 
     def view(self) -> PlanView:
@@ -35,7 +36,7 @@ class PlanTrack(TimeLeft):
         return PlanView(self.plan.name, len(steps), first + 1, listed, self.total_s)
 
     def _title(self, step: Step) -> str:
-        return self._words.of(step.setpoint) if isinstance(step, ConditionStep) else title(step)
+        return self._words.of(step.setpoint) if isinstance(step, ConditionStep) else self.kind.title(step)
 
     def _state(self, index: int) -> StepState:
         return "done" if index < self.position else "now" if index == self.position else "later"

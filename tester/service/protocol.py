@@ -1,8 +1,9 @@
 """The messages between the service and its clients: JSON objects, one a WebSocket message (docs/protocol.md).
 
 A client sends ``join`` first and gets ``hello``; from then on the service sends ``snapshot`` (four a second, newest
-wins), ``plan`` (newest wins), ``event`` (numbered, never dropped) and, while asked for, ``frames``. Each command is
-answered by ``accepted`` or ``refused``. ``goodbye`` says why the service closes the connection.
+wins), ``plan`` (newest wins), ``event`` (numbered, never dropped), ``machine`` where a run is on another kind of rig
+and, while asked for, ``frames``. Each command is answered by ``accepted`` or ``refused``. ``goodbye`` says why the
+service closes the connection.
 """
 
 from __future__ import annotations
@@ -11,8 +12,10 @@ from dataclasses import dataclass
 from typing import Annotated, Literal, TypeAlias
 
 from pydantic import Field, JsonValue, TypeAdapter, ValidationError
+from pydantic_core import from_json
 
-from tester.service.commands import VERSION, ClientMessage, Command, Join
+from tester.screen import MachineView
+from tester.service.commands import VERSION, ClientMessage, Command, Join, Stop
 from tester.service.state import PlanView, StateView
 
 SNAPSHOT_S = 0.25
@@ -42,20 +45,13 @@ class Event:
 
 
 @dataclass(frozen=True, slots=True)
-class Trend:
-    """Rows of ``columns`` (tester.service.state.TREND_COLUMNS), oldest first; None is a value nobody had."""
-
-    columns: tuple[str, ...]
-    rows: tuple[tuple[float | None, ...], ...]
-
-
-@dataclass(frozen=True, slots=True)
 class Hello:
     """The first message: everything as it is now.
 
     ``service`` identifies this life of the service: ``since`` counts only with the same one. ``events``: those after
     ``since``, or the last 200; ``complete`` is False where some of them are no longer kept. ``client``: the number
-    this client has here; ``control``: it is the controller.
+    this client has here; ``control``: it is the controller. ``machine``: the tables of the kind of rig; ``trend``: rows
+    of its columns, oldest first; None is a value nobody had.
     """
 
     version: int
@@ -63,11 +59,12 @@ class Hello:
     software: str
     client: int
     control: bool
+    machine: MachineView
     state: StateView
     plan: PlanView | None
     events: tuple[Event, ...]
     complete: bool
-    trend: Trend
+    trend: tuple[tuple[float | None, ...], ...]
     type: Literal["hello"] = "hello"
 
 
@@ -81,6 +78,14 @@ class Snapshot:
     state: StateView
     row: tuple[float | None, ...]
     type: Literal["snapshot"] = "snapshot"
+
+
+@dataclass(frozen=True, slots=True)
+class MachineMessage:
+    """The tables of another kind of rig: a run is on it. The trend begins anew."""
+
+    machine: MachineView
+    type: Literal["machine"] = "machine"
 
 
 @dataclass(frozen=True, slots=True)
@@ -139,7 +144,8 @@ class Goodbye:
 
 
 ServerMessage: TypeAlias = Annotated[
-    Hello | Snapshot | Event | PlanMessage | Frames | Accepted | Refused | Goodbye, Field(discriminator="type")
+    Hello | Snapshot | Event | PlanMessage | MachineMessage | Frames | Accepted | Refused | Goodbye,
+    Field(discriminator="type"),
 ]
 
 # -- as text ---------------------------------------------------------------------------------------------------------
@@ -158,6 +164,44 @@ def to_server(text: str | bytes) -> Join | Command:
         return CLIENT.validate_json(text)
     except ValidationError as error:
         raise BadMessageError(_words(error)) from None
+
+
+def stop_in(text: str | bytes) -> Command | None:
+    """Return the STOP that a message means, of whatever version and with whatever else in it; None: it means none.
+
+    STOP is never refused: what else is wrong with the message is no reason to let a machine run on.
+    """
+    match _json(text):
+        case {"action": {"command": "stop", **options}, **rest}:
+            number = rest.get("id")
+            return Command(number if isinstance(number, int) else 0, Stop(fast=options.get("fast") in (True, "true")))
+        case _:
+            return None
+
+
+def foreign_join(text: str | bytes) -> str:
+    """Return why a client of another version is refused, and what to do; "" for a message that is no such join.
+
+    A join that names no version is one of version 1.
+    """
+    match _json(text):
+        case {"type": "join", **rest} if (version := rest.get("version", 1)) != VERSION:
+            newer = isinstance(version, int) and version > VERSION
+            return (
+                f"this client speaks version {version!r:.20} of the protocol, the service version {VERSION}: install "
+                f"the same version of friction-tester at both ends (here the {'service' if newer else 'client'} is the "
+                "older one; docs/protocol.md says what has changed). STOP is taken all the same"
+            )
+        case _:
+            return ""
+
+
+def _json(text: str | bytes) -> JsonValue:
+    try:
+        found: JsonValue = from_json(text)
+    except ValueError:
+        return None
+    return found
 
 
 def from_server(text: str | bytes) -> ServerMessage:

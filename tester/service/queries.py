@@ -18,7 +18,8 @@ from pydantic import JsonValue
 from pydantic_core import from_json
 
 import recipes
-from tester.children import tester_command
+from tester.base.children import tester_command
+from tester.base.exits import EXIT_INVALID
 from tester.service.commands import CheckRecipe, ListRecipes, ListRuns, Query, ShowPlan
 
 AT_ONCE = 2
@@ -29,7 +30,6 @@ MOST = 32_000_000
 """Longest answer, bytes."""
 NICE = 10
 """The scan comes first."""
-EXIT_INVALID = 3
 
 
 class QueryError(Exception):

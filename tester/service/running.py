@@ -7,21 +7,22 @@ from dataclasses import dataclass, replace
 from types import FrameType
 from typing import TypeVar, cast
 
-from tester import clock
-from tester.campaign.endings import CannotStartError, Stop
-from tester.campaign.folder import Begin, Job, Work
-from tester.engine.context import Progress as RunProgress
-from tester.engine.prompts import Prompts
-from tester.engine.run import Run
-from tester.engine.tickers import TickStatistics
-from tester.preparing import Prepared
-from tester.recipe.estimate import Estimate, estimate
+from tester.base import clock
+from tester.machine.context import Progress as RunProgress
+from tester.machine.prompts import Prompts
+from tester.machine.run import Run
+from tester.machine.tickers import TickStatistics
+from tester.recipe.estimate import Estimate
+from tester.run.endings import CannotStartError, StopLevel
+from tester.run.folder import Begin, Job, Work
+from tester.run.kinds import recipe_part, served_kind
+from tester.run.preparing import Prepared
+from tester.run.session import Session, SessionOptions
 from tester.service.aside import aside
-from tester.service.desk import Desk
 from tester.service.planning import Task, planned
 from tester.service.progress import PlanTrack
 from tester.service.state import RunView, TickView
-from tester.session import Session, SessionOptions
+from tester.service.state_publisher import Desk
 from tester.store.space import expected_bytes
 
 Got = TypeVar("Got")
@@ -96,7 +97,7 @@ class ServiceSession(Session):
 
     def rested(self) -> None:
         """STOP does not wait for the record of this part, nor for the next part to connect."""
-        self.desk.hub.lane.end_ticking()
+        self.desk.gateway.lane.end_ticking()
 
     def poll(self, now_s: float, run: Run, share: float) -> None:
         """Let the desk look, and clients speak."""
@@ -106,14 +107,14 @@ class ServiceSession(Session):
 
     def _record(self, job: Job, work: Work, begin: Begin) -> int:
         """Estimate the plan before anything moves, then go on as ever."""
-        expected = self._expected or estimate(work.plan, work.rig)
-        self._track = PlanTrack(work.plan, expected)
+        expected = self._expected or recipe_part(work.rig).estimate(work.plan, work.rig)
+        self._track = PlanTrack(work.plan, expected, served_kind(work.rig))
         self.desk.needed = round(expected_bytes(work.plan, expected))
         return super()._record(job, work, begin)
 
     def _stop_rest(self, fast: bool) -> None:
         """Begin no further part."""
-        self.stop(Stop.FAST if fast else Stop.INTERRUPTED)
+        self.stop(StopLevel.FAST if fast else StopLevel.INTERRUPTED)
 
     def _on_signal(self, number: int, _frame: FrameType | None) -> None:
         self._tell_signal()
@@ -130,7 +131,7 @@ class Punctuality:
     _now_s: float = 0.0
     _before_s: float = 0.0
     _turn_s: float = 0.0
-    """When the present second began (tester.clock.monotonic)."""
+    """When the present second began (tester.base.clock.monotonic)."""
 
     def look(self, statistics: TickStatistics, wall_s: float) -> TickView:
         """Take what the ticker has noted since the last look, and begin its worst anew."""
@@ -171,7 +172,7 @@ class RunScreen:
     def end(self) -> None:
         """The last state is shown before the tables are written; nothing ticks from now on."""
         self.desk.show()
-        self.desk.hub.lane.end_ticking()
+        self.desk.gateway.lane.end_ticking()
 
     def message(self, text: str) -> None:
         """Tell every client."""

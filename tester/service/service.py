@@ -14,43 +14,42 @@ from typing import TypeVar
 
 from drivers.ports import BusLost
 from recipes import UnknownRecipe
-from tester import clock
-from tester.campaign.claims import hold_rig
-from tester.campaign.endings import CannotStartError
-from tester.campaign.part_run import closed_early, connect_ports, left_safe
-from tester.engine.build import Ports, build_run
-from tester.engine.prompts import Prompts
-from tester.engine.run import Outcome, Run
-from tester.engine.tickers import TickStatistics, World, run_real_time, run_simulated
-from tester.lock import ExclusiveUse
-from tester.recipe.estimate import estimate
-from tester.rig import load_rig
+from tester.base import clock
+from tester.base.lock import ExclusiveUse
+from tester.base.pace import Pace
+from tester.base.signals import HANG_UP, QUIT, SUSPENDING
+from tester.base.source import InvalidSource
+from tester.base.trouble import in_words
+from tester.machine.manual import NAME, ManualExecutor
+from tester.machine.run import Outcome, Run
+from tester.machine.tickers import TickedWorld, TickStatistics, collector_at_rest, run_real_time, run_simulated
+from tester.run.endings import CannotStartError
+from tester.run.kinds import recipe_part, run_parts
+from tester.run.part_run import closed_early, connect_ports, left_safe
+from tester.run.preconditions import hold_rig
+from tester.run.rigs import load_rig
+from tester.run.session import SessionOptions
 from tester.service.aside import aside
+from tester.service.command_handler import Orders
 from tester.service.commands import (
     Arm,
     ResumeRun,
     RunRecipe,
 )
-from tester.service.desk import Desk
-from tester.service.hub import Hub
+from tester.service.gateway_link import GatewayLink
+from tester.service.left_on_rig import left_on_rig
 from tester.service.link import Order
-from tester.service.manual import NAME, ManualExecutor, empty_plan, open_record, take_over
-from tester.service.mounted import mounted_wheel, taken_for
-from tester.service.orders import Orders
+from tester.service.manual import open_record
 from tester.service.preflight import past_of
 from tester.service.progress import PlanTrack
 from tester.service.running import RunScreen, ServiceSession
 from tester.service.state import RunView
-from tester.session import SessionOptions
-from tester.signals import HANG_UP, QUIT, SUSPENDING
-from tester.source import InvalidSource
+from tester.service.state_publisher import Desk
 from tester.store.catalogue import find_run, under_way
-from tester.store.heatings import known_heat
 from tester.store.reader import DATABASE, RunReader
 from tester.store.schema import StoreError
 from tester.store.status import RunStatus, run_status
 from tester.store.writer import RunWriter
-from tester.trouble import in_words
 
 Got = TypeVar("Got")
 
@@ -77,16 +76,18 @@ class ServiceOptions:
     runs: Path = Path("runs")
     accept_risk: str = ""
     """Why safety keys of this rig may be looser than they should be."""
+    allowed: tuple[str, ...] = ()
+    """Names of the extensions that may be loaded, beside those of ``TESTER_ALLOW``."""
 
 
 class Service:
     """Carries out one thing at a time: a run, manual mode, or nothing."""
 
-    def __init__(self, options: ServiceOptions, hub: Hub) -> None:
+    def __init__(self, options: ServiceOptions, gateway: GatewayLink) -> None:
         """Read the rig file; raises InvalidSource. Nothing is connected."""
         self.options = options
         self.rig = load_rig(options.rig, options.overrides, options.accept_risk)
-        self.desk = Desk(hub, self.rig, options.runs)
+        self.desk = Desk(gateway, self.rig, options.runs)
         self.orders = Orders(self.desk)
         self._look_due_s = 0.0
 
@@ -117,9 +118,9 @@ class Service:
 
     def _look_back(self) -> None:
         """Look at what the runs have left."""
-        runs = self.options.runs
-        self.desk.past = self._aside(lambda: past_of(runs))
-        self.desk.heat = self._aside(lambda: known_heat(runs, self.rig))
+        runs, rig, kind = self.options.runs, self.rig, self.desk.kind
+        self.desk.past = self._aside(lambda: past_of(runs, kind))
+        self.desk.history = self._aside(lambda: run_parts(rig).history(runs, rig))
 
     def _look_again(self) -> None:
         """Forget the runs that are cut off no longer: resumed here, or by a command."""
@@ -168,7 +169,7 @@ class Service:
         try:
             folder = find_run(action.run, self.options.runs)
         except StoreError as error:
-            self.desk.hub.refuse(order, str(error))
+            self.desk.gateway.refuse(order, str(error))
             return
         options = SessionOptions(
             accept_risk=self.options.accept_risk, out=self.options.runs, lapse=action.speed, operator=order.name
@@ -194,7 +195,7 @@ class Service:
                        Outcome.RUNNING.value, "", None, ())  # fmt: skip
 
         def begun(view: RunView) -> None:
-            desk.hub.accept(order, {"run": view.name, "folder": view.folder})
+            desk.gateway.accept(order, {"run": view.name, "folder": view.folder})
             desk.command(f"{order.action.command} by {order.by}")
             if notes and desk.watch is not None:
                 desk.watch.run.engine.ctx.journal.event(0.0, "note", notes)
@@ -214,7 +215,7 @@ class Service:
             problem = in_words(error)
         if not session.view.name:
             if self.orders.job is order:  # else STOP has refused it already
-                desk.hub.refuse(order, problem or "; ".join(screen.messages) or "the run has ended before it began")
+                desk.gateway.refuse(order, problem or "; ".join(screen.messages) or "the run has ended before it began")
             desk.detach(None)
             return
         outcome = session.ending.outcome if session.ending is not None else Outcome.FAILED
@@ -225,17 +226,17 @@ class Service:
 
     def _manual(self, order: Order) -> None:
         """Connect the rig and let the client that asked move it."""
-        desk, rig = self.desk, self.rig
+        desk, rig, kind = self.desk, self.rig, self.desk.kind
         view = RunView(NAME, "", "", "", "", order.name, None, rig.simulated, 1.0, clock.utc_now(),
                        Outcome.RUNNING.value, "", None, ())  # fmt: skip
         with ExclusiveUse() as use:
             try:
                 hold_rig(use, rig, NAME)
                 record = open_record(self.options.runs, rig, order.name, self.options.accept_risk)
-                mounted = self._aside(lambda: mounted_wheel(self.options.runs, rig))
-                heat = self._aside(lambda: known_heat(self.options.runs, rig))
+                left = self._aside(lambda: left_on_rig(self.options.runs, rig, kind))
+                history = self._aside(lambda: run_parts(rig).history(self.options.runs, rig))
             except REFUSED as error:
-                desk.hub.refuse(order, in_words(error))
+                desk.gateway.refuse(order, in_words(error))
                 return
             with closing(record), closed_early(record):
                 if self.orders.job is not order:
@@ -245,25 +246,29 @@ class Service:
                     ports, world, attendant = connect_ports(rig, 0, None)
                 except BusLost as error:
                     record.finish(Outcome.UNREACHABLE.value, str(error), 0.0)
-                    desk.hub.refuse(order, str(error))
+                    desk.gateway.refuse(order, str(error))
                     return
-                run = build_run(rig, empty_plan(), ports, attendant, record, Prompts(), heat=heat)
-                hand = take_over(run, mounted.wheel if mounted is not None else None)
-                desk.attach(run, PlanTrack(hand.plan, estimate(hand.plan, rig)), view, hand)
-                self.orders.lost_control()  # somebody may have taken it since the order
-                record.event(0.0, "wheel", taken_for(mounted, run.engine.ctx.wheel.cold_mm))
-                desk.hub.accept(order)
-                desk.command(f"arm by {order.by}")
-                with closing(ports), left_safe(run):
-                    seconds = self._by_hand(run, hand, world, ports, record)
-                    desk.hub.lane.end_ticking()  # STOP does not wait for the record
+                made = kind.by_hand(rig, ports, attendant, record, left, history)
+                run, hand = made.run, made.executor
+                track = PlanTrack(hand.plan, recipe_part(rig).estimate(hand.plan, rig), kind)
+                with collector_at_rest():  # already: from here to the first tick nothing takes long
+                    desk.attach(run, track, view, hand)
+                    self.orders.lost_control()  # somebody may have taken it since the order
+                    record.event(0.0, kind.machine.specimen, made.mounted)
+                    desk.gateway.accept(order)
+                    desk.command(f"arm by {order.by}")
+                    with closing(ports), left_safe(run):
+                        seconds = self._by_hand(run, hand, world, ports.pace, record)
+                        desk.gateway.lane.end_ticking()  # STOP does not wait for the record
                 record.finish(run.outcome.value, run.reason, seconds)
         desk.ended(replace(view, outcome=run.outcome.value, reason=run.reason), run.outcome)
 
-    def _by_hand(self, run: Run, hand: ManualExecutor, world: World | None, ports: Ports, record: RunWriter) -> float:
+    def _by_hand(
+        self, run: Run, hand: ManualExecutor, world: TickedWorld | None, pace: Pace | None, record: RunWriter
+    ) -> float:
         """Tick manual mode to its end; return the seconds it took."""
-        hub = self.desk.hub
-        hub.attended()  # whoever armed is there
+        gateway = self.desk.gateway
+        gateway.attended()  # whoever armed is there
 
         def poll(now_s: float) -> None:
             hand.expire(now_s)
@@ -273,13 +278,13 @@ class Service:
                 run.request_stop(f"manual mode can no longer be recorded: {record.failed}")
             self.desk.poll(now_s)
             # Only now: signs that came while this process itself was held up have been heard.
-            if hub.silent_s > SILENT_S and not hand.finished:
+            if gateway.silent_s > SILENT_S and not hand.finished:
                 self.desk.tell("mode", f"manual mode ends: no sign of its screen for {SILENT_S:g} s", "warning")
                 hand.disarm()
 
         if world is not None:
             return run_simulated(run, world, lapse=MANUAL_LAPSE, poll=poll)
-        return run_real_time(run, None, poll=poll, statistics=TickStatistics(), pace=ports.pace)
+        return run_real_time(run, None, poll=poll, statistics=TickStatistics(), pace=pace)
 
 
 class Signals:

@@ -10,8 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-Quality = Literal["good", "stale", "bad", "none"]
-"""good; older than its limit; reported invalid by its device; never received."""
+from tester.screen import Check, Gate, SoakView, Value
 
 MODES = (
     "OFFLINE",
@@ -30,72 +29,6 @@ MODES = (
 )
 """Values of ``StateView.mode``; a client shows one it does not know as it is. OFFLINE: no rig is connected, a run
 connects it. INTERRUPTED: the same, and the store holds a run that was cut off; shown until somebody acknowledges it."""
-
-TREND_COLUMNS = (
-    "wall_s",
-    "t_s",
-    "friction",
-    "load_n",
-    "load_setpoint_n",
-    "surface_c",
-    "surface_setpoint_c",
-    "hub_c",
-    "hub_setpoint_c",
-    "slip_mm_s",
-    "slip_setpoint_mm_s",
-    "wheel_speed_m_s",
-    "belt_speed_m_s",
-    "sideslip_deg",
-    "heat_percent",
-)
-"""A row of the trend. ``wall_s``: seconds since the service started; ``t_s``: rig time of the run."""
-
-
-@dataclass(frozen=True, slots=True)
-class Value:
-    """One measured value beside what is wanted and what is allowed.
-
-    ``low``, ``high``: the limits at which something happens (an interlock, a hard limit of the rig). ``band_low``,
-    ``band_high``: the gate around the setpoint, inside which samples count. ``scale_low``, ``scale_high``: ends of a
-    bar, fixed for a rig. Keys: friction, load, slip, surface, hub, sideslip, camber, wheel_speed, belt_speed, press,
-    force_x, force_y, moment, torque, heat.
-    """
-
-    key: str
-    label: str
-    unit: str
-    value: float | None
-    setpoint: float | None
-    low: float | None
-    high: float | None
-    band_low: float | None
-    band_high: float | None
-    scale_low: float
-    scale_high: float
-    decimals: int
-    age_s: float | None
-    quality: Quality
-
-
-@dataclass(frozen=True, slots=True)
-class Gate:
-    """One gate of the samples: ``open`` while samples pass it. Keys: load, speed, slip, temperature, settling."""
-
-    key: str
-    open: bool
-
-
-@dataclass(frozen=True, slots=True)
-class SoakView:
-    """A soak under way: 39.6 of 40.0 +- 1.0 degC, in band 190 s of 600 s, given up after ``at_most_s``."""
-
-    surface_c: float | None
-    target_c: float
-    within_k: float
-    in_band_s: float
-    for_s: float
-    waited_s: float
-    at_most_s: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -162,7 +95,7 @@ class PromptView:
 
 @dataclass(frozen=True, slots=True)
 class DeviceView:
-    """One device on a bus. ``kind``: drive, load cell, thermometer, jacket. ``state``: the drive's CiA 402 state.
+    """One device on a bus. ``kind``: drive, or what a device on a line is. ``state``: the drive's CiA 402 state.
 
     ``age_s``: of its newest data. Errors are counted since the run began: time-outs, CRC, exceptions, emergencies.
     """
@@ -255,15 +188,6 @@ class ClientsView:
     controller: str
     controller_id: int
     viewers: int
-
-
-@dataclass(frozen=True, slots=True)
-class Check:
-    """One line of the pre-flight list: ``ok`` None where nobody can know before the rig is connected."""
-
-    name: str
-    ok: bool | None
-    text: str
 
 
 @dataclass(frozen=True, slots=True)

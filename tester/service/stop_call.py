@@ -11,10 +11,10 @@ from __future__ import annotations
 import socket
 from contextlib import suppress
 
-from tester import clock
+from tester.base import clock
+from tester.base.trouble import in_words
 from tester.service.address import Address, AddressError, UnixAddress, default_address, stop_path
 from tester.service.stop_door import TAKEN
-from tester.trouble import in_words
 
 WITHIN_S = 3.0
 """Without an answer by then STOP was not taken, s."""

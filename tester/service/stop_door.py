@@ -25,9 +25,9 @@ from pathlib import Path
 
 from pydantic import TypeAdapter
 
-from tester import clock
+from tester.base import clock
 from tester.service.address import peer_of, peer_text, unlink_socket, with_peer
-from tester.service.pair import link_of
+from tester.service.child_socket import link_of
 
 MOST_CALLERS = 256
 """Connections kept; one more, and the process that has the most of them loses its oldest."""
@@ -98,7 +98,7 @@ class StopDoor:
             self._selector.register(one, selectors.EVENT_READ)
         self._number = os.getpid() << 16  # another life of the door has other numbers
         self._admits_s: float | None = None
-        """When somebody new is let in again (tester.clock.monotonic); None: now."""
+        """When somebody new is let in again (tester.base.clock.monotonic); None: now."""
         self._asked: Wish | None = None
         self._next: Wish | None = None
         self._answers = b""

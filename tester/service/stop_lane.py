@@ -15,9 +15,9 @@ from contextlib import suppress
 from dataclasses import dataclass
 from threading import Lock, Thread
 
-from tester import clock
+from tester.base import clock
 from tester.service.address import Address, TcpAddress, stop_path
-from tester.service.pair import spawn
+from tester.service.child_socket import spawn
 from tester.service.stop_door import SETTINGS, DoorSettings
 
 AGAIN_S = 1.0

@@ -3,31 +3,23 @@
 from __future__ import annotations
 
 from math import isfinite
+from typing import Any
 
-from tester import clock
-from tester.control.state import Mode
-from tester.engine.condition import MeasureCondition
-from tester.engine.connect import Stage
-from tester.engine.run import Run
-from tester.engine.thermal_steps import HeatUp, SoakTo
-from tester.process import GATE_LOAD, GATE_SETTLING, GATE_SLIP, GATE_SPEED, GATE_TEMPERATURE
-from tester.rig import RigConfig
+from tester.base import clock
+from tester.machine.connect import Stage
+from tester.machine.run import Run
+from tester.machine.served import ServedKind
+from tester.machine.state import ControlState, Mode
+from tester.rig import Rig
 from tester.rig.load import risks_of
+from tester.screen import Check, Gate, SoakView, Value
 from tester.service.alarms import AlarmList, Cause
-from tester.service.alone import left_alone
 from tester.service.buses import BusWatch
 from tester.service.frames import FrameLog
 from tester.service.progress import PlanTrack
-from tester.service.state import Check, Gate, ProgressView, PromptView, SoakView, Value
+from tester.service.state import ProgressView, PromptView
 from tester.service.values import ValueView
 
-GATES = (
-    ("load", GATE_LOAD),
-    ("speed", GATE_SPEED),
-    ("slip", GATE_SLIP),
-    ("temperature", GATE_TEMPERATURE),
-    ("settling", GATE_SETTLING),
-)
 NO_MODE = "CONNECTING"
 MODES = {Mode.EMERGENCY: "E-STOP"}
 """Modes that are shown under another name than control's."""
@@ -35,7 +27,7 @@ RESTING = (Mode.IDLE, Mode.LATCHED)
 """Modes in which drives are let go of at the end of a run."""
 
 
-def risk_of(rig: RigConfig) -> str:
+def risk_of(rig: Rig) -> str:
     """Return the safety keys of a rig that are looser than they should be, in words; "" where none is."""
     return "; ".join(map(str, risks_of(rig)))
 
@@ -43,16 +35,20 @@ def risk_of(rig: RigConfig) -> str:
 class RunWatch:
     """Looks at one run, between two ticks."""
 
-    def __init__(self, run: Run, track: PlanTrack) -> None:
-        """Work out what stays the same. ``track``: of the whole plan, of which this run may be a part."""
+    def __init__(self, run: Run, track: PlanTrack, kind: ServedKind) -> None:
+        """Work out what stays the same. ``track``: of the whole plan, of which this run may be a part; ``kind``: the
+        rig's."""
         self.run = run
+        self.kind = kind
         engine = run.engine
         self.rig = engine.ctx.rig
         self.risk = risk_of(self.rig)
-        self.values = ValueView(engine)
+        self.panel = kind.panel(engine)
+        self.values = ValueView(engine, self.panel)
         self.buses = BusWatch(engine.devices, self.rig)
-        self.frames = FrameLog(engine.devices, tuple(self.rig.lines))
-        self.alone = left_alone(self.rig)
+        ports = [port for port, _ in engine.devices.lines]
+        self.frames = FrameLog(engine.devices.can, dict(zip(self.rig.lines, ports, strict=True)))
+        self.alone = kind.alone(self.rig)
         self.track = track
         track.begin_part(engine.executor.plan)
         self.watched: set[str] = set()
@@ -62,6 +58,8 @@ class RunWatch:
         self.acknowledged = False
         """There was a trip, and it has been acknowledged."""
         self._asked_utc: dict[int, str] = {}
+        self._fresh = frozenset(spec.key for spec in self.values.specs if spec.watched)
+        """Keys of the values whose news must come."""
 
     # -- what is shown ----------------------------------------------------------------------------------------
 
@@ -71,7 +69,7 @@ class RunWatch:
         run = self.run
         if run.connector.stage is not Stage.READY:
             return NO_MODE, run.connector.stage.value, 0.0
-        state = run.engine.control.state
+        state: ControlState[Any] = run.engine.control.state
         name = MODES.get(state.mode, state.mode.value.upper())
         why = state.trip.text if state.trip is not None else state.stop_requested
         return name, why, max(run.engine.ctx.now - state.mode_since_s, 0.0)
@@ -92,25 +90,11 @@ class RunWatch:
 
     def gates(self) -> tuple[Gate, ...]:
         """Return the gates as of the last scan."""
-        closed = self.run.engine.ctx.gate
-        return tuple(Gate(key, not closed & bit) for key, bit in GATES)
+        return self.panel.gates()
 
     def soak(self, now: float) -> SoakView | None:
         """Return the soak under way, None where there is none."""
-        activity = self.run.engine.executor.activity
-        soak: SoakTo | None = None
-        if isinstance(activity, HeatUp):
-            soak = activity.soak if activity.rolling else None
-        elif isinstance(activity, MeasureCondition):
-            soak = None if activity.soaked else activity.soak
-        if soak is None:
-            return None
-        surface = self.run.engine.ctx.gates.surface.slow_c
-        return SoakView(
-            surface if isfinite(surface) else None, soak.target_c, soak.within_k,
-            max(now - soak.since_s, 0.0) if isfinite(soak.since_s) else 0.0, soak.for_s,
-            max(now - soak.began_s, 0.0) if isfinite(soak.began_s) else 0.0, soak.at_most_s,
-        )  # fmt: skip
+        return self.panel.soak(now)
 
     def prompt(self) -> PromptView | None:
         """Return the question that waits."""
@@ -122,21 +106,10 @@ class RunWatch:
 
     def preflight(self) -> tuple[Check, ...]:
         """Return what the connected rig says of its readiness."""
-        r, rig = self.run.engine.ctx.readings, self.rig
-        wheel = self.run.engine.ctx.wheel
-        worn = f"{wheel.cold_mm:.2f} mm, {wheel.loss_mm:.2f} mm worn off"
-        allowed_mm = self.run.engine.executor.plan.replace_after_mm  # 0: by hand, nothing is planned
-        left_mm = allowed_mm - wheel.loss_mm
-        wheel_check = Check("wheel", None, worn)
-        if allowed_mm > 0.0:
-            left = f"{max(left_mm, 0.0):.2f} mm left before it is changed"
-            wheel_check = Check("wheel", left_mm > 0.0, f"{worn}, {left}")
         return (
-            Check("safety chain", r.safety_chain, "closed" if r.safety_chain else "open"),
-            Check("guard closed", r.guard_closed, "" if r.guard_closed else "the guard is open"),
-            wheel_check,
+            *self.panel.checks(),
             Check("last run", None, "under way"),
-            Check("ambient", None, f"{rig.ambient_c:g} °C"),
+            Check("ambient", None, f"{self.rig.ambient_c:g} °C"),
         )
 
     # -- alarms -----------------------------------------------------------------------------------------------
@@ -146,7 +119,7 @@ class RunWatch:
         if self.run.connector.stage is not Stage.READY or self.run.engine.control.state.mode in RESTING:
             return
         for value in values:
-            if value.key not in ("load", "slip", "surface", "hub"):
+            if value.key not in self._fresh:
                 continue
             name = f"no fresh data: {value.label}"
             self.watched.add(name)

@@ -7,10 +7,10 @@ from collections.abc import Generator, Iterable
 from contextlib import closing, contextmanager, suppress
 from pathlib import Path
 
+from tester.base.trouble import in_words
 from tester.store.chain import Chain
 from tester.store.reader import DATABASE
 from tester.store.schema import StoreError, migrate
-from tester.trouble import in_words
 
 
 @contextmanager

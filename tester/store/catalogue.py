@@ -8,7 +8,7 @@ from contextlib import suppress
 from difflib import get_close_matches
 from pathlib import Path
 
-from tester.lock import RUN_LOCK, Holder, user_of
+from tester.base.lock import RUN_LOCK, Holder, user_of
 from tester.store.reader import DATABASE, RunReader
 from tester.store.schema import StoreError
 

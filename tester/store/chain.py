@@ -68,8 +68,8 @@ class Chain:
             "CREATE TEMP TABLE touched"
             " (n INTEGER PRIMARY KEY, name TEXT, key INTEGER, UNIQUE (name, key) ON CONFLICT IGNORE)"
         )
-        self._columns = {table: columns_of(connection, table) for table in tables_in(connection)}
-        for table in self._columns:
+        self._columns: dict[str, tuple[str, ...]] = {}
+        for table in tables_in(connection):
             for verb, row in (("INSERT", "new"), ("UPDATE", "new"), ("DELETE", "old")):
                 connection.execute(
                     f"CREATE TEMP TRIGGER touched_{table}_{verb} AFTER {verb} ON main.{table}"
@@ -85,6 +85,8 @@ class Chain:
             connection.execute("DELETE FROM touched")
 
     def _hash(self, table: str, key: int) -> bytes:
+        if table not in self._columns:  # only now: a new record gets its columns as the run begins
+            self._columns[table] = columns_of(self._connection, table)
         columns = self._columns[table]
         found = self._connection.execute(f"SELECT {', '.join(columns)} FROM main.{table} WHERE rowid = ?", (key,))
         return row_sha256(table, key, columns, found.fetchone())

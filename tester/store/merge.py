@@ -18,11 +18,12 @@ from types import TracebackType
 import numpy as np
 
 from tester.analysis.results import Judgement
-from tester.process import SAMPLE_COLUMNS
+from tester.quantities import KEY, TIME, Quantities
 from tester.store.chain import Chain
+from tester.store.channels import channels_before_8, make_columns, recorded_channels
 from tester.store.reader import DATABASE, RunReader
 from tester.store.sample_blocks import unpack_array
-from tester.store.schema import migrate
+from tester.store.schema import PIECE, StoreError, migrate
 
 Cell = str | int | float | bytes | None
 
@@ -40,7 +41,7 @@ class Merged:
 
 
 TABLES: dict[str, Merged] = {
-    "wheel": Merged(times=("installed_s", "updated_s", "ground_s")),
+    PIECE: Merged(times=("installed_s", "updated_s", "ground_s")),
     "repeat": Merged(times=("begun_s", "started_s", "ended_s"), key="id"),
     "burst": Merged(times=("started_s", "ended_s"), repeat="repeat_id"),
     "sample_block": Merged(times=("first_s", "last_s"), key="id", repeat="repeat_id"),
@@ -51,20 +52,25 @@ TABLES: dict[str, Merged] = {
     "trip": Merged(times=("t_s", "acknowledged_s"), key="id"),
     "bus_statistic": Merged(times=("t_s",), key="id"),
     "device_parameter": Merged(times=("t_s",), key="id"),
+    "truth": Merged(key="id"),
 }
 """Tables that are filled while a run goes on, in the order in which they refer to each other."""
 
 HEADER = frozenset(
     {
         "run",
+        "axis",
         "metadata",
         "version",
         "specimen",
         "condition",
         "sample_column",
+        "channel",
         "session",
         "change",
         "calibration",
+        "budget_term",
+        "known_slope",
         "exclusion",
         "chain",
     }
@@ -74,11 +80,8 @@ HEADER = frozenset(
 LEFT = ("status", "reason", "warming_k_s", "holdable_band_k", *(field.name for field in fields(Judgement)))
 """How a condition was left; ``started_s`` and ``ended_s`` are times."""
 
-_COLUMNS = len(SAMPLE_COLUMNS)
-_TIME = SAMPLE_COLUMNS.index("time_s")
-_KEY = SAMPLE_COLUMNS.index("repeat_key")
 _DIGITS = 6
-"""Rig times lie on a grid of microseconds (tester.engine.tickers); a sum of two is put back on it."""
+"""Rig times lie on a grid of microseconds (tester.machine.tickers); a sum of two is put back on it."""
 _LEVEL = 1
 """Of compression, as tester.store.sample_blocks writes."""
 
@@ -98,12 +101,14 @@ class Merge:
             # The deletion of a rollback journal is synced, too: one that came back would take the merge back.
             self._connection.execute("PRAGMA synchronous = EXTRA")
             migrate(self._connection)
+            self._channels = _channels(self._connection)
+            make_columns(self._connection, self._channels)
             self._chain = Chain(self._connection)
             with self._transaction():
                 for table in reversed(TABLES):
                     self._connection.execute(f"DELETE FROM {table}")
                 self._connection.execute("UPDATE run SET overruns = 0")
-        except sqlite3.Error:
+        except (sqlite3.Error, StoreError):
             self._connection.close()
             raise
 
@@ -120,7 +125,9 @@ class Merge:
     def add(self, part: Path) -> None:
         """Append the part whose record lies in the folder ``part``."""
         with RunReader(part) as reader:
-            run = reader.run()
+            run, channels = reader.run(), reader.quantities()
+        if channels.names != self._channels.names:
+            raise StoreError(f"part {part.name} was recorded with other channels than its run")
         with closing(sqlite3.connect(f"{(part / DATABASE).absolute().as_uri()}?mode=ro", uri=True)) as source:
             bases = {table: self._last(table) for table, kind in TABLES.items() if kind.key is not None}
             with self._transaction():
@@ -176,10 +183,12 @@ class Merge:
         """Return a block of samples with later times and higher keys."""
         if not isinstance(data, bytes) or (base == 0 and self.rig_seconds == 0.0):
             return data
-        rows = len(zlib.decompress(data)) // (8 * _COLUMNS)
-        table = unpack_array(data, rows, _COLUMNS).copy()
-        table[_TIME] = np.round(table[_TIME] + self.rig_seconds, _DIGITS)
-        table[_KEY] += base * (table[_KEY] > 0.0)
+        width, time_at = len(self._channels.names), self._channels.index(TIME)
+        rows = len(zlib.decompress(data)) // (8 * width)
+        table = unpack_array(data, rows, width).copy()
+        table[time_at] = np.round(table[time_at] + self.rig_seconds, _DIGITS)
+        keys = table[self._channels.index(KEY)]
+        keys += base * (keys > 0.0)
         return zlib.compress(table.astype("<f8").tobytes(), _LEVEL)
 
     def _moved(self, time_s: Cell) -> Cell:
@@ -192,11 +201,18 @@ class Merge:
     def _last(self, table: str) -> int:
         return self._connection.execute(f"SELECT coalesce(max({TABLES[table].key}), 0) FROM {table}").fetchone()[0]
 
-    def _transaction(self) -> _Transaction:
-        return _Transaction(self._connection, self._chain)
+    def _transaction(self) -> _MergeTransaction:
+        return _MergeTransaction(self._connection, self._chain)
 
 
-class _Transaction:
+def _channels(connection: sqlite3.Connection) -> Quantities:
+    try:
+        return recorded_channels(connection) or channels_before_8()
+    except ValueError as error:
+        raise StoreError(str(error)) from error
+
+
+class _MergeTransaction:
     """All of it or nothing, and chained."""
 
     def __init__(self, connection: sqlite3.Connection, chain: Chain) -> None:

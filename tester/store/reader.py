@@ -14,31 +14,38 @@ from tempfile import TemporaryDirectory
 from types import TracebackType
 from typing import TYPE_CHECKING, Literal, TypeVar
 
+from tester.analysis.kelvin import KnownSlope
 from tester.analysis.results import Burst, ConditionStatus, Judgement, RepeatResult, RepeatStatus
+from tester.analysis.terms import Term
 from tester.analysis.wear_check import WearCheck
+from tester.axes import Axes
+from tester.quantities import Means, Quantities
+from tester.store import older
+from tester.store.axes import axes_of, setpoint_of
+from tester.store.budget import term_of
 from tester.store.chain import ChainFound, inspect
+from tester.store.channels import channels_before_8, recorded_channels
 from tester.store.records import (
     NAN,
-    BusStatistic,
     Calibration,
     Change,
     ConditionInfo,
-    Event,
-    Parameter,
+    PieceInfo,
     RunInfo,
     SessionInfo,
     SpecimenInfo,
     StoredCondition,
+    StoredEvent,
     StoredExclusion,
+    StoredParameter,
     StoredPrompt,
     StoredRepeat,
     StoredRun,
     StoredTare,
     StoredTrip,
-    WheelInfo,
 )
 from tester.store.sample_blocks import unpack, unpack_array
-from tester.store.schema import CHAINED, NotBegunError, StoreError, migrate, reads_as_present, version_of
+from tester.store.schema import CHAINED, PIECE, NotBegunError, StoreError, migrate, reads_as_present, version_of
 
 if TYPE_CHECKING:
     from array import array
@@ -84,6 +91,8 @@ def _optional(row: Row, name: str) -> float | None:
     return float(value) if isinstance(value, int | float) else None
 
 
+_OF_A_TARE = ("id", "t_s", "kind", "repeat_id")
+"""Columns of the table ``tare`` that are no channel's zero."""
 _READERS = {"str": _text, "float": _number, "int": _whole, "float | None": _optional}
 
 
@@ -124,6 +133,7 @@ class RunReader:
         self._copy: TemporaryDirectory[str] | None = None
         self.version = 0
         """The schema of the record as it lies in the folder."""
+        self._quantities: Quantities | None = None
         if not self.path.is_file():
             raise StoreError(f"no run in {path}")
         try:
@@ -167,6 +177,15 @@ class RunReader:
         if self._copy is not None:
             self._copy.cleanup()
 
+    def quantities(self) -> Quantities:
+        """Return the record's own channels; raises StoreError."""
+        if self._quantities is None:
+            try:
+                self._quantities = recorded_channels(self._connection) or channels_before_8()
+            except (sqlite3.Error, ValueError) as error:
+                raise StoreError(f"{self.path} cannot be read: {error}") from error
+        return self._quantities
+
     def _rows(self, sql: str, values: tuple[Cell, ...] = ()) -> Iterator[Row]:
         try:
             for row in self._connection.execute(sql, values):
@@ -184,6 +203,11 @@ class RunReader:
                 simulated=bool(row["simulated"]),
                 seed=seed if isinstance(seed, int) else None,
                 calibration=tuple(self.calibration()),
+                axes=self.axes(),
+                kind=_text(row, "kind") or older.KIND,
+                worn=_text(row, "worn") or PIECE,
+                terms=self.terms(_text(row, "kind") or older.KIND),
+                known=tuple(_record(KnownSlope, one) for one in self._rows("SELECT * FROM known_slope")),
                 metadata=self._texts("metadata", "key", "value"),
                 versions=self._texts("version", "component", "version"),
             )
@@ -199,25 +223,48 @@ class RunReader:
     def _texts(self, table: str, key: str, value: str) -> dict[str, str]:
         return {_text(row, key): _text(row, value) for row in self._rows(f"SELECT * FROM {table} ORDER BY rowid")}
 
+    def axes(self) -> Axes:
+        """Return the axes of the run's conditions."""
+        return axes_of(list(self._rows("SELECT * FROM axis ORDER BY position")))
+
+    def terms(self, kind: str) -> tuple[Term, ...]:
+        """Return what the machine's measuring chain may be off by; of a record that does not say, its kind's."""
+        try:
+            found = tuple(map(term_of, self._rows("SELECT * FROM budget_term ORDER BY position")))
+        except (TypeError, ValueError) as error:
+            raise StoreError(f"{self.path}: the terms of its budget cannot be read: {error}") from error
+        return found or (older.TERMS if kind == older.KIND else ())
+
+    def warming(self) -> dict[int, float]:
+        """Return how fast the surface warmed in the contacts of each repeat, K/s, by the repeat's key."""
+        sql = (
+            "SELECT repeat_id, sum(surface_last_c - surface_first_c) / sum(ended_s - started_s) AS rate FROM burst"
+            " WHERE revolutions > 1 GROUP BY repeat_id"
+        )
+        return {_whole(row, "repeat_id"): _number(row, "rate") for row in self._rows(sql)}
+
     def specimens(self) -> list[SpecimenInfo]:
         """Return the recipe's specimens."""
         return [_record(SpecimenInfo, row) for row in self._rows("SELECT * FROM specimen ORDER BY specimen")]
 
-    def wheels(self) -> list[WheelInfo]:
-        """Return the wheels that were installed, with their last known wear."""
-        return [_record(WheelInfo, row) for row in self._rows("SELECT * FROM wheel ORDER BY wheel")]
+    def pieces(self) -> list[PieceInfo]:
+        """Return what was mounted to be measured, with its last known wear."""
+        rows = self._rows(f"SELECT * FROM {PIECE} ORDER BY {PIECE}")
+        return [_record(PieceInfo, row, piece=_whole(row, PIECE)) for row in rows]
 
     def wear_checks(self) -> list[WearCheck]:
-        """Return the checks of the wheels' diameters in the order in which they were made."""
-        return [_record(WearCheck, row) for row in self._rows("SELECT * FROM wear_check ORDER BY id")]
+        """Return the checks of diameters in the order in which they were made."""
+        rows = self._rows("SELECT * FROM wear_check ORDER BY id")
+        return [_record(WearCheck, row, piece=_whole(row, PIECE)) for row in rows]
 
     def conditions(self) -> list[StoredCondition]:
         """Return the plan's conditions in the recipe's order, replicates one after the other."""
         found: list[StoredCondition] = []
+        axes = self.axes()
         for row in self._rows("SELECT * FROM condition ORDER BY row, replicate, condition"):
             status = ConditionStatus(_text(row, "status"))
             left = status if row["ended_s"] is not None or status is not ConditionStatus.PENDING else None
-            info, judged = _record(ConditionInfo, row), _record(Judgement, row)
+            info, judged = _record(ConditionInfo, row, setpoint=setpoint_of(row, axes)), _record(Judgement, row)
             found.append(_record(StoredCondition, row, info=info, status=left, judged=judged))
         return found
 
@@ -228,12 +275,14 @@ class RunReader:
         """
         where, values = ("WHERE condition = ?", (condition,)) if condition is not None else ("", ())
         found: dict[tuple[int, ...], StoredRepeat] = {}
+        channels = self.quantities()
         for row in self._rows(f"SELECT * FROM repeat {where} ORDER BY condition, repeat, attempt, id", values):
             status = RepeatStatus(_text(row, "status"))
             if not attempts and status in (RepeatStatus.OPEN, RepeatStatus.VOID):
                 continue
-            result = _record(RepeatResult, row, status=status)
-            stored = _record(StoredRepeat, row, key=_whole(row, "id"), result=result)
+            means = Means(channels, [_number(row, one.name) for one in channels.averaged])
+            result = _record(RepeatResult, row, status=status, means=means)
+            stored = _record(StoredRepeat, row, key=_whole(row, "id"), piece=_whole(row, PIECE), result=result)
             key = (stored.condition, stored.repeat, stored.attempt if attempts else 0)
             found[key] = stored
         return list(found.values())
@@ -243,20 +292,20 @@ class RunReader:
         sql = "SELECT * FROM burst WHERE repeat_id = ? ORDER BY number"
         return [_record(Burst, row) for row in self._rows(sql, (repeat_key,))]
 
-    def events(self) -> Iterator[Event]:
+    def events(self) -> Iterator[StoredEvent]:
         """Yield the journal in order."""
         for row in self._rows("SELECT * FROM event ORDER BY sequence"):
-            yield _record(Event, row)
+            yield _record(StoredEvent, row)
 
     def event_data(self, kind: str) -> list[str]:
         """Return the data of a kind's events, in order, where they have any."""
         sql = "SELECT data FROM event WHERE kind = ? AND data <> '' ORDER BY sequence"
         return [_text(row, "data") for row in self._rows(sql, (kind,))]
 
-    def commands(self) -> Iterator[Event]:
+    def commands(self) -> Iterator[StoredEvent]:
         """Yield what clients have commanded, and who, in order; steps by hand are left out."""
         for row in self._rows("SELECT * FROM event WHERE kind = 'command' AND severity <> 'debug' ORDER BY sequence"):
-            yield _record(Event, row)
+            yield _record(StoredEvent, row)
 
     def sessions(self) -> list[SessionInfo]:
         """Return the stretches in which the run was worked on, a process each."""
@@ -280,7 +329,8 @@ class RunReader:
     def tares(self) -> Iterator[StoredTare]:
         """Yield the zeros of the load cell in order."""
         for row in self._rows("SELECT * FROM tare ORDER BY id"):
-            yield _record(StoredTare, row)
+            zeros = {name: _number(row, name) for name in row.keys() if name not in _OF_A_TARE}  # noqa: SIM118 - a Row
+            yield _record(StoredTare, row, zeros=zeros)
 
     def prompts(self) -> Iterator[StoredPrompt]:
         """Yield the questions to people with their answers, in order."""
@@ -292,15 +342,10 @@ class RunReader:
         for row in self._rows("SELECT * FROM trip ORDER BY id"):
             yield _record(StoredTrip, row)
 
-    def parameters(self) -> Iterator[Parameter]:
+    def parameters(self) -> Iterator[StoredParameter]:
         """Yield what was read back from the devices, in order."""
         for row in self._rows("SELECT * FROM device_parameter ORDER BY id"):
-            yield _record(Parameter, row)
-
-    def bus_statistics(self) -> Iterator[BusStatistic]:
-        """Yield the counters of the buses in order."""
-        for row in self._rows("SELECT * FROM bus_statistic ORDER BY id"):
-            yield _record(BusStatistic, row)
+            yield _record(StoredParameter, row)
 
     def record_head(self) -> str:
         """Return the last head of the record's chain, hexadecimal; "" where an older version recorded without one."""
@@ -330,13 +375,9 @@ class RunReader:
         """Return how many rows a table has."""
         return next(_whole(row, "n") for row in self._rows(f"SELECT count(*) AS n FROM {table} WHERE {where}"))
 
-    def sample_columns(self) -> tuple[str, ...]:
-        """Return the names of the samples' columns."""
-        return tuple(_text(row, "name") for row in self._rows("SELECT * FROM sample_column ORDER BY position"))
-
     def sample_blocks(self) -> Iterator[SampleBlock]:
         """Yield all samples in order of time, block by block, in bounded memory; raises StoreError."""
-        names = self.sample_columns()
+        names = self.quantities().names
         for row in self._rows("SELECT * FROM sample_block ORDER BY id"):
             count = _whole(row, "rows")
             try:
@@ -355,7 +396,7 @@ class RunReader:
         """
         import numpy as np
 
-        names = self.sample_columns()
+        names = self.quantities().names
         blocks: list[NDArray[np.float64]] = [np.empty((len(names), 0))]
         for row in self._sample_rows(condition, repeat, attempt):
             try:

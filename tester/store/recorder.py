@@ -11,16 +11,19 @@ from dataclasses import fields, replace
 
 from tester.analysis.results import Burst, ConditionStatus, RepeatResult, RepeatStatus
 from tester.analysis.wear_check import WearCheck
+from tester.store.axes import axis_rows, setpoint_columns
+from tester.store.budget import budget_rows
 from tester.store.records import (
     NAN,
     Calibration,
     Change,
     ConditionInfo,
+    PieceInfo,
     RunInfo,
     SessionInfo,
     SpecimenInfo,
-    WheelInfo,
 )
+from tester.store.schema import PIECE
 from tester.store.statements import (
     Batch,
     Judged,
@@ -38,11 +41,11 @@ from tester.store.statements import (
 URGENT_SEVERITIES = frozenset({"alarm", "trip"})
 """Events of these severities are committed at once."""
 
-_RESULT_FIELDS = tuple(field.name for field in fields(RepeatResult))
+_RESULT_FIELDS = tuple(field.name for field in fields(RepeatResult) if field.name != "means")
 _BURST_FIELDS = tuple(field.name for field in fields(Burst))
-_CONDITION_FIELDS = tuple(field.name for field in fields(ConditionInfo))
-_WHEEL_FIELDS = tuple(field.name for field in fields(WheelInfo))
-_CHECK_FIELDS = tuple(field.name for field in fields(WearCheck))
+_CONDITION_FIELDS = tuple(field.name for field in fields(ConditionInfo) if field.name != "setpoint")
+_PIECE_FIELDS = tuple(field.name for field in fields(PieceInfo) if field.name != "piece")
+_CHECK_FIELDS = tuple(field.name for field in fields(WearCheck) if field.name != "piece")
 _SESSION_FIELDS = tuple(field.name for field in fields(SessionInfo))
 _CHANGE_FIELDS = tuple(field.name for field in fields(Change))
 
@@ -74,7 +77,7 @@ class Recorder:
     """Is told of every event as it is recorded: rig time in s, kind, text, severity."""
 
     def sample(self, row: tuple[float, ...]) -> None:
-        """Record one sample: a value for each of SAMPLE_COLUMNS, as an exact tuple. For every scan: < 1 us."""
+        """Record one sample: a value for each recorded channel, as an exact tuple. For every scan: < 1 us."""
         raise TypeError("a recorder has to say what becomes of samples")
 
     def _put(self, batch: Batch) -> None:
@@ -94,6 +97,8 @@ class Recorder:
         run: dict[str, Value] = {
             "id": 1,
             "name": info.name,
+            "kind": info.kind or None,
+            "worn": info.worn or None,
             "recipe_name": info.recipe_name,
             "recipe_text": info.recipe_text,
             "recipe_sha256": text_sha256(info.recipe_text),
@@ -116,10 +121,10 @@ class Recorder:
         for specimen in specimens:
             columns = columns_in(specimen, ("specimen", "compound", "note"))
             statements.append(insert("specimen", columns))
-        for condition in conditions:
-            columns = columns_in(condition, _CONDITION_FIELDS) | {"status": ConditionStatus.PENDING.value}
-            statements.append(insert("condition", columns))
+        statements += axis_rows(info.axes) if info.axes is not None else ()
+        statements += [_to_come(condition) for condition in conditions]
         statements += calibration_rows(info.calibration, 1)
+        statements += budget_rows(info.terms, info.known)
         return self._write(*statements, urgent=True)
 
     def begin_session(self, session: SessionInfo) -> None:
@@ -144,9 +149,7 @@ class Recorder:
             ("UPDATE run SET recipe_text = ?, recipe_sha256 = ?, recipe_source = ?", replaced),
             ("DELETE FROM condition WHERE started_s IS NULL", ()),
         ]
-        for condition in to_come:
-            columns = columns_in(condition, _CONDITION_FIELDS) | {"status": ConditionStatus.PENDING.value}
-            statements.append(insert("condition", columns))
+        statements += [_to_come(condition) for condition in to_come]
         self._write(*statements, urgent=True)
 
     def replace_rig(self, text: str, calibration: Iterable[Calibration], session: int, source: str) -> None:
@@ -167,6 +170,11 @@ class Recorder:
         at_s = rig_seconds + self.origin_s
         return self._write((sql, (status, reason, at_s, ended_utc or self._utc())), urgent=True)
 
+    def truth(self, condition: int, repeat: int, attempt: int, figures: Mapping[str, float]) -> None:
+        """Record what a simulated rig knows of an attempt at a repeat, by name; nothing in the program reads it."""
+        of: dict[str, Value] = {"condition": condition, "repeat": repeat, "attempt": attempt}
+        self._write(*(insert("truth", of | {"name": name, "value": value}) for name, value in figures.items()))
+
     def device_parameter(self, t_s: float, device: str, parameter: str, value: str, name: str = "") -> None:
         """Record what was read back from a device, e.g. wheel, 0x6083:00, '2000', profile acceleration."""
         columns: dict[str, Value] = {"t_s": t_s + self.origin_s, "device": device, "parameter": parameter}
@@ -177,28 +185,29 @@ class Recorder:
         columns: dict[str, Value] = {"t_s": t_s + self.origin_s, "bus": bus, "device": device}
         self._write(insert("bus_statistic", columns | {"counter": counter, "value": value}))
 
-    # Wheels
+    # What is mounted to be measured
 
-    def wheel_installed(self, wheel: WheelInfo) -> None:
-        """Record that a wheel was mounted."""
-        times = {name: getattr(wheel, name) + self.origin_s for name in ("installed_s", "updated_s", "ground_s")}
-        self._write(insert("wheel", columns_in(wheel, _WHEEL_FIELDS) | times, "INSERT OR REPLACE"), urgent=True)
+    def piece_mounted(self, piece: PieceInfo) -> None:
+        """Record that something was mounted to be measured."""
+        times = {name: getattr(piece, name) + self.origin_s for name in ("installed_s", "updated_s", "ground_s")}
+        columns = {PIECE: piece.piece} | columns_in(piece, _PIECE_FIELDS) | times
+        self._write(insert(PIECE, columns, "INSERT OR REPLACE"), urgent=True)
 
-    def wheel_state(self, wheel: int, diameter_mm: float, sliding_m: float, t_s: float) -> None:
-        """Record a wheel's present diameter and the distance it has slid since it was new, for a resumed run."""
-        sql = "UPDATE wheel SET diameter_mm = ?, sliding_m = ?, updated_s = ? WHERE wheel = ?"
-        self._write((sql, (diameter_mm, sliding_m, t_s + self.origin_s, wheel)))
+    def piece_state(self, piece: int, diameter_mm: float, sliding_m: float, t_s: float) -> None:
+        """Record its present diameter and the distance it has slid since it was new, for a resumed run."""
+        sql = f"UPDATE {PIECE} SET diameter_mm = ?, sliding_m = ?, updated_s = ? WHERE {PIECE} = ?"
+        self._write((sql, (diameter_mm, sliding_m, t_s + self.origin_s, piece)))
 
-    def wheel_ground(self, wheel: int, diameter_mm: float, sliding_m: float, t_s: float) -> None:
-        """Record that a wheel has been ground in: a resumed run does not do it again."""
+    def piece_ground(self, piece: int, diameter_mm: float, sliding_m: float, t_s: float) -> None:
+        """Record that it has been ground in: a resumed run does not do it again."""
         at_s = t_s + self.origin_s
-        sql = "UPDATE wheel SET diameter_mm = ?, sliding_m = ?, updated_s = ?, ground_s = ? WHERE wheel = ?"
-        self._write((sql, (diameter_mm, sliding_m, at_s, at_s, wheel)), urgent=True)
+        sql = f"UPDATE {PIECE} SET diameter_mm = ?, sliding_m = ?, updated_s = ?, ground_s = ? WHERE {PIECE} = ?"
+        self._write((sql, (diameter_mm, sliding_m, at_s, at_s, piece)), urgent=True)
 
     def wear_check(self, check: WearCheck) -> None:
-        """Record a check of a wheel's diameter."""
+        """Record a check of a diameter."""
         times = {name: getattr(check, name) + self.origin_s for name in ("t_s", "reference_s")}
-        self._write(insert("wear_check", columns_in(check, _CHECK_FIELDS) | times), urgent=True)
+        self._write(insert("wear_check", {PIECE: check.piece} | columns_in(check, _CHECK_FIELDS) | times), urgent=True)
 
     # Conditions and repeats
 
@@ -232,7 +241,7 @@ class Recorder:
         left: Statement = (sql, (status.value, reason, at_s, warming_k_s, holdable_band_k, condition))
         self._write(left, *judged_rows(judged), urgent=True)
 
-    def begin_repeat(self, condition: int, repeat: int, attempt: int, t_s: float = NAN, wheel: int = 0) -> int:
+    def begin_repeat(self, condition: int, repeat: int, attempt: int, t_s: float = NAN, piece: int = 0) -> int:
         """Record the start of an attempt at a repeat and return its key, the ``repeat_key`` of its samples."""
         self._repeats += 1
         columns: dict[str, Value] = {
@@ -240,7 +249,7 @@ class Recorder:
             "condition": condition,
             "repeat": repeat,
             "attempt": attempt,
-            "wheel": wheel,
+            PIECE: piece,
             "begun_s": t_s + self.origin_s,
             "status": RepeatStatus.OPEN.value,
         }
@@ -256,7 +265,7 @@ class Recorder:
         """
         origin = self.origin_s
         times = {"started_s": result.started_s + origin, "ended_s": result.ended_s + origin}
-        columns = columns_in(result, _RESULT_FIELDS) | {"status": result.status.value} | times
+        columns = columns_in(result, _RESULT_FIELDS) | {"status": result.status.value} | times | dict(result.means)
         assignments = ", ".join(f"{name} = ?" for name in columns)
         statements: list[Statement] = [(f"UPDATE repeat SET {assignments} WHERE id = ?", (*columns.values(), key))]
         for burst in bursts:
@@ -299,11 +308,10 @@ class Recorder:
         sql = "UPDATE prompt SET answered_s = ?, answered_utc = ?, answer = ?, answered_by = ? WHERE id = ?"
         self._write((sql, (t_s + self.origin_s, self._utc(), answer, by, prompt)))
 
-    def tare(self, t_s: float, kind: str, values: tuple[float, float, float, float], repeat_key: int = 0) -> None:
-        """Record a tare (Fx, Fy, Fz in N, Mz in N m); kind: reference, repeat or check."""
+    def tare(self, t_s: float, kind: str, zeros: Mapping[str, float], repeat_key: int = 0) -> None:
+        """Record a tare: what was taken off each channel, by its name; kind: reference, repeat or check."""
         columns: dict[str, Value] = {"t_s": t_s + self.origin_s, "kind": kind, "repeat_id": repeat_key}
-        names = ("force_x_n", "force_y_n", "force_z_n", "moment_z_nm")
-        self._write(insert("tare", columns | dict(zip(names, values, strict=True))))
+        self._write(insert("tare", {**columns, **zeros}))
 
     def trip(
         self, t_s: float, interlock: str, text: str, value: float = NAN, limit: float = NAN, unit: str = ""
@@ -336,6 +344,12 @@ class Recorder:
 
     def close(self) -> None:
         """Commit what is left and let go of the file."""
+
+
+def _to_come(condition: ConditionInfo) -> Statement:
+    """Return the INSERT of a condition that nothing is measured of yet."""
+    columns = columns_in(condition, _CONDITION_FIELDS) | setpoint_columns(condition.setpoint)
+    return insert("condition", columns | {"status": ConditionStatus.PENDING.value})
 
 
 class NullRecorder(Recorder):

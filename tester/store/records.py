@@ -6,7 +6,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from math import isnan
 
+from tester.analysis.kelvin import KnownSlope
 from tester.analysis.results import NOT_JUDGED, ConditionStatus, Judgement, RepeatResult
+from tester.analysis.terms import Term
+from tester.axes import Axes, Setpoint
 
 NAN = float("nan")
 
@@ -55,15 +58,12 @@ class Change:
 
 @dataclass(frozen=True, slots=True)
 class StoredTare:
-    """A zero of the load cell: Fx, Fy, Fz in N, Mz in N m. ``kind``: reference, repeat or check."""
+    """A zero of the load cell. ``kind``: reference, repeat or check; ``zeros``: of each channel, by its name."""
 
     t_s: float
     kind: str
     repeat_id: int
-    force_x_n: float
-    force_y_n: float
-    force_z_n: float
-    moment_z_nm: float
+    zeros: Mapping[str, float]
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,7 +117,7 @@ class StoredTrip:
 
 
 @dataclass(frozen=True, slots=True)
-class Parameter:
+class StoredParameter:
     """What was read back from a device."""
 
     t_s: float
@@ -127,19 +127,12 @@ class Parameter:
     value: str
 
 
-@dataclass(frozen=True, slots=True)
-class BusStatistic:
-    """A counter of a bus, or of one device on it."""
-
-    t_s: float
-    bus: str
-    device: str
-    counter: str
-    value: float
-
-
 ACCEPTED_RISK, LOOSE_KEYS = "accepted_risk", "loose_safety_keys"
 """Metadata of a run on a rig whose safety keys are looser than they should be: why that is so, and which they are."""
+
+
+EXTENSION = "extension "
+"""Begins the component, in a run's versions, that is an extension which the run had loaded: ``extension laws/NAME``."""
 
 
 def risk_text(metadata: Mapping[str, str]) -> str:
@@ -153,7 +146,7 @@ class RunInfo:
     """A run as it begins. Texts of recipe and rig file as they were used; times as ISO 8601 UTC text.
 
     ``metadata`` is the recipe's (abrasive, humidity, experiment fields), and the risks that were accepted (``risk``);
-    ``versions`` those of libraries.
+    ``versions`` those of libraries and extensions.
     """
 
     name: str
@@ -162,6 +155,12 @@ class RunInfo:
     rig_text: str
     started_utc: str
     simulated: bool
+    kind: str = ""
+    """Of the rig: the name under which its package is found."""
+    worn: str = ""
+    """What people call the part of the machine that wears and is measured on."""
+    axes: Axes | None = None
+    """Of the conditions; None where a record has none."""
     seed: int | None = None
     software_version: str = ""
     git_revision: str = ""
@@ -172,6 +171,19 @@ class RunInfo:
     calibration: tuple[Calibration, ...] = ()
     metadata: Mapping[str, str] = field(default_factory=dict[str, str])
     versions: Mapping[str, str] = field(default_factory=dict[str, str])
+    terms: tuple[Term, ...] = ()
+    """What the machine's measuring chain may be off by."""
+    known: tuple[KnownSlope, ...] = ()
+    """What is known of the compounds' sensitivity to temperature."""
+
+    @property
+    def extensions(self) -> Mapping[str, str]:
+        """What was loaded from other packages, by ``group/name``: package, version, hash of the file."""
+        return {
+            component.removeprefix(EXTENSION): described
+            for component, described in self.versions.items()
+            if component.startswith(EXTENSION)
+        }
 
     @property
     def risk(self) -> str:
@@ -206,10 +218,11 @@ class SpecimenInfo:
 
 
 @dataclass(frozen=True, slots=True)
-class WheelInfo:
-    """A wheel that was installed, and its wear state as of ``updated_s`` (rig seconds) for a resumed run."""
+class PieceInfo:
+    """What was mounted to be measured (of a specimen, several in turn: a wheel), and how worn it was at ``updated_s``
+    (rig seconds) for a resumed run. ``diameter_mm``: what wears of it."""
 
-    wheel: int
+    piece: int
     specimen: int
     replicate: int
     compound: str
@@ -231,14 +244,8 @@ class ConditionInfo:
     specimen: int
     replicate: int
     grid: str
-    compound: str
     note: str
-    slip_velocity_m_s: float
-    load_n: float
-    sideslip_deg: float
-    camber_deg: float
-    temperature_c: float
-    wheel_speed_m_s: float
+    setpoint: Setpoint
     temperature_band_k: float
     repeats: int
     min_valid: int
@@ -246,6 +253,11 @@ class ConditionInfo:
     window_s: float | None = None
     at_most: int = 0
     until_percent: float | None = None
+
+    @property
+    def compound(self) -> str:
+        """Return the name of the rubber."""
+        return self.setpoint.compound
 
 
 @dataclass(frozen=True, slots=True)
@@ -272,7 +284,8 @@ class StoredRepeat:
     condition: int
     repeat: int
     attempt: int
-    wheel: int
+    piece: int
+    """What it was measured on."""
     begun_s: float
     result: RepeatResult
 
@@ -307,7 +320,7 @@ class StoredExclusion:
 
 
 @dataclass(frozen=True, slots=True)
-class Event:
+class StoredEvent:
     """One line of the journal: sequence number from 1, rig seconds, wall clock, kind, severity, text, data."""
 
     sequence: int

@@ -10,9 +10,9 @@ from tester.analysis.blocks import Block, blocks_from_samples
 from tester.analysis.repeatability import NOTHING_POOLED, Pool
 from tester.analysis.repeats import counting
 from tester.analysis.results import NOT_JUDGED, ConditionStatus, Judgement, RepeatResult, RepeatStatus
-from tester.recipe.remaining import Stand, WornWheel
+from tester.recipe.stand import Mounted, Stand
 from tester.store.reader import RunReader
-from tester.store.records import NAN, StoredCondition, StoredRepeat, WheelInfo
+from tester.store.records import NAN, PieceInfo, StoredCondition, StoredRepeat
 from tester.store.status import WENT_THROUGH
 
 ENDS_A_CONDITION = (RepeatStatus.CANNOT_HOLD, RepeatStatus.NOT_REACHED)
@@ -53,8 +53,8 @@ class ResumePoint:
     stand: Stand
     conditions: Mapping[int, ConditionSoFar]
     """Conditions that are not over, by number; one that is missing has nothing committed."""
-    reference_tare: tuple[float, float, float, float] | None
-    """Zero of the load cell when the present wheel was mounted."""
+    reference_tare: Mapping[str, float] | None
+    """Zero of each channel of the load cell, by its name, when the present wheel was mounted."""
     session: int
     """Number of the next stretch."""
     pool: Pool = NOTHING_POOLED
@@ -87,7 +87,7 @@ def resume_point(reader: RunReader) -> ResumePoint:
     return ResumePoint(
         finished=run.status == WENT_THROUGH,
         origin_s=run.rig_seconds if isfinite(run.rig_seconds) else 0.0,
-        stand=Stand(frozenset(ended), frozenset(repeats), tuple(_wheels(reader.wheels(), repeats))),
+        stand=Stand(frozenset(ended), frozenset(repeats), tuple(_pieces(reader.pieces(), repeats))),
         conditions=open_,
         reference_tare=_reference(reader),
         session=max((s.session for s in sessions), default=1) + 1,
@@ -109,9 +109,13 @@ def _so_far(reader: RunReader, attempts: list[StoredRepeat], stored: StoredCondi
         stored.warming_k_s,
         stored.holdable_band_k,
         tuple(r.key for r in found),
-        tuple(tuple(blocks_from_samples(reader.samples(r.condition, r.repeat, r.attempt))) for r in found),
+        tuple(tuple(_blocks(reader, r)) for r in found),
         stored.judged,
     )
+
+
+def _blocks(reader: RunReader, r: StoredRepeat) -> list[Block]:
+    return blocks_from_samples(reader.samples(r.condition, r.repeat, r.attempt), reader.quantities())
 
 
 def _pooled(repeats: Mapping[int, list[StoredRepeat]], ended: set[int]) -> Pool:
@@ -124,29 +128,29 @@ def _pooled(repeats: Mapping[int, list[StoredRepeat]], ended: set[int]) -> Pool:
     return pool
 
 
-def _wheels(wheels: list[WheelInfo], repeats: Mapping[int, list[StoredRepeat]]) -> list[WornWheel]:
-    """Return the wheels in the order in which they were mounted, each with the last condition it was used in."""
+def _pieces(pieces: list[PieceInfo], repeats: Mapping[int, list[StoredRepeat]]) -> list[Mounted]:
+    """Return what was mounted, in that order, each with the last condition it was used in."""
     used: dict[int, int] = {}
     for condition, attempts in repeats.items():
         for repeat in attempts:
-            used[repeat.wheel] = max(used.get(repeat.wheel, 0), condition)
+            used[repeat.piece] = max(used.get(repeat.piece, 0), condition)
     return [
-        WornWheel(
-            wheel=w.wheel,
+        Mounted(
+            number=w.piece,
             specimen=w.specimen,
             replicate=w.replicate,
             diameter_mm=w.diameter_mm,
             sliding_m=w.sliding_m,
             ground=isfinite(w.ground_s),
-            last_condition=used.get(w.wheel, 0),
+            last_condition=used.get(w.piece, 0),
         )
-        for w in sorted(wheels, key=lambda w: (w.installed_s, w.wheel))
+        for w in sorted(pieces, key=lambda w: (w.installed_s, w.piece))
     ]
 
 
-def _reference(reader: RunReader) -> tuple[float, float, float, float] | None:
+def _reference(reader: RunReader) -> Mapping[str, float] | None:
     found = None
     for tare in reader.tares():
         if tare.kind == "reference":
-            found = (tare.force_x_n, tare.force_y_n, tare.force_z_n, tare.moment_z_nm)
+            found = tare.zeros
     return found

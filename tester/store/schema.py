@@ -13,11 +13,16 @@ never edited once released. Kept to what SQLite 3.34 knows: no STRICT tables, no
 from __future__ import annotations
 
 import sqlite3
+from typing import Final
 
 from tester.store.chain import adopt
 
 APPLICATION_ID = 0x46525431
 """``FRT1``: SQLite's application_id of a run's database, so that ``file`` and we know it from others."""
+
+PIECE: Final = "wheel"
+"""Table of what was mounted to be measured, and the column, there and elsewhere, of its number (``PieceInfo.piece``):
+records keep the name that the first machine gave it."""
 
 _VERSION_1 = """
 CREATE TABLE run (
@@ -325,6 +330,129 @@ without a value change no hash of a row that was there before."""
 
 _AS_VERSION_6 = "CREATE TEMP VIEW trip AS SELECT *, NULL AS unit, NULL AS acknowledged_utc FROM main.trip;"
 
+_CHANNEL = """
+CREATE {temporary}TABLE channel (
+    position INTEGER PRIMARY KEY,
+    name TEXT NOT NULL UNIQUE,
+    unit TEXT NOT NULL,
+    label TEXT NOT NULL,
+    source TEXT NOT NULL,
+    mean INTEGER NOT NULL,
+    decimals INTEGER NOT NULL,
+    whole INTEGER NOT NULL CHECK (whole IN (0, 1)),
+    shown_name TEXT NOT NULL,
+    shown_unit TEXT NOT NULL,
+    scale REAL NOT NULL,
+    role TEXT NOT NULL,
+    block REAL,
+    screen TEXT NOT NULL
+);
+"""
+"""The channels of the record, a row each (tester.store.channels); those with a source are the columns of its samples,
+in order. ``repeat`` has a column for the mean of each that is averaged. Records begun before have none here: theirs are
+those in ``sample_column``."""
+
+_AXIS = """
+CREATE {temporary}TABLE axis (
+    position INTEGER PRIMARY KEY,
+    name TEXT NOT NULL UNIQUE,
+    recipe_unit TEXT NOT NULL,
+    field TEXT NOT NULL UNIQUE,
+    unit TEXT NOT NULL,
+    scale REAL NOT NULL,
+    column_name TEXT NOT NULL,
+    header TEXT NOT NULL,
+    title TEXT NOT NULL,
+    word TEXT NOT NULL,
+    default_value,
+    paper INTEGER NOT NULL,
+    plotted INTEGER NOT NULL,
+    choices TEXT NOT NULL,
+    blocks INTEGER NOT NULL
+);
+"""
+"""The axes of the run's conditions (tester.axes): ``field`` is the column of ``condition`` that holds a value."""
+
+_VERSION_8 = f"""{_AXIS.format(temporary="")}
+{_CHANNEL.format(temporary="")}
+ALTER TABLE run ADD COLUMN kind TEXT;
+ALTER TABLE run ADD COLUMN worn TEXT;
+"""
+"""A record says of which kind of rig it is, what people call the part of it that wears, and which axes its conditions
+have. Without a kind, and with no rows in
+``axis``, it was begun by an older schema (tester.store.older)."""
+
+_AS_VERSION_7 = f"{_AXIS}{_CHANNEL}CREATE TEMP VIEW run AS SELECT *, NULL AS kind, NULL AS worn FROM main.run;"
+
+_BUDGET_TERM = """
+CREATE {temporary}TABLE budget_term (
+    position INTEGER PRIMARY KEY,
+    name TEXT NOT NULL,
+    acts TEXT NOT NULL,
+    bound REAL NOT NULL,
+    unit TEXT NOT NULL,
+    distribution TEXT NOT NULL,
+    source TEXT NOT NULL,
+    channel TEXT NOT NULL,
+    factor REAL NOT NULL,
+    df REAL,
+    common TEXT NOT NULL,
+    setting TEXT NOT NULL,
+    factor_setting TEXT NOT NULL
+);
+CREATE {temporary}TABLE known_slope (
+    position INTEGER PRIMARY KEY,
+    compound TEXT NOT NULL,
+    temperature_c REAL NOT NULL,
+    per_kelvin_percent REAL NOT NULL,
+    u_per_kelvin_percent REAL NOT NULL,
+    source TEXT NOT NULL
+);
+"""
+"""What the budget of a coefficient is made of: what the machine's measuring chain may be off by (tester.analysis.terms;
+``df`` NULL: taken as known), and what is known of the compounds' sensitivity to temperature. Records begun before have
+neither here (tester.store.older)."""
+
+_TRUTH = """
+CREATE {temporary}TABLE truth (
+    id INTEGER PRIMARY KEY,
+    condition INTEGER NOT NULL,
+    repeat INTEGER NOT NULL,
+    attempt INTEGER NOT NULL,
+    name TEXT NOT NULL,
+    value REAL
+);
+"""
+"""What a simulated rig knows of each repeat beside what was measured, where that was asked for (tester.run.truth). For
+tests that judge results: no reader gives it."""
+
+_CONDITION = """
+DROP TABLE condition;
+CREATE TABLE condition (
+    condition INTEGER PRIMARY KEY,
+    row INTEGER NOT NULL,
+    specimen INTEGER NOT NULL,
+    replicate INTEGER NOT NULL,
+    grid TEXT NOT NULL,
+    compound TEXT NOT NULL,
+    note TEXT NOT NULL,
+    temperature_band_k REAL NOT NULL,
+    repeats INTEGER NOT NULL,
+    min_valid INTEGER NOT NULL,
+    at_most INTEGER NOT NULL,
+    until_percent REAL,
+    window_revolutions REAL,
+    window_s REAL,
+    started_s REAL,
+    ended_s REAL,
+    status TEXT NOT NULL,
+    reason TEXT NOT NULL DEFAULT '',
+    flags TEXT NOT NULL DEFAULT '',
+    warming_k_s REAL,
+    holdable_band_k REAL,
+""" + ",\n".join(f"    {name} REAL" for name in _JUDGEMENT) + ");"
+"""The conditions of a new record: a column for each axis is added as the run begins (tester.store.axes)."""
+
 MIGRATIONS: tuple[str, ...] = (
     _VERSION_1,
     _VERSION_2,
@@ -333,16 +461,31 @@ MIGRATIONS: tuple[str, ...] = (
     _WEAR_CHECK.format(temporary=""),
     _CHAIN.format(temporary=""),
     _TRIP,
+    _VERSION_8,
+    _BUDGET_TERM.format(temporary=""),
+    _TRUTH.format(temporary=""),
 )
 """Migration n leads from schema n to n + 1."""
 
 CHAINED = 6
 """The first schema with a chain. A later migration that changes what rows hold has to add them to it again."""
 
+KIND_SAID = 8
+"""The first schema that says a record's kind and axes."""
+
 ACKNOWLEDGED = 7
 """The first schema under which acknowledgements of trips are recorded."""
 
-_ADDED: dict[int, str] = {3: _EXCLUSION, 4: _AS_VERSION_4, 5: _WEAR_CHECK, 6: _CHAIN, 7: _AS_VERSION_6}
+_ADDED: dict[int, str] = {
+    3: _EXCLUSION,
+    4: _AS_VERSION_4,
+    5: _WEAR_CHECK,
+    6: _CHAIN,
+    7: _AS_VERSION_6,
+    8: _AS_VERSION_7,
+    9: _BUDGET_TERM,
+    10: _TRUTH,
+}
 """What versions have added, by version: what a connection to an older record can have for itself."""
 
 VERSION = len(MIGRATIONS)
@@ -381,7 +524,7 @@ def reads_as_present(connection: sqlite3.Connection, version: int) -> bool:
     if any(number not in _ADDED for number in since):
         return False
     for number in since:
-        connection.execute(_ADDED[number].format(temporary="TEMP "))
+        connection.executescript(_ADDED[number].format(temporary="TEMP "))
     return True
 
 
@@ -394,4 +537,7 @@ def migrate(connection: sqlite3.Connection) -> None:
         )
         if version + 1 == CHAINED:
             adopt(connection, found)
+        if version + 1 == KIND_SAID and connection.execute("SELECT 1 FROM run").fetchone() is None:
+            for statement in _CONDITION.split(";"):
+                connection.execute(statement)
         connection.execute("COMMIT")

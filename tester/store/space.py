@@ -8,7 +8,7 @@ from pathlib import Path
 from threading import Thread
 
 from tester.recipe.estimate import Estimate
-from tester.recipe.plan import ConditionStep, Heat, Plan, PreGrind
+from tester.recipe.plan import Plan
 
 ROW_BYTES = 60.0
 """A recorded sample in its block, with its share of the log and of the tables (measured: 38 to 55)."""
@@ -67,7 +67,7 @@ def expected_bytes(plan: Plan, expected: Estimate) -> float:
     """Return what a run of the plan will take on disk, bytes; ``expected`` is the plan's estimate."""
     rows = 0.0
     for step, one in zip(plan.steps, expected.steps, strict=True):
-        in_contact = isinstance(step, ConditionStep | PreGrind | Heat)
+        in_contact = step.contact
         rows += one.seconds * (CONTACT_ROWS_S if in_contact else IDLE_ROWS_S)
     return FIXED_BYTES + ROW_BYTES * rows
 

@@ -26,14 +26,15 @@ from threading import Event as Signal
 from threading import Thread
 
 from tester.analysis.results import Burst, RepeatResult
-from tester.process import SAMPLE_COLUMNS
+from tester.base.trouble import in_words
+from tester.quantities import KEY, TIME, Quantities
 from tester.store.chain import Chain
+from tester.store.channels import channel_statements, make_columns, recorded_channels
 from tester.store.files import sync_folder
 from tester.store.recorder import NullRecorder, Recorder, no_utc
 from tester.store.sample_blocks import BLOCK_ROWS, pack
 from tester.store.schema import StoreError, migrate, version_of
 from tester.store.statements import Batch, Judged, Ticket
-from tester.trouble import in_words
 
 COMMIT_EVERY_S = 0.7
 """Longest time, of the wall clock, for which a sample waits for its commit to begin: a second with what a slow disk
@@ -54,9 +55,6 @@ RESERVE = ".reserve.part"
 LOSSLESS_LIMIT = 8192
 """Items the queue holds before the simulation waits; also the most samples in one transaction."""
 
-_COLUMNS = len(SAMPLE_COLUMNS)
-_KEY = SAMPLE_COLUMNS.index("repeat_key") - _COLUMNS
-_TIME = SAMPLE_COLUMNS.index("time_s")
 _WRITE_ERRORS = (sqlite3.Error, OSError, ValueError, OverflowError, TypeError, IndexError)
 """What a disk (first two) or a value that no column takes (the others) can raise."""
 
@@ -91,7 +89,11 @@ def _identity(path: Path) -> tuple[int, int]:
     return found.st_dev, found.st_ino
 
 
-def _open(path: Path) -> tuple[sqlite3.Connection, Chain]:
+def _averaged(quantities: Quantities) -> tuple[str, ...]:
+    return tuple(one.name for one in quantities.averaged)
+
+
+def _open(path: Path, quantities: Quantities) -> tuple[sqlite3.Connection, Chain]:
     connection = sqlite3.connect(path, isolation_level=None, check_same_thread=False)
     try:
         version_of(connection)  # before anything is changed in a file that may be somebody else's
@@ -101,17 +103,22 @@ def _open(path: Path) -> tuple[sqlite3.Connection, Chain]:
         connection.execute("PRAGMA journal_mode = WAL")
         connection.execute("PRAGMA synchronous = FULL")
         migrate(connection)
+        make_columns(connection, quantities)
         chain = Chain(connection)
-        connection.execute("BEGIN IMMEDIATE")
-        connection.executemany(
-            "INSERT OR IGNORE INTO sample_column (position, name) VALUES (?, ?)", enumerate(SAMPLE_COLUMNS)
-        )
-        chain.seal()
-        connection.execute("COMMIT")
-        columns = connection.execute("SELECT name FROM sample_column ORDER BY position").fetchall()
-        if tuple(name for (name,) in columns) != SAMPLE_COLUMNS:
-            raise StoreError(f"{path.name} was recorded with other sample columns and cannot be continued")
+        recorded = recorded_channels(connection)
+        if recorded is None:
+            connection.execute("BEGIN IMMEDIATE")
+            for sql, values in channel_statements(quantities):
+                connection.execute(sql, values)
+            chain.seal()
+            connection.execute("COMMIT")
+        elif (recorded.names, _averaged(recorded)) != (quantities.names, _averaged(quantities)):
+            others = ", ".join(sorted(set(recorded.names) ^ set(quantities.names))) or "in another order"
+            raise StoreError(f"{path.name} was recorded with other channels and cannot be continued: {others}")
         sync_folder(path.parent)
+    except ValueError as error:
+        connection.close()
+        raise StoreError(f"{path.name}: {error}") from error
     except (sqlite3.Error, StoreError):
         connection.close()
         raise
@@ -121,6 +128,7 @@ def _open(path: Path) -> tuple[sqlite3.Connection, Chain]:
 class RunWriter(Recorder):
     """The record of one run in ``path`` (run.db): a new file, or the file of a run that goes on.
 
+    ``quantities``: the channels of its samples; a run that goes on must have been begun with the same.
     ``clock`` gives seconds of a monotonic wall clock, ``utc`` the time of day as text. ``synchronous`` works
     without a thread: for tests, and for simulations in which a thread only costs.
     Raises StoreError for a database that is not ours or newer, sqlite3.Error if the file cannot be opened.
@@ -129,6 +137,7 @@ class RunWriter(Recorder):
     def __init__(
         self,
         path: Path,
+        quantities: Quantities,
         *,
         clock: Callable[[], float],
         utc: Callable[[], str] = no_utc,
@@ -155,7 +164,9 @@ class RunWriter(Recorder):
         self._stored_overruns = 0
         self._stopping = False
         self._wake, self._room, self._committed = Signal(), Signal(), Signal()
-        self._connection, self._chain = _open(path)
+        self._width = len(quantities.names)
+        self._key_at, self._time_at = quantities.index(KEY), quantities.index(TIME)
+        self._connection, self._chain = _open(path, quantities)
         self._file = _identity(path)
         self._reserve = _Reserve(path.with_name(path.name + RESERVE), reserve) if reserve else None
         self._continue_counting()
@@ -182,7 +193,7 @@ class RunWriter(Recorder):
     # The scan's side
 
     def sample(self, row: tuple[float, ...]) -> None:
-        """Record one sample: a value for each of SAMPLE_COLUMNS, as an exact tuple."""
+        """Record one sample: a value for each recorded channel, as an exact tuple."""
         if len(self._queue) < self._limit:
             self._queue.append(row)
         else:
@@ -342,15 +353,15 @@ class RunWriter(Recorder):
             raise RecordGoneError(f"{self._path} was removed, or another file put in its place")
 
     def _write_rows(self) -> None:
-        rows = self._rows
+        rows, key_at, time_at = self._rows, self._key_at, self._time_at
         first = 0
         for end in range(1, len(rows) + 1):
-            if end == len(rows) or end - first == BLOCK_ROWS or rows[end][_KEY] != rows[first][_KEY]:
+            if end == len(rows) or end - first == BLOCK_ROWS or rows[end][key_at] != rows[first][key_at]:
                 block = rows[first:end]
-                data = pack(block, _COLUMNS)
+                data = pack(block, self._width)
                 self._connection.execute(
                     "INSERT INTO sample_block (repeat_id, rows, first_s, last_s, data) VALUES (?, ?, ?, ?, ?)",
-                    (int(block[0][_KEY]), len(block), block[0][_TIME], block[-1][_TIME], data),
+                    (int(block[0][key_at]), len(block), block[0][time_at], block[-1][time_at], data),
                 )
                 first = end
 

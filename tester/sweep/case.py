@@ -7,14 +7,14 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from tester.analysis.trust import WITH_CARE, mark_of
-from tester.axes import AXES
-from tester.campaign.pool import stop_level
-from tester.engine.context import Progress
-from tester.engine.prompts import Prompts
+from tester.axes import Setpoint
+from tester.base.trouble import in_words
 from tester.export.results import TableRow, results_of
-from tester.session import Session, SessionOptions
+from tester.machine.context import Progress
+from tester.machine.prompts import Prompts
+from tester.run.pool import stop_level
+from tester.run.session import Session, SessionOptions
 from tester.store.reader import RunReader
-from tester.trouble import in_words
 
 NAN = float("nan")
 NOT_RUN = "not run"
@@ -22,7 +22,7 @@ NOT_RUN = "not run"
 
 
 @dataclass(frozen=True, slots=True)
-class Task:
+class SweepTask:
     """What a process needs for one run: texts, so that it may be on another machine.
 
     ``case`` counts from 1: point after point, seed after seed.
@@ -44,13 +44,7 @@ class RowResult:
     """
 
     row: int
-    compound: str
-    slip_velocity_mm_s: float
-    load_n: float
-    sideslip_deg: float
-    camber_deg: float
-    temperature_c: float
-    wheel_speed_m_s: float
+    setpoint: Setpoint
     status: str
     mu: float
     s: float
@@ -62,7 +56,8 @@ class RowResult:
 
 @dataclass(frozen=True, slots=True)
 class CaseResult:
-    """How one run ended: exit code as that of ``tester run``, rig time in s, wheels installed, rows of its table."""
+    """How one run ended: exit code as that of ``tester run``, rig time in s, how often something was
+    mounted to be measured, rows of its table."""
 
     case: int
     point: tuple[str, ...]
@@ -71,7 +66,7 @@ class CaseResult:
     reason: str
     exit_code: int
     rig_seconds: float = NAN
-    wheels: int = 0
+    mounted: int = 0
     rows: tuple[RowResult, ...] = ()
 
     @property
@@ -85,7 +80,7 @@ class CaseResult:
         return sum(mark_of(row.status, row.flags) == WITH_CARE for row in self.rows)
 
 
-def run_case(task: Task) -> CaseResult:
+def run_case(task: SweepTask) -> CaseResult:
     """Run a recipe on a simulated rig as ``tester run --yes`` does, in a folder that does not outlast it."""
     with TemporaryDirectory(prefix="sweep-", ignore_cleanup_errors=True) as name:
         folder = Path(name)
@@ -101,15 +96,15 @@ def run_case(task: Task) -> CaseResult:
         ending = session.ending
         with RunReader(session.folder) as reader:
             results = results_of(reader)
-            wheels = len(reader.wheels())
+            mounted = len(reader.pieces())
         rows = tuple(_row(row) for row in results.rows)
         rig_s = results.run.rig_seconds
         return CaseResult(
-            task.case, task.point, task.seed, ending.outcome.value, ending.reason, code, rig_s, wheels, rows
+            task.case, task.point, task.seed, ending.outcome.value, ending.reason, code, rig_s, mounted, rows
         )
 
 
-def not_run(task: Task, error: BaseException) -> CaseResult:
+def not_run(task: SweepTask, error: BaseException) -> CaseResult:
     """Return the result of a case that raised instead of returning one."""
     reason = f"{type(error).__name__}: {in_words(error)}".strip(": ")
     return CaseResult(task.case, task.point, task.seed, NOT_RUN, reason, 1)
@@ -118,9 +113,8 @@ def not_run(task: Task, error: BaseException) -> CaseResult:
 def _row(row: TableRow) -> RowResult:
     i, r = row.info, row.result
     mu, s, u = (r.mu_resultant, r.s, r.standard) if r.ok else (NAN, NAN, NAN)
-    held: dict[str, float] = {axis.column: axis.of(i) for axis in AXES}
     return RowResult(
-        i.row, i.compound, **held, status=r.status.value, mu=mu, s=s, n_valid=r.n_valid, u_standard=u, flags=r.flags,
+        i.row, i.setpoint, status=r.status.value, mu=mu, s=s, n_valid=r.n_valid, u_standard=u, flags=r.flags,
         reason=r.reason,
     )  # fmt: skip
 

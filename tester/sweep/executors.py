@@ -8,10 +8,10 @@ from contextlib import contextmanager
 from importlib import import_module
 from typing import Protocol, cast
 
-from tester.campaign.pool import Pool
-from tester.extras import needs
-from tester.sweep.case import CaseResult, Task
-from tester.trouble import in_words
+from tester.base.extras import needs
+from tester.base.trouble import in_words
+from tester.run.pool import WorkerPool
+from tester.sweep.case import CaseResult, SweepTask
 
 
 class NoClusterError(Exception):
@@ -21,7 +21,7 @@ class NoClusterError(Exception):
 class Submit(Protocol):
     """Has a task carried out somewhere."""
 
-    def __call__(self, work: Callable[[Task], CaseResult], task: Task, /) -> Future[CaseResult]:
+    def __call__(self, work: Callable[[SweepTask], CaseResult], task: SweepTask, /) -> Future[CaseResult]:
         """Return the future of the task's result."""
         ...
 
@@ -29,7 +29,7 @@ class Submit(Protocol):
 class _Executor(Protocol):
     """What we use of an executor as ``concurrent.futures`` describes it."""
 
-    def submit(self, work: Callable[[Task], CaseResult], task: Task, /) -> Future[CaseResult]: ...
+    def submit(self, work: Callable[[SweepTask], CaseResult], task: SweepTask, /) -> Future[CaseResult]: ...
 
 
 class _Client(Protocol):
@@ -49,9 +49,9 @@ class _Distributed(Protocol):
 @contextmanager
 def local(jobs: int) -> Generator[Submit]:
     """Use up to ``jobs`` processes of this machine; leaving ends the runs under way."""
-    with Pool(jobs) as pool:
+    with WorkerPool(jobs) as pool:
 
-        def submit(work: Callable[[Task], CaseResult], task: Task, /) -> Future[CaseResult]:
+        def submit(work: Callable[[SweepTask], CaseResult], task: SweepTask, /) -> Future[CaseResult]:
             return pool.submit(work, task)
 
         yield submit

@@ -8,11 +8,12 @@ from itertools import chain
 from pathlib import Path
 from typing import TextIO
 
+from tester.axes import Axes
 from tester.export import write_file
 from tester.export.cells import encode, line
 from tester.sweep import tables
 from tester.sweep.case import CaseResult
-from tester.sweep.grid import Axis
+from tester.sweep.grid import SweepAxis
 
 RUNS, CONDITIONS, SUMMARY, TOTALS = "runs.csv", "conditions.csv", "summary.csv", "totals.csv"
 
@@ -23,13 +24,16 @@ class SweepFiles:
     Raises OSError.
     """
 
-    def __init__(self, folder: Path, axes: Sequence[Axis]) -> None:
-        """Create ``runs.csv`` and ``conditions.csv`` in ``folder``."""
+    def __init__(self, folder: Path, axes: Sequence[SweepAxis], held: Axes, worn: str) -> None:
+        """Create ``runs.csv`` and ``conditions.csv`` in ``folder``; ``held``: the axes of the recipe's conditions;
+        ``worn``: what people call the part that wears, in the headers."""
         self.folder = folder
         self.axes = axes
+        self.held = held
+        self.worn = worn
         self.results: list[CaseResult] = []
-        self._runs = _begin(folder / RUNS, tables.run_header(axes))
-        self._conditions = _begin(folder / CONDITIONS, tables.condition_header(axes))
+        self._runs = _begin(folder / RUNS, tables.run_header(axes, worn))
+        self._conditions = _begin(folder / CONDITIONS, tables.condition_header(axes, held))
 
     def add(self, result: CaseResult) -> None:
         """Write a run's result; it is in the files when this returns."""
@@ -45,16 +49,16 @@ class SweepFiles:
         runs = (tables.run_row(result) for result in results)
         conditions = chain.from_iterable(tables.condition_rows(result) for result in results)
         for name, header, rows in (
-            (RUNS, tables.run_header(axes), runs),
-            (CONDITIONS, tables.condition_header(axes), conditions),
-            (SUMMARY, tables.summary_header(axes), tables.summary_rows(results)),
-            (TOTALS, tables.totals_header(axes), tables.totals_rows(results)),
+            (RUNS, tables.run_header(axes, self.worn), runs),
+            (CONDITIONS, tables.condition_header(axes, self.held), conditions),
+            (SUMMARY, tables.summary_header(axes, self.held), tables.summary_rows(results)),
+            (TOTALS, tables.totals_header(axes, self.worn), tables.totals_rows(results)),
         ):
             write_file(self.folder / name, encode(chain([header], rows)))
 
 
 def write_sources(
-    folder: Path, recipe_text: str, rig_text: str, axes: Sequence[Axis], first_seed: int, seeds: int
+    folder: Path, recipe_text: str, rig_text: str, axes: Sequence[SweepAxis], first_seed: int, seeds: int
 ) -> None:
     """Write what a sweep is made of: recipe, rig file before any value is set, seeds and values."""
     (folder / "recipe.yaml").write_text(recipe_text, encoding="utf-8", newline="\n")

@@ -14,14 +14,14 @@ class GridError(Exception):
 
 
 @dataclass(frozen=True, slots=True)
-class Axis:
+class SweepAxis:
     """A key of the rig file and the texts of its values, in the order given."""
 
     key: str
     values: tuple[str, ...]
 
 
-def axis_of(text: str) -> Axis:
+def axis_of(text: str) -> SweepAxis:
     """Return the axis of ``key=v1,v2,...``; a comma inside brackets or quotes separates nothing. Raises GridError."""
     key, equals, values = text.partition("=")
     parts = [part.strip() for part in _separated(values)]
@@ -29,10 +29,10 @@ def axis_of(text: str) -> Axis:
         raise GridError(f"--set {text}: expected key=value,value,...")
     if len(set(parts)) < len(parts):
         raise GridError(f"--set {text}: a value is there twice")
-    return Axis(key.strip(), tuple(parts))
+    return SweepAxis(key.strip(), tuple(parts))
 
 
-def axes_of(texts: Sequence[str]) -> tuple[Axis, ...]:
+def axes_of(texts: Sequence[str]) -> tuple[SweepAxis, ...]:
     """Return the axes of several texts; raises GridError, also for a key that is there twice."""
     axes = tuple(axis_of(text) for text in texts)
     keys = [axis.key for axis in axes]
@@ -42,12 +42,12 @@ def axes_of(texts: Sequence[str]) -> tuple[Axis, ...]:
     return axes
 
 
-def points_of(axes: Sequence[Axis]) -> list[tuple[str, ...]]:
+def points_of(axes: Sequence[SweepAxis]) -> list[tuple[str, ...]]:
     """Return every combination, a value for each axis; the last axis changes fastest. Without axes: one point."""
     return list(product(*(axis.values for axis in axes)))
 
 
-def overrides_of(axes: Sequence[Axis], point: Sequence[str]) -> tuple[str, ...]:
+def overrides_of(axes: Sequence[SweepAxis], point: Sequence[str]) -> tuple[str, ...]:
     """Return a point as overrides of the rig file (``key=value``)."""
     return tuple(f"{axis.key}={value}" for axis, value in zip(axes, point, strict=True))
 

@@ -9,16 +9,16 @@ from pathlib import Path
 from typing import Protocol
 
 from recipes import find
-from tester.campaign.endings import EXIT_INCOMPLETE, EXIT_INTERRUPTED
-from tester.campaign.folder import make_folder
+from tester.axes import Axes
+from tester.base.exits import EXIT_DONE, EXIT_INCOMPLETE, EXIT_INTERRUPTED
 from tester.recipe.check import load_checked
-from tester.rig import load_rig
-from tester.sweep.case import CaseResult, Task, not_run, run_case
+from tester.run.folder import make_folder
+from tester.run.kinds import recipe_part, served_kind
+from tester.run.rigs import load_rig
+from tester.sweep.case import CaseResult, SweepTask, not_run, run_case
 from tester.sweep.executors import Submit
 from tester.sweep.files import SweepFiles, write_sources
-from tester.sweep.grid import Axis, overrides_of, points_of
-
-EXIT_DONE = 0
+from tester.sweep.grid import SweepAxis, overrides_of, points_of
 
 
 class Audience(Protocol):
@@ -43,7 +43,7 @@ class SweepOptions:
 
     recipe: str
     rig: str = "sim"
-    axes: tuple[Axis, ...] = ()
+    axes: tuple[SweepAxis, ...] = ()
     seeds: int = 1
     first_seed: int = 0
     out: Path = Path("sweeps")
@@ -57,7 +57,11 @@ class Sweep:
     name: str
     recipe_text: str
     rig_text: str
-    tasks: tuple[Task, ...]
+    held: Axes
+    """Axes of the recipe's conditions."""
+    worn: str
+    """What people call the part of the machine that wears."""
+    tasks: tuple[SweepTask, ...]
 
 
 def prepare_sweep(options: SweepOptions) -> Sweep:
@@ -70,14 +74,20 @@ def prepare_sweep(options: SweepOptions) -> Sweep:
     if not plain.simulated:
         raise NotSimulatedError(f"--rig {options.rig}: a sweep is for simulated rigs, and this one is real")
     seeds = range(options.first_seed, options.first_seed + options.seeds)
-    tasks: list[Task] = []
+    tasks: list[SweepTask] = []
     name = recipe_text = ""
+    held: Axes | None = None
     for point in points_of(options.axes):
         rig = load_rig(options.rig, overrides_of(options.axes, point))
-        recipe = load_checked(path, rig)
+        recipe = load_checked(path, rig, recipe_part(rig))
         name, recipe_text, rig_text = recipe.recipe.recipe, recipe.tree.text, rig.text
-        tasks += [Task(len(tasks) + i, point, seed, recipe_text, rig_text) for i, seed in enumerate(seeds, start=1)]
-    return Sweep(options, name, recipe_text, plain.text, tuple(tasks))
+        held = recipe.recipe.axes
+        tasks += [
+            SweepTask(len(tasks) + i, point, seed, recipe_text, rig_text) for i, seed in enumerate(seeds, start=1)
+        ]
+    assert held is not None  # a sweep has a point at least, that of no axis
+    worn = served_kind(plain).machine.specimen
+    return Sweep(options, name, recipe_text, plain.text, held, worn, tuple(tasks))
 
 
 def carry_out(sweep: Sweep, submit: Submit, audience: Audience) -> tuple[Path, int]:
@@ -89,7 +99,7 @@ def carry_out(sweep: Sweep, submit: Submit, audience: Audience) -> tuple[Path, i
     options = sweep.options
     folder = make_folder(options.out, sweep.name)
     write_sources(folder, sweep.recipe_text, sweep.rig_text, options.axes, options.first_seed, options.seeds)
-    files = SweepFiles(folder, options.axes)
+    files = SweepFiles(folder, options.axes, sweep.held, sweep.worn)
     audience.begin(folder, len(sweep.tasks))
     code = EXIT_DONE
     try:
@@ -105,9 +115,9 @@ def carry_out(sweep: Sweep, submit: Submit, audience: Audience) -> tuple[Path, i
     return folder, code
 
 
-def _results(tasks: Sequence[Task], submit: Submit) -> Iterator[CaseResult]:
+def _results(tasks: Sequence[SweepTask], submit: Submit) -> Iterator[CaseResult]:
     """Yield results as they come; a run that raises is a result, too."""
-    futures: dict[Future[CaseResult], Task] = {submit(run_case, task): task for task in tasks}
+    futures: dict[Future[CaseResult], SweepTask] = {submit(run_case, task): task for task in tasks}
     for future in as_completed(futures):
         error = future.exception()
         yield future.result() if error is None else not_run(futures[future], error)

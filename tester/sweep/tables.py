@@ -6,24 +6,22 @@ The same results give the same bytes: no wall-clock time, path, host or version 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import astuple, fields
 from math import isfinite, sqrt
 from statistics import fmean, stdev
 
 from tester.analysis.trust import WITH_CARE, mark_of
-from tester.axes import AXES
+from tester.axes import Axes
 from tester.export.cells import Cell, nominal
 from tester.sweep.case import CaseResult, RowResult
-from tester.sweep.grid import Axis
+from tester.sweep.grid import SweepAxis
 
 Row = tuple[Cell, ...]
 
-_SETPOINTS = ("row", "compound", *(axis.column for axis in AXES))
 _MEASURED = ("status", "mu", "s", "n_valid", "u_standard", "flags", "reason")
 _STATISTICS = ("n", "mean", "sd", "min", "max")
 
 
-def head_of(axes: Sequence[Axis]) -> Row:
+def head_of(axes: Sequence[SweepAxis]) -> Row:
     """Return the columns that name a point: the keys of the rig file that were set."""
     return tuple(axis.key for axis in axes)
 
@@ -31,33 +29,34 @@ def head_of(axes: Sequence[Axis]) -> Row:
 # -- every run ----------------------------------------------------------------------------------------------------
 
 
-def run_header(axes: Sequence[Axis]) -> Row:
-    """Return the columns of ``runs.csv``."""
-    return (*head_of(axes), "seed", "outcome", "reason", "exit_code", "rig_seconds", "wheels", "rows", "missing_rows")
+def run_header(axes: Sequence[SweepAxis], worn: str) -> Row:
+    """Return the columns of ``runs.csv``; ``worn``: what people call the part that wears."""
+    counts = ("rig_seconds", f"{worn}s", "rows", "missing_rows")
+    return (*head_of(axes), "seed", "outcome", "reason", "exit_code", *counts)
 
 
 def run_row(result: CaseResult) -> Row:
     """Return a run's row of ``runs.csv``."""
     r = result
-    return (*r.point, r.seed, r.outcome, r.reason, r.exit_code, r.rig_seconds, r.wheels, len(r.rows), r.missing)
+    return (*r.point, r.seed, r.outcome, r.reason, r.exit_code, r.rig_seconds, r.mounted, len(r.rows), r.missing)
 
 
-def condition_header(axes: Sequence[Axis]) -> Row:
-    """Return the columns of ``conditions.csv``."""
-    return (*head_of(axes), "seed", *_SETPOINTS, *_MEASURED)
+def condition_header(axes: Sequence[SweepAxis], held: Axes) -> Row:
+    """Return the columns of ``conditions.csv``; ``held``: the axes of the recipe's conditions."""
+    return (*head_of(axes), "seed", *_setpoint_header(held), *_MEASURED)
 
 
 def condition_rows(result: CaseResult) -> Iterator[Row]:
     """Yield a run's rows of ``conditions.csv``: one for each row of the recipe's table, also one without a value."""
     for row in result.rows:
-        measured = astuple(row)[len(_SETPOINTS) :]
+        measured = tuple(getattr(row, name) for name in _MEASURED)
         yield (*result.point, result.seed, *_setpoints(row), *measured)
 
 
 # -- what they are together ---------------------------------------------------------------------------------------
 
 
-def summary_header(axes: Sequence[Axis]) -> Row:
+def summary_header(axes: Sequence[SweepAxis], held: Axes) -> Row:
     """Return the columns of ``summary.csv``.
 
     ``mu_sd`` is the spread between seeds, ``u_standard`` the root mean square of the uncertainties that the runs state,
@@ -65,7 +64,7 @@ def summary_header(axes: Sequence[Axis]) -> Row:
     ``with_care`` those of them whose value carries a doubt (its flags are in ``conditions.csv``).
     """
     mu = tuple(f"mu_{name}" for name in _STATISTICS[1:])
-    return (*head_of(axes), *_SETPOINTS, "runs", "n", *mu, "u_standard", "sd_over_u", "with_care")
+    return (*head_of(axes), *_setpoint_header(held), "runs", "n", *mu, "u_standard", "sd_over_u", "with_care")
 
 
 def summary_rows(results: Sequence[CaseResult]) -> Iterator[Row]:
@@ -84,17 +83,17 @@ def summary_rows(results: Sequence[CaseResult]) -> Iterator[Row]:
             yield (*point, *_setpoints(rows[0]), len(rows), n, mean, sd, least, greatest, u, over, doubts)
 
 
-def totals_header(axes: Sequence[Axis]) -> Row:
-    """Return the columns of ``totals.csv``."""
+def totals_header(axes: Sequence[SweepAxis], worn: str) -> Row:
+    """Return the columns of ``totals.csv``; ``worn``: what people call the part that wears."""
     seconds = tuple(f"rig_seconds_{name}" for name in _STATISTICS[1:])
-    wheels = tuple(f"wheels_{name}" for name in _STATISTICS[1:])
-    return (*head_of(axes), "runs", "done", "other_outcomes", "rows", "missing_rows", *seconds, *wheels)
+    mounted = tuple(f"{worn}s_{name}" for name in _STATISTICS[1:])
+    return (*head_of(axes), "runs", "done", "other_outcomes", "rows", "missing_rows", *seconds, *mounted)
 
 
 def totals_rows(results: Sequence[CaseResult]) -> Iterator[Row]:
-    """Yield, for every point, how its runs ended, how long they took and how many wheels they used.
+    """Yield, for every point, how its runs ended, how long they took and how many parts that wear they used.
 
-    Duration and wheels are those of runs that came to their end.
+    Duration and what was mounted are those of runs that came to their end.
     """
     for point, group in _by_point(results):
         done = [result for result in group if result.outcome == "done"]
@@ -104,15 +103,27 @@ def totals_rows(results: Sequence[CaseResult]) -> Iterator[Row]:
                 others[result.outcome] = others.get(result.outcome, 0) + 1
         told = ", ".join(f"{count} {outcome}" for outcome, count in sorted(others.items()))
         _, *seconds = _statistics([result.rig_seconds for result in done])
-        _, *wheels = _statistics([float(result.wheels) for result in done])
+        _, *mounted = _statistics([float(result.mounted) for result in done])
         rows = sum(len(result.rows) for result in group)
         missing = sum(result.missing for result in group)
-        yield (*point, len(group), len(done), told, rows, missing, *seconds, *wheels)
+        yield (*point, len(group), len(done), told, rows, missing, *seconds, *mounted)
+
+
+def _setpoint_header(held: Axes) -> Row:
+    return ("row", "compound", *(axis.column for axis in held))
 
 
 def _setpoints(row: RowResult) -> Row:
-    values = [getattr(row, field.name) for field in fields(row)[2 : len(_SETPOINTS)]]
-    return (row.row, row.compound, *(nominal(value) for value in values))
+    held = row.setpoint
+    return (row.row, held.compound, *(nominal(axis.of(held)) for axis in held.axes))
+
+
+def row_record(row: RowResult) -> dict[str, float | str]:
+    """Return a row's cells by their columns, as numbers and texts."""
+    held = row.setpoint
+    setpoints = {axis.column: axis.of(held) for axis in held.axes}
+    measured = {name: getattr(row, name) for name in _MEASURED}
+    return {"row": row.row, "compound": held.compound} | setpoints | measured
 
 
 def _by_point(results: Sequence[CaseResult]) -> Iterator[tuple[tuple[str, ...], list[CaseResult]]]:

@@ -13,8 +13,8 @@ from textual.screen import Screen
 from textual.widget import Widget
 from textual.widgets import ContentSwitcher
 
-from tester import clock
-from tester.service.commands import Acknowledge, Control, Hold, Release, ResumeRun
+from tester.base import clock
+from tester.service.commands import Acknowledge, Hold, Release, ResumeRun, TakeControl
 from tester.service.state import RunView
 from tester.tui.dialogs.confirm import AbortDialog, GoOnDialog
 from tester.tui.dialogs.dialog import Dialog
@@ -22,14 +22,14 @@ from tester.tui.dialogs.log import TextDialog
 from tester.tui.filters import AsciiOnly, Colourless
 from tester.tui.gone import TITLE, death_text
 from tester.tui.host import HostApp, TuiOptions
+from tester.tui.pages.bus import BusPage
+from tester.tui.pages.manual import ManualPage
+from tester.tui.pages.recipes import RecipesView
+from tester.tui.pages.results import ResultsView
+from tester.tui.pages.run import RunPage as RunScreen
+from tester.tui.pages.view import Keys, View
 from tester.tui.scene import UNDER_WAY
 from tester.tui.theme import CSS, DARK, THEMES
-from tester.tui.views.bus import BusView
-from tester.tui.views.manual import ManualView
-from tester.tui.views.recipes import RecipesView
-from tester.tui.views.results import ResultsView
-from tester.tui.views.run import RunView as RunScreen
-from tester.tui.views.view import Keys, View
 from tester.tui.widgets.head import TABS, KeyLine, StateLine, TabLine, Tabs
 from tester.tui.widgets.small import SMALLEST, SmallPanel
 
@@ -104,9 +104,9 @@ class TesterApp(HostApp):
         """Return the screens."""
         yield RecipesView(id="recipes")
         yield RunScreen(plain=self.options.plain, id="run")
-        yield ManualView(id="manual")
+        yield ManualPage(id="manual")
         yield ResultsView(id="results")
-        yield BusView(id="bus")
+        yield BusPage(id="bus")
 
     def on_mount(self) -> None:
         """Begin to listen."""
@@ -231,7 +231,7 @@ class TesterApp(HostApp):
 
     def action_take_control(self) -> None:
         """Take control from whoever has it."""
-        self.order(Control(force=True), "this screen controls")
+        self.order(TakeControl(force=True), "this screen controls")
 
     def action_use_theme(self, name: str) -> None:
         """Change the colours."""

@@ -9,16 +9,16 @@ from zipfile import ZIP_DEFLATED, ZipFile
 from pydantic_core import to_json
 
 from tester import __version__
+from tester.base.trouble import in_words
 from tester.service.address import AddressError, folder
-from tester.trouble import in_words
-from tester.tui.scene import Scene
+from tester.tui.scene import ScreenScene
 from tester.tui.starting import LOG
 
 LOG_BYTES = 1_000_000
 """Of the service's log, from its end."""
 
 
-def write_bundle(scene: Scene, stamp: str, where: Path = Path()) -> Path:
+def write_bundle(scene: ScreenScene, stamp: str, where: Path = Path()) -> Path:
     """Write ``support-STAMP.zip`` and return its path; raises OSError."""
     path = where / f"support-{stamp}.zip"
     with ZipFile(path, "x", ZIP_DEFLATED) as bundle:
@@ -27,7 +27,7 @@ def write_bundle(scene: Scene, stamp: str, where: Path = Path()) -> Path:
         bundle.writestr("plan.json", to_json(scene.plan, indent=1, inf_nan_mode="null"))
         bundle.writestr("events.jsonl", _lines(scene.events))
         bundle.writestr("frames.jsonl", _lines(scene.frames))
-        bundle.writestr("trend.jsonl", _lines([scene.columns, *scene.trend]))
+        bundle.writestr("trend.jsonl", _lines([scene.machine.trend, *scene.trend]))
         bundle.writestr("serve.log", _log())
     return path
 

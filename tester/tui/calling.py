@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 
-from tester.children import tester_command
+from tester.base.children import tester_command
 
 
 async def call(*arguments: str) -> tuple[bool, str]:

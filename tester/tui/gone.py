@@ -2,22 +2,21 @@
 
 from __future__ import annotations
 
-from tester.tui.scene import Scene
-from tester.tui.words import clean
+from tester.tui.formatting import clean
+from tester.tui.scene import ScreenScene
 
 TITLE = "The service has died"
 SHORT = "the service has died: nobody controls the rig. Use the machine's own stop"
-NOT_STOPPED = "Use the machine's own stop, and look that wheel and belt stand."
 
 
-def gone_line(scene: Scene) -> str:
+def gone_line(scene: ScreenScene) -> str:
     """Return what has become of the service in a line, "" while nothing is known."""
     if scene.gone == "died":
         return SHORT
     return "the service has ended: `tester tui` starts another" if scene.gone == "ended" else ""
 
 
-def death_text(scene: Scene) -> str:
+def death_text(scene: ScreenScene) -> str:
     """Return what a person must know whose service has died, in paragraphs."""
     state = scene.state
     rig = clean(state.alone) if state is not None else ""
@@ -27,28 +26,32 @@ def death_text(scene: Scene) -> str:
         "",
         rig,
         "",
-        "1. Look at the machine: wheel and belt must stand. If they turn, or in doubt: the machine's emergency stop.",
-        "2. Switch the heating off at the machine if the jacket stays hot.",
-        "3. Leave this screen (q) and start `tester tui` again: it starts another service. Nothing moves by that.",
+    ]
+    todo = [
+        f"Look at the machine: {clean(scene.machine.moves)} must stand. If not, or in doubt: the machine's emergency "
+        "stop.",
+        *(clean(one) for one in scene.machine.look),
+        "Leave this screen (q) and start `tester tui` again: it starts another service. Nothing moves by that.",
     ]
     if scene.run_under_way and state is not None and state.run is not None:
         name = clean(state.run.name)
-        lines.append(f"4. {name} is interrupted. What it has committed is kept: `r`, or `tester resume {name}`, goes "
-                     "on with it.")  # fmt: skip
-    return "\n".join(lines)
+        todo.append(f"{name} is interrupted. What it has committed is kept: `r`, or `tester resume {name}`, goes "
+                    "on with it.")  # fmt: skip
+    return "\n".join([*lines, *(f"{number}. {one}" for number, one in enumerate(todo, 1))])
 
 
-def stop_failed(scene: Scene, error: str) -> str:
+def stop_failed(scene: ScreenScene, error: str) -> str:
     """Return why STOP has not been taken, and what to do."""
+    look = f"Use the machine's own stop, and look that {clean(scene.machine.moves)} stand."
     if scene.gone == "died":
         rig = f" {clean(scene.state.alone)}" if scene.state is not None else ""
-        return f"STOP cannot be taken: the service has died.{rig} {NOT_STOPPED}"
+        return f"STOP cannot be taken: the service has died.{rig} {look}"
     if scene.gone == "ended":
-        return f"STOP has nothing to stop: the service was told to end, and left the rig at standstill. {NOT_STOPPED}"
+        return f"STOP has nothing to stop: the service was told to end, and left the rig at standstill. {look}"
     return f"STOP has not reached the service: {error}. Use the machine's own stop."
 
 
-def farewell(scene: Scene) -> str:
+def farewell(scene: ScreenScene) -> str:
     """Return what is said when the screen is left."""
     if scene.gone == "died":
         return ("the service has died: nothing controls the rig. Look that it stands; `tester tui` starts another "

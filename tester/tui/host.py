@@ -15,19 +15,19 @@ from textual.app import App
 from textual.binding import Binding, BindingType
 from textual.dom import DOMNode
 
-from tester import clock, keys
+from tester.base import clock, keys
+from tester.base.trouble import in_words
 from tester.service.address import Address
 from tester.service.client import Client, Link, Lost, LostError, NoServiceError, RefusedError
 from tester.service.commands import Action, Stop
 from tester.service.protocol import Event
 from tester.service.state import RunView
 from tester.service.stop_call import NotTakenError
-from tester.trouble import in_words
+from tester.tui.formatting import clean
 from tester.tui.gone import farewell, stop_failed
-from tester.tui.scene import Scene
+from tester.tui.scene import ScreenScene
 from tester.tui.starting import start_service
 from tester.tui.stop_line import StopLine, stopping
-from tester.tui.words import clean
 
 TICK_S = 0.5
 """The age of what is shown is looked at this often."""
@@ -63,13 +63,13 @@ class HostApp(App[str]):
     ]
 
     def __init__(self, options: TuiOptions, now: Callable[[], float] = clock.monotonic) -> None:
-        """``now``: seconds of tester.clock.monotonic; another one in tests."""
+        """``now``: seconds of tester.base.clock.monotonic; another one in tests."""
         super().__init__()
         self.options = options
         self.stop_line = StopLine(options.address, client_name())
         if self.HAS_RIG and not options.view_only:
             self.driver_class = stopping(self.driver_class, self.stop_line)
-        self.scene = Scene(now=now, view_only=options.view_only)
+        self.scene = ScreenScene(now=now, view_only=options.view_only)
         self.link: Link | None = None
         self._started = False
         self._stops: set[asyncio.Task[None]] = set()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from array import array
 from bisect import bisect_right
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import isfinite
 from pathlib import Path
@@ -11,10 +12,13 @@ from pathlib import Path
 from tester.analysis.results import Burst
 from tester.axes import ListWords, condition_words
 from tester.export.results import results_of
-from tester.rig.load import load_rig_text
+from tester.machine.served import Wanted
+from tester.quantities import Channel, Quantities
+from tester.run.kinds import served_kind
+from tester.run.rigs import load_rig_text
+from tester.screen import MachineView, PlotView, Value, trend_columns
 from tester.service.protocol import Event
 from tester.service.state import (
-    TREND_COLUMNS,
     ClientsView,
     DiskView,
     ManualView,
@@ -24,26 +28,20 @@ from tester.service.state import (
     RunView,
     StateView,
     TickView,
-    Value,
 )
-from tester.service.values import Spec, friction, specs
+from tester.service.values import NOTHING_WANTED, Spec, friction, screen_of, specs, trend_row
 from tester.store.reader import RunReader
 from tester.store.records import ConditionInfo, StoredCondition, StoredRepeat, StoredRun
-from tester.tui.scene import Scene
+from tester.tui.scene import ScreenScene
 from tester.tui.widgets.trends import WINDOW_S
 
 SPACING_S = 0.25
 """Of the samples that are kept, rig seconds; wider where that would be more than MOST."""
 MOST = 40_000
+PLOTS = 4
+"""Trends that a screen has room for."""
 OLD_S = 2.0
 """A sample older than this at the moment shown is stale; between contacts two a second are recorded."""
-COLUMNS = {
-    "sideslip": "sideslip_deg", "camber": "camber_deg", "wheel_speed": "wheel_speed_m_s",
-    "belt_speed": "belt_speed_m_s", "press": "press_mm", "force_x": "force_x_n", "force_y": "force_y_n",
-    "moment": "moment_z_nm", "torque": "drive_torque_nm", "heat": "heat_percent", "load": "force_z_n",
-    "surface": "surface_c", "hub": "hub_c",
-}  # fmt: skip
-"""Where a value comes from."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,6 +52,8 @@ class Playback:
     status: str
     """A word of RunStatus."""
     rig_name: str
+    machine: MachineView
+    quantities: Quantities
     specs: tuple[Spec, ...]
     samples: dict[str, array[float]]
     conditions: tuple[StoredCondition, ...]
@@ -68,11 +68,12 @@ class Playback:
         """Return the run's rig seconds."""
         return max(self.run.rig_seconds, self.samples["time_s"][-1] if self.samples["time_s"] else 0.0)
 
-    def show(self, scene: Scene, at_s: float) -> None:
+    def show(self, scene: ScreenScene, at_s: float) -> None:
         """Have the scene be that of a moment, rig seconds."""
         condition = next((c for c in self.conditions if c.started_s <= at_s < _end(c, self.length_s)), None)
         index = bisect_right(self.samples["time_s"], at_s) - 1
         scene.replayed = True
+        scene.machine = self.machine
         scene.state = self._state(at_s, index, condition)
         scene.plan = self._plan(at_s)
         scene.events.clear()
@@ -111,7 +112,7 @@ class Playback:
         wanted = condition.info.window_revolutions if condition is not None else None
         return ProgressView(
             step=len(begun), steps=max(len(self.conditions), 1),
-            title=condition_words(condition.info) if condition is not None else "between conditions",
+            title=condition_words(condition.info.setpoint) if condition is not None else "between conditions",
             condition=len(begun), conditions=len(self.conditions),
             repeat=last.repeat if last is not None else 0,
             repeats=condition.info.repeats if condition is not None else 0,
@@ -125,30 +126,34 @@ class Playback:
             return tuple(spec.value(None) for spec in self.specs)
         row = {name: column[index] for name, column in self.samples.items()}
         age_s = at_s - row["time_s"]
-        wanted: dict[str, tuple[float | None, float | None]] = {
-            "load": (row["load_setpoint_n"], None),
-            "hub": (row["hub_setpoint_c"], None),
-        }
-        if info is not None:
-            wanted["slip"] = (1e3 * info.slip_velocity_m_s, None)
-            wanted["surface"] = (info.temperature_c, info.temperature_band_k)
-            wanted["sideslip"] = (info.sideslip_deg, None)
-            wanted["camber"] = (info.camber_deg, None)
-            wanted["wheel_speed"] = (info.wheel_speed_m_s, None)
-        measured = {key: row[name] for key, name in COLUMNS.items()}
-        measured["slip"] = 1e3 * row["slip_m_s"]
-        measured["friction"] = friction(row["force_x_n"], row["force_y_n"], row["force_z_n"])
-        quality = "good" if age_s <= OLD_S else "stale"
         return tuple(
-            spec.value(measured.get(spec.key), *wanted.get(spec.key, (None, None)), age_s, quality)
-            for spec in self.specs
-        )
+            spec.value(self._measured(channel, row), self._wanted(channel, row, info), age_s,
+                       "good" if age_s <= OLD_S else "stale")
+            for spec, channel in zip(self.specs, self.quantities.shown, strict=True)
+        )  # fmt: skip
+
+    def _measured(self, channel: Channel, row: dict[str, float]) -> float | None:
+        """Return what a sample says of a channel; None where it was not recorded then."""
+        if channel.source:
+            return channel.scaled(row.get(channel.name))
+        return friction(self.quantities, row.__getitem__)
+
+    def _wanted(self, channel: Channel, row: dict[str, float], info: ConditionInfo | None) -> Wanted:
+        """Return what was wanted: as it was recorded, else by the condition under way."""
+        screen = screen_of(channel)
+        if screen.setpoint:
+            return Wanted(channel.scaled(row.get(screen.setpoint)))
+        if not screen.axis or info is None:
+            return NOTHING_WANTED
+        warm = channel.name == self.quantities.roles.temperature
+        held = info.setpoint
+        return Wanted(held.axes[screen.axis].number(held), info.temperature_band_k if warm else None)
 
     def _plan(self, at_s: float) -> PlanView:
-        words = ListWords(c.info for c in self.conditions)
+        words = ListWords(c.info.setpoint for c in self.conditions)
         steps = tuple(
             PlanStep(
-                number, "condition", words.of(c.info),
+                number, "condition", words.of(c.info.setpoint),
                 "done" if _end(c, self.length_s) <= at_s else "now" if c.started_s <= at_s else "later",
                 _end(c, self.length_s) - c.started_s if isfinite(c.started_s) else 0.0,
                 _end(c, self.length_s) - c.started_s if _end(c, self.length_s) <= at_s else None,
@@ -158,26 +163,18 @@ class Playback:
         return PlanView(self.run.info.recipe_name, len(steps), 1, steps, self.length_s)
 
     def _row(self, index: int) -> tuple[float | None, ...]:
-        s = self.samples
-        known = {
-            "wall_s": s["time_s"][index], "t_s": s["time_s"][index],
-            "friction": friction(s["force_x_n"][index], s["force_y_n"][index], s["force_z_n"][index]),
-            "load_n": s["force_z_n"][index], "load_setpoint_n": s["load_setpoint_n"][index],
-            "surface_c": s["surface_c"][index], "hub_c": s["hub_c"][index],
-            "hub_setpoint_c": s["hub_setpoint_c"][index], "slip_mm_s": 1e3 * s["slip_m_s"][index],
-            "wheel_speed_m_s": s["wheel_speed_m_s"][index], "belt_speed_m_s": s["belt_speed_m_s"][index],
-            "sideslip_deg": s["sideslip_deg"][index], "heat_percent": s["heat_percent"][index],
-        }  # fmt: skip
-        return tuple(_known(known.get(name)) for name in TREND_COLUMNS)
+        """Return a row of the trend; of a setpoint that was not recorded it says nothing."""
+        row = {name: column[index] for name, column in self.samples.items()}
+        values = {
+            spec.key: spec.value(self._measured(channel, row), self._wanted(channel, row, None))
+            for spec, channel in zip(self.specs, self.quantities.shown, strict=True)
+        }
+        return (row["time_s"], row["time_s"], *trend_row(self.quantities, values))
 
 
 def _done(burst: Burst, at_s: float) -> float:
     """Return the revolutions of a burst that were counted by then, as if evenly."""
     return burst.revolutions * min((at_s - burst.started_s) / max(burst.ended_s - burst.started_s, 1e-9), 1.0)
-
-
-def _known(value: float | None) -> float | None:
-    return value if value is not None and isfinite(value) else None
 
 
 def _began(condition: StoredCondition) -> float:
@@ -194,20 +191,41 @@ def load(folder: Path) -> Playback:
         results = results_of(reader)
         run = results.run
         rig = load_rig_text(run.info.rig_text)
+        kind = served_kind(rig)
         events = tuple(
             Event(e.sequence, e.t_s, e.utc, e.kind, e.severity, e.text, run.info.name) for e in reader.events()
         )
         repeats = tuple(reader.repeats(attempts=True))
+        quantities = reader.quantities()
+        shown = specs(quantities, rig)
+        spacing_s = max(SPACING_S, run.rig_seconds / MOST)
         return Playback(
-            run, results.status.value, rig.name, specs(rig), _thinned(reader, max(SPACING_S, run.rig_seconds / MOST)),
+            run, results.status.value, rig.name, drawn_as(quantities, shown, kind.machine), quantities, shown,
+            _thinned(reader, spacing_s),
             tuple(reader.conditions()), repeats, {one.key: tuple(reader.bursts(one.key)) for one in repeats}, events,
             tuple(event.t_s for event in events),
         )  # fmt: skip
 
 
+def drawn_as(quantities: Quantities, shown: Sequence[Spec], kind: MachineView) -> MachineView:
+    """Return how a record's channels are drawn: as its kind has it where that shows the same, else as the record says.
+
+    Of a record whose kind has changed since, or is not installed, the first trends are drawn; each is at least a
+    fiftieth of its bar high.
+    """
+    columns = trend_columns(quantities)
+    if kind.trend == columns:
+        return kind
+    drawn = [(spec, screen_of(one).trend) for spec, one in zip(shown, quantities.shown, strict=True)]
+    plots = [
+        PlotView(spec.key, column, 0.02 * (spec.scale_high - spec.scale_low)) for spec, column in drawn if column
+    ]
+    return MachineView("", columns, tuple(plots[:PLOTS]))
+
+
 def _thinned(reader: RunReader, spacing_s: float) -> dict[str, array[float]]:
     """Return samples that far apart."""
-    kept: dict[str, array[float]] = {name: array("d") for name in reader.sample_columns()}
+    kept: dict[str, array[float]] = {name: array("d") for name in reader.quantities().names}
     due_s = float("-inf")
     for block in reader.sample_blocks():
         chosen: list[int] = []

@@ -20,7 +20,7 @@ SHRINK = 4.0
 
 
 @dataclass(slots=True)
-class Range:
+class PlotRange:
     """The y range of a trend: grows at once to round numbers, shrinks late."""
 
     low: float = 0.0
@@ -66,18 +66,18 @@ class Canvas:
         """Return how many columns of dots there are."""
         return self.width if self.plain else 2 * self.width
 
-    def _row(self, y: float, scale: Range) -> int:
+    def _row(self, y: float, scale: PlotRange) -> int:
         rows = self.height if self.plain else 4 * self.height
         share = (y - scale.low) / (scale.high - scale.low)
         return min(max(round((1.0 - share) * (rows - 1)), 0), rows - 1)
 
-    def level(self, y: float | None, sign: str, scale: Range) -> None:
+    def level(self, y: float | None, sign: str, scale: PlotRange) -> None:
         """Draw a horizontal line, if it lies within the range."""
         if y is not None and scale.low <= y <= scale.high:
             row = self._row(y, scale)
             self._lines[row if self.plain else row // 4] = sign
 
-    def bins(self, bins: Sequence[Bin | None], scale: Range) -> None:
+    def bins(self, bins: Sequence[Bin | None], scale: PlotRange) -> None:
         """Draw the newest bins, the last at the right edge."""
         shown = bins[-self.columns :]
         first = self.columns - len(shown)
@@ -114,7 +114,7 @@ def scatter(points: Sequence[Point], width: int, height: int, decimals: int = 2)
     inner, rows = width - margin - 1, height - 2
     if inner < 4 or rows < 2 or not points:
         return []
-    xs, ys = Range(least=1e-6), Range(least=0.02)
+    xs, ys = PlotRange(least=1e-6), PlotRange(least=0.02)
     xs.low, xs.high = min(p.x for p in points), max(p.x for p in points)
     if xs.high <= xs.low:
         xs.low, xs.high = xs.low - 1.0, xs.high + 1.0

@@ -11,16 +11,16 @@ from textual.binding import Binding, BindingType
 from textual.widget import Widget
 
 from tester.tui.app import TesterApp
+from tester.tui.formatting import minutes
 from tester.tui.host import TuiOptions
+from tester.tui.pages.results import ResultsView
+from tester.tui.pages.run import RunPage
+from tester.tui.pages.view import Keys, View
 from tester.tui.playback import Playback
-from tester.tui.scene import Scene
+from tester.tui.scene import ScreenScene
 from tester.tui.stored import Stored
-from tester.tui.views.results import ResultsView
-from tester.tui.views.run import RunView
-from tester.tui.views.view import Keys, View
 from tester.tui.widgets.head import TABS, Tabs
 from tester.tui.widgets.panel import FAINT, Panel, Parts
-from tester.tui.words import minutes
 
 FRAME_S = 0.25
 SPEEDS = (1.0, 10.0, 60.0, 600.0)
@@ -41,7 +41,7 @@ class TimeLine(Panel):
     playing = False
     speed = 60.0
 
-    def picture(self, scene: Scene, width: int, height: int) -> Parts:
+    def picture(self, scene: ScreenScene, width: int, height: int) -> Parts:
         """Return the slider."""
         words = f" {'▶' if self.playing else '‖'} {minutes(self.at_s)} / {minutes(self.length_s)}  x{self.speed:g} "
         keys = " Home End PgUp PgDn "
@@ -81,7 +81,7 @@ class ReplayApp(TesterApp):
 
     def views(self) -> Iterable[View]:
         """Return the screens that a record can fill."""
-        yield RunView(plain=self.options.plain, id="run")
+        yield RunPage(plain=self.options.plain, id="run")
         yield ResultsView(id="results")
 
     def below(self) -> Iterable[Widget]:

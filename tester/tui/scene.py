@@ -6,11 +6,22 @@ from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from tester import clock
+from tester.base import clock
+from tester.screen import UNKNOWN, MachineView, Value
 from tester.service.client import Client, Gone, Lost
-from tester.service.protocol import EVENTS_KEPT, TREND_ROWS, Event, Frame, Frames, Hello, PlanMessage, ServerMessage
+from tester.service.protocol import (
+    EVENTS_KEPT,
+    TREND_ROWS,
+    Event,
+    Frame,
+    Frames,
+    Hello,
+    MachineMessage,
+    PlanMessage,
+    ServerMessage,
+)
 from tester.service.protocol import Snapshot as SnapshotMessage
-from tester.service.state import TREND_COLUMNS, Alarm, PlanView, RunView, StateView, Value
+from tester.service.state import Alarm, PlanView, RunView, StateView
 
 STALE_S = 2.0
 """A state older than this is no state: no value is to be believed."""
@@ -20,8 +31,8 @@ UNDER_WAY = "running"
 
 
 @dataclass(slots=True)
-class Scene:
-    """``state`` None: nothing was ever heard. ``now``: seconds of tester.clock.monotonic, another one in tests."""
+class ScreenScene:
+    """``state`` None: nothing was ever heard. ``now``: seconds of tester.base.clock.monotonic, another one in tests."""
 
     now: Callable[[], float] = clock.monotonic
     state: StateView | None = None
@@ -30,7 +41,8 @@ class Scene:
     trend: deque[tuple[float | None, ...]] = field(
         default_factory=lambda: deque[tuple[float | None, ...]](maxlen=TREND_ROWS)
     )
-    columns: tuple[str, ...] = TREND_COLUMNS
+    machine: MachineView = UNKNOWN
+    """Tables of the kind that is shown."""
     epoch: int = 0
     """Changes where ``trend`` is another one, not a longer one."""
     frames: deque[Frame] = field(default_factory=lambda: deque[Frame](maxlen=FRAMES_KEPT))
@@ -83,6 +95,10 @@ class Scene:
             self.events.append(message)
         elif isinstance(message, PlanMessage):
             self.plan = message.plan
+        elif isinstance(message, MachineMessage):
+            self.machine = message.machine
+            self.trend.clear()
+            self.epoch += 1
         elif isinstance(message, Frames):
             self.frames.extend(message.frames)
             self.frames_dropped += message.dropped
@@ -98,8 +114,8 @@ class Scene:
         known = self.events[-1].seq if self.events else 0
         self.events.extend(event for event in hello.events if event.seq > known)
         self.trend.clear()
-        self.trend.extend(hello.trend.rows)
-        self.columns = hello.trend.columns
+        self.trend.extend(hello.trend)
+        self.machine = hello.machine
         self.epoch += 1
 
     def value(self, key: str) -> Value | None:

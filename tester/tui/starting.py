@@ -6,7 +6,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from tester.children import tester_command
+from tester.base.children import tester_command
 from tester.service.address import folder
 
 LOG = "serve.log"

@@ -15,7 +15,7 @@ from textual.driver import Driver
 from textual.events import Key
 from textual.message import Message
 
-from tester.keys import FAST_STOP, STOP
+from tester.base.keys import FAST_STOP, STOP
 from tester.service.address import Address
 from tester.service.stop_call import NotTakenError, StopCall
 

@@ -8,16 +8,14 @@ from math import isfinite
 from pathlib import Path
 
 from tester.analysis.trust import mark_of
-from tester.axes import AXES, Axis, Held, ListWords, axis, columns, condition_words, differing, plain
+from tester.axes import Axes, Axis, ListWords, Setpoint, condition_words, plain
 from tester.export.results import Measured, RunResults, results_of
+from tester.quantities import GATE
 from tester.store.catalogue import find_run
 from tester.store.reader import RunReader
 from tester.store.records import StoredExclusion
 from tester.tui.plot import OTHER, SERIES, Bin, Point
 
-PLOTTED = (axis("load"), axis("slip_velocity"), axis("temperature"), axis("sideslip"), axis("camber"),
-           axis("wheel_speed"))  # fmt: skip
-"""What the coefficient is plotted against, in turn."""
 FIGURES = ("mu", "s", "n", "Status")
 
 
@@ -26,7 +24,7 @@ class Row:
     """One condition: cells of ``Stored.header``, what is held, mu (None: none), its number in the store."""
 
     cells: tuple[str, ...]
-    held: Held
+    held: Setpoint
     compound: str
     mu: float | None
     condition: int
@@ -60,14 +58,16 @@ class Stored:
     in ``common`` instead where there are more axes than the paper's."""
     common: str
     rows: tuple[Row, ...]
+    axes: Axes
     record_head: str = ""
     """Of the chain over the run's record; "" where there is none."""
 
     @property
     def plotted(self) -> tuple[Axis, ...]:
         """What the coefficient can be plotted against: the paper's axes, and others that differ here."""
-        more = differing(row.held for row in self.rows)
-        return tuple(one for one in PLOTTED if one.paper or one in more)
+        more = self.axes.differing(row.held for row in self.rows)
+        shown = (one for one in self.axes if not one.choices and (one.paper or one in more))
+        return tuple(sorted(shown, key=lambda one: one.plotted))
 
 
 def read(name: str, runs: Path) -> Stored:
@@ -81,11 +81,11 @@ def read(name: str, runs: Path) -> Stored:
 def stored_of(folder: Path, results: RunResults) -> Stored:
     """Return a run's table."""
     conditions = list(results.conditions())
-    infos = [measured.info for measured in conditions]
-    shown, common = columns(infos), ""
-    if len(infos) > 1 and any(not one.paper for one in shown):
+    held = [measured.info.setpoint for measured in conditions]
+    shown, common = results.axes.columns(held), ""
+    if len(held) > 1 and any(not one.paper for one in shown):
         # A narrow screen has room for the axes that differ; what all conditions share is told once, above.
-        words = ListWords(infos)
+        words = ListWords(held)
         shown, common = words.axes, words.common
     header = ("Formula", *(one.title for one in shown), *FIGURES)
     rows = tuple(_row(measured, shown) for measured in conditions)
@@ -93,17 +93,17 @@ def stored_of(folder: Path, results: RunResults) -> Stored:
     if run.info.risk:
         common = f"RISK ACCEPTED: {run.info.risk}{'; ' + common if common else ''}"
     status, head = results.status.value, results.record_head
-    return Stored(folder.name, folder, run.info.recipe_name, status, header, common, rows, head)
+    return Stored(folder.name, folder, run.info.recipe_name, status, header, common, rows, results.axes, head)
 
 
 def _row(measured: Measured, shown: Sequence[Axis]) -> Row:
     i, r = measured.info, measured.result
-    setpoints = [plain(one.of(i)) for one in shown]
+    setpoints = [plain(one.of(i.setpoint)) for one in shown]
     mark = mark_of(r.status, r.flags) if isfinite(r.mu_resultant) else ""
     found = (_number(r.mu_resultant, 3) + mark, _number(r.s, 4), f"{r.n_valid}/{r.n}")
     status = f"{r.status.value}{': ' + r.reason if r.reason else ''} {r.flags}".strip()
     mu = r.mu_resultant if isfinite(r.mu_resultant) else None
-    return Row((i.compound, *setpoints, *found, status), i, i.compound, mu, i.condition, mark)
+    return Row((i.compound, *setpoints, *found, status), i.setpoint, i.compound, mu, i.condition, mark)
 
 
 def _number(value: float, decimals: int) -> str:
@@ -135,10 +135,10 @@ def _trace(reader: RunReader, condition: int, repeat: int, columns: int) -> tupl
     """Return the accepted samples' coefficient, least and greatest in each column."""
     import numpy as np
 
-    found = reader.samples(condition, repeat)
-    accepted = (found["gate"] == 0) & (found["force_z_n"] > 0.0)
-    force = np.hypot(found["force_x_n"][accepted], found["force_y_n"][accepted])
-    mu = force / found["force_z_n"][accepted]
+    found, roles = reader.samples(condition, repeat), reader.quantities().roles
+    accepted = (found[GATE] == 0) & (found[roles.normal] > 0.0)
+    force = np.hypot.reduce([found[name][accepted] for name in roles.friction], initial=0.0)
+    mu = force / found[roles.normal][accepted]
     if not len(mu):
         return ()
     pieces = np.array_split(mu, min(columns, len(mu)))
@@ -154,7 +154,7 @@ def series(stored: Stored, row: Row, along: Axis) -> list[Row]:
     """Return the conditions with a value that differ from ``row`` along one axis at most."""
 
     def others(one: Row) -> tuple[object, ...]:
-        return one.compound, *(other.of(one.held) for other in AXES if other is not along)
+        return one.compound, *(other.of(one.held) for other in one.held.axes if other.name != along.name)
 
     return [one for one in stored.rows if one.mu is not None and others(one) == others(row)]
 
@@ -170,7 +170,7 @@ def points(stored: Stored, along: Axis, chosen: Row | None = None) -> list[Point
         return _sign(row) if len(marked) < 2 else SERIES
 
     return [
-        Point(along.of(row.held), row.mu, OTHER if len(marked) > 1 and row not in marked else row.mark or own(row))
+        Point(along.number(row.held), row.mu, OTHER if len(marked) > 1 and row not in marked else row.mark or own(row))
         for row in stored.rows
         if row.mu is not None
     ]

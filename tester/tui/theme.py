@@ -68,14 +68,14 @@ Screen.-tiny ContentSwitcher { display: none; }
 #progress { height: 3; }
 #trends-1 { height: 1fr; }
 #trends-2 { height: 1fr; display: none; }
-#trend-slip { display: none; }
+#trend-fourth { display: none; }
 #run-right { width: 44; display: none; }
 #steps, #events { height: 1fr; }
 Screen.-wide #values { height: 12; }
 Screen.-wide #trends-2 { display: block; }
 Screen.-wide #run-right { display: block; }
 Screen.-huge #values { height: 15; }
-Screen.-huge #trend-slip { display: block; }
+Screen.-huge #trend-fourth { display: block; }
 Screen.-huge #run-right { width: 60; }
 
 OptionList, TextArea, DataTable, #box {

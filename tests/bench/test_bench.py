@@ -17,10 +17,11 @@ from bench.machine import machine
 from bench.report import as_json, as_markdown, missed, table
 from bench.speed import one_compound
 from bench.wrapping import ENTRY_POINTS, wrapped
-from sim.plant import Plant
+from sim.machines.wheel_on_belt.plant import Plant
+from tester.kinds import load_rig
+from tester.kinds.wheel_on_belt.recipe.part import PART
 from tester.recipe.check import load_checked
-from tester.recipe.expand import conditions_of
-from tester.rig import load_rig
+from tester.recipe.conditions import conditions_of
 
 MACHINE: dict[str, str | int] = {"interpreter": "CPython 3.11", "pgo": "no", "cpus": 2}
 FAST = Figure("drivers", "us", (11.0, 9.0, 10.0), at_most(12.0))
@@ -207,13 +208,14 @@ def test_a_cheap_topic_gives_as_many_runs_as_asked() -> None:
 
 
 def test_one_compound_of_table_2_has_its_55_conditions_in_five_repeats() -> None:
-    recipe = load_checked(one_compound(False), load_rig("sim"), "bench.yaml").recipe
-    assert (len(recipe.specimens), len(conditions_of(recipe)), conditions_of(recipe)[0].settings.repeats) == (1, 55, 5)
+    recipe = load_checked(one_compound(False), load_rig("sim"), PART, "bench.yaml").recipe
+    conditions = conditions_of(recipe, PART.settings)
+    assert (len(recipe.specimens), len(conditions), conditions[0].settings.repeats) == (1, 55, 5)
 
 
 def test_the_shortened_compound_and_the_sliding_recipe_are_valid() -> None:
     for text in (one_compound(True), SLIDING_RECIPE):
-        assert len(conditions_of(load_checked(text, load_rig("sim"), "bench.yaml").recipe)) == 1
+        assert len(conditions_of(load_checked(text, load_rig("sim"), PART, "bench.yaml").recipe, PART.settings)) == 1
 
 
 def test_the_big_recipe_has_as_many_conditions_as_asked() -> None:

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from drivers.modbus import ModbusLink
-from sim.modbus_wire import ModbusWire
-from sim.nodes.jacket_slave import JacketSlave
 from sim.nodes.modbus_slave import ModbusSlave
+from sim.wires.modbus_wire import ModbusWire
 
 
 class Quantities:
@@ -31,7 +30,7 @@ class Quantities:
 
 
 class Log:
-    """A tap that keeps every frame."""
+    """A watcher that keeps every frame."""
 
     def __init__(self) -> None:
         self.frames: list[tuple[float, bytes, bool]] = []
@@ -56,7 +55,7 @@ class Rig:
         self.wire = ModbusWire(baud, "N", slaves)
         self.slaves = slaves
         self.log = Log()
-        self.wire.tap = self.log
+        self.wire.watch(self.log.frame)
         self.period_s = period_s
         self.sparing = sparing
         self.now = 0.0
@@ -68,7 +67,7 @@ class Rig:
         while self.now < end - 1e-9:
             scan = self.now >= scan_s - 1e-9
             for slave in self.slaves:
-                if isinstance(slave, JacketSlave):
+                if slave.due_s <= self.now:
                     slave.advance(self.now, self.now)
             if not self.sparing or self.wire.arrives_s <= self.now:
                 self.link.feed(self.wire.read(self.now), self.now)

@@ -8,7 +8,7 @@ import math
 import pytest
 
 from drivers.canopen import emcy
-from drivers.canopen.conversation import Conversation, SdoRead, SdoWrite, SendNmt, Wait
+from drivers.canopen.conversation import Conversation, Pause, SdoRead, SdoWrite, SendNmt
 from drivers.canopen.master import CanMaster
 from drivers.canopen.objects import DataType, NmtCommand
 from drivers.cia402 import Goal, State
@@ -304,7 +304,7 @@ def test_a_reply_older_than_the_request_is_not_taken_for_its_answer() -> None:
     read: list[object] = []
 
     def talk() -> Conversation:
-        yield Wait(0.1)
+        yield Pause(0.1)
         read.append((yield SdoRead(0x6041)))
     bench = BenchDrive()
     master.start(drive, talk())
@@ -360,7 +360,7 @@ def test_a_deep_copy_of_a_bus_goes_its_own_way() -> None:
     master, drive, _ = bus()
     twin = copy.deepcopy(master)
     master.feed([(0.01, 0x181, tpdo1(0x0240, 100, 0))], 0.01)
-    twin_wheel = twin.drives[0]
+    twin_wheel = twin.nodes[0]
     assert (drive.stamp_s, twin_wheel.stamp_s) == (0.01, -math.inf)
     twin.feed([(0.02, 0x181, tpdo1(0x0240, 500, 0))], 0.02)
     assert (drive.actual, twin_wheel.actual) == (0.1, 0.5)

@@ -1,4 +1,4 @@
-"""The infrared thermometer's driver against bytes of the Calex register map, and on the simulated line."""
+"""The sensor driver with a thermometer's profile: bytes of the Calex register map, and the simulated line."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from math import inf, isnan, nan
 import pytest
 
 from drivers.crc16 import with_crc
-from drivers.ir_thermometer import IrThermometer
 from drivers.profiles import load_profile
+from drivers.sensor import Sensor
 from sim.nodes.ir_slave import IrSlave
 from tests.drivers.modbus_bench import Bench, reply
 from tests.drivers.modbus_rig import Quantities, Rig
@@ -18,10 +18,10 @@ EMISSIVITY = with_crc(bytes.fromhex("02060017251C"))
 """0.95 in steps of 0.0001 to the volatile register 0x17."""
 
 
-def connected() -> tuple[Bench, IrThermometer]:
+def connected() -> tuple[Bench, Sensor]:
     """Return a thermometer that has been set up; its first read is under way."""
     bench = Bench(baud=38400)
-    thermometer = IrThermometer(PROFILE, 2, bench.link, emissivity=0.95)
+    thermometer = Sensor(PROFILE, 2, bench.link, parameters={"emissivity": 0.95})
     bench.serve(0.0)
     bench.serve(0.03, (0.02, reply(17, unit_id=2)))
     bench.serve(0.06, (0.05, EMISSIVITY))
@@ -39,12 +39,12 @@ def test_type_emissivity_and_its_read_back_come_before_the_first_reading() -> No
     ]
     assert thermometer.ready
     assert thermometer.stamp_s == -inf
-    assert isnan(thermometer.surface_c)
+    assert isnan(thermometer.values[0])
 
 
 def test_an_emissivity_that_is_not_kept_is_refused() -> None:
     bench = Bench(baud=38400)
-    thermometer = IrThermometer(PROFILE, 2, bench.link)
+    thermometer = Sensor(PROFILE, 2, bench.link)
     bench.serve(0.0)
     bench.serve(0.03, (0.02, reply(17, unit_id=2)))
     bench.serve(0.06, (0.05, EMISSIVITY))
@@ -55,15 +55,15 @@ def test_an_emissivity_that_is_not_kept_is_refused() -> None:
 @pytest.mark.parametrize("emissivity", [0.19, 1.01, nan])
 def test_an_emissivity_outside_the_device_is_refused(emissivity: float) -> None:
     with pytest.raises(ValueError, match=r"emissivity is 0\.2 to 1"):
-        IrThermometer(PROFILE, 2, Bench().link, emissivity)
+        Sensor(PROFILE, 2, Bench().link, parameters={"emissivity": emissivity})
 
 
 def test_temperatures_are_tenths_of_a_degree_with_sign() -> None:
     bench, thermometer = connected()
     bench.serve(0.12, (0.11, reply(0xFFF6, 0xFFF5, 251, 0, unit_id=2)))
-    assert thermometer.surface_c == pytest.approx(-1.0)
-    assert thermometer.sensor_c == pytest.approx(25.1)
-    assert (thermometer.counts, thermometer.valid, thermometer.stamp_s) == (-10, True, 0.11)
+    assert thermometer.values[0] == pytest.approx(-1.0)
+    assert thermometer.values[2] == pytest.approx(25.1)
+    assert (thermometer.counts[0], thermometer.valid, thermometer.stamp_s) == (-10, True, 0.11)
 
 
 @pytest.mark.parametrize("bit", range(5))
@@ -82,20 +82,37 @@ def test_a_temperature_beyond_the_device_is_invalid() -> None:
 def test_five_readings_a_second_or_more() -> None:
     source = Quantities()
     rig = Rig(38400, IrSlave(PROFILE, 2, source), period_s=0.05)
-    thermometer = IrThermometer(PROFILE, 2, rig.link)
+    thermometer = Sensor(PROFILE, 2, rig.link)
     rig.run(10.0)
     assert len(source.asked) >= 50
-    assert thermometer.surface_c == pytest.approx(40.0, abs=0.11)
+    assert thermometer.values[0] == pytest.approx(40.0, abs=0.11)
     assert thermometer.valid
 
 
 def test_emissivity_is_written_again_after_the_device_was_gone() -> None:
     slave = IrSlave(PROFILE, 2, Quantities())
     rig = Rig(38400, slave)
-    IrThermometer(PROFILE, 2, rig.link, 0.9)
+    Sensor(PROFILE, 2, rig.link, parameters={"emissivity": 0.9})
     rig.run(0.5)
     slave.powered = False
     rig.run(2.0)
-    slave.power_up()
+    slave.power(True)
     rig.run(2.0)
     assert slave.emissivity == pytest.approx(0.9)
+
+
+def test_a_thermometer_takes_no_tare() -> None:
+    with pytest.raises(ValueError, match="no tare"):
+        Sensor(PROFILE, 2, Bench().link).set_tare((0.0, 0.0, 0.0))
+
+
+def test_only_the_channels_asked_for_tell_of_a_change() -> None:
+    bench = Bench(baud=38400)
+    thermometer = Sensor(PROFILE, 2, bench.link, ("surface",))
+    bench.serve(0.0)
+    bench.serve(0.03, (0.02, reply(17, unit_id=2)))
+    bench.serve(0.06, (0.05, EMISSIVITY))
+    bench.serve(0.09, (0.08, reply(9500, unit_id=2)))
+    bench.serve(0.12, (0.11, reply(400, 400, 250, 0, unit_id=2)))
+    bench.serve(0.36, (0.35, reply(400, 401, 251, 0, unit_id=2)))
+    assert (thermometer.values, thermometer.changed_s) == ([40.0], 0.11)

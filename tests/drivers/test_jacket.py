@@ -7,12 +7,12 @@ from math import inf, isnan, nan
 import pytest
 
 from drivers.crc16 import with_crc
-from drivers.ir_thermometer import IrThermometer
 from drivers.jacket import HeatingJacket
 from drivers.profiles import load_profile
-from sim.modbus_wire import Impairment
+from drivers.sensor import Sensor
 from sim.nodes.ir_slave import IrSlave
 from sim.nodes.jacket_slave import JacketSlave
+from sim.wires.modbus_wire import Impairment
 from tests.drivers.modbus_bench import Bench, refusal, reply
 from tests.drivers.modbus_rig import Quantities, Rig
 
@@ -233,7 +233,7 @@ def test_jacket_and_thermometer_share_a_line_at_five_readings_a_second_each() ->
     infrared = load_profile("calex_pyrominibus")
     made = Rig(38400, JacketSlave(PROFILE, 1, source), IrSlave(infrared, 2, source), period_s=0.05)
     jacket = HeatingJacket(PROFILE, 1, made.link)
-    thermometer = IrThermometer(infrared, 2, made.link)
+    thermometer = Sensor(infrared, 2, made.link)
     made.run(2.0, Command(jacket, 60.0))
     made.log.frames.clear()
     made.run(10.0, Command(jacket, 60.0))
@@ -251,7 +251,7 @@ def test_a_silent_thermometer_does_not_make_the_jacket_stale_or_its_lease_run_ou
     slave = JacketSlave(PROFILE, 1, source)
     made = Rig(38400, slave, IrSlave(infrared, 2, source), period_s=0.05)
     jacket = HeatingJacket(PROFILE, 1, made.link)
-    thermometer = IrThermometer(infrared, 2, made.link)
+    thermometer = Sensor(infrared, 2, made.link)
     made.run(2.0, Command(jacket, 60.0))
     made.wire.impair = Impairment("silence", count=-1, unit_id=2)
     for _ in range(100):

@@ -1,4 +1,4 @@
-"""The load cell's driver against bytes of the register map, and on the simulated line."""
+"""The sensor driver with a load cell's profile, against bytes of the register map, and on the simulated line."""
 
 from __future__ import annotations
 
@@ -6,20 +6,21 @@ from math import inf, isnan
 
 import pytest
 
-from drivers.load_cell import LoadCell
 from drivers.profiles import ProfileError, load_profile
-from sim.modbus_wire import Impairment
+from drivers.sensor import Sensor
 from sim.nodes.cell_slave import CellSlave
+from sim.wires.modbus_wire import Impairment
 from tests.drivers.modbus_bench import Bench, reply
 from tests.drivers.modbus_rig import Quantities, Rig
 
 PROFILE = load_profile("four_axis_transmitter")
+CHANNELS = ("fx", "fy", "fz", "mz")
 
 
-def connected() -> tuple[Bench, LoadCell]:
+def connected() -> tuple[Bench, Sensor]:
     """Return a cell that has given its type; its first read is under way."""
     bench = Bench()
-    cell = LoadCell(PROFILE, 1, bench.link)
+    cell = Sensor(PROFILE, 1, bench.link)
     bench.serve(0.0)
     bench.serve(0.01, (0.005, reply(0x4658)))
     return bench, cell
@@ -32,17 +33,17 @@ def give(bench: Bench, registers: str) -> None:
     bench.serve(0.02, (0.0155, reply(*words)))
 
 
-def rig(**changes: object) -> tuple[Rig, LoadCell, CellSlave, Quantities]:
+def rig(**changes: object) -> tuple[Rig, Sensor, CellSlave, Quantities]:
     source = Quantities()
     slave = CellSlave(PROFILE, 1, source)
     made = Rig(115200, slave, **changes)  # type: ignore[arg-type]
-    return made, LoadCell(PROFILE, 1, made.link), slave, source
+    return made, Sensor(PROFILE, 1, made.link), slave, source
 
 
 def test_nothing_is_known_before_the_first_reading() -> None:
-    cell = LoadCell(PROFILE, 1, Bench().link)
+    cell = Sensor(PROFILE, 1, Bench().link)
     assert (cell.stamp_s, cell.valid, cell.refused) == (-inf, False, None)
-    assert all(isnan(value) for value in (*cell.raw, cell.fx_n, cell.fz_n))
+    assert all(isnan(value) for value in (*cell.raw, *cell.values))
 
 
 def test_the_type_is_asked_for_first_then_the_block_of_nine() -> None:
@@ -53,7 +54,7 @@ def test_the_type_is_asked_for_first_then_the_block_of_nine() -> None:
 
 def test_another_device_at_the_address_is_refused() -> None:
     bench = Bench()
-    cell = LoadCell(PROFILE, 1, bench.link)
+    cell = Sensor(PROFILE, 1, bench.link)
     bench.serve(0.0)
     bench.serve(0.01, (0.005, reply(17)))
     bench.serve(5.0)
@@ -64,8 +65,8 @@ def test_another_device_at_the_address_is_refused() -> None:
 def test_four_channels_are_scaled_from_their_registers() -> None:
     bench, cell = connected()
     give(bench, "000007D0 FFFFFE70 00000FA0 000001F4 0000")
-    assert cell.counts == (2000, -400, 4000, 500)
-    assert (cell.fx_n, cell.fy_n, cell.fz_n, cell.mz_nm) == pytest.approx((100.0, -20.0, 200.0, 0.5))
+    assert cell.counts == [2000, -400, 4000, 500]
+    assert cell.values == pytest.approx([100.0, -20.0, 200.0, 0.5])
     assert (cell.valid, cell.stamp_s) == (True, 0.0155)
 
 
@@ -73,10 +74,10 @@ def test_tare_is_taken_off_at_once_and_from_then_on() -> None:
     bench, cell = connected()
     give(bench, "000007D0 FFFFFE70 00000FA0 000001F4 0000")
     cell.set_tare((1.0, -2.0, 3.0, 0.25))
-    assert (cell.fx_n, cell.fy_n, cell.fz_n, cell.mz_nm) == pytest.approx((99.0, -18.0, 197.0, 0.25))
+    assert cell.values == pytest.approx([99.0, -18.0, 197.0, 0.25])
     bench.serve(0.03, (0.0255, reply(0, 2020, 0, 0, 0, 4000, 0, 0, 0)))
-    assert cell.fx_n == pytest.approx(100.0)
-    assert cell.raw == pytest.approx((101.0, 0.0, 200.0, 0.0))
+    assert cell.values[0] == pytest.approx(100.0)
+    assert cell.raw == pytest.approx([101.0, 0.0, 200.0, 0.0])
 
 
 @pytest.mark.parametrize("bit", [0, 1, 2])
@@ -150,18 +151,18 @@ def test_a_lost_cell_is_invalid_and_is_identified_anew_when_it_is_back() -> None
 def test_a_transmitter_with_one_channel_gives_that_and_the_others_unknown() -> None:
     profile = load_profile("laumas_tlb")
     bench = Bench()
-    cell = LoadCell(profile, 1, bench.link)
+    cell = Sensor(profile, 1, bench.link, CHANNELS)
     bench.serve(0.0)
     # Laumas: the magnitude, its sign in bit 7 of the status; 1000 counts of 0.01 kg.
     bench.serve(0.01, (0.005, reply(0x0880, 0, 1000)))
-    assert cell.fz_n == pytest.approx(-98.0665)
-    assert isnan(cell.fx_n)
+    assert cell.values[2] == pytest.approx(-98.0665)
+    assert isnan(cell.values[0])
     assert cell.valid
 
 
 def test_a_profile_without_forces_is_refused() -> None:
     with pytest.raises(ProfileError, match="describes a jacket"):
-        LoadCell(load_profile("eurotherm_3200"), 1, Bench().link)
+        Sensor(load_profile("eurotherm_3200"), 1, Bench().link)
 
 
 @pytest.mark.parametrize("delay_s", [0.011, 0.014, 0.017])
@@ -174,7 +175,7 @@ def test_a_late_reply_inside_the_quarantine_never_becomes_a_reading(delay_s: flo
     made.run(0.01)
     slave.frozen = False
     made.run(0.2)
-    assert cell.fz_n == pytest.approx(300.0, abs=0.051)
+    assert cell.values[2] == pytest.approx(300.0, abs=0.051)
     assert cell.station.counters.late == 1
     assert made.wire.collisions == 0
 
@@ -188,4 +189,19 @@ def test_one_bad_transaction_of_any_kind_leaves_no_reading_older_than_50_ms(kind
         made.run(0.01)
         assert made.now - cell.stamp_s < 0.05
     assert cell.valid
-    assert cell.fz_n == pytest.approx(200.0, abs=0.051)
+    assert cell.values[2] == pytest.approx(200.0, abs=0.051)
+
+
+def test_a_reading_that_differs_from_the_one_before_is_a_change() -> None:
+    bench, cell = connected()
+    give(bench, "000007D0 FFFFFE70 00000FA0 000001F4 0000")
+    bench.serve(0.03, (0.0255, reply(0, 2000, 0xFFFF, 0xFE70, 0, 4000, 0, 500, 0)))
+    assert (cell.changed_s, cell.stamp_s) == (0.0155, 0.0255)
+    bench.serve(0.04, (0.0355, reply(0, 2000, 0xFFFF, 0xFE70, 0, 4001, 0, 500, 0)))
+    assert cell.changed_s == 0.0355
+
+
+def test_a_tare_has_a_value_for_every_channel() -> None:
+    _, cell = connected()
+    with pytest.raises(ValueError, match="no tare of 1 values"):
+        cell.set_tare((1.0,))

@@ -10,7 +10,7 @@ from pymodbus.pdu import DecodePDU
 
 from drivers.crc16 import with_crc
 from drivers.modbus import codec
-from drivers.modbus.codec import Answer
+from drivers.modbus.codec import DecodedAnswer
 from tests.drivers.modbus_bench import Bench, reply
 
 
@@ -85,27 +85,28 @@ def test_a_frame_with_a_bad_crc_has_no_pdu() -> None:
 @pytest.mark.parametrize(
     ("pdu", "answer"),
     [
-        ("03020001", Answer.GOOD),
-        ("8302", Answer.EXCEPTION),
-        ("0304000100020", Answer.OTHER),
-        ("04020001", Answer.OTHER),
-        ("8402", Answer.OTHER),
-        ("0302", Answer.OTHER),
+        ("03020001", DecodedAnswer.GOOD),
+        ("8302", DecodedAnswer.EXCEPTION),
+        ("0304000100020", DecodedAnswer.OTHER),
+        ("04020001", DecodedAnswer.OTHER),
+        ("8402", DecodedAnswer.OTHER),
+        ("0302", DecodedAnswer.OTHER),
     ],
 )
-def test_replies_to_a_read_of_one_register_are_told_apart(pdu: str, answer: Answer) -> None:
+def test_replies_to_a_read_of_one_register_are_told_apart(pdu: str, answer: DecodedAnswer) -> None:
     assert codec.classify(bytes.fromhex(pdu[: len(pdu) & ~1]), 3, 0, (), 1) is answer
 
 
 @pytest.mark.parametrize(
-    ("pdu", "answer"), [("0600010003", Answer.GOOD), ("0600020003", Answer.OTHER), ("0600010004", Answer.OTHER)]
+    ("pdu", "answer"),
+    [("0600010003", DecodedAnswer.GOOD), ("0600020003", DecodedAnswer.OTHER), ("0600010004", DecodedAnswer.OTHER)],
 )
-def test_a_write_is_confirmed_by_its_echo_only(pdu: str, answer: Answer) -> None:
+def test_a_write_is_confirmed_by_its_echo_only(pdu: str, answer: DecodedAnswer) -> None:
     assert codec.classify(bytes.fromhex(pdu), 6, 1, (3,), 1) is answer
 
 
-@pytest.mark.parametrize(("pdu", "answer"), [("1000010002", Answer.GOOD), ("1000010001", Answer.OTHER)])
-def test_a_write_of_many_is_confirmed_by_address_and_count(pdu: str, answer: Answer) -> None:
+@pytest.mark.parametrize(("pdu", "answer"), [("1000010002", DecodedAnswer.GOOD), ("1000010001", DecodedAnswer.OTHER)])
+def test_a_write_of_many_is_confirmed_by_address_and_count(pdu: str, answer: DecodedAnswer) -> None:
     assert codec.classify(bytes.fromhex(pdu), 16, 1, (10, 258), 2) is answer
 
 

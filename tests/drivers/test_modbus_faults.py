@@ -7,15 +7,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from drivers.crc16 import with_crc
-from drivers.ir_thermometer import IrThermometer
 from drivers.jacket import HeatingJacket
-from drivers.load_cell import LoadCell
 from drivers.modbus import Request
 from drivers.profiles import Timing, load_profile
-from sim.modbus_wire import Impairment
+from drivers.sensor import Sensor
 from sim.nodes.cell_slave import CellSlave
 from sim.nodes.ir_slave import IrSlave
 from sim.nodes.jacket_slave import JacketSlave
+from sim.wires.modbus_wire import Impairment
 from tests.drivers.modbus_bench import Bench, refusal, reply
 from tests.drivers.modbus_rig import Quantities, Rig
 
@@ -284,8 +283,8 @@ def three_devices_in_trouble(sparing: bool, period_s: float) -> Rig:
     slaves = (JacketSlave(profiles[0], 1, source), IrSlave(profiles[1], 2, source), CellSlave(cell, 3, source))
     rig = Rig(38400, *slaves, period_s=period_s, sparing=sparing)
     jacket = HeatingJacket(profiles[0], 1, rig.link)
-    IrThermometer(profiles[1], 2, rig.link)
-    LoadCell(cell, 3, rig.link)
+    Sensor(profiles[1], 2, rig.link)
+    Sensor(cell, 3, rig.link)
     for number, kind in enumerate(IMPAIRMENTS):
         if kind is not None:
             rig.wire.impair = Impairment(kind, count=4, skip=3, unit_id=number % 4)  # type: ignore[arg-type]

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from drivers.profiles import ProfileError, load_profile, profile_names
-from drivers.profiles.model import Block, Signal
+from drivers.profiles.model import RegisterBlock, Signal
 
 INCOMPLETE = {"dat_400"}
 """Profiles whose registers we do not know."""
@@ -77,6 +77,7 @@ def test_a_block_spans_its_signals_in_order_of_address(tmp_path: Path) -> None:
         ("address = 7", "address = 500", "span 498 registers, more than 125"),
         ("scale = 0.1", "scale = 0", "signals: fz: scale: must be above 0"),
         ("scale = 0.1", 'scale = "much"', "signals: fz: scale: must be a number"),
+        ("functions = [3]", "functions = [4]", "reads: status is read with function 3, and the device knows 4"),
         ('["fz", "status"]', '["fz", "fq"]', "reads 1: signals: 'fq' is not among fz, status"),
         ("reply_max_ms = 10", "reply_max_ms = 1", "timing: reply_max_ms: must be at least turnaround_ms"),
         ("invalid = [3]", "invalid = [99]", "status: invalid: must hold whole numbers 0..31"),
@@ -108,7 +109,7 @@ def test_a_profile_is_shared_by_copies() -> None:
 @pytest.mark.parametrize(("order", "data"), [("high_first", "0001 86A0 0007"), ("low_first", "86A0 0001 0007")])
 def test_words_come_in_the_order_of_the_profile(order: str, data: str) -> None:
     signals = (Signal("fz", 10, "i32", 1.0, "N"), Signal("status", 12, "u16", 1.0, ""))
-    block = Block(3, 10, 3, 0.0, signals, order)  # type: ignore[arg-type]
+    block = RegisterBlock(3, 10, 3, 0.0, signals, order)  # type: ignore[arg-type]
     raw = bytes.fromhex(data.replace(" ", ""))
     assert block.unpack(raw) == (100_000, 7)
     assert block.pack(100_000, 7) == raw

@@ -14,8 +14,8 @@ import pytest
 from canopen.profiles.p402 import BaseNode402
 
 from drivers.canopen.eds import EDS_PATH
-from sim.can_wire import CanWire
 from sim.nodes.cia402_slave import Cia402Slave
+from sim.wires.can_wire import CanWire
 from tests.sim.drive_bench import NODE, PC, WHEEL, YAW
 
 STEP_S = 0.001

@@ -19,8 +19,8 @@ from drivers.canopen.eds import EDS_PATH
 from drivers.canopen.master import CanMaster
 from drivers.canopen.objects import DataType
 from drivers.cia402 import Goal, State
-from drivers.edges.can_bus import PythonCanPort, open_can
 from drivers.servo import ServoDrive
+from drivers.transports.can_bus import PythonCanPort, open_can
 from tests.drivers.can_bench import NODE, wheel
 
 TEXT_OBJECT = 0x2100

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from tester.cli.main import invoke
-from tests.tester.engine.bench import SHORT
+from tests.tester.kinds.wheel_on_belt.bench import SHORT
 
 pytestmark = pytest.mark.campaign
 FILES = ("runs.csv", "conditions.csv", "summary.csv", "totals.csv")

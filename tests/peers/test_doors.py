@@ -12,11 +12,11 @@ from can.interfaces.socketcand import SocketCanDaemonBus
 from pymodbus.client import ModbusTcpClient
 from pyModbusTCP.client import ModbusClient
 
-from sim.doors.server import RigServer
-from sim.rig import SimRig
-from tester import clock
-from tester.rig import load_rig
-from tester.simulated import simulated_ports
+from sim.machines.wheel_on_belt.rig import WheelRig
+from sim.servers.server import RigServer
+from tester.base import clock
+from tester.kinds import load_rig
+from tester.run.simulated import simulated_ports
 
 CELL_REGISTERS = 9
 HUB, SURFACE = 1, 0x0E
@@ -26,7 +26,7 @@ HUB, SURFACE = 1, 0x0E
 def server() -> Iterator[RigServer]:
     """Let a rig live in a thread until the test is over."""
     _, rig, _ = simulated_ports(load_rig("sim", ("sim.noise=0",)), 1, None)
-    assert isinstance(rig, SimRig)
+    assert isinstance(rig, WheelRig)
     server = RigServer(rig, "127.0.0.1", 0)
     stop, origin = Event(), clock.monotonic()
     thread = Thread(target=server.serve, args=(lambda: clock.monotonic() - origin, stop.is_set))

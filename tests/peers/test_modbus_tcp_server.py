@@ -9,12 +9,11 @@ from select import select
 import pytest
 from pyModbusTCP.server import ModbusServer
 
-from drivers.edges.tcp_line import TcpLine, open_tcp_line
-from drivers.ir_thermometer import IrThermometer
 from drivers.jacket import HeatingJacket
-from drivers.load_cell import LoadCell
 from drivers.modbus import ModbusLink
 from drivers.profiles import load_profile
+from drivers.sensor import Sensor
+from drivers.transports.tcp_line import TcpLine, open_tcp_line
 
 PATIENCE_S = 10.0
 """Bound of every wait for the server's threads."""
@@ -63,7 +62,7 @@ def exchange(server: ModbusServer) -> Iterator[Exchange]:
 def test_the_load_cell_reads_its_block(server: ModbusServer, exchange: Exchange) -> None:
     server.data_bank.set_holding_registers(100, [0x4658])
     server.data_bank.set_holding_registers(0, [0, 2000, 0xFFFF, 0xFE70, 0, 4000, 0, 500, 0])
-    cell = LoadCell(load_profile("four_axis_transmitter"), 1, exchange.link)
+    cell = Sensor(load_profile("four_axis_transmitter"), 1, exchange.link)
     exchange.until(lambda: cell.valid)
     assert cell.raw == pytest.approx((100.0, -20.0, 200.0, 0.5))
 
@@ -71,9 +70,9 @@ def test_the_load_cell_reads_its_block(server: ModbusServer, exchange: Exchange)
 def test_the_thermometer_sets_its_emissivity_and_reads(server: ModbusServer, exchange: Exchange) -> None:
     server.data_bank.set_holding_registers(0, [17])
     server.data_bank.set_holding_registers(0x0E, [412, 411, 250, 0])
-    thermometer = IrThermometer(load_profile("calex_pyrominibus"), 1, exchange.link, emissivity=0.93)
+    thermometer = Sensor(load_profile("calex_pyrominibus"), 1, exchange.link, parameters={"emissivity": 0.93})
     exchange.until(lambda: thermometer.valid)
-    assert thermometer.surface_c == pytest.approx(41.2)
+    assert thermometer.values[0] == pytest.approx(41.2)
     assert server.data_bank.get_holding_registers(0x17) == [9300]
 
 
@@ -91,7 +90,7 @@ def test_the_jacket_is_set_up_commanded_and_read(server: ModbusServer, exchange:
 
 def test_the_servers_exception_latches_as_a_wrong_configuration(server: ModbusServer, exchange: Exchange) -> None:
     server.data_bank.set_holding_registers(100, [0x4658])
-    cell = LoadCell(load_profile("four_axis_transmitter"), 1, exchange.link)
+    cell = Sensor(load_profile("four_axis_transmitter"), 1, exchange.link)
     request = exchange.link.read(cell.station, 3, 0xFFFF, 2)
     exchange.link.enable(request)
     exchange.until(lambda: cell.refused is not None)

@@ -10,8 +10,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import IO
 
-from tester import clock
-from tests.acceptance.bench import COMMAND, ROOT
+from tester.base import clock
+from tests.campaigns.acceptance.bench import COMMAND, ROOT
 from tests.realtime.state import Row, StateReader
 
 SLIDING_RECIPE = """\

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from tests import kill, latency
-from tests.kill import aftermath
-from tests.latency import Counting
+from tests.campaigns import kill, latency
+from tests.campaigns.kill import aftermath
+from tests.campaigns.latency import Counting
 from tests.realtime.frames import GUARD_S, cell_samples, latencies, scans_of, share
 from tests.realtime.state import Row, StateReader, for_good, since
 

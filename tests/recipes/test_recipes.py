@@ -8,13 +8,20 @@ from pathlib import Path
 import pytest
 
 import recipes
+from tester.kinds import load_rig
+from tester.kinds.wheel_on_belt.recipe.part import PART
+from tester.recipe.check import check
 from tester.recipe.loader import load_recipe
 from tester.recipe.schema import schema_text
+from tester.run.kinds import recipe_part
+
+RIGS = {"grosch": "grosch", "pin-on-disc": "pin-on-disc"}
+"""Rigs of the recipes that are not for the first one."""
 
 
 def test_these_recipes_are_packaged() -> None:
     table2 = ["table2", "table2-load", "table2-sideslip", "table2-slip"]
-    assert recipes.names() == ["pre-grind", "quickstart", *table2, "wear"]
+    assert recipes.names() == ["grosch", "pin-on-disc", "pre-grind", "quickstart", *table2, "wear"]
 
 
 @pytest.mark.parametrize("name", ["quickstart", "quickstart.yaml", "recipes/quickstart.yaml"])
@@ -37,22 +44,30 @@ def test_what_is_neither_file_nor_name_is_refused_naming_what_there_is(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    with pytest.raises(recipes.UnknownRecipe, match=r"packaged are pre-grind, quickstart, table2"):
+    with pytest.raises(recipes.UnknownRecipe, match=r"packaged are grosch, pin-on-disc, pre-grind, quickstart"):
         recipes.find(name)
 
 
 @pytest.mark.parametrize("name", recipes.names())
-def test_every_packaged_recipe_is_valid(name: str) -> None:
-    assert load_recipe(recipes.find(name)).recipe.specimens
+def test_every_packaged_recipe_is_valid_on_its_rig(name: str) -> None:
+    rig = load_rig(RIGS.get(name, "sim"))
+    assert check(recipes.find(name), rig, recipe_part(rig)) == []
+
+
+def test_the_master_curve_has_99_rows_and_friction_heats_none() -> None:
+    rig = load_rig("grosch")
+    part = recipe_part(rig)
+    plan = part.expand(load_recipe(recipes.find("grosch"), part).recipe, rig)
+    assert sum(1 for _ in plan.conditions()) == 99 and part.estimate(plan, rig).not_held == ()
 
 
 def test_the_packaged_schema_is_what_tester_schema_prints() -> None:
     stored = (recipes.FOLDER / "recipe.schema.json").read_text(encoding="utf-8")
-    assert stored == schema_text(), "write it again: tester schema > recipes/recipe.schema.json"
+    assert stored == schema_text(PART), "write it again: tester schema > recipes/recipe.schema.json"
 
 
 def test_the_schema_knows_every_key_of_a_recipe() -> None:
-    schema = json.loads(schema_text())
+    schema = json.loads(schema_text(PART))
     assert {"recipe", "specimens", "pre_grind", "rest", "measure", "grids", "order", "wheel"} <= set(
         schema["properties"]
     )

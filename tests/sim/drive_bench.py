@@ -7,8 +7,8 @@ from dataclasses import replace
 from typing import Any
 
 from drivers.axis import AxisConfig
-from sim.can_wire import CanWire
 from sim.nodes.cia402_slave import Axis, Cia402Slave
+from sim.wires.can_wire import CanWire
 
 NODE = 5
 PC = 127

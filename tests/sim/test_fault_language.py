@@ -6,7 +6,8 @@ from math import inf
 
 import pytest
 
-from sim.faults import CATALOGUE, FaultTextError, parse, parse_script
+from sim.faults import FaultTextError
+from sim.machines.wheel_on_belt.faults import CATALOGUE, parse, parse_script
 
 
 def test_a_fault_at_a_time_for_a_while():

@@ -11,9 +11,9 @@ from drivers.axis import AxisConfig
 from drivers.canopen.master import CanMaster
 from drivers.cia402 import Goal, State
 from drivers.servo import ServoDrive
-from sim.can_wire import CanWire
 from sim.nodes.cia402_slave import Cia402Slave
 from sim.nodes.safety_io import CONTACTOR, CONTACTOR_REQUEST, GUARD_CLOSED, SAFETY_CHAIN
+from sim.wires.can_wire import CanWire
 from tests.sim.drive_bench import PRESS, WHEEL, YAW
 
 AXES = (

@@ -5,11 +5,12 @@ from __future__ import annotations
 import pytest
 
 from drivers.canopen import objects as o
-from sim.faults import CATALOGUE, Injection
-from sim.faults.language import When
+from sim.faults import Injection
+from sim.faults.language import FaultTime
 from sim.faults.sdo import Kind, SpoiledSdoServer
-from tests.faults.recipes import RECIPES
-from tests.faults.stage import Stage
+from sim.machines.wheel_on_belt.faults import CATALOGUE
+from tests.campaigns.faults.recipes import RECIPES
+from tests.campaigns.faults.stage import Stage
 from tests.sim.drive_bench import DriveBench
 
 READ_TYPE = bytes.fromhex("4000100000000000")
@@ -54,7 +55,7 @@ def test_what_is_written_is_still_taken_by_a_server_that_forgets_to_toggle() -> 
 )
 def test_a_drive_that_cannot_be_talked_to_is_not_used_and_the_reason_says_why(fault: str, reason: str) -> None:
     stage = Stage(RECIPES["short"])
-    stage.inject(Injection(When(at_s=0.0), CATALOGUE[fault]))
+    stage.inject(Injection(FaultTime(at_s=0.0), CATALOGUE[fault]))
     while not stage.run.finished:
         stage.tick()
     assert stage.next_s < 10.0
@@ -64,8 +65,8 @@ def test_a_drive_that_cannot_be_talked_to_is_not_used_and_the_reason_says_why(fa
 
 def test_a_drive_talks_again_when_the_fault_is_over() -> None:
     stage = Stage(RECIPES["short"])
-    stage.inject(Injection(When(at_s=0.0), CATALOGUE["belt drive SDO abort"], lasts_s=0.5))
-    stage.inject(Injection(When(at_s=0.0), CATALOGUE["wheel drive mode refused"], lasts_s=0.5))
+    stage.inject(Injection(FaultTime(at_s=0.0), CATALOGUE["belt drive SDO abort"], lasts_s=0.5))
+    stage.inject(Injection(FaultTime(at_s=0.0), CATALOGUE["wheel drive mode refused"], lasts_s=0.5))
     while not (stage.running or stage.run.finished):
         stage.tick()
     assert stage.running

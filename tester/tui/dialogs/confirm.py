@@ -12,8 +12,8 @@ from textual.widgets import Button, Input
 from tester.service.commands import Action, Stop
 from tester.service.state import Check, StateView
 from tester.tui.dialogs.dialog import Dialog, entry, field, line
+from tester.tui.formatting import clean
 from tester.tui.widgets.panel import FAINT, WARNING, Parts, rows
-from tester.tui.words import clean
 
 WORD = "abort"
 SIGNS = {True: "✔", False: "✘", None: "?"}

@@ -7,12 +7,12 @@ from collections.abc import Callable, Iterable
 from textual.widget import Widget
 from textual.widgets import Input
 
-from tester.lock import user
+from tester.base.lock import user
 from tester.tui.calling import call
 from tester.tui.dialogs.dialog import Dialog, entry, field, line
+from tester.tui.formatting import clean, number
 from tester.tui.host import HostApp
 from tester.tui.stored import RepeatRow, Row, Stored, row_words
-from tester.tui.words import clean, number
 
 
 class ExcludeDialog(Dialog):

@@ -10,17 +10,15 @@ from textual.widget import Widget
 from textual.widgets import Input, OptionList
 from textual.widgets.option_list import Option
 
+from tester.export.formats import FORMATS, format_names
 from tester.tui.calling import call
 from tester.tui.dialogs.dialog import Dialog, entry, field, line
 
-FORMATS = (
-    ("appendix", "csv", "the paper's table"),
-    ("conditions", "csv", "conditions with uncertainty"),
-    ("repeats", "csv", "every repeat"),
-    ("samples", "csv", "every sample"),
-    ("parquet", "parquet", "every sample, for programs"),
-)
-"""Format, ending of the file, what it is."""
+
+def _choices() -> list[tuple[str, str, str]]:
+    """Return of every format its name, its file's name and what it is; a package's is not loaded to be listed."""
+    others = [(name, name, "of an installed package") for name in format_names() if name not in FORMATS]
+    return [(one.name, one.file, one.title) for one in FORMATS.values()] + others
 
 
 class ExportDialog(Dialog):
@@ -32,19 +30,19 @@ class ExportDialog(Dialog):
         """``name``: of the run below ``runs``."""
         super().__init__()
         self.name_of_run, self.runs = name, runs
+        self._formats = _choices()
 
     def content(self) -> Iterable[Widget]:
         """Return list and field."""
         yield line([(self.name_of_run, "bold")])
-        yield OptionList(*(Option(f"{kind:<11} {words}", id=kind) for kind, _, words in FORMATS), id="formats",
+        yield OptionList(*(Option(f"{kind:<11} {words}", id=kind) for kind, _, words in self._formats), id="formats",
                          markup=False)  # fmt: skip
         yield field("File", entry("file", limit=1000))
         yield line("Enter writes it; what is there by that name is replaced.")
 
     def on_option_list_option_highlighted(self, event: OptionList.OptionHighlighted) -> None:
         """Name the file after the format."""
-        kind, ending, _ = FORMATS[event.option_index]
-        self.query_one("#file", Input).value = f"{self.name_of_run}-{kind}.{ending}"
+        self.query_one("#file", Input).value = f"{self.name_of_run}-{self._formats[event.option_index][1]}"
 
     def on_option_list_option_selected(self, event: OptionList.OptionSelected) -> None:
         """Enter on a format."""
@@ -62,7 +60,7 @@ class ExportDialog(Dialog):
             self.host.say("name a file", problem=True)
             return
         host = self.host
-        host.run_worker(export(host.say, self.runs / self.name_of_run, FORMATS[at][0], path), exit_on_error=False)
+        host.run_worker(export(host.say, self.runs / self.name_of_run, self._formats[at][0], path), exit_on_error=False)
         self.dismiss(None)
 
 

@@ -7,9 +7,9 @@ from collections.abc import Iterable
 from textual.widget import Widget
 
 from tester.tui.dialogs.dialog import Dialog, line
+from tester.tui.formatting import reflow
 from tester.tui.widgets.events import event_row
 from tester.tui.widgets.panel import Parts, rows
-from tester.tui.words import reflow
 
 WIDTH = 400
 """Longest line of the log."""

@@ -8,13 +8,12 @@ from pydantic import JsonValue
 from textual.widget import Widget
 from textual.widgets import Static
 
-from tester.axes import condition_words
-from tester.recipe.plan import Setpoint
+from tester.axes import Axes, AxisValue, axes_from, condition_words
 from tester.service.commands import ShowPlan
 from tester.tui.dialogs.dialog import Dialog, line
 from tester.tui.dialogs.start import totals
-from tester.tui.shelf import Recipe
-from tester.tui.words import clean, minutes
+from tester.tui.formatting import clean, minutes
+from tester.tui.recipe_library import ListedRecipe
 
 MOST_STEPS = 2000
 """More steps than a person scrolls through are not listed."""
@@ -25,7 +24,7 @@ class PlanDialog(Dialog):
 
     TITLE = "Plan"
 
-    def __init__(self, recipe: Recipe) -> None:
+    def __init__(self, recipe: ListedRecipe) -> None:
         """``recipe``: what to plan."""
         super().__init__()
         self.recipe = recipe
@@ -42,18 +41,19 @@ class PlanDialog(Dialog):
     async def _plan(self) -> None:
         found = await self.host.ask(ShowPlan(self.recipe.reference, self.recipe.sent))
         if self.is_attached:
-            text = plan_text(found) if isinstance(found, dict) else "no plan"
+            text = plan_text(found, clean(self.host.scene.machine.specimen)) if isinstance(found, dict) else "no plan"
             self.query_one("#plan", Static).update(text)
 
 
-def plan_text(plan: dict[str, JsonValue]) -> str:
-    """Return a plan (`tester plan --json`) in lines."""
+def plan_text(plan: dict[str, JsonValue], part: str) -> str:
+    """Return a plan (`tester plan --json`) in lines; ``part``: what people call what wears and is changed."""
     steps = plan.get("steps")
     listed = steps if isinstance(steps, list) else []
-    lines = [totals(plan), ""]
+    axes = _axes(plan)
+    lines = [totals(plan, part), ""]
     for number, step in enumerate(listed[:MOST_STEPS], 1):
         if isinstance(step, dict):
-            lines.append(f"{number:5}  {minutes(_number(step, 'seconds')):>9}  {_words(step)}")
+            lines.append(f"{number:5}  {minutes(_number(step, 'seconds')):>9}  {_words(step, axes, part)}")
     if len(listed) > MOST_STEPS:
         lines.append(f"and {len(listed) - MOST_STEPS} more: `tester plan` lists them all")
     return "\n".join(lines)
@@ -64,15 +64,30 @@ def _number(step: dict[str, JsonValue], key: str) -> float:
     return float(value) if isinstance(value, int | float) else 0.0
 
 
-def _words(step: dict[str, JsonValue]) -> str:
+def _axes(plan: dict[str, JsonValue]) -> Axes | None:
+    """Return the axes of a plan's conditions; None where it does not say them."""
+    listed = plan.get("axes")
+    rows = [row for row in listed if isinstance(row, dict)] if isinstance(listed, list) else []
+    return axes_from(rows) if rows else None
+
+
+def _held(step: dict[str, JsonValue], axes: Axes) -> str:
+    """Return what a condition holds in words."""
+    held: dict[str, AxisValue] = {}
+    for one in axes:
+        value = step.get(one.field)
+        held[one.name] = clean(value) if isinstance(value, str) else _number(step, one.field)
+    return condition_words(axes.setpoint(clean(str(step.get("compound", ""))), **held))
+
+
+def _words(step: dict[str, JsonValue], axes: Axes | None, part: str) -> str:
     """Return a step in words."""
     kind = clean(str(step.get("kind", "")))
     match kind:
         case "condition":
-            held = Setpoint(clean(str(step.get("compound", ""))), *(_number(step, one) for one in Setpoint._fields[1:]))
-            return f"condition {_number(step, 'condition'):g}  {condition_words(held)}"
+            return f"condition {_number(step, 'condition'):g}  {_held(step, axes) if axes is not None else ''}".rstrip()
         case "install":
-            return f"install wheel {_number(step, 'wheel'):g}: {clean(str(step.get('compound', '')))}"
+            return f"install {part} {_number(step, part):g}: {clean(str(step.get('compound', '')))}"
         case "pre_grind":
             return f"pre-grind {_number(step, 'duration_s'):g} s at {_number(step, 'load_n'):g} N"
         case "rest":

@@ -10,11 +10,11 @@ from textual.containers import Horizontal
 from textual.widget import Widget
 from textual.widgets import Button
 
-from tester import keys
+from tester.base import keys
 from tester.service.commands import Answer, Hold
 from tester.service.state import PromptView
 from tester.tui.dialogs.dialog import Dialog, line
-from tester.tui.words import clean
+from tester.tui.formatting import clean
 
 SEEN_S = 0.5
 """What comes sooner after the question is shown was typed before it, s [A]."""

@@ -12,14 +12,14 @@ from textual.widget import Widget
 from textual.widgets import OptionList, Static
 from textual.widgets.option_list import Option
 
+from tester.base.trouble import in_words
 from tester.store.schema import StoreError
-from tester.trouble import in_words
 from tester.tui.dialogs.dialog import Dialog, line
 from tester.tui.dialogs.exclude import ExcludeDialog
-from tester.tui.plot import Canvas, Range
+from tester.tui.formatting import clean, fit, number
+from tester.tui.plot import Canvas, PlotRange
 from tester.tui.stored import FIGURES, RepeatRow, Row, Stored, condition, row_words
 from tester.tui.widgets.panel import FAINT, Parts, rows
-from tester.tui.words import clean, fit, number
 
 HEIGHT = 5
 WIDTH = 60
@@ -113,7 +113,7 @@ def trace_parts(found: Iterable[RepeatRow], width: int = WIDTH, *, plain: bool =
     known = [y for one in listed for ends in one.trace if ends is not None for y in ends]
     if not listed:
         return [("no repeat is committed", FAINT)]
-    scale = Range(least=0.1)
+    scale = PlotRange(least=0.1)
     if known:
         scale.cover(min(known), max(known))
     lines: list[Parts] = []

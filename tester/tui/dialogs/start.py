@@ -13,12 +13,11 @@ from tester.service.commands import RunRecipe, ShowPlan
 from tester.service.state import Check
 from tester.tui.dialogs.confirm import preflight_rows
 from tester.tui.dialogs.dialog import Dialog, entry, field, line
-from tester.tui.shelf import Recipe
-from tester.tui.words import clean, count, hours
+from tester.tui.formatting import clean, count, hours
+from tester.tui.recipe_library import ListedRecipe
 
 LATER = ("guard and safety chain", "zero of the load cell", "watchdogs of the drives")
 """What the service shows before a drive is armed, and refuses to start without (docs/safety.md)."""
-ASK = "Answer questions (install wheel, clean debris) by itself:"
 MAX = "max"
 
 
@@ -48,7 +47,7 @@ class StartDialog(Dialog):
 
     TITLE = "Start a run"
 
-    def __init__(self, recipe: Recipe) -> None:
+    def __init__(self, recipe: ListedRecipe) -> None:
         """``recipe``: one without problems."""
         super().__init__()
         self.recipe = recipe
@@ -62,15 +61,23 @@ class StartDialog(Dialog):
         yield line([(clean(self.recipe.name), "bold"), f" on rig {where}"])
         yield line("planning …", id="plan")
         yield line(preflight_rows(self._checks()), id="preflight")
-        yield field("Specimen, wheel", entry("specimen", hint="batch or serial number"))
+        yield field(f"Specimen, {self._part}", entry("specimen", hint="batch or serial number"))
         yield field("Operator", entry("operator"))
         yield field("Notes", entry("notes", limit=1500))
         if simulated:
             yield field("Rig s per second", entry("speed", speed_words(self.host.options.speed), hint="1, 60, max"))
-        yield PlainCheckbox(f"{ASK} no", id="yes", value=False, compact=True)
+        yield PlainCheckbox(self._ask(on=False), id="yes", value=False, compact=True)
         with Horizontal(classes="buttons"):
             yield Button("Start (Enter)", id="start", compact=True)
             yield Button("Back", id="back", compact=True)
+
+    @property
+    def _part(self) -> str:
+        """What people call the part that is changed."""
+        return clean(self.host.scene.machine.specimen)
+
+    def _ask(self, *, on: bool) -> str:
+        return f"Answer questions (install {self._part}, clean debris) by itself: {'yes' if on else 'no'}"
 
     def _checks(self) -> tuple[Check, ...]:
         known = self.host.scene.state.preflight if self.host.scene.state is not None else ()
@@ -86,7 +93,7 @@ class StartDialog(Dialog):
     async def _plan(self) -> None:
         found = await self.host.ask(ShowPlan(self.recipe.reference, self.recipe.sent))
         if self.is_attached:
-            words = totals(found) if isinstance(found, dict) else "no plan: it could not be worked out"
+            words = totals(found, self._part) if isinstance(found, dict) else "no plan: it could not be worked out"
             self.query_one("#plan", Static).update(words)
 
     def on_button_pressed(self, event: Button.Pressed) -> None:
@@ -99,7 +106,7 @@ class StartDialog(Dialog):
 
     def on_checkbox_changed(self, event: Checkbox.Changed) -> None:
         """Say in words what a colour says: not every terminal has one."""
-        event.checkbox.label = f"{ASK} {'yes' if event.value else 'no'}"
+        event.checkbox.label = self._ask(on=event.value)
 
     def on_input_submitted(self, event: Input.Submitted) -> None:
         """Enter in a field leads on to the button."""
@@ -129,15 +136,15 @@ class StartDialog(Dialog):
         self.dismiss(None)
 
 
-def totals(plan: dict[str, JsonValue]) -> str:
-    """Return a plan's totals in a line."""
+def totals(plan: dict[str, JsonValue], part: str) -> str:
+    """Return a plan's totals in a line; ``part``: what people call what wears and is changed."""
 
     def figure(key: str) -> float:
         value = plan.get(key)
         return float(value) if isinstance(value, int | float) else 0.0
 
-    conditions, wheels = count(figure("conditions"), "condition"), count(figure("wheels"), "wheel")
+    conditions, parts = count(figure("conditions"), "condition"), count(figure(f"{part}s"), part)
     return (
-        f"{conditions}, {wheels}, {hours(figure('rig_seconds'))} h of rig time, "
+        f"{conditions}, {parts}, {hours(figure('rig_seconds'))} h of rig time, "
         f"{figure('sliding_m'):.0f} m sliding, {figure('loss_mm'):.2f} mm wear"
     )

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from tester.service.protocol import Event
-from tester.tui.scene import Scene
+from tester.tui.formatting import clean, clock_text, fit
+from tester.tui.scene import ScreenScene
 from tester.tui.widgets.head import ALARM_STYLES, alarm_words
 from tester.tui.widgets.panel import ABNORMAL, FAINT, NOTICE, Panel, Parts, rows
-from tester.tui.words import clean, clock_text, fit
 
 SIGNS = {"debug": " ", "info": " ", "warning": "!", "alarm": "■", "trip": "■"}
 STYLES = {"debug": FAINT, "info": "", "warning": NOTICE, "alarm": NOTICE, "trip": ABNORMAL}
@@ -15,7 +15,7 @@ STYLES = {"debug": FAINT, "info": "", "warning": NOTICE, "alarm": NOTICE, "trip"
 class EventsPanel(Panel):
     """Alarms first, then as many events as there is room for."""
 
-    def picture(self, scene: Scene, width: int, height: int) -> Parts:
+    def picture(self, scene: ScreenScene, width: int, height: int) -> Parts:
         """Return a row an alarm and a row an event."""
         lines: list[Parts] = []
         for alarm in scene.alarms()[: height // 2]:

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from tester.service.state import Alarm, StateView
+from tester.tui.formatting import clean, clock_text, fit, hours, number
 from tester.tui.gone import gone_line
-from tester.tui.scene import STALE_S, UNDER_WAY, Scene
+from tester.tui.scene import STALE_S, UNDER_WAY, ScreenScene
 from tester.tui.widgets.panel import ABNORMAL, FAINT, NOTICE, WARNING, Panel, Part, Parts
-from tester.tui.words import clean, clock_text, fit, hours, number
 
 Tabs = tuple[tuple[str, str, str], ...]
 TABS: Tabs = (("f2", "Recipes", "recipes"), ("f3", "Run", "run"), ("f4", "Manual", "manual"),
@@ -22,7 +22,7 @@ STOP_KEYS = " F12 STOP "
 class StateLine(Panel):
     """Line 1: mode, accepted risk, alarms, condition, repeat, time left and clock at the end, compound."""
 
-    def picture(self, scene: Scene, width: int, height: int) -> Parts:
+    def picture(self, scene: ScreenScene, width: int, height: int) -> Parts:
         """Return the line."""
         state = scene.state
         if state is None:
@@ -33,7 +33,7 @@ class StateLine(Panel):
         return _cut(parts, width)
 
 
-def _mode(scene: Scene, state: StateView) -> Part:
+def _mode(scene: ScreenScene, state: StateView) -> Part:
     text = f" {'REPLAY' if scene.replayed else clean(state.mode, 20)} "
     if not scene.linked:
         return text.replace(" ", "?", 1), FAINT
@@ -42,7 +42,7 @@ def _mode(scene: Scene, state: StateView) -> Part:
     return (text, "bold") if state.mode in CALM_MODES or scene.replayed else (text, WARNING)
 
 
-def _link(scene: Scene) -> Parts:
+def _link(scene: ScreenScene) -> Parts:
     if scene.linked:
         return []
     return [(f" NO LINK {max(scene.age_s, STALE_S if not scene.lost else 0.0):.0f} s ", ABNORMAL)]
@@ -61,7 +61,7 @@ def _count(alarms: tuple[Alarm, ...]) -> Part:
     return text, ALARM_STYLES[min(one.priority for one in alarms)] if waiting else NOTICE
 
 
-def _where(scene: Scene, state: StateView, width: int) -> list[str]:
+def _where(scene: ScreenScene, state: StateView, width: int) -> list[str]:
     """Return what fits beside mode and alarms, the more important first."""
     progress, run = state.progress, state.run
     pieces: list[str] = []
@@ -101,7 +101,7 @@ class TabLine(Panel):
     current = "recipes"
     tabs: Tabs = TABS
 
-    def picture(self, scene: Scene, width: int, height: int) -> Parts:
+    def picture(self, scene: ScreenScene, width: int, height: int) -> Parts:
         """Return the line."""
         gone = gone_line(scene)
         if gone:
@@ -139,7 +139,7 @@ class KeyLine(Panel):
 
     keys: tuple[tuple[str, str], ...] = ()
 
-    def picture(self, scene: Scene, width: int, height: int) -> Parts:
+    def picture(self, scene: ScreenScene, width: int, height: int) -> Parts:
         """Return the line: STOP first where there is no room for more."""
         stop: Part = (STOP_KEYS, "bold reverse") if not scene.view_only else " view only: `tester stop` "
         room = width - len(stop if isinstance(stop, str) else stop[0])

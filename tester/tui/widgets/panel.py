@@ -7,7 +7,7 @@ from typing import TypeAlias
 from textual.content import Content
 from textual.widgets import Static
 
-from tester.tui.scene import Scene
+from tester.tui.scene import ScreenScene
 
 Part: TypeAlias = "str | tuple[str, str]"
 """A text, or a text with its style."""
@@ -30,11 +30,11 @@ class Panel(Static):
     def __init__(self, *, id: str | None = None, classes: str | None = None) -> None:  # noqa: A002 - as in Textual
         """Empty until the first scene."""
         super().__init__("", markup=False, id=id, classes=classes)
-        self.scene: Scene | None = None
+        self.scene: ScreenScene | None = None
         self._drawn: Parts | None = None
         self._entitled: str = ""
 
-    def show(self, scene: Scene) -> None:
+    def show(self, scene: ScreenScene) -> None:
         """Draw the scene as it is now."""
         self.scene = scene
         self.redraw()
@@ -59,7 +59,7 @@ class Panel(Static):
         """Draw for the new size."""
         self.redraw()
 
-    def picture(self, scene: Scene, width: int, height: int) -> Parts:
+    def picture(self, scene: ScreenScene, width: int, height: int) -> Parts:
         """Return what to show in so many columns and rows."""
         return []
 

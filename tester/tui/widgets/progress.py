@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from tester.service.state import Gate, ProgressView, SoakView
-from tester.tui.scene import UNDER_WAY, Scene
+from tester.tui.formatting import clean, fit, hours, minutes, number
+from tester.tui.scene import UNDER_WAY, ScreenScene
 from tester.tui.widgets.panel import FAINT, NOTICE, Panel, Parts, rows
-from tester.tui.words import clean, fit, hours, minutes, number
 
 DONE, LEFT = "━", "─"
 NAME = 10
@@ -14,7 +14,7 @@ NAME = 10
 class ProgressPanel(Panel):
     """Three lines."""
 
-    def picture(self, scene: Scene, width: int, height: int) -> Parts:
+    def picture(self, scene: ScreenScene, width: int, height: int) -> Parts:
         """Return campaign, repeat, step."""
         state = scene.state
         if state is None:
@@ -28,7 +28,7 @@ class ProgressPanel(Panel):
         return rows([whole, _repeat(progress, width), _step(progress, state.soak, state.gates, width)])
 
 
-def idle_words(scene: Scene, width: int) -> Parts:
+def idle_words(scene: ScreenScene, width: int) -> Parts:
     """Return what there is to say while no run is under way."""
     state = scene.state
     if state is None:

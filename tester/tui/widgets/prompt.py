@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-from tester.tui.scene import Scene
+from tester.tui.formatting import clean, clock_text, fit
+from tester.tui.scene import ScreenScene
 from tester.tui.widgets.panel import WARNING, Panel, Parts
-from tester.tui.words import clean, clock_text, fit
 
 
 class PromptPanel(Panel):
     """Shown while a question waits."""
 
-    def show(self, scene: Scene) -> None:
+    def show(self, scene: ScreenScene) -> None:
         """Appear with the question, and vanish with it."""
         self.display = scene.state is not None and scene.state.prompt is not None
         super().show(scene)
 
-    def picture(self, scene: Scene, width: int, height: int) -> Parts:
+    def picture(self, scene: ScreenScene, width: int, height: int) -> Parts:
         """Return question and keys."""
         if scene.state is None or scene.state.prompt is None:
             return []

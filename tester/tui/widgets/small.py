@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+from tester.tui.formatting import clean, fit
 from tester.tui.gone import gone_line
-from tester.tui.scene import Scene
+from tester.tui.scene import ScreenScene
 from tester.tui.widgets.panel import Panel, Parts, rows
-from tester.tui.words import clean, fit
 
 SMALLEST = (60, 15)
 """Columns and lines from which on the screens are shown."""
@@ -14,7 +14,7 @@ SMALLEST = (60, 15)
 class SmallPanel(Panel):
     """That the run goes on, the question that waits, why the rig is in its mode."""
 
-    def picture(self, scene: Scene, width: int, height: int) -> Parts:
+    def picture(self, scene: ScreenScene, width: int, height: int) -> Parts:
         """Return some lines."""
         needed = f"needed: {SMALLEST[0]} x {SMALLEST[1]}"
         texts = ["terminal too small,", gone_line(scene) or "the run continues", needed]

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from tester.service.state import PlanStep
-from tester.tui.scene import Scene
+from tester.tui.formatting import clean, fit, minutes
+from tester.tui.scene import ScreenScene
 from tester.tui.widgets.panel import FAINT, Panel, Parts, rows
-from tester.tui.words import clean, fit, minutes
 
 SIGNS = {"done": "✔", "now": "▶", "later": "·"}
 TIME = 9
@@ -14,7 +14,7 @@ TIME = 9
 class StepsPanel(Panel):
     """As many steps around the present one as there are rows."""
 
-    def picture(self, scene: Scene, width: int, height: int) -> Parts:
+    def picture(self, scene: ScreenScene, width: int, height: int) -> Parts:
         """Return a row a step."""
         plan = scene.plan
         if plan is None:

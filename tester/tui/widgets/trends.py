@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from tester.screen import PlotView
 from tester.service.protocol import SNAPSHOT_S, TREND_ROWS
-from tester.tui.plot import LIMIT, WISH, Bin, Canvas, Range
-from tester.tui.scene import Scene
+from tester.tui.formatting import clean, number
+from tester.tui.plot import LIMIT, WISH, Bin, Canvas, PlotRange
+from tester.tui.scene import ScreenScene
 from tester.tui.widgets.panel import FAINT, Panel, Part, Parts
-from tester.tui.words import clean, number
 
 WINDOW_S = SNAPSHOT_S * TREND_ROWS
 LABELS = 7
@@ -46,22 +47,28 @@ class Bins:
 
 
 class TrendPanel(Panel):
-    """One value's trend."""
+    """The trend of one of the machine's plots."""
 
-    def __init__(self, key: str, column: str, least: float, *, plain: bool = False, id: str | None = None) -> None:  # noqa: A002
-        """``least``: narrowest y range, in the value's unit."""
+    def __init__(self, place: int, *, plain: bool = False, id: str | None = None) -> None:  # noqa: A002
+        """``place``: among the plots of the machine, from 0."""
         super().__init__(id=id, classes="trend box")
-        self.key, self.column, self.plain = key, column, plain
-        self._range = Range(least=least)
+        self.place, self.plain = place, plain
+        self._plot: PlotView | None = None
+        self._range = PlotRange()
         self._bins: Bins | None = None
 
-    def picture(self, scene: Scene, width: int, height: int) -> Parts:
+    def picture(self, scene: ScreenScene, width: int, height: int) -> Parts:
         """Return the plot, and have the title say the value."""
-        value = scene.value(self.key)
-        if value is None or self.column not in scene.columns:
+        plots, columns = scene.machine.plots, scene.machine.trend
+        plot = plots[self.place] if self.place < len(plots) else None
+        value = scene.value(plot.key) if plot is not None else None
+        if plot is None or value is None or plot.column not in columns:
+            self.entitle("")
             return ["—"]
+        if plot != self._plot:
+            self._plot, self._range, self._bins = plot, PlotRange(least=plot.least), None
         canvas = Canvas(max(width - LABELS, 4), height, plain=self.plain)
-        bins = self._take(scene, canvas.columns)
+        bins = self._take(scene, columns.index(plot.column), canvas.columns)
         known = [one for one in bins[-canvas.columns :] if one is not None]
         ends = [y for one in known for y in one] + ([value.setpoint] if value.setpoint is not None else [])
         wanted = "" if value.setpoint is None else f" ── SP {number(value.setpoint, value.decimals)}"
@@ -76,10 +83,10 @@ class TrendPanel(Panel):
         canvas.bins(bins, scale)
         return self._labelled(canvas.lines(), scale, faint=not scene.linked)
 
-    def _take(self, scene: Scene, count: int) -> list[Bin | None]:
+    def _take(self, scene: ScreenScene, column: int, count: int) -> list[Bin | None]:
         bins = self._bins
         if bins is None or bins.count != count or bins.epoch != scene.epoch:
-            bins = self._bins = Bins(scene.columns.index(self.column), count, scene.epoch)
+            bins = self._bins = Bins(column, count, scene.epoch)
             for row in scene.trend:
                 bins.take(row)
         elif scene.trend:
@@ -87,7 +94,7 @@ class TrendPanel(Panel):
         return bins.bins
 
     @staticmethod
-    def _labelled(lines: list[str], scale: Range, *, faint: bool) -> Parts:
+    def _labelled(lines: list[str], scale: PlotRange, *, faint: bool) -> Parts:
         digits = 0 if scale.high - scale.low >= 10.0 else 1 if scale.high - scale.low >= 1.0 else 2
         labels = {0: f"{scale.high:.{digits}f}", len(lines) - 1: f"{scale.low:.{digits}f}"}
         parts: Parts = []

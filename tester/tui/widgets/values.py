@@ -4,22 +4,20 @@ from __future__ import annotations
 
 from tester.service.state import Value
 from tester.tui.bar import bar, believable, beyond
-from tester.tui.scene import Scene
+from tester.tui.formatting import NOTHING, clean, fit, number
+from tester.tui.scene import ScreenScene
 from tester.tui.widgets.panel import ABNORMAL, FAINT, WARNING, Panel, Parts, rows
-from tester.tui.words import NOTHING, clean, fit, number
 
-FIRST = ("friction", "load", "slip", "surface", "hub", "sideslip")
-REST = ("wheel_speed", "belt_speed", "camber", "heat", "press", "force_x", "force_y", "moment", "torque")
 LABEL, CELL, UNIT, FLAG = 15, 9, 5, 6
 
 
 class ValuesPanel(Panel):
-    """As many values as there are rows, the important ones first."""
+    """As many values as there are rows, in their own order: the important ones first."""
 
-    def picture(self, scene: Scene, width: int, height: int) -> Parts:
+    def picture(self, scene: ScreenScene, width: int, height: int) -> Parts:
         """Return a row for each value."""
-        found = [value for key in (*FIRST, *REST) if (value := scene.value(key)) is not None]
-        return rows([value_row(value, width, linked=scene.linked) for value in found[:height]])
+        values = scene.state.values if scene.state is not None else ()
+        return rows([value_row(value, width, linked=scene.linked) for value in values[:height]])
 
 
 def value_row(value: Value, width: int, *, linked: bool = True) -> Parts:

@@ -7,7 +7,8 @@ from math import exp, sqrt
 from random import Random
 
 from tester.analysis.blocks import Block, resultant
-from tester.process import SAMPLE_COLUMNS
+from tester.kinds.wheel_on_belt.quantities import QUANTITIES
+from tester.quantities import Means
 
 REVOLUTION_S = 0.353
 """A 90 mm wheel at 0.8 m/s."""
@@ -15,11 +16,16 @@ REVOLUTION_S = 0.353
 
 def sample(**values: float) -> tuple[float, ...]:
     """Return a sample of a sliding contact, burst 1 of repeat 1, with some columns replaced."""
-    usual = dict.fromkeys(SAMPLE_COLUMNS, 0.0)
+    usual = dict.fromkeys(QUANTITIES.names, 0.0)
     usual |= {"wheel_speed_m_s": 0.8, "belt_speed_m_s": 0.5, "slip_m_s": 0.3, "load_setpoint_n": 200.0}
     usual |= {"force_x_n": 146.0, "force_z_n": 200.0, "surface_c": 25.0, "hub_c": 30.0}
     usual |= {"burst": 1.0, "repeat_key": 1.0}
-    return tuple(float((usual | values)[name]) for name in SAMPLE_COLUMNS)
+    return tuple(float((usual | values)[name]) for name in QUANTITIES.names)
+
+
+def means_of(**given: float) -> Means:
+    """Return means of the wheel's channels, NaN for those that are not given."""
+    return Means(QUANTITIES, [given.get(one.name, float("nan")) for one in QUANTITIES.averaged])
 
 
 def block(mu: float, *, at_s: float = 0.0, burst: int = 1, surface_c: float = 25.0, **means: float) -> Block:
@@ -28,8 +34,9 @@ def block(mu: float, *, at_s: float = 0.0, burst: int = 1, surface_c: float = 25
     usual |= {"drive_torque_nm": 6.5, "wheel_speed_m_s": 0.8, "belt_speed_m_s": 0.5, "slip_m_s": 0.3}
     usual |= {"sideslip_deg": 0.0, "camber_deg": 0.0, "hub_c": 30.0}
     usual |= means
-    resulting = resultant(usual["force_x_n"], usual["force_y_n"], usual["force_z_n"])
-    return Block(burst, 35, at_s, at_s + REVOLUTION_S, at_s, resulting, surface_c=surface_c, **usual)
+    found = means_of(**usual, surface_c=surface_c)
+    resulting = resultant(found.along, found.across, found.normal)
+    return Block(burst, 35, at_s, at_s + REVOLUTION_S, at_s, resulting, found)
 
 
 def blocks(values: Sequence[float], *, per_burst: int = 1_000_000, surface: Sequence[float] = ()) -> list[Block]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import astuple
 from math import pi, sin
 from random import Random
 
@@ -11,37 +10,43 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tester.analysis.blocks import Block, RevolutionCounter, blocks_from_samples, resultant
-from tester.process import GATE_LOAD, GATE_TEMPERATURE, SAMPLE_COLUMNS
+from tester.analysis.blocks import Block, BlockCounter, blocks_from_samples, resultant
+from tester.kinds.wheel_on_belt.process import GATE_LOAD, GATE_TEMPERATURE
+from tester.kinds.wheel_on_belt.quantities import QUANTITIES
 from tests.tester.analysis.series import sample
 
 Sample = tuple[float, ...]
 
 
 def live(samples: list[Sample]) -> list[Block]:
-    counter = RevolutionCounter()
+    counter = BlockCounter(QUANTITIES)
     for row in samples:
         counter.add(row)
     return counter.blocks
 
 
 def stored(samples: list[Sample]) -> list[Block]:
-    table = np.array(samples, dtype=np.float64).reshape(-1, len(SAMPLE_COLUMNS))
-    return blocks_from_samples({name: table[:, i] for i, name in enumerate(SAMPLE_COLUMNS)})
+    table = np.array(samples, dtype=np.float64).reshape(-1, len(QUANTITIES.names))
+    return blocks_from_samples({name: table[:, i] for i, name in enumerate(QUANTITIES.names)}, QUANTITIES)
 
 
 def turning(n: int, step_rev: float = 0.0283, start_rev: float = 7.3, **values: float) -> list[Sample]:
     return [sample(time_s=100.0 + 0.01 * i, wheel_angle_rev=start_rev + step_rev * i, **values) for i in range(n)]
 
 
+def figures(block: Block) -> tuple[float, ...]:
+    said = (block.burst, block.samples, block.started_s, block.ended_s, block.position, block.mu)
+    return (*said, *block.means.values())
+
+
 def assert_same(a: list[Block], b: list[Block]) -> None:
     assert len(a) == len(b)
     for one, other in zip(a, b, strict=True):
-        assert astuple(one) == pytest.approx(astuple(other), rel=1e-12, abs=1e-12)
+        assert figures(one) == pytest.approx(figures(other), rel=1e-12, abs=1e-12)
 
 
 def test_a_revolution_is_complete_with_the_first_sample_beyond_it() -> None:
-    counter = RevolutionCounter()
+    counter = BlockCounter(QUANTITIES)
     made = [counter.add(row) for row in turning(37)]
     assert [i for i, block in enumerate(made) if block is not None] == [36]  # 36 * 0.0283 = 1.019
 
@@ -111,12 +116,12 @@ def test_runout_does_not_reach_the_means() -> None:
     ]
     made = live(samples)
     assert len(made) == 31
-    assert sum(block.force_z_n for block in made) / 31 == pytest.approx(200.0, abs=0.05)
+    assert sum(block.means.normal for block in made) / 31 == pytest.approx(200.0, abs=0.05)
     assert all(block.mu == pytest.approx(0.73, rel=1e-12) for block in made)
 
 
 def test_accepted_seconds_are_those_of_the_blocks() -> None:
-    counter = RevolutionCounter()
+    counter = BlockCounter(QUANTITIES)
     for row in turning(100):
         counter.add(row)
     assert counter.seconds == pytest.approx(counter.blocks[-1].ended_s - counter.blocks[0].started_s)
@@ -129,7 +134,8 @@ def test_a_block_carries_the_means_of_its_samples() -> None:
     ]
     (block,) = live(samples)
     assert (block.samples, block.started_s, block.ended_s) == (10, 0.0, 0.1)
-    assert (block.surface_c, block.moment_z_nm, block.hub_c) == pytest.approx((24.5, 0.45, 9.0))
+    found = tuple(block.means[name] for name in ("surface_c", "moment_z_nm", "hub_c"))
+    assert found == pytest.approx((24.5, 0.45, 9.0))
 
 
 def test_resultant_without_load_has_no_value() -> None:

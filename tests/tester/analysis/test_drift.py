@@ -1,6 +1,6 @@
 """The drift of a condition from one fit over its repeats: by construction, and over seeds.
 
-The noise is AR(1), 1 % and 0.3 s. `python -m tests.repeats` measures how often the rule errs.
+The noise is AR(1), 1 % and 0.3 s. `python -m tests.campaigns.repeats` measures how often the rule errs.
 """
 
 from __future__ import annotations

@@ -7,6 +7,7 @@ from math import pi, sqrt, tan
 import pytest
 
 from tester.analysis.quantiles import f_quantile, incomplete_beta, t_quantile, t_upper_tail
+from tests.tester.analysis.scipy_values import SCIPY_F, SCIPY_T
 
 PRINTED_T = [
     (0.95, 1, 6.313752),
@@ -36,6 +37,16 @@ def test_t_quantile_is_that_of_the_printed_tables(p: float, df: float, printed: 
 @pytest.mark.parametrize(("p", "df1", "df2", "printed"), PRINTED_F)
 def test_f_quantile_is_that_of_the_printed_tables(p: float, df1: float, df2: float, printed: float) -> None:
     assert f_quantile(p, df1, df2) == pytest.approx(printed, rel=3e-7)
+
+
+def test_t_quantile_is_that_of_scipy() -> None:
+    found = [t_quantile(p, df) for p, df, _ in SCIPY_T]
+    assert found == pytest.approx([value for *_, value in SCIPY_T], rel=1e-9)
+
+
+def test_f_quantile_is_that_of_scipy() -> None:
+    found = [f_quantile(p, df1, df2) for p, df1, df2, _ in SCIPY_F]
+    assert found == pytest.approx([value for *_, value in SCIPY_F], rel=1e-9)
 
 
 def test_t_quantile_with_one_degree_of_freedom_is_that_of_cauchy() -> None:

@@ -8,9 +8,10 @@ from random import Random
 
 import pytest
 
-from tester.analysis.blocks import RevolutionCounter
+from tester.analysis.blocks import BlockCounter
 from tester.analysis.reduce import batch_means, bursts_of, reduce_repeat, standard_deviation, without_value
 from tester.analysis.results import NOT_SHOWN, RepeatStatus
+from tester.kinds.wheel_on_belt.quantities import QUANTITIES
 from tests.tester.analysis.series import REVOLUTION_S, block, blocks, correlated, sample
 
 STEADY = [0.7, 0.701] * 15
@@ -31,7 +32,7 @@ def test_the_coefficient_is_a_ratio_of_means_with_the_measured_load() -> None:
 
 def test_noise_of_the_forces_does_not_bias_the_coefficient() -> None:
     random = Random(2)
-    counter = RevolutionCounter()
+    counter = BlockCounter(QUANTITIES)
     for i in range(20000):
         counter.add(
             sample(
@@ -61,7 +62,7 @@ def test_means_are_those_of_the_blocks_that_are_left() -> None:
     kept = made[result.truncated :]
     assert result.truncated > 0
     assert result.flags == "extended; truncated"
-    assert result.surface_c == pytest.approx(sum(b.surface_c for b in kept) / len(kept))
+    assert result.means.temperature == pytest.approx(sum(b.means.temperature for b in kept) / len(kept))
     assert result.revolutions == len(kept)
     assert (result.started_s, result.ended_s) == (made[0].started_s, made[-1].ended_s)
 

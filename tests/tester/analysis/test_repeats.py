@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from math import hypot, isnan, sqrt
+from math import isnan, sqrt
 
 import pytest
 
@@ -16,7 +16,6 @@ from tester.analysis.repeats import (
     outliers,
 )
 from tester.analysis.results import (
-    CARRY_OVER,
     NOT_SHOWN,
     SHORT,
     ConditionStatus,
@@ -24,6 +23,7 @@ from tester.analysis.results import (
     RepeatResult,
     RepeatStatus,
 )
+from tests.tester.analysis.series import means_of
 
 
 def repeat(
@@ -42,9 +42,7 @@ def repeat(
         mu_lateral=0.01,
         fluctuation_percent=fluctuation,
         batches=10,
-        force_z_n=200.0,
-        slip_m_s=0.3,
-        surface_c=25.0,
+        means=means_of(force_z_n=200.0, slip_m_s=0.3, surface_c=25.0),
     )
 
 
@@ -66,13 +64,6 @@ def test_mean_scatter_and_interval_of_valid_repeats() -> None:
     assert result.type_a == pytest.approx(result.s / sqrt(5))
     assert result.interval == pytest.approx(2.776445 * result.type_a, rel=1e-6)
     assert result.measured["surface_c"] == pytest.approx(25.0)
-
-
-def test_expanded_uncertainty_is_more_than_scatter_alone() -> None:
-    result = combine(*FIVE)
-    assert result.expanded == pytest.approx(result.coverage * result.standard)
-    assert result.standard > result.type_a
-    assert 1.9 < result.coverage < 2.8
 
 
 def test_a_repeat_that_is_not_valid_is_left_out_with_its_reason() -> None:
@@ -124,17 +115,6 @@ def test_a_refused_repeat_is_left_out_beside_valid_ones() -> None:
     result = combine(*FIVE, refused)
     assert (result.n_valid, result.mu_resultant) == (5, pytest.approx(0.704))
     assert result.excluded[0].reason == "refused: drifts by +4.0 % a window"
-
-
-def test_drift_and_carry_over_enter_the_uncertainty() -> None:
-    def added(judged: Judgement) -> float:
-        found = combine_repeats(FIVE, 5, judged=judged)
-        return 100.0 * sqrt(found.standard**2 - combine(*FIVE).standard ** 2) / found.mu_resultant
-
-    drift = Judgement(drift_percent=-0.8, drift_error_percent=0.3, repeat_windows=1.5, trend_percent=6.0)
-    assert added(drift) == pytest.approx(1.1 * 1.5 / sqrt(12.0))
-    carried = replace(drift, flags=CARRY_OVER)
-    assert added(carried) == pytest.approx(hypot(1.1 * 1.5, 6.0) / sqrt(12.0))
 
 
 def test_one_valid_repeat_shows_its_mean_and_no_scatter() -> None:

@@ -8,11 +8,11 @@ from math import isnan, pi, sqrt
 import numpy as np
 import pytest
 
-from tester.analysis.wear import condition_wear, wheel_wear
+from tester.analysis.wear import condition_wear, wear_rate
 from tester.analysis.wear_check import WearCheck
 
 FIRST = WearCheck(
-    wheel=1, method="roll", t_s=100.0, reference_s=100.0, before=1, after=0, diameter_mm=90.0, u_mm=0.008,
+    piece=1, method="roll", t_s=100.0, reference_s=100.0, before=1, after=0, diameter_mm=90.0, u_mm=0.008,
     rubber_c=40.0, u_growth_mm_k=0.0017, press_mm=10.5, load_n=50.0, sliding_m=50.0, exposure_n_m=10_000.0,
     width_mm=30.0, u_rate_percent=1.5, used=1,
 )  # fmt: skip
@@ -30,19 +30,19 @@ def worn(number: int, *, rate: float = RATE, rubber_c: float = 40.0, off_mm: flo
 
 
 def test_exact_checks_give_the_rate_that_wore_the_wheel() -> None:
-    found = wheel_wear([worn(i) for i in range(5)])
+    found = wear_rate([worn(i) for i in range(5)])
     assert found.rate == pytest.approx(RATE, rel=1e-6) and found.checks == 5 and found.resolved
 
 
 def test_the_uncertainty_of_two_checks_is_that_of_their_difference() -> None:
-    found = wheel_wear([worn(0), worn(1)])
+    found = wear_rate([worn(0), worn(1)])
     volume = sqrt(2.0) * 0.008 * 0.5 * pi * 30.0 * 90.0
     assert found.standard == pytest.approx(sqrt((volume / 3000.0) ** 2 + (0.015 * RATE) ** 2), rel=2e-3)
     assert found.expanded == pytest.approx(2.0 * found.standard)
 
 
 def test_more_checks_know_more() -> None:
-    few, many = wheel_wear([worn(0), worn(1)]), wheel_wear([worn(i) for i in range(6)])
+    few, many = wear_rate([worn(0), worn(1)]), wear_rate([worn(i) for i in range(6)])
     assert many.standard < 0.4 * few.standard
 
 
@@ -57,7 +57,7 @@ def test_the_stated_interval_covers_the_rate_in_95_of_100() -> None:
             worn(i, rate=RATE * scale, rubber_c=t, off_mm=draws.normal(0.0, 0.008) + growth * (t - 40.0))
             for i, t in enumerate(temperatures)
         ]
-        found = wheel_wear(checks)
+        found = wear_rate(checks)
         covered += abs(found.rate - RATE) <= found.expanded
     assert 0.93 * 400 <= covered <= 0.99 * 400
 
@@ -82,20 +82,20 @@ def test_a_loss_below_the_resolution_says_so_by_an_interval_with_zero_in_it() ->
 
 
 def test_rates_that_differ_between_conditions_widen_the_uncertainty_of_their_mean() -> None:
-    even = wheel_wear([worn(i) for i in range(5)])
-    uneven = wheel_wear([worn(i, off_mm=0.05 * (-1) ** i) for i in range(5)])
+    even = wear_rate([worn(i) for i in range(5)])
+    uneven = wear_rate([worn(i, off_mm=0.05 * (-1) ** i) for i in range(5)])
     assert uneven.standard > 2.0 * even.standard
 
 
 def test_a_check_that_is_not_believed_counts_nowhere() -> None:
     wrong = replace(worn(1, off_mm=1.0), used=0)
-    assert wheel_wear([worn(0), wrong, worn(2)]).rate == pytest.approx(RATE, rel=1e-6)
+    assert wear_rate([worn(0), wrong, worn(2)]).rate == pytest.approx(RATE, rel=1e-6)
     assert condition_wear([worn(0), wrong], 1) is None
 
 
 def test_a_wheel_that_was_put_back_is_fitted_with_an_offset_of_its_own() -> None:
     later = [replace(worn(i, off_mm=0.4), reference_s=5000.0) for i in (2, 3, 4)]
-    found = wheel_wear([worn(0), worn(1), *later])
+    found = wear_rate([worn(0), worn(1), *later])
     assert found.rate == pytest.approx(RATE, rel=0.01) and found.checks == 5
 
 
@@ -105,7 +105,7 @@ def test_a_condition_across_two_series_has_no_value() -> None:
 
 @pytest.mark.parametrize("checks", [[], [worn(0)], [worn(0), replace(worn(0), t_s=200.0, before=0, after=1)]])
 def test_without_two_checks_and_sliding_between_them_there_is_no_rate(checks: list[WearCheck]) -> None:
-    found = wheel_wear(checks)
+    found = wear_rate(checks)
     assert isnan(found.rate) and not found.resolved
     one = condition_wear(checks, 1)
     assert one is None or isnan(one.rate.rate)

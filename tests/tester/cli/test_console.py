@@ -11,8 +11,8 @@ import pytest
 from tester.cli import console as module
 from tester.cli.console import Console
 from tester.cli.keys import NoKeys
-from tester.engine.context import Progress
-from tester.engine.prompts import Prompts
+from tester.machine.context import Progress
+from tester.machine.prompts import Prompts
 
 Output = pytest.CaptureFixture[str]
 

@@ -38,7 +38,8 @@ def test_a_condition_without_a_value_has_a_dash_and_its_status(tmp_path: Path) -
 
 def test_camber_is_a_column_where_a_condition_has_it(tmp_path: Path) -> None:
     writer = open_writer(tmp_path)
-    writer.begin_run(RUN, SPECIMENS, [replace(CONDITION, camber_deg=-2.0), replace(CONDITION, condition=2, row=2)])
+    tilted = replace(CONDITION, setpoint=CONDITION.setpoint.but(camber=-2.0))
+    writer.begin_run(RUN, SPECIMENS, [tilted, replace(CONDITION, condition=2, row=2)])
     record(writer, 1, [0.9] * 3)
     record(writer, 2, [0.8] * 3)
     writer.close()
@@ -72,7 +73,8 @@ def test_a_condition_that_was_tried_without_a_repeat_is_a_row_of_its_own(tmp_pat
 def test_no_line_is_wider_than_a_terminal(tmp_path: Path) -> None:
     writer = open_writer(tmp_path)
     name = "a compound with 長い名前 that goes on"
-    condition = replace(CONDITION, compound=name, slip_velocity_m_s=0.123456, camber_deg=1.5, wheel_speed_m_s=0.25)
+    held = CONDITION.setpoint.but(name, slip_velocity=0.123456, camber=1.5, wheel_speed=0.25)
+    condition = replace(CONDITION, setpoint=held)
     writer.begin_run(RUN, SPECIMENS, [condition, replace(CONDITION, condition=2, row=2)])
     record(writer, 1, [0.9, 0.7, 0.3])
     record(writer, 2, [0.9] * 3)
@@ -87,7 +89,7 @@ def test_conditions_that_were_not_reached_are_one_line(tmp_path: Path) -> None:
     record(writer, 1, [0.9] * 3)
     writer.close()
     lines = ending_lines(tmp_path)
-    assert "164 of 165 conditions not measured" in lines and len(lines) < 10
+    assert "164 of 165 conditions not measured" in lines and len(lines) < 11
 
 
 def test_a_table_that_is_too_long_names_the_file_with_the_rest(tmp_path: Path) -> None:
@@ -125,3 +127,9 @@ def test_the_table_is_for_people_and_the_folder_for_scripts(tmp_path: Path, caps
 def test_with_json_there_is_no_table(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     Console(as_json=True, answer_yes=True).result(str(small_run(tmp_path)))
     assert capsys.readouterr().err == ""
+
+
+def test_the_table_says_of_what_its_uncertainty_is(tmp_path: Path) -> None:
+    assert "U: of this wheel in this condition; conditions.csv has the compound's, too" in ending_lines(
+        small_run(tmp_path)
+    )

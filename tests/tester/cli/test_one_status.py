@@ -10,9 +10,10 @@ from pathlib import Path
 import pytest
 
 from tester.analysis.results import RepeatStatus
+from tester.base.lock import RUN_LOCK, ExclusiveUse
 from tester.catalogue.entries import fingerprint, read_entries
 from tester.cli.main import invoke
-from tester.lock import RUN_LOCK, ExclusiveUse
+from tester.kinds.wheel_on_belt.served import SERVED
 from tester.service.preflight import past_of
 from tester.tui.stored import read
 from tests.tester.store.build import CONDITIONS, RUN, SPECIMENS, open_writer, record
@@ -68,7 +69,7 @@ def test_everybody_says_the_same(
     with ExclusiveUse() if held else nullcontext() as use:
         if isinstance(use, ExclusiveUse):
             use.lock_file("one", folder / RUN_LOCK, "one", lasting=False)
-        past = past_of(home / "runs")
+        past = past_of(home / "runs", SERVED)
         words = {
             "runs --json": json.loads(said("runs", "--json"))[0]["status"],
             "show --json": json.loads(said("show", "one", "--json"))["status"],

@@ -96,3 +96,53 @@ def test_what_the_model_does_not_cover_is_a_usage_error(
 
 def test_a_missing_option_is_a_usage_error() -> None:
     assert invoke(["predict", "--compound", "1#"]) == 2
+
+
+def warnings(capsys: pytest.CaptureFixture[str], **options: str) -> list[str]:
+    given = POINT | {f"--{name.replace('_', '-')}": value for name, value in options.items()}
+    assert invoke(["predict", *(word for pair in given.items() for word in pair)]) == 0
+    return capsys.readouterr().err.splitlines()
+
+
+def test_inside_the_data_nothing_is_said(capsys: pytest.CaptureFixture[str]) -> None:
+    assert warnings(capsys) == []
+    assert warnings(capsys, load="400 N", temperature="85 degC", slip="400 mm/s") == []
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        ({"load": "99 N"}, "load 99 N is outside the paper's data, 100 to 400 N"),
+        ({"load": "401 N"}, "load 401 N is outside"),
+        ({"slip": "410 mm/s"}, "slip velocity 410 mm/s is outside the paper's data, 0 to 400 mm/s"),
+        ({"slip": "-100 mm/s"}, "slip velocity -100 mm/s is outside"),
+        ({"temperature": "24 degC"}, "temperature 24 degC is outside the paper's data, 25 to 85 degC"),
+        ({"temperature": "86 degC"}, "temperature 86 degC is outside"),
+        ({"slip": "0 mm/s"}, "the wheel rolls"),
+        ({"compound": "3#", "sideslip": "10 deg"}, "no valid data of 3# with a sideslip angle"),
+        ({"sideslip": "-10 deg"}, "0.58 sin|sideslip| of 1# is this project's"),
+    ],
+)
+def test_what_the_value_rests_on_is_said_once(
+    capsys: pytest.CaptureFixture[str], options: dict[str, str], said: str
+) -> None:
+    (line,) = warnings(capsys, **options)
+    assert line.startswith("warning: ") and said in line
+
+
+def test_each_bound_that_is_left_is_said(capsys: pytest.CaptureFixture[str]) -> None:
+    assert len(warnings(capsys, compound="2#", sideslip="31 deg", load="500 N")) == 2
+
+
+def test_the_other_law_of_the_paper_warns_too_and_a_foreign_one_does_not(capsys: pytest.CaptureFixture[str]) -> None:
+    assert warnings(capsys, model="v2", load="50 N")
+    assert not warnings(capsys, model="tests.sim.physics.test_data_range:flat", load="50 N")
+
+
+def test_a_belt_that_would_run_backwards_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
+    message = refusal(capsys, slip="801 mm/s")
+    assert "backwards" in message and "expected at most 800 mm/s" in message
+
+
+def test_a_belt_at_rest_is_not_refused(capsys: pytest.CaptureFixture[str]) -> None:
+    assert predict(capsys, slip="800 mm/s")

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from tester.cli.main import invoke
-from tester.rig.load import packaged_text
+from tester.kinds import packaged_text
 from tests.tester.recipe.texts import SMALL
 
 
@@ -55,7 +55,7 @@ def test_check_holds_the_recipe_against_the_rig_as_it_is_set(folder: Path, capsy
 
 def test_an_unknown_recipe_is_a_usage_error(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert invoke(["check", "nosuch"]) == 2
-    assert "packaged are pre-grind, quickstart" in capsys.readouterr().err
+    assert "packaged are grosch, pin-on-disc, pre-grind, quickstart" in capsys.readouterr().err
 
 
 def test_an_invalid_rig_file_exits_3(folder: Path) -> None:
@@ -89,6 +89,11 @@ def test_schema_prints_the_packaged_schema(folder: Path, capsys: pytest.CaptureF
     assert invoke(["schema"]) == 0
     schema = json.loads(capsys.readouterr().out)
     assert schema["required"] == ["recipe", "specimens"]
+
+
+def test_plan_says_how_many_wheels_tell_two_compounds_apart(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert invoke(["plan", "quickstart"]) == 0
+    assert "to tell 10 % takes 3, 5 % takes 9 wheels each (replicates; here 1)" in capsys.readouterr().out
 
 
 def test_plan_says_what_a_precision_takes(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:

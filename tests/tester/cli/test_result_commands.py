@@ -39,6 +39,16 @@ def test_show_tells_status_rig_time_and_values(home: Path) -> None:
     assert lines[4].endswith("(n 3 of 3) extended")
 
 
+def test_show_tells_which_extensions_a_run_had_loaded(home: Path) -> None:
+    (home / "runs" / "two").mkdir()
+    writer = open_writer(home / "runs" / "two")
+    extension = {"extension laws/acme": "acme 1.2, acme.law:LAW, sha256 00ff"}
+    writer.begin_run(replace(RUN, versions={**RUN.versions, **extension}), SPECIMENS, CONDITIONS)
+    writer.close()
+    assert "loaded   laws/acme: acme 1.2, acme.law:LAW, sha256 00ff" in invoke(show, "two").stdout.splitlines()
+    assert json.loads(invoke(show, "two", "--json").stdout)["versions"] == {"numpy": "1.26.0", **extension}
+
+
 def test_show_as_json(home: Path) -> None:
     shown = json.loads(invoke(show, "one", "--json").stdout)
     assert (shown["rig_seconds"], shown["status"], shown["seed"]) == (2700.5, "done", 1)
@@ -182,3 +192,16 @@ def test_text_of_a_recipe_cannot_drive_the_terminal(home: Path) -> None:
     writer.begin_run(replace(RUN, recipe_name="\x1b[2Jgone"), SPECIMENS, CONDITIONS)
     writer.close()
     assert "\x1b" not in invoke(runs).stdout + invoke(show, "two").stdout
+
+
+def test_show_tells_both_uncertainties_and_of_what_they_are(home: Path) -> None:
+    shown = invoke(show, "one").stdout
+    assert "(this wheel), ± " in shown and "(compound)" in shown
+
+
+def test_show_tells_the_budget_the_largest_term_first(home: Path) -> None:
+    lines = invoke(show, "one", "--budget").stdout.splitlines()
+    assert "U (95 %) of this wheel in this condition" in lines[1] and "U (95 %) of the compound" in lines[2]
+    assert lines[4].split()[:3] == ["wheel", "to", "wheel"]
+    percents = [float(line[28:35]) for line in lines[4:10]]
+    assert percents == sorted(percents, reverse=True)

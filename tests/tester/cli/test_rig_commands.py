@@ -8,8 +8,7 @@ from pathlib import Path
 import pytest
 
 from tester.cli.main import invoke
-from tester.rig import load_rig
-from tester.rig.template import hardware_text
+from tester.kinds import hardware_text, load_rig
 
 
 def test_init_writes_a_file_that_is_a_rig(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -70,8 +69,28 @@ def test_upgrade_writes_the_keys_that_a_file_lacks(tmp_path: Path, capsys: pytes
     path.write_text(hardware_text().replace("  pushed: ", "  # pushed: "), encoding="utf-8")
     assert invoke(["rig", "upgrade", str(path)]) == 0
     assert invoke(["rig", "upgrade", str(path)]) == 0
-    assert capsys.readouterr().out == f"{path}: written: pushed\n{path}: has every key\n"
+    assert capsys.readouterr().out == f"{path}: written: interlocks.pushed\n{path}: has every key\n"
 
 
 def test_upgrade_of_a_file_that_is_not_there_exits_3(tmp_path: Path) -> None:
     assert invoke(["rig", "upgrade", str(tmp_path / "none.yaml")]) == 3
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (["--kind", "whel_on_belt"], "did you mean wheel_on_belt?"),
+        (["--like", "none"], "no packaged rig of the kind wheel_on_belt is called none (expected sim)"),
+    ],
+)
+def test_init_of_a_kind_or_a_packaged_rig_that_is_none_is_a_usage_error(
+    options: list[str], said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert invoke(["rig", "init", str(tmp_path / "rig.yaml"), *options]) == 2
+    assert said in capsys.readouterr().err and not (tmp_path / "rig.yaml").exists()
+
+
+def test_init_says_the_kind_in_the_file(tmp_path: Path) -> None:
+    path = tmp_path / "rig.yaml"
+    assert invoke(["rig", "init", str(path), "--kind", "wheel_on_belt", "--like", "sim"]) == 0
+    assert load_rig(path).kind == "wheel_on_belt"

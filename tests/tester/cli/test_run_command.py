@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from tester import session
 from tester.cli.main import invoke
-from tester.session import SessionOptions
-from tests.tester.engine.bench import QUIET, SHORT
+from tester.run import session
+from tester.run.session import SessionOptions
+from tests.tester.kinds.wheel_on_belt.bench import QUIET, SHORT
 
 SETS = [argument for override in QUIET for argument in ("--set", override)]
 

@@ -9,10 +9,10 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner, Result
 
+from tester.base.lock import RUN_LOCK, ExclusiveUse
 from tester.cli.compare_command import compare
 from tester.cli.runs_command import runs
-from tester.lock import RUN_LOCK, ExclusiveUse
-from tests.tester.store.build import CONDITIONS, RUN, SPECIMENS, open_writer, record, small_run
+from tests.tester.store.build import CONDITIONS, PIECE, RUN, SPECIMENS, open_writer, record, small_run
 
 
 @pytest.fixture
@@ -129,11 +129,60 @@ def test_a_damaged_index_is_made_again_from_the_runs(home: Path, damage: bytes) 
 
 
 def test_two_runs_are_compared_condition_by_condition(home: Path) -> None:
-    small_run(home / "runs" / "two", ([0.95, 0.96, 0.94], [0.73, 0.74, 0.72]))
+    small_run(home / "runs" / "two", ([1.00, 1.01, 0.99], [0.73, 0.74, 0.72]))
     rows = json.loads(invoke(compare, "one", "two", "--json").stdout)
     assert [row["load_n"] for row in rows] == [100.0, 200.0]
-    assert rows[0]["difference"] == pytest.approx(0.05) and rows[0]["z"] > 2.0
+    assert rows[0]["difference"] == pytest.approx(0.1) and rows[0]["z"] > 2.0
     assert rows[1]["difference"] == pytest.approx(0.0) and rows[1]["u_difference"] > 0.0
+
+
+def test_replicates_are_compared_by_their_mean(home: Path) -> None:
+    for name, values in (("three", (0.70, 0.73, 0.76)), ("others", (0.80, 0.83, 0.86))):
+        (home / "runs" / name).mkdir()
+        writer = open_writer(home / "runs" / name)
+        conditions = [replace(CONDITIONS[0], condition=i, replicate=i) for i in (1, 2, 3)]
+        writer.begin_run(RUN, SPECIMENS, conditions)
+        writer.piece_mounted(PIECE)
+        for condition, mu in zip(conditions, values, strict=True):
+            record(writer, condition.condition, [mu, mu + 0.01, mu - 0.01])
+        writer.close()
+    (row,) = json.loads(invoke(compare, "three", "others", "--json").stdout)
+    assert (row["pieces_1"], row["difference"]) == (3, pytest.approx(0.1)) and row["differs"]
+
+
+def test_a_difference_within_what_chance_explains_is_not_called_one(home: Path) -> None:
+    small_run(home / "runs" / "two", ([0.93, 0.94, 0.92], [0.73, 0.74, 0.72]))
+    rows = json.loads(invoke(compare, "one", "two", "--json").stdout)
+    assert not rows[0]["differs"] and abs(rows[0]["z"]) < rows[0]["k"]
+    assert "differs" not in invoke(compare, "one", "two").stdout
+
+
+def test_another_seed_is_another_rig_whose_errors_are_its_own(home: Path) -> None:
+    def u(seed: int) -> float:
+        folder = home / "runs" / f"seed {seed}"
+        folder.mkdir()
+        writer = open_writer(folder)
+        writer.begin_run(replace(RUN, seed=seed), SPECIMENS, CONDITIONS[:1])
+        writer.piece_mounted(PIECE)
+        record(writer, 1, [0.90, 0.91, 0.89])
+        writer.close()
+        return json.loads(invoke(compare, "one", f"seed {seed}", "--json").stdout)[0]["u_difference"]
+
+    assert u(2) > 1.05 * u(1)
+
+
+def test_two_compounds_are_compared_by_their_names(home: Path) -> None:
+    (home / "runs" / "new").mkdir()
+    writer = open_writer(home / "runs" / "new")
+    held = CONDITIONS[0].setpoint
+    writer.begin_run(RUN, SPECIMENS, [replace(CONDITIONS[0], setpoint=held.but("new"))])
+    writer.piece_mounted(PIECE)
+    record(writer, 1, [1.2, 1.21, 1.19])
+    writer.close()
+    found = json.loads(invoke(compare, "one", "new", "--compounds", "1#", "new", "--json").stdout)
+    assert [row["difference"] is None for row in found] == [False, True] and found[0]["differs"]
+    wrong = invoke(compare, "one", "new", "--compounds", "new", "new")
+    assert wrong.exit_code == 1 and "one has no compound new" in wrong.stderr
 
 
 def test_a_condition_that_only_one_run_has_is_compared_with_nothing(home: Path) -> None:

@@ -11,9 +11,10 @@ from pathlib import Path
 
 import pytest
 
+from sim import machines
 from tester.cli.main import invoke
-from tester.rig import load_rig
-from tester.sim_process import LOG_COLUMNS
+from tester.kinds import load_rig
+from tester.run.sim_process import LOG_COLUMNS as LOGGED
 
 COMMAND = "from tester.cli.main import main; main()"
 
@@ -43,8 +44,9 @@ def test_it_can_be_reached_by_its_rig_file_and_logs_its_state_until_it_is_ended(
     sim.terminate()
     _, said = sim.communicate(timeout=20.0)
     header, *rows = (tmp_path / "state.csv").read_text(encoding="utf-8").splitlines()
-    assert header == ",".join(LOG_COLUMNS)
-    assert all(len(row.split(",")) == len(LOG_COLUMNS) for row in rows)
+    columns = (*LOGGED, *machines.find("wheel_on_belt").log_columns)
+    assert header == ",".join(columns)
+    assert all(len(row.split(",")) == len(columns) for row in rows)
     if sys.platform != "win32":  # there a process is ended without a signal that it could see
         assert sim.returncode == 0
         assert said.startswith("ended; at most ")

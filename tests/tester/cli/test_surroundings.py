@@ -11,7 +11,8 @@ from pathlib import Path
 
 import pytest
 
-from tester.cli.main import EXIT_READER_GONE, invoke
+from tester.base.exits import EXIT_READER_GONE
+from tester.cli.main import invoke
 from tests.tester.store.build import small_run
 
 MAIN = "from tester.cli.main import main; main()"

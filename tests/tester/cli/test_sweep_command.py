@@ -13,7 +13,7 @@ import pytest
 
 from tester.cli.main import invoke
 from tester.sweep import executors
-from tester.sweep.case import CaseResult, Task
+from tester.sweep.case import CaseResult, SweepTask
 from tester.sweep.executors import Submit
 from tests.tester.sweep.results import result, row
 
@@ -31,7 +31,7 @@ def jobs(monkeypatch: pytest.MonkeyPatch) -> list[int]:
 
     @contextmanager
     def at_once(jobs: int) -> Generator[Submit]:
-        def submit(work: object, task: Task, /) -> Future[CaseResult]:
+        def submit(work: object, task: SweepTask, /) -> Future[CaseResult]:
             future: Future[CaseResult] = Future()
             missing = row(2, status="insufficient")
             future.set_result(result(task.case, row(), *([missing] if task.seed == 9 else []), point=task.point))

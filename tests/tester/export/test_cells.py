@@ -9,8 +9,8 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
+from tester.base.plain import harmless
 from tester.export.cells import Number, encode, exact, line, nominal, number, text, unescaped
-from tester.plain import harmless
 
 TEXTS = st.text(st.characters(exclude_categories=("Cs",)), max_size=30)
 

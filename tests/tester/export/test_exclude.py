@@ -9,11 +9,11 @@ import pytest
 
 from tester import export
 from tester.analysis.results import SHORT
+from tester.base.lock import RUN_LOCK, ExclusiveUse
 from tester.export import exclude
 from tester.export.exclude import CannotExcludeError, Word, parse_target, record_word
 from tester.export.results import RunResults, results_of
 from tester.export.verify import verify
-from tester.lock import RUN_LOCK, ExclusiveUse
 from tester.store.reader import RunReader
 from tests.tester.store.build import RUN, small_run
 

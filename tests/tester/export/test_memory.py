@@ -9,7 +9,9 @@ from pathlib import Path
 
 import pytest
 
-from tester.export import samples, write_file, write_parquet_file
+from tester.export import write_format
+from tester.export.formats import FORMATS, Record
+from tester.kinds.wheel_on_belt.quantities import QUANTITIES
 from tester.store.reader import RunReader
 from tester.store.writer import RunWriter
 from tests.tester.store.build import RUN, Clock, row
@@ -20,7 +22,7 @@ MB = 1e6
 def recorded(folder: Path, rows: int) -> Path:
     """Write a run of so many samples, no two alike."""
     folder.mkdir()
-    writer = RunWriter(folder / "run.db", clock=Clock(), synchronous=True)
+    writer = RunWriter(folder / "run.db", QUANTITIES, clock=Clock(), synchronous=True)
     writer.begin_run(RUN, [], [])
     base = row(0.0)
     for i in range(rows):
@@ -34,10 +36,7 @@ def peak_mb(folder: Path, kind: str) -> float:
     with RunReader(folder) as reader:
         tracemalloc.start()
         try:
-            if kind == "csv":
-                write_file(folder / "samples.csv", samples(reader))
-            else:
-                write_parquet_file(folder / "samples.parquet", reader)
+            write_format(folder / FORMATS[kind].file, FORMATS[kind], Record(reader))
             return tracemalloc.get_traced_memory()[1] / MB
         finally:
             tracemalloc.stop()
@@ -45,20 +44,18 @@ def peak_mb(folder: Path, kind: str) -> float:
 
 def test_csv_takes_no_more_memory_for_a_run_five_times_as_long(tmp_path: Path) -> None:
     short, long = recorded(tmp_path / "short", 1500), recorded(tmp_path / "long", 7500)
-    assert peak_mb(long, "csv") < 1.2 * peak_mb(short, "csv")
+    assert peak_mb(long, "samples") < 1.2 * peak_mb(short, "samples")
 
 
 EXPORT = """
 import resource, sys
 from pathlib import Path
-from tester.export import samples, write_file, write_parquet_file
+from tester.export import write_format
+from tester.export.formats import FORMATS, Record
 from tester.store.reader import RunReader
 folder, kind = Path(sys.argv[1]), sys.argv[2]
 with RunReader(folder) as reader:
-    if kind == "csv":
-        write_file(folder / "samples.csv", samples(reader))
-    else:
-        write_parquet_file(folder / "samples.parquet", reader)
+    write_format(folder / FORMATS[kind].file, FORMATS[kind], Record(reader))
 print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
 """
 
@@ -71,7 +68,7 @@ def eight_hours(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.mark.campaign
 @pytest.mark.skipif(sys.platform != "linux", reason="ru_maxrss counts other units elsewhere")
-@pytest.mark.parametrize("kind, most_mb", [("csv", 100.0), ("parquet", 400.0)])
+@pytest.mark.parametrize("kind, most_mb", [("samples", 100.0), ("parquet", 400.0)])
 def test_eight_hours_export_in_bounded_memory(eight_hours: Path, kind: str, most_mb: float) -> None:
     command = [sys.executable, "-c", EXPORT, str(eight_hours), kind]
     done = subprocess.run(command, capture_output=True, text=True, check=True)

@@ -81,3 +81,13 @@ def test_a_setting_of_the_budget_that_is_no_number_is_refused(tmp_path: Path) ->
     writer.close()
     with pytest.raises(StoreError, match=r"run\.db"):
         results(tmp_path)
+
+
+def test_a_run_whose_recipe_says_so_has_the_mean_of_the_closest_two(tmp_path: Path) -> None:
+    writer = open_writer(tmp_path)
+    writer.begin_run(replace(RUN, metadata={"combine": "paper"}), SPECIMENS, [CONDITION])
+    record(writer, 1, [0.80, 0.70, 0.72])
+    writer.close()
+    (row,) = results(tmp_path).rows
+    assert row.result.mu_resultant == 0.71
+    assert "closest two of three" in row.result.flags

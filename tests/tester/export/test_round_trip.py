@@ -15,16 +15,18 @@ from random import Random
 
 import pytest
 
-from tester.engine.results import condition_records
-from tester.export import conditions, repeats, results_of, write_parquet_file
+from tester.base.source import InvalidSource
 from tester.export.cells import unescaped
+from tester.kinds.wheel_on_belt.quantities import QUANTITIES
+from tester.kinds.wheel_on_belt.recipe.expand import expand
+from tester.kinds.wheel_on_belt.recipe.part import PART
+from tester.machine.results import condition_records
 from tester.recipe.check import load_checked
-from tester.recipe.expand import expand
 from tester.recipe.plan import Plan
-from tester.source import InvalidSource
 from tester.store.reader import RunReader
 from tester.store.records import SpecimenInfo
 from tester.store.writer import RunWriter
+from tests.tester.export.made import made
 from tests.tester.recipe.texts import real_rig
 from tests.tester.store.build import RUN, Clock, result, row, small_run
 
@@ -68,7 +70,7 @@ def plan_with(field: str, text: str) -> Plan | None:
     """Return the plan of such a recipe, None where it was refused with its place."""
     rig = real_rig()
     try:
-        return expand(load_checked(recipe_text(field, text), rig).recipe, rig)
+        return expand(load_checked(recipe_text(field, text), rig, PART).recipe, rig)
     except InvalidSource as refused:
         assert refused.problems and all(REFUSED.match(str(problem)) for problem in refused.problems), text
         return None
@@ -78,18 +80,14 @@ def exported(folder: Path, plans: Sequence[Plan]) -> dict[str, str]:
     """Return the exports of a run that holds the conditions and the metadata of these plans, by name, as texts."""
     folder.mkdir()
     metadata = {f"{key}.{i}": value for i, plan in enumerate(plans) for key, value in plan.metadata.items()}
-    writer = RunWriter(folder / "run.db", clock=Clock(), synchronous=True)
+    writer = RunWriter(folder / "run.db", QUANTITIES, clock=Clock(), synchronous=True)
     records = [replace(one, condition=i, row=i) for i, plan in enumerate(plans) for one in condition_records(plan)]
     writer.begin_run(replace(RUN, metadata=metadata), [SpecimenInfo(1, "x", "")], records)
     for one in records:
         writer.commit_repeat(writer.begin_repeat(one.condition, 1, 1), result())
     writer.close()
     with RunReader(folder) as reader:
-        results = results_of(reader)
-        return {
-            "conditions": b"".join(conditions(results)).decode(),
-            "repeats": b"".join(repeats(results)).decode(),
-        }
+        return {kind: made(kind, reader).decode() for kind in ("conditions", "repeats")}
 
 
 def meant(plans: Sequence[Plan], number: int) -> dict[str, str]:
@@ -180,18 +178,16 @@ def test_numbers_are_numbers_for_pandas(tmp_path: Path) -> None:
 def test_samples_read_back_bit_by_bit_from_csv_and_parquet(tmp_path: Path) -> None:
     import pandas
 
-    from tester.export import samples, write_file
-
     folder = tmp_path
-    writer = RunWriter(folder / "run.db", clock=Clock(), synchronous=True)
+    writer = RunWriter(folder / "run.db", QUANTITIES, clock=Clock(), synchronous=True)
     writer.begin_run(RUN, [], [])
     fed = [row(0.1 * i, 0.0, force_x_n=1.0 / 3.0 * i) for i in range(700)]
     for one in fed:
         writer.sample(one)
     writer.close()
     with RunReader(folder) as reader:
-        write_file(folder / "s.csv", samples(reader))
-        write_parquet_file(folder / "s.parquet", reader)
+        (folder / "s.csv").write_bytes(made("samples", reader))
+        (folder / "s.parquet").write_bytes(made("parquet", reader))
     for frame in (pandas.read_csv(folder / "s.csv"), pandas.read_parquet(folder / "s.parquet")):
         assert list(frame["force_x_n"]) == [one[7] for one in fed]
         assert list(frame["time_s"]) == [one[0] for one in fed]

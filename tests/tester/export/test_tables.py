@@ -16,23 +16,23 @@ import pytest
 from tester import export
 from tester.analysis.results import RepeatStatus
 from tester.export.manifest import manifest_problems
-from tester.process import SAMPLE_COLUMNS
+from tester.kinds.wheel_on_belt.quantities import QUANTITIES
 from tester.store.reader import RunReader
-from tester.store.records import WheelInfo
+from tester.store.records import PieceInfo
+from tests.tester.export.made import made
 from tests.tester.store.build import CONDITION, RUN, SPECIMENS, Clock, open_writer, record, result, row, small_run
 
 HEADER = "Formula,Slip Velocity /mm·s⁻¹,Load /N,Sideslip Angle /°,Temperature /°C,Friction Coefficient"
 
 
-def table(chunks: Iterable[bytes]) -> list[dict[str, str]]:
-    text = b"".join(chunks).decode("utf-8-sig")
+def table(data: bytes) -> list[dict[str, str]]:
+    text = data.decode("utf-8-sig")
     return list(csv.DictReader(io.StringIO(text, newline="")))
 
 
 def tables(folder: Path) -> tuple[list[dict[str, str]], list[dict[str, str]], list[dict[str, str]]]:
     with RunReader(folder) as reader:
-        results = export.results_of(reader)
-    return table(export.appendix(results)), table(export.conditions(results)), table(export.repeats(results))
+        return table(made("appendix", reader)), table(made("conditions", reader)), table(made("repeats", reader))
 
 
 def test_the_appendix_is_the_papers_table(tmp_path: Path) -> None:
@@ -44,15 +44,15 @@ def test_the_appendix_is_the_papers_table(tmp_path: Path) -> None:
 
 def test_the_appendix_has_as_many_decimals_as_asked(tmp_path: Path) -> None:
     with RunReader(small_run(tmp_path)) as reader:
-        results = export.results_of(reader)
-    assert [line["Friction Coefficient"] for line in table(export.appendix(results, 4))] == ["0.9000", "0.7300"]
+        lines = table(made("appendix", reader, 4))
+    assert [line["Friction Coefficient"] for line in lines] == ["0.9000", "0.7300"]
 
 
 def test_a_condition_without_a_value_is_not_in_the_appendix_but_returned(tmp_path: Path) -> None:
     missing = export.write_all(small_run(tmp_path, ([], [0.73, 0.74, 0.72])))
     appendix, conditions, _ = tables(tmp_path)
     assert [line["Load /N"] for line in appendix] == ["200"]
-    assert [missed.info.load_n for missed in missing] == [100.0]
+    assert [missed.info.setpoint.value("load") for missed in missing] == [100.0]
     assert [line["status"] for line in conditions] == ["insufficient", "ok"]
     assert conditions[0]["reason"] == "none of 0 repeats is valid"
 
@@ -121,7 +121,8 @@ def test_replicates_have_a_row_each_and_a_combined_one(tmp_path: Path) -> None:
 
 def test_text_of_the_recipe_reaches_no_formula(tmp_path: Path) -> None:
     writer = open_writer(tmp_path)
-    evil = replace(CONDITION, compound="=cmd|' /C calc'!A0", note='+1, "two"\nthree', grid="@x")
+    held = CONDITION.setpoint.but("=cmd|' /C calc'!A0")
+    evil = replace(CONDITION, setpoint=held, note='+1, "two"\nthree', grid="@x")
     run = replace(RUN, metadata={"=key": "-2+3", "load_n": "mine"})
     writer.begin_run(run, SPECIMENS, [evil])
     record(writer, 1, [0.7] * 3)
@@ -133,7 +134,7 @@ def test_text_of_the_recipe_reaches_no_formula(tmp_path: Path) -> None:
 
 
 def test_the_same_data_gives_the_same_bytes_whenever_and_wherever(tmp_path: Path) -> None:
-    names = ("appendix.csv", "conditions.csv", "repeats.csv")
+    names = ("appendix.csv", "budget.csv", "conditions.csv", "repeats.csv")
     for folder, started in (("a", "2024-02-21T14:05:09.000Z"), ("b", "2031-01-01T00:00:00.000Z")):
         (tmp_path / folder).mkdir()
         writer = open_writer(tmp_path / folder)
@@ -167,30 +168,25 @@ def test_a_risk_that_was_accepted_stands_in_every_row_of_every_table(tmp_path: P
     writer = open_writer(tmp_path)
     risk = {"accepted_risk": "trial of a new cell", "loose_safety_keys": "limits.load 480 N is looser than 450 N"}
     writer.begin_run(replace(RUN, metadata=risk), SPECIMENS, [CONDITION])
-    writer.wheel_installed(WheelInfo(1, 1, 1, "1#", 60.0, 90.0, 85.0, 812.0))
+    writer.piece_mounted(PieceInfo(1, 1, 1, "1#", 60.0, 90.0, 85.0, 812.0))
     record(writer, 1, [0.7, 0.71, 0.72])
     writer.close()
     with RunReader(tmp_path) as reader:
-        results, said = export.results_of(reader), reader.run().info.risk
-        found = [
-            table(export.appendix(results)),
-            table(export.repeats(results)),
-            table(export.wheels(results)),
-            table(export.samples(reader)),
-        ]
-        (condition,) = table(export.conditions(results))
+        said = reader.run().info.risk
+        found = [table(made(kind, reader)) for kind in ("appendix", "repeats", "wheel", "samples")]
+        (condition,) = table(made("conditions", reader))
     assert "trial of a new cell" in said and "480 N" in said
     assert all(lines and all(line["accepted_risk"] == said for line in lines) for lines in found)
     assert (condition["accepted_risk"], condition["loose_safety_keys"]) == tuple(risk.values())
     with RunReader(tmp_path) as reader:
-        export.write_parquet_file(tmp_path / "samples.parquet", reader)
+        (tmp_path / "samples.parquet").write_bytes(made("parquet", reader))
     assert set(pq.read_table(tmp_path / "samples.parquet")["accepted_risk"].to_pylist()) == {said}
 
 
 def test_samples_have_every_column_and_their_repeat(tmp_path: Path) -> None:
     with RunReader(small_run(tmp_path)) as reader:
-        lines = table(export.samples(reader))
-    assert tuple(lines[0]) == (*SAMPLE_COLUMNS, "condition", "repeat", "attempt")
+        lines = table(made("samples", reader))
+    assert tuple(lines[0]) == (*QUANTITIES.names, "condition", "repeat", "attempt")
     assert len(lines) == 30
     assert [lines[0][name] for name in ("time_s", "gate", "burst", "repeat_key")] == ["1100.0", "0", "1", "1"]
     assert (lines[-1]["condition"], lines[-1]["repeat"], lines[-1]["attempt"]) == ("2", "3", "1")
@@ -202,15 +198,15 @@ def test_samples_of_no_repeat_have_no_condition_and_missing_values_are_empty(tmp
     writer.sample(row(1.0, 0.0, surface_c=float("nan")))
     writer.close()
     with RunReader(tmp_path) as reader:
-        (line,) = table(export.samples(reader))
+        (line,) = table(made("samples", reader))
     assert (line["condition"], line["surface_c"], line["repeat_key"]) == ("", "", "0")
 
 
 def test_parquet_holds_the_same_samples(tmp_path: Path) -> None:
     path = tmp_path / "samples.parquet"
     with RunReader(small_run(tmp_path / "run")) as reader:
-        export.write_parquet_file(path, reader)
-        lines = table(export.samples(reader))
+        path.write_bytes(made("parquet", reader))
+        lines = table(made("samples", reader))
     read = pq.read_table(path)
     assert read.column_names == list(lines[0])
     assert read["force_x_n"].to_pylist() == [float(line["force_x_n"]) for line in lines]
@@ -225,7 +221,7 @@ def test_parquet_of_many_samples_comes_in_row_groups(tmp_path: Path) -> None:
         writer.sample(row(0.01 * i))
     writer.close()
     with RunReader(tmp_path) as reader:
-        export.write_parquet_file(tmp_path / "s.parquet", reader)
+        (tmp_path / "s.parquet").write_bytes(made("parquet", reader))
     file = pq.ParquetFile(tmp_path / "s.parquet")
     assert (file.num_row_groups, file.metadata.num_rows) == (2, 70_000)
     assert file.read(columns=["condition"])["condition"].null_count == 70_000
@@ -236,7 +232,7 @@ def test_a_run_without_samples_exports_an_empty_parquet_file(tmp_path: Path) -> 
     writer.begin_run(RUN, SPECIMENS, [CONDITION])
     writer.close()
     with RunReader(tmp_path) as reader:
-        export.write_parquet_file(tmp_path / "s.parquet", reader)
+        (tmp_path / "s.parquet").write_bytes(made("parquet", reader))
     assert pq.read_table(tmp_path / "s.parquet").num_rows == 0
 
 
@@ -245,7 +241,8 @@ def test_the_manifest_lists_every_file_with_its_hash(tmp_path: Path) -> None:
     (tmp_path / "recipe.yaml").write_text("recipe: x\n", "utf-8")
     export.write_all(tmp_path)
     files = json.loads((tmp_path / "manifest.json").read_text("utf-8"))["files"]
-    assert sorted(files) == ["appendix.csv", "conditions.csv", "recipe.yaml", "repeats.csv", "run.db", "wheel.csv"]
+    tables = ["appendix.csv", "budget.csv", "conditions.csv"]
+    assert sorted(files) == [*tables, "recipe.yaml", "repeats.csv", "run.db", "wheel.csv"]
     assert files["recipe.yaml"] == {"bytes": 10, "sha256": sha256(b"recipe: x\n").hexdigest()}
     assert manifest_problems(tmp_path) == []
 
@@ -278,7 +275,7 @@ def test_a_file_is_written_whole_or_not_at_all(tmp_path: Path) -> None:
 def test_an_unfinished_run_can_be_exported_while_it_is_written(tmp_path: Path) -> None:
     from tester.store.writer import RunWriter
 
-    writer = RunWriter(tmp_path / "run.db", clock=Clock(), synchronous=True)
+    writer = RunWriter(tmp_path / "run.db", QUANTITIES, clock=Clock(), synchronous=True)
     writer.begin_run(RUN, SPECIMENS, [CONDITION])
     record(writer, 1, [0.7, 0.7, 0.7])
     assert len(tables(tmp_path)[0]) == 1

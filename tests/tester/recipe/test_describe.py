@@ -6,16 +6,16 @@ import json
 
 import pytest
 
+from tester.kinds.wheel_on_belt.recipe.expand import expand
+from tester.kinds.wheel_on_belt.recipe.part import PART
 from tester.recipe.describe import duration, lines
-from tester.recipe.estimate import estimate
-from tester.recipe.expand import expand
 from tester.recipe.plan_json import json_chunks
 from tests.tester.recipe.texts import PREPARED, SMALL, recipe, rig
 
 
 def described(text: str) -> list[str]:
     plan = expand(recipe(text), rig())
-    return list(lines(plan, estimate(plan, rig())))
+    return list(lines(plan, PART.estimate(plan, rig()), PART))
 
 
 @pytest.mark.parametrize(
@@ -44,7 +44,7 @@ def test_angles_are_named_where_there_are_any() -> None:
 
 def test_json_is_one_object_with_a_step_a_line() -> None:
     plan = expand(recipe(PREPARED), rig())
-    text = "".join(json_chunks(plan, estimate(plan, rig())))
+    text = "".join(json_chunks(plan, PART.estimate(plan, rig()), PART))
     data = json.loads(text)
     assert (data["conditions"], data["wheels"], len(data["steps"])) == (4, 1, len(plan.steps))
     assert data["rig_seconds"] == pytest.approx(sum(step["seconds"] for step in data["steps"]), abs=1.0)
@@ -54,7 +54,7 @@ def test_json_is_one_object_with_a_step_a_line() -> None:
 
 def test_a_condition_in_json_has_its_setpoints_with_units() -> None:
     plan = expand(recipe(SMALL), rig())
-    steps = json.loads("".join(json_chunks(plan, estimate(plan, rig()))))["steps"]
+    steps = json.loads("".join(json_chunks(plan, PART.estimate(plan, rig()), PART)))["steps"]
     first = next(step for step in steps if step["kind"] == "condition")
     assert (first["compound"], first["slip_velocity_m_s"], first["load_n"]) == ("1#", 0.3, 100.0)
     assert (first["belt_speed_m_s"], first["temperature_c"], first["window"]) == (0.5, 25.0, "30 rev")
@@ -62,4 +62,4 @@ def test_a_condition_in_json_has_its_setpoints_with_units() -> None:
 
 def test_text_of_a_recipe_stays_text_in_json() -> None:
     plan = expand(recipe(SMALL.replace("recipe: small", "recipe: 'a \"b\" {0} \\n'")), rig())
-    assert json.loads("".join(json_chunks(plan, estimate(plan, rig()))))["recipe"] == 'a "b" {0} \\n'
+    assert json.loads("".join(json_chunks(plan, PART.estimate(plan, rig()), PART)))["recipe"] == 'a "b" {0} \\n'

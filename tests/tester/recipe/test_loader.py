@@ -6,15 +6,17 @@ from pathlib import Path
 
 import pytest
 
+from tester.base.source import InvalidSource
+from tester.kinds.wheel_on_belt.recipe.part import PART
+from tester.recipe.conditions import metadata_of
 from tester.recipe.loader import load_recipe
 from tester.recipe.schema import Extent
-from tester.source import InvalidSource
 from tests.tester.recipe.texts import PREPARED, SMALL, recipe, with_line
 
 
 def refused(text: str) -> list[str]:
     with pytest.raises(InvalidSource) as raised:
-        load_recipe(text, "r.yaml")
+        load_recipe(text, PART, "r.yaml")
     return [str(problem) for problem in raised.value.problems]
 
 
@@ -24,8 +26,8 @@ def test_quantities_arrive_in_the_units_of_the_model() -> None:
     assert read.rest is not None
     assert (read.pre_grind.wheel_speed, read.pre_grind.duration) == (0.8, 240.0)
     assert (read.rest.at_least, read.rest.until, read.rest.within) == (1200.0, 25.0, 2.0)
-    assert read.grids[0].slip_velocity == [0.3]
-    assert read.grids[0].load == [100.0, 200.0]
+    assert read.grids[0].model_dump()["slip_velocity"] == [0.3]
+    assert read.grids[0].model_dump()["load"] == [100.0, 200.0]
 
 
 def test_what_a_recipe_leaves_out_has_the_documented_defaults() -> None:
@@ -37,15 +39,15 @@ def test_what_a_recipe_leaves_out_has_the_documented_defaults() -> None:
     assert (read.measure.soak.within, read.measure.soak.for_, read.measure.soak.at_most) == (1.0, 60.0, 1800.0)
     assert (read.rest.at_most, read.wheel.replace_after, read.measure.wear_check) == (5400.0, 2.0, "never")
     assert (read.order.within, read.replicates) == ("listed", 1)
-    assert (read.grids[0].sideslip, read.grids[0].camber) == ([0.0], [0.0])
+    assert (read.grids[0].model_dump()["sideslip"], read.grids[0].model_dump()["camber"]) == ([0.0], [0.0])
 
 
 def test_a_scalar_is_an_axis_of_one() -> None:
-    assert recipe(with_line("[100 N, 200 N]", "0.2 kN")).grids[0].load == [200.0]
+    assert recipe(with_line("[100 N, 200 N]", "0.2 kN")).grids[0].model_dump()["load"] == [200.0]
 
 
 def test_slip_may_be_negative() -> None:
-    assert recipe(with_line("300 mm/s", "-100 mm/s")).grids[0].slip_velocity == [-0.1]
+    assert recipe(with_line("300 mm/s", "-100 mm/s")).grids[0].model_dump()["slip_velocity"] == [-0.1]
 
 
 def test_a_window_may_be_a_time() -> None:
@@ -62,7 +64,7 @@ def test_free_fields_are_kept_as_text() -> None:
 def test_a_file_is_read_like_a_text(tmp_path: Path) -> None:
     file = tmp_path / "small.yaml"
     file.write_text(SMALL, encoding="utf-8")
-    assert load_recipe(file).recipe == recipe(SMALL)
+    assert load_recipe(file, PART).recipe == recipe(SMALL)
 
 
 @pytest.mark.parametrize(
@@ -162,6 +164,12 @@ def test_a_value_of_the_wrong_form_is_reported_where_it_stands(old: str, new: st
             "6:21",
             "soak.within, 1 K, is wider than temperature_band, 0.5 K",
         ),
+        (
+            "wheel_speed: 0.8 m/s",
+            "wheel_speed: 0.8 m/s\n  combine: paper",
+            "6:12",
+            "combine: paper takes the closest two of 3 repeats, and 5 are asked for (expected repeats: 3)",
+        ),
         ("name: load", "name: load\n    repeats: 2", "8:14", "a value without a flag needs 3 valid repeats"),
     ],
 )
@@ -169,6 +177,12 @@ def test_what_makes_no_sense_is_reported_where_it_stands(old: str, new: str, lin
     (problem,) = refused(with_line(old, new))
     assert problem.startswith(f"r.yaml:{line}: ")
     assert said in problem
+
+
+@pytest.mark.parametrize(("said", "kept"), [("", {}), ("combine: mean", {}), ("combine: paper", {"combine": "paper"})])
+def test_how_repeats_are_combined_goes_with_the_run_where_it_is_not_the_mean(said: str, kept: dict[str, str]) -> None:
+    read = recipe(with_line("wheel_speed: 0.8 m/s", f"wheel_speed: 0.8 m/s\n  repeats: 3\n  {said}"))
+    assert metadata_of(read) == kept
 
 
 def test_fewer_repeats_than_three_are_accepted_with_their_own_min_valid() -> None:

@@ -9,8 +9,10 @@ import pytest
 
 from tester.analysis.quantiles import t_quantile
 from tester.analysis.repeatability import Pool
-from tester.recipe.estimate import Estimator, estimate
-from tester.recipe.expand import expand
+from tester.kinds.wheel_on_belt.recipe.estimate import WheelEstimator
+from tester.kinds.wheel_on_belt.recipe.expand import expand
+from tester.kinds.wheel_on_belt.recipe.part import PART
+from tester.recipe.estimate import estimate
 from tester.recipe.plan import Plan
 from tester.recipe.precision import (
     PrecisionError,
@@ -63,26 +65,26 @@ def test_at_most_bounds_what_is_expected() -> None:
 def test_a_precision_makes_a_plan_longer() -> None:
     usual, precise = recipe(PREPARED), with_precision(recipe(PREPARED), 1.0)
     plan = expand(precise, rig())
-    figures = estimate(plan, rig())
+    figures = PART.estimate(plan, rig())
     assert all(step.until_percent == 1.0 for step in plan.conditions())
-    assert figures.rig_seconds > estimate(expand(usual, rig()), rig()).rig_seconds + 600.0
+    assert figures.rig_seconds > PART.estimate(expand(usual, rig()), rig()).rig_seconds + 600.0
     assert figures.rig_seconds_low < figures.rig_seconds < figures.rig_seconds_high
 
 
 def test_what_is_stored_counts() -> None:
     def repeats(pools: dict[str, Pool]) -> float:
-        estimator = Estimator(rig(), repeatability=s_percents(pools))
+        estimator = WheelEstimator(rig(), repeatability=s_percents(pools))
         plan = expand(with_precision(recipe(PREPARED), 2.0), rig(), estimator)
-        return sum(one.repeats for one in estimate(plan, rig(), estimator).steps)
+        return sum(one.repeats for one in estimate(plan, estimator).steps)
 
     steady, loose = Pool(20 * 0.01**2, 20), Pool(20 * 0.04**2, 20)
     assert repeats({"1#": steady}) < repeats({}) < repeats({"1#": loose})
 
 
 def lines(pools: dict[str, Pool]) -> str:
-    estimator = Estimator(rig(), repeatability=s_percents(pools))
+    estimator = WheelEstimator(rig(), repeatability=s_percents(pools))
     plan = expand(with_precision(recipe(PREPARED), 2.0), rig(), estimator)
-    return "\n".join(precision_lines(plan, estimate(plan, rig(), estimator), estimator, pools))
+    return "\n".join(precision_lines(plan, estimate(plan, estimator), estimator, pools))
 
 
 def test_the_plan_says_where_the_deviation_is_from() -> None:
@@ -93,8 +95,8 @@ def test_the_plan_says_where_the_deviation_is_from() -> None:
 
 def test_a_plan_without_a_precision_says_nothing_of_it() -> None:
     plan = small_plan()
-    estimator = Estimator(rig())
-    assert list(precision_lines(plan, estimate(plan, rig(), estimator), estimator, {})) == []
+    estimator = WheelEstimator(rig())
+    assert list(precision_lines(plan, estimate(plan, estimator), estimator, {})) == []
 
 
 def small_plan() -> Plan:
@@ -102,13 +104,13 @@ def small_plan() -> Plan:
 
 
 def test_a_total_below_what_the_instruments_have_is_refused_by_its_largest_term() -> None:
-    highest = max(floors(small_plan(), Estimator(rig())), key=lambda one: one.percent)
+    highest = max(floors(small_plan(), WheelEstimator(rig())), key=lambda one: one.percent)
     told = f"{highest.percent:.2f} % from the instruments .* of which {highest.largest}"
     with pytest.raises(PrecisionError, match=told):
-        until_for_total(0.9 * highest.percent, small_plan(), Estimator(rig()))
+        until_for_total(0.9 * highest.percent, small_plan(), WheelEstimator(rig()))
 
 
 def test_a_total_leaves_to_the_repeats_what_the_instruments_do_not_take() -> None:
-    highest = max(one.percent for one in floors(small_plan(), Estimator(rig())))
-    until = until_for_total(highest + 1.0, small_plan(), Estimator(rig()))
+    highest = max(one.percent for one in floors(small_plan(), WheelEstimator(rig())))
+    until = until_for_total(highest + 1.0, small_plan(), WheelEstimator(rig()))
     assert until**2 + highest**2 == pytest.approx((highest + 1.0) ** 2)

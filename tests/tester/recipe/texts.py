@@ -5,9 +5,11 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import cache
 
+from tester.kinds import load_rig
+from tester.kinds.wheel_on_belt.recipe.part import PART
+from tester.kinds.wheel_on_belt.recipe.schema import WheelRecipe, for_wheels
+from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.recipe.loader import load_recipe
-from tester.recipe.schema import Recipe
-from tester.rig import RigConfig, load_rig
 
 SMALL = """\
 recipe: small
@@ -34,7 +36,7 @@ rest: {at_least: 20 min, until: 25 degC, within: 2 degC}
 @cache
 def rig(*overrides: str, accept_risk: str = "") -> RigConfig:
     """Return the simulated rig, with overrides as for --set; ``accept_risk`` as for --accept-risk."""
-    return load_rig("sim", list(overrides), accept_risk)
+    return RigConfig.of(load_rig("sim", list(overrides), accept_risk))
 
 
 def real_rig() -> RigConfig:
@@ -42,9 +44,9 @@ def real_rig() -> RigConfig:
     return replace(rig(), simulated=False)
 
 
-def recipe(text: str) -> Recipe:
+def recipe(text: str) -> WheelRecipe:
     """Return a valid recipe."""
-    return load_recipe(text, "r.yaml").recipe
+    return for_wheels(load_recipe(text, PART, "r.yaml").recipe)
 
 
 def with_line(old: str, new: str, text: str = SMALL) -> str:

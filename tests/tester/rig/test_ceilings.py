@@ -9,12 +9,13 @@ import pytest
 import yaml
 
 from drivers.canopen.dictionary import VENDOR_ID
-from tester.config_reader import key_of
-from tester.interlocks.table import PARAMETERS
-from tester.rig import load_rig
-from tester.rig.ceilings import CEILINGS, beyond, counts_as_simulated
-from tester.rig.load import load_rig_text, packaged_text, risks_of
-from tester.source import InvalidSource
+from tester.base.config_reader import key_of
+from tester.base.source import InvalidSource
+from tester.kinds import load_rig, load_rig_text, packaged_text
+from tester.kinds.wheel_on_belt.interlocks.table import PARAMETERS
+from tester.kinds.wheel_on_belt.rig.ceilings import CEILINGS
+from tester.rig.ceilings import beyond, counts_as_simulated
+from tester.rig.load import risks_of
 
 NONSENSE = (
     "interlocks.depth_factor=1e9", "interlocks.late_scan=1000", "limits.slip_power=1e6",
@@ -92,7 +93,10 @@ NO_HARM = {
         "period": "as outer_gain", "rolling_offset": "as outer_gain",
     },
     "limits": {}, "arming": {}, "scan": {},
-    "can": dict.fromkeys(("interface", "channel", "bitrate", "node"), "which wire, not what is on it"),
+    "can": {
+        **dict.fromkeys(("interface", "channel", "bitrate", "node"), "which wire, not what is on it"),
+        "nodes": "they measure, and no interlock looks at them",
+    },
 }  # fmt: skip
 """Keys that no harm hangs on, and why."""
 

@@ -1,19 +1,22 @@
-"""A rig file that lacks keys of interlocks: read with the packaged values, named, completed without another change."""
+"""A rig file that lacks keys: read with the packaged values, named, completed without another change."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
 import pytest
+import yaml
 
-from tester.interlocks.table import PARAMETERS
-from tester.rig import load_rig
-from tester.rig.template import hardware_text
-from tester.rig.upgrade import packaged_keys, upgrade
-from tester.source import InvalidSource, load_tree
+from tester.base.source import InvalidSource, load_tree
+from tester.kinds import hardware_text, load_rig, packaged_keys, upgrade
+from tester.kinds.wheel_on_belt.interlocks.table import PARAMETERS
 
-OLD = ("pushed", "clear", "runaway_window")
+OLD = ("pushed", "clear", "runaway_window", "rolling_offset", "gauge")
 """Keys that the file of these tests does not have."""
+KEYS = (
+    "loops.heat.rolling_offset", "interlocks.runaway_window", "interlocks.clear", "interlocks.pushed", "wear.gauge",
+)  # fmt: skip
+"""They, in the order of the packaged file."""
 
 
 def without(lines: list[str]) -> list[str]:
@@ -33,11 +36,12 @@ def old(tmp_path: Path) -> Path:
 
 
 def test_a_key_that_is_missing_takes_the_packaged_value(old: Path) -> None:
-    assert load_rig(old).interlocks == load_rig("sim").interlocks
+    mine, packaged = load_rig(old), load_rig("sim")
+    assert (mine.interlocks, mine.loops, mine.wear) == (packaged.interlocks, packaged.loops, packaged.wear)
 
 
 def test_missing_keys_are_named_in_the_order_of_the_packaged_file(old: Path) -> None:
-    assert packaged_keys(old) == ("interlocks.runaway_window", "interlocks.clear", "interlocks.pushed")
+    assert packaged_keys(old) == KEYS
 
 
 def test_a_key_that_is_set_for_the_command_is_not_missing(old: Path) -> None:
@@ -50,7 +54,7 @@ def test_the_packaged_rig_lacks_nothing() -> None:
 
 def test_upgrade_writes_the_missing_keys_and_says_which(old: Path) -> None:
     before = load_rig(old)
-    assert set(upgrade(old)) == set(OLD)
+    assert upgrade(old) == KEYS
     assert packaged_keys(old) == () and load_rig(old) == before
 
 
@@ -86,7 +90,7 @@ def test_upgrade_goes_by_the_indentation_of_the_section(tmp_path: Path) -> None:
     path.write_text("interlocks:\n      jump: 4 K  # mine\n# the end", encoding="utf-8")
     upgrade(path)
     lines = path.read_text(encoding="utf-8").splitlines()
-    assert lines[1] == "      jump: 4 K  # mine" and lines[-1] == "# the end"
+    assert lines[1] == "      jump: 4 K  # mine" and "# the end" in lines
     assert lines[2].startswith("      silent_can_scans: 2.5")
 
 
@@ -107,3 +111,70 @@ def test_upgrade_refuses_what_no_line_can_be_added_to_and_leaves_it(tmp_path: Pa
     with pytest.raises(InvalidSource):
         upgrade(path)
     assert path.read_text(encoding="utf-8") == text and list(tmp_path.iterdir()) == [path]
+
+
+def test_upgrade_writes_a_section_that_is_missing_as_the_packaged_file_has_it(tmp_path: Path) -> None:
+    text = hardware_text()
+    begin, end = text.index("\n# When a sample counts."), text.index("\n# Level and delay of each interlock")
+    path = tmp_path / "rig.yaml"
+    path.write_text(text[:begin] + text[end:], encoding="utf-8")
+    upgrade(path)
+    assert path.read_text(encoding="utf-8") == text[:begin] + text[end:] + text[begin:end]
+
+
+def test_upgrade_writes_a_section_inside_another_with_its_comments(tmp_path: Path) -> None:
+    text = hardware_text()
+    begin, end = text.index("  heat:      "), text.index("\n# When a sample counts.")
+    path = tmp_path / "rig.yaml"
+    path.write_text(text[:begin] + text[end:], encoding="utf-8")
+    upgrade(path)
+    assert path.read_text(encoding="utf-8") == text
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "simulated: false", "  load: 440 N ", "  wheel_diameter: 90 mm", "  interface: socketcan", "  bitrate: 500000",
+        "    node_id: 4", "    rated_torque: 2 N m", "    port: /dev/ttyUSB0", "    unit_id: 2", "    profile: calex",
+        "  ambient: 23 degC", "    outer_diameter: 90 mm",
+    ],
+)  # fmt: skip
+def test_a_key_that_only_the_builders_know_must_be_there(tmp_path: Path, line: str) -> None:
+    text = hardware_text()
+    assert text.count(f"\n{line}") == 1
+    path = tmp_path / "rig.yaml"
+    path.write_text(text.replace(f"\n{line}", "\n# "), encoding="utf-8")
+    with pytest.raises(InvalidSource) as caught:
+        load_rig(path)
+    key = line.strip().partition(":")[0]
+    assert f"{key} is missing" in str(caught.value) and "no packaged value stands in" in str(caught.value)
+    assert f".{key}" not in "".join(packaged_keys(path))
+
+
+@pytest.mark.parametrize("axis", ["wheel", "sideslip"])
+def test_an_axis_that_is_missing_is_not_taken_from_the_packaged_file(tmp_path: Path, axis: str) -> None:
+    content = yaml.safe_load(hardware_text())
+    del content["axes"][axis]
+    path = tmp_path / "rig.yaml"
+    path.write_text(yaml.safe_dump(content), encoding="utf-8")
+    with pytest.raises(InvalidSource, match=f"{axis} is missing"):
+        load_rig(path)
+
+
+def test_an_axis_set_by_hand_takes_no_key(tmp_path: Path) -> None:
+    content = yaml.safe_load(hardware_text())
+    content["axes"]["camber"] = {"manual": True}
+    del content["axes"]["wheel"]["rpdo_deadline"]
+    path = tmp_path / "rig.yaml"
+    path.write_text(yaml.safe_dump(content), encoding="utf-8")
+    assert packaged_keys(path) == ("axes.wheel.rpdo_deadline",)
+    rig = load_rig(path)
+    assert rig.axes.camber is None and rig.axes.wheel.rpdo_deadline_s == 0.2
+
+
+def test_a_press_without_a_screw_is_not_given_the_packaged_one(tmp_path: Path) -> None:
+    content = yaml.safe_load(hardware_text())
+    del content["axes"]["press"]["screw"]
+    path = tmp_path / "rig.yaml"
+    path.write_text(yaml.safe_dump(content), encoding="utf-8")
+    assert load_rig(path).axes.press.screw is None

@@ -17,6 +17,7 @@ from types import TracebackType
 from pydantic import JsonValue
 from pydantic_core import to_json
 
+from tester.screen import MachineView
 from tester.service.address import Address, UnixAddress
 from tester.service.gateway import Gateway
 from tester.service.hook import Hook
@@ -24,7 +25,8 @@ from tester.service.link import FROM_GATEWAY, Order, Presence
 from tester.service.listening import listening
 from tester.service.protocol import Accepted, Event, Refused, encode
 from tester.service.queries import Queries
-from tester.service.state import TREND_COLUMNS, PlanView, StateView
+from tester.service.state import PlanView, StateView
+from tests.tester.service.views import MACHINE
 from tests.tester.service.views import state as a_state
 
 
@@ -48,6 +50,7 @@ class FakeService:
     async def __aenter__(self) -> FakeService:
         """Open the door."""
         self.address = await self._stack.enter_async_context(listening(self.gateway, self.address, self._uid))
+        self.machine(MACHINE)
         self.show(a_state())
         return self
 
@@ -59,8 +62,12 @@ class FakeService:
 
     def show(self, view: StateView, row: tuple[float | None, ...] | None = None) -> None:
         """Send a snapshot."""
-        made = row if row is not None else (0.0,) * len(TREND_COLUMNS)
+        made = row if row is not None else (0.0,) * len(MACHINE.trend)
         self.gateway.take(b"s" + to_json(view) + b"\t" + to_json(made))
+
+    def machine(self, machine: MachineView) -> None:
+        """Send the tables of a kind of machine."""
+        self.gateway.take(b"m" + to_json(machine))
 
     def event(self, kind: str, text: str, severity: str = "info") -> None:
         """Send an event."""

@@ -17,28 +17,28 @@ import pytest
 from pydantic import JsonValue
 
 from recipes import UnknownRecipe
-from tester.campaign.endings import CannotStartError
-from tester.preparing import Prepared, prepared
+from tester.base.source import InvalidSource
+from tester.run.endings import CannotStartError
+from tester.run.preparing import Prepared, prepared
 from tester.service.address import UnixAddress
 from tester.service.commands import RigAction
-from tester.service.hub import Hub, HubConfig
+from tester.service.gateway_link import GatewayLink, LinkConfig
 from tester.service.link import Order, Presence
 from tester.service.planning import Task
 from tester.service.protocol import Event, Frames
 from tester.service.service import Service, ServiceOptions
 from tester.service.state import PlanView, StateView
-from tester.source import InvalidSource
 
 Script = Generator[Order | Presence | list[Order | Presence] | None]
 MOST_POLLS = 20_000
 """A script that has not ended by then hangs."""
 
 
-class Stage(Hub):
+class Stage(GatewayLink):
     """Hears the script, and keeps what would have been said to clients."""
 
     def __init__(self, folder: Path, script: Callable[[Stage], Script]) -> None:
-        super().__init__(HubConfig(UnixAddress(folder / "service.sock"), folder / "service.json", folder, "sim"))
+        super().__init__(LinkConfig(UnixAddress(folder / "service.sock"), folder / "service.json", folder, "sim"))
         self.events: list[Event] = []
         self.views: list[StateView] = []
         self.plans: list[PlanView | None] = []
@@ -67,7 +67,7 @@ class Stage(Hub):
     def texts(self, kind: str) -> list[str]:
         return [event.text for event in self.events if event.kind == kind]
 
-    # -- what a hub does --------------------------------------------------------------------------------------
+    # -- what a gateway does --------------------------------------------------------------------------------------
 
     @property
     def watched(self) -> bool:
@@ -127,10 +127,10 @@ def planned_here(task: Task, meanwhile: Callable[[], str]) -> Prepared:
         raise CannotStartError(str(error)) from error
 
 
-def play(folder: Path, script: Callable[[Stage], Script], *overrides: str) -> Stage:
+def play(folder: Path, script: Callable[[Stage], Script], *overrides: str, rig: str = "sim") -> Stage:
     """Let a service live until the script has ended; return what was said."""
     stage = Stage(folder, script)
-    stage.service = Service(ServiceOptions("sim", overrides, folder / "runs"), stage)
+    stage.service = Service(ServiceOptions(rig, overrides, folder / "runs"), stage)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("tester.service.running.planned", planned_here)
         stage.service.serve()

@@ -7,17 +7,43 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from websockets.asyncio.client import ClientConnection, unix_connect
 
+from tester.screen import MachineView
+from tester.service.address import UnixAddress
 from tester.service.client import Client, LostError, NoServiceError, RefusedError
-from tester.service.commands import Acknowledge, Control, Hold, ListRuns, Release, RunRecipe, Stop, WatchFrames
+from tester.service.commands import (
+    VERSION,
+    Acknowledge,
+    Command,
+    Hold,
+    Join,
+    ListRuns,
+    Release,
+    RunRecipe,
+    Stop,
+    TakeControl,
+    WatchFrames,
+)
 from tester.service.gateway import QUESTIONS
 from tester.service.manners import MOST_CLIENTS, MOST_STRANGERS, Bucket
 from tester.service.outbox import MOST_BEHIND, MOST_REPLIES
-from tester.service.protocol import Event, Hello, PlanMessage, Snapshot
+from tester.service.protocol import (
+    Accepted,
+    Event,
+    Goodbye,
+    Hello,
+    MachineMessage,
+    PlanMessage,
+    Snapshot,
+    encode,
+    from_server,
+)
 from tests.tester.service.fake import FakeService
-from tests.tester.service.views import HOSTILE, hostile, plan, state
+from tests.tester.service.views import HOSTILE, MACHINE, hostile, plan, state
 
 Story = Callable[[FakeService], Awaitable[None]]
+needs_unix = pytest.mark.skipif(os.name != "posix", reason="Unix sockets")
 
 
 def play(folder: Path, story: Story, *, uid: int | None = None) -> None:
@@ -66,7 +92,7 @@ def test_an_accepted_command_gives_its_result(tmp_path: Path) -> None:
     play(tmp_path, story)
 
 
-@pytest.mark.skipif(os.name != "posix", reason="Unix sockets")
+@needs_unix
 def test_a_command_carries_the_user_id_of_its_client(tmp_path: Path) -> None:
     async def story(fake: FakeService) -> None:
         async with await Client.connect(fake.address, name="ada", control=True) as client:
@@ -110,7 +136,7 @@ def test_only_the_first_of_two_that_ask_has_control(tmp_path: Path) -> None:
             with pytest.raises(RefusedError, match="first has control"):
                 await second.command(Hold())
             with pytest.raises(RefusedError, match="first has control"):
-                await second.command(Control())
+                await second.command(TakeControl())
 
     play(tmp_path, story)
 
@@ -174,7 +200,7 @@ def test_control_is_taken_over_only_by_force(tmp_path: Path) -> None:
         first = await Client.connect(fake.address, name="first", control=True)
         second = await Client.connect(fake.address, name="second")
         async with first, second:
-            await second.command(Control(force=True))
+            await second.command(TakeControl(force=True))
             await second.command(Hold())
             with pytest.raises(RefusedError, match="second has control"):
                 await first.command(Hold())
@@ -189,7 +215,7 @@ def test_control_is_free_once_its_holder_has_gone(tmp_path: Path) -> None:
             await first.close()
             while fake.presence.controller:
                 await asyncio.sleep(0)
-            await second.command(Control())
+            await second.command(TakeControl())
             await second.command(Hold())
             assert fake.presence.controller == "second"
             assert (fake.orders[-1].action, fake.orders[-1].name) == (Hold(), "second")
@@ -373,7 +399,7 @@ def test_of_what_a_client_that_is_gone_had_left_to_say_stop_alone_is_heard(
 
     async def story(fake: FakeService) -> None:
         client = await Client.connect(fake.address, name="gone")
-        said = [asyncio.create_task(client.command(action)) for action in (Control(), Control(), Stop())]
+        said = [asyncio.create_task(client.command(action)) for action in (TakeControl(), TakeControl(), Stop())]
         while not spent:
             await asyncio.sleep(0)
         client._connection.transport.abort()  # pyright: ignore[reportPrivateUsage]
@@ -424,5 +450,125 @@ def test_a_client_asks_a_few_questions_at_a_time(tmp_path: Path, monkeypatch: py
             go.set()
             assert await asyncio.gather(*asked) == [{}] * QUESTIONS
             assert await client.command(ListRuns()) == {}
+
+    play(tmp_path, story)
+
+
+async def raw(fake: FakeService) -> ClientConnection:
+    assert isinstance(fake.address, UnixAddress)
+    return await unix_connect(str(fake.address.path), uri="ws://localhost/", compression=None)
+
+
+async def stop_arrives(fake: FakeService) -> Stop:
+    while not fake.orders:
+        await asyncio.sleep(0)
+    action = fake.orders[-1].action
+    assert isinstance(action, Stop)
+    return action
+
+
+@needs_unix
+@pytest.mark.parametrize(
+    "join", [b'{"type":"join","name":"old","version":1}', b'{"type":"join","name":"old"}'], ids=["version 1", "none"]
+)
+def test_a_client_of_version_1_is_refused_with_the_reason_and_what_to_do(tmp_path: Path, join: bytes) -> None:
+    async def story(fake: FakeService) -> None:
+        async with await raw(fake) as old:
+            await old.send(join, text=True)
+            said = from_server(await old.recv())
+        assert isinstance(said, Goodbye)
+        for words in ("speaks version 1", f"the service version {VERSION}", "install the same version", "STOP"):
+            assert words in said.reason
+
+    play(tmp_path, story)
+
+
+@needs_unix
+def test_a_client_of_a_newer_version_is_told_that_the_service_is_the_older_one(tmp_path: Path) -> None:
+    async def story(fake: FakeService) -> None:
+        async with await raw(fake) as new:
+            await new.send(b'{"type":"join","name":"new","version":99,"mood":"good"}', text=True)
+            said = from_server(await new.recv())
+        assert isinstance(said, Goodbye) and "here the service is the older one" in said.reason
+
+    play(tmp_path, story)
+
+
+@needs_unix
+def test_a_client_that_is_refused_can_stop_the_rig_all_the_same(tmp_path: Path) -> None:
+    async def story(fake: FakeService) -> None:
+        async with await raw(fake) as old:
+            await old.send(b'{"type":"join","name":"old","version":1}', text=True)
+            await old.recv()
+            await old.send(b'{"type":"command","id":1,"action":{"command":"stop","fast":true}}', text=True)
+            assert (await stop_arrives(fake)).fast
+
+    play(tmp_path, story)
+
+
+@needs_unix
+def test_stop_as_the_first_word_is_taken_and_on_record_as_a_strangers(tmp_path: Path) -> None:
+    async def story(fake: FakeService) -> None:
+        async with await raw(fake) as stranger:
+            await stranger.send(b'{"type":"command","id":1,"action":{"command":"stop"}}', text=True)
+            assert not (await stop_arrives(fake)).fast
+            assert fake.orders[-1].by == f"a client that has not joined (user id {os.getuid()})"
+
+    play(tmp_path, story)
+
+
+@needs_unix
+def test_a_client_that_finds_no_place_can_stop_the_rig_all_the_same(tmp_path: Path) -> None:
+    async def story(fake: FakeService) -> None:
+        there = [await Client.connect(fake.address) for _ in range(MOST_CLIENTS)]
+        async with await raw(fake) as late:
+            await late.send(encode(Join("late")), text=True)
+            await late.recv()
+            await late.send(encode(Command(1, Stop())), text=True)
+            await stop_arrives(fake)
+        await asyncio.gather(*(client.close() for client in there))
+
+    play(tmp_path, story)
+
+
+@needs_unix
+@pytest.mark.parametrize("more", [b',"fsat":true', b',"fast":"yes"', b',"scope":"all"'])
+def test_a_stop_with_something_that_nobody_understands_is_a_stop(tmp_path: Path, more: bytes) -> None:
+    async def story(fake: FakeService) -> None:
+        async with await raw(fake) as client:
+            await client.send(encode(Join("script")), text=True)
+            await client.recv()
+            await client.send(b'{"type":"command","id":7,"action":{"command":"stop"' + more + b'},"new":1}', text=True)
+            await stop_arrives(fake)
+            while not isinstance(answer := from_server(await client.recv()), Accepted):
+                pass
+            assert answer.id == 7
+
+    play(tmp_path, story)
+
+
+def test_another_kind_of_rig_is_told_before_its_first_state_and_begins_the_trend_anew(tmp_path: Path) -> None:
+    async def story(fake: FakeService) -> None:
+        async with await Client.connect(fake.address) as client:
+            messages = aiter(client)
+            assert isinstance(await anext(messages), Hello)
+            assert client.machine == MACHINE and len(client.trend) == 1
+            fake.machine(MachineView("track", ("wall_s", "t_s", "force_n")))
+            fake.show(state("HOLD"), (1.0, 2.0, 3.0))
+            told = await anext(messages)
+            assert isinstance(told, MachineMessage) and client.machine.kind == "track"
+            assert isinstance(await anext(messages), Snapshot)
+            assert list(client.trend) == [(1.0, 2.0, 3.0)]
+        async with await Client.connect(fake.address) as late:
+            assert late.machine.kind == "track" and list(late.trend) == [(1.0, 2.0, 3.0)]
+
+    play(tmp_path, story)
+
+
+def test_the_same_tables_told_again_change_nothing(tmp_path: Path) -> None:
+    async def story(fake: FakeService) -> None:
+        fake.machine(MACHINE)
+        async with await Client.connect(fake.address) as client:
+            assert len(client.trend) == 1
 
     play(tmp_path, story)

@@ -5,13 +5,14 @@ from pathlib import Path
 
 import pytest
 
-from tester.rig import load_rig
+from tester.kinds import load_rig
+from tester.kinds.wheel_on_belt.manual import WheelHand
 from tester.service.commands import Arm, Hold, Jog, Stop, Tare
 from tester.service.link import Presence
 from tester.service.state import StateView
 from tester.store.catalogue import run_folders
 from tester.store.reader import RunReader
-from tester.store.records import WheelInfo
+from tester.store.records import PieceInfo
 from tests.tester.service.stage import Script, Stage, play
 from tests.tester.store.build import CONDITION, RUN, SPECIMENS, open_writer
 
@@ -21,7 +22,7 @@ ARMED = Presence("client 1", 1, 0, False)
 @pytest.fixture(autouse=True)
 def _quick(monkeypatch: pytest.MonkeyPatch) -> None:
     """Show every poll, and let simulated time run as fast as it goes."""
-    monkeypatch.setattr("tester.service.desk.SNAPSHOT_S", 0.0)
+    monkeypatch.setattr("tester.service.state_publisher.SNAPSHOT_S", 0.0)
     monkeypatch.setattr("tester.service.service.MANUAL_LAPSE", 50.0)
 
 
@@ -196,7 +197,7 @@ def test_the_wheel_that_the_last_run_left_worn_is_touched_and_loaded(tmp_path: P
     folder.mkdir(parents=True)
     writer = open_writer(folder)
     writer.begin_run(replace(RUN, rig_text=load_rig("sim").text), SPECIMENS, [CONDITION])
-    writer.wheel_installed(WheelInfo(1, 1, 1, "1#", 60.0, 90.0, 85.0, 812.0))
+    writer.piece_mounted(PieceInfo(1, 1, 1, "1#", 60.0, 90.0, 85.0, 812.0))
     writer.finish("done", "", rig_seconds=80.0)
     writer.close()
 
@@ -256,9 +257,9 @@ def test_a_zero_that_is_refused_changes_nothing(tmp_path: Path) -> None:
         yield from stage.until(lambda view: bool(view.manual.tare))
         assert stage.service is not None and stage.service.desk.watch is not None
         ctx, hand = stage.service.desk.watch.run.engine.ctx, stage.service.desk.hand
-        assert hand is not None
+        assert hand is not None and isinstance(hand.hand, WheelHand)
         before = ctx.cell.tare
-        hand.reference_tare[2] -= 45.0
+        hand.hand.reference_tare[2] -= 45.0
         yield stage.order(Tare())
         yield from stage.until(lambda view: view.manual.tare.startswith("not taken: load cell zero drifted by 4"))
         assert ctx.cell.tare == before
@@ -400,3 +401,17 @@ def test_a_screen_that_gives_no_sign_of_life_for_a_second_ends_the_mode(tmp_path
         yield from stage.until(off)
 
     assert any("no sign of its screen" in text for text in play(tmp_path, script).texts("mode"))
+
+
+def test_an_axis_that_this_machine_does_not_have_is_refused_with_those_it_has(tmp_path: Path) -> None:
+    def script(stage: Stage) -> Script:
+        yield from armed(stage)
+        yield stage.order(Jog("chamber", 1))
+        yield None
+        assert stage.refused["jog"] == (
+            "no axis 'chamber' is moved by hand here: wheel, belt, both, press, sideslip, camber, heat"
+        )
+        yield stage.order(Stop())
+        yield from stage.until(off)
+
+    play(tmp_path, script)

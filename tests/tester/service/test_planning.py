@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from tester.campaign.endings import CannotStartError
-from tester.preparing import prepared
+from tester.run.endings import CannotStartError
+from tester.run.preparing import prepared
 from tester.service.planning import Task, planned
-from tests.tester.engine.bench import SHORT
+from tests.tester.kinds.wheel_on_belt.bench import SHORT
 
 
 def test_it_is_what_this_process_would_have_planned(tmp_path: Path) -> None:

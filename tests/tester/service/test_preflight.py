@@ -7,34 +7,34 @@ from pathlib import Path
 
 import pytest
 
-from tester.interlocks.heat_ratio import NO_HISTORY, KnownRatio
-from tester.rig import CalibrationConfig, load_rig
+from tester.base.source import InvalidSource
+from tester.kinds import load_rig
+from tester.kinds.wheel_on_belt.interlocks.heat_ratio import NO_HISTORY
+from tester.kinds.wheel_on_belt.left_on_rig import HeatHistory, WheelLeft
+from tester.kinds.wheel_on_belt.rig import CertificatesConfig
+from tester.kinds.wheel_on_belt.served import SERVED
 from tester.service.preflight import (
     Past,
-    age_words,
     alarms_check,
     calibration_check,
-    heat_check,
     known_checks,
     last_run_check,
     past_of,
-    wheel_check,
-    zero_check,
 )
 from tester.service.state import DiskView
-from tester.source import InvalidSource
-from tester.store.records import WheelInfo
+from tester.store.records import PieceInfo
 from tests.tester.service.views import state, with_alarm
 from tests.tester.store.build import CONDITION, RUN, SPECIMENS, open_writer
 
 NOW = "2026-03-01T12:00:00.000Z"
-WHEEL = WheelInfo(1, 1, 1, "1#", 60.0, 90.0, 89.4, 812.0)
-PAST = Past("done", "", WHEEL, 90.0, "2026-03-01T09:30:00.000Z")
+WHEEL = PieceInfo(1, 1, 1, "1#", 60.0, 90.0, 89.4, 812.0)
+PAST = Past("done", "", WheelLeft("run", WHEEL, "2026-03-01T09:30:00.000Z"))
+HISTORY = HeatHistory(NO_HISTORY)
 
 
 def test_every_matter_has_a_line_once() -> None:
     disk = DiskView(5 * 10**9, 0, False)
-    names = [check.name for check in known_checks(load_rig("sim"), disk, (), PAST, "", NOW)]
+    names = [check.name for check in known_checks(load_rig("sim"), disk, (), PAST, "", NOW, HISTORY)]
     assert names[:4] == ["disk space", "alarms", "last run", "calibration"]
     assert names[4:] == ["wheel", "zero of the load cell", "heat balance"]
 
@@ -67,41 +67,30 @@ def test_how_the_last_run_ended_is_said(status: str, reason: str, latched: str, 
 
 def test_without_a_run_nothing_is_claimed_of_it() -> None:
     assert last_run_check(None, "").ok is None and last_run_check(None, "rig lost").ok is False
-    assert wheel_check(None).ok is None and zero_check(None, NOW).ok is None
 
 
 @pytest.mark.parametrize(
     ("calibration", "ok", "words"),
     [
-        (CalibrationConfig("2027-01-31", "2027-02-28", "2027-03-31"), True, "in date until 2027-01-31"),
-        (CalibrationConfig("2026-02-28", "2027-02-28", "2027-03-31"), False, "load cell ended 2026-02-28"),
-        (CalibrationConfig("2026-03-20", "2027-02-28", "2027-03-31"), True, "load cell ends 2026-03-20"),
-        (CalibrationConfig("2027-01-31"), None, "not in the rig file: thermometer, jacket"),
-        (CalibrationConfig("2026-03-01", "2027-02-28", "2027-03-31"), True, "load cell ends 2026-03-01"),
+        (CertificatesConfig("2027-01-31", "2027-02-28", "2027-03-31"), True, "in date until 2027-01-31"),
+        (CertificatesConfig("2026-02-28", "2027-02-28", "2027-03-31"), False, "load cell ended 2026-02-28"),
+        (CertificatesConfig("2026-03-20", "2027-02-28", "2027-03-31"), True, "load cell ends 2026-03-20"),
+        (CertificatesConfig("2027-01-31"), None, "not in the rig file: thermometer, jacket"),
+        (CertificatesConfig("2026-03-01", "2027-02-28", "2027-03-31"), True, "load cell ends 2026-03-01"),
     ],
 )
-def test_a_certificate_is_held_against_the_date(calibration: CalibrationConfig, ok: bool | None, words: str) -> None:
+def test_a_certificate_is_held_against_the_date(calibration: CertificatesConfig, ok: bool | None, words: str) -> None:
     found = calibration_check(calibration, NOW, simulated=False)
     assert (found.ok, found.text) == (ok, words)
 
 
 def test_a_simulated_rig_needs_no_certificate() -> None:
-    assert calibration_check(CalibrationConfig(), NOW, simulated=True).ok
+    assert calibration_check(CertificatesConfig(), NOW, simulated=True).ok
 
 
 def test_a_date_in_the_rig_file_that_is_none_is_refused_where_it_stands() -> None:
     with pytest.raises(InvalidSource, match="expected a date such as 2027-01-31"):
         load_rig("sim", ('calibration.load_cell="31.1.2027"',))
-
-
-def test_wheel_and_zero_of_the_last_run_are_said_with_wear_and_age() -> None:
-    assert wheel_check(PAST).text.startswith("last 1#, 89.40 mm, 0.60 mm worn off in 812 m")
-    assert zero_check(PAST, NOW).text.startswith("2 h old")
-
-
-@pytest.mark.parametrize(("seconds", "words"), [(0.0, "0 min"), (7100.0, "118 min"), (7300.0, "2 h"), (2e5, "2 d")])
-def test_an_age_is_said_in_a_unit_that_fits(seconds: float, words: str) -> None:
-    assert age_words(seconds) == words
 
 
 def test_the_newest_run_is_looked_at_with_its_wheel_and_zero(tmp_path: Path) -> None:
@@ -110,33 +99,20 @@ def test_the_newest_run_is_looked_at_with_its_wheel_and_zero(tmp_path: Path) -> 
         folder.mkdir()
         writer = open_writer(folder)
         writer.begin_run(RUN, SPECIMENS, [CONDITION])
-        writer.wheel_installed(WHEEL)
-        writer.tare(70.0, "reference", (0.0, 0.0, 1.0, 0.0), 0)
+        writer.piece_mounted(WHEEL)
+        writer.tare(70.0, "reference", {"force_z_n": 1.0}, 0)
         writer.event(71.0, "step", "pre-grind")
         writer.finish("stopped", f"in the {name[-3:]} one", rig_seconds=80.0)
         writer.close()
     (tmp_path / "2025-not-a-run").mkdir()
-    past = past_of(tmp_path)
+    past = past_of(tmp_path, SERVED)
     assert past is not None and (past.status, past.reason) == ("stopped", "in the new one")
-    assert past.wheel is not None and past.wheel.compound == "1#"
-    assert past.tare_utc == "2024-02-21T14:06:00.000Z"
+    left = past.left
+    assert isinstance(left, WheelLeft) and left.wheel is not None and left.wheel.compound == "1#"
+    assert left.tare_utc == "2024-02-21T14:06:00.000Z"
 
 
 def test_a_record_that_cannot_be_read_is_passed_over(tmp_path: Path) -> None:
     (tmp_path / "broken").mkdir()
     (tmp_path / "broken" / "run.db").write_bytes(b"no database")
-    assert past_of(tmp_path) is None and past_of(tmp_path / "nowhere") is None
-
-
-@pytest.mark.parametrize(
-    ("heat", "ok", "words"),
-    [
-        (NO_HISTORY, None, "no history yet; a row tells from 30 %"),
-        (KnownRatio(3, 1.0), True, "known from 3 heatings, ratio 1.00, 0.00 apart; a row tells from 12 %"),
-        (KnownRatio(3, 1.25), None, "known from 3 heatings, ratio 1.25, 0.00 apart; a row tells from 30 %: measure"
-                                    " observer.thermal, or check the sensors"),
-    ],
-)  # fmt: skip
-def test_what_is_known_of_the_heat_balance_is_told(heat: KnownRatio, ok: bool | None, words: str) -> None:
-    found = heat_check(heat, load_rig("sim"))
-    assert (found.name, found.ok, found.text) == ("heat balance", ok, words)
+    assert past_of(tmp_path, SERVED) is None and past_of(tmp_path / "nowhere", SERVED) is None

@@ -12,12 +12,12 @@ from tester.service.commands import (
     Action,
     Answer,
     Command,
-    Control,
     Hold,
     Jog,
     Join,
     RunRecipe,
     Stop,
+    TakeControl,
 )
 from tester.service.protocol import (
     Accepted,
@@ -27,18 +27,18 @@ from tester.service.protocol import (
     Frames,
     Goodbye,
     Hello,
+    MachineMessage,
     PlanMessage,
     Refused,
     ServerMessage,
     Snapshot,
-    Trend,
     encode,
     from_server,
     schema,
     to_server,
 )
-from tester.service.state import MODES, TREND_COLUMNS
-from tests.tester.service.views import HOSTILE, hostile, plan, state, with_alarm
+from tester.service.state import MODES
+from tests.tester.service.views import HOSTILE, MACHINE, hostile, plan, state, with_alarm
 
 SCHEMA = Path(__file__).parents[3] / "docs" / "protocol.schema.json"
 EVENT = Event(7, 12.5, "2024-02-21T14:05:09.000Z", "trip", "trip", "overload: 461 N", "run")
@@ -48,11 +48,12 @@ ROW = (1.0, None, 0.5)
 @pytest.mark.parametrize(
     "message",
     [
-        Hello(1, "life", "0.1", 3, True, state(), plan(), (EVENT,), True, Trend(("a", "b", "c"), (ROW,))),
+        Hello(2, "life", "0.1", 3, True, MACHINE, state(), plan(), (EVENT,), True, (ROW,)),
         Snapshot(with_alarm(state()), ROW),
         Snapshot(hostile(state()), ROW),
         EVENT,
         PlanMessage(None),
+        MachineMessage(MACHINE),
         Frames((Frame(1.0, "can", True, 0x201, "0f 00"),), 12),
         Accepted(4, {"run": "x", "list": [1, None]}),
         Refused(4, HOSTILE),
@@ -67,7 +68,7 @@ def test_a_message_of_the_service_comes_back_as_it_was(message: ServerMessage) -
 @pytest.mark.parametrize(
     "action",
     [RunRecipe("quickstart", speed=None), Hold(), Stop(fast=True), Jog("press", -1), Answer(2, "no"),
-     Acknowledge(3), Control(force=True)],
+     Acknowledge(3), TakeControl(force=True)],
     ids=lambda action: action.command,
 )  # fmt: skip
 def test_a_command_comes_back_as_it_was(action: Action) -> None:
@@ -138,7 +139,7 @@ def test_the_protocols_page_names_every_message_command_mode_and_column() -> Non
     page = (SCHEMA.parent / "protocol.md").read_text(encoding="utf-8")
     definitions = schema()["$defs"]
     assert isinstance(definitions, dict)
-    names = {*MODES, *TREND_COLUMNS}
+    names = {*MODES, *MACHINE.trend}
     for one in definitions.values():
         assert isinstance(one, dict)
         properties = one.get("properties")

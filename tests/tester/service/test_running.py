@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tester.engine.tickers import TickStatistics
+from tester.machine.tickers import TickStatistics
 from tester.service.running import Punctuality
 
 

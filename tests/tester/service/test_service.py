@@ -9,8 +9,9 @@ from pathlib import Path
 
 import pytest
 
-from sim.rig import SimRig
-from tester.lock import RUN_LOCK, ExclusiveUse
+from sim.machines.wheel_on_belt.rig import WheelRig
+from tester.base.lock import RUN_LOCK, ExclusiveUse
+from tester.run.session import Session, SessionOptions
 from tester.service.alarms import Cause
 from tester.service.commands import (
     Acknowledge,
@@ -27,13 +28,12 @@ from tester.service.commands import (
 from tester.service.link import Presence
 from tester.service.service import interrupted_runs
 from tester.service.state import StateView
-from tester.session import Session, SessionOptions
 from tester.store.reader import RunReader
 from tester.store.writer import RunWriter
-from tests.tester.engine.bench import QUIET, SHORT
+from tests.tester.kinds.wheel_on_belt.bench import QUIET, SHORT
 from tests.tester.rig.test_ceilings import NONSENSE
+from tests.tester.run.test_session import Screen
 from tests.tester.service.stage import Script, Stage, play
-from tests.tester.test_session import Screen
 
 RUN = RunRecipe("short", text=SHORT, seed=1, speed=None, yes=True)
 TABLES = ("appendix.csv", "conditions.csv", "repeats.csv")
@@ -42,7 +42,7 @@ TWO_COMPOUNDS = SHORT.replace('  - compound: "1#"\n', '  - compound: "1#"\n  - c
 
 @pytest.fixture(autouse=True)
 def _every_poll_is_shown(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("tester.service.desk.SNAPSHOT_S", 0.0)
+    monkeypatch.setattr("tester.service.state_publisher.SNAPSHOT_S", 0.0)
 
 
 def running(view: StateView) -> bool:
@@ -74,7 +74,7 @@ def finished(tmp_path_factory: pytest.TempPathFactory) -> Stage:
         yield from stage.until(over)
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("tester.service.desk.SNAPSHOT_S", 0.0)
+        patch.setattr("tester.service.state_publisher.SNAPSHOT_S", 0.0)
         return play(tmp_path_factory.mktemp("finished"), script, *QUIET)
 
 
@@ -359,7 +359,7 @@ def test_a_trip_latches_until_it_is_acknowledged(tmp_path: Path) -> None:
         yield from stage.until(running)
         assert stage.service is not None and stage.service.desk.watch is not None
         rig = stage.service.desk.watch.run.engine.ctx.attendant
-        assert isinstance(rig, SimRig)
+        assert isinstance(rig, WheelRig)
         rig.axes["belt"].fault(0x2310)
         yield from stage.until(lambda view: view.mode == "LATCHED")
         stage.accepted.clear()
@@ -390,7 +390,7 @@ def test_another_alarm_s_acknowledgement_leaves_the_rig_latched(tmp_path: Path) 
         assert stage.service is not None and stage.service.desk.watch is not None
         watch = stage.service.desk.watch
         rig = watch.run.engine.ctx.attendant
-        assert isinstance(rig, SimRig)
+        assert isinstance(rig, WheelRig)
         rig.axes["belt"].fault(0x2310)
         yield from stage.until(lambda view: view.mode == "LATCHED")
         stage.service.desk.alarms.raise_(other, 1.0)
@@ -416,7 +416,7 @@ def test_stop_ends_a_tripped_run_whose_cause_stays_and_the_rig_stays_latched(tmp
         yield from stage.until(running)
         assert stage.service is not None and stage.service.desk.watch is not None
         rig = stage.service.desk.watch.run.engine.ctx.attendant
-        assert isinstance(rig, SimRig)
+        assert isinstance(rig, WheelRig)
         rig.axes["belt"].fault(0x2310)
         yield from stage.until(lambda view: view.mode == "LATCHED")
         yield stage.order(Stop())

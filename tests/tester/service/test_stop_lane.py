@@ -12,7 +12,7 @@ from threading import Thread
 
 import pytest
 
-from tester import clock
+from tester.base import clock
 from tester.service.address import Address, TcpAddress, UnixAddress, new_tcp_address, stop_path
 from tester.service.stop_call import NotTakenError, StopCall
 from tester.service.stop_lane import StopLane, StopWish

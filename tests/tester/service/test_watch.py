@@ -4,17 +4,18 @@ from __future__ import annotations
 
 import pytest
 
-from tester.recipe.estimate import estimate
+from tester.kinds.wheel_on_belt.recipe.part import PART
+from tester.kinds.wheel_on_belt.served import SERVED
 from tester.service.progress import PlanTrack
 from tester.service.state import SoakView
 from tester.service.watch import RunWatch
-from tests.faults.stage import Stage, rig_of
-from tests.tester.engine.bench import QUIET, SHORT
+from tests.campaigns.faults.stage import Stage, rig_of
+from tests.tester.kinds.wheel_on_belt.bench import QUIET, SHORT
 
 
 def test_a_soak_is_shown_with_how_long_it_has_been_in_band() -> None:
     stage = Stage(SHORT, QUIET)
-    watch = RunWatch(stage.run, PlanTrack(stage.plan, estimate(stage.plan, rig_of(QUIET))))
+    watch = RunWatch(stage.run, PlanTrack(stage.plan, PART.estimate(stage.plan, rig_of(QUIET)), SERVED), SERVED)
     shown: list[SoakView] = []
     while not stage.ended and (not shown or shown[-1].in_band_s < 1.9):
         now = stage.next_s

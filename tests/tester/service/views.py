@@ -4,24 +4,22 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from tester.kinds.wheel_on_belt.screen import MACHINE as MACHINE
+from tester.screen import Check, Gate, SoakView, Value
 from tester.service.state import (
     Alarm,
     BusView,
-    Check,
     ClientsView,
     DeviceView,
     DiskView,
-    Gate,
     ManualView,
     PlanStep,
     PlanView,
     ProgressView,
     PromptView,
     RunView,
-    SoakView,
     StateView,
     TickView,
-    Value,
 )
 
 HOSTILE = "[/x] [bold]\x1b[31m\u202e$(rm) ' \" <b> \x00"

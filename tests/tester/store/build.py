@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+import sqlite3
 from dataclasses import replace
 from math import isfinite
 from pathlib import Path
 
 from tester.analysis.results import Burst, ConditionStatus, Judgement, RepeatResult, RepeatStatus
-from tester.process import SAMPLE_COLUMNS
+from tester.kinds.wheel_on_belt.axes import AXES, KIND
+from tester.kinds.wheel_on_belt.budget import TERMS
+from tester.kinds.wheel_on_belt.quantities import QUANTITIES
 from tester.store.recorder import Recorder
-from tester.store.records import ConditionInfo, RunInfo, SpecimenInfo
+from tester.store.records import ConditionInfo, PieceInfo, RunInfo, SpecimenInfo
 from tester.store.statements import Judged
 from tester.store.writer import RunWriter
+from tests.tester.analysis.series import means_of
 
 RUN = RunInfo(
     name="2024-02-21T14-05-09-small",
@@ -20,6 +24,10 @@ RUN = RunInfo(
     rig_text="wheel: {diameter: 90 mm}\n",
     started_utc="2024-02-21T14:05:09.000Z",
     simulated=True,
+    kind=KIND,
+    worn="wheel",
+    terms=TERMS,
+    axes=AXES,
     seed=1,
     software_version="0.1.0",
     operator="ada",
@@ -33,22 +41,18 @@ CONDITION = ConditionInfo(
     specimen=1,
     replicate=1,
     grid="load",
-    compound="1#",
     note="NR, N234",
-    slip_velocity_m_s=0.3,
-    load_n=100.0,
-    sideslip_deg=0.0,
-    camber_deg=0.0,
-    temperature_c=25.0,
-    wheel_speed_m_s=0.8,
+    setpoint=AXES.setpoint("1#", slip_velocity=0.3, load=100.0, temperature=25.0),
     temperature_band_k=2.0,
     repeats=3,
     min_valid=3,
     window_revolutions=30.0,
 )
 
-CONDITIONS = [CONDITION, replace(CONDITION, condition=2, row=2, load_n=200.0)]
+CONDITIONS = [CONDITION, replace(CONDITION, condition=2, row=2, setpoint=CONDITION.setpoint.but(load=200.0))]
 SPECIMENS = [SpecimenInfo(1, "1#", "NR, N234")]
+PIECE = PieceInfo(1, 1, 1, "1#", 2.0, 90.0, 89.8, 55.0, 20.0)
+"""The one that ``record`` measures on."""
 BURSTS = [Burst(1, 20, 10.0, 17.0, 24.0, 26.0), Burst(2, 10, 40.0, 43.5, 24.0, 25.5)]
 
 
@@ -84,18 +88,20 @@ def result(mu: float = 0.73, status: RepeatStatus = RepeatStatus.VALID, reason: 
         truncated=2,
         window_s=10.6,
         bursts=2,
-        force_x_n=146.0,
-        force_y_n=0.1,
-        force_z_n=200.0,
-        moment_z_nm=0.01,
-        drive_torque_nm=6.5,
-        wheel_speed_m_s=0.8,
-        belt_speed_m_s=0.5,
-        slip_m_s=0.3001,
-        sideslip_deg=0.0,
-        camber_deg=0.0,
-        surface_c=25.1,
-        hub_c=30.0,
+        means=means_of(
+            force_x_n=146.0,
+            force_y_n=0.1,
+            force_z_n=200.0,
+            moment_z_nm=0.01,
+            drive_torque_nm=6.5,
+            wheel_speed_m_s=0.8,
+            belt_speed_m_s=0.5,
+            slip_m_s=0.3001,
+            sideslip_deg=0.0,
+            camber_deg=0.0,
+            surface_c=25.1,
+            hub_c=30.0,
+        ),
         started_s=10.0,
         ended_s=43.5,
     )
@@ -103,9 +109,9 @@ def result(mu: float = 0.73, status: RepeatStatus = RepeatStatus.VALID, reason: 
 
 def row(t: float, key: float = 0.0, **values: float) -> tuple[float, ...]:
     """Return a sample whose columns are all different."""
-    usual = {name: 10.0 * i + 0.1 for i, name in enumerate(SAMPLE_COLUMNS)}
+    usual = {name: 10.0 * i + 0.1 for i, name in enumerate(QUANTITIES.names)}
     usual |= {"time_s": t, "repeat_key": key, "gate": 0.0, "burst": 1.0}
-    return tuple((usual | values)[name] for name in SAMPLE_COLUMNS)
+    return tuple((usual | values)[name] for name in QUANTITIES.names)
 
 
 def record(
@@ -119,7 +125,7 @@ def record(
     """Record a condition with one repeat for each coefficient, a refused one for NaN; ``flags``: of its judgement."""
     recorder.begin_condition(condition, 5.0)
     for repeat, mu in enumerate(values, start=1):
-        key = recorder.begin_repeat(condition, repeat, 1, 9.0, wheel=1)
+        key = recorder.begin_repeat(condition, repeat, 1, 9.0, piece=1)
         for i in range(rows):
             recorder.sample(row(1000.0 * condition + 100.0 * repeat + 0.01 * i, float(key)))
         recorder.commit_repeat(key, result(mu, status if isfinite(mu) else RepeatStatus.REFUSED), BURSTS)
@@ -131,6 +137,7 @@ def open_writer(folder: Path, **options: bool | int) -> RunWriter:
     """Return a writer without a thread on the folder's run.db."""
     return RunWriter(
         folder / "run.db",
+        QUANTITIES,
         clock=Clock(),
         utc=utc,
         synchronous=bool(options.get("synchronous", True)),
@@ -156,8 +163,12 @@ def small_run(
         (folder / "run.db").write_bytes(before)
         return folder
     writer = open_writer(folder)
-    conditions = [replace(CONDITION, condition=i, row=i, load_n=100.0 * i) for i in range(1, len(values) + 1)]
+    held = CONDITION.setpoint
+    conditions = [
+        replace(CONDITION, condition=i, row=i, setpoint=held.but(load=100.0 * i)) for i in range(1, len(values) + 1)
+    ]
     writer.begin_run(RUN, SPECIMENS, conditions)
+    writer.piece_mounted(PIECE)
     for condition, repeats in zip(conditions, values, strict=True):
         record(writer, condition.condition, repeats, rows)
     writer.finish("done", rig_seconds=2700.5)
@@ -170,10 +181,23 @@ def lacking_run(folder: Path) -> Path:
     """Write a finished run of 100 and 200 N whose first condition has one repeat, which did not fill its window."""
     folder.mkdir(parents=True, exist_ok=True)
     writer = open_writer(folder)
-    conditions = [replace(CONDITION, load_n=100.0), replace(CONDITION, condition=2, row=2, load_n=200.0)]
-    writer.begin_run(RUN, SPECIMENS, conditions)
+    writer.begin_run(RUN, SPECIMENS, CONDITIONS)
+    writer.piece_mounted(PIECE)
     record(writer, 1, [0.9], status=RepeatStatus.TOO_FEW)
     record(writer, 2, [0.73, 0.74, 0.72])
     writer.finish("done", rig_seconds=2700.5)
     writer.close()
     return folder
+
+
+def without_channels(database: sqlite3.Connection) -> None:
+    """Make a record one of version 7: its samples' columns have names, and it says no more of channels and axes."""
+    database.execute("INSERT INTO sample_column SELECT position, name FROM channel WHERE source <> ''")
+    database.execute("DROP TABLE channel")
+    database.execute("DROP TABLE axis")
+    database.execute("DROP TABLE budget_term")
+    database.execute("DROP TABLE known_slope")
+    database.execute("DROP TABLE truth")
+    for column in ("kind", "worn"):
+        database.execute(f"ALTER TABLE run DROP COLUMN {column}")
+    database.execute("PRAGMA user_version = 7")

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tester.lock import RUN_LOCK, ExclusiveUse
+from tester.base.lock import RUN_LOCK, ExclusiveUse
 from tester.store.catalogue import cut_off, find_run, run_folders, under_way
 from tester.store.schema import StoreError
 from tests.tester.store.build import CONDITIONS, RUN, SPECIMENS, open_writer, small_run

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from tester.process import SAMPLE_COLUMNS
+from tester.kinds.wheel_on_belt.quantities import QUANTITIES
 from tester.store.reader import RunReader
 from tester.store.writer import RESERVE, RunWriter
 from tests.tester.store.build import CONDITIONS, RUN, SPECIMENS, Clock, result, utc
@@ -35,7 +35,7 @@ def disk(tmp_path: Path) -> Iterator[Path]:
 
 
 def begun(folder: Path, clock: Clock, reserve: int = 0) -> RunWriter:
-    writer = RunWriter(folder / "run.db", clock=clock, utc=utc, synchronous=True, reserve=reserve)
+    writer = RunWriter(folder / "run.db", QUANTITIES, clock=clock, utc=utc, synchronous=True, reserve=reserve)
     writer.begin_run(RUN, SPECIMENS, CONDITIONS)
     return writer
 
@@ -55,8 +55,8 @@ def measure(writer: RunWriter, repeats: int) -> int:
     for repeat in range(1, repeats + 1):
         key = writer.begin_repeat(1, repeat, 1)
         for _ in range(500):
-            values = [noise.random() for _ in SAMPLE_COLUMNS]
-            values[SAMPLE_COLUMNS.index("repeat_key")] = float(key)
+            values = [noise.random() for _ in QUANTITIES.names]
+            values[QUANTITIES.index("repeat_key")] = float(key)
             writer.sample(tuple(values))
         writer.commit_repeat(key, result())
         if writer.failed is not None:

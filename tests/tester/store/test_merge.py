@@ -14,25 +14,32 @@ import pytest
 from tester.store.exclusions import add_exclusion
 from tester.store.merge import HEADER, TABLES, Merge
 from tester.store.reader import RunReader
-from tester.store.records import StoredExclusion, WheelInfo
+from tester.store.records import ConditionInfo, PieceInfo, StoredExclusion
 from tester.store.schema import StoreError, migrate
 from tests.tester.store.build import CONDITION, RUN, SPECIMENS, open_writer, record, small_run
 
 FIRST_S, SECOND_S = 2700.5, 100.25
+ZEROS = {"force_x_n": 0.1, "force_y_n": 0.2, "force_z_n": 0.3, "moment_z_nm": 0.4}
+
+
+def _condition(number: int) -> ConditionInfo:
+    held = CONDITION.setpoint.but(load=100.0 * number)
+    return replace(CONDITION, condition=number, row=number, setpoint=held)
 
 
 def part_of(folder: Path, number: int, seconds: float, mu: list[float]) -> Path:
     """Write the record of a part that measured one condition; return its folder."""
     folder.mkdir(parents=True)
     writer = open_writer(folder)
-    writer.begin_run(RUN, SPECIMENS, [replace(CONDITION, condition=number, row=number, load_n=100.0 * number)])
-    writer.wheel_installed(WheelInfo(number, 1, number, "1#", 2.0, 90.0, 89.5, updated_s=20.0))
+    writer.begin_run(RUN, SPECIMENS, [_condition(number)])
+    writer.piece_mounted(PieceInfo(number, 1, number, "1#", 2.0, 90.0, 89.5, updated_s=20.0))
     writer.event(1.0, "step", f"install wheel {number}")
     writer.prompt_answered(writer.prompt(1.5, "install"), 1.75, "yes")
-    writer.tare(3.0, "reference", (0.1, 0.2, 0.3, 0.4), 0)
-    writer.tare(4.0, "repeat", (0.1, 0.2, 0.3, 0.4), 1)
+    writer.tare(3.0, "reference", ZEROS, 0)
+    writer.tare(4.0, "repeat", ZEROS, 1)
     writer.trip_acknowledged(writer.trip(50.0, "guard", "open"), 60.0, "ada")
     writer.bus_statistic(70.0, "can", "", "frames", 5.0)
+    writer.truth(number, 1, 1, {"model": 0.7})
     writer.device_parameter(0.5, "wheel", "0x6083:00", "2000")
     record(writer, number, mu)
     writer.finish("done", rig_seconds=seconds)
@@ -44,7 +51,7 @@ def part_of(folder: Path, number: int, seconds: float, mu: list[float]) -> Path:
 def run(tmp_path: Path) -> Path:
     """A run that was begun, with two parts beside it."""
     writer = open_writer(tmp_path)
-    conditions = [replace(CONDITION, condition=i, row=i, load_n=100.0 * i) for i in (1, 2, 3)]
+    conditions = [_condition(i) for i in (1, 2, 3)]
     writer.begin_run(RUN, SPECIMENS, conditions)
     writer.close()
     part_of(tmp_path / "parts" / "1", 1, FIRST_S, [0.9, 0.91])

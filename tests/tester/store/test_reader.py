@@ -13,12 +13,23 @@ import numpy as np
 import pytest
 
 from tester.analysis.results import ConditionStatus, Judgement, RepeatStatus
-from tester.extras import MissingExtraError
-from tester.process import SAMPLE_COLUMNS
+from tester.base.extras import MissingExtraError
+from tester.kinds.wheel_on_belt.quantities import QUANTITIES
 from tester.store.reader import RunReader
-from tester.store.records import WheelInfo
+from tester.store.records import PieceInfo
 from tester.store.schema import StoreError
-from tests.tester.store.build import BURSTS, CONDITION, CONDITIONS, RUN, SPECIMENS, open_writer, result, row, small_run
+from tests.tester.store.build import (
+    BURSTS,
+    CONDITION,
+    CONDITIONS,
+    RUN,
+    SPECIMENS,
+    open_writer,
+    result,
+    row,
+    small_run,
+    without_channels,
+)
 
 
 @pytest.fixture
@@ -62,7 +73,7 @@ def test_a_condition_that_was_not_left_has_no_status(tmp_path: Path) -> None:
 def test_repeats_come_back_with_every_figure(folder: Path) -> None:
     with RunReader(folder) as reader:
         found = reader.repeats(2)
-        assert [(r.condition, r.repeat, r.attempt, r.wheel) for r in found] == [(2, i, 1, 1) for i in (1, 2, 3)]
+        assert [(r.condition, r.repeat, r.attempt, r.piece) for r in found] == [(2, i, 1, 1) for i in (1, 2, 3)]
         assert found[0].result == result(0.73)
         assert reader.bursts(found[0].key) == BURSTS
 
@@ -94,7 +105,7 @@ def test_of_several_attempts_the_last_committed_counts(tmp_path: Path) -> None:
 def test_samples_of_a_repeat_come_back_as_arrays(folder: Path) -> None:
     with RunReader(folder) as reader:
         samples = reader.samples(1, 2)
-        assert tuple(samples) == SAMPLE_COLUMNS
+        assert tuple(samples) == QUANTITIES.names
         np.testing.assert_array_equal(samples["time_s"], [1200.0 + 0.01 * i for i in range(5)])
         assert samples["time_s"].dtype == np.float64
         assert set(samples["repeat_key"]) == {2.0}
@@ -144,12 +155,12 @@ def test_an_open_run_tells_the_rig_time_of_the_last_record(tmp_path: Path) -> No
 def test_wheels_and_specimens_come_back(tmp_path: Path) -> None:
     writer = open_writer(tmp_path)
     writer.begin_run(RUN, SPECIMENS, CONDITIONS)
-    wheel = WheelInfo(3, 1, 1, "1#", 100.0, 90.0, 90.0)
-    writer.wheel_installed(wheel)
-    writer.wheel_state(3, 89.2, 1234.0, 500.0)
+    wheel = PieceInfo(3, 1, 1, "1#", 100.0, 90.0, 90.0)
+    writer.piece_mounted(wheel)
+    writer.piece_state(3, 89.2, 1234.0, 500.0)
     writer.close()
     with RunReader(tmp_path) as reader:
-        assert reader.wheels() == [replace(wheel, diameter_mm=89.2, sliding_m=1234.0, updated_s=500.0)]
+        assert reader.pieces() == [replace(wheel, diameter_mm=89.2, sliding_m=1234.0, updated_s=500.0)]
         assert reader.specimens() == SPECIMENS
 
 
@@ -158,7 +169,7 @@ def test_the_rest_of_the_record_is_in_its_tables(tmp_path: Path) -> None:
     writer.begin_run(RUN, SPECIMENS, CONDITIONS)
     writer.device_parameter(0.5, "wheel", "0x6083:00", "2000", "profile acceleration")
     writer.bus_statistic(9.0, "can", "", "load_percent", 26.0)
-    writer.tare(3.0, "repeat", (0.1, 0.2, float("nan"), 0.4), 7)
+    writer.tare(3.0, "repeat", {"force_x_n": 0.1, "force_z_n": float("nan"), "moment_z_nm": 0.4}, 7)
     writer.prompt_answered(writer.prompt(1.0, "Install wheel 1"), 2.0, "done", "ada")
     writer.trip_acknowledged(writer.trip(4.0, "overload", "460 N", 460.0, 450.0), 5.0, "ada")
     writer.close()
@@ -230,7 +241,8 @@ def test_a_name_with_spaces_and_marks_is_just_a_name(tmp_path: Path) -> None:
 
 
 def without_judgements(database: sqlite3.Connection) -> None:
-    """Take out of a record what version 4 has added, and the columns that version 7 has."""
+    """Take out of a record what version 4 has added, and what versions 7 and 8 have."""
+    without_channels(database)
     for column in ("unit", "acknowledged_utc"):
         database.execute(f"ALTER TABLE trip DROP COLUMN {column}")
     for column in ("at_most", "until_percent", *(field.name for field in fields(Judgement))):
@@ -289,12 +301,35 @@ def test_a_record_without_judgements_is_read_in_place(tmp_path: Path, monkeypatc
     assert (folder / "run.db").read_bytes() == before
 
 
+def test_a_record_without_channels_has_those_that_all_had_then(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    folder = small_run(tmp_path / "run")
+    with RunReader(folder) as reader:
+        measured, samples = reader.repeats()[0].result.means, reader.samples(1, 2)
+    with sqlite3.connect(folder / "run.db") as database:
+        without_channels(database)
+    database.close()
+    before = (folder / "run.db").read_bytes()
+    monkeypatch.delattr("tester.store.reader.TemporaryDirectory")  # no copy of it is made
+    with RunReader(folder) as reader:
+        assert reader.quantities().names == tuple(samples)
+        assert reader.repeats()[0].result.means == measured
+        assert all((reader.samples(1, 2)[name] == column).all() for name, column in samples.items())
+    assert (folder / "run.db").read_bytes() == before
+
+
+def test_a_record_says_its_own_channels(tmp_path: Path) -> None:
+    with RunReader(small_run(tmp_path / "run")) as reader:
+        found = reader.quantities()
+    assert found.channels == QUANTITIES.channels
+    assert found.roles == QUANTITIES.roles
+
+
 def test_samples_come_as_an_arrow_table(tmp_path: Path) -> None:
     from tester.store.arrow import sample_table
 
     with RunReader(small_run(tmp_path / "run")) as reader:
         table = sample_table(reader, 1, 2)
-        assert table.num_rows == 5 and table.column_names == list(SAMPLE_COLUMNS)
+        assert table.num_rows == 5 and table.column_names == list(QUANTITIES.names)
 
 
 def test_without_pyarrow_a_table_names_what_to_install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -6,7 +6,7 @@ from itertools import product
 
 import pytest
 
-from tester.engine.run import Outcome
+from tester.machine.run import Outcome
 from tester.store.status import RunStatus, run_status
 
 R = RunStatus

@@ -14,13 +14,25 @@ from pathlib import Path
 import pytest
 
 from tester.analysis.results import ConditionStatus, RepeatStatus
+from tester.kinds.wheel_on_belt.quantities import QUANTITIES
 from tester.store.reader import RunReader
 from tester.store.recorder import NullRecorder, Recorder
-from tester.store.records import SessionInfo, WheelInfo
+from tester.store.records import PieceInfo, SessionInfo
 from tester.store.sample_blocks import BLOCK_ROWS
-from tester.store.schema import StoreError
+from tester.store.schema import VERSION, StoreError
 from tester.store.writer import LOSSLESS_LIMIT, RunWriter
-from tests.tester.store.build import BURSTS, CONDITIONS, RUN, SPECIMENS, Clock, open_writer, result, row, small_run
+from tests.tester.store.build import (
+    BURSTS,
+    CONDITIONS,
+    RUN,
+    SPECIMENS,
+    Clock,
+    open_writer,
+    result,
+    row,
+    small_run,
+    without_channels,
+)
 
 
 def count(folder: Path, sql: str) -> int:
@@ -46,7 +58,7 @@ def limit_pages(writer: RunWriter, pages: object) -> None:
 
 
 def begun(folder: Path, clock: Clock | None = None, **options: bool) -> RunWriter:
-    writer = RunWriter(folder / "run.db", clock=clock or Clock(), synchronous=True, **options)
+    writer = RunWriter(folder / "run.db", QUANTITIES, clock=clock or Clock(), synchronous=True, **options)
     writer.begin_run(RUN, SPECIMENS, CONDITIONS)
     return writer
 
@@ -111,7 +123,7 @@ def test_what_must_not_wait_is_committed_at_once(tmp_path: Path, verb: str) -> N
     elif verb == "finish":
         writer.finish("finished")
     else:
-        writer.wheel_installed(WheelInfo(1, 1, 1, "1#", 0.0, 90.0, 90.0))
+        writer.piece_mounted(PieceInfo(1, 1, 1, "1#", 0.0, 90.0, 90.0))
     assert count(tmp_path, "SELECT count(*) FROM event") == 1
     writer.close()
 
@@ -210,7 +222,7 @@ def test_what_a_full_disk_refused_is_written_when_there_is_room_at_the_end(tmp_p
 
 def test_samples_that_find_a_full_queue_are_counted_and_the_count_is_stored(tmp_path: Path) -> None:
     clock = Clock()
-    writer = RunWriter(tmp_path / "run.db", clock=clock, limit=0)
+    writer = RunWriter(tmp_path / "run.db", QUANTITIES, clock=clock, limit=0)
     writer.begin_run(RUN, SPECIMENS, CONDITIONS)
     for i in range(10):
         writer.sample(row(float(i)))
@@ -221,7 +233,7 @@ def test_samples_that_find_a_full_queue_are_counted_and_the_count_is_stored(tmp_
 
 
 def test_a_lossless_writer_waits_instead_of_dropping(tmp_path: Path) -> None:
-    writer = RunWriter(tmp_path / "run.db", clock=Clock(), lossless=True, limit=50)
+    writer = RunWriter(tmp_path / "run.db", QUANTITIES, clock=Clock(), lossless=True, limit=50)
     writer.begin_run(RUN, SPECIMENS, CONDITIONS)
     for i in range(3000):
         writer.sample(row(float(i)))
@@ -238,7 +250,7 @@ def test_a_lossless_commit_returns_only_when_it_is_done(tmp_path: Path) -> None:
 
 
 def test_a_lossless_writer_that_fails_does_not_wait_for_ever(tmp_path: Path) -> None:
-    writer = RunWriter(tmp_path / "run.db", clock=Clock(), lossless=True, limit=20)
+    writer = RunWriter(tmp_path / "run.db", QUANTITIES, clock=Clock(), lossless=True, limit=20)
     writer.sample((1.0,))
     assert not writer.commit_repeat(1, result()).done
     for i in range(100):
@@ -301,18 +313,28 @@ def test_a_file_of_somebody_else_is_refused_and_left_as_it_is(tmp_path: Path) ->
     connection.close()
     before = path.read_bytes()
     with pytest.raises(StoreError, match="not made by"):
-        RunWriter(path, clock=Clock())
+        RunWriter(path, QUANTITIES, clock=Clock())
     assert path.read_bytes() == before
 
 
 def test_a_record_of_other_columns_cannot_be_continued(tmp_path: Path) -> None:
     small_run(tmp_path)
     connection = sqlite3.connect(tmp_path / "run.db")
-    connection.execute("UPDATE sample_column SET name = 'other' WHERE position = 3")
+    connection.execute("UPDATE channel SET name = 'other' WHERE position = 3")
     connection.commit()
     connection.close()
-    with pytest.raises(StoreError, match="other sample columns"):
+    with pytest.raises(StoreError, match=r"other channels.*other, slip_m_s"):
         open_writer(tmp_path)
+
+
+def test_a_record_begun_before_channels_were_recorded_goes_on(tmp_path: Path) -> None:
+    small_run(tmp_path)
+    with sqlite3.connect(tmp_path / "run.db") as database:
+        without_channels(database)
+    database.close()
+    open_writer(tmp_path).close()
+    with RunReader(tmp_path) as reader:
+        assert (reader.version, reader.quantities().names) == (VERSION, QUANTITIES.names)
 
 
 def test_a_copy_of_a_writer_records_nothing_and_counts_on(tmp_path: Path) -> None:
@@ -343,9 +365,9 @@ def test_a_bare_recorder_records_nothing() -> None:
 KILLED = """
 import sys
 from pathlib import Path
-from tests.tester.store.build import CONDITIONS, RUN, SPECIMENS, result, row
+from tests.tester.store.build import CONDITIONS, RUN, SPECIMENS, QUANTITIES, result, row
 from tester.store.writer import RunWriter
-writer = RunWriter(Path(sys.argv[1]) / "run.db", clock=lambda: 0.0)
+writer = RunWriter(Path(sys.argv[1]) / "run.db", QUANTITIES, clock=lambda: 0.0)
 writer.begin_run(RUN, SPECIMENS, CONDITIONS)
 n = 0
 while True:

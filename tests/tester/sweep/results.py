@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from tester.kinds.wheel_on_belt.axes import AXES
 from tester.sweep.case import NAN, CaseResult, RowResult
 
 
 def row(number: int = 1, mu: float = 0.73, u: float = 0.01, status: str = "ok") -> RowResult:
     """Return one row of a run's table."""
     value = (mu, 0.005, 3, u, "", "") if status == "ok" else (NAN, NAN, 0, NAN, "", "because")
-    return RowResult(number, "1#", 300.0, 100.0 * number, 0.0, 0.0, 40.0, 0.8, status, *value)
+    held = AXES.setpoint("1#", slip_velocity=0.3, load=100.0 * number, temperature=40.0)
+    return RowResult(number, held, status, *value)
 
 
 def result(case: int, *rows: RowResult, point: tuple[str, ...] = (), outcome: str = "done") -> CaseResult:

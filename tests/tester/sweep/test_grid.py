@@ -4,21 +4,21 @@ from __future__ import annotations
 
 import pytest
 
-from tester.sweep.grid import Axis, GridError, axes_of, axis_of, overrides_of, points_of
+from tester.sweep.grid import GridError, SweepAxis, axes_of, axis_of, overrides_of, points_of
 
 
 @pytest.mark.parametrize(
     ("text", "axis"),
     [
-        ("sim.noise=0,1,2", Axis("sim.noise", ("0", "1", "2"))),
-        (" sim.noise = 0 , 1", Axis("sim.noise", ("0", "1"))),
-        ("sim.friction_model=paper", Axis("sim.friction_model", ("paper",))),
-        ("a.b=[1, 2],{c: 3, d: 4}", Axis("a.b", ("[1, 2]", "{c: 3, d: 4}"))),
-        ("name='one, two',three", Axis("name", ("'one, two'", "three"))),
-        ("a=b=c,d", Axis("a", ("b=c", "d"))),
+        ("sim.noise=0,1,2", SweepAxis("sim.noise", ("0", "1", "2"))),
+        (" sim.noise = 0 , 1", SweepAxis("sim.noise", ("0", "1"))),
+        ("sim.friction_model=paper", SweepAxis("sim.friction_model", ("paper",))),
+        ("a.b=[1, 2],{c: 3, d: 4}", SweepAxis("a.b", ("[1, 2]", "{c: 3, d: 4}"))),
+        ("name='one, two',three", SweepAxis("name", ("'one, two'", "three"))),
+        ("a=b=c,d", SweepAxis("a", ("b=c", "d"))),
     ],
 )
-def test_values_stand_between_commas_outside_brackets_and_quotes(text: str, axis: Axis) -> None:
+def test_values_stand_between_commas_outside_brackets_and_quotes(text: str, axis: SweepAxis) -> None:
     assert axis_of(text) == axis
 
 

@@ -10,14 +10,14 @@ from pathlib import Path
 
 import pytest
 
-from tester.rig.template import hardware_text
-from tester.source import InvalidSource
+from tester.base.source import InvalidSource
+from tester.kinds import hardware_text
 from tester.sweep import sweep as module
-from tester.sweep.case import CaseResult, Task, run_case
+from tester.sweep.case import CaseResult, SweepTask, run_case
 from tester.sweep.executors import local
 from tester.sweep.grid import axes_of
 from tester.sweep.sweep import NotSimulatedError, Sweep, SweepOptions, carry_out, prepare_sweep
-from tests.tester.engine.bench import QUIET, SHORT
+from tests.tester.kinds.wheel_on_belt.bench import QUIET, SHORT
 from tests.tester.sweep.results import result, row
 
 QUICK = SHORT.replace("14 rev", "7 rev")
@@ -42,10 +42,10 @@ class Heard:
             raise KeyboardInterrupt
 
 
-def at_once(result_of: Callable[[Task], CaseResult]) -> Callable[..., Future[CaseResult]]:
+def at_once(result_of: Callable[[SweepTask], CaseResult]) -> Callable[..., Future[CaseResult]]:
     """Return an executor's submit that has every result at once."""
 
-    def submit(work: object, task: Task, /) -> Future[CaseResult]:
+    def submit(work: object, task: SweepTask, /) -> Future[CaseResult]:
         future: Future[CaseResult] = Future()
         try:
             future.set_result(result_of(task))
@@ -98,7 +98,7 @@ def test_the_folder_says_what_was_swept(tmp_path: Path) -> None:
 
 
 def test_a_run_that_ends_badly_is_a_row_and_the_sweep_is_incomplete(tmp_path: Path) -> None:
-    def outcome(task: Task) -> CaseResult:
+    def outcome(task: SweepTask) -> CaseResult:
         return result(task.case, row(), outcome="tripped" if task.seed == 1 else "done")
 
     folder, code = carry_out(sweep_of(tmp_path, seeds=3), at_once(outcome), Heard())
@@ -106,7 +106,7 @@ def test_a_run_that_ends_badly_is_a_row_and_the_sweep_is_incomplete(tmp_path: Pa
 
 
 def test_a_run_that_raises_is_a_row_with_the_reason(tmp_path: Path) -> None:
-    def outcome(task: Task) -> CaseResult:
+    def outcome(task: SweepTask) -> CaseResult:
         if task.seed == 0:
             raise RuntimeError("out of wheels")
         return result(task.case, row())
@@ -129,9 +129,10 @@ def test_a_case_gives_what_tester_run_gives_in_whatever_process(tmp_path: Path) 
     sweep = sweep_of(tmp_path, *QUIET, seeds=1)
     found = run_case(sweep.tasks[0])
     (one,) = found.rows
-    assert (found.outcome, found.exit_code, found.wheels, found.missing) == ("done", 0, 1, 0)
+    assert (found.outcome, found.exit_code, found.mounted, found.missing) == ("done", 0, 1, 0)
     assert found.rig_seconds > 60.0 and one.mu == pytest.approx(0.73, abs=0.01)
-    assert (one.compound, one.slip_velocity_mm_s, one.load_n, one.n_valid) == ("1#", 300.0, 200.0, 1)
+    held = one.setpoint
+    assert (held.compound, held.value("slip_velocity"), held.value("load"), one.n_valid) == ("1#", 0.3, 200.0, 1)
     with local(1) as submit:
         there = submit(run_case, sweep.tasks[0]).result()
     assert repr(there) == repr(found)  # not-a-number is not equal to itself

@@ -13,12 +13,13 @@ from textual.pilot import Pilot
 
 from tester.service.commands import Action, CheckRecipe, ListRuns, Query, ShowPlan
 from tester.service.queries import Queries
-from tester.service.state import TREND_COLUMNS, PlanView, StateView
+from tester.service.state import PlanView, StateView
 from tester.tui.app import TesterApp
 from tester.tui.host import TuiOptions
-from tester.tui.views.bus import BusView
-from tester.tui.views.recipes import RecipesView
+from tester.tui.pages.bus import BusPage
+from tester.tui.pages.recipes import RecipesView
 from tests.tester.service.fake import FakeService
+from tests.tester.service.views import MACHINE
 from tests.tester.service.views import plan as a_plan
 from tests.tester.service.views import state as a_state
 
@@ -56,6 +57,9 @@ class PlayedQueries(Queries):
         bad = isinstance(question, CheckRecipe) and "wrong" in question.text
         return {"problems": [{"line": 3, "column": 5, "message": "load: expected a unit [/x]"}] if bad else []}
 
+WAIT_S = 60.0
+"""How long something may take that a test waits for, s: it costs that only where the test fails."""
+
 
 @dataclass(slots=True)
 class Stage:
@@ -70,8 +74,10 @@ class Stage:
     """The screen that was shown first."""
 
     async def until(self, true: Callable[[], bool], what: str) -> None:
-        """Let both work until something is so."""
-        for _ in range(400):
+        """Let both work until something is so: threads read files beside them, on a computer that others use too."""
+        clock = asyncio.get_running_loop().time
+        late = clock() + WAIT_S
+        while clock() < late:
             if true():
                 return
             await self.pilot.pause()
@@ -123,13 +129,13 @@ def trend() -> list[tuple[float | None, ...]]:
     """Return two minutes of a trend that rises and waves, the same every time."""
     rows: list[tuple[float | None, ...]] = []
     for number in range(480):
-        known: dict[str, float | None] = dict.fromkeys(TREND_COLUMNS, 0.0)
+        known: dict[str, float | None] = dict.fromkeys(MACHINE.trend, 0.0)
         known["wall_s"] = 0.25 * number
         known["friction"] = 0.70 + 0.01 * (number % 7)
         known["surface_c"] = 38.0 + 0.005 * number
         known["load_n"] = 199.0 + number % 3
         known["slip_mm_s"] = 299.0 + number % 5
-        rows.append(tuple(known[column] for column in TREND_COLUMNS))
+        rows.append(tuple(known[column] for column in MACHINE.trend))
     return rows
 
 
@@ -202,7 +208,7 @@ class House:
                 on.app.pop_screen()
                 await on.pilot.pause()
             on.app.clear_notifications()
-            on.app.query_one(BusView).action_unfilter()
+            on.app.query_one(BusPage).action_unfilter()
             await on.pilot.press("f2")
             on.app.view.take_focus()
             await on.show(a_state())

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tester.tui.scene import Scene
+from tester.tui.scene import ScreenScene
 from tests.tester.service.views import state as a_state
 from tests.tester.tui.stage import Stage, play
 
@@ -70,5 +70,5 @@ def test_a_service_that_was_told_to_end_is_no_death(tmp_path: Path) -> None:
 def test_a_lost_link_of_unknown_cause_claims_neither() -> None:
     from tester.tui.gone import farewell, gone_line
 
-    scene = Scene(state=a_state(), lost="connection lost")
+    scene = ScreenScene(state=a_state(), lost="connection lost")
     assert gone_line(scene) == "" and "not known" in farewell(scene)

@@ -10,7 +10,7 @@ import pytest
 
 from tester.service.commands import Acknowledge, Answer, Arm, Hold, Jog, Release, RunRecipe, Stop, Tare, WatchFrames
 from tester.service.state import ManualView
-from tester.tui.views.recipes import RecipesView
+from tester.tui.pages.recipes import RecipesView
 from tests.tester.service.views import state as a_state
 from tests.tester.service.views import with_alarm, with_prompt
 from tests.tester.tui.stage import House, Stage, play
@@ -152,7 +152,7 @@ def test_editing_a_shipped_recipe_makes_a_copy_and_checks_it(tmp_path: Path, mon
 
     monkeypatch.setenv("EDITOR", "some editor")
     monkeypatch.delenv("VISUAL", raising=False)
-    monkeypatch.setattr("tester.tui.views.recipes.subprocess.run", edit)
+    monkeypatch.setattr("tester.tui.pages.recipes.subprocess.run", edit)
     monkeypatch.setattr("tester.tui.app.TesterApp.suspend", lambda app: nullcontext())  # no terminal here to give away
 
     async def act(on: Stage) -> None:
@@ -248,7 +248,7 @@ def test_editing_one_recipe_leaves_none_of_the_others_unchecked(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("EDITOR", "some editor")
-    monkeypatch.setattr("tester.tui.views.recipes.subprocess.run", lambda command, **_: None)
+    monkeypatch.setattr("tester.tui.pages.recipes.subprocess.run", lambda command, **_: None)
     monkeypatch.setattr("tester.tui.app.TesterApp.suspend", lambda app: nullcontext())
 
     async def act(on: Stage) -> None:

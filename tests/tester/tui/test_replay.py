@@ -14,9 +14,9 @@ import pytest
 from tester.cli.main import invoke
 from tester.tui.playback import Playback, load
 from tester.tui.replay import ReplayApp
-from tester.tui.scene import Scene
+from tester.tui.scene import ScreenScene
 from tester.tui.stored import condition, read
-from tests.tester.tui.stage import screen_text
+from tests.tester.tui.stage import WAIT_S, screen_text
 
 RECIPE = """\
 recipe: short [/x]
@@ -99,7 +99,7 @@ def test_space_plays_and_pauses_and_nothing_is_commanded(run: Path, playback: Pl
 def test_revolutions_and_burst_are_those_of_the_moment(run: Path, playback: Playback) -> None:
     first = playback.repeats[0]
     burst = playback.bursts[first.key][0]
-    scene = Scene()
+    scene = ScreenScene()
     playback.show(scene, 0.5 * (burst.started_s + burst.ended_s))
     state = scene.state
     assert state is not None and (state.progress.burst, state.progress.revolutions_wanted) == (1, 5.0)
@@ -125,9 +125,8 @@ def test_results_show_the_conditions_and_their_repeats(run: Path, playback: Play
 
     async def act(app: ReplayApp, press: Press) -> None:
         await press("f5", "tab", "enter")
-        for _ in range(200):
-            if "repeat 3: mu" in screen_text(app):
-                break
+        late = asyncio.get_running_loop().time() + WAIT_S
+        while "repeat 3: mu" not in screen_text(app) and asyncio.get_running_loop().time() < late:
             await press("f20")
         assert "repeat 3: mu" in screen_text(app)
 

@@ -9,30 +9,29 @@ import pytest
 from textual.widgets import Input
 
 from tester import export
-from tester.axes import axis
-from tester.recipe.plan import Setpoint
+from tester.kinds.wheel_on_belt.axes import AXES
 from tester.service.commands import Stop
 from tester.service.state import ProgressView
 from tester.store.reader import RunReader
 from tester.tui.dialogs.exclude import ExcludeDialog
 from tester.tui.dialogs.repeats import RepeatsDialog
+from tester.tui.pages.results import ResultsView
 from tester.tui.stored import Row, Stored, points, read, series
-from tester.tui.views.results import ResultsView
 from tests.tester.service.views import state
 from tests.tester.store.build import small_run
 from tests.tester.tui.stage import Stage, play
 
-HELD = Setpoint("1#", 0.3, 200.0, 0.0, 0.0, 25.0, 0.8)
+HELD = AXES.setpoint("1#", slip_velocity=0.3, load=200.0, temperature=25.0)
 ROW = Row((), HELD, "1#", 0.7, 1)
 ROWS = (
     ROW,
-    replace(ROW, held=HELD._replace(load_n=300.0), condition=2),
-    replace(ROW, held=HELD._replace(temperature_c=40.0), condition=3),
-    replace(ROW, held=HELD._replace(load_n=300.0, compound="2#"), compound="2#", condition=4),
-    replace(ROW, held=HELD._replace(load_n=400.0), mu=None, condition=5),
-    replace(ROW, held=HELD._replace(load_n=500.0, camber_deg=5.0), condition=6),
+    replace(ROW, held=HELD.but(load=300.0), condition=2),
+    replace(ROW, held=HELD.but(temperature=40.0), condition=3),
+    replace(ROW, held=HELD.but("2#", load=300.0), compound="2#", condition=4),
+    replace(ROW, held=HELD.but(load=400.0), mu=None, condition=5),
+    replace(ROW, held=HELD.but(load=500.0, camber=5.0), condition=6),
 )
-STORED = Stored("run", Path(), "some recipe", "finished", (), "", ROWS)
+STORED = Stored("run", Path(), "some recipe", "finished", (), "", ROWS, AXES)
 
 
 def a_run(folder: Path) -> Path:
@@ -53,21 +52,21 @@ async def at_repeats(on: Stage, run: Path) -> None:
 
 
 def test_the_series_of_a_condition_is_what_differs_along_one_axis_alone() -> None:
-    assert [row.condition for row in series(STORED, ROW, axis("load"))] == [1, 2]
-    assert [row.condition for row in series(STORED, ROW, axis("temperature"))] == [1, 3]
+    assert [row.condition for row in series(STORED, ROW, AXES["load"])] == [1, 2]
+    assert [row.condition for row in series(STORED, ROW, AXES["temperature"])] == [1, 3]
 
 
 def test_what_differs_in_camber_is_of_another_series_and_camber_can_be_plotted_against() -> None:
-    assert 6 not in [row.condition for row in series(STORED, ROW, axis("load"))]
+    assert 6 not in [row.condition for row in series(STORED, ROW, AXES["load"])]
     assert [one.name for one in STORED.plotted] == ["load", "slip_velocity", "temperature", "sideslip", "camber"]
 
 
 def test_what_is_not_of_the_series_is_a_faint_dot() -> None:
-    assert [point.sign for point in points(STORED, axis("load"), ROW)] == ["●", "●", "·", "·", "·"]
+    assert [point.sign for point in points(STORED, AXES["load"], ROW)] == ["●", "●", "·", "·", "·"]
 
 
 def test_a_condition_without_a_series_leaves_every_sign_as_it_is() -> None:
-    assert [point.sign for point in points(STORED, axis("slip_velocity"), ROW)] == ["1", "1", "1", "2", "1"]
+    assert [point.sign for point in points(STORED, AXES["slip_velocity"], ROW)] == ["1", "1", "1", "2", "1"]
 
 
 @pytest.mark.parametrize("size", [(80, 24), (120, 40)])

@@ -24,7 +24,7 @@ STATES = {"normal": a_state(), "alarm": with_prompt(with_alarm(a_state())), "sta
 
 @pytest.fixture(autouse=True)
 def _utc(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("tester.tui.words.local", lambda moment: moment)
+    monkeypatch.setattr("tester.tui.formatting.local", lambda moment: moment)
 
 
 async def at_screen(on: Stage, name: str, view: StateView) -> None:

@@ -1,0 +1,118 @@
+"""A CANopen node that measures: its channels are numbers in its first transmit PDO."""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Generator
+from math import inf, nan
+from typing import Final
+
+from drivers.canopen import objects as o
+from drivers.canopen.conversation import (
+    AwaitedCondition,
+    Conversation,
+    Reply,
+    Request,
+    RequestError,
+    SdoWrite,
+    SendNmt,
+    Until,
+    read_number,
+)
+from drivers.canopen.dictionary import describe
+from drivers.canopen.node import CanNode
+from drivers.canopen.node_config import SIZES, NodeConfig
+from drivers.canopen.objects import NmtCommand
+
+BOOT_TIMEOUT_S: Final = 2.0
+"""A restart of its communication takes well under a second [A]."""
+START_TIMEOUT_S: Final = 1.0
+"""NMT start to the first heartbeat that says OPERATIONAL [A]."""
+STALE_PERIODS: Final = 3.0
+"""So many frames may be missing before the last one is too old [A]."""
+STALE_LEAST_S: Final = 0.5
+"""No frame is too old before this [A]."""
+CODES: Final = {"u8": "B", "i8": "b", "u16": "H", "i16": "h", "u32": "I", "i32": "i", "f32": "f"}
+
+
+class SensorNode(CanNode):
+    """Reads channels: ``values`` in the order of the configuration, in its units; NaN before the first frame."""
+
+    def __init__(self, config: NodeConfig) -> None:
+        """Know nothing of the node yet."""
+        super().__init__(config.name, config.node_id, config.heartbeat_s)
+        self.config = config
+        self._fields = [
+            (struct.Struct("<" + CODES[one.type]), one.byte, one.scale) for one in config.channels.values()
+        ]
+        self._least_bytes = max((one.byte + SIZES[one.type] for one in config.channels.values()), default=0)
+        self.stale_s: float = max(STALE_LEAST_S, STALE_PERIODS * config.period_s)
+        """A frame older than this is stale."""
+        self.values: list[float] = [nan] * len(config.channels)
+
+    def fresh(self, now: float) -> bool:
+        """Tell whether the node is there and its last frame, at ``now`` s, not too old."""
+        return self.online and now - self.stamp_s <= self.stale_s
+
+    def on_tpdo1(self, t: float, data: bytes) -> None:
+        """Take the channels; a frame that is too short is counted and ignored."""
+        if not self.connected:
+            return
+        if len(data) < self._least_bytes:
+            self.malformed += 1
+            return
+        for number, (layout, byte, scale) in enumerate(self._fields):
+            count: float = layout.unpack_from(data, byte)[0]
+            self.values[number] = count * scale
+        self.tpdo1_data = data
+        self.stamp_s = t
+
+    def connect(self) -> Conversation:
+        """Return the conversation that resets, checks and starts the node."""
+        return _connect(self)
+
+    def begin_connect(self) -> None:
+        """Forget the device."""
+        self.disconnect()
+        self.lost = self.booted = False
+        self.nmt_state = -1
+        self.stamp_s = -inf
+        self.values = [nan] * len(self.values)
+        self.refused = None
+
+    def finish_connect(self) -> None:
+        """Believe a device that is OPERATIONAL."""
+        self.connected = True
+        self.online = self.nmt_state == o.NmtState.OPERATIONAL
+        self.heartbeat.arm()
+
+
+def _connect(node: SensorNode) -> Conversation:
+    node.begin_connect()
+    try:
+        yield from _check(node)
+        yield SendNmt(NmtCommand.START)
+        running = yield Until(AwaitedCondition.OPERATIONAL, START_TIMEOUT_S)
+        if not running:
+            raise RequestError(f"not OPERATIONAL within {START_TIMEOUT_S:g} s of the start", 0)
+        node.finish_connect()
+    except RequestError as error:
+        node.disconnect()
+        node.refused = f"{error}"
+        yield SendNmt(NmtCommand.PRE_OPERATIONAL)
+
+
+def _check(node: SensorNode) -> Generator[Request, Reply, None]:
+    """Restart the node's communication, compare who it is, and have it send heartbeats."""
+    config = node.config
+    yield SendNmt(NmtCommand.RESET_COMMUNICATION)
+    booted = yield Until(AwaitedCondition.BOOTED, BOOT_TIMEOUT_S)
+    if not booted:
+        yield from read_number(o.DEVICE_TYPE)  # a boot-up can be missed; an answer cannot
+    for sub, expected in ((1, config.vendor_id), (2, config.product_code)):
+        if expected:
+            found = yield from read_number(o.IDENTITY, sub)
+            if found != expected:
+                said = f"{describe(o.IDENTITY, sub)}: read 0x{found:08X}, the configuration has 0x{expected:08X}"
+                raise RequestError(f"{said}: another device", 0)
+    yield SdoWrite(o.PRODUCER_HEARTBEAT, 0, round(1000.0 * config.heartbeat_s))

@@ -1,0 +1,157 @@
+"""A Modbus sensor of any make: what it measures, in which registers and with which status bits, its profile says."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from math import floor, inf, nan, nextafter
+from typing import Any, Final
+
+from drivers.modbus import Device, ModbusLink, Request
+from drivers.profiles.model import DeviceProfile, Signal
+
+STALE_PERIODS: Final = 3.0
+"""Readings of so many poll periods may be missing before the last one is too old [A]."""
+STALE_LEAST_S: Final = 0.5
+"""No reading is too old before this, however often the sensor is asked [A]."""
+_NO_PARAMETERS: Final[dict[str, float]] = {}
+
+
+class Sensor(Device):
+    """Reads channels, each scaled to its unit.
+
+    ``values`` are the channels in the order of ``channels``: what was read less ``tare``, NaN before the first reading
+    and always for a channel that the sensor does not have. ``raw`` and ``counts`` are the same without tare, and as
+    bare numbers of the registers (0 for a missing channel). ``valid``: no status bit speaks against the last reading
+    and every channel is within its range. ``stamp_s`` is when it arrived, ``changed_s`` when a count last differed from
+    the one before (-inf = never). Parameters of the profile are written, and read back, whenever it is connected.
+    """
+
+    def __init__(
+        self,
+        profile: DeviceProfile,
+        unit_id: int,
+        link: ModbusLink,
+        channels: Sequence[str] = (),
+        parameters: Mapping[str, float] = _NO_PARAMETERS,
+    ) -> None:
+        """Put the sensor on ``link``.
+
+        ``channels``: the wanted ones in the order wanted, all of the profile by default. ``parameters``: values of the
+        profile's ``writes`` by name; one that the profile does not have is left out. Raises ProfileError for a profile
+        of no sensor and ValueError for a parameter that is missing or out of its range.
+        """
+        profile.expect_sensor()
+        super().__init__(profile, unit_id, link)
+        block = profile.blocks[0]
+        names = [signal.name for signal in block.signals]
+        self.channels: tuple[str, ...] = tuple(channels) or profile.channels
+        self._unpack = block.unpack
+        self._status_place = names.index("status") if "status" in names else -1
+        self._rows = tuple(
+            _row(number, names.index(name), profile.signal(name), profile.saturated)
+            for number, name in enumerate(self.channels)
+            if name in names
+        )
+        self._invalid_bits = profile.invalid_bits
+        self._poll = self._polls[0]
+        self.stale_s: float = max(STALE_LEAST_S, STALE_PERIODS * block.period_s)
+        """A reading older than this is stale."""
+        size = len(self.channels)
+        self.counts: list[float] = [0.0] * size
+        self.raw: list[float] = [nan] * size
+        self.values: list[float] = [nan] * size
+        self.tare: tuple[float, ...] = (0.0,) * size
+        self.status = 0
+        self.changed_s: float = -inf
+        for write in profile.setup:
+            self.add_write(write.name, write.address, (write.value,), write.read_back)
+        for name, register in profile.writes.items():
+            value = _parameter(profile, register, parameters.get(name))
+            self.add_write(name, register.address, register.words(value, profile.word_order), read_back=True)
+        self.begin()
+
+    @property
+    def period_s(self) -> float:
+        """Time between two reads in s; 0 = with every scan."""
+        return self._poll.period_s
+
+    @period_s.setter
+    def period_s(self, period_s: float) -> None:
+        if period_s != self._poll.period_s:
+            self.link.retime(self._poll, period_s)
+
+    def set_tare(self, values: tuple[float, ...]) -> None:
+        """Take ``values``, one a channel, off every reading from now on: usually the mean of unloaded ``raw`` ones.
+
+        Raises ValueError for another number of values, and for a sensor whose profile allows no tare.
+        """
+        if not self.profile.tare or len(values) != len(self.channels):
+            raise ValueError(f"{self.profile.title}: no tare of {len(values)} values can be taken")
+        self.tare = values
+        self.values = [raw - zero for raw, zero in zip(self.raw, values, strict=True)]
+
+    def fresh(self, now: float) -> bool:
+        """Tell whether the last reading is valid and, at ``now`` s, not too old."""
+        return self.valid and now - self.stamp_s <= self.stale_s
+
+    def received(self, request: Request, data: bytes, t: float) -> None:
+        """Take a good reply; the way of the usual reading is short."""
+        if request is self._poll and self.ready:
+            self.take(0, data, t)
+        else:
+            Device.received(self, request, data, t)
+
+    def take(self, block: int, data: bytes, t: float) -> None:
+        """Update the readings from the registers of the first block; others are not looked at."""
+        if block:
+            return
+        found: tuple[Any, ...] = self._unpack(data)  # whole numbers, and floats of f32
+        status = int(found[self._status_place]) if self._status_place >= 0 else 0
+        counts, raw, values, tare = self.counts, self.raw, self.values, self.tare
+        valid = not status & self._invalid_bits
+        for number, place, sign, scale, low, high in self._rows:
+            count = float(found[place])
+            if sign and status & sign:
+                count = -count
+            value = count * scale
+            if not low < value < high:
+                valid = False
+            if count != counts[number]:
+                counts[number] = count
+                self.changed_s = t
+            raw[number] = value
+            values[number] = value - tare[number]
+        self.status = status
+        self.valid = valid
+        self.stamp_s = t
+
+    def suspend(self) -> None:
+        """Distrust the last reading."""
+        self.valid = False
+
+    def resume(self) -> None:
+        """Leave the last reading distrusted until the next comes."""
+
+
+def _row(
+    number: int, place: int, signal: Signal, saturated: float | None
+) -> tuple[int, int, int, float, float, float]:
+    """Return a channel's number, place in the block, sign bit's mask, scale, and the bounds its values lie between."""
+    sign = 1 << signal.sign_bit if signal.sign_bit is not None else 0
+    if saturated is None:
+        low, high = nextafter(signal.least, -inf), nextafter(signal.greatest, inf)
+    else:
+        high = floor(saturated * signal.greatest / signal.scale) * signal.scale if signal.greatest < inf else inf
+        low = -high
+    return number, place, sign, signal.scale, low, high
+
+
+def _parameter(profile: DeviceProfile, register: Signal, given: float | None) -> float:
+    """Return what a register is to hold: the value given, or the profile's."""
+    value = register.default if given is None else given
+    bounds = f"{register.least:g} to {register.greatest:g}"
+    if value is None:
+        raise ValueError(f"{register.name} is to be stated: {bounds} with {profile.title}")
+    if not register.least <= value <= register.greatest:
+        raise ValueError(f"{register.name} is {bounds} with {profile.title}, not {value:g}")
+    return value

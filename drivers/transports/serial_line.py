@@ -1,0 +1,99 @@
+"""A serial port as a line that carries Modbus RTU."""
+
+from __future__ import annotations
+
+import sys
+from typing import TYPE_CHECKING, Literal
+
+from drivers.ports import BusLost, WatchedLine
+
+if TYPE_CHECKING:
+    from serial import Serial
+
+
+class SerialLine(WatchedLine):
+    """A port (``drivers.ports.LinePort``) over pyserial. Nothing blocks: the operating system keeps what arrives.
+
+    Bytes are stamped with the time they are fetched at, which is no earlier than they arrived.
+    """
+
+    def __init__(self, serial: Serial) -> None:
+        """Take an open port without time-outs; see ``open_serial_line``."""
+        super().__init__()
+        self._serial = serial
+        self._unsent = b""
+
+    def write(self, data: bytes, now: float) -> None:
+        """Send bytes; what the operating system does not take now goes with the next call. Raises BusLost."""
+        self._unsent += data
+        self._send()
+        if self.watchers:
+            self.tell(now, data, True)
+
+    def _send(self) -> None:
+        from serial import SerialException
+
+        try:
+            sent = self._serial.write(self._unsent) or 0
+        except (SerialException, OSError) as error:
+            raise BusLost(f"serial port {self._serial.name}: {error}") from error
+        self._unsent = self._unsent[sent:]
+
+    def read(self, now: float) -> list[tuple[float, bytes]]:
+        """Return what has arrived, stamped ``now`` (s). Raises BusLost."""
+        from serial import SerialException
+
+        if self._unsent:
+            self._send()
+        try:
+            waiting = self._serial.in_waiting
+            data = self._serial.read(waiting) if waiting else b""
+        except (SerialException, OSError) as error:
+            raise BusLost(f"serial port {self._serial.name}: {error}") from error
+        if not data:
+            return []
+        if self.watchers:
+            self.tell(now, data, False)
+        return [(now, data)]
+
+    def close(self) -> None:
+        """Release the port."""
+        self._serial.close()
+
+
+def open_serial_line(port: str, baud: int, parity: Literal["N", "E", "O"] = "N") -> SerialLine:
+    """Open a serial port for Modbus RTU: ``baud`` in bit/s, 8 data bits, 1 stop bit; nobody else can open it.
+
+    USB adapters are asked for low latency: by default many deliver in batches of 16 ms. Raises
+    BusLost when the port cannot be opened.
+    """
+    from serial import Serial, SerialException
+
+    try:
+        serial = Serial(
+            port, baud, bytesize=8, parity=parity, stopbits=1, timeout=0.0, write_timeout=0.0, exclusive=True
+        )
+        serial.reset_input_buffer()
+    except (SerialException, OSError, ValueError, *_settings_errors()) as error:
+        raise BusLost(f"serial port {port}: {error}") from error
+    if sys.platform == "linux":
+        _ask_for_low_latency(serial)
+    return SerialLine(serial)
+
+
+def _settings_errors() -> tuple[type[Exception], ...]:
+    """Return what a terminal raises that refuses its settings: a pty refuses parity, for one."""
+    try:
+        import termios
+    except ImportError:  # Windows
+        return ()
+    return (termios.error,)
+
+
+def _ask_for_low_latency(serial: Serial) -> None:
+    """Set the driver's low-latency flag (1 ms with FTDI chips); ports that have none stay as they are."""
+    try:
+        serial.set_low_latency_mode(True)
+    except (OSError, ValueError):
+        # A pty or an adapter without the flag: it works, with the latency it has.
+        return

@@ -1,0 +1,56 @@
+"""Kinds of simulated machines, found by name: a folder here each, or ``package.module:OBJECT`` of who brings one along.
+
+A kind's package has a ``MACHINE`` (``SimulatedMachine``). ``tester.run`` alone looks one up, by the name that a kind of
+rig says: no name comes from a rig file or a client.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from importlib import import_module
+from pkgutil import iter_modules
+
+from sim.faults.language import FaultLanguage
+from sim.rig import SimRig
+
+
+class UnknownMachineError(LookupError):
+    """A kind of machine without a simulation; the message names those that have one."""
+
+
+@dataclass(frozen=True, slots=True)
+class SimulatedMachine:
+    """What a kind of machine gives to be simulated."""
+
+    world: Callable[..., SimRig]
+    """``world(spec, parameters, seed, can_wire)``: the rig on a wiring (``sim.rig.RigSpec``), with the kind's own
+    parameters (the rig file's section ``sim``), all that is random from ``seed`` (an integer), on a bus of this class.
+    """
+    language: Callable[[], FaultLanguage]
+    """What can go wrong with it; asked for only where faults are scripted."""
+    log_columns: tuple[str, ...]
+    log_row: Callable[..., tuple[float, ...]]
+    """``log_row(rig)``: true values for a log of its state, one a column, each with its number of decimals."""
+    log_decimals: tuple[int, ...]
+
+
+def names() -> tuple[str, ...]:
+    """Return the kinds that are simulated here."""
+    return tuple(sorted(module.name for module in iter_modules(__path__) if module.ispkg))
+
+
+def find(kind: str) -> SimulatedMachine:
+    """Return a kind's machine: of a name of ``names``, or dotted, ``package.module:OBJECT``. Raises
+    UnknownMachineError."""
+    known = names()
+    module, colon, attribute = kind.partition(":")
+    if not colon and kind not in known:
+        raise UnknownMachineError(f"no simulated machine {kind!r}; known: {', '.join(known)}")
+    try:
+        machine = getattr(import_module(module if colon else f"{__name__}.{kind}"), attribute or "MACHINE")
+    except (ImportError, AttributeError) as error:
+        raise UnknownMachineError(f"no simulated machine {kind!r}: {error}") from error
+    if not isinstance(machine, SimulatedMachine):
+        raise UnknownMachineError(f"{kind} is no simulated machine (expected a sim.machines.SimulatedMachine)")
+    return machine

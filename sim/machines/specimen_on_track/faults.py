@@ -1,0 +1,306 @@
+"""What can go wrong with a specimen on a track: the catalogue, its effects, and the language of its scripts.
+
+Budgets count from the onset, or from when the fault can be noticed, to the safe commands, with one scan of 50 ms at the
+slow rate on top; all are [A].
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from enum import Enum
+from functools import partial
+from typing import Final
+
+from drivers.canopen import objects as o
+from sim.faults import actuators, can, drives, modbus, operator_faults, sdo
+from sim.faults.kinds import Expected, FaultKind
+from sim.faults.language import FaultLanguage
+from sim.faults.scene import Effect, Scene
+from sim.faults.sensors import SEED, SLOW, Slow, spoiled
+from sim.machines.specimen_on_track.rig import TrackRig
+from sim.nodes.cell_slave import CellSlave, ForceSource
+from sim.nodes.chamber_slave import AirSource
+from sim.nodes.ir_slave import IrSlave, SurfaceSource
+from sim.nodes.motion import VelocityAxis
+from sim.noise import NormalStream
+from sim.wires.modbus_wire import Kind
+
+STEPS: Final = ("connect", "install", "temper", "settle", "tare", "lower", "slide", "lift", "prompt")
+"""Names of steps that a fault can wait for."""
+AXES: Final = ("track", "lift")
+SCAN_S: Final = 0.05
+"""The slow scan's period: what is noticed by a scan is noticed this much later at most, s."""
+OVERCURRENT: Final = 0x2310
+
+
+class Onset(Enum):
+    """When a fault of this machine can be noticed at all: its budget counts from then on."""
+
+    ALWAYS = "at once, once the run has begun"
+    DRIVES = "at once, once every drive is configured"
+    CONNECTING = "at the next connection"
+    ENABLED = "while the drives are on"
+    MOVING = "while the track moves"
+    SLIDING = "in contact, while the track moves"
+    LIFTING = "while the arm is told to move"
+    TEMPERED = "while the chamber is told to run"
+    NEAR_THE_END = "where the track comes to the end of its travel"
+
+
+def track_rig(scene: Scene) -> TrackRig:
+    """Return the rig of a scene. Raises TypeError where it is another kind of machine."""
+    if not isinstance(scene.rig, TrackRig):
+        raise TypeError(f"a fault of a specimen on a track cannot act on {type(scene.rig).__name__}")
+    return scene.rig
+
+
+class _Spoiled:
+    """How a sensor shows something else than is, until it is no longer ``active``."""
+
+    def __init__(self, kind: str, value: float, since_s: float, middle: float) -> None:
+        """Of one of the kinds of ``sim.faults.sensors``, of this size; shares count from ``middle`` (0 N, or degC)."""
+        self._kind, self._value, self._since_s, self._middle = kind, value, since_s, middle
+        self._noise = NormalStream(SEED, "faulty track sensor")
+        self._slow = Slow(kind, value) if kind in SLOW else None
+        self.active = True
+
+    def shown(self, true: float, t: float) -> float:
+        """Return what it makes of a true value at ``t`` s."""
+        if not self.active:
+            return true
+        if self._slow is not None:
+            return self._slow.shown((true,), t)[0]
+        return spoiled(self._kind, true, self._value, t - self._since_s, self._noise, self._middle)
+
+
+class SpoiledForce:
+    """A load cell with something wrong."""
+
+    def __init__(self, source: ForceSource, spoil: _Spoiled) -> None:
+        """Stand in for ``source``."""
+        self._source, self._spoil = source, spoil
+
+    def forces_measured(self, t: float) -> tuple[float, float, float, float]:
+        """Return the tangential force in N as it appears, as the first of four channels."""
+        x, y, z, m = self._source.forces_measured(t)
+        return self._spoil.shown(x, t), y, z, m
+
+
+class SpoiledSurface:
+    """A pyrometer or thermometer with something wrong."""
+
+    def __init__(self, source: SurfaceSource, spoil: _Spoiled) -> None:
+        """Stand in for ``source``."""
+        self._source, self._spoil = source, spoil
+
+    def surface_measured_c(self, t: float) -> float:
+        """Return the temperature in degC as it appears."""
+        return self._spoil.shown(self._source.surface_measured_c(t), t)
+
+
+class SpoiledAir:
+    """A chamber's sensor with something wrong."""
+
+    def __init__(self, source: AirSource, spoil: _Spoiled) -> None:
+        """Stand in for ``source``."""
+        self._source, self._spoil = source, spoil
+
+    def chamber_measured_c(self, t: float) -> float:
+        """Return the air's temperature in degC as it appears."""
+        return self._spoil.shown(self._source.chamber_measured_c(t), t)
+
+
+class SpoiledSensor(Effect):
+    """Something is wrong with a sensor (N, K, or that a second, or percent, or s); "frozen" stops a device's sampling.
+
+    Without the device the fault has nothing to act on.
+    """
+
+    __slots__ = ("_spoil", "device", "kind", "value")
+
+    def __init__(self, device: str, kind: str, value: float = 0.0) -> None:
+        """Of the device of this name."""
+        self.device, self.kind, self.value = device, kind, value
+        self._spoil: _Spoiled | None = None
+
+    def begin(self, scene: Scene, now: float) -> None:
+        """Let it show something else from now on."""
+        rig = track_rig(scene)
+        slave = rig.devices.get(self.device)
+        if isinstance(slave, CellSlave | IrSlave) and self.kind == "frozen":
+            slave.frozen = True
+            return
+        middle = 0.0 if isinstance(slave, CellSlave) else rig.ambient_c
+        # A broken bridge drives the amplifier to the end of its range.
+        kind = "saturated" if self.kind == "open" and isinstance(slave, CellSlave) else self.kind
+        self._spoil = spoil = _Spoiled(kind, self.value, now, middle)
+        if isinstance(slave, CellSlave):
+            slave.source = SpoiledForce(slave.source, spoil)
+        elif isinstance(slave, IrSlave):
+            slave.source = SpoiledSurface(slave.source, spoil)
+        elif rig.chamber is not None:
+            rig.chamber.source = SpoiledAir(rig.chamber.source, spoil)
+
+    def end(self, scene: Scene, now: float) -> None:
+        """Show what is."""
+        if self._spoil is not None:
+            self._spoil.active = False
+        slave = track_rig(scene).devices.get(self.device)
+        if isinstance(slave, CellSlave | IrSlave):
+            slave.frozen = False
+
+
+class ChamberOutput(Effect):
+    """The chamber heats or cools whatever its loop says."""
+
+    __slots__ = ("percent",)
+
+    def __init__(self, percent: float) -> None:
+        """With this output, -100 (cooling) to 100 %."""
+        self.percent = percent
+
+    def begin(self, scene: Scene, now: float) -> None:
+        """Stick."""
+        chamber = track_rig(scene).chamber
+        if chamber is not None:
+            chamber.stuck_output = self.percent
+
+    def end(self, scene: Scene, now: float) -> None:
+        """Come loose."""
+        chamber = track_rig(scene).chamber
+        if chamber is not None:
+            chamber.stuck_output = None
+
+
+class TrackOverspeeds(drives.Runaway):
+    """The track moves by itself whenever its power stage is on, whatever is commanded."""
+
+    __slots__ = ()
+
+    def __init__(self, mm_s: float) -> None:
+        """At this speed, mm/s."""
+        super().__init__("track", mm_s)
+
+    def renew(self, scene: Scene, now: float) -> None:
+        """Override what was commanded, in the track's own unit."""
+        rig = track_rig(scene)
+        axis = rig.axes["track"].axis
+        if rig.axes["track"].energised and isinstance(axis, VelocityAxis):
+            axis.aim(1e-3 * self.speed / rig.metres)
+
+
+class EndSwitchDead(Effect):
+    """The end switches open nothing any more."""
+
+    __slots__ = ()
+
+    def begin(self, scene: Scene, now: float) -> None:
+        """Die."""
+        track_rig(scene).switches_work = False
+
+    def end(self, scene: Scene, now: float) -> None:
+        """Work again."""
+        track_rig(scene).switches_work = True
+
+
+def _drive_rows() -> Iterator[FaultKind]:
+    drives_on, trip = Onset.DRIVES, Expected.TRIP
+    for axis in AXES:
+        yield FaultKind(f"{axis} drive fault", partial(drives.DriveFault, axis, OVERCURRENT), drives_on, trip,
+                        0.02 + SCAN_S)
+        yield FaultKind(f"{axis} drive heartbeat lost", partial(drives.HeartbeatLost, axis), drives_on, trip,
+                        0.2 + SCAN_S)
+        yield FaultKind(f"{axis} drive off the bus", partial(can.NodeCut, axis), drives_on, trip, 0.2 + SCAN_S)
+        yield FaultKind(f"{axis} drive without supply", partial(drives.Unpowered, axis), drives_on, trip, 0.2 + SCAN_S)
+        yield FaultKind(f"{axis} drive reboots", partial(drives.Reboot, axis), drives_on, trip, 0.25 + SCAN_S,
+                        lasts_s=1.0)
+        yield FaultKind(f"{axis} drive data lost", partial(can.FramesLost, axis, o.TPDO1_BASE), Onset.ENABLED, trip,
+                        0.15 + SCAN_S)
+        yield FaultKind(f"{axis} drive torque off", partial(drives.TorqueOff, axis), Onset.ENABLED, trip,
+                        0.1 + SCAN_S)
+        yield FaultKind(f"{axis} drive in local mode", partial(drives.Local, axis), Onset.ENABLED, trip,
+                        0.1 + SCAN_S)
+        yield FaultKind(f"{axis} drive of another make", partial(drives.WrongIdentity, axis), Onset.CONNECTING,
+                        trip, 3.0)
+        yield FaultKind(f"{axis} drive SDO abort", partial(sdo.SdoSpoiled, axis, "abort"), Onset.CONNECTING, trip,
+                        3.0)
+    yield FaultKind("track stalls", partial(drives.Jammed, "track"), Onset.MOVING, trip, 1.2 + SCAN_S)
+    yield FaultKind("track overspeeds", TrackOverspeeds, Onset.ENABLED, trip, 1.2 + SCAN_S, "mm/s", 10.0)
+    yield FaultKind("lift stuck", partial(drives.Jammed, "lift"), Onset.LIFTING, trip, 5.0,
+                    note="a move that does not arrive within its time")
+    yield FaultKind("end switch dead", EndSwitchDead, Onset.NEAR_THE_END, Expected.MAY, 0.0,
+                    note="a second line: the track turns back before it")
+
+
+def _bus_rows() -> Iterator[FaultKind]:
+    drives_on, trip = Onset.DRIVES, Expected.TRIP
+    yield FaultKind("CAN adapter gone", can.AdapterGone, drives_on, trip, SCAN_S)
+    yield FaultKind("CAN bus off", can.BusSilent, drives_on, trip, 0.2 + SCAN_S)
+    yield FaultKind("CAN frames repeated", can.FramesRepeated, Onset.ALWAYS, Expected.RIDE, 0.0)
+    yield FaultKind("safety chain opened", actuators.ChainOpen, drives_on, trip, SCAN_S)
+    yield FaultKind("guard opened", actuators.GuardOpen, Onset.ENABLED, trip, SCAN_S)
+    yield FaultKind("emergency stop pressed", partial(actuators.EmergencyStop, ("track",)), drives_on, trip, SCAN_S)
+
+
+_SILENT_S: Final = {"load cell": (Onset.SLIDING, 0.2 + SCAN_S), "chamber": (Onset.TEMPERED, 3.0 + SCAN_S)}
+"""When the readings of a device are needed, and their age at which they are stale with the row's delay, s."""
+
+
+_SPOILED: Final[tuple[tuple[str, Kind], ...]] = (
+    ("silent", "silence"), ("CRC errors", "corrupt"), ("replies cut short", "truncate"),
+)  # fmt: skip
+
+
+def _device_rows() -> Iterator[FaultKind]:
+    for device, (when, budget_s) in _SILENT_S.items():
+        for what, kind in _SPOILED:
+            yield FaultKind(f"{device} {what}", partial(modbus.Impaired, device, kind), when, Expected.TRIP, budget_s)
+        yield FaultKind(f"{device} without supply", partial(modbus.DeviceOff, device), when, Expected.TRIP, budget_s)
+        yield FaultKind(f"{device} reset", partial(modbus.DeviceReset, device), when, Expected.TRIP, budget_s,
+                        lasts_s=modbus.REBOOT_S)
+        yield FaultKind(f"{device} replies late", partial(modbus.LateReply, device), when, Expected.TRIP,
+                        budget_s + 0.5, "ms", 1.5)
+    yield FaultKind("chamber runs away", ChamberOutput, Onset.TEMPERED, Expected.TRIP, 600.0, "%", 100.0, slow=True,
+                    note="seen by its reading, 10 K from the setpoint after it was there, or at its range")
+    yield FaultKind("chamber sensor open", partial(SpoiledSensor, "chamber", "open"), Onset.TEMPERED, Expected.TRIP,
+                    3.0 + SCAN_S)
+    yield FaultKind("chamber sensor offset", partial(SpoiledSensor, "chamber", "offset"), Onset.TEMPERED,
+                    Expected.MAY, 0.0, "K", -10.0, slow=True,
+                    note="one sensor alone: nothing in the chamber contradicts it")
+    yield FaultKind("load cell frozen", partial(SpoiledSensor, "load cell", "frozen"), Onset.SLIDING, Expected.TRIP,
+                    2.0 + SCAN_S, note="not one count changes")
+    yield FaultKind("load cell open", partial(SpoiledSensor, "load cell", "open"), Onset.ALWAYS, Expected.TRIP,
+                    0.2 + SCAN_S)
+    yield FaultKind("load cell offset", partial(SpoiledSensor, "load cell", "offset"), Onset.SLIDING, Expected.MAY,
+                    0.0, "N", 5.0, note="seen by the next tare")
+    yield FaultKind("load cell drift", partial(SpoiledSensor, "load cell", "drift"), Onset.SLIDING, Expected.MAY, 0.0,
+                    "N/s", 0.01, note="seen by the next tare")
+    yield FaultKind("load cell gain", partial(SpoiledSensor, "load cell", "gain"), Onset.SLIDING, Expected.MAY, 0.0,
+                    "%", 70.0, note="one channel alone: nothing on the rig contradicts it")
+    for name in ("pyrometer", "thermometer"):
+        yield FaultKind(f"{name} silent", partial(modbus.Impaired, name, "silence"), Onset.ALWAYS, Expected.TRIP,
+                        3.0, note="on a rig that has one")
+        yield FaultKind(f"{name} offset", partial(SpoiledSensor, name, "offset"), Onset.ALWAYS, Expected.MAY, 0.0, "K",
+                        10.0, note="recorded, not controlled by")
+
+
+def _computer_rows() -> Iterator[FaultKind]:
+    yield FaultKind("scan stalled", operator_faults.Stall, Onset.ENABLED, Expected.TRIP, 0.4 + SCAN_S, "ms", 0.4,
+                    lasts_s=0.5)
+    yield FaultKind("process killed", operator_faults.Killed, Onset.ALWAYS, Expected.DEVICES, 0.25)
+    for action, reaction in (("hold", Expected.HOLD), ("abort", Expected.STOP), ("stop", Expected.STOP),
+                             ("fast stop", Expected.STOP)):
+        yield FaultKind(f"operator {action}", partial(operator_faults.Operator, action), Onset.DRIVES, reaction,
+                        SCAN_S)
+
+
+def _rows() -> Iterator[FaultKind]:
+    yield from _drive_rows()
+    yield from _bus_rows()
+    yield from _device_rows()
+    yield from _computer_rows()
+
+
+CATALOGUE: dict[str, FaultKind] = {row.phrase: row for row in _rows()}
+"""Every fault by its phrase."""
+LANGUAGE = FaultLanguage(CATALOGUE, STEPS)

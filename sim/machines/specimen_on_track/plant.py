@@ -1,0 +1,198 @@
+"""The plant: a specimen on an arm, loaded by weights, on a track that moves under it.
+
+The arm holds the specimen back through a spring (arm, cell, rubber). While the contact sticks, the spring is drawn out
+by as much as the track moves; at the limit it slides. The limit is the law's coefficient at the track's speed and the
+specimen's temperature times the load, and above it by ``static_excess`` after a rest, a share that goes with the
+sliding distance. Air and specimen are one lump of heat each; flashes of temperature at the asperities are not modelled.
+Below some mm/s friction heats nothing: 20 N at 10 mm/s and mu = 2 are 0.4 W, of which the specimen's share warms it by
+0.2 K.
+Every public attribute is the truth.
+"""
+
+from __future__ import annotations
+
+from math import copysign, exp
+from typing import Final
+
+from sim.noise import NormalStream, normal, uniforms
+from sim.physics.laws import FrictionLaw
+from sim.physics.track import Interface, TrackParameters
+from sim.sensors import TemperatureSensor
+
+SPECIMEN_SIGMA: Final = 0.03
+REPEAT_SIGMA: Final = 0.02
+"""Relative standard deviation of the friction from specimen to specimen, and of one repeat [A]."""
+_SHEDDING_OVER: Final = 37.0
+"""Static lengths after which the static excess is 0 to the last bit: exp(-37) is less than 2^-53."""
+
+
+class TrackPlant:
+    """The physics of one rig, with a specimen on its arm after ``install``. All randomness from one seed.
+
+    ``force_n`` is the tangential force on the specimen, above 0 where the track moves forward; ``load_n`` the load on
+    the contact; ``slip_m_s`` the speed of sliding; ``slid_m`` its distance since the specimen was put in.
+    """
+
+    __slots__ = (
+        "_air", "_drift_n_k", "_law", "_noise", "_place", "_pyrometer", "_repeat", "_seed", "_share",
+        "_since_rest_m", "_specimen", "_zero_n", "air_c", "force_n", "interface", "load_n", "mu", "parameters",
+        "power_w", "slid_m", "slip_m_s", "specimen_c", "weights_n",
+    )  # fmt: skip
+
+    def __init__(self, parameters: TrackParameters, seed: int) -> None:
+        """Build a rig at ambient temperature without a specimen; draw what stays the same for the session."""
+        p = parameters
+        self.parameters = p
+        self._seed = seed
+        bias, zero, drift = uniforms(3, seed, "session track")
+        s, noise = p.sensors, p.noise
+        unused = NormalStream(seed, "unused")
+        self._pyrometer = TemperatureSensor(
+            s.pyrometer_time, noise * s.pyrometer_rms, noise * s.pyrometer_bias * bias, unused
+        )
+        self._air = TemperatureSensor(s.air_time, noise * s.air_rms, 0.0, unused)
+        self._zero_n, self._drift_n_k = noise * s.force_zero * zero, noise * s.force_drift * drift
+        self.air_c = self.specimen_c = p.ambient
+        self._pyrometer.reset(p.ambient)
+        self._air.reset(p.ambient)
+        self._law: FrictionLaw | None = None
+        self._specimen = self._repeat = 1.0
+        self.interface: Interface = "dry"
+        self._share = 1.0
+        self.weights_n = 0.0
+        self.slid_m = 0.0
+        self.force_n = self.load_n = self.slip_m_s = self.power_w = self.mu = 0.0
+        self._since_rest_m = 0.0
+        self._place: tuple[int, ...] = ()
+        self._key_streams()
+
+    # the attendant's hands -----------------------------------------------------------------------------------
+
+    def install(self, specimen: int, compound: str) -> None:
+        """Put a specimen in (``specimen`` keys its scatter), at ambient temperature.
+
+        Raises ValueError for a rubber that the parameters do not have.
+        """
+        self._law = self.parameters.friction_of(compound)
+        self._specimen = 1.0 + self.parameters.scatter * SPECIMEN_SIGMA * normal(self._seed, "specimen", specimen)
+        self._repeat = 1.0
+        self.specimen_c = self.parameters.ambient
+        self.slid_m = 0.0
+        self._release()
+        self._place = (specimen,)
+        self._key_streams()
+
+    def put_on(self, weights_n: float) -> None:
+        """Hang weights on the arm, N (with the arm's own weight, which is balanced otherwise). Raises ValueError."""
+        if not 0.0 <= weights_n < float("inf"):
+            raise ValueError(f"weights must be finite and at least 0 N, not {weights_n!r}")
+        self.weights_n = weights_n
+
+    def prepare(self, interface: Interface) -> None:
+        """Dry, wet or powder the track."""
+        self._share = self.parameters.contact.share(interface)
+        self.interface = interface
+
+    def begin_repeat(self, condition: int, repeat: int, attempt: int) -> None:
+        """Draw the scatter of a repeat and start its streams of noise; all numbers 0 and up."""
+        place = (*self._place[:1], condition, repeat, attempt)
+        self._repeat = 1.0 + self.parameters.scatter * REPEAT_SIGMA * normal(self._seed, "repeat", *place)
+        self._place = place
+        self._key_streams()
+
+    def _key_streams(self) -> None:
+        """Start every stream of noise anew at the present place."""
+        self._noise = NormalStream(self._seed, "track cell", *self._place)
+        self._pyrometer.noise = NormalStream(self._seed, "track pyrometer", *self._place)
+        self._air.noise = NormalStream(self._seed, "track air", *self._place)
+
+    # time ----------------------------------------------------------------------------------------------------
+
+    def advance(self, dt: float, track_m_s: float, lift_mm: float, chamber_percent: float) -> None:
+        """Move on by ``dt`` s with the track's speed and the arm's position as at its end, and the chamber's output.
+
+        ``lift_mm`` is 0 lowered; ``chamber_percent`` -100 (cooling) to 100, without meaning where nothing is enclosed.
+        """
+        contact = self.parameters.contact
+        pressed = (contact.touch - lift_mm) / contact.touch
+        self.load_n = self.weights_n * (1.0 if pressed > 1.0 else pressed)
+        if pressed > 0.0 and self.weights_n > 0.0 and self._law is not None:
+            self._rub(dt, track_m_s, self._law)
+        elif self.force_n != 0.0 or self.load_n != 0.0 or self._since_rest_m != 0.0:
+            self._release()
+        self._warm(dt, chamber_percent)
+
+    def _rub(self, dt: float, track_m_s: float, law: FrictionLaw) -> None:
+        """Draw the spring out, or slide at the limit."""
+        self.slip_m_s = self.power_w = 0.0
+        if track_m_s == 0.0:
+            self._since_rest_m = 0.0
+            limit_n = self.load_n * self.mu * (1.0 + self.parameters.contact.static_excess)
+            if abs(self.force_n) > limit_n:
+                self.force_n = copysign(limit_n, self.force_n)  # the load has become less
+            return
+        contact, speed = self.parameters.contact, abs(track_m_s)
+        mu = law.mu(self.specimen_c, self.load_n, speed) * self._share * self._specimen * self._repeat
+        stiffness_n_m = 1e3 * contact.stiffness
+        moved_m = track_m_s * dt
+        drawn_n = self.force_n + stiffness_n_m * moved_m
+        length_m = 1e-3 * contact.static_length
+        if self._since_rest_m > 0.0 and drawn_n * track_m_s < 0.0:
+            self._since_rest_m = 0.0  # turned back: the contact holds until the spring is drawn the other way
+        excess = 0.0
+        if self._since_rest_m < _SHEDDING_OVER * length_m:
+            excess = contact.static_excess * exp(-self._since_rest_m / length_m)
+        self.mu = mu
+        limit_n = self.load_n * mu * (1.0 + excess)
+        if abs(drawn_n) <= limit_n:
+            self.force_n = drawn_n
+            return
+        self.force_n = copysign(limit_n, drawn_n)
+        slid_m = min(speed * dt, (abs(drawn_n) - limit_n) / stiffness_n_m)
+        self._since_rest_m += slid_m
+        self.slid_m += slid_m
+        self.slip_m_s = slid_m / dt
+        self.power_w = limit_n * self.slip_m_s
+
+    def _release(self) -> None:
+        """Take all force off; the next touch begins as after a rest."""
+        self.force_n = self.load_n = self.slip_m_s = self.power_w = self.mu = 0.0
+        self._since_rest_m = 0.0
+
+    def _warm(self, dt: float, chamber_percent: float) -> None:
+        """Let air and specimen follow for ``dt`` s, exactly for powers that stay the same meanwhile."""
+        p, h = self.parameters, self.parameters.heat
+        if p.enclosed:
+            goal_c = p.ambient + 0.01 * chamber_percent * h.chamber_rate * h.chamber_time
+            self.air_c = goal_c + (self.air_c - goal_c) * exp(-dt / h.chamber_time)
+        into_w = h.friction_share * self.power_w
+        goal_c = self.air_c + h.specimen_rise * into_w
+        self.specimen_c = goal_c + (self.specimen_c - goal_c) * exp(-dt / h.specimen_time)
+        self._air.retime(dt)
+        self._air.follow(self.air_c)
+        self._pyrometer.retime(dt)
+        self._pyrometer.follow(self.exit_c)
+
+    @property
+    def exit_c(self) -> float:
+        """Temperature of the track's surface where it leaves the contact, degC."""
+        return self.specimen_c + self.parameters.heat.exit_rise * self.power_w
+
+    # what the sensors see ------------------------------------------------------------------------------------
+
+    def forces_measured(self, t: float) -> tuple[float, float, float, float]:
+        """Return what the cell reads now: the tangential force in N as the first of four channels."""
+        s = self.parameters.sensors
+        seen_n = self.force_n + self._zero_n + self._drift_n_k * (self.air_c - self.parameters.ambient)
+        rms_n = self.parameters.noise * s.force_rms
+        if rms_n > 0.0:
+            seen_n += rms_n * self._noise.next()
+        return min(max(seen_n, -s.force_range), s.force_range), 0.0, 0.0, 0.0
+
+    def chamber_measured_c(self, t: float) -> float:
+        """Return what the chamber's sensor reads now, degC."""
+        return self._air.measure()
+
+    def surface_measured_c(self, t: float) -> float:
+        """Return what the pyrometer at the contact's exit edge reads now, degC."""
+        return self._pyrometer.measure()

@@ -1,0 +1,210 @@
+"""The rig of a specimen on a track: which drive moves what, what stands at the ends of its travel, who reads what.
+
+A linear track stands between two stops. Its end switches, a little before them, open the safety chain at the drive with
+the inputs; an attendant moves the track back by hand.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+from drivers.axis import AxisConfig
+from sim.machines.specimen_on_track.plant import TrackPlant
+from sim.nodes.cell_slave import CellSlave
+from sim.nodes.chamber_slave import ChamberSlave
+from sim.nodes.cia402_slave import Cia402Slave
+from sim.nodes.ir_slave import IrSlave
+from sim.nodes.modbus_slave import ModbusSlave
+from sim.nodes.motion import PositionAxis, VelocityAxis
+from sim.nodes.sensor_node import SimulatedSensorNode
+from sim.physics.track import Interface, TrackParameters
+from sim.rig import DeviceSpec, RigSpec, World, further_sensors, lines_of
+from sim.wires.can_wire import CanWire
+
+TRACK_LAG_S: Final = 0.004
+"""Lag of the track behind its velocity command, s [A]."""
+TRACK_LEVER_M: Final = 0.05
+"""Torque at the track's drive by force at the specimen, m [A]."""
+_METRES: Final = {"mm/s": 1e-3, "m/s": 1.0}
+"""Metres in the track's unit of length."""
+WORDS: Final = {
+    "load_cell": "load cell", "chamber": "chamber", "pyrometer": "pyrometer", "thermometer": "thermometer",
+}  # fmt: skip
+"""What people call the devices, by their keys in the wiring."""
+
+
+class AmbientAir:
+    """What a thermometer beside the rig sees."""
+
+    def __init__(self, plant: TrackPlant) -> None:
+        """Of the air of this plant."""
+        self._plant = plant
+
+    def surface_measured_c(self, t: float) -> float:
+        """Return the temperature of the room's air, degC."""
+        return self._plant.parameters.ambient
+
+
+class TrackRig:
+    """A friction tester with a specimen on a track, on simulated wires (a ``sim.rig.SimRig``).
+
+    Drives: track (mm/s or m/s at the specimen), and lift (mm, 0 lowered) unless the arm is moved by hand. Devices by
+    their keys in the wiring: load_cell, and any of chamber, pyrometer, thermometer. The other methods are the
+    attendant's hands.
+    """
+
+    def __init__(
+        self, spec: RigSpec, parameters: TrackParameters, seed: int, can_wire: type[CanWire] = CanWire
+    ) -> None:
+        """Switch everything on at time 0, the arm raised; ``can_wire``: the kind of bus, as for faults.
+
+        Raises UnknownQuantityError for a further sensor of a quantity that the plant does not have.
+        """
+        self.plant = TrackPlant(parameters, seed)
+        self.can = can_wire(spec.bitrate)
+        self._raised_mm = parameters.contact.lift_travel
+        self.hand_mm = self._raised_mm
+        """Where an arm without a drive is, mm."""
+        self.axes = {name: self._drive(name, config) for name, config in spec.axes.items()}
+        by_key = {name: self._device(name, spec.devices[name]) for name in WORDS if name in spec.devices}
+        self.cell = by_key["load_cell"]
+        self.chamber = self._chamber(by_key)
+        self.devices: dict[str, ModbusSlave] = {WORDS[name]: slave for name, slave in by_key.items()}
+        self.sensors = further_sensors(spec, by_key, self.plant)
+        self.nodes = [SimulatedSensorNode(config, self.can) for config in spec.nodes]
+        self.lines = lines_of(spec, {**by_key, **self.sensors})
+        self._track = self.axes["track"]
+        self._lift = self.axes.get("lift")
+        self.metres = _METRES[spec.axes["track"].unit]
+        """Metres in the track's unit of length."""
+        self._linear = parameters.motion == "linear"
+        self.switches_work = True
+        """The end switches do what they should."""
+        self.beyond_switch = False
+        self.hit_stop = False
+        """The track has run into a stop of its travel."""
+        self._plant_s = 0.0
+        self.world = World(self.can, self.axes, self.devices, self, self.nodes)
+
+    def _drive(self, name: str, config: AxisConfig) -> Cia402Slave:
+        p = self.plant.parameters
+        serial = config.node_id
+        if name == "track" and p.motion == "linear":
+            low, high = 0.0, p.travel * 1e-3 / _METRES[config.unit]
+            axis = VelocityAxis(config.acceleration, config.deceleration, TRACK_LAG_S, 0.5 * high, low, high)
+            return Cia402Slave(config, self.can, axis, serial_number=serial)
+        if name == "lift":
+            arm = PositionAxis(config.max_speed, config.acceleration, config.deceleration, position=self._raised_mm)
+            return Cia402Slave(config, self.can, arm, serial_number=serial, home_position=self._raised_mm)
+        return Cia402Slave(config, self.can, serial_number=serial, lag_s=TRACK_LAG_S)
+
+    def _device(self, name: str, device: DeviceSpec) -> ModbusSlave:
+        profile, unit_id = device.profile, device.unit_id
+        if name == "load_cell":
+            return CellSlave(profile, unit_id, self.plant)
+        if name == "chamber":
+            return ChamberSlave(profile, unit_id, self.plant)
+        if name == "pyrometer":
+            return IrSlave(profile, unit_id, self.plant, sensor_c=self.plant.parameters.ambient)
+        return IrSlave(profile, unit_id, AmbientAir(self.plant), sensor_c=self.plant.parameters.ambient)
+
+    @staticmethod
+    def _chamber(devices: dict[str, ModbusSlave]) -> ChamberSlave | None:
+        chamber = devices.get("chamber")
+        return chamber if isinstance(chamber, ChamberSlave) else None
+
+    # -- the wires' side ------------------------------------------------------------------------------------------
+
+    @property
+    def now_s(self) -> float:
+        """Until when everything has lived, s."""
+        return self.world.now_s
+
+    @property
+    def urgent_s(self) -> float:
+        """When the next frame arrives that a scan should not wait for, s."""
+        return self.world.urgent_s
+
+    @property
+    def ambient_c(self) -> float:
+        """Temperature of the air around the rig, degC."""
+        return self.plant.parameters.ambient
+
+    def advance(self, now: float) -> None:
+        """Let everything live until ``now`` (s); a step shorter than a millisecond waits for the next one."""
+        self.world.advance(now)
+
+    # -- the machine's side ---------------------------------------------------------------------------------------
+
+    @property
+    def track_m_s(self) -> float:
+        """How fast the track moves under the specimen, m/s."""
+        return self.metres * self._track.axis.value
+
+    @property
+    def lift_mm(self) -> float:
+        """Where the arm is, mm: 0 lowered."""
+        return self._lift.axis.position if self._lift is not None else self.hand_mm
+
+    def follow(self, t1: float, still: bool) -> None:
+        """Let the plant follow its drives to ``t1`` s, and load the track's."""
+        elapsed = t1 - self._plant_s
+        self._plant_s = t1
+        chamber = self.chamber
+        self.plant.advance(elapsed, self.track_m_s, self.lift_mm, chamber.output if chamber is not None else 0.0)
+        torque_nm = -self.plant.force_n * TRACK_LEVER_M if self._track.energised else 0.0
+        if torque_nm != self._track.torque_nm:
+            self._track.load(torque_nm, 0.0)
+        if self._linear:
+            self._look_at_the_ends()
+
+    def _look_at_the_ends(self) -> None:
+        """Let the end switches do what they do."""
+        p = self.plant.parameters
+        at_mm = self._track.axis.position * self.metres * 1e3
+        if at_mm <= 0.0 or at_mm >= p.travel:
+            self.hit_stop = True
+        beyond = self.switches_work and not p.switches <= at_mm <= p.travel - p.switches
+        if beyond != self.beyond_switch:
+            self.beyond_switch = beyond
+            for drive in self.axes.values():
+                drive.set_safety_chain(not beyond)
+                if beyond:
+                    drive.set_torque_off(True)
+
+    # -- the attendant's hands ------------------------------------------------------------------------------------
+
+    def install(self, specimen: int, wheel: int, compound: str, *, new_specimen: bool) -> None:
+        """Put specimen number ``specimen`` of a rubber on the arm; ``wheel`` and ``new_specimen`` mean nothing here."""
+        self.plant.install(specimen, compound)
+
+    def put_on(self, weights_n: float) -> None:
+        """Hang calibrated weights on the arm, N."""
+        self.plant.put_on(weights_n)
+
+    def prepare(self, interface: Interface) -> None:
+        """Dry, wet or powder the track."""
+        self.plant.prepare(interface)
+
+    def raise_arm(self) -> None:
+        """Raise an arm that has no drive."""
+        self.hand_mm = self._raised_mm
+
+    def lower_arm(self) -> None:
+        """Lower an arm that has no drive."""
+        self.hand_mm = 0.0
+
+    def free_track(self) -> None:
+        """Move a linear track by hand to the middle of its travel and close the chain."""
+        p = self.plant.parameters
+        self._track.axis.position = 0.5e-3 * p.travel / self.metres
+        self._look_at_the_ends()
+        for drive in self.axes.values():
+            drive.set_torque_off(False)
+
+    def begin_repeat(self, condition: int, repeat: int, attempt: int) -> None:
+        """Begin a repeat: the random streams, and the sensors' dither, start anew with it."""
+        self.plant.begin_repeat(condition, repeat, attempt)
+        for slave in self.devices.values():
+            if isinstance(slave, CellSlave | IrSlave):
+                slave.dither = 0

@@ -1,0 +1,327 @@
+"""The catalogue of faults: one row each. A fault without a row does not exist for language and campaign.
+
+Budgets are those of docs/safety.md, from the onset (or from when the fault can be noticed) to the safe commands,
+with one scan of 50 ms at the slow rate on top; [A] where that page gives none. A row that MAY trip has none, and says
+why nothing can be asked of it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from functools import partial
+
+from drivers.canopen import objects as o
+from drivers.canopen.objects import NmtCommand
+from sim.faults import actuators as a
+from sim.faults import can as c
+from sim.faults import drives as d
+from sim.faults import modbus as m
+from sim.faults import operator_faults as p
+from sim.faults import sdo
+from sim.faults.kinds import Expected, FaultKind
+from sim.faults.scene import Effect
+from sim.machines.wheel_on_belt.faults import jacket as j
+from sim.machines.wheel_on_belt.faults import mechanics as k
+from sim.machines.wheel_on_belt.faults import sensors as s
+from sim.machines.wheel_on_belt.faults.exposure import Exposure
+
+AXES = ("wheel", "belt", "press", "sideslip", "camber")
+VELOCITY_AXES = ("wheel", "belt", "press")
+STOPPED_BY_THE_CHAIN = ("wheel", "belt", "press")
+"""Drives whose torque an emergency stop takes away at once (stop category 0 [A])."""
+MODBUS_DEVICES = ("load cell", "thermometer", "jacket")
+STEPS = ("connect", "install", "pre-grind", "rest", "heat", "soak", "tare", "roll", "measure", "lift", "cool", "prompt")
+"""Names of steps that a fault can wait for."""
+OVERCURRENT, OVERHEATING, FOLLOWING_ERROR, ENCODER, CAN_OVERRUN = 0x2310, 0x4310, 0x8611, 0x7305, 0x8110
+SCAN_S = 0.05
+"""The slow scan's period: what is noticed by a scan is noticed this much later at most, s."""
+
+POLL_S = 0.2 + SCAN_S
+"""A temperature is polled at 5 Hz and judged by the next scan, s."""
+HUB_S = 0.2 + 0.125 + 2.0 * SCAN_S
+"""The same of the hub, which its controller samples every 125 ms, s."""
+FOLLOW_S = 0.1 + 1.1 + SCAN_S
+"""A speed may lag behind a ramp of 0.3 of the rig's (0.6 m/s2) on its way to another: 0.54 m/s and 50 mm/s more, s."""
+SHOWS_S = 40.0
+"""A hub sensor may show nothing for this long before its heat is missed: the range of delays is 40 s, s."""
+NOISY_S = 2.0 + 3.0 + 1.0
+"""A line counts its failures over two seconds, may fail for three, and a slow device is asked once a second [A], s."""
+
+ALWAYS, DRIVES, CONNECTING, ENABLED, TURNING, LOADED, PRESSING, SLIDING, HEATING = (
+    Exposure.ALWAYS, Exposure.DRIVES, Exposure.CONNECTING, Exposure.ENABLED, Exposure.TURNING, Exposure.LOADED,
+    Exposure.PRESSING, Exposure.SLIDING, Exposure.HEATING,
+)  # fmt: skip
+RUNNING, RUBBING, ASTRAY, MISWEIGHED, MISREAD, STARVED, HIDDEN, UNASKED, OVERHEATED, HOT, WELDED = (
+    Exposure.RUNNING, Exposure.RUBBING, Exposure.ASTRAY, Exposure.MISWEIGHED, Exposure.MISREAD, Exposure.STARVED,
+    Exposure.HIDDEN, Exposure.UNASKED, Exposure.OVERHEATED, Exposure.HOT, Exposure.WELDED,
+)  # fmt: skip
+TRIP, STOP, HOLD, RIDE, MAY, DEVICES = (
+    Expected.TRIP, Expected.STOP, Expected.HOLD, Expected.RIDE, Expected.MAY, Expected.DEVICES
+)  # fmt: skip
+
+_NMT_STOP_ALL = bytes((NmtCommand.STOP, 0))
+_ENABLE_AND_GO = b"\x0f\x00" + (50_000).to_bytes(4, "little", signed=True)
+"""A stranger's RPDO: enable operation, 0.5 m/s for the packaged rig's belt."""
+
+
+def _drive_rows() -> Iterator[FaultKind]:
+    for axis in AXES:
+        yield FaultKind(f"{axis} drive fault", partial(d.DriveFault, axis, OVERCURRENT), DRIVES, TRIP, 0.02 + SCAN_S)
+        yield FaultKind(f"{axis} drive heartbeat lost", partial(d.HeartbeatLost, axis), DRIVES, TRIP, 0.2 + SCAN_S)
+        yield FaultKind(f"{axis} drive reboots", partial(d.Reboot, axis), DRIVES, TRIP, 0.25 + SCAN_S,
+                        lasts_s=1.0, note="its boot-up message comes after 0.2 s")
+        yield FaultKind(f"{axis} drive off the bus", partial(c.NodeCut, axis), DRIVES, TRIP, 0.2 + SCAN_S)
+        yield FaultKind(f"{axis} drive without supply", partial(d.Unpowered, axis), DRIVES, TRIP, 0.2 + SCAN_S)
+        yield FaultKind(f"{axis} drive data lost", partial(c.FramesLost, axis, o.TPDO1_BASE), ENABLED, TRIP,
+                        0.15 + SCAN_S)
+        yield FaultKind(f"{axis} drive of another make", partial(d.WrongIdentity, axis), CONNECTING, TRIP, 3.0)
+        yield FaultKind(f"{axis} drive mode refused", partial(sdo.ModeRefused, axis), CONNECTING, TRIP, 5.0)
+        yield FaultKind(f"{axis} drive SDO abort", partial(sdo.SdoSpoiled, axis, "abort"), CONNECTING, TRIP, 3.0)
+        yield FaultKind(f"{axis} drive SDO toggle error", partial(sdo.SdoSpoiled, axis, "toggle"), CONNECTING, TRIP,
+                        10.0, note="in segmented uploads, which a device may choose for any object")
+        yield FaultKind(f"{axis} drive SDO of another object", partial(sdo.SdoSpoiled, axis, "other object"),
+                        CONNECTING, TRIP, 10.0, note="a reply that is not believed counts as none: tried again")
+        yield FaultKind(f"{axis} drive SDO silent", partial(c.FramesLost, axis, o.SDO_REPLY_BASE), CONNECTING, TRIP,
+                        10.0, note="every request is tried again before a drive is given up")
+    for axis in VELOCITY_AXES:
+        yield FaultKind(f"{axis} drive following error", partial(d.DriveFault, axis, FOLLOWING_ERROR), DRIVES, TRIP,
+                        0.02 + SCAN_S)
+        yield FaultKind(f"{axis} drive reports overheating", partial(d.EmcyReport, axis, OVERHEATING), RUNNING, TRIP,
+                        0.02 + SCAN_S)
+        yield FaultKind(f"{axis} drive setpoints lost", partial(c.FramesLost, axis, o.RPDO1_BASE), ENABLED, TRIP,
+                        0.2 + SCAN_S, note="the drive's own deadline (0x1400:05), or sooner a speed or load error")
+        yield _frozen_feedback(axis)
+        yield FaultKind(f"{axis} drive in local mode", partial(d.Local, axis), ENABLED, TRIP, 0.1 + SCAN_S)
+        yield FaultKind(f"{axis} drive torque off", partial(d.TorqueOff, axis), ENABLED, TRIP, 0.1 + SCAN_S)
+    yield FaultKind("press drive inputs lost", partial(c.FramesLost, "press", o.TPDO2_BASE), DRIVES, TRIP,
+                    0.25 + 2.0 * SCAN_S, note="safety chain, guard and contactor are not known any more; idle at 10 Hz")
+    yield FaultKind("press drive outputs lost shortly", partial(c.FramesLost, "press", o.RPDO2_BASE), ALWAYS, RIDE, 0.0,
+                    lasts_s=0.3, note="the request for the contactor is repeated until its feedback answers")
+
+
+def _frozen_feedback(axis: str) -> FaultKind:
+    """Return the row of a drive that repeats its last speed, or its last position."""
+    name, make = f"{axis} drive feedback frozen", partial(c.FeedbackFrozen, axis)
+    if axis == "press":
+        return FaultKind(name, make, ENABLED, MAY, 0.0,
+                         note="its position tells only where to slow down: the force ends pressing and lifting")
+    return FaultKind(name, make, ASTRAY, TRIP, FOLLOW_S, axis=axis,
+                     note="seen when another speed is commanded: a slow ramp (0.3 of the rig's) is waited for")
+
+
+def _bus_rows() -> Iterator[FaultKind]:
+    yield FaultKind("CAN adapter gone", c.AdapterGone, DRIVES, TRIP, SCAN_S)
+    yield FaultKind("CAN bus off", c.BusSilent, DRIVES, TRIP, 0.2 + SCAN_S)
+    yield FaultKind("CAN frames lost", c.FrameLoss, ENABLED, TRIP, 10.0, "%", 20.0,
+                    note="by chance: three frames of a drive in a row at 20 Hz")
+    yield FaultKind("CAN frames late", c.FramesLate, ENABLED, MAY, 0.0, "ms", 0.1,
+                    note="all are late alike and count as fresh: a drive does not say when it measured")
+    yield FaultKind("CAN frames repeated", c.FramesRepeated, ALWAYS, RIDE, 0.0)
+    yield FaultKind("CAN bus busy", c.BusBusy, ALWAYS, MAY, 0.0, "%", 95.0,
+                    note="the higher-ranking frames of the drives still get through at the slower scans")
+    yield FaultKind("second master SYNC", partial(c.SecondMaster, o.SYNC_ID, b""), DRIVES, TRIP, 0.1 + SCAN_S)
+    yield FaultKind("second master setpoint", partial(c.SecondMaster, o.RPDO1_BASE, _ENABLE_AND_GO, "belt"), DRIVES,
+                    TRIP, 0.1 + SCAN_S)
+    yield FaultKind("second master stops nodes", partial(c.SecondMaster, o.NMT_ID, _NMT_STOP_ALL), DRIVES, TRIP,
+                    0.2 + SCAN_S)
+    yield FaultKind("belt drive short emergency", partial(d.ShortEmergency, "belt", OVERHEATING, 3), ALWAYS, TRIP,
+                    0.02 + SCAN_S, lasts_s=0.3, note="what is missing of it counts as an unknown error")
+    yield FaultKind("belt drive emergency storm", partial(c.EmergencyStorm, "belt", CAN_OVERRUN), ALWAYS, TRIP,
+                    0.02 + SCAN_S)
+
+
+_SILENT_S = {"load cell": 0.1 + SCAN_S, "thermometer": 1.2 + SCAN_S, "jacket": 1.2 + SCAN_S}
+"""Age at which a reading is stale and the delay of its interlock, s."""
+_WATCHED = {"load cell": LOADED, "thermometer": HEATING, "jacket": ALWAYS}
+"""When the readings of a device are needed."""
+
+
+def _modbus_rows() -> Iterator[FaultKind]:
+    for device in MODBUS_DEVICES:
+        when, budget_s = _WATCHED[device], _SILENT_S[device]
+        yield FaultKind(f"{device} silent", partial(m.Impaired, device, "silence"), when, TRIP, budget_s)
+        yield FaultKind(f"{device} without supply", partial(m.DeviceOff, device), when, TRIP, budget_s)
+        yield FaultKind(f"{device} reset", partial(m.DeviceReset, device), when, TRIP, budget_s,
+                        lasts_s=m.REBOOT_S)
+        yield FaultKind(f"{device} CRC errors", partial(m.Impaired, device, "corrupt"), when, TRIP, budget_s)
+        yield FaultKind(f"{device} garbage", partial(m.Impaired, device, "noise"), when, TRIP, NOISY_S,
+                        note="bytes before a reply: its time is over before it is told from them")
+        yield FaultKind(f"{device} replies cut short", partial(m.Impaired, device, "truncate"), when, TRIP, budget_s)
+        yield FaultKind(f"{device} replies of another address", partial(m.Impaired, device, "wrong_id"), when, TRIP,
+                        budget_s)
+        yield FaultKind(f"{device} replies split", partial(m.Impaired, device, "split", delay_s=0.005), when, MAY,
+                        0.0, note="the second half comes 5 ms later, a gateway's way: a reply like any other")
+        yield FaultKind(f"{device} replies merged", partial(m.Impaired, device, "merged"), when, TRIP, NOISY_S,
+                        note="a gateway keeps every second reply and sends it with the next, in one piece")
+        yield FaultKind(f"{device} replies late", partial(m.LateReply, device), when, TRIP, budget_s + 0.5, "ms", 1.5)
+        yield FaultKind(f"{device} reply late once", partial(m.Impaired, device, "late", count=1, delay_s=0.02),
+                        ALWAYS, RIDE, 0.0)
+        yield FaultKind(f"{device} CRC error once", partial(m.Impaired, device, "corrupt", count=1), ALWAYS, RIDE, 0.0)
+        yield FaultKind(f"{device} exception", partial(_exception, device), when, TRIP, budget_s, "", 4.0)
+        yield FaultKind(f"{device} line unplugged", partial(m.LineGone, device), DRIVES, TRIP, 0.2 + SCAN_S)
+
+
+    yield FaultKind("load cell words swapped", partial(m.Impaired, "load cell", "swapped"), LOADED, TRIP, 0.1 + SCAN_S,
+                    note="the order of the words of its 32-bit values was changed at the device")
+    yield FaultKind("load cell half updated", partial(m.Impaired, "load cell", "torn"), LOADED, MAY, 0.0,
+                    note="a value of 32 bits is read while the device writes it: off by 3277 N where its sign changes")
+    yield FaultKind("jacket memory worn out", partial(m.MemoryWorn, "jacket"), ALWAYS, MAY, 0.0,
+                    note="what it keeps without supply, standby among it, cannot be changed any more (exception 04):"
+                    " seen when that is written, at the end")
+
+
+def _exception(device: str, code: float) -> m.ExceptionReply:
+    return m.ExceptionReply(device, round(code))
+
+
+def _sensor_rows() -> Iterator[FaultKind]:
+    yield FaultKind("load cell frozen", partial(s.CellFault, "frozen"), PRESSING, TRIP, 0.5 + 0.1)
+    yield FaultKind("load cell open", partial(s.CellFault, "open"), LOADED, TRIP, 0.1 + SCAN_S)
+    yield FaultKind("load cell saturated", partial(s.CellFault, "saturated"), LOADED, TRIP, 0.1 + SCAN_S)
+    yield FaultKind("load cell offset", partial(s.CellFault, "offset"), PRESSING, MAY, 0.0, "N", 30.0,
+                    note="seen at the next check of the zero; the force stays inside its limit")
+    yield FaultKind("load cell jumps", partial(s.CellFault, "offset"), PRESSING, TRIP, 0.05 + 2.0 * SCAN_S, "N", 150.0,
+                    lasts_s=0.3,
+                    note="a bolt gives way, an amplifier changes its range: the load reads above its target")
+    yield FaultKind("load cell reads low", partial(s.CellFault, "low"), MISWEIGHED, TRIP, 0.05 + 2.0 * SCAN_S, "%",
+                    50.0, note="the press goes on beyond what the load shown needs")
+    yield FaultKind("load cell drift", partial(s.CellFault, "drift"), PRESSING, MAY, 0.0, "N/s", 2.0,
+                    note="seen at the next check of the zero, before each repeat")
+    yield FaultKind("load cell noisy", partial(s.CellFault, "noise"), PRESSING, MAY, 0.0, "N", 40.0,
+                    note="no reading stays beyond a limit for its delay; the load itself hardly moves")
+    yield FaultKind("thermometer frozen", partial(s.SurfaceFault, "frozen"), TURNING, TRIP, 62.0 + POLL_S, slow=True)
+    yield FaultKind("thermometer open", partial(s.SurfaceFault, "open"), HEATING, TRIP, 1.2 + SCAN_S)
+    yield FaultKind("thermometer jumps", partial(s.SurfaceFault, "offset"), HEATING, TRIP, POLL_S, "K", -10.0,
+                    lasts_s=0.6, note="moved, covered or disturbed")
+    yield FaultKind("thermometer offset", partial(s.SurfaceFault, "offset"), MISREAD, TRIP, 30.0 + POLL_S, "K", -15.0,
+                    slow=True, note="seen as a jump where a temperature is wanted")
+    yield FaultKind("thermometer reads low", partial(s.SurfaceFault, "low"), MISREAD, TRIP, 30.0 + POLL_S, "%", 60.0,
+                    slow=True, note="misaligned or dirty")
+    yield FaultKind("thermometer drift", partial(s.SurfaceFault, "drift"), MISREAD, TRIP, 30.0 + POLL_S, "K/s", -0.2,
+                    slow=True)
+    yield FaultKind("thermometer noisy", partial(s.SurfaceFault, "noise"), HEATING, TRIP, 3.0, "K", 5.0,
+                    note="by chance: two readings in a row 5 K apart")
+    yield FaultKind("hub sensor open", partial(s.HubFault, "open"), ALWAYS, TRIP, 1.2 + SCAN_S)
+    yield FaultKind("hub sensor frozen", partial(s.HubFault, "frozen"), STARVED, TRIP, 61.0 + POLL_S, slow=True,
+                    note="seen where the controller asks for heat; at its setpoint it only stops controlling")
+    yield FaultKind("hub sensor jumps", partial(s.HubFault, "offset"), RUNNING, TRIP, HUB_S, "K", -10.0, lasts_s=0.6,
+                    note="slip ring chatter, once")
+    yield FaultKind("hub sensor offset", partial(s.HubFault, "offset"), RUNNING, TRIP, HUB_S, "K", -20.0)
+    yield FaultKind("hub sensor reads low", partial(s.HubFault, "low"), HOT, TRIP, 10.0, "%", 80.0, slow=True,
+                    note="shorted towards ambient: the controller heats what it does not see; by the surface, in time")
+    yield FaultKind("hub sensor noisy", partial(s.HubFault, "noise"), ALWAYS, TRIP, 3.0, "K", 8.0,
+                    note="slip ring chatter")
+
+
+def _actuator_rows() -> Iterator[FaultKind]:
+    yield FaultKind("jacket output stuck on", partial(j.JacketOutput, 100.0), OVERHEATED, TRIP, 2.0 + 1.0 + POLL_S,
+                    slow=True, note="its sensor follows within a second")
+    yield FaultKind("jacket output stuck off", partial(j.JacketOutput, 0.0), HEATING, MAY, 0.0,
+                    note="the wheel gets colder than wanted: the recipe's waits notice, nothing is harmed")
+    yield FaultKind("jacket relay shorted", partial(j.HeaterElement, 100.0), UNASKED, TRIP, 16.0, slow=True,
+                    note="the rate is known 3 s after the output has gone, over 4 to 8 s; 5 and 2 s of the row")
+    yield FaultKind("heater line open", partial(j.HeaterElement, 0.0), STARVED, TRIP, 61.0 + POLL_S, slow=True)
+    yield FaultKind("jacket limiter dead", j.LimiterDead, ALWAYS, MAY, 0.0,
+                    note="a second line: nothing shows that it is gone before it is needed")
+    yield FaultKind("contactor welded", a.ContactorWelded, WELDED, TRIP, 0.5 + 2.0 * SCAN_S,
+                    note="seen when it is to open")
+    yield FaultKind("contactor dead", a.ContactorDead, STARVED, TRIP, 61.0 + POLL_S, slow=True)
+    yield FaultKind("press runs away", partial(d.Runaway, "press"), LOADED, TRIP, 0.5, "mm/s", 5.0)
+    yield FaultKind("wheel runs away", partial(d.Runaway, "wheel"), ASTRAY, TRIP, FOLLOW_S, "rad/s", 12.0,
+                    axis="wheel", note="0.54 m/s; seen where that is not its command")
+    yield FaultKind("belt runs away", partial(d.Runaway, "belt"), ASTRAY, TRIP, FOLLOW_S, "m/s", 0.4,
+                    axis="belt", note="seen where that is not its command")
+    yield FaultKind("press stuck", partial(d.Jammed, "press"), PRESSING, MAY, 0.0, force_stays=True,
+                    note="it holds the load it held: seen when it is to lift, and freed by hand; the rig stands")
+    yield FaultKind("belt jammed", partial(d.Jammed, "belt"), LOADED, TRIP, 0.1 + SCAN_S)
+    yield FaultKind("wheel jammed", partial(d.Jammed, "wheel"), LOADED, TRIP, 0.1 + SCAN_S)
+    yield FaultKind("belt torn", k.BeltTorn, RUBBING, TRIP, 0.1 + 2.0 * SCAN_S,
+                    note="friction and the wheel's torque are gone")
+    yield FaultKind("belt slips on its roller", k.BeltSlips, LOADED, TRIP, 0.05 + 2.0 * SCAN_S, "%", 40.0,
+                    note="there is no encoder on the belt itself: by the drive's torque, beyond elastic creep (2 %)")
+    yield FaultKind("wheel slips on its shaft", k.WheelSlipsOnShaft, SLIDING, MAY, 0.0,
+                    note="the shaft's encoder turns on, and friction does not vanish: held by the clamping")
+    yield FaultKind("safety chain opened", a.ChainOpen, DRIVES, TRIP, SCAN_S)
+    yield FaultKind("guard opened", a.GuardOpen, ENABLED, TRIP, SCAN_S)
+    yield FaultKind("emergency stop pressed", partial(a.EmergencyStop, STOPPED_BY_THE_CHAIN), DRIVES, TRIP, SCAN_S)
+
+
+def _computer_rows() -> Iterator[FaultKind]:
+    yield FaultKind("scan stalled shortly", partial(p.Stall, 0.03), ALWAYS, RIDE, 0.0)
+    yield FaultKind("scan stalled", p.Stall, ENABLED, TRIP, 0.4 + SCAN_S, "ms", 0.4, lasts_s=0.5,
+                    note="tripped by the first scan after it; a drive stops by itself after 0.2 s")
+    yield FaultKind("scan stalled while sliding", partial(p.Stall, 0.165), SLIDING, TRIP, 0.2 + SCAN_S, lasts_s=0.3,
+                    note="later than a scan may be, sooner than most drives stop by themselves")
+    yield FaultKind("process killed", p.Killed, ALWAYS, DEVICES, 0.25)
+    yield FaultKind("clock jump", p.ClockJump, ENABLED, TRIP, SCAN_S, "ms", 2.0, lasts_s=0.5)
+    yield FaultKind("operator hold", partial(p.Operator, "hold"), ALWAYS, HOLD, SCAN_S)
+    yield FaultKind("operator release", partial(p.Operator, "release"), ALWAYS, RIDE, 0.0)
+    yield FaultKind("operator abort", partial(p.Operator, "abort"), DRIVES, STOP, SCAN_S)
+    yield FaultKind("operator stop", partial(p.Operator, "stop"), DRIVES, STOP, SCAN_S)
+    yield FaultKind("operator fast stop", partial(p.Operator, "fast stop"), DRIVES, STOP, SCAN_S)
+
+
+_UNASKED = "how much of it goes unnoticed, and what that does, python -m tests.campaigns.faults --magnitudes says"
+
+
+def _may(phrase: str, make: Callable[..., Effect], unit: str | None = None, value: float = 0.0,
+         *, slow: bool = False) -> FaultKind:  # fmt: skip
+    return FaultKind(phrase, make, ALWAYS, MAY, 0.0, unit, value, slow=slow, note=_UNASKED)
+
+
+def _hides(phrase: str, make: Callable[..., Effect], unit: str, value: float) -> FaultKind:
+    """Return the row of a fault that makes the controller heat what nothing shows; a small one goes unnoticed."""
+    return FaultKind(phrase, make, HIDDEN, TRIP, SHOWS_S, unit, value, slow=True, note=_UNASKED)
+
+
+def _misread_rows() -> Iterator[FaultKind]:
+    """Yield sensors that show something else than is: by a share, late, of another channel or sign."""
+    yield _may("load cell gain", partial(s.CellFault, "gain"), "%", 70.0)
+    for channels in s.CROSSED:
+        what, _, which = channels.partition(" ")
+        named = " and ".join(f"F{one}" for one in which.split())
+        yield _may(f"load cell {named} {what}", partial(s.CellFault, channels))
+    yield _hides("hub sensor gain", partial(s.HubFault, "gain"), "%", 60.0)
+    yield _hides("hub sensor partly detached", s.HubDetached, "%", 60.0)
+    yield _may("thermometer gain", partial(s.SurfaceFault, "gain"), "%", 80.0, slow=True)
+    yield _hides("common supply of hub sensor and thermometer", s.CommonSupplyFault, "%", 60.0)
+    for name, make, lag_s in (("load cell", s.CellFault, 1.0), ("thermometer", s.SurfaceFault, 1.5)):
+        slow = name != "load cell"
+        yield _may(f"{name} lag", partial(make, "lag"), "ms", lag_s, slow=slow)
+        yield _may(f"{name} delay", partial(make, "delay"), "ms", 0.5 * lag_s, slow=slow)
+    yield _hides("hub sensor lag", partial(s.HubFault, "lag"), "ms", 20.0)
+    yield _hides("hub sensor delay", partial(s.HubFault, "delay"), "ms", 20.0)
+
+
+ASSEMBLY = (
+    "wheel drive reversed", "belt drive reversed", "wheel speed", "belt speed", "wheel and belt drives swapped",
+    "wheel diameter",
+)  # fmt: skip
+"""Beginnings of the phrases of faults that a machine is put together with: none of them begins in a run."""
+
+
+def _machine_rows() -> Iterator[FaultKind]:
+    """Yield faults of how the machine was put together, and of the rubber on its hub."""
+    for axis in ("wheel", "belt"):
+        yield _may(f"{axis} drive reversed", partial(k.Reversed, axis), slow=True)
+        yield _may(f"{axis} speed scale", partial(k.SpeedScale, axis), "%", 110.0, slow=True)
+        yield _may(f"{axis} speed doubled", partial(k.SpeedScale, axis, 200.0), slow=True)
+    yield _may("wheel and belt drives swapped", k.DrivesSwapped, slow=True)
+    yield _may("wheel diameter", k.DiameterOff, "%", 110.0, slow=True)
+    yield _may("rubber detached", k.RubberDetached, "mm", 0.3)
+    yield _may("rubber relaxation", k.RubberRelaxes, "%", 10.0)
+
+
+def _rows() -> Iterator[FaultKind]:
+    yield from _drive_rows()
+    yield from _bus_rows()
+    yield from _modbus_rows()
+    yield from _sensor_rows()
+    yield from _actuator_rows()
+    yield from _computer_rows()
+    yield from _misread_rows()
+    yield from _machine_rows()
+
+
+CATALOGUE: dict[str, FaultKind] = {row.phrase: row for row in _rows()}
+"""Every fault by its phrase."""

@@ -1,0 +1,43 @@
+"""Ranges of those rows of the catalogue whose magnitude matters: between which values a fault can lie, and which one is
+none at all. A search goes from there to either end.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from sim.faults.parametric import Parametric
+from sim.machines.wheel_on_belt.faults.catalogue import CATALOGUE
+
+_LAGS = {"load cell": 4.0, "thermometer": 6.0, "hub sensor": 40.0}
+"""Greatest time constant, or delay, of a sensor that is searched, s."""
+
+
+def _ranges() -> Iterator[tuple[str, float, float, float]]:
+    """Yield phrase, least and greatest magnitude, and the one that is no fault."""
+    yield "load cell offset", -200.0, 200.0, 0.0
+    yield "load cell drift", -5.0, 5.0, 0.0
+    yield "load cell gain", 50.0, 150.0, 100.0
+    yield "hub sensor offset", -40.0, 40.0, 0.0
+    yield "hub sensor gain", 60.0, 140.0, 100.0
+    yield "hub sensor partly detached", 60.0, 100.0, 100.0
+    yield "thermometer offset", -40.0, 40.0, 0.0
+    yield "thermometer drift", -1.0, 1.0, 0.0
+    yield "thermometer gain", 60.0, 140.0, 100.0
+    yield "common supply of hub sensor and thermometer", 60.0, 140.0, 100.0
+    for name in ("load cell", "thermometer", "hub sensor"):
+        for slow in ("lag", "delay"):
+            yield f"{name} {slow}", 0.0, _LAGS[name], 0.0
+    for axis in ("wheel", "belt"):
+        yield f"{axis} speed scale", 50.0, 200.0, 100.0
+    yield "wheel diameter", 85.0, 115.0, 100.0
+    yield "belt slips on its roller", 0.0, 100.0, 0.0
+    yield "rubber detached", 0.0, 1.0, 0.0
+    yield "rubber relaxation", 3.0, 15.0, 3.0
+    yield "CAN frames late", 0.0, 1.0, 0.0
+
+
+PARAMETRIC: dict[str, Parametric] = {
+    phrase: Parametric(CATALOGUE[phrase], least, most, normal) for phrase, least, most, normal in _ranges()
+}
+"""Every fault with a range of magnitudes by its phrase."""

@@ -1,0 +1,137 @@
+"""When heat flows in the plant: short explicit steps while something happens, long implicit ones while nothing does.
+
+Powers are summed up tick by tick and flow, as their mean, in steps of the thermal model's own. After some seconds
+without friction, and without a change of what touches or turns, the fast parts of the temperature profile have died
+away and the implicit step of ``sim.thermal`` serves as well at a fifth of the work.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+from sim.machines.wheel_on_belt.sensors import LoadCellSensor
+from sim.physics.thermal import CALM_STEP_S, ThermalModel
+from sim.sensors import TemperatureSensor
+
+CALM_AFTER_S: Final = 5.0
+"""Time without a disturbance after which all is calm: then both steps agree within 0.02 K, on the hot rig too."""
+CALM_FRICTION_W: Final = 1.0
+"""Friction that is no disturbance: rolling at 200 N with 4 mm/s of slip."""
+SAME_STEP_S: Final = 1e-9
+"""Ticks whose lengths differ by less share their step constants: a float clock's differences are never quite equal."""
+
+
+class HeatFlow:
+    """Temperatures of wheel, hub and belt (``state``), and what follows them: the hub's sensor and the load cell.
+
+    ``rubber_c`` is the rubber's mean temperature as of the last flow of heat, degC.
+    """
+
+    __slots__ = (
+        "_ambient_c",
+        "_calm",
+        "_cell",
+        "_due_s",
+        "_every_gains",
+        "_friction_j",
+        "_gains",
+        "_heater_j",
+        "_key",
+        "_model",
+        "_pending_s",
+        "_quiet_s",
+        "_sensor",
+        "_touch_s",
+        "rubber_c",
+        "state",
+    )
+
+    def __init__(self, model: ThermalModel, ambient_c: float, sensor: TemperatureSensor, cell: LoadCellSensor) -> None:
+        """Start with everything at ambient temperature, nothing touching or turning."""
+        self._model = model
+        self._ambient_c = ambient_c
+        self._sensor = sensor
+        self._cell = cell
+        self._every_gains = [
+            model.surface_gains(ambient_c, contact, rotating) for contact in (0.0, 1.0) for rotating in (False, True)
+        ]
+        self.state = model.state(ambient_c)
+        self._calm = False
+        self._due_s = 0.0
+        self._quiet_s = 0.0
+        self.restart()
+
+    def restart(self) -> None:
+        """Begin anew with the temperatures as they are: another wheel is on."""
+        self._key = 0
+        self._gains = self._every_gains[0]
+        self._pending_s = self._heater_j = self._friction_j = self._touch_s = 0.0
+        self.rubber_c = self._model.rubber_mean_c(self.state)
+        self._sensor.reset(self.state.hub_c)
+        self._stir()
+
+    def advance(self, dt: float, heater_w: float, friction_w: float, touching: bool, rotating: bool) -> float:
+        """Move on by ``dt`` s with these powers and return the temperature of the tread's surface, degC."""
+        key = 2 * touching + rotating
+        if key != self._key or friction_w > CALM_FRICTION_W:
+            self._quiet_s = 0.0
+            if self._calm:
+                self._disturb()
+            self._key = key
+            self._gains = self._every_gains[key]
+        if touching:
+            self._friction_j += friction_w * dt
+            self._touch_s += dt
+        self._heater_j += heater_w * dt
+        self._pending_s = pending_s = self._pending_s + dt
+        if pending_s >= self._due_s:
+            self._flow()
+        per_cell, per_w, per_belt, of_air = self._gains
+        state = self.state
+        return per_cell * state.cells_c[-1] + per_w * friction_w + per_belt * state.belt_c + of_air
+
+    def _flow(self) -> None:
+        """Let heat flow for the whole steps that are due, with the mean powers since the last."""
+        pending_s, due_s = self._pending_s, self._due_s
+        heater_w, friction_w = self._heater_j / pending_s, self._friction_j / pending_s
+        contact = self._touch_s / pending_s
+        model, ambient_c, rotating = self._model, self._ambient_c, self._key & 1 != 0
+        step_s = CALM_STEP_S if self._calm else model.step_s
+        while pending_s >= due_s:
+            if self._calm:
+                model.calm_step(self.state, heater_w, friction_w, ambient_c, self._key > 1, rotating)
+            else:
+                model.step(self.state, step_s, heater_w, friction_w, ambient_c, contact, rotating)
+            self._sensor.follow(self.state.hub_c)
+            self._cell.warm(step_s, self.state.belt_c)
+            pending_s -= step_s
+            self._quiet_s += step_s
+        self.rubber_c = model.rubber_mean_c(self.state)
+        self._pending_s = pending_s
+        self._heater_j = heater_w * pending_s
+        self._friction_j = friction_w * pending_s
+        self._touch_s = contact * pending_s
+        if not self._calm and self._quiet_s >= CALM_AFTER_S:
+            self._calm = True
+            self._due_s = CALM_STEP_S - SAME_STEP_S
+            self._sensor.retime(CALM_STEP_S)
+
+    def _disturb(self) -> None:
+        """End the calm: what has not flowed yet flows now, as it was until now."""
+        pending_s = self._pending_s
+        if pending_s > SAME_STEP_S:
+            touching, rotating = self._key > 1, self._key & 1 != 0
+            heater_w, friction_w = self._heater_j / pending_s, self._friction_j / pending_s
+            self._model.step(self.state, pending_s, heater_w, friction_w, self._ambient_c, float(touching), rotating)
+            self._sensor.retime(pending_s)
+            self._sensor.follow(self.state.hub_c)
+            self._cell.warm(pending_s, self.state.belt_c)
+            self._pending_s = self._heater_j = self._friction_j = self._touch_s = 0.0
+        self._stir()
+
+    def _stir(self) -> None:
+        """Take short steps."""
+        self._calm = False
+        self._quiet_s = 0.0
+        self._due_s = self._model.step_s - SAME_STEP_S
+        self._sensor.retime(self._model.step_s)

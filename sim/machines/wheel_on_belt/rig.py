@@ -1,0 +1,229 @@
+"""The rig of a wheel on a belt: which drive moves what, and what loads its shaft.
+
+The press goes no deeper than the torque that its drive is allowed (0x6072) brings it; wheel and belt have torque enough
+for any friction.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from math import copysign
+from typing import Final
+
+from drivers.axis import AxisConfig
+from sim.machines.wheel_on_belt.plant import Plant
+from sim.machines.wheel_on_belt.torque import PressScrew, capstan_n, shafts
+from sim.nodes.cell_slave import CellSlave
+from sim.nodes.cia402_slave import Cia402Slave
+from sim.nodes.ir_slave import IrSlave
+from sim.nodes.jacket_slave import JacketSlave
+from sim.nodes.modbus_slave import ModbusSlave
+from sim.nodes.motion import VelocityAxis
+from sim.nodes.sensor_node import SimulatedSensorNode
+from sim.physics.parameters import SimParameters
+from sim.physics.slip import slip_velocity
+from sim.rig import LONGEST_STEP_S, RigSpec, World, further_sensors, lines_of
+from sim.wires.can_wire import CanWire
+
+PRESS_LAG_S: Final = 0.03
+"""Lag of the press screw behind its velocity command, s [A]."""
+PRESS_TRAVEL_MM: Final = 30.0
+"""Travel of the press from fully lifted, mm [A]: beyond a wheel worn to its hub."""
+PRESS_SPRING_MM_S: Final = -20.0
+"""Speed at which the spring retracts an unpowered press, mm/s [A]."""
+_NEAR_LIMIT: Final = 0.5
+"""Below this share of the force that the press can bring about no single step brings it there."""
+
+
+class WheelRig:
+    """A rubber friction tester with a wheel on a belt, on simulated wires (a ``sim.rig.SimRig``).
+
+    Drives: wheel (rad/s), belt (m/s), press (mm, mm/s), and those that hold a position (deg) where no person sets
+    it: of them only sideslip changes the friction; of a tilt the paper has no data.
+    Devices: load cell, thermometer, jacket. ``install``, ``remount`` and ``begin_repeat`` are the hands of the person
+    at the rig.
+    """
+
+    def __init__(
+        self, spec: RigSpec, parameters: SimParameters, seed: int, can_wire: type[CanWire] = CanWire
+    ) -> None:
+        """Switch everything on at time 0; ``can_wire``: the kind of bus, another one where it can be faulty."""
+        self.plant = Plant(parameters, seed)
+        self.can = can_wire(spec.bitrate)
+        self._spring_mm_s = PRESS_SPRING_MM_S if parameters.press_on_power_loss == "retract" else 0.0
+        self.axes = {name: self._drive(name, config) for name, config in spec.axes.items()}
+        cell, ir, jacket = (spec.devices[name] for name in ("load_cell", "ir_thermometer", "jacket"))
+        self.cell = CellSlave(cell.profile, cell.unit_id, self.plant)
+        self.ir = IrSlave(ir.profile, ir.unit_id, self.plant, sensor_c=parameters.ambient)
+        self.jacket = JacketSlave(jacket.profile, jacket.unit_id, self.plant)
+        self.devices: dict[str, ModbusSlave] = {
+            "load cell": self.cell, "thermometer": self.ir, "jacket": self.jacket
+        }  # fmt: skip
+        own: dict[str, ModbusSlave] = {"load_cell": self.cell, "ir_thermometer": self.ir, "jacket": self.jacket}
+        self.sensors = further_sensors(spec, own, self.plant)
+        self.nodes = [SimulatedSensorNode(config, self.can) for config in spec.nodes]
+        self.lines = lines_of(spec, {**own, **self.sensors})
+        drives = parameters.drives
+        self.wheel_shaft, self.belt_shaft, efficiency = shafts(drives, parameters.noise, seed)
+        self._screw = PressScrew(drives, efficiency, drives.press_spring if self._spring_mm_s else 0.0)
+        self._roller_m = 0.0005 * drives.belt_roller_diameter
+        self._slip_nm = capstan_n(drives) * self._roller_m
+        self._belt_creep = drives.belt_creep
+        self.belt_slip = 0.0
+        """By what share the belt is slower than its drive roller: beyond elastic creep the roller slips under it."""
+        self._limit_nm = self._pushed_n = self._held_n = 0.0
+        self._pressed_mm = 0.0
+        self._stalled = False
+        self.swapped = False
+        """The drives of wheel and belt are connected the wrong way round: each moves what the other should."""
+        self._plant_s = 0.0
+        self._wheel, self._belt, self._press = self.axes["wheel"], self.axes["belt"], self.axes["press"]
+        self._sideslip = self.axes.get("sideslip")
+        self.world = World(self.can, self.axes, self.devices, self, self.nodes)
+
+    def _drive(self, name: str, config: AxisConfig) -> Cia402Slave:
+        if name != "press":
+            return Cia402Slave(config, self.can, serial_number=config.node_id)
+        screw = VelocityAxis(config.acceleration, config.deceleration, lag_s=PRESS_LAG_S, low=0.0, high=PRESS_TRAVEL_MM)
+        return Cia402Slave(config, self.can, screw, serial_number=config.node_id, unpowered_velocity=self._spring_mm_s)
+
+    # -- the wires' side ------------------------------------------------------------------------------------------
+
+    @property
+    def now_s(self) -> float:
+        """Until when everything has lived, s."""
+        return self.world.now_s
+
+    @property
+    def urgent_s(self) -> float:
+        """When the next frame arrives that a scan should not wait for, s."""
+        return self.world.urgent_s
+
+    @property
+    def ambient_c(self) -> float:
+        """Temperature of the air around the rig, degC."""
+        return self.plant.parameters.ambient
+
+    def advance(self, now: float) -> None:
+        """Let everything live until ``now`` (s); a step shorter than a millisecond waits for the next one."""
+        self.world.advance(now)
+
+    # -- the machine's side ---------------------------------------------------------------------------------------
+
+    def follow(self, t1: float, still: bool) -> None:
+        """Let the plant follow its drives to ``t1`` s, and load them."""
+        plant = self.plant
+        elapsed = t1 - self._plant_s
+        if still and elapsed < LONGEST_STEP_S - 1e-6 and plant.force_z_n == 0.0:
+            return  # nothing but temperatures changes, and they take their time
+        self._plant_s = t1
+        wheel_axis, belt_axis, press = self._wheel.axis, self._belt.axis, self._press.axis
+        io = self._press.io
+        if plant.force_z_n > 0.0 or self._stalled:
+            self._bear(self._press)
+        self._pressed_mm = press.position
+        wheel_rad_s, belt_m_s = wheel_axis.value, belt_axis.value
+        if self.swapped:
+            wheel_rad_s, belt_m_s = belt_m_s / self._roller_m, wheel_rad_s * self._roller_m
+        plant.advance(
+            elapsed,
+            wheel_rad_s / plant.wheel_speed.factor,
+            belt_m_s / plant.belt_speed.factor,
+            press.position,
+            press.value,
+            self._sideslip.axis.position if self._sideslip is not None else 0.0,
+            self.jacket.heater_w if io is not None and io.contactor_closed else 0.0,
+        )
+        self._show(wheel_axis.value, belt_axis.value)
+
+    @property
+    def wheel_rad_s(self) -> float:
+        """How fast the wheel turns, rad/s: what its drive shows, but for the error of its scale."""
+        shaft = self._belt.axis.value / self._roller_m if self.swapped else self._wheel.axis.value
+        return shaft / self.plant.wheel_speed.factor
+
+    @property
+    def belt_m_s(self) -> float:
+        """How fast the belt's surface moves, m/s."""
+        surface = self._wheel.axis.value * self._roller_m if self.swapped else self._belt.axis.value
+        return surface / self.plant.belt_speed.factor
+
+    @property
+    def rim_m_s(self) -> float:
+        """How fast the wheel's tread moves, m/s."""
+        return 0.0005 * self.plant.diameter_mm * self.wheel_rad_s
+
+    def _show(self, wheel_rad_s: float, belt_m_s: float) -> None:
+        """Let three drives show their torques, and the errors of their encoders: those are noisy while they turn."""
+        plant, wheel, belt, press = self.plant, self._wheel, self._belt, self._press
+        wheel_nm, belt_nm = plant.drive_torque_nm, -plant.belt_force_n * self._roller_m
+        if self.belt_slip > self._belt_creep and self.belt_m_s != 0.0:
+            belt_nm = copysign(self._slip_nm, self.belt_m_s)
+        if self.swapped:
+            wheel_nm, belt_nm = belt_nm, wheel_nm
+        wheel_nm = self.wheel_shaft.shown_nm(wheel_nm, wheel_rad_s) if wheel.energised else 0.0
+        belt_nm = self.belt_shaft.shown_nm(belt_nm, belt_m_s / self._roller_m) if belt.energised else 0.0
+        if wheel_rad_s != 0.0:
+            wheel.load(wheel_nm, plant.wheel_speed.error() * 2000.0 / plant.diameter_mm)
+        elif wheel.encoder_error != 0.0 or wheel.torque_nm != wheel_nm:
+            wheel.load(wheel_nm, 0.0)
+        if belt_m_s != 0.0:
+            belt.load(belt_nm, plant.belt_speed.error())
+        elif belt.encoder_error != 0.0 or belt.torque_nm != belt_nm:
+            belt.load(belt_nm, 0.0)
+        press_nm = 0.0
+        if press.energised:
+            axis = press.axis
+            press_nm = self._screw.torque_nm(plant.force_z_n, axis.position)
+            if axis.blocked and axis.demand != 0.0:
+                press_nm = copysign(press.torque_limit_nm, axis.demand)
+        if press.torque_nm != press_nm:
+            press.load(press_nm, 0.0)
+
+    def _bear(self, drive: Cia402Slave) -> None:
+        """Keep the press from going deeper than its drive's torque can: it stalls; a greater load drives it back."""
+        limit_nm, plant = drive.torque_limit_nm, self.plant
+        if not drive.energised and self._spring_mm_s:
+            # The spring alone makes coast_deceleration of the screw's inertia; the load pushes the same way.
+            axis = drive.axis
+            rate = drive.coast_deceleration * (1.0 + plant.force_z_n / self._screw.spring_n)
+            axis.acceleration = axis.deceleration = rate
+        if limit_nm != self._limit_nm:
+            self._limit_nm = limit_nm
+            self._pushed_n = max(0.0, self._screw.pushed_n(limit_nm))
+            self._held_n = max(0.0, self._screw.held_n(limit_nm))
+        if plant.force_z_n > _NEAR_LIMIT * self._pushed_n and drive.energised:
+            place_mm = drive.axis.position
+            reached_mm = max(self._pressed_mm, plant.press_at_mm(self._pushed_n))
+            borne_mm = min(place_mm, reached_mm, plant.press_at_mm(self._held_n))
+            if borne_mm < place_mm:
+                self._stalled = True
+                drive.stall(borne_mm)
+                return
+        if self._stalled:
+            self._stalled = False
+            drive.unstall()
+
+    # -- the person's side ----------------------------------------------------------------------------------------
+
+    def install(self, specimen: int, wheel: int, compound: str, *, new_specimen: bool) -> None:
+        """Mount a new wheel."""
+        self._plant_s = self.world.now_s
+        self.plant.install(specimen, wheel, compound, new_specimen)
+
+    def remount(self, specimen: int, wheel: int, compound: str, diameter_mm: float, sliding_m: float) -> None:
+        """Put a worn wheel on: diameter in mm, sliding distance in m; the rig is at ambient temperature."""
+        self.plant.install(specimen, wheel, compound, True, diameter_mm, sliding_m)
+
+    def truth(self, held: Mapping[str, float]) -> dict[str, float]:
+        """Return what the plant knows of the repeat that has begun, at setpoints by axis (speeds m/s, N, deg, degC)."""
+        belt_m_s = held["wheel_speed"] - held["slip_velocity"]
+        slip_m_s = slip_velocity(held["wheel_speed"], belt_m_s, held["sideslip"])[2]
+        return self.plant.truth(held["temperature"], held["load"], slip_m_s, held["sideslip"])
+
+    def begin_repeat(self, condition: int, repeat: int, attempt: int) -> None:
+        """Begin a repeat: the random streams, and the sensors' dither, start anew with it."""
+        self.plant.begin_repeat(condition, repeat, attempt)
+        self.cell.dither = self.ir.dither = 0
+        for sensor in self.sensors.values():
+            sensor.dither = 0

@@ -1,0 +1,194 @@
+"""Friction coefficient of rubber on the abrasive belt, as formulas of temperature, load and slip speed.
+
+Source: Polymers 2024, 16(5), 596, doi 10.3390/polym16050596, CC BY 4.0 ("the paper"), Eqs 1 and 4-9. The
+paper prints the slip speed in mm/s; its own coefficients only give its own data with m/s, which is what is
+used here. Temperature is in degC as it is, load in N, slip speed (resultant) in m/s. Slip direction and
+sideslip are in ``sim.slip``.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import ArrayLike, NDArray
+
+
+MODEL_NAMES: Final = ("paper", "v2")
+"""The friction formulas here: the paper's (Eqs 4-9) and the better seven-parameter fit."""
+
+
+class UnknownCompoundError(ValueError):
+    """A compound without a friction model; the message names those that have one."""
+
+    def __init__(self, compound: str) -> None:
+        """Keep the name that was asked for."""
+        super().__init__(f"no friction model for compound {compound!r}; known: {', '.join(KNOWN)}")
+        self.compound = compound
+
+
+@dataclass(frozen=True, slots=True)
+class PaperParameters:
+    """mu = (alpha exp(-beta (t - tm)^2) + gamma) (a1 p^b1 v^b2 + a2), Eqs 4-9; degC, N, m/s."""
+
+    alpha: float
+    beta: float  # 1/K^2
+    gamma: float
+    a1: float
+    a2: float
+    b1: float
+    b2: float
+    tm: float  # degC
+
+
+@dataclass(frozen=True, slots=True)
+class V2Parameters:
+    """mu = (1 + alpha_n (g(t) - g(25))) exp(k (p - 200) / 200) (c (v / 0.3)^b2 + a2).
+
+    g(t) = exp(-beta (t - tm)^2); t in degC, p in N, v in m/s. Fitted to both of the paper's appendices:
+    mean error 4.0 % where Eqs 4-9 have 10.6 %.
+    """
+
+    alpha_n: float
+    beta: float  # 1/K^2
+    tm: float  # degC
+    c: float
+    k: float
+    b2: float
+    a2: float
+
+
+COMPOUNDS: Final[dict[str, PaperParameters]] = {
+    "1#": PaperParameters(0.2238, 0.002231, 1.013, 10.3850, 0.3975, -0.3834, 1.200, 70.0),
+    "2#": PaperParameters(0.6278, 0.001974, 0.980, 12.1476, 0.3204, -0.4440, 1.550, 68.0),
+    "3#": PaperParameters(0.8712, 0.002744, 1.028, 71.9234, 0.5443, -0.6167, 1.455, 73.0),
+}
+"""The paper's three compounds, coefficients verbatim (Eqs 7-9)."""
+
+V2: Final[dict[str, V2Parameters]] = {
+    "1#": V2Parameters(0.234637, 0.001839, 66.478, 0.344942, -0.341934, 1.136499, 0.396179),
+    "2#": V2Parameters(0.597188, 0.002186, 69.231, 0.197275, -0.419724, 1.470303, 0.314343),
+    "3#": V2Parameters(0.845325, 0.002587, 72.263, 0.510386, -0.567485, 1.322839, 0.552537),
+}
+
+KNOWN: Final[list[str]] = list(COMPOUNDS)
+"""Compounds that have a friction model."""
+
+V2_TEMPERATURE_C: Final = 25.0
+V2_LOAD_N: Final = 200.0
+V2_SLIP_M_S: Final = 0.3
+"""The point at which the v2 form is normalised."""
+
+
+def _checked(compound: str, model: str) -> None:
+    """Raise UnknownCompoundError, or ValueError for an unknown model."""
+    if compound not in COMPOUNDS:
+        raise UnknownCompoundError(compound)
+    if model not in MODEL_NAMES:
+        raise ValueError(f"friction model is one of {', '.join(MODEL_NAMES)}, not {model!r}")
+
+
+class FrictionModel:
+    """One compound's coefficient as a fast scalar function.
+
+    Both forms reduce to ``(heat exp(-beta (t - tm)^2) + base) (speed p^b1 v^b2 + a2)``, the v2 form with an
+    exponential of load in place of p^b1, applied to both terms: ``exp(load (p - 200))``, with ``load`` 0 in the
+    paper's.
+    """
+
+    __slots__ = ("_a2", "_b1", "_b2", "_base", "_beta", "_heat", "_is_paper", "_load", "_speed", "_tm")
+
+    def __init__(self, compound: str, model: str = "paper") -> None:
+        """Take a compound's constants; raises UnknownCompoundError, or ValueError for an unknown model."""
+        _checked(compound, model)
+        self._is_paper = model == "paper"
+        if self._is_paper:
+            p = COMPOUNDS[compound]
+            self._heat, self._beta, self._tm, self._base = p.alpha, p.beta, p.tm, p.gamma
+            self._speed, self._b1, self._b2, self._a2, self._load = p.a1, p.b1, p.b2, p.a2, 0.0
+        else:
+            q = V2[compound]
+            at_25 = math.exp(-q.beta * (V2_TEMPERATURE_C - q.tm) ** 2)
+            self._heat, self._beta, self._tm, self._base = q.alpha_n, q.beta, q.tm, 1.0 - q.alpha_n * at_25
+            self._speed, self._b1, self._b2, self._a2 = q.c * V2_SLIP_M_S**-q.b2, 0.0, q.b2, q.a2
+            self._load = q.k / V2_LOAD_N
+
+    def mu(self, temperature_c: float, load_n: float, slip_m_s: float) -> float:
+        """Return the coefficient at a surface temperature, a load above 0 and a slip speed of at least 0."""
+        off = temperature_c - self._tm
+        heat = self._heat * math.exp(-self._beta * off * off) + self._base
+        speed = self._speed * slip_m_s**self._b2
+        if self._is_paper:
+            return heat * (speed * load_n**self._b1 + self._a2)
+        return heat * (speed + self._a2) * math.exp(self._load * (load_n - V2_LOAD_N))
+
+
+def coefficient(
+    compound: str, temperature_c: float, load_n: float, slip_m_s: float, model: str = "paper"
+) -> float:
+    """Return the coefficient of one condition.
+
+    Surface temperature in degC, load in N (above 0), slip speed in m/s (resultant, at least 0). Raises
+    UnknownCompoundError and ValueError for numbers outside those ranges.
+    """
+    in_range(temperature_c, load_n, slip_m_s)
+    return FrictionModel(compound, model).mu(temperature_c, load_n, slip_m_s)
+
+
+def in_range(temperature_c: float, load_n: float, slip_m_s: float) -> None:
+    """Raise ValueError unless a law can be asked for these (degC, N, m/s)."""
+    if not (math.isfinite(temperature_c) and math.isfinite(load_n) and math.isfinite(slip_m_s)):
+        raise ValueError("temperature, load and slip speed must be finite")
+    if load_n <= 0.0:
+        raise ValueError(f"load must be above 0 N, not {load_n!r}")
+    if slip_m_s < 0.0:
+        raise ValueError(f"slip speed is a magnitude, at least 0 m/s, not {slip_m_s!r}")
+
+
+def thermal_factor(parameters: PaperParameters, temperature_c: float) -> float:
+    """Return the temperature factor alpha exp(-beta (t - tm)^2) + gamma (Eq 6)."""
+    off = temperature_c - parameters.tm
+    return parameters.alpha * math.exp(-parameters.beta * off * off) + parameters.gamma
+
+
+def power_law(c1: float, c2: float, c3: float, load_n: float, slip_m_s: float) -> float:
+    """Return Dorsch's mu = c1 p^c2 v^c3 (Eq 1); load in N, slip speed in m/s, both above 0."""
+    return c1 * load_n**c2 * slip_m_s**c3
+
+
+def evaluate(
+    parameters: PaperParameters | V2Parameters,
+    temperature_c: ArrayLike,
+    load_n: ArrayLike,
+    slip_m_s: ArrayLike,
+) -> NDArray[np.float64]:
+    """Return the coefficients of many conditions for any set of parameters (broadcast together; for fits)."""
+    import numpy as np
+
+    t = np.asarray(temperature_c, dtype=np.float64)
+    p = np.asarray(load_n, dtype=np.float64)
+    v = np.asarray(slip_m_s, dtype=np.float64)
+    heat = np.exp(-parameters.beta * (t - parameters.tm) ** 2)
+    if isinstance(parameters, PaperParameters):
+        speed = parameters.a1 * p**parameters.b1 * v**parameters.b2 + parameters.a2
+        return (parameters.alpha * heat + parameters.gamma) * speed
+    at_25 = math.exp(-parameters.beta * (V2_TEMPERATURE_C - parameters.tm) ** 2)
+    speed = parameters.c * (v / V2_SLIP_M_S) ** parameters.b2 + parameters.a2
+    load = np.exp(parameters.k * (p - V2_LOAD_N) / V2_LOAD_N)
+    return (1.0 + parameters.alpha_n * (heat - at_25)) * load * speed
+
+
+def coefficients(
+    compound: str,
+    temperature_c: ArrayLike,
+    load_n: ArrayLike,
+    slip_m_s: ArrayLike,
+    model: str = "paper",
+) -> NDArray[np.float64]:
+    """Return the coefficients of many conditions of one compound, broadcast together; see ``coefficient``."""
+    _checked(compound, model)
+    parameters = COMPOUNDS[compound] if model == "paper" else V2[compound]
+    return evaluate(parameters, temperature_c, load_n, slip_m_s)

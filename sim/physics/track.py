@@ -1,0 +1,138 @@
+"""Parameters of a specimen on a track: the rig file's section ``sim`` of this kind.
+
+``[A]`` marks an engineering assumption. A field is ``Annotated[float, unit]``; unit "1" is a plain number.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from collections.abc import Set as AbstractSet
+from dataclasses import asdict, dataclass, field, fields
+from types import MappingProxyType
+from typing import Annotated, Final, Literal
+
+from sim.physics import laws
+from sim.physics.wlf import WlfBellParameters
+
+Motion = Literal["linear", "disc"]
+Interface = Literal["dry", "wet", "talc"]
+
+RUBBERS: Final[Mapping[str, WlfBellParameters]] = MappingProxyType({
+    "SBR": WlfBellParameters(),  # Tg = -53 degC [A]
+    "NR": WlfBellParameters(t_ref=-20.0),  # Tg = -70 degC [A]
+    "NBR": WlfBellParameters(t_ref=25.0),  # Tg = -25 degC [A]
+})
+"""Rubbers by the names that a recipe uses; they differ in their glass transition alone [A]."""
+
+
+@dataclass(frozen=True, slots=True)
+class TrackContact:
+    """Specimen, arm and track."""
+
+    stiffness: Annotated[float, "N/mm"] = 200.0  # [A] tangential, of arm, cell and specimen in a row
+    static_excess: Annotated[float, "1"] = 0.2  # [A] friction of a rested contact above that of sliding ...
+    static_length: Annotated[float, "mm"] = 0.05  # [A] ... which goes with this sliding distance
+    lift_travel: Annotated[float, "mm"] = 10.0  # [A] from lowered (0) to raised
+    touch: Annotated[float, "mm"] = 1.0  # [A] the arm's position at which specimen and track meet, full load at 0
+    wet: Annotated[float, "1"] = 0.6  # [A] share of the dry friction
+    talc: Annotated[float, "1"] = 0.5  # [A]
+
+    def __post_init__(self) -> None:
+        """Raise ValueError for values out of range."""
+        _refuse(self, {"static_excess", "wet", "talc"})
+        if self.touch >= self.lift_travel:
+            raise ValueError("TrackContact.touch must be below lift_travel: raised, nothing touches")
+
+    def share(self, interface: Interface) -> float:
+        """Return what the interface leaves of the dry friction."""
+        return {"dry": 1.0, "wet": self.wet, "talc": self.talc}[interface]
+
+
+@dataclass(frozen=True, slots=True)
+class TrackHeat:
+    """Chamber and specimen, each one lump, all [A]."""
+
+    chamber_rate: Annotated[float, "K/s"] = 0.06  # of the air at full output: 3.6 K a minute
+    chamber_time: Annotated[float, "s"] = 1800.0  # of the air back to ambient; full output ends 108 K from it
+    specimen_time: Annotated[float, "s"] = 300.0  # of the specimen to the air around it
+    specimen_rise: Annotated[float, "K/W"] = 5.0  # of the specimen above that air, in the end, by its share of friction
+    friction_share: Annotated[float, "1"] = 0.1  # of the friction's heat that goes into the specimen
+    exit_rise: Annotated[float, "K/W"] = 2.0  # of the track at the contact's exit edge, above the specimen
+
+    def __post_init__(self) -> None:
+        """Raise ValueError for values out of range."""
+        _refuse(self, {"specimen_rise", "friction_share", "exit_rise"})
+
+
+@dataclass(frozen=True, slots=True)
+class TrackSensors:
+    """Imperfections of the sensors; ``TrackParameters.noise`` scales every one but ranges and lags, all [A]."""
+
+    force_range: Annotated[float, "N"] = 200.0
+    force_rms: Annotated[float, "N"] = 0.02
+    force_zero: Annotated[float, "N"] = 0.5  # greatest offset of a session: what the tare takes off
+    force_drift: Annotated[float, "N/K"] = 0.005  # greatest, of the air's temperature against ambient
+    air_rms: Annotated[float, "K"] = 0.02
+    air_time: Annotated[float, "s"] = 5.0
+    pyrometer_rms: Annotated[float, "K"] = 0.1
+    pyrometer_bias: Annotated[float, "K"] = 1.0  # greatest of a session
+    pyrometer_time: Annotated[float, "s"] = 0.15
+
+    def __post_init__(self) -> None:
+        """Raise ValueError for values out of range."""
+        _refuse(self, {item.name for item in fields(self)} - {"force_range", "air_time", "pyrometer_time"})
+
+
+@dataclass(frozen=True, slots=True)
+class TrackParameters:
+    """Everything the plant is made of."""
+
+    motion: Motion = "linear"
+    travel: Annotated[float, "mm"] = 300.0  # of a linear track from stop to stop [A]; without meaning on a disc
+    switches: Annotated[float, "mm"] = 5.0  # an end switch opens the safety chain this far before its stop [A]
+    enclosed: bool = True  # the specimen is in the climate chamber, else in the room's air
+    noise: Annotated[float, "1"] = 1.0  # scale of every sensor imperfection
+    scatter: Annotated[float, "1"] = 1.0  # scale of the friction's scatter: specimens 3 %, repeats 2 % [A]
+    law: str = "wlf_bell"  # by its name in sim.physics.laws
+    ambient: Annotated[float, "degC"] = 23.0
+    faults: tuple[str, ...] = ()  # a fault script (sim.faults.language)
+    contact: TrackContact = field(default_factory=TrackContact)
+    heat: TrackHeat = field(default_factory=TrackHeat)
+    sensors: TrackSensors = field(default_factory=TrackSensors)
+    rubbers: Mapping[str, WlfBellParameters] = field(default_factory=lambda: dict(RUBBERS))
+
+    def __post_init__(self) -> None:
+        """Raise ValueError for values out of range."""
+        _refuse(self, {"noise", "scatter"}, signed={"ambient"})
+        if not -40.0 <= self.ambient <= 60.0:
+            raise ValueError(f"ambient must be -40 to 60 degC, not {self.ambient!r}")
+        if 2.0 * self.switches >= self.travel:
+            raise ValueError("TrackParameters.switches leave nothing of the travel")
+        try:
+            laws.find(self.law)
+        except laws.UnknownLawError as error:
+            raise ValueError(f"law: {error}") from None
+
+    def friction_of(self, compound: str) -> laws.FrictionLaw:
+        """Return the law of a rubber. Raises ValueError for one that ``rubbers`` lacks where the law needs it."""
+        if self.law != "wlf_bell":
+            return laws.make(self.law, compound)
+        if compound not in self.rubbers:
+            raise ValueError(f"no rubber {compound!r} among sim.rubbers; known: {', '.join(self.rubbers)}")
+        return laws.make(self.law, compound, asdict(self.rubbers[compound]))
+
+    def __deepcopy__(self, memo: dict[int, object]) -> TrackParameters:
+        """Return itself: it never changes, and copies of a running rig share it."""
+        return self
+
+
+def _refuse(group: object, zero_allowed: AbstractSet[str], signed: AbstractSet[str] = frozenset()) -> None:
+    """Raise ValueError unless every number of a group is finite and above zero, or zero where allowed."""
+    for item in fields(group):  # type: ignore[arg-type]
+        value: object = getattr(group, item.name)
+        if isinstance(value, bool) or not isinstance(value, int | float) or item.name in signed:
+            continue
+        if not math.isfinite(value) or value < 0.0 or (value == 0.0 and item.name not in zero_allowed):
+            least = "at least 0" if item.name in zero_allowed else "above 0"
+            raise ValueError(f"{type(group).__name__}.{item.name} must be finite and {least}, not {value!r}")

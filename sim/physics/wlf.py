@@ -1,0 +1,114 @@
+"""A bell of friction over the reduced speed: rubber whose time and temperature are one (Williams, Landel, Ferry).
+
+mu = mu_0 + (mu_max - mu_0) exp(-(x / width)^2), x = log10(aT v / v_ref), with v in m/s and the shift
+
+    log10 aT = -C1 (T - T_ref) / (C2 + T - T_ref),  T in degC.
+
+Grosch, Proc. Roy. Soc. A 274 (1963) 21, found that friction of rubber over speeds and temperatures falls on one curve
+over aT v, with a maximum. With T_ref = Tg + 50 K the constants are nearly the same for all rubbers: C1 = 8.86,
+C2 = 101.5 K (Williams, Landel, Ferry 1955), said to hold from Tg to Tg + 100 K. At T_ref - C2 the shift has a pole: at
+or below it there is no law, and ``PoleError`` is raised.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from typing import Annotated, Final
+
+C1: Final = 8.86
+C2_K: Final = 101.5
+"""Constants of the shift for T_ref = Tg + 50 K."""
+GLASS_TO_REFERENCE_K: Final = 50.0
+FITTED_K: Final = 100.0
+"""From the glass transition on, the constants hold over this span, K."""
+
+
+class PoleError(ValueError):
+    """A temperature at or below the pole of the shift."""
+
+
+@dataclass(frozen=True, slots=True)
+class WlfBellParameters:
+    """One rubber on one track. The defaults are an SBR-like rubber on an abrasive.
+
+    Its shift is that of a rubber with Tg = -53 degC [A]; the maximum stands at 0.0755 m/s at 20 degC: the grit's length
+    150 um (Grosch) times the rubber's loss frequency 3162 rad/s over 2 pi [A], which is 1.74e-3 m/s at T_ref. Heights
+    and width are assumed.
+    """
+
+    mu_0: Annotated[float, "1"] = 0.5  # [A] far from the maximum, on either side
+    mu_max: Annotated[float, "1"] = 2.2  # [A]
+    width: Annotated[float, "1"] = 3.0  # [A] decades from the maximum to 1/e of it
+    v_ref: Annotated[float, "m/s"] = 1.74e-3  # speed of the maximum at t_ref
+    t_ref: Annotated[float, "degC"] = -3.0  # Tg + 50 K
+    c1: Annotated[float, "1"] = C1
+    c2: Annotated[float, "K"] = C2_K
+
+    def __post_init__(self) -> None:
+        """Raise ValueError for values out of range."""
+        for item in fields(self):
+            value: float = getattr(self, item.name)
+            if not math.isfinite(value):
+                raise ValueError(f"WlfBellParameters.{item.name} must be finite, not {value!r}")
+            if item.name in ("width", "v_ref", "c1", "c2") and not value > 0.0:
+                raise ValueError(f"WlfBellParameters.{item.name} must be above 0, not {value!r}")
+        if not 0.0 <= self.mu_0 <= self.mu_max:
+            raise ValueError(f"WlfBellParameters.mu_0 is 0 to mu_max ({self.mu_max:g}), not {self.mu_0!r}")
+
+    @property
+    def pole_c(self) -> float:
+        """At or below this temperature there is no law, degC."""
+        return self.t_ref - self.c2
+
+    @property
+    def fitted_c(self) -> tuple[float, float]:
+        """Between these temperatures the shift is said to hold, degC: glass transition and 100 K above."""
+        glass_c = self.t_ref - GLASS_TO_REFERENCE_K
+        return glass_c, glass_c + FITTED_K
+
+
+class WlfBell:
+    """The law with its parameters; it does not depend on the load."""
+
+    __slots__ = ("_parameters", "_x_ref")
+
+    def __init__(self, parameters: WlfBellParameters) -> None:
+        """Take a rubber's parameters."""
+        self._parameters = parameters
+        self._x_ref = math.log10(parameters.v_ref)
+
+    @property
+    def parameters(self) -> WlfBellParameters:
+        """What it was made of."""
+        return self._parameters
+
+    def shift(self, temperature_c: float) -> float:
+        """Return log10 aT, 0 at t_ref. Raises PoleError."""
+        p = self._parameters
+        off_k = temperature_c - p.t_ref
+        if not off_k > -p.c2:
+            raise PoleError(
+                f"{temperature_c:g} degC: the WLF shift with t_ref {p.t_ref:g} degC and c2 {p.c2:g} K holds only above"
+                f" {p.pole_c:g} degC"
+            )
+        return -p.c1 * off_k / (p.c2 + off_k)
+
+    def mu(self, temperature_c: float, load_n: float, slip_m_s: float) -> float:
+        """Return the coefficient; at standstill that of the slowest sliding, mu_0. Raises PoleError."""
+        p = self._parameters
+        shift = self.shift(temperature_c)
+        if not slip_m_s > 0.0:
+            return p.mu_0
+        x = (shift + math.log10(slip_m_s) - self._x_ref) / p.width
+        return p.mu_0 + (p.mu_max - p.mu_0) * math.exp(-x * x)
+
+
+def wlf_bell(compound: str, figures: Mapping[str, float]) -> WlfBell:
+    """Return the law of a compound with these figures (keys of WlfBellParameters). Raises ValueError."""
+    known = [item.name for item in fields(WlfBellParameters)]
+    unknown = [name for name in figures if name not in known]
+    if unknown:
+        raise ValueError(f"compound {compound!r}: wlf_bell has no {', '.join(unknown)}; it has {', '.join(known)}")
+    return WlfBell(WlfBellParameters(**figures))

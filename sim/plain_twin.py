@@ -1,0 +1,102 @@
+"""The twin of a plain machine: drives that turn, sensors that show numbers of its plant, on the wires of any rig."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Protocol
+
+from sim.nodes.cia402_slave import Cia402Slave
+from sim.nodes.modbus_slave import ModbusSlave
+from sim.nodes.profile_slave import PlantQuantity, ProfileSlave
+from sim.nodes.sensor_node import SimulatedSensorNode
+from sim.rig import RigSpec, World, further_sensors, lines_of
+from sim.wires.can_wire import CanWire
+
+
+class PlainPlant(Protocol):
+    """What is between the drives' shafts and the sensors: a kind's own."""
+
+    @property
+    def ambient_c(self) -> float:
+        """Temperature of the air around it, degC."""
+        ...
+
+    def advance(self, dt: float, speeds: Mapping[str, float]) -> None:
+        """Move on by ``dt`` s with each drive's speed, in the unit of its axis, as it is at the end."""
+        ...
+
+    def install(self, specimen: int, compound: str) -> None:
+        """Put a new specimen on; ``specimen`` keys its scatter. Raises ValueError for an unknown compound."""
+        ...
+
+    def begin_repeat(self, condition: int, repeat: int, attempt: int) -> None:
+        """Start the random streams of a repeat."""
+        ...
+
+
+class PlainTwin:
+    """A plain machine on simulated wires (a ``sim.rig.SimRig``), and its own attendant."""
+
+    def __init__(
+        self,
+        spec: RigSpec,
+        plant: PlainPlant,
+        shows: Mapping[str, Mapping[str, str]],
+        can_wire: type[CanWire] = CanWire,
+    ) -> None:
+        """Switch everything on at time 0.
+
+        ``shows``: the machine's own sensors by their names in the wiring; what number of the plant each channel shows.
+        Raises UnknownQuantityError for one that the plant does not have.
+        """
+        self.plant = plant
+        self.can = can_wire(spec.bitrate)
+        self.axes = {name: Cia402Slave(one, self.can, serial_number=one.node_id) for name, one in spec.axes.items()}
+        own = {name: _sensor(spec, name, plant, channels) for name, channels in shows.items() if name in spec.devices}
+        self.devices: dict[str, ModbusSlave] = {name.replace("_", " "): slave for name, slave in own.items()}
+        self.sensors = further_sensors(spec, own, plant)
+        self.nodes = [SimulatedSensorNode(config, self.can) for config in spec.nodes]
+        self.lines = lines_of(spec, {**own, **self.sensors})
+        self.world = World(self.can, self.axes, self.devices, self, self.nodes)
+        self._dithered = (*own.values(), *self.sensors.values())
+        self._plant_s = 0.0
+
+    @property
+    def now_s(self) -> float:
+        """Until when everything has lived, s."""
+        return self.world.now_s
+
+    @property
+    def urgent_s(self) -> float:
+        """When the next frame arrives that a scan should not wait for, s."""
+        return self.world.urgent_s
+
+    @property
+    def ambient_c(self) -> float:
+        """Temperature of the air around the rig, degC."""
+        return self.plant.ambient_c
+
+    def advance(self, now: float) -> None:
+        """Let everything live until ``now`` (s); a step shorter than a millisecond waits for the next one."""
+        self.world.advance(now)
+
+    def follow(self, t1: float, still: bool) -> None:
+        """Let the plant follow its drives to ``t1`` s."""
+        elapsed, self._plant_s = t1 - self._plant_s, t1
+        self.plant.advance(elapsed, {name: drive.axis.value for name, drive in self.axes.items()})
+
+    def install(self, specimen: int, compound: str) -> None:
+        """Put a new specimen on."""
+        self.plant.install(specimen, compound)
+
+    def begin_repeat(self, condition: int, repeat: int, attempt: int) -> None:
+        """Begin a repeat: the random streams, and the sensors' dither, start anew with it."""
+        self.plant.begin_repeat(condition, repeat, attempt)
+        for sensor in self._dithered:
+            sensor.dither = 0
+
+
+def _sensor(spec: RigSpec, name: str, plant: PlainPlant, channels: Mapping[str, str]) -> ProfileSlave:
+    device = spec.devices[name]
+    shown = {channel: PlantQuantity(plant, quantity) for channel, quantity in channels.items()}
+    return ProfileSlave(device.profile, device.unit_id, shown)

@@ -1,0 +1,130 @@
+"""A Modbus TCP gateway in front of a simulated serial line; sans-IO.
+
+Requests are unwrapped (MBAP header off, CRC on) and go over the line one at a time, with its wire times; replies go
+back to whoever asked. A slave that is not there stays silent, as on the line itself: no gateway exception is made up.
+Source: Modbus messaging on TCP/IP implementation guide V1.0b, 3.1.3.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from dataclasses import dataclass
+from math import inf
+from struct import Struct
+
+from drivers.crc16 import crc16, with_crc
+from drivers.ports import BusLost
+from sim.wires.modbus_wire import ModbusWire
+
+PATIENCE_S = 0.25
+"""How long the gateway waits for a slave before it serves the next request, s [A]: beyond any profile's time-out."""
+MOST_WAITING = 16
+"""Requests of one client that may wait; one that sends more gets silence for them."""
+
+_HEADER = Struct(">HHHB")
+_SHORTEST, _LONGEST = 2, 254
+"""The header's length field counts the unit id and a PDU of 1 to 253 bytes."""
+_SHORTEST_REPLY = 5
+"""Bytes of the shortest RTU reply, an exception: unit, function, code, CRC."""
+
+
+class ModbusSession:
+    """One client's connection: ``feed`` takes bytes, ``outgoing`` holds replies; ``ended`` says why it is over."""
+
+    __slots__ = ("_buffer", "ended", "outgoing")
+
+    def __init__(self) -> None:
+        """Wait for requests."""
+        self.outgoing = bytearray()
+        self.ended = ""
+        self._buffer = b""
+
+    def feed(self, data: bytes) -> list[tuple[int, bytes]]:
+        """Take what the client sent; return complete requests as (transaction, unit id and PDU)."""
+        requests: list[tuple[int, bytes]] = []
+        buffer = self._buffer + data
+        while len(buffer) >= _HEADER.size:
+            transaction, protocol, length, _ = _HEADER.unpack_from(buffer)
+            if protocol != 0 or not _SHORTEST <= length <= _LONGEST:
+                self.ended = "sent what is not Modbus TCP"
+                return requests
+            end = _HEADER.size - 1 + length
+            if len(buffer) < end:
+                break
+            requests.append((transaction, buffer[_HEADER.size - 1 : end]))
+            buffer = buffer[end:]
+        self._buffer = buffer
+        return requests
+
+    def reply(self, transaction: int, frame: bytes) -> None:
+        """Queue a reply, given as unit id and PDU."""
+        self.outgoing += _HEADER.pack(transaction, 0, len(frame), frame[0]) + frame[1:]
+
+
+@dataclass(slots=True)
+class _Transaction:
+    session: ModbusSession
+    number: int
+    frame: bytes
+    until_s: float = inf
+
+
+class ModbusGateway:
+    """One line's gateway: any number of clients, one transaction at a time."""
+
+    __slots__ = ("_active", "_reply", "_waiting", "wire")
+
+    def __init__(self, wire: ModbusWire) -> None:
+        """Serve the slaves on ``wire``."""
+        self.wire = wire
+        self._waiting: deque[_Transaction] = deque()
+        self._active: _Transaction | None = None
+        self._reply = b""
+
+    @property
+    def due_s(self) -> float:
+        """When ``serve`` has something to do next, s; infinity when nothing is asked."""
+        return inf if self._active is None else min(self._active.until_s, self.wire.arrives_s)
+
+    def take(self, session: ModbusSession, data: bytes, now: float) -> None:
+        """Take what a client sent."""
+        waiting = sum(1 for one in self._waiting if one.session is session)
+        for number, frame in session.feed(data)[: MOST_WAITING - waiting]:
+            self._waiting.append(_Transaction(session, number, with_crc(frame)))
+        self.serve(now)
+
+    def forget(self, session: ModbusSession) -> None:
+        """Drop what a client that is gone has asked."""
+        self._waiting = deque(one for one in self._waiting if one.session is not session)
+
+    def serve(self, now: float) -> None:
+        """Pass replies on that have arrived, and requests whose turn it is."""
+        self._collect(now)
+        while self._active is None and self._waiting:
+            self._start(self._waiting.popleft(), now)
+
+    def _start(self, transaction: _Transaction, now: float) -> None:
+        try:
+            self.wire.write(transaction.frame, now)
+        except BusLost:
+            return  # an unplugged line is silent
+        if transaction.frame[0] != 0:  # nobody answers a broadcast
+            transaction.until_s = now + PATIENCE_S
+            self._active, self._reply = transaction, b""
+
+    def _collect(self, now: float) -> None:
+        try:
+            chunks = self.wire.read(now)
+        except BusLost:
+            chunks = []
+        active = self._active
+        if active is None:
+            return
+        for _, chunk in chunks:
+            self._reply += chunk
+            if len(self._reply) >= _SHORTEST_REPLY and crc16(self._reply) == 0:
+                active.session.reply(active.number, self._reply[:-2])
+                self._active = None
+                return
+        if now >= active.until_s:
+            self._active = None

@@ -1,0 +1,27 @@
+"""Whether a repeat has collected what it needs."""
+
+from __future__ import annotations
+
+from tester.analysis.blocks import BlockCounter
+from tester.analysis.drift import fit_drift
+from tester.analysis.reduce import counted
+from tester.analysis.stability import filled
+
+
+def collected(
+    counter: BlockCounter, revolutions: float | None, seconds: float | None, extend_to: float, *, alone: bool
+) -> bool:
+    """Tell whether a repeat goes on no longer; of ``revolutions`` and ``seconds`` one is the window, one None.
+
+    ``extend_to``: the most it collects, in the window's unit. ``alone``: it has no siblings that it is judged with, so
+    it goes on until its drift is shown to be small.
+    """
+    blocks = counter.blocks
+    have = float(len(blocks)) if revolutions is not None else counter.seconds
+    if have >= extend_to:
+        return True
+    if not filled(blocks, revolutions, seconds):
+        return False
+    if not alone:
+        return True
+    return fit_drift([counted(blocks, revolutions, seconds)], revolutions, seconds).stable

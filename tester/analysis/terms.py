@@ -1,0 +1,202 @@
+"""Terms of the budget that the machine brings: what its measuring chain may be off by, as data.
+
+A kind of rig says its terms (``tester.machine.run_parts``), a run's record keeps them, and here they become
+contributions to the uncertainty of one coefficient. How an error reaches mu is one of a few ways (``Acts``), each a
+formula of the coefficient and of what was measured with it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from enum import StrEnum
+from math import hypot, inf, isfinite, pi, sqrt
+from types import MappingProxyType
+from typing import Final
+
+from tester.analysis.results import NAN
+from tester.analysis.uncertainty import Contribution, contribution
+
+SLOWEST_M_S: Final = 0.1
+"""Below it the coefficient hardly depends on speed any more; keeps the relative error of sliding finite [A]."""
+
+SPREADS: Final[Mapping[str, float]] = MappingProxyType(
+    {"rectangular": 1.0 / sqrt(3.0), "U-shaped": 1.0 / sqrt(2.0), "normal": 1.0}
+)
+"""Standard uncertainty of a bound of 1, by distribution: anywhere within +-1 (GUM 4.3.7); rather at +-1 than at 0 (of
+either sign, GUM H.1.3.4 for its case); of a normal one the bound is the standard uncertainty itself."""
+
+_NO_SETTINGS: Mapping[str, str] = MappingProxyType({})
+_PREFIX = "uncertainty."
+
+
+class Acts(StrEnum):
+    """How an error reaches the coefficient mu = Ft / Fz; its sensitivity, per unit of the error."""
+
+    FRICTION = "friction force"
+    """N, of Ft: 1 / Fz."""
+    NORMAL = "normal force"
+    """N, of Fz: mu / Fz."""
+    ROTATION = "rotation"
+    """degrees between the axes of the cell and those of the contact: load becomes friction and back, 1 + mu^2."""
+    CROSSTALK = "crosstalk"
+    """Share of one force that the channel of the other sees, two independent ones: sqrt(1 + mu^4)."""
+    TEMPERATURE = "temperature"
+    """K, of the surface: mu times its relative sensitivity."""
+    LAG = "lag"
+    """s, of the thermometer behind a temperature that changes; the term's factor is the lag itself, s."""
+    SLIDING = "sliding speed"
+    """m/s: mu / v, times the exponent with which mu follows v."""
+    SIZE = "size"
+    """mm, of the diameter from which a speed is reckoned: that speed's sensitivity."""
+    LOSS = "loss"
+    """As SIZE; the bound is a share of what is believed to be worn off."""
+    COEFFICIENT = "coefficient"
+    """Share of mu itself: mu."""
+    PIECE = "piece"
+    """Share of mu by which one piece that is mounted differs from another of the same compound: mu. It is no error of
+    the coefficient of this piece, and one of the compound's."""
+
+
+@dataclass(frozen=True, slots=True)
+class Term:
+    """One thing that may be off: ``bound`` in ``unit``, how it is distributed, and how it reaches mu.
+
+    ``channel``: of whose mean the bound is a share; of SIZE and LOSS the speed that is reckoned from the diameter.
+    ``factor`` multiplies the sensitivity. ``common``: rig (the same in all conditions measured on it), piece (in all on
+    what is mounted), "" (each by itself). ``setting`` and ``factor_setting``: names under which a recipe's metadata
+    replaces bound and factor, as ``uncertainty.<name>``.
+    """
+
+    name: str
+    acts: Acts
+    bound: float
+    unit: str
+    distribution: str
+    source: str
+    channel: str = ""
+    factor: float = 1.0
+    df: float = inf
+    common: str = "rig"
+    setting: str = ""
+    factor_setting: str = ""
+
+    def __post_init__(self) -> None:
+        """Raise ValueError for what is no term."""
+        if self.distribution not in SPREADS:
+            raise ValueError(f"{self.name}: {self.distribution!r} is none of {', '.join(SPREADS)}")
+        if not (isfinite(self.bound) and self.bound >= 0.0 and isfinite(self.factor) and self.df > 0.0):
+            raise ValueError(f"{self.name}: bound {self.bound}, factor {self.factor}, degrees of freedom {self.df}")
+
+    @property
+    def standard(self) -> float:
+        """Return the standard uncertainty of what may be off, in its unit."""
+        return self.bound * SPREADS[self.distribution]
+
+
+@dataclass(frozen=True, slots=True)
+class Size:
+    """The diameter of what is mounted: mm, what is believed to be worn off, and what a check has found.
+
+    ``checked_u_mm``: standard uncertainty of the loss by a check, NaN where none was made.
+    """
+
+    size_mm: float = NAN
+    loss_mm: float = 0.0
+    checked_u_mm: float = NAN
+
+    @property
+    def checked(self) -> bool:
+        """Return whether the loss was measured."""
+        return isfinite(self.checked_u_mm)
+
+
+NO_SIZE: Final = Size()
+
+
+@dataclass(frozen=True, slots=True)
+class BudgetPoint:
+    """Where a coefficient was measured: load in N, sliding speed in m/s, means of the channels by name.
+
+    ``per_kelvin``: relative sensitivity to temperature, 1/K; ``rate_k_s``: how fast the surface warmed.
+    """
+
+    mu: float
+    normal_n: float
+    sliding_m_s: float
+    means: Mapping[str, float]
+    per_kelvin: float = 0.0
+    rate_k_s: float = 0.0
+    size: Size = NO_SIZE
+
+
+def with_settings(terms: Iterable[Term], settings: Mapping[str, str] = _NO_SETTINGS) -> tuple[Term, ...]:
+    """Return terms with the bounds and factors that ``settings`` names as ``uncertainty.<name>``.
+
+    Raises ValueError for a value that is no finite number >= 0; names that are no term's are ignored.
+    """
+    return tuple(
+        replace(
+            one,
+            bound=_set(one.setting, one.bound, settings),
+            factor=_set(one.factor_setting, one.factor, settings),
+        )
+        for one in terms
+    )
+
+
+def _set(name: str, given: float, settings: Mapping[str, str]) -> float:
+    text = settings.get(f"{_PREFIX}{name}") if name else None
+    if text is None:
+        return given
+    value = float(text)
+    if not (isfinite(value) and value >= 0.0):
+        raise ValueError(f"{_PREFIX}{name}: {text} is not a number >= 0")
+    return value
+
+
+def contributions_of(terms: Sequence[Term], at: BudgetPoint) -> list[Contribution]:
+    """Return what terms contribute to the uncertainty of a coefficient; without a load NaN each."""
+    return [_contribution(one, at) for one in terms]
+
+
+def _contribution(one: Term, at: BudgetPoint) -> Contribution:
+    standard, source, distribution = one.standard, one.source, one.distribution
+    if one.acts is Acts.LOSS:
+        standard *= abs(at.size.loss_mm)
+        if at.size.checked:
+            standard, source, distribution = at.size.checked_u_mm, "check of the diameter", "normal"
+    elif one.channel and one.acts is not Acts.SIZE:
+        standard *= abs(at.means.get(one.channel, NAN))
+    found = sensitivity(one, at)
+    return contribution(
+        one.name, standard, found, unit=one.unit, df=one.df, source=source, distribution=distribution, common=one.common
+    )
+
+
+def sensitivity(one: Term, at: BudgetPoint) -> float:
+    """Return by how much mu changes with a term's error, per unit; NaN without a load."""
+    mu, load = at.mu, at.normal_n
+    if not (isfinite(mu) and load > 0.0):
+        return NAN
+    sliding = max(abs(at.sliding_m_s), SLOWEST_M_S) if isfinite(at.sliding_m_s) else NAN
+    match one.acts:
+        case Acts.FRICTION:
+            plain = 1.0 / load
+        case Acts.NORMAL:
+            plain = mu / load
+        case Acts.ROTATION:
+            plain = (1.0 + mu * mu) * pi / 180.0
+        case Acts.CROSSTALK:
+            plain = hypot(1.0, mu * mu)
+        case Acts.TEMPERATURE:
+            plain = mu * at.per_kelvin
+        case Acts.LAG:
+            return mu * at.per_kelvin * at.rate_k_s
+        case Acts.SLIDING:
+            plain = mu / sliding
+        case Acts.SIZE | Acts.LOSS:
+            plain = mu * abs(at.means.get(one.channel, NAN)) / (at.size.size_mm * sliding)
+        case Acts.COEFFICIENT | Acts.PIECE:
+            plain = mu
+    return one.factor * plain

@@ -1,0 +1,240 @@
+"""A configuration file to frozen dataclasses and back.
+
+The dataclass is the one description of a section: its field names, types, defaults, units and ranges. From it this
+module builds the validation (pydantic models, made once per class), so a misspelt key, a wrong unit or a value out
+of range is a problem with a position in the file, like in a recipe.
+
+A quantity is ``Annotated[float, "m/s"]``, optionally with a ``Range``. Its key in the file is the field's name
+without the suffix that its own unit spells: ``wheel_speed_m_s`` is ``wheel_speed``. A bare number counts in the
+field's unit.
+"""
+
+from __future__ import annotations
+
+import json
+import types
+from collections.abc import Mapping
+from dataclasses import MISSING, Field, dataclass, fields, is_dataclass
+from functools import cache
+from typing import TYPE_CHECKING, Annotated, Any, Final, TypeVar, Union, cast, get_args, get_origin, get_type_hints
+
+from tester.base.source import InvalidSource, Tree, problems_from_validation
+from tester.base.units import Quantity, units_like
+
+if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
+    from pydantic import BaseModel
+
+Config = TypeVar("Config", bound="DataclassInstance")
+
+FURTHER_KEYS: Final = "further keys"
+"""Marks the one field of a dataclass that takes the keys that no other field has:
+``Annotated[Mapping[str, float], FURTHER_KEYS]``. Each is a bare number; in the file they stand beside the others."""
+
+SUFFIXES: dict[str, str] = {
+    "m/s": "_m_s", "mm/s": "_mm_s", "rad/s": "_rad_s", "m/s2": "_m_s2", "mm/s2": "_mm_s2",
+    "mm": "_mm", "m": "_m", "um": "_um", "deg": "_deg", "s": "_s", "ms": "_ms", "Hz": "_hz", "rev": "_rev",
+    "N": "_n", "N m": "_nm", "N/mm": "_n_per_mm", "N s/m": "_ns_per_m", "N/K": "_n_per_k", "N/s": "_n_s",
+    "degC": "_c", "K": "_k", "K/s": "_k_s", "W": "_w", "J": "_j", "J/K": "_j_k", "W/K": "_w_k",
+    "mm3/(N m)": "_mm3_per_n_m", "mm/K": "_mm_per_k", "%": "_percent", "bit/s": "_bit_s",
+    "kg/m3": "_kg_m3", "J/(kg K)": "_j_kg_k", "W/(m K)": "_w_m_k", "W/(m2 K)": "_w_m2_k",
+}  # fmt: skip
+"""What a field's name ends with for its unit. The list is closed: another unit's field keeps its name as its key."""
+
+
+@dataclass(frozen=True, slots=True)
+class Range:
+    """Bounds of a quantity, in its unit: ``Annotated[float, "N", Range(gt=0)]``."""
+
+    gt: float | None = None
+    ge: float | None = None
+    lt: float | None = None
+    le: float | None = None
+
+
+def key_of(kind: type[DataclassInstance], name: str) -> str:
+    """Return the key that a field of a configuration class has in the file."""
+    return _key(name, _hints(kind)[name])
+
+
+def read(kind: type[Config], tree: Tree, missing: str = "") -> Config:
+    """Return a file's tree as an instance of ``kind``; raises InvalidSource with every problem.
+
+    ``missing`` is said of every key that has to be there, beside that it is not.
+    """
+    from pydantic import TypeAdapter, ValidationError  # only commands that read a file pay for it
+
+    try:
+        return cast("Config", TypeAdapter[object](_built(kind)).validate_python(tree.data))
+    except ValidationError as error:
+        raise InvalidSource(problems_from_validation(error, tree, _model(kind), missing)) from error
+
+
+def as_tree(config: DataclassInstance) -> dict[str, object]:
+    """Return a configuration as it could stand in a file: every key, quantities as text with their unit."""
+    hints = _hints(type(config))
+    tree: dict[str, object] = {}
+    for field in fields(config):
+        value, hint = getattr(config, field.name), hints[field.name]
+        if _takes_rest(hint):
+            tree.update({key: _number(number) for key, number in value.items()})
+        elif value or not _may_be_empty(field):
+            tree[_key(field.name, hint)] = _plain(value, hint)
+    return tree
+
+
+def as_text(config: DataclassInstance) -> str:
+    """Return a configuration as YAML that ``read`` turns into an equal one."""
+    return "\n".join(_lines(as_tree(config), "")) + "\n"
+
+
+@cache
+def _hints(kind: type[DataclassInstance]) -> dict[str, Any]:
+    return get_type_hints(kind, include_extras=True)
+
+
+def _takes_rest(hint: object) -> bool:
+    return get_origin(hint) is Annotated and FURTHER_KEYS in get_args(hint)
+
+
+def _may_be_empty(field: Field[Any]) -> bool:
+    """Tell whether a field is a mapping that is left out where it is empty."""
+    return get_origin(field.default_factory) is dict
+
+
+def _unit(hint: object) -> str | None:
+    """Return the unit of a quantity's type, None for any other type.
+
+    ``N.m`` is the table's ``N m``. Raises KeyError for a unit that is not in the table of ``tester.base.units``.
+    """
+    if get_origin(hint) is not Annotated or _takes_rest(hint):
+        return None
+    unit = next((one for one in get_args(hint)[1:] if isinstance(one, str)), None)
+    if unit is not None:
+        unit = unit.replace(".", " ")
+        units_like(unit)
+    return unit
+
+
+def _key(name: str, hint: object) -> str:
+    return name.removesuffix(SUFFIXES.get(_unit(hint) or "", ""))
+
+
+@cache
+def _base(*, further: bool) -> type[BaseModel]:
+    """Return what every model inherits: a text is no number, true is not 1, an unknown key is an error or a number."""
+    from pydantic import BaseModel, ConfigDict
+
+    strict = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False, protected_namespaces=())
+
+    class Known(BaseModel):
+        model_config = strict
+
+    class Further(BaseModel):
+        model_config = strict | {"extra": "allow"}
+        __pydantic_extra__: dict[str, Annotated[float, Quantity("1", True)]]  # pyright: ignore
+
+    return Further if further else Known
+
+
+@cache
+def _model(kind: type[DataclassInstance]) -> type[BaseModel]:
+    """Return the pydantic model that checks a mapping for ``kind``."""
+    from pydantic import create_model
+
+    hints = _hints(kind)
+    base = _base(further=any(_takes_rest(hint) for hint in hints.values()))
+    definitions: dict[str, Any] = {
+        field.name: (_type(hints[field.name]), _field(field, _key(field.name, hints[field.name])))
+        for field in fields(kind)
+        if field.init and not _takes_rest(hints[field.name])
+    }
+    return create_model(kind.__name__, __base__=base, **definitions)
+
+
+def _field(field: Field[Any], key: str) -> object:
+    from pydantic import Field as ModelField
+
+    if field.default_factory is not MISSING:
+        return ModelField(default_factory=field.default_factory, alias=key)
+    if field.default is not MISSING:
+        return ModelField(default=field.default, alias=key)
+    return ModelField(alias=key)
+
+
+def _built(kind: type[DataclassInstance]) -> Any:
+    """Return the type that validates a mapping and gives an instance of ``kind``.
+
+    A ValueError of the dataclass itself becomes a problem at the mapping's place.
+    """
+    from pydantic import AfterValidator
+
+    hints = _hints(kind)
+    names = [field.name for field in fields(kind) if field.init]
+    rest = next((name for name in names if _takes_rest(hints[name])), "")
+
+    def build(model: BaseModel) -> DataclassInstance:
+        values: dict[str, Any] = {name: getattr(model, name) for name in names if name != rest}
+        if rest:
+            values[rest] = dict(model.model_extra or {})
+        return kind(**values)
+
+    return Annotated[_model(kind), AfterValidator(build)]
+
+
+def _type(hint: Any) -> Any:
+    """Return the pydantic type for a field's type."""
+    from pydantic import Strict
+
+    unit = _unit(hint)
+    if unit is not None:
+        bounds = next((one for one in get_args(hint) if isinstance(one, Range)), Range())
+        return Annotated[float, Quantity(unit, True, bounds.gt, bounds.ge, bounds.lt, bounds.le)]
+    if isinstance(hint, type) and is_dataclass(hint):
+        return _built(hint)
+    origin, arguments = get_origin(hint), get_args(hint)
+    if origin in (Union, types.UnionType):
+        return Union[tuple(_type(one) for one in arguments)]  # noqa: UP007 - made of a tuple
+    if origin is tuple:
+        # A file has lists only; their items stay strict.
+        return Annotated[tuple[tuple(_type(one) for one in arguments)], Strict(False)]
+    if origin in (dict, Mapping):
+        return dict[str, _type(arguments[1])]
+    return cast("object", hint)
+
+
+def _plain(value: object, hint: object) -> object:
+    unit = _unit(hint)
+    if unit is not None and isinstance(value, int | float):
+        return _number(value) if unit == "1" else Written(f"{_number(value)} {unit}")
+    if is_dataclass(value) and not isinstance(value, type):
+        return as_tree(value)
+    arguments = get_args(hint)
+    if isinstance(value, Mapping):
+        entries = cast("Mapping[str, object]", value)
+        return {key: _plain(one, arguments[1]) for key, one in entries.items()}
+    if isinstance(value, tuple):
+        items = cast("tuple[object, ...]", value)
+        return [_plain(one, None) for one in items]
+    return value
+
+
+class Written(str):
+    """A quantity as text with its unit: it needs no quotes in the file."""
+
+
+def _number(value: float) -> int | float:
+    """Return a whole float as int, so that 450.0 is written 450."""
+    return int(value) if value == int(value) and abs(value) < 1e15 else float(value)
+
+
+def _lines(tree: Mapping[str, object], indent: str) -> list[str]:
+    lines: list[str] = []
+    for key, value in tree.items():
+        name = key if key.replace("_", "a").isalnum() and key[0].isalpha() else json.dumps(key)
+        if isinstance(value, Mapping) and value:
+            lines.append(f"{indent}{name}:")
+            lines.extend(_lines(cast("Mapping[str, object]", value), indent + "  "))
+        else:
+            lines.append(f"{indent}{name}: {value if isinstance(value, Written) else json.dumps(value)}")
+    return lines

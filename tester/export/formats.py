@@ -1,0 +1,133 @@
+"""The formats in which a run leaves: one table, in which each format stands once.
+
+Commands, screens, a run's folder and `tester verify` read it. To add a format is to write its function in a module of
+this package and its line below. A laboratory's own is a ``Format`` that its package declares as an entry point of the
+group ``friction_tester.formats``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import BinaryIO
+
+from tester.base.plugins import PluginError, plugins
+from tester.export.budget import budget_rows
+from tester.export.cells import Cell, encode
+from tester.export.parquet import write_parquet
+from tester.export.results import RunResults, results_of
+from tester.export.tables import (
+    appendix_rows,
+    check_rows,
+    condition_rows,
+    marked,
+    piece_rows,
+    repeat_rows,
+    sample_rows,
+)
+from tester.store.reader import RunReader
+from tester.store.schema import PIECE
+
+
+@dataclass(frozen=True)
+class Record:
+    """A run's record, as a format gets it."""
+
+    reader: RunReader
+    decimals: int = 2
+    """Of a coefficient in the paper's table."""
+
+    @cached_property
+    def results(self) -> RunResults:
+        """The conditions, reduced from their repeats when they are first asked for; raises StoreError."""
+        return results_of(self.reader)
+
+
+def _no_remarks(record: Record) -> Iterable[str]:
+    return ()
+
+
+@dataclass(frozen=True, slots=True)
+class Format:
+    """A way in which a run leaves."""
+
+    name: str
+    """By which it is asked for."""
+    file: str
+    """Name of its file."""
+    title: str
+    """What it holds, in a few words."""
+    write: Callable[[Record, BinaryIO], None]
+    """Writes the record to a file that is open for bytes; may raise StoreError, OSError, MissingExtraError."""
+    kept: Callable[[RunResults], bool] | None = None
+    """Whether a run's folder gets the file when the run ends; None: no run's folder does."""
+    is_text: bool = field(default=True, kw_only=True)
+    """May be written to a terminal."""
+    remarks: Callable[[Record], Iterable[str]] = field(default=_no_remarks, kw_only=True)
+    """Yields what the reader of the file is to be told, a line each."""
+
+
+def _csv(
+    rows: Callable[[Record], Iterator[tuple[Cell, ...]]], *, bom: bool = False, risk: bool = True
+) -> Callable[[Record, BinaryIO], None]:
+    """Return the writer of a table: UTF-8, with ``bom`` behind a byte order mark; ``risk``: a last column names it."""
+
+    def write(record: Record, file: BinaryIO) -> None:
+        made = rows(record)
+        file.writelines(encode(marked(made, record.reader.run().info) if risk else made, bom=bom))
+
+    return write
+
+
+def _of_paper(record: Record) -> Iterator[str]:
+    """Yield what the paper's table leaves out, and what in it is to be taken with care."""
+    for row in record.results.missing():
+        yield f"not in the appendix: {row.describe()}"
+    for row in record.results.doubtful():
+        yield f"to be taken with care: {row.advise()}"
+
+
+def _always(results: RunResults) -> bool:
+    return True
+
+
+FORMATS: dict[str, Format] = {
+    one.name: one
+    for one in (
+        Format("appendix", "appendix.csv", "the paper's table",
+               _csv(lambda record: appendix_rows(record.results, record.decimals), bom=True), _always,
+               remarks=_of_paper),
+        Format("conditions", "conditions.csv", "conditions with uncertainty",
+               _csv(lambda record: condition_rows(record.results), risk=False), _always),
+        Format("budget", "budget.csv", "what each uncertainty is made of",
+               _csv(lambda record: budget_rows(record.results)), _always),
+        Format("repeats", "repeats.csv", "every repeat", _csv(lambda record: repeat_rows(record.results)), _always),
+        Format(PIECE, f"{PIECE}.csv", f"{PIECE}s and their wear", _csv(lambda record: piece_rows(record.results)),
+               lambda results: results.worn == PIECE),
+        Format("pieces", "pieces.csv", "what was mounted, and its wear",
+               _csv(lambda record: piece_rows(record.results)), lambda results: results.worn != PIECE),
+        Format("wear", "wear.csv", "checks of diameters", _csv(lambda record: check_rows(record.results)),
+               lambda results: bool(results.checks)),
+        Format("samples", "samples.csv", "every sample", _csv(lambda record: sample_rows(record.reader))),
+        Format("parquet", "samples.parquet", "every sample, for programs",
+               lambda record, file: write_parquet(record.reader, file), is_text=False),
+    )
+}  # fmt: skip
+"""The formats that the program ships, in the order in which they are listed and kept."""
+
+
+def format_names() -> tuple[str, ...]:
+    """Return the names of the formats: those that are shipped, and those that installed packages declare."""
+    return (*FORMATS, *(name for name in plugins().names("formats") if name not in FORMATS))
+
+
+def format_of(name: str) -> Format:
+    """Return the format of a name, from this table or a package's; raises PluginError."""
+    if name in FORMATS:
+        return FORMATS[name]
+    found = plugins().load("formats", name)
+    if not isinstance(found, Format):
+        expected = "a tester.export.formats.Format"
+        raise PluginError(f'extension "{name}" is no format (expected {expected}, not {found!r:.80})')
+    return found

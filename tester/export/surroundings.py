@@ -1,0 +1,96 @@
+"""What the uncertainty of a run's conditions comes from beside their repeats, read off the run's record."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import isfinite
+
+from tester.analysis.kelvin import UNKNOWN, Slope, SurfaceWarmth, slope_of_pairs
+from tester.analysis.measurand import Surroundings
+from tester.analysis.repeatability import Pool
+from tester.analysis.repeats import ConditionResult
+from tester.analysis.results import NAN
+from tester.analysis.terms import NO_SIZE, Size, with_settings
+from tester.analysis.wear_check import WearCheck
+from tester.axes import AxisValue, Setpoint
+from tester.store.reader import RunReader
+from tester.store.records import ConditionInfo, PieceInfo, StoredRepeat, StoredRun
+from tester.store.schema import StoreError
+
+_Held = tuple[str, tuple[AxisValue, ...]]
+"""What conditions of a pair have in common: the compound, and every axis but temperature."""
+_SAME_K = 0.5
+"""What is known of a compound holds this near to its temperature."""
+
+
+class SurroundingsOf:
+    """Finds what a condition's uncertainty comes from; ``add`` every condition first: pairs of them say how the
+    coefficient depends on temperature."""
+
+    def __init__(
+        self,
+        reader: RunReader,
+        run: StoredRun,
+        pieces: Sequence[PieceInfo],
+        checks: Sequence[WearCheck],
+        pool: Pool,
+    ) -> None:
+        """Read what all conditions share; raises StoreError for a setting of the budget that is no number."""
+        try:
+            self.terms = with_settings(run.info.terms, run.info.metadata)
+        except ValueError as error:
+            raise StoreError(f"{reader.path}: {error}") from error
+        self._known = run.info.known
+        self._pieces = {one.piece: one for one in pieces}
+        self._checks = [one for one in checks if one.used]
+        self._pool = pool
+        self._warming = reader.warming()
+        quantities = reader.quantities()
+        role = quantities.roles.temperature
+        screen = quantities[role].screen if role else None
+        self._axis = screen.axis if screen is not None else ""
+        self._points: dict[_Held, list[tuple[float, float]]] = {}
+
+    def add(self, held: Setpoint, result: ConditionResult) -> None:
+        """Take a condition's temperature and coefficient in."""
+        if result.ok and result.mu_resultant > 0.0 and isfinite(result.measured.temperature):
+            self._points.setdefault(self._held(held), []).append((result.measured.temperature, result.mu_resultant))
+
+    def of(self, info: ConditionInfo, repeats: Sequence[StoredRepeat], result: ConditionResult) -> Surroundings:
+        """Return what the uncertainty of a condition, or of replicates of one, comes from."""
+        warmth = self._warmth(info.setpoint, repeats, result.measured.temperature)
+        return Surroundings(self.terms, self._pool, warmth, self._size(repeats))
+
+    def _held(self, held: Setpoint) -> _Held:
+        return held.compound, tuple(axis.of(held) for axis in held.axes if axis.name != self._axis)
+
+    def _nominal_c(self, held: Setpoint) -> float:
+        return next((held.number(axis.name) for axis in held.axes if axis.name == self._axis), NAN)
+
+    def _warmth(self, held: Setpoint, repeats: Sequence[StoredRepeat], shown_c: float) -> SurfaceWarmth:
+        nominal_c = self._nominal_c(held)
+        rates = [self._warming.get(one.key, NAN) for one in repeats if one.result.valid]
+        rates = [rate for rate in rates if isfinite(rate)]
+        rate = sum(rates) / len(rates) if rates else 0.0
+        return SurfaceWarmth(nominal_c, shown_c, rate, self._slope(held, nominal_c, shown_c))
+
+    def _slope(self, held: Setpoint, nominal_c: float, shown_c: float) -> Slope:
+        points = self._points.get(self._held(held), [])
+        found = slope_of_pairs(shown_c, points) if isfinite(shown_c) else None
+        if found is not None:
+            return found
+        for one in self._known:
+            if one.compound == held.compound and abs(one.temperature_c - nominal_c) <= _SAME_K:
+                return one.slope
+        return UNKNOWN
+
+    def _size(self, repeats: Sequence[StoredRepeat]) -> Size:
+        """Return the diameter of the pieces that were measured on, the worst known of them."""
+        sizes = [self._size_of(self._pieces[one]) for one in {r.piece for r in repeats} if one in self._pieces]
+        return max(sizes, key=lambda one: (not one.checked, one.loss_mm), default=NO_SIZE)
+
+    def _size_of(self, piece: PieceInfo) -> Size:
+        installed_mm, mm = piece.installed_diameter_mm, piece.diameter_mm
+        loss_mm = max(installed_mm - mm, 0.0) if isfinite(mm) else 0.0
+        u_mm = max((one.u_mm for one in self._checks if one.piece == piece.piece), default=NAN)
+        return Size(mm if isfinite(mm) else installed_mm, loss_mm, u_mm)

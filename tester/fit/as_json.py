@@ -1,0 +1,101 @@
+"""A fit as plain data, for ``--json``: NaN is null, shares are numbers between 0 and 1."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from math import isfinite
+
+from tester.fit.check import Errors
+from tester.fit.joint import GroupFit
+from tester.fit.part import PublishedTable
+from tester.fit.trends import Interval
+
+Json = str | int | float | bool | None | list["Json"] | dict[str, "Json"]
+
+
+def number(value: float) -> float | None:
+    """Return a number, None for what is not finite."""
+    return value if isfinite(value) else None
+
+
+def interval(given: Interval) -> Json:
+    """Return both ends."""
+    return [number(one) for one in given]
+
+
+def errors(given: Errors | None) -> Json:
+    """Return errors, None where there are none."""
+    if given is None:
+        return None
+    return {name: number(value) if isinstance(value, float) else value for name, value in asdict(given).items()}
+
+
+def group(fit: GroupFit, validation: Errors | None) -> dict[str, Json]:
+    """Return what is known of the fit of a group."""
+    law = fit.law
+    table: Json = dict(law.table(fit.parameters)) if law.table is not None else None
+    return {
+        "group": fit.group,
+        "conditions": len(fit.points),
+        "parameters": {
+            one.name: {"value": value, "unit": one.unit, "interval": interval(pair), "held": one.name in fit.held}
+            for one, value, pair in zip(law.parameters, fit.parameters, fit.intervals, strict=True)
+        },
+        "table": table,
+        "condition_number": number(fit.condition_number),
+        "resamples": {"fitted": len(fit.resamples.parameters), "drawn": fit.resamples.drawn, "few": fit.few},
+        "scatter": number(fit.scatter),
+        "errors": errors(fit.errors),
+        "left_out": errors(fit.left_out),
+        "cells_kept": fit.cells_kept,
+        "validation": errors(validation),
+        "residuals": {
+            variable.name: [
+                {"value": variable.scale * one.value, "unit": variable.unit, "mean": one.mean, "count": one.count}
+                for one in found
+            ]
+            for variable, found in zip(law.variables, fit.residuals, strict=True)
+        },
+        "lack_of_fit": {
+            "residual": fit.lack.residual,
+            "repeats": number(fit.lack.repeats),
+            "f": number(fit.lack.f),
+            "critical": number(fit.lack.critical),
+            "shown": fit.lack.shown,
+        },
+        "trends": {
+            "at": {v.name: v.scale * x for v, x in zip(law.variables, fit.trends.at, strict=True)},
+            "each": [
+                {
+                    "variable": one.variable.name,
+                    "trend": one.word,
+                    "peak": number(one.variable.scale * one.peak),
+                    "peak_interval": [number(one.variable.scale * end) for end in one.peak_interval],
+                    "inside": one.inside,
+                    "exponent" if one.variable.ratio else "per_unit": one.exponent,
+                    "interval": interval(one.exponent_interval),
+                    "agree": number(one.agree),
+                }
+                for one in fit.trends.each
+            ],
+        },
+    }
+
+
+def table(given: PublishedTable) -> dict[str, Json]:
+    """Return a publication's table with the verdict."""
+    return {
+        "title": given.title,
+        "lines": [
+            {
+                "way": line.way,
+                "fitted": errors(line.fitted),
+                "validation": errors(line.validation),
+                "asked": line.asked or None,
+                "met": line.met,
+            }
+            for line in given.lines
+        ],
+        "claims": [{"said": one.said, "found": one.found} for one in given.claims],
+        "missed": [*given.missed],
+    }

@@ -1,0 +1,134 @@
+"""What is fitted: measured conditions, and laws with their parameters."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+
+NAN = float("nan")
+
+
+@dataclass(frozen=True, slots=True)
+class Variable:
+    """What a law depends on: ``name``, as people read it, and its ``unit``.
+
+    ``scale`` turns the law's own unit into that one. ``ratio``: an exponent of it means something (it has a true zero).
+    """
+
+    name: str
+    unit: str
+    scale: float = 1.0
+    ratio: bool = True
+
+    def words(self, value: float) -> str:
+        """Return a value (in the law's unit) with its unit."""
+        return f"{round(self.scale * value, 6) + 0.0:g} {self.unit}"
+
+
+@dataclass(frozen=True, slots=True)
+class LawParameter:
+    """A parameter of a law: ``start`` of the search, ``positive`` (its logarithm is searched), ``step`` of the search.
+
+    ``step`` is in units of what is searched. ``levels``: name of a variable, and of how many of its values a fit of
+    this parameter needs at least.
+    """
+
+    name: str
+    unit: str
+    start: float
+    step: float
+    positive: bool = False
+    levels: tuple[str, int] | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Law:
+    """A law of friction with parameters to be fitted.
+
+    ``value`` takes parameters, shape (..., p), and conditions, shape (..., n, k), k variables in the law's own units;
+    it returns coefficients, shape (..., n). ``table`` returns the parameters in the form in which a publication prints
+    them, with ``caution`` beside it; None where there is no such form. ``published``: parameters by group.
+    """
+
+    name: str
+    title: str
+    formula: str
+    variables: tuple[Variable, ...]
+    parameters: tuple[LawParameter, ...]
+    value: Callable[[Array, Array], Array]
+    published: Mapping[str, tuple[float, ...]]
+    table: Callable[[Sequence[float]], Mapping[str, float]] | None = None
+    table_title: str = ""
+    caution: str = ""
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the parameters."""
+        return tuple(one.name for one in self.parameters)
+
+
+@dataclass(frozen=True, slots=True)
+class Common:
+    """An error that all conditions of a source share: its name and standard uncertainty.
+
+    ``variable``: place of the variable that it shifts (in the law's unit); None: it multiplies the coefficient, and
+    ``standard`` is relative.
+    """
+
+    name: str
+    standard: float
+    variable: int | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Source:
+    """Where conditions come from: a table, or a run with the errors that its conditions share."""
+
+    name: str
+    common: tuple[Common, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class FitPoint:
+    """One measured condition, in the law's own units.
+
+    ``nominal`` values of the variables tell which conditions are of one cell, ``measured`` ones are fitted. ``value``:
+    the coefficient, above 0. ``type_a``: its standard uncertainty from repeats as a share of it, with ``df`` degrees of
+    freedom; NaN where there were no repeats to tell.
+    """
+
+    label: str
+    group: str
+    nominal: tuple[float, ...]
+    measured: tuple[float, ...]
+    value: float
+    source: Source
+    type_a: float = NAN
+    df: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Sourced:
+    """The conditions of a source, and what was left out of it, each with the reason."""
+
+    points: tuple[FitPoint, ...]
+    left_out: tuple[tuple[str, str], ...] = field(default=())
+
+
+class FitError(ValueError):
+    """Something cannot be fitted; the message says what, why, and what would do."""
+
+
+def by_group(points: Iterable[FitPoint]) -> dict[str, list[FitPoint]]:
+    """Return the points of each group, groups in order of their names, points in their own."""
+    found: dict[str, list[FitPoint]] = {}
+    for one in sorted(points, key=lambda point: point.group):
+        found.setdefault(one.group, []).append(one)
+    return found

@@ -1,0 +1,50 @@
+"""What a kind of rig brings: the list of everything that the rest of the program asks a kind for.
+
+A kind is a package: ``tester.kinds.<name>``, or a laboratory's own. Its ``KIND`` is found by name in one place
+(tester.kinds.find), and ``tester.run.kinds`` asks it for the rest of the program. Making a ``KIND`` imports nothing:
+what is large is behind a function.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from tester.fit.part import FitPart
+    from tester.machine.interlock_sheet import InterlockSheet
+    from tester.machine.run_parts import KindRun
+    from tester.machine.served import ServedKind
+    from tester.recipe.part import RecipePart
+    from tester.rig import Rig
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Kind:
+    """One kind of rig.
+
+    A kind of which no recipe can be run has a rig file and interlocks to look at; the rest it may leave out.
+    """
+
+    name: str
+    """As the key ``kind`` of a rig file says it."""
+    title: str
+    """What people call it, in a few words."""
+    rigs: Mapping[str, str]
+    """Rig files that ship with it, by the names that ``--rig`` takes: ``package:file``, the first for a start."""
+    rig: Callable[[], type[Rig]]
+    """How its rig file is read: its sections, the keys that a file may lack, safety keys, checks, and the table of
+    its channels (tester.rig.Rig)."""
+    interlocks: Callable[[], InterlockSheet]
+    """The rows of its interlock table, as its page and its rig files show them."""
+    page: str
+    """Its page of interlocks and safety keys, whose tables ``python docs/interlocks.py`` writes."""
+    runs: Callable[[], KindRun] | None = None
+    """How its runs are built, and what goes with them."""
+    served: Callable[[], ServedKind] | None = None
+    """What it answers a service."""
+    recipe: Callable[[], RecipePart] | None = None
+    """What it says about recipes; None: none can be read for it."""
+    fits: Callable[[], FitPart] | None = None
+    """Which laws can be fitted to its conditions; None: none."""

@@ -1,0 +1,169 @@
+"""The kinds of rigs, found by name: packaged ones, and those that an installed package declares.
+
+Only ``tester.run`` and ``tester.cli`` look a kind up; everybody else is handed a kind, or a rig. A rig file says its
+kind in the key ``kind``.
+"""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Sequence
+from importlib import import_module
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+from tester.kind import Kind
+
+if TYPE_CHECKING:
+    from tester.base.source import Tree
+    from tester.rig import Rig
+
+DEFAULT: Final = "wheel_on_belt"
+"""Kind of a rig file that does not say one."""
+PACKAGED: Final = (DEFAULT, "specimen_on_track")
+"""Kinds that ship with the program: packages beside this module."""
+SIMULATED: Final = "sim"
+"""Name of the packaged rig that counts where none is named."""
+
+
+class UnknownKindError(LookupError):
+    """There is no such kind of rig; the message names those there are."""
+
+
+def find(name: str) -> Kind:
+    """Return a kind; raises UnknownKindError.
+
+    ``name``: of a packaged kind, or an extension's of the group ``kinds`` (tester.base.plugins), whose object is a
+    ``Kind``. A packaged name cannot be taken by an extension.
+    """
+    if name in PACKAGED:
+        return _packaged(name)
+    from tester.base.plugins import PluginError, plugins
+
+    try:
+        found = plugins().load("kinds", name)
+    except PluginError as error:
+        near = difflib.get_close_matches(name, PACKAGED, n=1)
+        meant = f", did you mean {near[0]}?" if near else ""
+        known = ", ".join(PACKAGED)
+        raise UnknownKindError(f"there is no kind of rig {name}{meant} (expected {known}); {error}") from error
+    if not isinstance(found, Kind):
+        raise UnknownKindError(f"the extension {name} is no kind of rig (expected a tester.kind.Kind)")
+    return found
+
+
+def packaged_rigs() -> dict[str, Kind]:
+    """Return the names of the rigs that ship with packaged kinds, each with its kind."""
+    kinds = [_packaged(name) for name in PACKAGED]
+    return {rig: kind for kind in kinds for rig in kind.rigs}
+
+
+def shipping(rig: str) -> Kind | None:
+    """Return the kind that a rig of this name ships with, None where there is none: a packaged kind, else an extension.
+
+    Extensions are loaded only for a name that neither a packaged kind nor a file has; of two the first by name counts.
+    """
+    kind = packaged_rigs().get(rig)
+    if kind is not None or Path(rig).exists():
+        return kind
+    from tester.base.plugins import plugins
+
+    return next((kind for kind in map(find, plugins().names("kinds")) if rig in kind.rigs), None)
+
+
+def packaged_conditions() -> dict[str, Kind]:
+    """Return the names of measured conditions that ship with packaged kinds, each with its kind."""
+    kinds = [_packaged(name) for name in PACKAGED]
+    return {name: kind for kind in kinds if kind.fits is not None for name in kind.fits().packaged}
+
+
+def load_rig(source: str | Path = SIMULATED, overrides: Sequence[str] = (), accept_risk: str = "") -> Rig:
+    """Return the rig of a file, or the packaged one of that name; raises InvalidSource (tester.rig.load.load)."""
+    from tester.rig.load import load
+
+    kind, tree = _opened(source)
+    return load(kind.rig(), tree, overrides, accept_risk)
+
+
+def load_rig_text(text: str | Path, name: str | None = None) -> Rig:
+    """Return the rig of a text or a file that a run has stored; raises InvalidSource with every problem.
+
+    Its risks were accepted when the run began, or are asked for where it goes on (tester.run.session).
+    """
+    from tester.base.source import load_tree
+    from tester.rig.load import checked
+
+    tree = load_tree(text, name or ("rig.yaml" if isinstance(text, str) else None))
+    return checked(_kind_of(tree).rig(), tree)
+
+
+def packaged_keys(source: str | Path, overrides: Sequence[str] = ()) -> tuple[str, ...]:
+    """Return the keys for which a rig takes the packaged value because its file and ``overrides`` do not have them.
+
+    As ``interlocks.pushed``, in the order of the packaged file. Raises InvalidSource for a file that cannot be read.
+    """
+    from tester.rig.missing import lacking
+
+    kind, tree = _opened(source)
+    given = {text.partition("=")[0].strip() for text in overrides}
+    keys = (".".join(place) for place in lacking(kind.rig(), tree))
+    return tuple(key for key in keys if key not in given)
+
+
+def packaged_text(name: str = SIMULATED) -> str:
+    """Return a packaged rig file as it is shipped; raises KeyError for a name that is none."""
+    from tester.rig import packaged
+
+    return packaged.packaged_text(packaged_rigs()[name].rig(), name)
+
+
+def hardware_text(kind: str = DEFAULT, like: str = "") -> str:
+    """Return the commented file for a real machine, from one of the kind's packaged rigs, its first for "".
+
+    Raises UnknownKindError, KeyError where the kind has no such rig.
+    """
+    from tester.rig import template
+
+    rig = find(kind).rig()
+    if like and like not in rig.packaged:
+        raise KeyError(like)
+    return template.hardware_text(rig, like)
+
+
+def upgrade(path: Path) -> tuple[str, ...]:
+    """Write the missing keys with their comments into a rig file and return them (tester.rig.upgrade)."""
+    from tester.base.source import load_tree
+    from tester.rig import upgrade
+
+    return upgrade.upgrade(_kind_of(load_tree(path)).rig(), path)
+
+
+def _packaged(name: str) -> Kind:
+    kind = import_module(f"tester.kinds.{name}").KIND
+    assert isinstance(kind, Kind)
+    return kind
+
+
+def _opened(source: str | Path) -> tuple[Kind, Tree]:
+    """Return a rig's kind, and its file as data."""
+    from tester.base.source import load_tree
+    from tester.rig.packaged import new_tree
+
+    kind = shipping(str(source))
+    if kind is not None:
+        return kind, new_tree(kind.rig(), str(source))
+    tree = load_tree(Path(source))
+    return _kind_of(tree), tree
+
+
+def _kind_of(tree: Tree) -> Kind:
+    """Return the kind that a rig file says, and write it into the tree where it does not; raises InvalidSource."""
+    from tester.base.source import InvalidSource
+
+    if not isinstance(tree.data, dict):
+        return find(DEFAULT)
+    said = tree.data.setdefault("kind", DEFAULT)
+    try:
+        return find(str(said))
+    except UnknownKindError as error:
+        raise InvalidSource([tree.problem(("kind",), f"kind: {error}")]) from error

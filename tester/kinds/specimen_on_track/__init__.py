@@ -1,0 +1,62 @@
+"""A rubber specimen on a moving track: a block on a slow linear track in a chamber, or a pin on a disc."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+from tester.kind import Kind
+
+if TYPE_CHECKING:
+    from tester.machine.interlock_sheet import InterlockSheet
+    from tester.machine.run_parts import KindRun
+    from tester.machine.served import ServedKind
+    from tester.recipe.part import RecipePart
+    from tester.rig import Rig
+
+
+def _rig() -> type[Rig]:
+    from tester.kinds.specimen_on_track.rig import TrackConfig
+
+    return TrackConfig
+
+
+def _interlocks() -> InterlockSheet:
+    from tester.kinds.specimen_on_track.interlocks import operation
+    from tester.kinds.specimen_on_track.interlocks.table import TABLE
+    from tester.machine.interlock_sheet import InterlockSheet
+
+    return InterlockSheet(TABLE.rows, operation.PARAMETERS, operation.ABOUT)
+
+
+def _recipe() -> RecipePart:
+    from tester.kinds.specimen_on_track.recipe.part import PART
+
+    return PART
+
+
+def _runs() -> KindRun:
+    from tester.kinds.specimen_on_track.runs import RUNS
+
+    return RUNS
+
+
+def _served() -> ServedKind:
+    from tester.kinds.specimen_on_track.served import SERVED
+
+    return SERVED
+
+
+KIND: Final = Kind(
+    name="specimen_on_track",
+    title="rubber specimen on a moving track",
+    rigs={
+        "grosch": "tester.kinds.specimen_on_track:grosch.yaml",
+        "pin-on-disc": "tester.kinds.specimen_on_track:pin-on-disc.yaml",
+    },
+    rig=_rig,
+    interlocks=_interlocks,
+    page="docs/track-safety.md",
+    recipe=_recipe,
+    runs=_runs,
+    served=_served,
+)

@@ -1,0 +1,44 @@
+"""The axes of this machine's conditions."""
+
+from __future__ import annotations
+
+from typing import Final, NamedTuple
+
+from tester.axes import Axes, Axis, Setpoint
+
+NAME: Final = "specimen_on_track"
+INTERFACES: Final = ("dry", "wet", "talc")
+
+AXES: Final = Axes(
+    (
+        Axis("interface", "1", "interface", "", 1.0, "interface", "Interface", "Interface", "", "dry", False, 4,
+             choices=INTERFACES),
+        Axis("load", "N", "load_n", "N", 1.0, "load_n", "Load /N", "Load N", "", None, True, 3, gt=0.0,
+             limit="weights"),
+        Axis("temperature", "degC", "temperature_c", "degC", 1.0, "temperature_c", "Temperature /°C", "Temp °C", "",
+             None, True, 2, ge=-100.0, le=200.0),
+        Axis("track_speed", "m/s", "track_speed_m_s", "mm/s", 1e3, "track_speed_mm_s", "Track Speed /mm·s⁻¹",
+             "Track mm/s", "", None, True, 1, gt=0.0, limit="limits.track_speed"),
+    ),
+    blocks="temperature",
+)  # fmt: skip
+"""All axes in the order in which they are told; weights and interface, which a person changes, before the speed.
+
+Track speed is that of the track under the standing specimen, load what the weights on the arm press with, temperature
+that of the air around the specimen, interface what is between specimen and track.
+"""
+
+
+class TrackHeld(NamedTuple):
+    """What a setpoint holds on this machine."""
+
+    track_m_s: float
+    load_n: float
+    temperature_c: float
+    interface: str
+
+
+def held_by(setpoint: Setpoint) -> TrackHeld:
+    """Return what a setpoint of this machine's axes holds."""
+    number = setpoint.number
+    return TrackHeld(number("track_speed"), number("load"), number("temperature"), str(setpoint.value("interface")))

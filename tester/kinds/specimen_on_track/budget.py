@@ -1,0 +1,34 @@
+"""What this machine's measuring chain may be off by."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from tester.analysis.terms import Acts, BudgetPoint, Term, contributions_of
+from tester.analysis.uncertainty import Budget, budget
+
+TERMS: Final[tuple[Term, ...]] = (
+    Term("cell linearity", Acts.FRICTION, 0.2, "N", "rectangular", "0.1 % of 200 N [A]", setting="cell_linearity_n"),
+    Term("cell zero", Acts.FRICTION, 0.05, "N", "rectangular", "0.01 N/K, 5 K since the tare [A]", common="",
+         setting="cell_zero_n"),
+    Term("weights", Acts.NORMAL, 0.001, "N", "rectangular", "0.1 % of the weights, class M2 and the arm [A]",
+         channel="load_n", setting="weights_share"),
+    Term("axis misalignment", Acts.ROTATION, 0.2, "deg", "U-shaped", "track and cell, of unknown sign [A]",
+         setting="misalignment_deg"),
+    Term("thermometer", Acts.TEMPERATURE, 0.5, "K", "rectangular", "Pt100 class B and the air's layers [A]",
+         setting="temperature_k"),
+    Term("track speed", Acts.SLIDING, 0.001, "m/s", "rectangular", "0.1 % of the speed [A]", channel="sliding_m_s",
+         setting="speed_share"),
+    Term("specimen to specimen", Acts.PIECE, 0.03, "1", "normal", "stated 3 % [A]", common="",
+         setting="specimen_to_specimen"),
+)  # fmt: skip
+"""Limits are engineering assumptions; a recipe's metadata replaces them as ``uncertainty.<setting>``."""
+
+
+def instruments_budget(mu: float, load_n: float, track_m_s: float) -> Budget:
+    """Return what the measuring chain adds to the uncertainty of a coefficient that is expected.
+
+    Without the temperature: what a law says about that is the twin's alone, and nothing is published of a rubber here.
+    """
+    at = BudgetPoint(mu, load_n, track_m_s, {"load_n": load_n, "sliding_m_s": track_m_s})
+    return budget(contributions_of([one for one in TERMS if one.acts is not Acts.PIECE], at))

@@ -1,0 +1,169 @@
+"""What a step of this machine may see and do: the specimen on the arm, weights, the cell's zero, the gates."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import nan
+from typing import Protocol
+
+from tester.kinds.specimen_on_track.devices import TrackDevices
+from tester.kinds.specimen_on_track.process import (
+    GATE_CONTACT,
+    GATE_SETTLING,
+    GATE_SPEED,
+    GATE_TEMPERATURE,
+    TrackDemand,
+    TrackReadings,
+    TrackSetpoints,
+)
+from tester.kinds.specimen_on_track.quantities import QUANTITIES
+from tester.kinds.specimen_on_track.rig import TrackConfig
+from tester.machine.context import BaseContext
+from tester.machine.prompts import Prompts
+from tester.quantities import Quantities
+from tester.store.recorder import Recorder
+
+SAMPLES = 40.0
+"""A stretch is recorded with about this many samples, or with every scan where it is shorter [A]."""
+
+
+class TrackAttendant(Protocol):
+    """The hands at the rig: what a person does there. A simulated rig is told; at a real one nothing happens."""
+
+    def install(self, specimen: int, wheel: int, compound: str, *, new_specimen: bool) -> None:
+        """Put a specimen of ``compound`` on the arm."""
+        ...
+
+    def put_on(self, weights_n: float) -> None:
+        """Hang weights on the arm, N."""
+        ...
+
+    def prepare(self, interface: str) -> None:
+        """Dry, wet or powder the track."""
+        ...
+
+    def raise_arm(self) -> None:
+        """Raise an arm that has no drive."""
+        ...
+
+    def lower_arm(self) -> None:
+        """Lower an arm that has no drive."""
+        ...
+
+    def begin_repeat(self, condition: int, repeat: int, attempt: int) -> None:
+        """Mark the start of a repeat (keys of the simulator's random streams)."""
+        ...
+
+
+class TrackNobody:
+    """The attendant of a real rig: people answer prompts, software does nothing."""
+
+    def install(self, specimen: int, wheel: int, compound: str, *, new_specimen: bool) -> None:
+        """Do nothing: the prompt has been answered."""
+
+    def put_on(self, weights_n: float) -> None:
+        """Do nothing."""
+
+    def prepare(self, interface: str) -> None:
+        """Do nothing."""
+
+    def raise_arm(self) -> None:
+        """Do nothing."""
+
+    def lower_arm(self) -> None:
+        """Do nothing."""
+
+    def begin_repeat(self, condition: int, repeat: int, attempt: int) -> None:
+        """Do nothing."""
+
+
+@dataclass(slots=True)
+class MountedSpecimen:
+    """The specimen on the arm, what presses it, and what is between it and the track."""
+
+    number: int = 0
+    specimen: int = 0
+    compound: str = ""
+    sliding_m: float = 0.0
+    weights_n: float = 0.0
+    interface: str = "dry"
+
+
+@dataclass(slots=True)
+class TrackTarget:
+    """What the gates compare with; written by the activity that measures."""
+
+    track_m_s: float = 0.0
+    temperature_c: float = nan
+    band_k: float = nan
+    stretch_m: float = 0.0
+    """Way that is one stretch; 0 = none is counted."""
+    stationary: bool = False
+    """Friction stands still since the track began to go this way."""
+
+
+class TrackContext(BaseContext[TrackConfig, TrackReadings, TrackDemand]):
+    """One per run; activities read and write it, nothing else."""
+
+    def __init__(
+        self,
+        rig: TrackConfig,
+        demand: TrackDemand,
+        prompts: Prompts,
+        journal: Recorder,
+        attendant: TrackAttendant,
+        devices: TrackDevices,
+        quantities: Quantities = QUANTITIES,
+    ) -> None:
+        """``quantities``: the run's table of channels."""
+        super().__init__(rig, TrackReadings(channels=[nan] * len(quantities.further)), demand, prompts, journal)
+        self.setpoints = TrackSetpoints()
+        self.attendant = attendant
+        self.devices = devices
+        self.quantities = quantities
+        self.on = MountedSpecimen()
+        self.target = TrackTarget()
+        self.recorded_s = float("-inf")
+        self._way_m = 0.0
+        self._from_m = 0.0
+        self._way = 0.0
+
+    def after_reading(self) -> None:
+        """Work out what follows from the readings: friction against the way, way slid, load, stretches."""
+        r, demand, on = self.readings, self.demand, self.on
+        way = 1.0 if demand.track_m_s > 0.0 else -1.0 if demand.track_m_s < 0.0 else 0.0
+        r.load_n = on.weights_n if r.lowered else 0.0
+        r.friction_n = way * r.force_n if way else r.force_n
+        r.sliding_m_s = way * r.track_m_s if way else r.track_m_s
+        if way != self._way or not r.lowered:
+            self._way, self._from_m = way, r.way_m
+        demand.sliding_m = way * (r.way_m - self._from_m)
+        if r.lowered:
+            on.sliding_m += abs(r.way_m - self._way_m)
+        self._way_m = r.way_m
+        stretch_m = self.target.stretch_m
+        r.stretch = r.way_m / stretch_m if stretch_m > 0.0 else 0.0
+
+    def closed_gates(self) -> int:
+        """Evaluate the gates: NaN closes."""
+        r, target = self.readings, self.target
+        mask = 0
+        if not abs(r.track_m_s - target.track_m_s) <= 0.01 * self.rig.gates.speed_percent * abs(target.track_m_s):
+            mask |= GATE_SPEED
+        if not (r.air_valid and abs(r.air_c - target.temperature_c) <= target.band_k):
+            mask |= GATE_TEMPERATURE
+        if not target.stationary:
+            mask |= GATE_SETTLING
+        if not (r.lowered and r.cell_valid):
+            mask |= GATE_CONTACT
+        return mask
+
+    def touching(self) -> bool:
+        """Tell whether this scan is recorded: with the arm down, as often as a stretch needs."""
+        if not self.readings.lowered:
+            return False
+        speed_m_s, stretch_m = abs(self.target.track_m_s), self.target.stretch_m
+        if self.burst and speed_m_s > 0.0 and self.now - self.recorded_s < stretch_m / (SAMPLES * speed_m_s) - 1e-6:
+            return False
+        self.recorded_s = self.now
+        return True

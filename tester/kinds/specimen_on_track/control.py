@@ -1,0 +1,226 @@
+"""One control step of this machine: what it commands in each mode, within which bounds. No I/O, no clock.
+
+A stop brings the track to standstill and leaves the arm where it is: weights that rest on a standing track do no harm,
+and the next connection raises the arm before anything else moves.
+"""
+
+from __future__ import annotations
+
+from math import inf, isfinite
+
+from tester.kinds.specimen_on_track.interlocks.chamber import CHAMBER_OFF_S
+from tester.kinds.specimen_on_track.interlocks.force import STALE_CELL_DELAY_S, STALE_CELL_S
+from tester.kinds.specimen_on_track.interlocks.inputs import TrackInputs, TrackLimits, WayMonitor
+from tester.kinds.specimen_on_track.interlocks.known import standing
+from tester.kinds.specimen_on_track.interlocks.operation import ACK_WAIT_S, HOLD_AT_MOST_S
+from tester.kinds.specimen_on_track.interlocks.stops import STOP_TIMEOUT_S
+from tester.kinds.specimen_on_track.process import TrackDemand, TrackReadings, TrackSetpoints
+from tester.kinds.specimen_on_track.rig import TrackConfig
+from tester.machine.control import Control, bounded, may_move
+from tester.machine.state import ControlState, Mode
+from tester.rig.config import values_of
+
+ARRIVED_K = 2.0
+"""Air within this of the chamber's setpoint has been there, K [A]."""
+
+
+LATE_S = 0.1
+"""A row has tripped this long after its time, s: two slow scans."""
+
+
+class TrackState(ControlState[TrackSetpoints]):
+    """What control carries from one scan to the next."""
+
+
+class TrackControl(Control[TrackState, TrackReadings, TrackDemand, TrackInputs]):
+    """The control of a specimen on a track."""
+
+    def __init__(self, rig: TrackConfig, most_m_s: float = inf) -> None:
+        """``most_m_s``: the most that the recipe asks for; commands stay within it and the rig's own bound."""
+        state, view = TrackState(TrackSetpoints(lift_mm=rig.arm.raised_mm)), TrackInputs()
+        p = view.parameters = values_of(rig.interlocks, rig.table.parameters)
+        view.stop, view.setpoints = state.stop, state.setpoints
+        view.limits = _limits(rig)
+        metres = rig.metres
+        view.track = WayMonitor(rig.axes.track.acceleration * metres)
+        super().__init__(
+            state,
+            view,
+            rig.table,
+            TrackDemand(),
+            TrackDemand(),
+            hold_at_most_s=p[HOLD_AT_MOST_S],
+            ack_wait_s=p[ACK_WAIT_S],
+        )
+        self.rig = rig
+        self.bound_m_s = min(rig.limits.track_speed_m_s, most_m_s)
+        self._cell_s = p[STALE_CELL_S] + p[STALE_CELL_DELAY_S]
+
+    # -- the inputs of the rows -----------------------------------------------------------------------------
+
+    def look(self, demand: TrackDemand, readings: TrackReadings, scan_s: float, dt: float) -> None:
+        """Take this scan's demand and readings, and work out what several conditions ask for."""
+        view, r, state = self.view, readings, self.state
+        view.readings, view.demand = r, demand
+        view.note_times(state, r.now_s, scan_s)
+        view.attended = demand.attended
+        view.loaded = demand.lowered or not r.raised
+        mode = state.mode
+        commanded = mode is Mode.RUN or mode is Mode.HOLD
+        if not demand.enabled or not commanded:
+            view.confirmed = False
+        elif not view.confirmed and r.drives_enabled:
+            view.confirmed = True
+            view.track.begin(0.0)
+        if view.confirmed:
+            view.track.follow(r.now_s, r.way_m, state.setpoints.track_m_s, dt)
+        if view.confirmed or not commanded:
+            view.unpowered = False
+        elif not demand.enabled and r.drives_disabled:
+            view.unpowered = True
+        self._look_at_arm(view, r)
+        self._look_at_chamber(view, r)
+
+    def _look_at_arm(self, view: TrackInputs, r: TrackReadings) -> None:
+        off = view.confirmed and self.rig.axes.lift is not None
+        off = off and not abs(r.lift_mm - self.state.setpoints.lift_mm) <= self.rig.arm.within_mm
+        view.arm_since_s = min(view.arm_since_s, r.now_s) if off else inf
+
+    def _look_at_chamber(self, view: TrackInputs, r: TrackReadings) -> None:
+        if not view.limits.chamber:
+            return
+        out = self.state.setpoints
+        if not out.chamber:
+            view.arrived_c = inf
+            view.off_since_s = min(view.off_since_s, r.now_s) if r.chamber_percent != 0.0 else inf
+            return
+        view.off_since_s = inf
+        if view.arrived_c != out.chamber_c:
+            view.arrived_c = out.chamber_c if abs(r.air_c - out.chamber_c) <= ARRIVED_K else inf
+
+    def detail(self, readings: TrackReadings) -> str:
+        """Name the values a reader of the journal wants first."""
+        r = readings
+        return (
+            f"force {r.force_n:.2f} N, track {1e3 * r.track_now_m_s:.4g} mm/s, arm {r.lift_mm:.1f} mm,"
+            f" air {r.air_c:.1f} degC"
+        )
+
+    # -- RUN and HOLD ---------------------------------------------------------------------------------------
+
+    def keep(self, held: TrackDemand, demand: TrackDemand) -> None:
+        """Stop the track, then raise the arm; keep the air's temperature and the cell's zero."""
+        held.track_m_s, held.lowered, held.sliding_m = 0.0, False, 0.0
+        held.tared, held.chamber_c = demand.tared, demand.chamber_c
+
+    def run_outputs(self, demand: TrackDemand, readings: TrackReadings, dt: float) -> None:
+        """Command track, arm and chamber as they are wanted, within the bounds."""
+        out, r = self.state.setpoints, readings
+        out.enable = demand.enabled and may_move(r)
+        out.quick_stop = False
+        out.track_m_s = bounded(demand.track_m_s, self.bound_m_s) if self._may_go(demand, r) else 0.0
+        if not r.drives_enabled:
+            out.lift_mm = r.lift_mm if isfinite(r.lift_mm) else out.lift_mm
+        elif standing(self.view) and out.track_m_s == 0.0:
+            out.lift_mm = 0.0 if demand.lowered else self.rig.arm.raised_mm
+        wanted = self.rig.chamber and -inf < demand.chamber_c < inf
+        out.chamber = wanted and not out.chamber_silent
+        if wanted:
+            limits = self.rig.limits
+            out.chamber_c = min(max(demand.chamber_c, limits.air_low_c), limits.air_high_c)
+
+    def _may_go(self, demand: TrackDemand, r: TrackReadings) -> bool:
+        """Tell whether the track may go: arm in place, force known, and not over the end of its travel."""
+        if demand.track_m_s == 0.0 or not r.drives_enabled:
+            return False
+        placed = (r.lowered and demand.tared) if demand.lowered else r.raised
+        if not placed or (demand.lowered and not (r.cell_valid and r.now_s - r.cell_at_s <= self._cell_s)):
+            return False
+        if not self.rig.linear:
+            return True
+        limits = self.rig.limits
+        return r.track_mm < limits.travel_high_mm if demand.track_m_s > 0.0 else r.track_mm > limits.travel_low_mm
+
+    # -- stops ----------------------------------------------------------------------------------------------
+
+    def _stand(self, *, fast: bool) -> None:
+        """Command zero to the track and standby to the chamber."""
+        out = self.state.setpoints
+        out.track_m_s, out.quick_stop, out.chamber = 0.0, fast, False
+
+    def stop_outputs(self) -> None:
+        """Command a controlled or a fast stop."""
+        self._stand(fast=self.state.mode is not Mode.STOPPING)
+
+    def safe_outputs(self) -> None:
+        """Command quick stop and standby."""
+        out = self.state.setpoints
+        out.track_m_s, out.quick_stop, out.chamber = 0.0, True, False
+
+    def emergency_outputs(self) -> None:
+        """Mirror the hardware's emergency stop: nothing starts when it gives the power back."""
+        self._stand(fast=True)
+        self.state.setpoints.enable = False
+
+    def rest_outputs(self) -> None:
+        """Command nothing."""
+        self._stand(fast=False)
+        self.state.setpoints.enable = False
+
+    def withdraw_escalation(self) -> None:
+        """Let drives and chamber hear from us again."""
+        super().withdraw_escalation()
+        self.state.setpoints.chamber_silent = False
+
+    def end_lease(self, readings: TrackReadings) -> None:
+        """Renew the chamber's setpoint no more."""
+        self.state.setpoints.chamber_silent = True
+
+    def note_stop(self) -> None:
+        """Note the track's speed; the arm stays where it is."""
+        lift_mm = self.view.readings.lift_mm
+        if isfinite(lift_mm):
+            self.state.setpoints.lift_mm = lift_mm
+        self.view.stop_start.speed_m_s = self._speed_m_s()
+
+    def note_fast_stop(self) -> None:
+        """Note the track's speed as its quick stop begins."""
+        self.view.stop_start.fast_speed_m_s = self._speed_m_s()
+
+    def _speed_m_s(self) -> float:
+        speed = abs(self.view.readings.track_now_m_s)
+        most = self.rig.limits.track_speed_m_s
+        return min(speed, most) if isfinite(speed) else most
+
+    def stop_ended(self) -> bool:
+        """Tell whether the track stands with the chamber off, or the time for it is over ("stop not ended")."""
+        view = self.view
+        if view.readings.now_s - self.state.mode_since_s > view.parameters[STOP_TIMEOUT_S]:
+            return True
+        # Once its time is over the chamber's own row has tripped, and its lease ends it.
+        off = not view.limits.chamber or view.readings.chamber_percent == 0.0
+        late = view.readings.now_s - self.state.mode_since_s > view.parameters[CHAMBER_OFF_S] + LATE_S
+        return standing(view) and (off or late)
+
+    def cool_outputs(self) -> str:
+        """Say that there is nothing to cool: this machine never waits for that."""
+        return "nothing to cool"
+
+
+def _limits(rig: TrackConfig) -> TrackLimits:
+    limits, track, metres = rig.limits, rig.axes.track, rig.metres
+    return TrackLimits(
+        heartbeat_s=rig.can.drive_heartbeat_s,
+        force_n=limits.force_n,
+        track_m_s=limits.track_speed_m_s,
+        fastest_m_s=track.max_speed * metres,
+        deceleration_m_s2=track.deceleration * metres,
+        quick_stop_m_s2=track.quick_stop_deceleration * metres,
+        low_mm=limits.travel_low_mm if rig.linear else -inf,
+        high_mm=limits.travel_high_mm if rig.linear else inf,
+        air_low_c=limits.air_low_c,
+        air_high_c=limits.air_high_c,
+        chamber=rig.chamber,
+        air=rig.chamber or "thermometer" in rig.devices,
+        exit="pyrometer" in rig.devices,
+    )

@@ -1,0 +1,214 @@
+"""The tangential force: what the cell says, whether it says anything, and whether it can be."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from tester.kinds.specimen_on_track.interlocks.inputs import TrackInputs
+from tester.machine.row import ACK, CONTROLLED, FAST, LOADED, REPAIR, Compared, Interlock
+from tester.machine.wires import answered_s
+from tester.rig.parameter import NOT_NEGATIVE, SHARE, Direction, Parameter
+
+STALE_CELL_S: Final = Parameter(
+    "stale_cell_s", "s", "100 ms", "age of the force: two readings at the slow scan [A]",
+    direction=Direction.LOWER, hardest="500 ms",
+    because="friction that grows by 100 N/s, ten times what a track at 10 mm/s makes of rubber, gains 50 N in 500 ms",
+)  # fmt: skip
+STALE_CELL_DELAY_S: Final = Parameter(
+    "stale_cell_delay_s", "s", "50 ms", "one reply may be lost [A]", NOT_NEGATIVE,
+    direction=Direction.LOWER, hardest="200 ms",
+    because="with the age before it the force is unknown for 0.7 s at most",
+)  # fmt: skip
+
+
+def _cell_s(v: TrackInputs) -> float:
+    return answered_s(v.readings.cell_silent, v.readings.now_s, v.readings.cell_at_s)
+
+
+CELL_SILENT: Final = Interlock(
+    name="load cell silent",
+    cause="load cell, its transmitter or its line does not answer",
+    level="age > stale_cell with the arm down",
+    condition=lambda v: not (_cell_s(v) <= v.parameters[STALE_CELL_S]),
+    compared=lambda v: Compared(_cell_s(v), v.parameters[STALE_CELL_S], "s"),
+    parameters=(STALE_CELL_S,),
+    delay=STALE_CELL_DELAY_S,
+    when=LOADED,
+    reaction=FAST,
+    reset=ACK,
+)
+
+INVALID_DELAY_S: Final = Parameter(
+    "invalid_cell_delay_s", "s", "50 ms", "a reading that its own status denies, or beyond the range [A]", NOT_NEGATIVE,
+    direction=Direction.LOWER, hardest="200 ms",
+    because="a broken bridge is at the end of its range at once; nothing better comes of waiting",
+)  # fmt: skip
+
+
+def _invalid(v: TrackInputs) -> bool:
+    r = v.readings
+    return not r.cell_valid and not r.cell_silent and not v.attended
+
+
+CELL_INVALID: Final = Interlock(
+    name="load cell saturated",
+    cause="load cell open, overloaded, or denied by its transmitter's status",
+    level="reading not valid",
+    condition=_invalid,
+    delay=INVALID_DELAY_S,
+    reaction=FAST,
+    reset=REPAIR,
+)
+
+OVERLOAD_DELAY_S: Final = Parameter(
+    "overload_delay_s", "s", "20 ms", "above limits.force for this long [A]", NOT_NEGATIVE,
+    direction=Direction.LOWER, hardest="50 ms",
+    because="a specimen that catches at 2 m/s draws the arm's spring, 200 N/mm, by 200 N in half a millisecond",
+)  # fmt: skip
+
+
+def _overloaded(v: TrackInputs) -> bool:
+    return not v.attended and v.readings.cell_valid and not (abs(v.readings.force_n) <= v.limits.force_n)
+
+
+OVERLOAD: Final = Interlock(
+    name="overload",
+    cause="force beyond what the cell may take: the specimen catches",
+    level="|force| > limits.force",
+    condition=_overloaded,
+    compared=lambda v: Compared(abs(v.readings.force_n), v.limits.force_n, "N"),
+    delay=OVERLOAD_DELAY_S,
+    reaction=FAST,
+    reset=REPAIR,
+)
+
+FROZEN_CELL_S: Final = Parameter(
+    "frozen_cell_s", "s", "1 s", "identical counts of the cell with the arm down and the track going [A]",
+    direction=Direction.LOWER, hardest="2 s",
+    because="20 readings of a cell with noise of many counts are never alike; at 10 mm/s 2 s are 20 mm of travel",
+)  # fmt: skip
+
+
+def _frozen(v: TrackInputs) -> bool:
+    r = v.readings
+    return v.demand.track_m_s != 0.0 and not (r.now_s - r.cell_changed_s <= v.parameters[FROZEN_CELL_S])
+
+
+CELL_FROZEN: Final = Interlock(
+    name="load cell frozen",
+    cause="the transmitter repeats its last reading",
+    level="counts unchanged for frozen_cell while the track is to go",
+    condition=_frozen,
+    compared=lambda v: Compared(v.readings.now_s - v.readings.cell_changed_s, v.parameters[FROZEN_CELL_S], "s"),
+    parameters=(FROZEN_CELL_S,),
+    when=LOADED,
+    reaction=FAST,
+    reset=REPAIR,
+)
+
+RAISED_N: Final = Parameter(
+    "raised_n", "N", "4 N", "force with the arm raised, after the tare [A]: zero drift is 0.4 N over 80 K",
+    direction=Direction.LOWER, hardest="10 N",
+    because="half of 20 N: a specimen that touches at the raised arm, or a cell whose zero has gone",
+)  # fmt: skip
+RAISED_DELAY_S: Final = Parameter(
+    "raised_delay_s", "s", "500 ms", "... for this long [A]", NOT_NEGATIVE,
+    direction=Direction.LOWER, hardest="2 s",
+    because="a contact that opens has let go in some tenths of a second",
+)  # fmt: skip
+
+
+def _touches(v: TrackInputs) -> bool:
+    r = v.readings
+    if not (v.confirmed and r.raised and v.demand.tared and not v.demand.lowered and r.cell_valid):
+        return False
+    return not (abs(r.force_n) <= v.parameters[RAISED_N])
+
+
+FORCE_RAISED: Final = Interlock(
+    name="force with the arm raised",
+    cause="the specimen touches though the arm is raised, or the cell's zero has gone",
+    level="|force| > raised, arm raised, cell tared",
+    condition=_touches,
+    compared=lambda v: Compared(abs(v.readings.force_n), v.parameters[RAISED_N], "N"),
+    parameters=(RAISED_N,),
+    delay=RAISED_DELAY_S,
+    reaction=CONTROLLED,
+    reset=REPAIR,
+)
+
+LOST_SHARE: Final = Parameter(
+    "lost_share", "1", "0.05", "friction below this share of the load while it slides ... [A]", SHARE,
+    direction=Direction.HIGHER, hardest="0.02",
+    because="rubber on a powdered track has a tenth; a specimen holder that slides on ice has a fiftieth",
+)  # fmt: skip
+CONTACT_WAY_MM: Final = Parameter(
+    "contact_way_mm", "mm", "0.8 mm", "... after this way one way: the arm's spring is drawn by then [A] ...",
+    direction=Direction.LOWER, hardest="5 mm",
+    because="100 N each way draw a spring of 200 N/mm by 1 mm",
+)  # fmt: skip
+LOST_DELAY_S: Final = Parameter(
+    "lost_delay_s", "s", "200 ms", "... for this long [A]", NOT_NEGATIVE,
+    direction=Direction.LOWER, hardest="2 s",
+    because="at 2 m/s a bare holder grinds along 4 m of the track in 2 s",
+)  # fmt: skip
+
+
+def _no_friction(v: TrackInputs) -> bool:
+    r, p = v.readings, v.parameters
+    if not v.confirmed or v.demand.track_m_s == 0.0 or not (v.demand.sliding_m > 1e-3 * p[CONTACT_WAY_MM]):
+        return False
+    return not (r.friction_n >= p[LOST_SHARE] * r.load_n)
+
+
+CONTACT_LOST: Final = Interlock(
+    name="contact lost",
+    cause="no friction where the specimen is to slide: it is worn away or out of its holder, or the cell is deaf",
+    level="friction < lost_share of the load after contact_way",
+    condition=_no_friction,
+    compared=lambda v: Compared(v.readings.friction_n, v.parameters[LOST_SHARE] * v.readings.load_n, "N"),
+    parameters=(LOST_SHARE, CONTACT_WAY_MM),
+    delay=LOST_DELAY_S,
+    when=LOADED,
+    reaction=FAST,
+    reset=REPAIR,
+)
+
+FRICTION_SHARE: Final = Parameter(
+    "friction_share", "1", "4", "force above this times the weights ... [A]: rubber at rest has 2.7",
+    direction=Direction.LOWER, hardest="6",
+    because="with 20 N six times is 120 N, and the cell of these rigs ends at 200 N",
+)  # fmt: skip
+FRICTION_LEAST_N: Final = Parameter(
+    "friction_least_n", "N", "5 N", "... and this beside it [A] ...", NOT_NEGATIVE,
+    direction=Direction.LOWER, hardest="20 N",
+    because="the zero of the cell is known to some newtons before the tare, afterwards to a tenth",
+)  # fmt: skip
+FRICTION_DELAY_S: Final = Parameter(
+    "friction_delay_s", "s", "100 ms", "... for this long [A]", NOT_NEGATIVE,
+    direction=Direction.LOWER, hardest="500 ms",
+    because="a block that digs itself in tears within a few millimetres",
+)  # fmt: skip
+
+
+def _most_n(v: TrackInputs) -> float:
+    return v.parameters[FRICTION_SHARE] * v.readings.load_n + v.parameters[FRICTION_LEAST_N]
+
+
+BEYOND_LOAD: Final = Interlock(
+    name="friction beyond load",
+    cause="more force than rubber can have under these weights: it digs in, or other weights hang on the arm",
+    level="|force| > friction_share x weights + friction_least",
+    condition=lambda v: v.demand.tared and v.readings.lowered and not (abs(v.readings.force_n) <= _most_n(v)),
+    compared=lambda v: Compared(abs(v.readings.force_n), _most_n(v), "N"),
+    parameters=(FRICTION_SHARE, FRICTION_LEAST_N),
+    delay=FRICTION_DELAY_S,
+    when=LOADED,
+    reaction=FAST,
+    reset=REPAIR,
+)
+
+
+ROWS: Final[tuple[Interlock, ...]] = (
+    CELL_SILENT, CELL_INVALID, CELL_FROZEN, OVERLOAD, BEYOND_LOAD, CONTACT_LOST, FORCE_RAISED,
+)  # fmt: skip

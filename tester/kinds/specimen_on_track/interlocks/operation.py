@@ -1,0 +1,25 @@
+"""Bounds of the section ``interlocks`` that belong to no row: holds, acknowledgements, the cell's zero."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from tester.rig.parameter import Direction, Parameter
+
+HOLD_AT_MOST_S: Final = Parameter(
+    "hold_at_most_s", "s", "60 min", "a hold ends in a controlled stop after this [A]",
+    direction=Direction.LOWER, hardest="120 min",
+    because="nobody is expected to attend to a rig with its drives on for longer than that",
+)  # fmt: skip
+ACK_WAIT_S: Final = Parameter(
+    "ack_wait_s", "s", "1 s", "an acknowledged drive has reset its fault by then, or it is refused [A]",
+)  # fmt: skip
+ZERO_STOP_N: Final = Parameter(
+    "zero_stop_n", "N", "10 N", "a zero of the cell further off than this is not taken: the run ends [A]",
+    direction=Direction.LOWER, hardest="20 N",
+    because="20 N that a tare takes off are a contact as firm as any of these rigs has",
+)  # fmt: skip
+
+PARAMETERS: Final[tuple[Parameter, ...]] = (HOLD_AT_MOST_S, ACK_WAIT_S, ZERO_STOP_N)
+ABOUT: Final = "holds, acknowledgements, the cell's zero"
+"""What these parameters are for."""

@@ -1,0 +1,136 @@
+"""Stops that do not work, and what is to rest and does not."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from tester.kinds.specimen_on_track.interlocks.inputs import TrackInputs
+from tester.kinds.specimen_on_track.interlocks.known import SPEEDS_OLD_S, STANDING_SHARE, standing
+from tester.kinds.specimen_on_track.interlocks.motion import DROPPED_DELAY_S
+from tester.machine.row import ENDING, FAST, POWER_OFF, REPAIR, Compared, Interlock
+from tester.rig.parameter import NOT_NEGATIVE, Direction, Parameter
+
+STOP_MARGIN_S: Final = Parameter(
+    "stop_margin_s", "s", "600 ms", "the track may stand this much later than its ramp says [A]; seen late, too",
+    direction=Direction.LOWER, hardest="800 ms",
+    because="a track that does not stop loses its power after two of these; a rig is to be safe 3 s after its trip",
+)  # fmt: skip
+
+
+def _ramp_s(v: TrackInputs) -> float:
+    return v.stop_start.speed_m_s / v.limits.deceleration_m_s2 + v.parameters[STOP_MARGIN_S]
+
+
+def _ramp_over(v: TrackInputs) -> bool:
+    return v.stopped_s >= 0.0 and not (v.stopped_s <= _ramp_s(v)) and not standing(v)
+
+
+NOT_STOPPING: Final = Interlock(
+    name="not stopping",
+    cause="the track goes on longer than its ramp allows",
+    level="speed >= standing_share at v / deceleration + stop_margin",
+    condition=_ramp_over,
+    compared=lambda v: Compared(v.stopped_s, _ramp_s(v), "s"),
+    parameters=(STOP_MARGIN_S, STANDING_SHARE, SPEEDS_OLD_S),
+    when=ENDING,
+    reaction=FAST,
+    reset=REPAIR,
+)
+
+
+def _quick_s(v: TrackInputs) -> float:
+    return v.stop_start.fast_speed_m_s / v.limits.quick_stop_m_s2 + v.parameters[STOP_MARGIN_S]
+
+
+def _quick_over(v: TrackInputs) -> bool:
+    if not v.stopped_s >= 0.0 or standing(v):
+        return False
+    return not (v.readings.now_s - v.stop.fast_s <= _quick_s(v))
+
+
+QUICK_STOP_FAILED: Final = Interlock(
+    name="quick stop failed",
+    cause="the track goes on longer than its quick stop allows",
+    level="speed >= standing_share at v / quick-stop deceleration + stop_margin",
+    condition=_quick_over,
+    compared=lambda v: Compared(v.readings.now_s - v.stop.fast_s, _quick_s(v), "s"),
+    parameters=(STOP_MARGIN_S,),
+    when=ENDING,
+    reaction=POWER_OFF,
+    reset=REPAIR,
+)
+
+OFF_DELAY_S: Final = Parameter(
+    "off_delay_s", "s", "500 ms", "the drives told to switch off, the track goes on for this long [A]", NOT_NEGATIVE,
+    direction=Direction.LOWER, hardest="1 s",
+    because="the track stands before it is told to: what goes on obeys nothing, and a person is about to come near",
+)  # fmt: skip
+
+
+def _goes_on(v: TrackInputs) -> bool:
+    if v.resting or v.stopped_s >= 0.0 or v.demand.enabled or v.readings.drives_disabled:
+        return False
+    return not standing(v)
+
+
+NOT_SWITCHED_OFF: Final = Interlock(
+    name="not switched off",
+    cause="the track goes on though the drives are told to switch off",
+    level="in a run, drives not wanted, power still on and speed >= standing_share",
+    condition=_goes_on,
+    parameters=(STANDING_SHARE,),
+    delay=OFF_DELAY_S,
+    reaction=FAST,
+    reset=REPAIR,
+)
+
+STOP_TIMEOUT_S: Final = Parameter(
+    "stop_timeout_s", "s", "6 s", "a stop that has not ended by then takes the power off and latches [A]",
+    direction=Direction.LOWER, hardest="10 s",
+    because="every part of a stop has been escalated 3 s after it began; nothing gets better by waiting longer",
+)  # fmt: skip
+
+
+def _endless(v: TrackInputs) -> bool:
+    return v.stopped_s >= 0.0 and not (v.readings.now_s - v.mode_since_s <= v.parameters[STOP_TIMEOUT_S])
+
+
+STOP_NOT_ENDED: Final = Interlock(
+    name="stop not ended",
+    cause="a stop has not come to its end: nobody sees that the track stands, or that the chamber is off",
+    level="stop_timeout after it began, and once more after the power was taken",
+    condition=_endless,
+    compared=lambda v: Compared(v.readings.now_s - v.mode_since_s, v.parameters[STOP_TIMEOUT_S], "s"),
+    parameters=(STOP_TIMEOUT_S,),
+    when=ENDING,
+    reaction=POWER_OFF,
+    reset=REPAIR,
+)
+
+
+def _moving(v: TrackInputs) -> bool:
+    if v.resting:
+        return not standing(v)
+    if not v.unpowered:
+        return False
+    r = v.readings
+    if v.demand.enabled:
+        return not standing(v)
+    since = r.now_s - v.parameters[SPEEDS_OLD_S]
+    return not (r.drives_disabled and r.track_at_s >= since and r.lift_at_s >= since)
+
+
+MOVING_AT_REST: Final = Interlock(
+    name="moving at rest",
+    cause="the track goes, or a drive has power, although everything is to rest",
+    level="speed >= standing_share or unknown; in a run: power that is not wanted",
+    condition=_moving,
+    parameters=(STANDING_SHARE, SPEEDS_OLD_S),
+    delay=DROPPED_DELAY_S,
+    when=ENDING,
+    at_rest=lambda v: not v.readings.drives_disabled,
+    reaction=POWER_OFF,
+    reset=REPAIR,
+)
+
+ROWS: Final[tuple[Interlock, ...]] = (NOT_SWITCHED_OFF, QUICK_STOP_FAILED, NOT_STOPPING, STOP_NOT_ENDED, MOVING_AT_REST)

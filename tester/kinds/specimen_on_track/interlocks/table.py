@@ -1,0 +1,17 @@
+"""The interlock table of this machine, in the order of importance."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from tester.kinds.specimen_on_track.interlocks import chamber, force, motion, operation, stops
+from tester.machine import wires
+from tester.machine.interlock_table import InterlockTable
+
+TABLE: Final = InterlockTable(
+    (
+        *wires.ROWS, *motion.ROWS, *force.ROWS, *chamber.ROWS, wires.DEVICE_REFUSED, wires.LINE_NOISY, *stops.ROWS,
+        *wires.WARNINGS,
+    ),
+    operation.PARAMETERS,
+)  # fmt: skip

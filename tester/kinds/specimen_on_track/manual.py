@@ -1,0 +1,92 @@
+"""What a person may move by hand on this machine, how far a step goes, and when it is refused."""
+
+from __future__ import annotations
+
+from math import isfinite, nan
+from typing import Final
+
+from tester.kinds.specimen_on_track.axes import NAME
+from tester.kinds.specimen_on_track.build import build_run
+from tester.kinds.specimen_on_track.context import TrackAttendant, TrackContext
+from tester.kinds.specimen_on_track.procedures.motions import TakeTrackTare, still_m_s
+from tester.kinds.specimen_on_track.rig import TrackConfig
+from tester.machine.manual import NAME as MANUAL
+from tester.machine.manual import ManualExecutor
+from tester.machine.ports import Ports
+from tester.machine.prompts import Prompts
+from tester.machine.served import ByHand
+from tester.recipe.plan import Plan
+from tester.store.recorder import Recorder
+
+STEPS: Final = 10.0
+"""Steps from standstill to the greatest speed."""
+CHAMBER_STEP_K: Final = 1.0
+
+
+class TrackHand:
+    """Turns steps into demands."""
+
+    def __init__(self, rig: TrackConfig) -> None:
+        """Nothing is wanted: standing, raised, chamber off."""
+        self.rig = rig
+        self.track_m_s = 0.0
+        self.lowered = False
+        self.chamber_c = nan
+        self.taring: TakeTrackTare | None = None
+        self.tare_text = ""
+
+    @property
+    def busy(self) -> str:
+        """Why no step is taken at present."""
+        return "the load cell is being tared" if self.taring is not None else ""
+
+    def demand(self, ctx: TrackContext) -> None:
+        """Demand what is wanted."""
+        demand = ctx.demand
+        demand.track_m_s, demand.lowered, demand.chamber_c = self.track_m_s, self.lowered, self.chamber_c
+        taring = self.taring
+        if taring is not None and taring.step(ctx):
+            zero = f"zero from {taring.count} readings: {ctx.devices.cell.tare[0]:.2f} N"
+            self.tare_text = f"not taken: {taring.failed}" if taring.failed else zero
+            ctx.journal.event(ctx.now, "tare", self.tare_text)
+            self.taring = None
+
+    def tare(self, ctx: TrackContext) -> str:
+        """Begin a tare; return "" or why not."""
+        if self.lowered or not ctx.readings.raised:
+            return "the arm is not raised"
+        if self.track_m_s or abs(ctx.readings.track_now_m_s) > still_m_s(ctx):
+            return "the track moves: stop it first"
+        self.taring = TakeTrackTare("repeat")
+        return ""
+
+    def step(self, ctx: TrackContext, axis: str, sign: float) -> str:
+        """Take one step of an axis; return "" or why not."""
+        limits = self.rig.limits
+        if axis == "track":
+            if self.lowered or not ctx.readings.raised:
+                return "the track moves by hand only with the arm raised"
+            most = limits.track_speed_m_s
+            self.track_m_s = round(min(max(self.track_m_s + sign * most / STEPS, -most), most), 9)
+        elif axis == "arm":
+            if self.rig.axes.lift is None:
+                return "this arm has no drive: move it with your hand"
+            if self.track_m_s or abs(ctx.readings.track_now_m_s) > still_m_s(ctx):
+                return "the track moves: stop it first"
+            self.lowered = sign < 0.0
+        elif axis == "chamber":
+            if not self.rig.chamber:
+                return "this rig has no chamber"
+            from_c = self.chamber_c if isfinite(self.chamber_c) else float(round(ctx.readings.air_c))
+            self.chamber_c = min(max(from_c + sign * CHAMBER_STEP_K, limits.air_low_c), limits.air_high_c)
+        return ""
+
+
+def by_hand(rig: TrackConfig, ports: Ports, attendant: TrackAttendant, record: Recorder) -> ByHand:
+    """Return manual mode on a rig, with a new specimen on a simulated one."""
+    run = build_run(rig, Plan(MANUAL, (), (), 1, kind=NAME), ports, attendant, record, Prompts())
+    executor = ManualExecutor(TrackHand(rig))
+    run.engine.executor = executor
+    run.engine.ctx.devices.by_hand_mm = rig.arm.raised_mm
+    attendant.install(1, 1, next(iter(rig.sim.rubbers), ""), new_specimen=True)
+    return ByHand(run, executor, "whatever is on the arm")

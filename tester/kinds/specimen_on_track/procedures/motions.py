@@ -1,0 +1,196 @@
+"""The moves of this machine: track, arm, the cell's zero, standing for a person. Those of any machine are in
+``tester.machine.motions``."""
+
+from __future__ import annotations
+
+from math import isfinite
+from typing import Final
+
+from tester.kinds.specimen_on_track.context import TrackContext
+from tester.machine.motions import Ask, Move, Power, Sequence
+
+TARE_S: Final = 1.0
+"""Averaging time of the cell's zero, s [A]."""
+TARE_LEAST: Final = 10
+"""Readings that a tare averages at least."""
+CELL_SILENT_S: Final = 5.0
+"""A tare that has not got its readings this long after its time is given up, s [A]."""
+NEAR_MM: Final = 0.5
+"""A track that was sent to a place is there within this, mm [A]."""
+
+
+class ComeToStand(Move):
+    """Bring the track to standstill."""
+
+    limit_s = 10.0  # [A]; the ramp takes 1.1 s at most
+    name = "stopping the track"
+
+    def step(self, ctx: TrackContext) -> bool:
+        """Done when it is seen to stand."""
+        ctx.demand.track_m_s = 0.0
+        ctx.moving = True
+        return abs(ctx.readings.track_now_m_s) <= still_m_s(ctx)
+
+
+def still_m_s(ctx: TrackContext) -> float:
+    """Return the speed below which the track stands, m/s."""
+    return ctx.rig.interlocks.standing_share * ctx.rig.axes.track.max_speed * ctx.rig.metres
+
+
+class GoTo(Move):
+    """Bring a linear track to a place in its travel, the arm raised."""
+
+    limit_s = 120.0  # [A]; 270 mm at 10 mm/s take 27 s
+    name = "bringing the track to its place"
+
+    def __init__(self, place_mm: float) -> None:
+        """``place_mm``: between the soft ends."""
+        self.place_mm = place_mm
+
+    def step(self, ctx: TrackContext) -> bool:
+        """Done when it is there; Stand follows."""
+        far_mm = self.place_mm - ctx.readings.track_mm
+        if abs(far_mm) <= NEAR_MM:
+            ctx.demand.track_m_s = 0.0
+            return True
+        most = 0.5 * ctx.rig.limits.track_speed_m_s
+        speed = min(most, 1e-3 * abs(far_mm))  # the last millimetres ever slower
+        ctx.demand.track_m_s = speed if far_mm > 0.0 else -speed
+        ctx.moving = True
+        return False
+
+
+class MoveArm(Move):
+    """Lower or raise the arm: by its drive, or by a person who is asked to."""
+
+    limit_s = 20.0  # [A]; 1.2 s by the drive
+    name = "moving the arm"
+
+    def __init__(self, *, lowered: bool) -> None:
+        """``lowered``: where it is to be."""
+        self.lowered = lowered
+
+    def step(self, ctx: TrackContext) -> bool:
+        """Done when it is there."""
+        ctx.demand.lowered = self.lowered
+        ctx.demand.track_m_s = 0.0
+        ctx.moving = True
+        return ctx.readings.lowered if self.lowered else ctx.readings.raised
+
+
+class WithoutPower(Move):
+    """Wait until the track stands and no drive applies torque."""
+
+    limit_s = 10.0  # [A]
+    name = "coming to a stand for a person to go near"
+
+    def step(self, ctx: TrackContext) -> bool:
+        """Done when it is measured, not just commanded."""
+        ctx.moving = True
+        return ctx.readings.drives_disabled and abs(ctx.readings.track_now_m_s) <= still_m_s(ctx)
+
+
+class AskBesideTrack:
+    """Put a question that asks a person to come near: track standing, drives off; an arm with a drive is raised."""
+
+    def __init__(self, text: str) -> None:
+        """The question as a person reads it."""
+        self.text = text
+        self.moves: Sequence | None = None
+        self.ask: Ask | None = None
+
+    def resume(self, ctx: TrackContext) -> None:
+        """Come to a stand again."""
+        if self.ask is None:
+            self.moves = None
+
+    def step(self, ctx: TrackContext) -> bool:
+        """Done when it is answered."""
+        if self.moves is None:
+            raising = (
+                (Power(True), ComeToStand(), MoveArm(lowered=False))
+                if ctx.rig.axes.lift is not None
+                else (ComeToStand(),)
+            )
+            standing = ctx.readings.drives_disabled and (ctx.readings.raised or ctx.rig.axes.lift is None)
+            self.moves = Sequence(*(() if standing else raising), Power(False), WithoutPower())
+        if self.ask is None:
+            if not self.moves.step(ctx):
+                return False
+            self.ask = Ask(self.text)
+            ctx.progress.phase = "prompt"
+        return self.ask.step(ctx)
+
+
+class ArmByHand:
+    """Ask a person to raise or lower an arm that has no drive."""
+
+    def __init__(self, *, lowered: bool) -> None:
+        """``lowered``: where it is to be."""
+        self.lowered = lowered
+        self.ask = AskBesideTrack(f"{'lower' if lowered else 'raise'} the arm")
+
+    def resume(self, ctx: TrackContext) -> None:
+        """Come to a stand again."""
+        self.ask.resume(ctx)
+
+    def step(self, ctx: TrackContext) -> bool:
+        """Done when a person says so."""
+        if ctx.readings.lowered if self.lowered else ctx.readings.raised:
+            ctx.demand.lowered = self.lowered
+            return True
+        if not self.ask.step(ctx):
+            return False
+        if self.lowered:
+            ctx.attendant.lower_arm()
+            ctx.devices.by_hand_mm = 0.0
+        else:
+            ctx.attendant.raise_arm()
+            ctx.devices.by_hand_mm = ctx.rig.arm.raised_mm
+        ctx.demand.lowered = self.lowered
+        return False  # with the next reading
+
+
+def arm(ctx: TrackContext, *, lowered: bool) -> tuple[MoveArm, ...] | tuple[ArmByHand, Power]:
+    """Return the moves that bring the arm where it is to be, with the drives on at the end."""
+    if ctx.rig.axes.lift is not None:
+        return (MoveArm(lowered=lowered),)
+    return ArmByHand(lowered=lowered), Power(True)
+
+
+class TakeTrackTare:
+    """Average the cell with the arm raised and make that its zero; ``failed``: why it is not to be trusted."""
+
+    def __init__(self, kind: str) -> None:
+        """``kind``: "reference" for a specimen's first, else "repeat"."""
+        self.kind = kind
+        self.began_s = float("nan")
+        self.stamp_s = float("-inf")
+        self.total_n = 0.0
+        self.count = 0
+        self.failed = ""
+
+    def step(self, ctx: TrackContext) -> bool:
+        """Done when the average is taken."""
+        r = ctx.readings
+        ctx.moving = True
+        if not isfinite(self.began_s):
+            self.began_s = ctx.now
+        if r.cell_valid and r.cell_at_s > self.stamp_s and r.cell_at_s > self.began_s:
+            self.stamp_s = r.cell_at_s
+            self.total_n += r.force_n
+            self.count += 1
+        late_s = ctx.now - self.began_s - TARE_S
+        if late_s < 0.0 or self.count < TARE_LEAST:
+            if late_s > CELL_SILENT_S:
+                self.failed = f"the load cell gave {self.count} valid readings in {ctx.now - self.began_s:.0f} s"
+            return bool(self.failed)
+        zero_n = ctx.devices.cell.tare[0] + self.total_n / self.count
+        most_n = ctx.rig.interlocks.zero_stop_n
+        if not abs(zero_n) <= most_n:
+            self.failed = f"the load cell's zero is {zero_n:.1f} N, allowed are {most_n:g} N: does something touch?"
+            return True
+        ctx.devices.cell.set_tare((zero_n,))
+        ctx.journal.tare(ctx.now, self.kind, {"friction_n": zero_n}, ctx.repeat_key)
+        ctx.demand.tared = True
+        return True

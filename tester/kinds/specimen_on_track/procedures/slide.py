@@ -1,0 +1,205 @@
+"""One repeat: tare with the arm raised, lower, slide until stationary for a stated way, there and back, raise.
+
+On a linear track the way is gone in both directions, which takes a zero of the cell that has moved out of the mean; the
+track turns back before the end of its travel. On a disc it is gone one way. The way counts in stretches of it: friction
+that differs by less than ``gates.stationary`` from stretch to stretch, three times, is stationary, and from there on
+samples count.
+"""
+
+from __future__ import annotations
+
+from enum import Enum
+from math import ceil, inf, nan
+from typing import Final
+
+from tester.analysis.blocks import BlockCounter
+from tester.analysis.stability import REPEAT_WINDOWS, filled
+from tester.kinds.specimen_on_track.axes import held_by
+from tester.kinds.specimen_on_track.context import TrackContext, TrackTarget
+from tester.kinds.specimen_on_track.procedures.motions import ComeToStand, GoTo, TakeTrackTare, arm
+from tester.kinds.specimen_on_track.recipe.steps import STRETCHES, TrackCondition
+from tester.machine.activity import Activity
+from tester.machine.measured import Ending
+from tester.machine.motions import Power, Sequence, Settle
+
+ALIKE: Final = 2
+"""Differences in a row, of three stretches, that have to be small."""
+LONGEST: Final = 60
+"""Stretches one way in which friction has not come to a stand: the rest is collected as it is [A]."""
+MOST_WAYS: Final = 8
+"""Ways there and back that a repeat takes at most [A]."""
+STOP_MM: Final = 5.0
+"""The track turns back this far before its soft end, mm [A]: its ramp from 10 mm/s takes 2.5 mm, two scans 1 mm."""
+BLIND: Final = 5.0
+"""Nothing has counted for so many stretches' time: the repeat ends incomplete [A]."""
+
+
+class SlidePhase(Enum):
+    """Where a repeat is."""
+
+    TARE = "tare"
+    LOWER = "lower"
+    SETTLE = "settle"
+    SLIDE = "slide"
+    LIFT = "lift"
+
+
+class Stationary:
+    """Tells when the mean friction of consecutive stretches of one way stands still."""
+
+    def __init__(self, percent: float) -> None:
+        """``percent``: what they may differ by."""
+        self.share = 0.01 * percent
+        self.begin(nan)
+
+    def begin(self, stretch: float) -> None:
+        """Begin a way at this count of stretches."""
+        self.origin = stretch
+        self.number = 0
+        self.total = self.before = 0.0
+        self.count = self.alike = 0
+
+    def add(self, stretch: float, friction_n: float) -> bool:
+        """Take in a reading; tell whether friction stands still."""
+        number = int(abs(stretch - self.origin))
+        if number > self.number:
+            mean = self.total / self.count if self.count else nan
+            small = abs(mean - self.before) <= self.share * abs(mean) and mean > 0.0
+            self.alike = self.alike + 1 if small and self.number else 0
+            self.number, self.before, self.total, self.count = number, mean, 0.0, 0
+        self.total += friction_n
+        self.count += 1
+        return self.alike >= ALIKE or self.number >= LONGEST
+
+
+class MeasureTrackRepeat:
+    """State object of one repeat."""
+
+    rolling_only = False
+    warming_k_s = nan
+    holdable_band_k = nan
+
+    def __init__(self, step: TrackCondition, ctx: TrackContext, tare_kind: str) -> None:
+        """``tare_kind``: how the zero is recorded."""
+        self.condition = step
+        held = held_by(step.setpoint)
+        self.speed_m_s = held.track_m_s
+        self.stretch_m = step.distance_m / STRETCHES
+        self.target = TrackTarget(
+            temperature_c=held.temperature_c, band_k=step.temperature_band_k, stretch_m=self.stretch_m
+        )
+        self.counter = BlockCounter(ctx.quantities)
+        self.stationary = Stationary(ctx.rig.gates.stationary_percent)
+        self.both = ctx.rig.linear
+        wanted = REPEAT_WINDOWS * STRETCHES
+        self.a_way = ceil(wanted / 2.0) if self.both else ceil(wanted)
+        """Stretches that are to count one way."""
+        self.tare = TakeTrackTare(tare_kind)
+        self.phase = SlidePhase.TARE
+        self.moves = self._tare(ctx)
+        self.way = 0
+        self.before = 0
+        """Blocks before the present way."""
+        self.sample: tuple[float, ...] = ()
+        self.counted_s = inf
+        self.ending: Ending | None = None
+        self.detail = ""
+
+    def step(self, ctx: TrackContext) -> bool:
+        """Advance by one scan; done when raised with ``ending`` set."""
+        progress = ctx.progress
+        progress.phase, progress.burst = self.phase.value, self.way
+        progress.revolutions = float(len(self.counter.blocks))
+        if self.phase is SlidePhase.SLIDE:
+            self._slide(ctx)
+        elif self.moves.step(ctx):
+            return self._next(ctx)
+        return False
+
+    # -- what comes when --------------------------------------------------------------------------------------
+
+    def _tare(self, ctx: TrackContext) -> Sequence:
+        going: list[Activity[TrackContext]] = []
+        if self.both:
+            limits = ctx.rig.limits
+            middle_mm = 0.5 * (limits.travel_low_mm + limits.travel_high_mm)
+            if abs(ctx.readings.track_mm - middle_mm) > 0.25 * (limits.travel_high_mm - limits.travel_low_mm):
+                going = [GoTo(middle_mm), ComeToStand()]
+        return Sequence(*arm(ctx, lowered=False), Power(True), ComeToStand(), *going, Settle(0.3), self.tare)
+
+    def _next(self, ctx: TrackContext) -> bool:
+        """Go on to the next phase; tell whether there is none."""
+        if self.phase is SlidePhase.TARE:
+            if self.tare.failed:
+                self._end(ctx, Ending.ZERO_DRIFT, self.tare.failed)
+            else:
+                self.phase, self.moves = SlidePhase.LOWER, Sequence(*arm(ctx, lowered=True))
+        elif self.phase is SlidePhase.LOWER:
+            self.phase, self.moves = SlidePhase.SETTLE, Sequence(Settle(ctx.rig.gates.settle_s))
+        elif self.phase is SlidePhase.SETTLE:
+            self.phase = SlidePhase.SLIDE
+            ctx.target = self.target
+            self._go(ctx)
+        else:
+            return True
+        return False
+
+    def _go(self, ctx: TrackContext) -> None:
+        """Begin to go a way: forward, then back, and so on."""
+        self.way += 1
+        ctx.burst = self.way
+        speed = self.speed_m_s if self.way % 2 or not self.both else -self.speed_m_s
+        ctx.demand.track_m_s = self.target.track_m_s = speed
+        self.target.stationary = False
+        self.stationary.begin(nan)
+        self.before = len(self.counter.blocks)
+        self.counted_s = ctx.now
+
+    # -- sliding ----------------------------------------------------------------------------------------------
+
+    def _slide(self, ctx: TrackContext) -> None:
+        r, target = ctx.readings, self.target
+        if not target.stationary:
+            self._settle(ctx)
+        if ctx.sample is not self.sample:
+            self.sample = ctx.sample
+            if self.counter.add(ctx.sample) is not None:
+                self.counted_s = ctx.now
+        here = len(self.counter.blocks) - self.before
+        late = ctx.now - self.counted_s > max(BLIND * self.stretch_m / self.speed_m_s, 5.0)
+        blocks, most = self.counter.blocks, self.condition.window.extend_to
+        if len(blocks) >= most or (filled(blocks, STRETCHES, None) and (self.way > 1 or not self.both)):
+            self._end(ctx, Ending.COMPLETE, "")
+        elif target.stationary and late:
+            self._end(ctx, Ending.INCOMPLETE, f"nothing counted for {ctx.now - self.counted_s:.0f} s")
+        elif self.both and (here >= self.a_way or self._at_end(ctx, r.track_mm)):
+            if self.way >= MOST_WAYS:
+                self._end(ctx, Ending.INCOMPLETE, f"{len(self.counter.blocks)} stretches in {self.way} ways")
+            else:
+                self._go(ctx)
+
+    def _settle(self, ctx: TrackContext) -> None:
+        r, stationary = ctx.readings, self.stationary
+        if abs(r.track_m_s - self.target.track_m_s) > 0.01 * ctx.rig.gates.speed_percent * self.speed_m_s:
+            stationary.begin(nan)
+            self.counted_s = ctx.now
+            return
+        if stationary.origin != stationary.origin:
+            stationary.begin(r.stretch)
+        if stationary.add(r.stretch, r.friction_n):
+            self.target.stationary = True
+        self.counted_s = ctx.now
+
+    def _at_end(self, ctx: TrackContext, place_mm: float) -> bool:
+        """Tell whether the track has to turn back, before the end of its travel."""
+        limits = ctx.rig.limits
+        if self.target.track_m_s > 0.0:
+            return place_mm >= limits.travel_high_mm - STOP_MM
+        return place_mm <= limits.travel_low_mm + STOP_MM
+
+    def _end(self, ctx: TrackContext, ending: Ending, detail: str) -> None:
+        ctx.burst = 0
+        self.ending, self.detail = ending, detail
+        ctx.target = TrackTarget()
+        self.phase = SlidePhase.LIFT
+        self.moves = Sequence(ComeToStand(), *arm(ctx, lowered=False))

@@ -1,0 +1,161 @@
+"""Which activity serves which step of a plan: a specimen put on, weights and interface, the air, conditions."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence as Steps
+from typing import Final
+
+from tester.axes import condition_words
+from tester.kinds.specimen_on_track.context import MountedSpecimen, TrackContext
+from tester.kinds.specimen_on_track.procedures.condition import MeasureTrackCondition, TrackResults
+from tester.kinds.specimen_on_track.procedures.motions import AskBesideTrack
+from tester.kinds.specimen_on_track.recipe.steps import MountSpecimen, Prepare, Temper, TrackCondition
+from tester.machine.activity import Activity
+from tester.machine.executor import Procedures, Unforeseen
+from tester.recipe.plan import PromptStep, Step
+from tester.store.records import PieceInfo
+
+SHOW_S: Final = 1.0
+"""How often people are told how far a wait has come, s."""
+
+
+class InstallSpecimen:
+    """Ask a person to put a specimen on the raised arm."""
+
+    def __init__(self, step: MountSpecimen) -> None:
+        """The step of the plan."""
+        self.install = step
+        note = f" ({step.note})" if step.note else ""
+        text = f"put specimen {step.number} on the arm and raise it: {step.compound}{note}"
+        if step.again:
+            text = f"the run goes on with specimen {step.number} on the raised arm: {step.compound}{note}"
+        self.ask = AskBesideTrack(text)
+
+    def resume(self, ctx: TrackContext) -> None:
+        """Come to a stand again."""
+        self.ask.resume(ctx)
+
+    def step(self, ctx: TrackContext) -> bool:
+        """Done when it is on."""
+        ctx.demand.tared = False
+        if not self.ask.step(ctx):
+            return False
+        one = self.install
+        ctx.attendant.install(one.specimen, one.number, one.compound, new_specimen=not one.again)
+        ctx.attendant.raise_arm()
+        if ctx.rig.axes.lift is None:
+            ctx.devices.by_hand_mm = ctx.rig.arm.raised_mm
+        ctx.on = MountedSpecimen(one.number, one.specimen, one.compound, one.sliding_m)
+        if not one.again:
+            nan = float("nan")
+            record = PieceInfo(one.number, one.specimen, one.replicate, one.compound, ctx.now, nan, nan,
+                               updated_s=ctx.now)  # fmt: skip
+            ctx.journal.piece_mounted(record)
+        return True
+
+
+class PrepareTrack:
+    """Ask a person for other weights or another interface, where they are other ones."""
+
+    def __init__(self, step: Prepare) -> None:
+        """The step of the plan."""
+        self.prepare = step
+        self.ask = AskBesideTrack(step.text)
+
+    def resume(self, ctx: TrackContext) -> None:
+        """Come to a stand again."""
+        self.ask.resume(ctx)
+
+    def step(self, ctx: TrackContext) -> bool:
+        """Done when both are as they are to be."""
+        if not self.ask.step(ctx):
+            return False
+        one = self.prepare
+        ctx.attendant.put_on(one.load_n)
+        ctx.attendant.prepare(one.interface)
+        ctx.on.weights_n, ctx.on.interface = one.load_n, one.interface
+        return True
+
+
+class TemperAir:
+    """Bring the air to a temperature and let the specimen follow; where it is not reached the conditions say so."""
+
+    def __init__(self, step: Temper) -> None:
+        """The step of the plan."""
+        self.temper = step
+        self.began_s = self.shown_s = float("-inf")
+        self.since_s = float("inf")
+
+    def step(self, ctx: TrackContext) -> bool:
+        """Done when the air has been near for long enough, or has not come near in time."""
+        step, r = self.temper, ctx.readings
+        ctx.demand.chamber_c = step.temperature_c if ctx.rig.chamber else float("nan")
+        if self.began_s == float("-inf"):
+            self.began_s = ctx.now
+        if ctx.now >= self.shown_s:
+            self.shown_s = ctx.now + SHOW_S
+            ctx.progress.phase = f"temper {r.air_c:.1f} of {step.temperature_c:.1f} degC"
+        near = r.air_valid and abs(r.air_c - step.temperature_c) <= step.within_k
+        self.since_s = min(self.since_s, ctx.now) if near else float("inf")
+        return ctx.now - self.since_s >= step.for_s or ctx.now - self.began_s > step.at_most_s
+
+
+class TrackProcedures(Procedures[TrackContext]):
+    """The steps of this machine."""
+
+    def __init__(self, results: TrackResults) -> None:
+        """``results``: where repeats go."""
+        self.results = results
+
+    def title(self, step: Step) -> str:
+        """Return a line that says what a step does."""
+        return title(step)
+
+    def resumed(self, ctx: TrackContext) -> None:
+        """Stand, with the arm raised."""
+        ctx.demand.track_m_s, ctx.demand.lowered = 0.0, False
+
+    def measuring(self, activity: Activity[TrackContext]) -> bool:
+        """Tell whether a condition makes its repeats."""
+        return isinstance(activity, MeasureTrackCondition) and activity.measuring is not None
+
+    def activity(self, step: Step, to_come: Steps[Step], ctx: TrackContext) -> Activity[TrackContext]:
+        """Return what serves a step."""
+        match step:
+            case MountSpecimen():
+                return InstallSpecimen(step)
+            case Prepare():
+                return PrepareTrack(step)
+            case Temper():
+                return TemperAir(step)
+            case TrackCondition():
+                return MeasureTrackCondition(step, self.results)
+            case PromptStep():
+                return AskBesideTrack(step.text)
+            case _:
+                raise TypeError(f"{step.kind}: no step of this machine")
+
+    def after(
+        self, activity: Activity[TrackContext], to_come: Steps[Step], ctx: TrackContext
+    ) -> Unforeseen[TrackContext] | None:
+        """End the run where the cell's zero is not to be trusted."""
+        if isinstance(activity, MeasureTrackCondition) and activity.failed:
+            return Unforeseen(failed=activity.failed)
+        return None
+
+
+def title(step: Step) -> str:
+    """Return a line that says what a step does."""
+    match step:
+        case MountSpecimen():
+            return f"install specimen {step.number} ({step.compound})"
+        case Prepare():
+            return f"prepare {step.load_n:g} N, {step.interface}"
+        case Temper():
+            return f"temper to {step.temperature_c:g} degC"
+        case TrackCondition():
+            return condition_words(step.setpoint)
+        case PromptStep():
+            return step.text
+        case _:
+            return step.kind

@@ -1,0 +1,97 @@
+"""The process image of a specimen on a track. One instance of each exists per rig, overwritten in place."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+from tester.machine.image import NAN, NEVER, BaseDemand, BaseReadings, BaseSetpoints
+
+# Gates that are closed, as bits of the channel ``gate``; 0 = the sample is accepted.
+GATE_SPEED: Final = 1
+GATE_TEMPERATURE: Final = 2
+GATE_SETTLING: Final = 4
+GATE_CONTACT: Final = 8
+
+
+@dataclass(slots=True)
+class TrackReadings(BaseReadings):
+    """Newest value of every signal, with the time stamp of its source (seconds of the scan's clock).
+
+    A device that the rig does not have leaves its values NaN and its times at the present scan's.
+    """
+
+    track_m_s: float = NAN
+    """Speed of the track under the specimen, above 0 forward; where its position is told, over half a second."""
+    track_now_m_s: float = NAN
+    """The same from one reading to the next."""
+    track_mm: float = NAN
+    """Place of a linear track in its travel."""
+    way_m: float = 0.0
+    """Way of the track since the connection, less where it goes back."""
+    track_at_s: float = NEVER
+    lift_mm: float = NAN
+    """Where the arm is: 0 lowered. Of an arm without a drive what a person was asked for; NaN before that."""
+    lift_at_s: float = NEVER
+    lowered: bool = False
+    raised: bool = False
+    force_n: float = NAN
+    """Tangential force on the specimen, tare applied, above 0 where the track goes forward."""
+    friction_n: float = NAN
+    """The force against the way of the track: below 0 only where nothing slides."""
+    sliding_m_s: float = NAN
+    """Speed of the track the way that it is to go."""
+    load_n: float = 0.0
+    """What the weights press with: 0 while the arm is not lowered."""
+    cell_valid: bool = False
+    cell_silent: bool = False
+    """The load cell has not answered several requests in a row, and is not set up again yet."""
+    cell_at_s: float = NEVER
+    cell_changed_s: float = NEVER
+    """When a reading of the cell last differed from the one before."""
+    air_c: float = NAN
+    """Air at the specimen: the chamber's reading, else the thermometer's."""
+    air_valid: bool = False
+    air_silent: bool = False
+    air_at_s: float = NEVER
+    chamber_percent: float = NAN
+    """What the chamber does to the air, below 0 cooling."""
+    chamber_alarm: bool = False
+    """The chamber has stood by itself: beyond its own limits, or its lease ran out."""
+    exit_c: float = NAN
+    """Track where it leaves the contact, by the pyrometer."""
+    exit_valid: bool = False
+    exit_silent: bool = False
+    exit_at_s: float = NEVER
+    contact_c: float = NAN
+    """What friction is told with: the pyrometer's temperature where there is one, else the air's."""
+    stretch: float = 0.0
+    """Way counted in stretches of the condition."""
+
+
+@dataclass(slots=True)
+class TrackDemand(BaseDemand):
+    """What the running step wants; control bounds it and may refuse it."""
+
+    track_m_s: float = 0.0
+    lowered: bool = False
+    """The arm is to be down."""
+    tared: bool = False
+    """The cell has been tared with the specimen that is on: only then the track moves with the arm down."""
+    sliding_m: float = 0.0
+    """Way since the track began to go this way with the arm down."""
+    chamber_c: float = NAN
+    """Temperature of the air to hold; NaN = chamber off."""
+
+
+@dataclass(slots=True)
+class TrackSetpoints(BaseSetpoints):
+    """What goes to the devices at the end of a scan, already inside every limit."""
+
+    track_m_s: float = 0.0
+    lift_mm: float = 0.0
+    chamber_c: float = 20.0
+    chamber: bool = False
+    """Chamber in run (True) or standby."""
+    chamber_silent: bool = False
+    """Its setpoint is not renewed any more: its lease ends what standby does not."""

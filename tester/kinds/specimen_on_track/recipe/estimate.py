@@ -1,0 +1,105 @@
+"""How long steps take on a specimen on a track, and how warm friction gets."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Final
+
+from sim.physics.wlf import PoleError
+from tester.analysis.repeats import REPEATABILITY
+from tester.analysis.uncertainty import Budget
+from tester.kinds.specimen_on_track.axes import TrackHeld, held_by
+from tester.kinds.specimen_on_track.budget import instruments_budget
+from tester.kinds.specimen_on_track.recipe.steps import MountSpecimen, Prepare, Temper, TrackCondition
+from tester.kinds.specimen_on_track.rig import TrackConfig
+from tester.recipe.estimate import StepEstimate
+from tester.recipe.plan import ConditionStep, Plan, PromptStep, Step
+from tester.recipe.repeats import expected
+
+PERSON_S: Final = 300.0
+"""A person does what a prompt asks [A]; nobody waits on a simulated rig."""
+REPEAT_S: Final = 5.0
+"""Tare, lowering, swinging out, raising, as simulated runs show [A]."""
+SETTLES: Final = {"linear": 1.7, "disc": 0.35}
+"""Windows that go by until friction is stationary, on a linear track there and back, as simulated runs show [A]."""
+CHAMBER_K_S: Final = 0.045
+"""The chamber goes from one temperature to another this fast [A]."""
+LIKELY_MU: Final = 1.0
+"""Where no law is known [A]."""
+SPREAD: Final = 0.3
+"""The rig time of 95 % of runs is within this share of the estimate [A]."""
+
+
+class TrackEstimator:
+    """What is known of the time that steps take on one rig."""
+
+    def __init__(self, rig: TrackConfig, repeatability: Mapping[str, float] | None = None) -> None:
+        """``repeatability``: standard deviation between repeats, per cent of the coefficient, by compound."""
+        self.rig = rig
+        self.repeatability = repeatability or {}
+
+    def mu(self, compound: str, held: TrackHeld) -> float:
+        """Return the coefficient that is expected, by the simulated rig's law where there is one."""
+        try:
+            law = self.rig.sim.friction_of(compound)
+            share = self.rig.sim.contact.share(held.interface)  # type: ignore[arg-type]
+            return share * law.mu(held.temperature_c, held.load_n, held.track_m_s)
+        except (PoleError, ValueError):
+            return LIKELY_MU
+
+    def rise_k(self, compound: str, held: TrackHeld) -> float:
+        """Return by how much friction warms the contact in the end, K."""
+        return self.rig.heat.rise * self.mu(compound, held) * held.load_n * held.track_m_s
+
+    def walk(self, plan: Plan) -> Sequence[StepEstimate]:
+        """Return an estimate for every step of a plan."""
+        air_c = self.rig.ambient_c
+        found: list[StepEstimate] = []
+        for step in plan.steps:
+            found.append(self._step(step, air_c))
+            if isinstance(step, Temper):
+                air_c = step.temperature_c
+        return found
+
+    def _step(self, step: Step, air_c: float) -> StepEstimate:
+        person_s = 0.0 if self.rig.simulated else PERSON_S
+        if isinstance(step, MountSpecimen | Prepare | PromptStep):
+            return StepEstimate(person_s + 2.0)
+        if isinstance(step, Temper):
+            way_s = abs(step.temperature_c - air_c) / CHAMBER_K_S if self.rig.chamber else 0.0
+            return StepEstimate(step.for_s + way_s, waiting_s=way_s)
+        if isinstance(step, TrackCondition):
+            return self._condition(step)
+        return StepEstimate(0.0)
+
+    def _condition(self, step: TrackCondition) -> StepEstimate:
+        held, compound = held_by(step.setpoint), step.setpoint.compound
+        repeats = expected(step, self.s_percent(compound))
+        slid_m = repeats * (1.5 + SETTLES[self.rig.track]) * step.distance_m
+        arm_s = 0.0 if self.rig.axes.lift is not None or self.rig.simulated else 2.0 * PERSON_S
+        rise_k, power_w = self.rise_k(compound, held), self.mu(compound, held) * held.load_n * held.track_m_s
+        return StepEstimate(
+            slid_m / held.track_m_s + repeats * (REPEAT_S + arm_s), slid_m,
+            friction_j=slid_m * power_w / held.track_m_s,
+            peak_c=held.temperature_c + rise_k, bursts=2 if self.rig.linear else 1,
+            held=rise_k <= step.temperature_band_k, heat_w=power_w, repeats=repeats,
+        )  # fmt: skip
+
+    def shut_down_s(self, plan: Plan) -> float:
+        """Return the seconds from the last step to standstill."""
+        return 1.0
+
+    def range_s(self, plan: Plan, steps: Sequence[StepEstimate], down_s: float) -> tuple[float, float]:
+        """Return the range of the rig time, s, that is to hold 95 % of runs."""
+        seconds = sum(one.seconds for one in steps) + down_s
+        return (1.0 - SPREAD) * seconds, (1.0 + SPREAD) * seconds
+
+    def s_percent(self, compound: str) -> float:
+        """Return the standard deviation between repeats that is expected, per cent of the coefficient."""
+        return self.repeatability.get(compound, 100.0 * REPEATABILITY)
+
+    def budget(self, step: ConditionStep) -> tuple[float, Budget] | None:
+        """Return the coefficient expected of a condition, and what the instruments add to its uncertainty."""
+        held = held_by(step.setpoint)
+        mu = self.mu(step.setpoint.compound, held)
+        return mu, instruments_budget(mu, held.load_n, held.track_m_s)

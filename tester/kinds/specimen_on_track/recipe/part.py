@@ -1,0 +1,240 @@
+"""What this machine says about recipes (``tester.recipe.part``)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from typing import ClassVar, Final
+
+from tester.axes import Axes, Setpoint, condition_words, numbers
+from tester.base.source import Location, Problem, Tree
+from tester.base.units import show
+from tester.kinds.specimen_on_track.axes import AXES, NAME, held_by
+from tester.kinds.specimen_on_track.recipe.estimate import TrackEstimator
+from tester.kinds.specimen_on_track.recipe.schema import TrackGrid, TrackMeasure, TrackRecipe, track_settings
+from tester.kinds.specimen_on_track.recipe.steps import INSERTED, MountSpecimen, Prepare, Temper, TrackCondition
+from tester.kinds.specimen_on_track.rig import TrackConfig
+from tester.recipe.conditions import conditions_of, metadata_of, ordered
+from tester.recipe.describe import duration, repeats_words
+from tester.recipe.estimate import Estimate, Estimator, StepEstimate
+from tester.recipe.part import RecipePart
+from tester.recipe.plan import Plan, PromptStep, Specimen, Step
+from tester.recipe.schema import GridModel, MeasureModel, Recipe
+from tester.recipe.semantics import axis_values
+from tester.recipe.settings import Settings
+from tester.recipe.stand import Stand
+from tester.rig import Rig
+
+UNUSED: Final = ("window", "extend_to")
+"""Keys of the common sections that say nothing here: a condition slides for a ``distance``."""
+
+
+class TrackPart(RecipePart):
+    """Recipes for a specimen on a track."""
+
+    kind: ClassVar[str] = NAME
+    axes: ClassVar[Axes] = AXES
+    recipe: ClassVar[type[Recipe]] = TrackRecipe
+    measure: ClassVar[type[MeasureModel]] = TrackMeasure
+    grid: ClassVar[type[GridModel]] = TrackGrid
+
+    def settings(self, measure: MeasureModel, grid: GridModel) -> Settings:
+        """Return how the conditions of a grid are measured."""
+        return track_settings(measure, grid)
+
+    def whole(self, recipe: Recipe | None, tree: Tree) -> Iterator[Problem]:
+        """Yield what says nothing on this machine."""
+        yield from super().whole(recipe, tree)
+        top = tree.data if isinstance(tree.data, dict) else {}
+        grids = top.get("grids")
+        nodes: list[tuple[Location, object]] = [(("measure",), top.get("measure"))]
+        if isinstance(grids, list):
+            nodes += [(("grids", index), node) for index, node in enumerate(grids)]
+        for at, node in nodes:
+            for key in UNUSED:
+                if isinstance(node, dict) and key in node:
+                    yield tree.problem((*at, key), f"{key}: this machine slides for a way (expected distance)")
+
+    def outlasted(self, recipe: Recipe, tree: Tree, rig: Rig) -> Iterator[Problem]:
+        """Yield what the rig cannot do, and where friction would heat the contact of a tempered specimen."""
+        own = TrackConfig.of(rig)
+        measure = recipe.measure
+        if measure is None:
+            return
+        for number, grid in enumerate(recipe.grids):
+            at: Location = ("grids", number)
+            values = axis_values(measure, grid)
+            yield from _limits(own, {name: numbers(values[name]) for name in values if name != "interface"}, at, tree)
+            yield from self._heat(own, recipe, measure, grid, at, tree)
+
+    def _heat(
+        self, rig: TrackConfig, recipe: Recipe, measure: MeasureModel, grid: GridModel, at: Location, tree: Tree
+    ) -> Iterator[Problem]:
+        """Yield the least speed of a grid at which friction would warm a tempered contact beyond its band."""
+        if not rig.chamber:
+            return  # a contact in the room's air warms as it does: the plan says by how much
+        estimator, band_k = TrackEstimator(rig), track_settings(measure, grid).temperature_band_k
+        found: dict[float, tuple[float, str]] = {}
+        for one in conditions_of(recipe.model_copy(update={"grids": [grid]}), self.settings):
+            for specimen in recipe.specimens:
+                setpoint = Setpoint(specimen.compound, one.values, self.axes)
+                held = held_by(setpoint)
+                rise_k = estimator.rise_k(specimen.compound, held)
+                if rise_k > max(band_k, found.get(held.track_m_s, (0.0, ""))[0]):
+                    found[held.track_m_s] = rise_k, condition_words(setpoint)
+        if found:
+            rise_k, words = found[min(found)]
+            yield tree.problem(
+                (*at, "track_speed"),
+                f"track_speed: friction warms the contact by {rise_k:.1f} K at {words}, more than its band of"
+                f' {show(band_k, "K")} (heat.rise of rig "{rig.name}")',
+            )
+
+    def estimator(self, rig: Rig, repeatability: Mapping[str, float] | None = None) -> TrackEstimator:
+        """Return what tells how long steps take on a rig."""
+        return TrackEstimator(TrackConfig.of(rig), repeatability)
+
+    def expand(self, recipe: Recipe, rig: Rig, estimator: Estimator | None = None) -> Plan:
+        """Return the plan of a valid recipe."""
+        steps: list[Step] = []
+        conditions = conditions_of(recipe, track_settings)
+        held = self.axes.number_of(self.axes.blocks)
+        specimens = tuple(Specimen(i, one.compound, one.note) for i, one in enumerate(recipe.specimens, start=1))
+        count = number = 0
+        for specimen in specimens:
+            for replicate in range(1, recipe.replicates + 1):
+                number += 1
+                steps.append(
+                    MountSpecimen(len(steps), specimen.index, number, specimen.compound, specimen.note, replicate)
+                )
+                before: tuple[float, str] | None = None
+                for block in ordered(conditions, held, recipe.order, specimen.index, replicate):
+                    soak = block[0].settings.soak
+                    steps.append(
+                        Temper(len(steps), held(block[0].values), soak.within_k, soak.for_s, soak.at_most_s)
+                    )
+                    for one in block:
+                        setpoint, how = Setpoint(specimen.compound, one.values, self.axes), one.settings
+                        at = held_by(setpoint)
+                        if before != (at.load_n, at.interface):
+                            steps.append(_prepare(len(steps), before, (at.load_n, at.interface)))
+                            before = at.load_n, at.interface
+                        count += 1
+                        row = (specimen.index - 1) * len(conditions) + one.row
+                        steps.append(
+                            TrackCondition(
+                                len(steps), count, row, specimen.index, replicate, one.grid, setpoint, how.repeats,
+                                how.min_valid, how.window, how.temperature_band_k, how.soak, how.at_most,
+                                how.until_percent, how.way_m(at.track_m_s),
+                            )
+                        )  # fmt: skip
+        return Plan(
+            recipe.recipe, tuple(steps), specimens, min((one.settings.min_valid for one in conditions), default=1),
+            metadata_of(recipe), self.kind, self.axes,
+        )  # fmt: skip
+
+    def remaining(self, plan: Plan, stand: Stand) -> Plan:
+        """Return the plan of what is left: conditions that are not over, and what has to be done again before them."""
+        on = {one.number: one for one in stand.mounted}
+        steps: list[Step] = []
+        due: dict[str, Step] = {}
+        for step in plan.steps:
+            if isinstance(step, TrackCondition):
+                if step.condition not in stand.ended:
+                    steps += [*due.values(), step]
+                    due.clear()
+                continue
+            if isinstance(step, MountSpecimen):
+                due.clear()
+                mounted = on.get(step.number)
+                if mounted is not None:
+                    step = replace(step, index=INSERTED, again=True, sliding_m=mounted.sliding_m)
+            elif isinstance(step, Prepare):
+                step = replace(step, text=_prepare(INSERTED, None, (step.load_n, step.interface)).text)
+            due.pop(step.kind, None)
+            due[step.kind] = step
+        return replace(plan, steps=tuple(steps))
+
+    def words(self, step: Step, one: StepEstimate) -> str:
+        """Return what a step does, in a line."""
+        match step:
+            case MountSpecimen():
+                return f"put specimen {step.number} on the arm"
+            case Prepare():
+                return f"ask: {step.text}"
+            case Temper():
+                return f"temper to {step.temperature_c:g} degC, {duration(step.for_s)} within {step.within_k:g} K"
+            case TrackCondition():
+                told = condition_words(step.setpoint, compound=False)
+                rise_k = one.peak_c - held_by(step.setpoint).temperature_c
+                warm = "" if one.held else f", friction warms it by {rise_k:.0f} K"
+                return f"{step.condition:>4}  {told}  {repeats_words(step)} x {1e3 * step.distance_m:g} mm{warm}"
+            case PromptStep():
+                return f"ask: {step.text}"
+            case _:
+                return step.kind
+
+    def heading(self, plan: Plan, step: Step) -> str:
+        """Return what specimen begins with a step."""
+        if not isinstance(step, MountSpecimen):
+            return ""
+        note = f" ({step.note})" if step.note else ""
+        return f"specimen {step.number}: {step.compound}{note}"
+
+    def totals(self, plan: Plan, estimate: Estimate) -> Iterator[str]:
+        """Yield where friction heat matters."""
+        if math.isfinite(estimate.peak_c):
+            yield f"peak temperature  {estimate.peak_c:.0f} degC at the contact"
+        if estimate.not_held:
+            listed = ", ".join(str(number) for number in estimate.not_held[:20])
+            yield f"friction warms the contact beyond its band: conditions {listed}"
+
+    def step_fields(self, step: Step, one: StepEstimate) -> dict[str, object]:
+        """Return what a plan's JSON says of a step that is no condition."""
+        match step:
+            case MountSpecimen():
+                return {"specimen": step.specimen, "replicate": step.replicate, "number": step.number,
+                        "compound": step.compound, "note": step.note}  # fmt: skip
+            case Prepare():
+                return {"load_n": step.load_n, "interface": step.interface, "text": step.text}
+            case Temper():
+                return {"temperature_c": step.temperature_c, "within_k": step.within_k, "for_s": step.for_s}
+            case PromptStep():
+                return {"text": step.text}
+            case _:
+                return {}
+
+
+def _prepare(index: int, before: tuple[float, str] | None, now: tuple[float, str]) -> Prepare:
+    """Return the step that asks for what is other than before."""
+    load_n, interface = now
+    asked = [f"hang {load_n:g} N of weights on the arm"] if before is None or before[0] != load_n else []
+    asked += [f"make the track {_MADE[interface]}"] if before is None or before[1] != interface else []
+    return Prepare(index, load_n, interface, " and ".join(asked))
+
+
+_MADE: Final = {"dry": "clean and dry", "wet": "wet", "talc": "white with talc"}
+
+
+def _limits(rig: TrackConfig, values: Mapping[str, tuple[float, ...]], at: Location, tree: Tree) -> Iterator[Problem]:
+    """Yield what is beyond the rig's limits, with the source of each."""
+    limits, of = rig.limits, f'of rig "{rig.name}"'
+    for index, speed in enumerate(values["track_speed"]):
+        if not limits.slowest_m_s <= speed <= limits.track_speed_m_s:
+            bounds = f"{show(limits.slowest_m_s, 'm/s')} to {show(limits.track_speed_m_s, 'm/s')}"
+            said = f"track_speed: {show(speed, 'm/s')} is beyond what the track does"
+            yield tree.problem((*at, "track_speed", index), f"{said} (limits.slowest and track_speed {of}: {bounds})")
+    for index, load in enumerate(values["load"]):
+        if load not in rig.weights:
+            listed = ", ".join(f"{one:g} N" for one in rig.weights)
+            said = f"load: no weights make {show(load, 'N')}"
+            yield tree.problem((*at, "load", index), f"{said} (weights {of}: {listed})")
+    for index, air_c in enumerate(values["temperature"]):
+        if not limits.air_low_c <= air_c <= limits.air_high_c:
+            bounds = f"{limits.air_low_c:g} to {limits.air_high_c:g} degC"
+            said = f"temperature: {show(air_c, 'degC')} is beyond the air's range"
+            yield tree.problem((*at, "temperature", index), f"{said} (limits.air_low and air_high {of}: {bounds})")
+
+
+PART: Final = TrackPart()

@@ -1,0 +1,63 @@
+"""What a recipe for this machine may say beyond the common sections: the way that a condition slides."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Annotated, TypeAlias
+
+from tester.base.units import Quantity
+from tester.kinds.specimen_on_track.recipe.steps import STRETCHES
+from tester.recipe.plan import Window
+from tester.recipe.schema import GridModel, MeasureModel, Recipe
+from tester.recipe.settings import DEFAULT_EXTENSION, Settings, settings_of
+
+Distance: TypeAlias = Annotated[float, Quantity("mm", ge=0.1, le=1e6)]
+AtLeast: TypeAlias = Annotated[float, Quantity("s", ge=1.0, le=3600.0)]
+
+
+class TrackMeasure(MeasureModel, frozen=True):
+    """How a condition is measured; the defaults of every grid."""
+
+    distance: Distance = 0.5
+    """way over which friction has to be stationary; a repeat collects 1.5 times that"""
+    at_least: AtLeast = 5.0
+    """... and at least as long as this takes at the condition's speed"""
+
+
+class TrackGrid(GridModel, frozen=True):
+    """All combinations of its axes; what is not said here is as in ``measure``."""
+
+    distance: Distance | None = None
+    at_least: AtLeast | None = None
+
+
+class TrackRecipe(Recipe, frozen=True):
+    """A recipe for this machine."""
+
+    measure: TrackMeasure | None = None
+    grids: Sequence[TrackGrid] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class TrackSettings(Settings):
+    """How every condition of a grid is measured."""
+
+    distance_m: float
+    at_least_s: float
+
+    def way_m(self, speed_m_s: float) -> float:
+        """Return the way over which friction is to be stationary at a speed."""
+        return max(self.distance_m, self.at_least_s * speed_m_s)
+
+
+def track_settings(measure: MeasureModel, grid: GridModel) -> TrackSettings:
+    """Return a grid's settings; raises TypeError for one of another kind."""
+    if not isinstance(measure, TrackMeasure) or not isinstance(grid, TrackGrid):
+        raise TypeError(f"grid {grid.name} is for a rig of another kind")
+    common = settings_of(measure, grid)
+    return TrackSettings(
+        common.repeats, common.at_most, common.until_percent, common.min_valid,
+        Window(float(STRETCHES), None, DEFAULT_EXTENSION * STRETCHES), common.temperature_band_k, common.soak,
+        1e-3 * (grid.distance or measure.distance), grid.at_least or measure.at_least,
+    )  # fmt: skip

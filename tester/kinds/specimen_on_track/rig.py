@@ -1,0 +1,238 @@
+"""A rig of this kind: its sections, what must fit together in them, and what its file's reader has to know."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Annotated, ClassVar, Final, Literal
+
+from drivers.axis import AxisConfig
+from sim.physics.track import TrackParameters
+from tester.base.config_reader import Range
+from tester.base.source import Location
+from tester.kinds.specimen_on_track import KIND
+from tester.kinds.specimen_on_track.interlocks.table import TABLE
+from tester.kinds.specimen_on_track.quantities import QUANTITIES
+from tester.machine.interlock_table import InterlockTable
+from tester.quantities import Quantities
+from tester.rig.ceilings import AXES, TRUE, Ceiling, ceilings_of
+from tester.rig.config import CalibrationConfig, OwnDevice, Rig, section_of
+from tester.rig.parameter import SECTION, Direction, Parameter
+
+_POSITIVE = Range(gt=0.0)
+_NOT_NEGATIVE = Range(ge=0.0)
+METRES: Final = {"mm/s": 1e-3, "m/s": 1.0}
+"""Metres in the unit of length of the track's drive."""
+
+
+@dataclass(frozen=True, slots=True)
+class TrackLimitsConfig:
+    """Hard limits: no recipe and no procedure gets past them."""
+
+    force_n: Annotated[float, "N", Range(gt=0.0, le=195.0)]
+    """At most 195 N: the cell of these rigs ends at 200 N."""
+    track_speed_m_s: Annotated[float, "m/s", _POSITIVE]
+    slowest_m_s: Annotated[float, "m/s", _POSITIVE]
+    air_low_c: Annotated[float, "degC", Range(ge=-55.0, le=60.0)]
+    air_high_c: Annotated[float, "degC", Range(ge=-55.0, le=105.0)]
+    travel_low_mm: Annotated[float, "mm", _NOT_NEGATIVE]
+    travel_high_mm: Annotated[float, "mm", _NOT_NEGATIVE]
+
+
+@dataclass(frozen=True, slots=True)
+class TrackAxes:
+    """The drives; the lift is None for an arm that is moved by hand (``manual: true`` in the file)."""
+
+    track: AxisConfig
+    lift: AxisConfig | None
+
+
+@dataclass(frozen=True, slots=True)
+class ArmConfig:
+    """The arm: where it is raised, and when it is where it was sent."""
+
+    raised_mm: Annotated[float, "mm", _POSITIVE]
+    within_mm: Annotated[float, "mm", _POSITIVE]
+
+
+@dataclass(frozen=True, slots=True)
+class TrackGates:
+    """When a sample counts. A recipe sets the temperature band."""
+
+    speed_percent: Annotated[float, "%", _POSITIVE]
+    stationary_percent: Annotated[float, "%", _POSITIVE]
+    settle_s: Annotated[float, "s", _NOT_NEGATIVE]
+
+
+@dataclass(frozen=True, slots=True)
+class HeatConfig:
+    """What is believed of friction heat: checks and plans say by it where it matters."""
+
+    rise: Annotated[float, "K/W", _NOT_NEGATIVE]
+    """Of the specimen's contact, in the end, by the power of friction."""
+
+
+@dataclass(frozen=True, slots=True)
+class TrackArmingConfig:
+    """What is shown before a run may move anything."""
+
+    listen_s: Annotated[float, "s", _NOT_NEGATIVE]
+    bump_test: bool
+    watchdog_proof: bool
+    withhold_s: Annotated[float, "s", _POSITIVE]
+    creep_m_s: Annotated[float, "m/s", _POSITIVE]
+    unloaded_n: Annotated[float, "N", Range(gt=0.0, le=20.0)]
+
+
+@dataclass(frozen=True, slots=True)
+class TrackCertificatesConfig(CalibrationConfig):
+    """What has a certificate."""
+
+    load_cell: str = ""
+    weights: str = ""
+    temperature: str = ""
+
+
+if TYPE_CHECKING:
+
+    @dataclass(frozen=True, slots=True)
+    class TrackInterlocksConfig:
+        """The section ``interlocks``: a field for each parameter of the interlock table."""
+
+        def __getattr__(self, name: str) -> float:
+            """Return a parameter's value in its unit, by the name of its field (``Parameter.name``)."""
+            ...
+
+else:
+    TrackInterlocksConfig = section_of("TrackInterlocksConfig", TABLE.parameters, __name__)
+
+LOWER, HIGHER = Direction.LOWER, Direction.HIGHER
+CEILINGS: Final = (
+    Ceiling("limits.force", "N", LOWER, "195 N", "the cell ends at 200 N: beyond it nobody sees the force any more"),
+    Ceiling("limits.track_speed", "m/s", LOWER, "2.1 m/s",
+            "a disc at 2.1 m/s stands within 1.1 s; what does not must lose its power 3 s after a trip"),
+    Ceiling("limits.air_low", "degC", HIGHER, "-50 degC", "the chamber's own limiter stands by at -55 degC"),
+    Ceiling("limits.air_high", "degC", LOWER, "100 degC", "the chamber's own limiter stands by at 105 degC"),
+    Ceiling("arming.watchdog_proof", "", HIGHER, TRUE,
+            "without it nobody knows whether the drives stop when this program does"),
+    Ceiling("arming.unloaded", "N", LOWER, "10 N", "half of the least weight: an arm that is down must not pass"),
+    Ceiling("can.consumer_heartbeat", "s", LOWER, "250 ms", "a drive goes on for so long when this program is gone"),
+    Ceiling(f"{AXES}rpdo_deadline", "s", LOWER, "250 ms",
+            "a drive goes on for so long when its setpoints do not come", zero_is_off=True),
+    *ceilings_of(SECTION, TABLE.parameters),
+)  # fmt: skip
+"""Every key on which safety hangs, in the order of the kind's page."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TrackConfig(Rig):
+    """A rig: everything about the machine that software needs to know, and nothing about a test."""
+
+    packaged: ClassVar[Mapping[str, str]] = KIND.rigs
+    may_lack: ClassVar[tuple[str, ...]] = (
+        *Rig.may_lack, "axes.*.rpdo_deadline", "axes.*.inputs_period", "axes.*.max_torque_per_mille",
+        "axes.*.home_timeout", "devices.*.emissivity", "gates", "interlocks", "arming", "heat",
+    )  # fmt: skip
+    manual: ClassVar[tuple[str, ...]] = ("lift",)
+    own: ClassVar[Mapping[str, OwnDevice]] = {
+        "load_cell": OwnDevice("load cell", "load_cell"),
+        "chamber": OwnDevice("chamber", "chamber", optional=True),
+        "pyrometer": OwnDevice("pyrometer", "ir_thermometer", optional=True),
+        "thermometer": OwnDevice("thermometer", "ir_thermometer", optional=True),
+    }
+    quantities: ClassVar[Quantities] = QUANTITIES
+    table: ClassVar[InterlockTable] = TABLE
+    parameters: ClassVar[tuple[Parameter, ...]] = TABLE.parameters
+    ceilings: ClassVar[tuple[Ceiling, ...]] = CEILINGS
+    real: ClassVar[tuple[tuple[str, str], ...]] = (("# air around a real rig; the simulated one's is sim.ambient",
+                                                    "# air around the rig"),)  # fmt: skip
+
+    track: Literal["linear", "disc"]
+    weights: tuple[float, ...]
+    """Of the arm, N: what may press, lightest first."""
+    ambient: Annotated[float, "degC", Range(ge=-40.0, le=60.0)]
+    limits: TrackLimitsConfig
+    axes: TrackAxes
+    arm: ArmConfig
+    gates: TrackGates
+    heat: HeatConfig
+    interlocks: TrackInterlocksConfig
+    arming: TrackArmingConfig
+    calibration: TrackCertificatesConfig = field(default_factory=TrackCertificatesConfig)
+    sim: TrackParameters = field(default_factory=TrackParameters)
+    """The simulated rig's physics; without meaning on a real one."""
+
+    @property
+    def ambient_c(self) -> float:
+        """Temperature of the air around the rig, degC."""
+        return self.sim.ambient if self.simulated else self.ambient
+
+    def in_air(self, ambient_c: float) -> TrackConfig:
+        """Return a rig whose file states this temperature of the air around a real one, degC."""
+        return replace(self, ambient=ambient_c)
+
+    def certificates(self) -> TrackCertificatesConfig:
+        """Return the days on which the certificates end."""
+        return self.calibration
+
+    def drives(self) -> Mapping[str, AxisConfig]:
+        """Return the axes that have a drive, by name."""
+        lift = self.axes.lift
+        return {"track": self.axes.track} | ({"lift": lift} if lift is not None else {})
+
+    @property
+    def plant(self) -> TrackParameters:
+        """The section ``sim``."""
+        return self.sim
+
+    @property
+    def faults(self) -> tuple[str, ...]:
+        """What fails by itself on the simulated rig."""
+        return self.sim.faults
+
+    @property
+    def linear(self) -> bool:
+        """The track has two ends."""
+        return self.track == "linear"
+
+    @property
+    def chamber(self) -> bool:
+        """The air around the specimen is heated and cooled."""
+        return "chamber" in self.devices
+
+    @property
+    def heaviest_n(self) -> float:
+        """The greatest load, N."""
+        return max(self.weights, default=0.0)
+
+    @property
+    def metres(self) -> float:
+        """Metres in the unit of length of the track's drive."""
+        return METRES[self.axes.track.unit]
+
+    def problems(self) -> Iterator[tuple[Location, str]]:
+        """Yield what does not fit together between the kind's sections, with its place."""
+        track, limits = self.axes.track, self.limits
+        if track.unit not in METRES or track.mode != "velocity":
+            yield ("axes", "track"), "the track has a speed in mm/s or m/s (expected mode velocity)"
+            return
+        if track.max_speed * self.metres < limits.track_speed_m_s:
+            yield ("axes", "track", "max_speed"), "is less than limits.track_speed"
+        if limits.slowest_m_s >= limits.track_speed_m_s:
+            yield ("limits", "slowest"), "is not below limits.track_speed"
+        if limits.air_low_c >= limits.air_high_c:
+            yield ("limits", "air_low"), "is not below limits.air_high"
+        if not track.digital_io:
+            yield ("axes", "track", "digital_io"), "the track's drive carries the safety inputs (expected true)"
+        if self.linear and track.feedback != "position":
+            yield ("axes", "track", "feedback"), "a linear track has ends: its place is asked (expected position)"
+        if self.linear and limits.travel_low_mm >= limits.travel_high_mm:
+            yield ("limits", "travel_low"), "is not below limits.travel_high"
+        if not self.weights or min(self.weights) <= 0.0 or list(self.weights) != sorted(self.weights):
+            yield ("weights",), "expected one weight in N or more, the lightest first"
+        if not {"chamber", "thermometer"} & self.devices.keys():
+            yield ("devices",), "nothing measures the air at the specimen (expected chamber or thermometer)"
+        if self.simulated and self.linear != (self.sim.motion == "linear"):
+            yield ("sim", "motion"), f"is {self.sim.motion}, and track is {self.track}"
+        if self.simulated and self.chamber != self.sim.enclosed:
+            yield ("sim", "enclosed"), "says otherwise than devices whether there is a chamber"

@@ -1,0 +1,109 @@
+"""What the screens show of this machine: its tables, and a look at a run of it between two ticks."""
+
+from __future__ import annotations
+
+from math import isfinite
+from typing import Final
+
+from tester.kinds.specimen_on_track.axes import AXES, NAME
+from tester.kinds.specimen_on_track.procedures.steps import TemperAir
+from tester.kinds.specimen_on_track.process import GATE_CONTACT, GATE_SETTLING, GATE_SPEED, GATE_TEMPERATURE
+from tester.kinds.specimen_on_track.quantities import QUANTITIES
+from tester.machine.engine import Engine
+from tester.machine.served import News, Wanted
+from tester.screen import AxisView, Check, Gate, HandAxis, MachineView, PlotView, SoakView, trend_columns
+
+GATES: Final = (
+    ("speed", GATE_SPEED), ("temperature", GATE_TEMPERATURE), ("contact", GATE_CONTACT), ("settling", GATE_SETTLING),
+)  # fmt: skip
+HAND: Final = (
+    HandAxis("track", "Track speed", "a tenth of the greatest a step, arm raised"),
+    HandAxis("arm", "Arm", "down or up, track standing"),
+    HandAxis("chamber", "Chamber", "1 K a step"),
+)
+"""In the order of the screen."""
+
+MACHINE: Final = MachineView(
+    NAME,
+    trend_columns(QUANTITIES),
+    (
+        PlotView("friction", "friction", 0.1),
+        PlotView("force", "force_n", 5.0),
+        PlotView("air", "air_c", 4.0),
+        PlotView("track", "track_mm_s", 0.01),
+    ),
+    ("track", "force", "lift", "air", "chamber"),
+    HAND,
+    tuple(AxisView(one.name, one.unit, one.column, one.title, one.word, one.default) for one in AXES),
+    specimen="specimen",
+    moves="the track",
+    look=("Take the weights off the arm if it is down.",),
+)
+
+
+class TrackPanel:
+    """One run on this machine, to look at."""
+
+    def __init__(self, engine: Engine) -> None:
+        """Look only."""
+        self.engine = engine
+        limits = engine.ctx.rig.interlocks
+        self._stale_s = (limits.stale_cell_s, limits.stale_can_s, limits.stale_air_s, limits.stale_exit_s)
+
+    def news(self) -> dict[str, News]:
+        """Return the news of the devices; the drives' are those of the one that was heard of least lately."""
+        r, (cell_s, can_s, air_s, exit_s) = self.engine.ctx.readings, self._stale_s
+        air = News(r.air_at_s, r.air_valid, air_s)
+        pyrometer = self.engine.ctx.devices.pyrometer is not None
+        return {
+            "cell": News(r.cell_at_s, r.cell_valid, cell_s),
+            "can": News(min(r.track_at_s, r.lift_at_s), not r.drive_fault, can_s),
+            "air": air,
+            "contact": News(r.exit_at_s, r.exit_valid, exit_s) if pyrometer else air,
+        }
+
+    def wanted(self) -> dict[str, Wanted]:
+        """Return setpoints and gates of the values that have one."""
+        ctx, out = self.engine.ctx, self.engine.control.state.setpoints
+        target = ctx.target
+        mm_s = 1e3 * out.track_m_s
+        found = {
+            "track": Wanted(mm_s, abs(0.01 * ctx.rig.gates.speed_percent * mm_s)),
+            "lift": Wanted(out.lift_mm),
+            "load": Wanted(ctx.on.weights_n if ctx.demand.lowered else 0.0),
+            "air": Wanted(out.chamber_c if out.chamber else None),
+        }
+        if ctx.burst > 0:
+            found["air"] = Wanted(target.temperature_c, target.band_k)
+        return found
+
+    def gates(self) -> tuple[Gate, ...]:
+        """Return the gates as of the last scan."""
+        closed = self.engine.ctx.gate
+        return tuple(Gate(key, not closed & bit) for key, bit in GATES)
+
+    def soak(self, now: float) -> SoakView | None:
+        """Return the soak under way, None where there is none."""
+        activity = self.engine.executor.activity
+        if not isinstance(activity, TemperAir):
+            return None
+        air_c, step = self.engine.ctx.readings.air_c, activity.temper
+        return SoakView(
+            air_c if isfinite(air_c) else None, step.temperature_c, step.within_k,
+            max(now - activity.since_s, 0.0) if isfinite(activity.since_s) else 0.0, step.for_s,
+            max(now - activity.began_s, 0.0) if isfinite(activity.began_s) else 0.0, step.at_most_s,
+        )  # fmt: skip
+
+    def checks(self) -> tuple[Check, ...]:
+        """Return what the connected rig says of its readiness."""
+        r, on = self.engine.ctx.readings, self.engine.ctx.on
+        return (
+            Check("safety chain", r.safety_chain, "closed" if r.safety_chain else "open"),
+            Check("guard closed", r.guard_closed, "" if r.guard_closed else "the guard is open"),
+            Check("specimen", None, f"{on.compound}, {1e3 * on.sliding_m:.1f} mm slid" if on.number else "none on"),
+        )
+
+    def mounted(self) -> tuple[int, str]:
+        """Return number and compound of the specimen on the arm."""
+        on = self.engine.ctx.on
+        return on.specimen, on.compound

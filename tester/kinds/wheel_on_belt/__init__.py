@@ -1,0 +1,67 @@
+"""A rubber wheel that rolls and slips on a belt: the machine of Polymers 2024, 16(5), 596."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+from tester.kind import Kind
+
+if TYPE_CHECKING:
+    from tester.fit.part import FitPart
+    from tester.machine.interlock_sheet import InterlockSheet
+    from tester.machine.run_parts import KindRun
+    from tester.machine.served import ServedKind
+    from tester.recipe.part import RecipePart
+    from tester.rig import Rig
+
+
+def _rig() -> type[Rig]:
+    from tester.kinds.wheel_on_belt.rig.config import RigConfig
+
+    return RigConfig
+
+
+def _interlocks() -> InterlockSheet:
+    from tester.kinds.wheel_on_belt.interlocks import operation
+    from tester.kinds.wheel_on_belt.interlocks.table import INTERLOCKS
+    from tester.machine.interlock_sheet import InterlockSheet
+
+    return InterlockSheet(INTERLOCKS, operation.PARAMETERS, operation.ABOUT)
+
+
+def _recipe() -> RecipePart:
+    from tester.kinds.wheel_on_belt.recipe.part import PART
+
+    return PART
+
+
+def _runs() -> KindRun:
+    from tester.kinds.wheel_on_belt.runs import RUNS
+
+    return RUNS
+
+
+def _served() -> ServedKind:
+    from tester.kinds.wheel_on_belt.served import SERVED
+
+    return SERVED
+
+
+def _fits() -> FitPart:
+    from tester.kinds.wheel_on_belt.fit.part import FITS
+
+    return FITS
+
+
+KIND: Final = Kind(
+    name="wheel_on_belt",
+    title="rubber wheel on a belt",
+    rigs={"sim": "sim:rig.yaml"},
+    rig=_rig,
+    interlocks=_interlocks,
+    page="docs/safety.md",
+    recipe=_recipe,
+    runs=_runs,
+    served=_served,
+    fits=_fits,
+)

@@ -1,0 +1,229 @@
+"""Brings up to date what the interlocks' conditions may look at, once a scan."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from math import inf, sqrt
+from typing import Final
+
+from tester.kinds.wheel_on_belt.control.observer import ThermalObserver
+from tester.kinds.wheel_on_belt.control.state import WheelState
+from tester.kinds.wheel_on_belt.interlocks.contact import UNLOADED_N
+from tester.kinds.wheel_on_belt.interlocks.force_observer import ForceObserver
+from tester.kinds.wheel_on_belt.interlocks.heat_balance import HeatBalance
+from tester.kinds.wheel_on_belt.interlocks.heat_ratio import KnownRatio
+from tester.kinds.wheel_on_belt.interlocks.hub import (
+    HEAT_LEAK_W,
+    HEAT_SHARE,
+    HEAT_SHARE_KNOWN,
+    OPEN_BELOW_K,
+    OPEN_OUTPUT_PERCENT,
+    OPEN_RISE_K,
+    RATE_FILTER_S,
+    RATE_SETTLE_S,
+    RATE_WINDOW_S,
+)
+from tester.kinds.wheel_on_belt.interlocks.inputs import Inputs, PressBand, RigLimits
+from tester.kinds.wheel_on_belt.interlocks.known import STANDING_M_S
+from tester.kinds.wheel_on_belt.interlocks.monitors import JacketMonitor, PressTracker, SpeedTracker, SurfaceMonitor
+from tester.kinds.wheel_on_belt.interlocks.motion import RAMP_SHARE
+from tester.kinds.wheel_on_belt.interlocks.temperatures import BLIND_S
+from tester.kinds.wheel_on_belt.interlocks.witness import (
+    FORCE_STEP_CROSS_SHARE,
+    FORCE_STEP_SEEN_SHARE,
+    FORCE_STEP_UNSEEN_SHARE,
+)
+from tester.kinds.wheel_on_belt.process import Demand, Press, Readings
+from tester.kinds.wheel_on_belt.rig import RigConfig
+from tester.machine.state import Mode
+from tester.rig.config import values_of
+from tester.rig.parameter import Values
+
+_INF: Final = inf
+
+# Bound once: a look-up on the enum class costs several times as much in every scan (CPython 3.11).
+_LOAD: Final = Press.LOAD
+_RUN: Final = Mode.RUN
+_HOLD: Final = Mode.HOLD
+_COOLDOWN: Final = Mode.COOLDOWN
+
+
+@dataclass(slots=True)
+class InterlockInputs(Inputs):
+    """One object serves every scan: ``look`` brings it up to date."""
+
+    state: WheelState = field(kw_only=True)
+    rig: RigConfig = field(kw_only=True)
+    observer: ThermalObserver = field(init=False)
+
+    def __post_init__(self) -> None:
+        """Take over the parts of the rig file that conditions compare with, and the state they look at."""
+        rig, state = self.rig, self.state
+        self.parameters = p = values_of(rig.interlocks, rig.table.parameters)
+        self.limits = limits_of(rig)
+        self.setpoints, self.contact = state.setpoints, state.load
+        self.stop, self.stop_start = state.stop, state.stop_start
+        self.hub_setpoints = state.hub_ceiling
+        self.observer = ThermalObserver(rig)
+        self.jacket = _jacket_monitor(p)
+        self.surface = SurfaceMonitor(p[BLIND_S])
+        radius_m = 0.5e-3 * rig.geometry.wheel_diameter_mm
+        self.wheel = SpeedTracker(p[RAMP_SHARE] * rig.axes.wheel.acceleration * radius_m)
+        self.belt = SpeedTracker(p[RAMP_SHARE] * rig.axes.belt.acceleration)
+        self.press = PressTracker(p[RAMP_SHARE] * rig.loops.load.acceleration_mm_s2)
+        self.press_band = _press_band(rig)
+        self.force = ForceObserver(
+            self.limits.stiffness_n_per_mm,
+            p[FORCE_STEP_UNSEEN_SHARE],
+            p[FORCE_STEP_SEEN_SHARE],
+            p[FORCE_STEP_CROSS_SHARE],
+        )
+        self.heat = _heat_balance(rig, p)
+
+    def look(self, demand: Demand, readings: Readings, scan_s: float, dt: float) -> None:
+        """Take this scan's demand and readings, and work out what several conditions ask for."""
+        self.readings = r = readings
+        self.demand = demand
+        state = self.state
+        self.note_times(state, r.now_s, scan_s)
+        self.pressing = pressing = demand.press is _LOAD
+        self.loaded = loaded = pressing or not (r.force_z_n < UNLOADED_N)
+        if pressing:
+            self.least_n = inf
+            contact_mm = state.load.worn_to_mm(r.diameter_mm)
+            if not -_INF < contact_mm < _INF:
+                contact_mm = self.rig.geometry.touch_mm + 0.5 * (self.rig.geometry.wheel_diameter_mm - r.diameter_mm)
+            self.contact_mm = contact_mm
+            if r.cell_valid and r.cell_at_s > self.force.stamp_s:
+                self.force.update(r)
+        elif r.force_z_n < self.least_n:
+            self.least_n = r.force_z_n
+        if not pressing and self.force.kept:
+            self.force.forget()
+        wheel_m_s = r.wheel_speed_m_s
+        still = self.parameters[STANDING_M_S]
+        self.turning = wheel_m_s > still or wheel_m_s < -still
+        self._follow_speeds(demand, r, dt)
+        self._note_rest(demand, r)
+        if self.attended is not demand.attended:
+            self.attended = demand.attended
+            self._forget_readings(r.now_s)
+        observer = self.observer
+        if loaded:
+            fx, fy = r.force_x_n, r.force_y_n
+            self.friction_n = friction = sqrt(fx * fx + fy * fy)
+            self.friction_w = power = friction * r.slip_m_s
+            if not (r.force_z_n < UNLOADED_N):
+                observer.rub(power, dt)
+        else:
+            self.friction_n = self.friction_w = 0.0
+        if r.now_s >= observer.due_s:
+            hub_c = r.hub_c if r.jacket_valid else self.jacket.hub_c
+            observer.step(r.now_s, hub_c, wheel_m_s, r.surface_c)
+            self.heat.update(r.now_s, hub_c, r.heat_percent if r.contactor_closed else 0.0, observer.given_j)
+        if r.jacket_at_s > self.jacket.stamp_s:
+            out = state.setpoints
+            self.jacket.update(r, out.heat, out.hub_c)
+        self.model_c = model_c = observer.surface_c
+        if r.surface_at_s > self.surface.stamp_s:
+            self.surface.update(r, model_c)
+
+    def _follow_speeds(self, demand: Demand, r: Readings, dt: float) -> None:
+        """Bring the speed trackers up to date while the drives are in operation and something commands them.
+
+        A stop has limits of its own: its ramps are steeper, and it says itself what has not come to its end.
+        """
+        mode = self.state.mode
+        if not demand.enabled or not (mode is _RUN or mode is _HOLD or mode is _COOLDOWN):
+            self.confirmed = False
+            return
+        if not self.confirmed:
+            if not r.drives_enabled:
+                return
+            self.confirmed = True
+            self.wheel.begin(r.wheel_speed_m_s)
+            self.belt.begin(r.belt_speed_m_s)
+            self.press.begin(r)
+        out = self.state.setpoints
+        self.wheel.follow(out.wheel_rad_s * r.diameter_mm * 0.5e-3, dt)
+        self.belt.follow(out.belt_m_s, dt)
+        self.press.follow(out.press_mm_s, dt, r)
+
+    def _note_rest(self, demand: Demand, r: Readings) -> None:
+        """Note when a run has its drives off, and where the press stood at most since."""
+        mode = self.state.mode
+        if self.confirmed or not (mode is _RUN or mode is _HOLD):
+            self.unpowered = False
+        elif self.unpowered or (not demand.enabled and r.drives_disabled):
+            if not self.unpowered or r.press_mm < self.rest_mm:
+                self.rest_mm = r.press_mm
+            self.unpowered = True
+
+    def wheel_changed(self, now: float) -> None:
+        """Begin anew with a wheel at ambient temperature: nothing is compared with the one before."""
+        self.observer.new_wheel()
+        self._forget_readings(now)
+
+    def know_heat(self, known: KnownRatio) -> str:
+        """Take over what the rig's own heatings have shown, before the first scan; return it in words."""
+        widest, beyond = self.parameters[HEAT_SHARE], self.parameters[HEAT_SHARE_KNOWN]
+        self.heat.share = known.share(widest, beyond)
+        return known.told(widest, beyond)
+
+    def _forget_readings(self, now: float) -> None:
+        """Compare no temperature with the one before."""
+        self.surface.forget(now)
+        self.jacket.forget(now)
+        self.heat.forget()
+
+
+def limits_of(rig: RigConfig) -> RigLimits:
+    """Take over what conditions compare with from a rig file's sections beside ``interlocks``.
+
+    The configuration is known by its annotations and therefore stays Python where the scan is compiled
+    (docs/decisions/0019); asking it in every scan would cost more than comparing.
+    """
+    limits, belt = rig.limits, rig.axes.belt
+    low_mm, high_mm = rig.axes.press.software_limits or (-inf, inf)
+    return RigLimits(
+        load_n=limits.load_n,
+        heartbeat_s=rig.can.drive_heartbeat_s,
+        wheel_speed_m_s=limits.wheel_speed_m_s,
+        belt_speed_m_s=limits.belt_speed_m_s,
+        slip_power_w=limits.slip_power_w,
+        roller_m=0.5e-3 * rig.geometry.belt_roller_diameter_mm,
+        jacket_c=limits.jacket_c,
+        surface_c=limits.surface_c,
+        hub_min_c=rig.loops.heat.hub_min_c,
+        stiffness_n_per_mm=rig.loops.load.stiffness_n_per_mm,
+        press_low_mm=low_mm,
+        press_high_mm=high_mm,
+        deceleration_m_s2=belt.deceleration,
+        quick_stop_m_s2=belt.quick_stop_deceleration,
+    )
+
+
+def _press_band(rig: RigConfig) -> PressBand:
+    screw = rig.axes.press.screw
+    if screw is None:
+        return PressBand(known=False)
+    return PressBand(True, screw.drag_most_nm, screw.spring_n, screw.reached_n_per_nm, screw.held_n_per_nm)
+
+
+def _heat_balance(rig: RigConfig, p: Values) -> HeatBalance:
+    thermal = rig.observer.thermal
+    return HeatBalance(
+        thermal.hub_capacity, thermal.hub_to_shaft, thermal.jacket_power, rig.ambient_c, p[HEAT_SHARE], p[HEAT_LEAK_W]
+    )
+
+
+def _jacket_monitor(p: Values) -> JacketMonitor:
+    return JacketMonitor(
+        blind_s=p[BLIND_S],
+        rate_filter_s=p[RATE_FILTER_S],
+        rate_window_s=p[RATE_WINDOW_S],
+        rate_settle_s=p[RATE_SETTLE_S],
+        open_output_percent=p[OPEN_OUTPUT_PERCENT],
+        open_below_k=p[OPEN_BELOW_K],
+        open_rise_k=p[OPEN_RISE_K],
+    )

@@ -1,0 +1,136 @@
+"""The thermal observer: what the rubber's surface should read, worked out from the hub and the friction alone.
+
+The infrared thermometer can lie (misaligned, dirty, wrong emissivity) and a heat loop that believes it overheats the
+rubber. The observer never uses it after the start: the hub's own sensor is its boundary, the measured friction power
+its source, the rig file's ``observer`` section its parameters. It is coarser than the simulated wheel
+on purpose: a few cells and half a second of step are enough to tell 8 K.
+"""
+
+from __future__ import annotations
+
+from itertools import accumulate, pairwise
+from math import isfinite, log, nan, pi
+from typing import Final
+
+from sim.physics.thermal import cell_thicknesses
+from tester.kinds.wheel_on_belt.rig import RigConfig
+
+CELLS: Final = 5
+OUTER_CELL_MM: Final = 0.5
+"""Mesh over the rubber layer [A]: the surface's first second is not its business."""
+STEP_S: Final = 0.5
+"""Length of a step; the outermost cell is stable up to about one second [A]."""
+LONGEST_S: Final = 60.0
+"""A longer gap between two scans than this is not caught up with, s: scans that late have tripped."""
+
+
+class ThermalObserver:
+    """Temperatures of rubber and belt, degC; ``surface_c`` is NaN before hub and surface have been read once.
+
+    ``rub`` collects what one scan brought; ``step`` is called when ``due_s`` has come, and leaves in ``given_j``
+    the heat that it let flow from hub to rubber, J.
+    """
+
+    __slots__ = (
+        "_air_rotating",
+        "_air_stopped",
+        "_ambient_c",
+        "_belt_j_k",
+        "_belt_to_air",
+        "_cell_j_k",
+        "_contact_s",
+        "_energy_j",
+        "_last_s",
+        "_links",
+        "_outer",
+        "_rotating_above",
+        "_share",
+        "_sides",
+        "_touching",
+        "belt_c",
+        "cells_c",
+        "due_s",
+        "given_j",
+        "surface_c",
+    )
+
+    def __init__(self, rig: RigConfig) -> None:
+        """Work out the conductances (W/K) and heat capacities (J/K) from the rig file's ``observer`` section."""
+        observer, thermal, wheel = rig.observer, rig.observer.thermal, rig.observer.wheel
+        outer_m, width_m = 0.5e-3 * wheel.outer_diameter, 1e-3 * wheel.width
+        thick = cell_thicknesses(1e-3 * wheel.rubber_layer, CELLS, 1e-3 * OUTER_CELL_MM)
+        faces = list(accumulate(thick, initial=outer_m - 1e-3 * wheel.rubber_layer))
+        middles = [0.5 * (a + b) for a, b in pairwise(faces)]
+        areas = [pi * (b * b - a * a) for a, b in pairwise(faces)]
+        radial = 2.0 * pi * thermal.conductivity * width_m
+        tread = 2.0 * pi * outer_m * width_m
+        hub = 1.0 / (1.0 / thermal.hub_to_rubber + log(middles[0] / faces[0]) / radial)
+        self._links = (hub, *(radial / log(b / a) for a, b in pairwise(middles)))
+        self._outer = radial / log(faces[-1] / middles[-1])
+        self._cell_j_k = tuple(thermal.density * thermal.heat_capacity * width_m * area for area in areas)
+        self._sides = tuple(thermal.film_sides * 2.0 * area for area in areas)
+        self._air_rotating = thermal.film_rotating * tread
+        self._air_stopped = thermal.film_stopped * tread
+        self._rotating_above = thermal.rotating_above
+        self._share = observer.friction_heat_fraction
+        self._touching = observer.belt_conductance
+        self._belt_j_k = thermal.belt_capacity
+        self._belt_to_air = thermal.belt_to_air
+        self._ambient_c = rig.ambient_c
+        self._energy_j = self._contact_s = 0.0
+        self._last_s = nan
+        self.given_j = 0.0
+        self.due_s = float("-inf")
+        self.belt_c = rig.ambient_c
+        self.cells_c: list[float] = []
+        self.surface_c = nan
+
+    def new_wheel(self) -> None:
+        """Take a wheel at ambient temperature: a new one from the shelf. The hub keeps its temperature."""
+        self.cells_c = [self._ambient_c] * CELLS
+        self.surface_c = self._ambient_c
+
+    def rub(self, power_w: float, dt: float) -> None:
+        """Note ``dt`` s of contact at a friction power in W; what is not a number counts as none."""
+        if power_w >= 0.0:
+            self._energy_j += power_w * dt
+        self._contact_s += dt
+
+    def step(self, now: float, hub_c: float, wheel_m_s: float, measured_c: float) -> None:
+        """Catch up with ``now``; ``measured_c`` is used once, to begin with."""
+        self.due_s = now + STEP_S
+        self.given_j = 0.0
+        if not isfinite(hub_c):
+            return
+        if not self.cells_c:
+            if not isfinite(measured_c):
+                return
+            # A wheel that was there before: its rubber lies somewhere between hub and surface.
+            self.cells_c = [hub_c + (measured_c - hub_c) * (i + 0.5) / CELLS for i in range(CELLS)]
+            self._last_s = now
+        if not isfinite(self._last_s):
+            self._last_s = now
+        elapsed = min(now - self._last_s, LONGEST_S)
+        self._last_s = now
+        if elapsed <= 0.0:
+            return
+        power_w, contact = self._energy_j / elapsed, min(self._contact_s / elapsed, 1.0)
+        self._energy_j = self._contact_s = 0.0
+        steps = 1 + int(elapsed / (1.2 * STEP_S))
+        air = self._air_rotating if abs(wheel_m_s) > self._rotating_above else self._air_stopped
+        for _ in range(steps):
+            self._advance(elapsed / steps, hub_c, power_w, air, self._touching * contact)
+
+    def _advance(self, dt: float, hub_c: float, power_w: float, air: float, belt: float) -> None:
+        cells, ambient, outer = self.cells_c, self._ambient_c, self._outer
+        heat = outer * cells[-1] + self._share * power_w + air * ambient + belt * self.belt_c
+        self.surface_c = surface = heat / (outer + air + belt)
+        flow_in = self._links[0] * (hub_c - cells[0])
+        self.given_j += dt * flow_in
+        last = len(cells) - 1
+        for i, here in enumerate(cells):
+            flow_out = self._links[i + 1] * (here - cells[i + 1]) if i < last else outer * (here - surface)
+            cells[i] = here + dt * (flow_in - flow_out - self._sides[i] * (here - ambient)) / self._cell_j_k[i]
+            flow_in = flow_out
+        gain = (1.0 - self._share) * power_w + belt * (surface - self.belt_c)
+        self.belt_c += dt * (gain - self._belt_to_air * (self.belt_c - ambient)) / self._belt_j_k

@@ -1,0 +1,197 @@
+"""One control step of this machine: what it commands in each mode, within which bounds. No I/O, no clock."""
+
+from __future__ import annotations
+
+from math import inf
+from typing import Final
+
+from tester.kinds.wheel_on_belt.control.interlock_inputs import InterlockInputs
+from tester.kinds.wheel_on_belt.control.permissives import Bounds, confirmed_speed_m_s, may_heat, may_load, rig_bounds
+from tester.kinds.wheel_on_belt.control.safe_outputs import mirror_emergency, no_outputs, safe_outputs
+from tester.kinds.wheel_on_belt.control.state import WheelState
+from tester.kinds.wheel_on_belt.control.stops import (
+    cool_outputs,
+    must_cool,
+    note_fast_stop,
+    note_stop,
+    stop_ended,
+    stop_outputs,
+)
+from tester.kinds.wheel_on_belt.interlocks.contact import UNLOADED_N
+from tester.kinds.wheel_on_belt.interlocks.hub import RUNAWAY_WINDOW_S
+from tester.kinds.wheel_on_belt.interlocks.operation import ACK_WAIT_S, COLD_K, HOLD_AT_MOST_S, START_K
+from tester.kinds.wheel_on_belt.process import Demand, Press, Readings
+from tester.kinds.wheel_on_belt.rig import RigConfig
+from tester.machine.control import Control, bounded, may_move
+
+CEILING_STEP_S: Final = 1.0
+"""How exactly it knows when a setpoint was left, s."""
+
+# Bound once: a look-up on the enum class costs several times as much in every scan (CPython 3.11).
+_INF: Final = inf
+_LOAD: Final = Press.LOAD
+_LIFT: Final = Press.LIFT
+
+
+class WheelControl(Control[WheelState, Readings, Demand, InterlockInputs]):
+    """The control of a wheel on a belt."""
+
+    def __init__(
+        self, rig: RigConfig, state: WheelState, loss_ratios: tuple[float, float], recipe: Bounds | None = None
+    ) -> None:
+        """Bind configuration and state.
+
+        ``loss_ratios``: steady hub-surface difference per kelvin above ambient, (lifted, in rolling contact).
+        ``recipe``: the most the recipe asks for; commands stay within it and the rig's own bounds.
+        """
+        view = InterlockInputs(state=state, rig=rig)
+        p = view.parameters
+        super().__init__(
+            state, view, rig.table, Demand(), Demand(), hold_at_most_s=p[HOLD_AT_MOST_S], ack_wait_s=p[ACK_WAIT_S]
+        )
+        self.rig = rig
+        self.loss_ratios = loss_ratios
+        self.bounds = rig_bounds(rig) if recipe is None else rig_bounds(rig).within(recipe)
+        self._parameters = p
+        self._confirmed_m_s = confirmed_speed_m_s(p)
+        self._load_loop, self._heat_loop = rig.loops.load, rig.loops.heat
+        self._ambient_c = rig.ambient_c
+
+    # -- the inputs of the rows -----------------------------------------------------------------------------
+
+    def look(self, demand: Demand, readings: Readings, scan_s: float, dt: float) -> None:
+        """Bring the view up to date."""
+        self.view.look(demand, readings, scan_s, dt)
+
+    def unfit(self, readings: Readings) -> list[str]:
+        """Tell a thermometer that looks elsewhere: with a cold hub it shows what the hub shows."""
+        r, p = readings, self._parameters
+        cold = abs(r.hub_c - self.rig.ambient_c) <= p[COLD_K]
+        if cold and not abs(r.surface_c - r.hub_c) <= p[START_K]:
+            return [f"thermometer at {r.surface_c:.1f} degC, hub cold at {r.hub_c:.1f} degC"]
+        return []
+
+    def detail(self, readings: Readings) -> str:
+        """Name the values a reader of the journal wants first."""
+        return (
+            f"Fz {readings.force_z_n:.1f} N, wheel {readings.wheel_speed_m_s:.3f} m/s,"
+            f" belt {readings.belt_speed_m_s:.3f} m/s,"
+            f" surface {readings.surface_c:.1f} degC, hub {readings.hub_c:.1f} degC"
+        )
+
+    # -- stops ----------------------------------------------------------------------------------------------
+
+    def stop_outputs(self) -> None:
+        """Command a controlled or a fast stop."""
+        stop_outputs(self.state, self.view)
+
+    def safe_outputs(self) -> None:
+        """Command zero to every axis, lift, quick stop, heat off, contactor open."""
+        safe_outputs(self.state.setpoints, self.rig, fast=True)
+
+    def emergency_outputs(self) -> None:
+        """Mirror the hardware's emergency stop."""
+        mirror_emergency(self.state.setpoints, self.rig)
+
+    def rest_outputs(self) -> None:
+        """Command nothing."""
+        no_outputs(self.state.setpoints, self.rig)
+
+    def withdraw_escalation(self) -> None:
+        """Let drives and jacket hear from us again."""
+        super().withdraw_escalation()
+        self.state.setpoints.jacket_silent = False
+
+    def end_lease(self, readings: Readings) -> None:
+        """Renew the jacket's setpoint no more while it gives output."""
+        if not (readings.heat_percent <= 0.0):
+            self.state.setpoints.jacket_silent = True
+
+    def note_stop(self) -> None:
+        """Note speeds and the press's place."""
+        note_stop(self.state, self.view, self.bounds)
+
+    def note_fast_stop(self) -> None:
+        """Note speeds."""
+        note_fast_stop(self.state, self.view, self.bounds)
+
+    def note_rest(self) -> None:
+        """Note where the press rests."""
+        press_mm = self.view.readings.press_mm
+        self.state.stop_start.press_mm = press_mm if -_INF < press_mm < _INF else _INF
+
+    def stop_ended(self) -> bool:
+        """Tell whether the rig stands, lifted, unloaded and without heat."""
+        return stop_ended(self.state, self.view)
+
+    def must_cool(self) -> str:
+        """Tell that the hub is too hot to stand."""
+        return must_cool(self.view)
+
+    def cool_outputs(self) -> str:
+        """Command the cool-down."""
+        return cool_outputs(self.state, self.view)
+
+    # -- RUN and HOLD ---------------------------------------------------------------------------------------
+
+    def keep(self, held: Demand, demand: Demand) -> None:
+        """Lift, take the slip out, keep speed, angles and heat."""
+        held.press, held.load_n, held.quick_touch = _LIFT, 0.0, False
+        held.wheel_speed_m_s = held.belt_speed_m_s = demand.wheel_speed_m_s
+        held.positions.update(demand.positions)
+        held.surface_c, held.freeze_heat = demand.surface_c, False
+
+    def run_outputs(self, demand: Demand, readings: Readings, dt: float) -> None:
+        """Command speeds, angles, press and heat as they are wanted, within the bounds."""
+        out, state, bounds = self.state.setpoints, self.state, self.bounds
+        out.enable = demand.enabled and may_move(readings)
+        out.quick_stop = False
+        self._position(demand, readings)
+        wheel = bounded(demand.wheel_speed_m_s, bounds.wheel_speed_m_s)
+        out.belt_m_s = bounded(demand.belt_speed_m_s, bounds.belt_speed_m_s)
+        out.wheel_rad_s = wheel / (readings.diameter_mm * 0.5e-3) if readings.diameter_mm > 1.0 else 0.0
+        load = self._load_loop
+        if not readings.drives_enabled:
+            out.press_mm_s = 0.0
+        elif demand.press is _LOAD and not may_load(state, demand, readings, self._parameters, bounds.load_n):
+            out.press_mm_s = -load.lift_speed_mm_s if not (readings.force_z_n <= UNLOADED_N) else 0.0
+        else:
+            out.press_mm_s = state.load.velocity(demand, readings, dt, load)
+        self._heat(demand, readings)
+
+    def _position(self, demand: Demand, readings: Readings) -> None:
+        """Positioned axes move only unloaded; under load they stay where they were commanded."""
+        if readings.force_z_n < UNLOADED_N:
+            positions, most = self.state.setpoints.positions, self.bounds.positions
+            for name, wanted in demand.positions.items():
+                positions[name] = bounded(wanted, most[name])
+
+    def _heat(self, demand: Demand, readings: Readings) -> None:
+        out, state, now = self.state.setpoints, self.state, readings.now_s
+        least_c = self.view.limits.hub_min_c
+        if not readings.wheel_speed_m_s > self._confirmed_m_s:
+            state.turning_since_s = inf
+        elif state.turning_since_s > now:
+            state.turning_since_s = now
+        wanted = -_INF < demand.surface_c < _INF
+        out.heat = out.contactor = wanted and may_heat(state, readings, self._parameters)
+        if not wanted:
+            out.hub_c = least_c
+        elif not demand.freeze_heat:
+            target = min(demand.surface_c, self.bounds.surface_c)
+            ratio = self.loss_ratios[1 if state.load.in_contact else 0]
+            hub_c = state.heat.update(now, target, readings.surface_c, self._ambient_c, ratio, self._heat_loop)
+            out.hub_c = min(hub_c, self.bounds.hub_c)
+        setpoint_c = out.hub_c if out.heat else least_c
+        ceiling = state.hub_ceiling
+        if not ceiling or ceiling[-1][1] != setpoint_c or now - ceiling[-1][0] >= CEILING_STEP_S:
+            self._note_ceiling(now, setpoint_c)
+
+    def _note_ceiling(self, now: float, setpoint_c: float) -> None:
+        """Keep the highest hub setpoint of ``runaway_window`` at the front of a short monotonic list."""
+        ceiling = self.state.hub_ceiling
+        while ceiling and ceiling[-1][1] <= setpoint_c:
+            ceiling.pop()
+        ceiling.append((now, setpoint_c))
+        while ceiling[0][0] < now - self._parameters[RUNAWAY_WINDOW_S]:
+            ceiling.pop(0)

@@ -1,0 +1,56 @@
+"""The paper's appendices as they ship: every row with a word on its quality.
+
+Polymers 2024, 16(5), 596, doi 10.3390/polym16050596 (CC BY 4.0). The printed tables cannot be read everywhere; ``ok``
+rows can, ``reconstructed`` ones follow from others (the column ``note`` says from which), ``suspect`` ones contradict
+others, ``missing`` ones are not to be read. Nothing is filled in.
+"""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Mapping
+from importlib.resources import files
+from typing import Final
+
+from tester.fit.law import FitPoint, Source, Sourced
+
+APPENDICES: Final[Mapping[str, str]] = {"appendix-a": "appendix_a.csv", "appendix-b": "appendix_b.csv"}
+"""Names of the packaged sources, and their files."""
+READABLE: Final = frozenset({"ok", "reconstructed"})
+_AGAIN: Final = "_dupT"
+"""Ends the group of rows that the paper prints a second time."""
+
+
+def rows(name: str) -> list[dict[str, str]]:
+    """Return the rows of a packaged appendix as they stand; raises KeyError for a name that is none."""
+    place = files("tester.kinds.wheel_on_belt.fit").joinpath("data", APPENDICES[name])
+    return list(csv.DictReader(place.read_text(encoding="utf-8").splitlines()))
+
+
+def appendix(name: str) -> Sourced:
+    """Return the conditions of an appendix that a law can be fitted to, and why others are left out.
+
+    Laws know no sideslip; rows that the paper repeats count once. Raises KeyError for a name that is none.
+    """
+    source = Source(name)
+    points: list[FitPoint] = []
+    left_out: list[tuple[str, str]] = []
+    for row in rows(name):
+        reason = _reason(row)
+        if reason:
+            left_out.append((row["row_id"], reason))
+            continue
+        held = (float(row["temp_C"]), float(row["load_N"]), 1e-3 * float(row["slip_mm_s"]))
+        points.append(FitPoint(row["row_id"], row["formula"], held, held, float(row["mu"]), source))
+    return Sourced(tuple(points), tuple(left_out))
+
+
+def _reason(row: Mapping[str, str]) -> str:
+    """Return why a row is left out, "" where it is not."""
+    if row["quality"] not in READABLE:
+        return f"quality: {row['quality']}"
+    if float(row["angle_deg"]) != 0.0:
+        return "sideslip: the laws know none"
+    if row["group"].endswith(_AGAIN):
+        return "printed twice"
+    return ""

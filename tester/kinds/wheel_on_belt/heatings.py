@@ -1,0 +1,78 @@
+"""Heatings as evidence: what a run's record keeps of them, and what later runs on the rig read there.
+
+They are events of the kind ``heat`` whose data is JSON: the rig, what its ratio was reckoned with, and the numbers. A
+rig file with other beliefs is another rig as far as its heat goes, and starts anew.
+"""
+
+from __future__ import annotations
+
+import json
+import sqlite3
+from collections.abc import Iterable, Sequence
+from contextlib import suppress
+from dataclasses import replace
+from hashlib import sha256
+from pathlib import Path
+from typing import Final, cast
+
+from tester.kinds.wheel_on_belt.interlocks import hub, surface
+from tester.kinds.wheel_on_belt.interlocks.heat_ratio import KnownRatio, known_ratio
+from tester.kinds.wheel_on_belt.rig import RigConfig
+from tester.store.catalogue import run_folders, under_way
+from tester.store.reader import RunReader
+from tester.store.schema import StoreError
+
+KIND: Final = "heat"
+LEAST_RISE_K: Final = 20.0
+"""A hub that rose by less in a heating says little: a sensor that lags by 1 K is 5 % of it [A]."""
+LEAST_J: Final = 10e3
+"""From this heat on a balance says something, J [A]: what a late sensor hides is 2 % of it."""
+_IN_HEAT: Final = frozenset(row.name for row in (*hub.ROWS, *surface.ROWS))
+"""Trips after which nothing that the run said of heat is believed."""
+
+
+def heating_data(rig: RigConfig, put_j: float, shown_j: float, rise_k: float) -> str:
+    """Return what an event keeps of a heating: heat put in and heat shown, J, and the hub's rise, K."""
+    numbers = {"put_j": round(put_j, 1), "shown_j": round(shown_j, 1), "rise_k": round(rise_k, 2)}
+    return json.dumps({"rig": rig.name, "beliefs": beliefs_of(rig), **numbers})
+
+
+def beliefs_of(rig: RigConfig) -> str:
+    """Return a fingerprint of what a ratio hangs on: the file's section ``observer`` and, of a twin, its ``sim``."""
+    of = (rig.observer, replace(rig.sim, faults=()) if rig.simulated else None)
+    return sha256(repr(of).encode()).hexdigest()[:16]
+
+
+def known_heat(runs: Path, rig: RigConfig) -> KnownRatio:
+    """Return what the runs in a folder make known of a rig's heat balance; those under way are left out.
+
+    A run that cannot be read is no evidence, nor one that tripped in heat.
+    """
+    return known_from([ratio for folder in run_folders(runs) for ratio in _evidence(folder, rig)], rig)
+
+
+def known_from(ratios: Sequence[float], rig: RigConfig) -> KnownRatio:
+    """Return what ratios, the oldest first, make known of a rig's heat balance."""
+    return known_ratio(ratios, rig.interlocks.heat_share, rig.interlocks.heat_share_known)
+
+
+def _evidence(folder: Path, rig: RigConfig) -> list[float]:
+    """Return the ratios of a run's heatings, where they are evidence."""
+    with suppress(StoreError, OSError, sqlite3.Error), RunReader(folder) as reader:
+        found = ratios_of(reader.event_data(KIND), rig)
+        if found and _IN_HEAT.isdisjoint(one.interlock for one in reader.trips()) and under_way(folder) is None:
+            return found
+    return []
+
+
+def ratios_of(data: Iterable[str], rig: RigConfig) -> list[float]:
+    """Return the ratios in the data of events, in their order: those of this rig that are good evidence."""
+    identity = (rig.name, beliefs_of(rig))
+    found: list[float] = []
+    for text in data:
+        with suppress(ValueError, KeyError, TypeError):
+            read = cast("dict[str, object]", json.loads(text))
+            put_j, shown_j, rise_k = (float(cast("float", read[key])) for key in ("put_j", "shown_j", "rise_k"))
+            if (read["rig"], read["beliefs"]) == identity and shown_j >= LEAST_J and rise_k >= LEAST_RISE_K:
+                found.append(put_j / shown_j)
+    return found

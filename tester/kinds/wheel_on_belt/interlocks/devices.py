@@ -1,0 +1,34 @@
+"""The Modbus devices as such (``tester.machine.wires``), and the wheel's diameter."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from tester.kinds.wheel_on_belt.interlocks.inputs import Inputs
+from tester.machine.row import CONTROLLED, Compared, Interlock
+from tester.machine.wires import DEVICE_REFUSED, LINE_NOISY
+from tester.rig.parameter import Direction, Parameter
+
+LEAST_DIAMETER_MM: Final = Parameter(
+    "least_diameter_mm", "mm", "78 mm", "a wheel worn below this: 2 mm of rubber are left [A]",
+    direction=Direction.HIGHER, hardest="76 mm",
+    because="the rubber is 8 mm on a hub of 74 mm: 1 mm is left, the depth of a contact of 100 N",
+)  # fmt: skip
+
+
+def _wheel_worn(v: Inputs) -> bool:
+    return not (v.readings.cold_mm >= v.parameters[LEAST_DIAMETER_MM])
+
+
+WHEEL_WORN: Final = Interlock(
+    name="wheel worn",
+    cause="wheel diameter below its least",
+    level="cold diameter < least_diameter",
+    condition=_wheel_worn,
+    compared=lambda v: Compared(v.readings.cold_mm, v.parameters[LEAST_DIAMETER_MM], "mm"),
+    parameters=(LEAST_DIAMETER_MM,),
+    reaction=CONTROLLED,
+    reset="new wheel, acknowledged",
+)
+
+ROWS: Final[tuple[Interlock, ...]] = (DEVICE_REFUSED, LINE_NOISY, WHEEL_WORN)

@@ -1,0 +1,348 @@
+"""The hub, its sensor and its heater."""
+
+from __future__ import annotations
+
+from math import inf
+from typing import Final
+
+from tester.kinds.wheel_on_belt.interlocks.inputs import Inputs
+from tester.kinds.wheel_on_belt.interlocks.temperatures import BLIND_S, JUMP_K, STALE_DELAY_S
+from tester.machine.row import ACK, CONTROLLED, REPAIR, Compared, Interlock, always
+from tester.machine.wires import answered_s
+from tester.rig.parameter import NOT_NEGATIVE, SHARE, Direction, Parameter
+
+_INF: Final = inf
+
+JACKET_MARGIN_K: Final = Parameter(
+    "jacket_margin_k", "K", "3 K", "the hub may overshoot limits.jacket by this; 155 degC is harm [A]", NOT_NEGATIVE,
+    direction=Direction.LOWER, hardest="4 K",
+    because="150 degC and 4 K leave 1 K: what 200 W heat a hub of 420 J/K in two seconds",
+)  # fmt: skip
+JACKET_DELAY_S: Final = Parameter(
+    "jacket_delay_s", "s", "2 s", "... for this long", NOT_NEGATIVE,
+    direction=Direction.LOWER, hardest="2 s",
+    because="200 W heat a hub of 420 J/K by 1 K in two seconds; above limits.jacket and its margin 2 K are left",
+)  # fmt: skip
+
+
+def _hub_hot(v: Inputs) -> bool:
+    r = v.readings
+    return r.jacket_valid and not (r.hub_c <= v.limits.jacket_c + v.parameters[JACKET_MARGIN_K])
+
+
+JACKET_HOT: Final = Interlock(
+    name="jacket hot",
+    cause="hub above its limit",
+    level="hub > limits.jacket + jacket_margin",
+    condition=_hub_hot,
+    compared=lambda v: Compared(v.readings.hub_c, v.limits.jacket_c + v.parameters[JACKET_MARGIN_K], "degC"),
+    parameters=(JACKET_MARGIN_K,),
+    delay=JACKET_DELAY_S,
+    reaction=CONTROLLED,
+    reset=ACK,
+)
+
+RUNAWAY_K: Final = Parameter(
+    "runaway_k", "K", "8 K", "hub above every setpoint of runaway_window by this",
+    direction=Direction.LOWER, hardest="15 K",
+    because="three times the overshoot of a jacket controller that is tuned [A]",
+)  # fmt: skip
+RUNAWAY_WINDOW_S: Final = Parameter(
+    "runaway_window_s", "s", "10 min", "how far back setpoints count: a hub cools more slowly than it heats [A]",
+    direction=Direction.LOWER, hardest="30 min",
+    because="a hub at 112 degC cools to 45 degC in half an hour: an older setpoint says nothing of it",
+)  # fmt: skip
+RUNAWAY_DELAY_S: Final = Parameter(
+    "runaway_delay_s", "s", "2 s", "... for this long", NOT_NEGATIVE,
+    direction=Direction.LOWER, hardest="10 s",
+    because="200 W heat a hub of 420 J/K by 5 K in that time",
+)  # fmt: skip
+
+
+def _highest_c(v: Inputs) -> float:
+    """Return what the hub may be by its setpoints: the highest of those that count."""
+    r, setpoints = v.readings, v.hub_setpoints
+    # A hub that was hot takes longer to cool than the window is: without output it must not get hotter again,
+    # except by a rubber that friction has made hotter than itself.
+    coolest = v.jacket.coolest_c
+    highest = max(setpoints[0][1], v.limits.hub_min_c, coolest)
+    if coolest > -_INF and r.surface_valid and r.surface_c > highest:
+        highest = r.surface_c
+    return highest
+
+
+def _hub_above_setpoints(v: Inputs) -> bool:
+    r = v.readings
+    if v.attended or not r.jacket_valid or not v.hub_setpoints:
+        return False
+    return not (r.hub_c <= _highest_c(v) + v.parameters[RUNAWAY_K])
+
+
+JACKET_RUNAWAY: Final = Interlock(
+    name="jacket runaway",
+    cause="hub above every setpoint of the last ten minutes",
+    level="hub > highest setpoint in runaway_window + runaway; without output: > coolest since, or rubber, + runaway",
+    condition=_hub_above_setpoints,
+    compared=lambda v: Compared(v.readings.hub_c, _highest_c(v) + v.parameters[RUNAWAY_K], "degC"),
+    parameters=(RUNAWAY_K, RUNAWAY_WINDOW_S),
+    delay=RUNAWAY_DELAY_S,
+    reaction=CONTROLLED,
+    reset=ACK,
+)
+
+STUCK_RATE_K_S: Final = Parameter(
+    "stuck_rate_k_s", "K/s", "0.05 K/s", "the hub rises faster than this ...",
+    direction=Direction.LOWER, hardest="0.2 K/s",
+    because="full output, 200 W at 420 J/K, makes 0.48 K/s: less than half of it must be told",
+)  # fmt: skip
+STUCK_OFF_S: Final = Parameter(
+    "stuck_off_s", "s", "5 s", "... with no output for this long ...", NOT_NEGATIVE,
+    direction=Direction.LOWER, hardest="20 s",
+    because="20 s of full output are 10 K",
+)  # fmt: skip
+STUCK_DELAY_S: Final = Parameter(
+    "stuck_delay_s", "s", "2 s", "... for this long", NOT_NEGATIVE,
+    direction=Direction.LOWER, hardest="10 s",
+    because="10 s of full output are 5 K",
+)  # fmt: skip
+RATE_FILTER_S: Final = Parameter(
+    "rate_filter_s", "s", "1 s", "the hub's rate is that of readings filtered like this ... [A]",
+    direction=Direction.LOWER, hardest="10 s",
+    because="as stuck_delay: the rate is known later by so much",
+)  # fmt: skip
+RATE_WINDOW_S: Final = Parameter(
+    "rate_window_s", "s", "4 s", "... over one to two times this: 5 mK/s of noise at 5 readings a second [A]",
+    direction=Direction.LOWER, hardest="10 s",
+    because="as stuck_delay: the rate is known later by up to twice so much",
+)  # fmt: skip
+RATE_SETTLE_S: Final = Parameter(
+    "rate_settle_s", "s", "3 s", "after the heat went off, sensor and filter still catch up for this long [A]",
+    direction=Direction.LOWER, hardest="20 s",
+    because="as stuck_off",
+)  # fmt: skip
+
+
+def _hub_rises(v: Inputs) -> bool:
+    r, p, jacket = v.readings, v.parameters, v.jacket
+    if v.attended or not r.jacket_valid:
+        return False
+    return not (jacket.rate_k_s <= p[STUCK_RATE_K_S]) and r.now_s - jacket.off_since_s >= p[STUCK_OFF_S]
+
+
+HEATER_STUCK: Final = Interlock(
+    name="heater stuck",
+    cause="the hub heats although no output is given",
+    level="rate > stuck_rate, no output for stuck_off",
+    condition=_hub_rises,
+    compared=lambda v: Compared(v.jacket.rate_k_s, v.parameters[STUCK_RATE_K_S], "K/s"),
+    parameters=(STUCK_RATE_K_S, STUCK_OFF_S, RATE_FILTER_S, RATE_WINDOW_S, RATE_SETTLE_S),
+    delay=STUCK_DELAY_S,
+    reaction=CONTROLLED,
+    reset=REPAIR,
+)
+
+OPEN_OUTPUT_PERCENT: Final = Parameter("open_output_percent", "%", "80 %", "output at least this ...")
+OPEN_S: Final = Parameter("open_s", "s", "60 s", "... for this long ...")
+OPEN_BELOW_K: Final = Parameter("open_below_k", "K", "5 K", "... with the hub this far below its setpoint ...")
+OPEN_RISE_K: Final = Parameter("open_rise_k", "K", "2 K", "... and rising by less than this: the heater's line is open")
+
+
+def _hub_does_not_warm(v: Inputs) -> bool:
+    jacket, p = v.jacket, v.parameters
+    return v.readings.now_s - jacket.weak_since_s >= p[OPEN_S] and not (jacket.rise_k >= p[OPEN_RISE_K])
+
+
+HEATER_LINE_OPEN: Final = Interlock(
+    name="heater line open",
+    cause="full output and the hub does not warm: slip ring or heater open",
+    level="output > open_output for open, rise < open_rise",
+    condition=_hub_does_not_warm,
+    compared=lambda v: Compared(v.jacket.rise_k, v.parameters[OPEN_RISE_K], "K"),
+    parameters=(OPEN_OUTPUT_PERCENT, OPEN_S, OPEN_BELOW_K, OPEN_RISE_K),
+    reaction=CONTROLLED,
+    reset=REPAIR,
+)
+
+STANDSTILL_HEAT_DELAY_S: Final = Parameter(
+    "standstill_heat_delay_s", "s", "100 ms", "heating with the wheel not turning", NOT_NEGATIVE,
+    direction=Direction.LOWER, hardest="300 ms",
+    because="harm is half a second of heat on a standing wheel; the contactor needs its time to open",
+)  # fmt: skip
+
+
+def _heats_a_standing_wheel(v: Inputs) -> bool:
+    r = v.readings
+    return r.contactor_closed and not v.turning and not (r.heat_percent <= 0.0)
+
+
+HEATING_AT_STANDSTILL: Final = Interlock(
+    name="heating at standstill",
+    cause="jacket heating with the wheel not turning",
+    level="output > 0, wheel stands",
+    condition=_heats_a_standing_wheel,
+    compared=lambda v: Compared(v.readings.heat_percent, 0.0, "%"),
+    delay=STANDSTILL_HEAT_DELAY_S,
+    at_rest=always,
+    ends_lease=True,
+    reaction=CONTROLLED,
+    reset=ACK,
+)
+
+
+def _hub_jumps(v: Inputs) -> bool:
+    return not v.attended and not (v.jacket.jump_k <= v.parameters[JUMP_K])
+
+
+HUB_JUMP: Final = Interlock(
+    name="hub sensor jump",
+    cause="hub sensor's line noisy (slip ring)",
+    level="two readings apart by > jump",
+    condition=_hub_jumps,
+    compared=lambda v: Compared(v.jacket.jump_k, v.parameters[JUMP_K], "K"),
+    parameters=(JUMP_K, BLIND_S),
+    reaction=CONTROLLED,
+    reset=ACK,
+)
+
+
+HEAT_SHARE: Final = Parameter(
+    "heat_share", "1", "0.3",
+    "heat beyond what hub and rubber show, and this share: observer's error [A] ...",
+    SHARE, direction=Direction.LOWER, hardest="0.3",
+    because="0.3 hides temperatures that read 26 % low until a rig has a history: heat_share_known",
+)  # fmt: skip
+HEAT_SHARE_KNOWN: Final = Parameter(
+    "heat_share_known", "1", "0.12",
+    "... or this beyond the ratio that a rig's own heatings have shown [A] ...",
+    SHARE, direction=Direction.LOWER, hardest="0.15",
+    because="0.15 beyond a ratio of 1 hides temperatures that read 15 % low, and with heat_leak some 2 % more",
+)  # fmt: skip
+HEAT_LEAK_W: Final = Parameter(
+    "heat_leak_w", "W", "5 W", "... and this: air 10 K colder than believed takes 4 W [A] ...", NOT_NEGATIVE,
+    direction=Direction.LOWER, hardest="10 W",
+    because="85 degC take some 25 W: 10 W are what a common supply 30 % low puts in besides",
+)  # fmt: skip
+UNSEEN_HEAT_K: Final = Parameter(
+    "unseen_heat_k", "K", "5 K",
+    "... adds up to this much of hub: 10 s of full output; a sensor may be 5 s late [A]",
+    direction=Direction.LOWER, hardest="8 K",
+    because="a hub sensor 20 s late hides 9 K at full output",
+)  # fmt: skip
+SHOWN_SHARE: Final = 0.5
+"""From this share of the heat on, it shows again [A]; less is a heater without current, a row of its own."""
+UNSEEN_LEAST_K: Final = 1.0
+"""A sound sensor hides this at most, K [A]: 1 s behind and read every 0.2 s, 0.6 K at full output."""
+
+
+def _heat_missing(v: Inputs) -> bool:
+    unseen_k = v.heat.unseen_k
+    if unseen_k <= 0.0 or v.attended or not v.readings.jacket_valid:
+        return False
+    return not (unseen_k <= _unseen_most_k(v))
+
+
+def _unseen_most_k(v: Inputs) -> float:
+    """Return by how much the hub may be hotter than shown: never beyond its limit."""
+    heat, p = v.heat, v.parameters
+    most_k = max(v.limits.jacket_c + p[JACKET_MARGIN_K] - v.readings.hub_c, UNSEEN_LEAST_K)
+    if heat.shown_w < SHOWN_SHARE * heat.put_w or most_k < p[UNSEEN_HEAT_K]:
+        return most_k
+    return p[UNSEEN_HEAT_K]
+
+
+HEAT_NOT_SHOWN: Final = Interlock(
+    name="heat not shown",
+    cause="more heat put in than the temperatures show: hub sensor, or its supply, low, late or loose; or heater weak",
+    level="heat beyond the shares of what is shown > unseen_heat of hub, while half of it shows; or hub then too hot",
+    condition=_heat_missing,
+    compared=lambda v: Compared(v.heat.unseen_k, _unseen_most_k(v), "K"),
+    parameters=(HEAT_SHARE, HEAT_SHARE_KNOWN, HEAT_LEAK_W, UNSEEN_HEAT_K, JACKET_MARGIN_K),
+    reaction=CONTROLLED,
+    reset=REPAIR,
+)
+
+FROZEN_HUB_K: Final = Parameter(
+    "frozen_hub_k", "K", "0.5 K", "heat beyond that of before must have moved the reading by now [A] ...",
+    direction=Direction.LOWER, hardest="1 K",
+    because="a hub at limits.jacket is 5 K from harm, and went on for 3 K while the output had begun to rise",
+)  # fmt: skip
+FROZEN_HUB_SHARE: Final = Parameter(
+    "frozen_hub_share", "1", "0.3", "... or this share of what limits.jacket is away, where that is more [A]",
+    SHARE, direction=Direction.LOWER, hardest="0.5",
+    because="a hub that goes by as much again before it is told stays below limits.jacket",
+)  # fmt: skip
+
+
+def _still_most_k(v: Inputs) -> float:
+    """Return how much heat a standing reading may hide, K of hub: little where the hub is close to its limit."""
+    p = v.parameters
+    away_k = v.limits.jacket_c - v.readings.hub_c
+    return max(p[FROZEN_HUB_K], p[FROZEN_HUB_SHARE] * away_k)
+
+
+def _hub_stands_still(v: Inputs) -> bool:
+    still_k = v.heat.still_k
+    if still_k <= 0.0 or v.attended or not v.readings.jacket_valid:
+        return False
+    return not (still_k <= _still_most_k(v))
+
+
+HUB_FROZEN: Final = Interlock(
+    name="hub sensor frozen",
+    cause="the hub's temperature repeats itself while the heater gives more",
+    level="within a count, and heat beyond the least since, heat_leak and what is lost > frozen_hub, or its share",
+    condition=_hub_stands_still,
+    compared=lambda v: Compared(v.heat.still_k, _still_most_k(v), "K"),
+    parameters=(FROZEN_HUB_K, FROZEN_HUB_SHARE),
+    reaction=CONTROLLED,
+    reset=REPAIR,
+)
+
+STALE_JACKET_S: Final = Parameter(
+    "stale_jacket_s", "s", "1 s", "age of the hub temperature",
+    direction=Direction.LOWER, hardest="3 s",
+    because="full output heats the hub by 1.4 K in that time, and 2 K are left above limits.jacket and its margin",
+)  # fmt: skip
+
+
+def _hub_answered_s(v: Inputs) -> float:
+    r = v.readings
+    return answered_s(r.jacket_silent, r.now_s, r.jacket_at_s)
+
+
+def _jacket_old(v: Inputs) -> bool:
+    return not v.attended and not (_hub_answered_s(v) <= v.parameters[STALE_JACKET_S])
+
+
+JACKET_SILENT: Final = Interlock(
+    name="jacket silent",
+    cause="cable, supply or address; the hub's temperature is not known",
+    level="age > stale_jacket, or several requests without an answer",
+    condition=_jacket_old,
+    compared=lambda v: Compared(_hub_answered_s(v), v.parameters[STALE_JACKET_S], "s"),
+    parameters=(STALE_JACKET_S,),
+    delay=STALE_DELAY_S,
+    reaction=CONTROLLED,
+    reset=ACK,
+)
+
+
+def _hub_invalid(v: Inputs) -> bool:
+    r = v.readings
+    return not v.attended and not r.jacket_valid and not r.jacket_silent
+
+
+HUB_NOT_VALID: Final = Interlock(
+    name="hub sensor broken",
+    cause="the jacket's controller reports a broken sensor, or a hub out of its range",
+    level="reading not valid",
+    condition=_hub_invalid,
+    delay=STALE_DELAY_S,
+    reaction=CONTROLLED,
+    reset=ACK,
+)
+
+ROWS: Final[tuple[Interlock, ...]] = (
+    JACKET_HOT, JACKET_RUNAWAY, HEATER_STUCK, HEATER_LINE_OPEN, HEATING_AT_STANDSTILL, HUB_JUMP, HUB_FROZEN,
+    HEAT_NOT_SHOWN, JACKET_SILENT, HUB_NOT_VALID,
+)  # fmt: skip

@@ -1,0 +1,295 @@
+"""Load and friction: what the load cell shows, whether it can be believed, and how firm the contact may get."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from tester.kinds.wheel_on_belt.interlocks.contact import UNLOADED_N, depth_mm
+from tester.kinds.wheel_on_belt.interlocks.inputs import Inputs
+from tester.kinds.wheel_on_belt.interlocks.known import SPEEDS_OLD_S
+from tester.machine.row import ACK, FAST, LOADED, REPAIR, Compared, Interlock
+from tester.machine.wires import answered_s
+from tester.rig.parameter import AT_LEAST_ONE, NOT_NEGATIVE, SHARE, Direction, Parameter
+
+STALE_CELL_S: Final = Parameter(
+    "stale_cell_s", "s", "50 ms", "age of the load",
+    direction=Direction.LOWER, hardest="100 ms",
+    because="loading at 2 mm/s brings 34 N in 0.1 s (172 N/mm at 400 N)",
+)  # fmt: skip
+STALE_CELL_DELAY_S: Final = Parameter(
+    "stale_cell_delay_s", "s", "50 ms", "one reply may be lost [A]", NOT_NEGATIVE,
+    direction=Direction.LOWER, hardest="100 ms",
+    because="loading at 2 mm/s brings 34 N in 0.1 s (172 N/mm at 400 N)",
+)  # fmt: skip
+
+
+def _cell_answered_s(v: Inputs) -> float:
+    r = v.readings
+    return answered_s(r.cell_silent, r.now_s, r.cell_at_s)
+
+
+def _cell_old(v: Inputs) -> bool:
+    return not (_cell_answered_s(v) <= v.parameters[STALE_CELL_S])
+
+
+def _cell_still_old(v: Inputs) -> bool:
+    r = v.readings
+    return not (r.cell_at_s >= r.now_s - v.parameters[SPEEDS_OLD_S])
+
+
+CELL_SILENT: Final = Interlock(
+    name="load cell silent",
+    cause="cable, supply or address; the load is not known",
+    level="age > stale_cell, or several requests without an answer",
+    condition=_cell_old,
+    compared=lambda v: Compared(_cell_answered_s(v), v.parameters[STALE_CELL_S], "s"),
+    unseen=_cell_still_old,
+    parameters=(STALE_CELL_S,),
+    delay=STALE_CELL_DELAY_S,
+    when=LOADED,
+    reaction=FAST,
+    reset=ACK,
+)
+
+
+def _cell_invalid(v: Inputs) -> bool:
+    r = v.readings
+    return not r.cell_valid and not r.cell_silent
+
+
+CELL_SATURATED: Final = Interlock(
+    name="load cell saturated",
+    cause="a channel at 98 % of its range, or the transmitter reports an error",
+    level="reading not valid",
+    condition=_cell_invalid,
+    unseen=_cell_invalid,
+    delay=STALE_CELL_DELAY_S,
+    when=LOADED,
+    reaction=FAST,
+    reset=ACK,
+)
+
+FROZEN_CELL_S: Final = Parameter(
+    "frozen_cell_s", "s", "500 ms", "identical raw counts of the load cell, loaded and turning ...",
+    direction=Direction.LOWER, hardest="1 s",
+    because="at 0.3 m/s runout moves the load once a second: a second without a change is no reading",
+)  # fmt: skip
+# A sound cell may show no force yet this far beyond where the contact is taken to be:
+#   a wheel's first contact: first_contact_place and first_contact_sweep of the radius, 0.3 + 1.35 mm, before that
+#   itself says that it is another wheel, and 0.03 mm that the press comes meanwhile in a scan (0.55 mm/s, 20 Hz);
+#   a known contact: 1.0 mm at touch_speed while a reading gets stale and its row waits (50 + 50 ms), 0.46 mm that a
+#   wheel has shrunk which was touched at its hottest (hub 150, surface 95 degC: 99.5 K of wear.growth and its
+#   uncertainty) and 0.025 mm of runout. Wear since then is taken off; the depth of touch_load is in both places.
+# A dead cell lets 200 N grow in 1.8 mm, and some 60 N where "press torque" contradicts it (axes.press.screw).
+TOUCH_MARGIN_MM: Final = Parameter(
+    "touch_margin_mm", "mm", "1.8 mm",
+    "... or no force this far beyond it: a new wheel may be 1.65 mm off; 200 N unseen",
+    direction=Direction.LOWER, hardest="2 mm",
+    because="2 mm press a wheel with 230 N, rubber that is stiffer by 30 % with 325 N, before a dead cell is told",
+)  # fmt: skip
+
+
+def _cell_frozen(v: Inputs) -> bool:
+    r = v.readings
+    unloaded = r.force_z_n < UNLOADED_N
+    if v.turning and not unloaded and not (r.now_s - r.cell_changed_s <= v.parameters[FROZEN_CELL_S]):
+        return True
+    unmoved = not (r.force_z_n >= UNLOADED_N)
+    return v.pressing and unmoved and not (r.press_mm - v.contact_mm <= v.parameters[TOUCH_MARGIN_MM])
+
+
+def _repeated(v: Inputs) -> Compared:
+    r, p = v.readings, v.parameters
+    beyond_mm = r.press_mm - v.contact_mm
+    if v.pressing and not (r.force_z_n >= UNLOADED_N) and not (beyond_mm <= p[TOUCH_MARGIN_MM]):
+        return Compared(beyond_mm, p[TOUCH_MARGIN_MM], "mm")
+    return Compared(r.now_s - r.cell_changed_s, p[FROZEN_CELL_S], "s")
+
+
+CELL_FROZEN: Final = Interlock(
+    name="load cell frozen",
+    cause="the cell repeats itself",
+    level="identical raw counts for frozen_cell, loaded and turning; or no force touch_margin beyond the contact",
+    condition=_cell_frozen,
+    compared=_repeated,
+    parameters=(FROZEN_CELL_S, TOUCH_MARGIN_MM),
+    when=LOADED,
+    reaction=FAST,
+    reset=REPAIR,
+)
+
+
+def _overloaded(v: Inputs) -> bool:
+    return not (v.readings.force_z_n <= v.limits.load_n)
+
+
+OVERLOAD: Final = Interlock(
+    name="overload",
+    cause="normal force above the rig's limit",
+    level="Fz > limits.load",
+    condition=_overloaded,
+    compared=lambda v: Compared(v.readings.force_z_n, v.limits.load_n, "N"),
+    when=LOADED,
+    reaction=FAST,
+    reset=ACK,
+)
+
+OVERLOAD_FACTOR: Final = Parameter(
+    "overload_factor", "1", "1.1", "load above this times its target ...", AT_LEAST_ONE,
+    direction=Direction.LOWER, hardest="1.2",
+    because="400 N x 1.2 + 10 N are 490 N, and harm begins at 500 N",
+)  # fmt: skip
+OVERLOAD_MARGIN_N: Final = Parameter(
+    "overload_margin_n", "N", "10 N", "... plus this ...", NOT_NEGATIVE,
+    direction=Direction.LOWER, hardest="20 N",
+    because="with 400 N x 1.2 it is the whole way to 500 N",
+)  # fmt: skip
+OVERLOAD_DELAY_S: Final = Parameter(
+    "overload_delay_s", "s", "50 ms", "... for this long; above limits.load at once", NOT_NEGATIVE,
+    direction=Direction.LOWER, hardest="100 ms",
+    because="loading at 2 mm/s brings 34 N in 0.1 s (172 N/mm at 400 N)",
+)  # fmt: skip
+PRESSED_N: Final = Parameter(
+    "pressed_n", "N", "50 N", "an unwanted contact gets firmer by this at most [A]: runout and noise are 10 N",
+    direction=Direction.LOWER, hardest="80 N",
+    because="from 400 N it is 480 N, and harm begins at 500 N",
+)  # fmt: skip
+
+
+def _most_n(v: Inputs) -> float:
+    p = v.parameters
+    if not v.pressing:
+        return v.least_n + p[PRESSED_N]
+    wanted_n, highest_n = v.demand.load_n, v.contact.highest_n
+    if not highest_n > wanted_n:
+        highest_n = wanted_n
+    return p[OVERLOAD_FACTOR] * highest_n + p[OVERLOAD_MARGIN_N]
+
+
+def _above_target(v: Inputs) -> bool:
+    return not (v.readings.force_z_n <= _most_n(v))
+
+
+OVERSHOOT: Final = Interlock(
+    name="load overshoot",
+    cause="normal force above its target",
+    level="Fz > overload_factor x target + overload_margin; or pressed more while none is wanted",
+    condition=_above_target,
+    compared=lambda v: Compared(v.readings.force_z_n, _most_n(v), "N"),
+    parameters=(OVERLOAD_FACTOR, OVERLOAD_MARGIN_N, PRESSED_N),
+    delay=OVERLOAD_DELAY_S,
+    when=LOADED,
+    reaction=FAST,
+    reset=ACK,
+)
+
+DEPTH_FACTOR: Final = Parameter(
+    "depth_factor", "1", "1.3", "the press stands beyond the contact by this times what the load shown needs ...",
+    AT_LEAST_ONE, direction=Direction.LOWER, hardest="1.5",
+    because="force grows with depth^1.3: at 1.5 times the depth 300 N shown are 508 N, and harm begins at 500 N",
+)  # fmt: skip
+DEPTH_MARGIN_MM: Final = Parameter(
+    "depth_margin_mm", "mm", "0.2 mm", "... plus this [A]: rubber may be softer than loops.load.stiffness by 29 % ...",
+    NOT_NEGATIVE, direction=Direction.LOWER, hardest="0.3 mm",
+    because="0.3 mm are 52 N at 400 N",
+)  # fmt: skip
+DEPTH_DELAY_S: Final = Parameter(
+    "depth_delay_s", "s", "50 ms", "... for this long: the cell reads too little [A]", NOT_NEGATIVE,
+    direction=Direction.LOWER, hardest="100 ms",
+    because="loading at 2 mm/s brings 34 N in 0.1 s (172 N/mm at 400 N)",
+)  # fmt: skip
+
+
+def _deepest_mm(v: Inputs) -> float:
+    p, needed_mm = v.parameters, depth_mm(v.readings.force_z_n, v.limits.stiffness_n_per_mm)
+    return p[DEPTH_FACTOR] * needed_mm + p[DEPTH_MARGIN_MM]
+
+
+def _too_deep(v: Inputs) -> bool:
+    if not (v.pressing and v.contact.in_contact):
+        return False
+    return not (v.readings.press_mm - v.contact_mm <= _deepest_mm(v))
+
+
+TOO_DEEP: Final = Interlock(
+    name="contact too deep",
+    cause="the cell reads too little: the press is further than its load needs",
+    level="depth > depth_factor x that of Fz (loops.load.stiffness) + depth_margin",
+    condition=_too_deep,
+    compared=lambda v: Compared(v.readings.press_mm - v.contact_mm, _deepest_mm(v), "mm"),
+    parameters=(DEPTH_FACTOR, DEPTH_MARGIN_MM),
+    delay=DEPTH_DELAY_S,
+    when=LOADED,
+    reaction=FAST,
+    reset=REPAIR,
+)
+
+CONTACT_SHARE: Final = Parameter(
+    "contact_share", "1", "0.2", "contact is lost below this share of a target ...", SHARE,
+    direction=Direction.HIGHER, hardest="0.1",
+    because="a tenth of the least target watched is 5 N, which an unloaded cell may show",
+)  # fmt: skip
+CONTACT_LEAST_N: Final = Parameter(
+    "contact_least_n", "N", "50 N", "... of at least this: a smaller one is too near to touching to tell [A]",
+    direction=Direction.LOWER, hardest="100 N",
+    because="the paper's smallest load is 100 N: above it no test would be watched",
+)  # fmt: skip
+CONTACT_DELAY_S: Final = Parameter(
+    "contact_delay_s", "s", "200 ms", "... for this long [A]", NOT_NEGATIVE,
+    direction=Direction.LOWER, hardest="1 s",
+    because="a press that has lost its wheel comes 4 mm further in 1 s at its loading speed",
+)  # fmt: skip
+
+
+def _lowest_n(v: Inputs) -> float:
+    wanted_n, lowest_n = v.demand.load_n, v.contact.lowest_n
+    return lowest_n if lowest_n < wanted_n else wanted_n
+
+
+def _contact_lost(v: Inputs) -> bool:
+    p = v.parameters
+    if not (v.pressing and v.contact.loaded):
+        return False
+    lowest_n = _lowest_n(v)
+    return lowest_n >= p[CONTACT_LEAST_N] and not (v.readings.force_z_n >= p[CONTACT_SHARE] * lowest_n)
+
+
+CONTACT_LOST: Final = Interlock(
+    name="contact lost",
+    cause="normal force far below target",
+    level="Fz < contact_share of a target of contact_least or more",
+    condition=_contact_lost,
+    compared=lambda v: Compared(v.readings.force_z_n, v.parameters[CONTACT_SHARE] * _lowest_n(v), "N"),
+    parameters=(CONTACT_SHARE, CONTACT_LEAST_N),
+    delay=CONTACT_DELAY_S,
+    when=LOADED,
+    reaction=FAST,
+    reset=ACK,
+)
+
+SLIP_POWER_DELAY_S: Final = Parameter(
+    "slip_power_delay_s", "s", "50 ms", "above limits.slip_power; harm is 0.5 s beyond [A]", NOT_NEGATIVE,
+    direction=Direction.LOWER, hardest="200 ms",
+    because="harm is 0.5 s beyond, and a quick stop from 0.8 m/s takes 0.1 s",
+)  # fmt: skip
+
+
+def _too_much_power(v: Inputs) -> bool:
+    return not (v.friction_w <= v.limits.slip_power_w)
+
+
+SLIP_POWER: Final = Interlock(
+    name="slip power",
+    cause="friction power above the rig's limit",
+    level="friction x slip > limits.slip_power",
+    condition=_too_much_power,
+    compared=lambda v: Compared(v.friction_w, v.limits.slip_power_w, "W"),
+    delay=SLIP_POWER_DELAY_S,
+    when=LOADED,
+    reaction=FAST,
+    reset=ACK,
+)
+
+ROWS: Final[tuple[Interlock, ...]] = (
+    CELL_SILENT, CELL_SATURATED, CELL_FROZEN, OVERLOAD, OVERSHOOT, TOO_DEEP, CONTACT_LOST, SLIP_POWER,
+)  # fmt: skip

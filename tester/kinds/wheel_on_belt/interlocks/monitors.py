@@ -1,0 +1,183 @@
+"""What takes more than one reading to see: rates, jumps, values that stand still, speeds on their ramps.
+
+Each monitor is brought up to date when something new has arrived, not in every scan; the interlocks compare its
+results in every scan.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import inf, isfinite, nan
+
+from tester.kinds.wheel_on_belt.process import Readings
+
+
+@dataclass(slots=True)
+class JacketMonitor:
+    """The hub from poll to poll. The numbers it compares with are parameters of the rows in ``hub``."""
+
+    blind_s: float
+    rate_filter_s: float
+    rate_window_s: float
+    rate_settle_s: float
+    open_output_percent: float
+    open_below_k: float
+    open_rise_k: float
+    stamp_s: float = -inf
+    hub_c: float = nan
+    """Last valid reading."""
+    jump_k: float = 0.0
+    """Distance of the last two valid readings."""
+    filtered_c: float = nan
+    rate_k_s: float = 0.0
+    marks: tuple[float, float, float, float] = (nan, nan, nan, nan)
+    """(time, filtered hub) at the last two ends of a window, older first."""
+    off_since_s: float = inf
+    """Since when no heat has been commanded, or none has been put out."""
+    coolest_c: float = -inf
+    """The coolest valid reading since the last output; -inf while there is one."""
+    weak_since_s: float = inf
+    """Since when the output has been high with the hub well below its setpoint."""
+    weak_from_c: float = nan
+    rise_k: float = 0.0
+    blind_until_s: float = -inf
+
+    def forget(self, now: float) -> None:
+        """Compare nothing with the readings before: a person was at the wheel and its hub."""
+        self.filtered_c = nan
+        self.jump_k = 0.0
+        self.coolest_c = -inf
+        self.blind_until_s = now + self.blind_s
+
+    def update(self, r: Readings, heat: bool, setpoint_c: float) -> None:
+        """Take in a new reading; ``heat`` and ``setpoint_c`` (degC) are what is commanded."""
+        stamp = r.jacket_at_s
+        dt, self.stamp_s = stamp - self.stamp_s, stamp
+        if not heat or r.heat_percent <= 0.0:
+            self.off_since_s = min(self.off_since_s, stamp)
+        else:
+            self.off_since_s = inf
+        if not r.jacket_valid:
+            return
+        hub = r.hub_c
+        known = isfinite(self.hub_c) and stamp > self.blind_until_s
+        self.jump_k = abs(hub - self.hub_c) if known else 0.0
+        self.hub_c = hub
+        if not r.heat_percent <= 0.0:
+            self.coolest_c = -inf
+        elif self.coolest_c == -inf or hub < self.coolest_c:
+            self.coolest_c = hub
+        self._follow_rate(stamp, hub, dt)
+        self._watch_line(r, heat, setpoint_c)
+
+    def _follow_rate(self, stamp: float, hub_c: float, dt: float) -> None:
+        if isfinite(self.filtered_c) and 0.0 < dt < 10.0:
+            self.filtered_c += (hub_c - self.filtered_c) * dt / (self.rate_filter_s + dt)
+        else:
+            self.filtered_c = hub_c
+            self.marks = (stamp, hub_c, stamp, hub_c)
+        if not stamp - self.off_since_s >= self.rate_settle_s:
+            self.marks = (stamp, self.filtered_c, stamp, self.filtered_c)
+            self.rate_k_s = 0.0
+            return
+        old_s, old_c, new_s, new_c = self.marks
+        if stamp - new_s >= self.rate_window_s:
+            self.marks = old_s, old_c, new_s, new_c = (new_s, new_c, stamp, self.filtered_c)
+        if stamp - old_s >= self.rate_window_s:
+            self.rate_k_s = (self.filtered_c - old_c) / (stamp - old_s)
+
+    def _watch_line(self, r: Readings, heat: bool, setpoint_c: float) -> None:
+        """Measure the rise while the output is high: a heater whose line is open makes none."""
+        weak = heat and r.heat_percent >= self.open_output_percent and r.hub_c < setpoint_c - self.open_below_k
+        if not weak:
+            self.weak_since_s = inf
+            self.rise_k = 0.0
+            return
+        rise = r.hub_c - self.weak_from_c
+        if self.weak_since_s == inf or rise >= self.open_rise_k:
+            self.weak_since_s, self.weak_from_c = self.stamp_s, r.hub_c
+            rise = 0.0
+        self.rise_k = rise
+
+
+@dataclass(slots=True)
+class SurfaceMonitor:
+    """The thermometer from poll to poll."""
+
+    blind_s: float
+    stamp_s: float = -inf
+    surface_c: float = nan
+    jump_k: float = 0.0
+    model_c: float = nan
+    """The model when the thermometer's reading last changed."""
+    changed_s: float = -inf
+    blind_until_s: float = -inf
+
+    def forget(self, now: float) -> None:
+        """Compare nothing with the readings before: another wheel is in front of the thermometer."""
+        self.jump_k = 0.0
+        self.blind_until_s = now + self.blind_s
+
+    def update(self, r: Readings, model_c: float) -> None:
+        """Take in a new reading; ``model_c`` is what the observer has for it."""
+        self.stamp_s = r.surface_at_s
+        if r.surface_changed_s > self.changed_s or not isfinite(self.model_c):
+            self.changed_s = r.surface_changed_s
+            self.model_c = model_c
+        if not r.surface_valid:
+            return
+        known = isfinite(self.surface_c) and self.stamp_s > self.blind_until_s
+        self.jump_k = abs(r.surface_c - self.surface_c) if known else 0.0
+        self.surface_c = r.surface_c
+
+
+@dataclass(slots=True)
+class PressTracker:
+    """How far the press has come towards the contact beyond what it was told to."""
+
+    ramp_mm_s2: float
+    """Of a slow ramp."""
+    high_mm_s: float = 0.0
+    """The fastest it may still be coming."""
+    at_s: float = -inf
+    press_mm: float = nan
+    ahead_mm: float = 0.0
+
+    def begin(self, r: Readings) -> None:
+        """Begin where the press stands."""
+        self.high_mm_s = self.ahead_mm = 0.0
+        self.at_s, self.press_mm = r.press_at_s, r.press_mm
+
+    def follow(self, target_mm_s: float, dt: float, r: Readings) -> None:
+        """Take in a target of ``dt`` s, and a new position where there is one."""
+        high = self.high_mm_s - self.ramp_mm_s2 * dt
+        if not high > target_mm_s:
+            high = target_mm_s
+        self.high_mm_s = high = high if high > 0.0 else 0.0
+        at_s = r.press_at_s
+        if at_s > self.at_s:
+            press_mm = r.press_mm
+            ahead = self.ahead_mm + press_mm - self.press_mm - high * (at_s - self.at_s)
+            self.ahead_mm = 0.0 if ahead < 0.0 else ahead
+            self.at_s, self.press_mm = at_s, press_mm
+
+
+@dataclass(slots=True)
+class SpeedTracker:
+    """Between which speeds a drive may be: its target, and where a slow ramp to it would be by now."""
+
+    ramp_m_s2: float
+    """Of the slow ramp."""
+    low_m_s: float = 0.0
+    high_m_s: float = 0.0
+
+    def begin(self, actual_m_s: float) -> None:
+        """Begin at an actual speed."""
+        self.low_m_s = min(0.0, actual_m_s)
+        self.high_m_s = max(0.0, actual_m_s)
+
+    def follow(self, target_m_s: float, dt: float) -> None:
+        """Move both ends towards a target, for ``dt`` s."""
+        high, low = self.high_m_s - self.ramp_m_s2 * dt, self.low_m_s + self.ramp_m_s2 * dt
+        self.high_m_s = target_m_s if target_m_s > high else high
+        self.low_m_s = target_m_s if target_m_s < low else low

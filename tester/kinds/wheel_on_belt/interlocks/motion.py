@@ -1,0 +1,309 @@
+"""The drives: their data, their speeds and the press's travel."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from tester.kinds.wheel_on_belt.interlocks.contact import UNLOADED_N
+from tester.kinds.wheel_on_belt.interlocks.inputs import Inputs
+from tester.kinds.wheel_on_belt.interlocks.known import STANDING_M_S
+from tester.kinds.wheel_on_belt.interlocks.monitors import SpeedTracker
+from tester.machine.row import ACK, FAST, LOADED, REPAIR, Compared, Interlock
+from tester.machine.wires import INPUTS_STALE, STALE_CAN_S, STALE_CAN_SCANS, drive_data_allowed_s
+from tester.rig.parameter import NOT_NEGATIVE, SHARE, Direction, Parameter
+
+
+def _drive_data_old(v: Inputs) -> bool:
+    r = v.readings
+    if not (v.demand.enabled and r.drives_enabled):
+        return False
+    since = r.now_s - drive_data_allowed_s(v)
+    return not (r.wheel_at_s >= since and r.belt_at_s >= since and r.press_at_s >= since and r.positions_at_s >= since)
+
+
+def _oldest_drive_data(v: Inputs) -> Compared:
+    r = v.readings
+    oldest_s = min(r.wheel_at_s, r.belt_at_s, r.press_at_s, r.positions_at_s)
+    return Compared(r.now_s - oldest_s, drive_data_allowed_s(v), "s")
+
+
+DRIVE_DATA_STALE: Final = Interlock(
+    name="drive data stale",
+    cause="no fresh drive data",
+    level="age > stale_can_scans periods, or > stale_can",
+    condition=_drive_data_old,
+    compared=_oldest_drive_data,
+    parameters=(STALE_CAN_SCANS, STALE_CAN_S),
+    reaction=FAST,
+    reset=ACK,
+)
+
+
+DROPPED_DELAY_S: Final = Parameter(
+    "dropped_delay_s", "s", "50 ms", "a drive leaves operation by itself [A]", NOT_NEGATIVE,
+    direction=Direction.LOWER, hardest="50 ms",
+    because="one drive down under load rubs with up to 1 kW (3#, 430 N, 90 degC): 50 ms more are 50 J, and 40 J harm",
+)  # fmt: skip
+
+
+def _dropped_out(v: Inputs) -> bool:
+    return v.confirmed and v.demand.enabled and not v.readings.drives_enabled
+
+
+DRIVE_DROPPED_OUT: Final = Interlock(
+    name="drive dropped out",
+    cause="a drive left operation by itself (local control, torque off)",
+    level="not OPERATION_ENABLED although wanted",
+    condition=_dropped_out,
+    delay=DROPPED_DELAY_S,
+    reaction=FAST,
+    reset=ACK,
+)
+
+OVERSPEED_SHARE: Final = Parameter(
+    "overspeed_share", "1", "5 %", "above a speed limit by this share [A]", NOT_NEGATIVE,
+    direction=Direction.LOWER, hardest="10 %",
+    because="a belt at 1.3 m/s gains a tenth in 65 ms on a ramp of 2 m/s2: more than that is no overshoot",
+)  # fmt: skip
+OVERSPEED_DELAY_S: Final = Parameter(
+    "overspeed_delay_s", "s", "50 ms", "[A]", NOT_NEGATIVE,
+    direction=Direction.LOWER, hardest="100 ms",
+    because="at 2 m/s2 a drive gains another 0.2 m/s in 100 ms",
+)  # fmt: skip
+
+
+def _too_fast(v: Inputs) -> bool:
+    r = v.readings
+    if r.drives_disabled:
+        return False
+    share = 1.0 + v.parameters[OVERSPEED_SHARE]
+    wheel, belt = v.limits.wheel_speed_m_s * share, v.limits.belt_speed_m_s * share
+    return not (-wheel <= r.wheel_speed_m_s <= wheel and -belt <= r.belt_speed_m_s <= belt)
+
+
+def _faster(v: Inputs) -> Compared:
+    r, share = v.readings, 1.0 + v.parameters[OVERSPEED_SHARE]
+    belt_m_s, most_m_s = abs(r.belt_speed_m_s), v.limits.belt_speed_m_s * share
+    if not (belt_m_s <= most_m_s):
+        return Compared(belt_m_s, most_m_s, "m/s")
+    return Compared(abs(r.wheel_speed_m_s), v.limits.wheel_speed_m_s * share, "m/s")
+
+
+OVERSPEED: Final = Interlock(
+    name="overspeed",
+    cause="wheel or belt above its limit",
+    level="speed > limit + overspeed_share",
+    condition=_too_fast,
+    compared=_faster,
+    parameters=(OVERSPEED_SHARE,),
+    delay=OVERSPEED_DELAY_S,
+    reaction=FAST,
+    reset=ACK,
+)
+
+RAMP_SHARE: Final = Parameter(
+    "ramp_share", "1", "0.3", "a speed on its way may follow this share of its ramp [A]: scan, wire, load", SHARE,
+    direction=Direction.HIGHER, hardest="0.2",
+    because="the slower ramp reaches 0.8 m/s after 2 s instead of 0.4 s: longer than that a jammed drive would pass",
+)  # fmt: skip
+SPEED_ERROR_M_S: Final = Parameter(
+    "speed_error_m_s", "m/s", "50 mm/s", "a speed off what its ramp allows by this [A]",
+    direction=Direction.LOWER, hardest="100 mm/s",
+    because="a slip of 0.1 m/s that nobody asked for is within Table 2 of the paper; twice that doubles its heat",
+)  # fmt: skip
+SPEED_ERROR_DELAY_S: Final = Parameter(
+    "speed_error_delay_s", "s", "100 ms", "... for this long", NOT_NEGATIVE,
+    direction=Direction.LOWER, hardest="150 ms",
+    because="a runaway wheel gains 0.3 m/s in that time; friction power beyond the plan harms after 0.5 s",
+)  # fmt: skip
+
+
+def _off_ramp(v: Inputs, speed_m_s: float, ramp: SpeedTracker) -> Compared:
+    error = v.parameters[SPEED_ERROR_M_S]
+    limit = ramp.low_m_s - error if speed_m_s < ramp.low_m_s else ramp.high_m_s + error
+    return Compared(speed_m_s, limit, "m/s")
+
+
+def _wheel_off_its_ramp(v: Inputs) -> bool:
+    if not v.confirmed:
+        return False
+    error, wheel = v.parameters[SPEED_ERROR_M_S], v.wheel
+    return not (wheel.low_m_s - error <= v.readings.wheel_speed_m_s <= wheel.high_m_s + error)
+
+
+WHEEL_SPEED: Final = Interlock(
+    name="wheel speed",
+    cause="wheel not at its speed: jammed, slipping coupling, wrong scale",
+    level="off what its ramp allows by > speed_error",
+    condition=_wheel_off_its_ramp,
+    compared=lambda v: _off_ramp(v, v.readings.wheel_speed_m_s, v.wheel),
+    parameters=(RAMP_SHARE, SPEED_ERROR_M_S),
+    delay=SPEED_ERROR_DELAY_S,
+    reaction=FAST,
+    reset=ACK,
+)
+
+
+def _belt_off_its_ramp(v: Inputs) -> bool:
+    if not v.confirmed:
+        return False
+    error, belt = v.parameters[SPEED_ERROR_M_S], v.belt
+    return not (belt.low_m_s - error <= v.readings.belt_speed_m_s <= belt.high_m_s + error)
+
+
+BELT_SPEED: Final = Interlock(
+    name="belt speed",
+    cause="belt not at its speed: jammed, wrong scale",
+    level="off what its ramp allows by > speed_error",
+    condition=_belt_off_its_ramp,
+    compared=lambda v: _off_ramp(v, v.readings.belt_speed_m_s, v.belt),
+    parameters=(RAMP_SHARE, SPEED_ERROR_M_S),
+    delay=SPEED_ERROR_DELAY_S,
+    reaction=FAST,
+    reset=ACK,
+)
+
+PRESS_ERROR_MM: Final = Parameter(
+    "press_error_mm", "mm", "0.3 mm", "the press further to the contact than its commands allow: 50 N at 200 N [A]",
+    direction=Direction.LOWER, hardest="0.5 mm",
+    because="0.5 mm are 86 N at 400 N (172 N/mm): 486 N, and harm begins at 500 N",
+)  # fmt: skip
+
+
+def _press_ahead(v: Inputs) -> bool:
+    return v.confirmed and not (v.press.ahead_mm <= v.parameters[PRESS_ERROR_MM])
+
+
+PRESS_SPEED: Final = Interlock(
+    name="press speed",
+    cause="press comes on its own: broken velocity loop, setpoints lost",
+    level="further towards the contact than its ramp allows by > press_error",
+    condition=_press_ahead,
+    compared=lambda v: Compared(v.press.ahead_mm, v.parameters[PRESS_ERROR_MM], "mm"),
+    parameters=(PRESS_ERROR_MM,),
+    reaction=FAST,
+    reset=REPAIR,
+)
+
+
+def _press_beyond_travel(v: Inputs) -> bool:
+    r, limits = v.readings, v.limits
+    wanted = v.demand.enabled and r.drives_enabled
+    return wanted and not (limits.press_low_mm <= r.press_mm <= limits.press_high_mm)
+
+
+def _beyond_end(v: Inputs) -> Compared:
+    press_mm, limits = v.readings.press_mm, v.limits
+    end_mm = limits.press_low_mm if press_mm < limits.press_low_mm else limits.press_high_mm
+    return Compared(press_mm, end_mm, "mm")
+
+
+PRESS_TRAVEL: Final = Interlock(
+    name="press travel",
+    cause="press outside its travel: ran past its end, or its zero is wrong",
+    level="position outside axes.press.software_limits",
+    condition=_press_beyond_travel,
+    compared=_beyond_end,
+    reaction=FAST,
+    reset=ACK,
+)
+
+APART_M_S: Final = Parameter(
+    "apart_m_s", "m/s", "0.1 m/s", "one stands, the other is faster than this: no rounding of two equal ramps [A]",
+    direction=Direction.LOWER, hardest="0.2 m/s",
+    because="at 0.2 m/s a standing 3# wheel takes a quarter of that 1 kW on one spot: 40 J in 0.16 s",
+)  # fmt: skip
+STANDING_DELAY_S: Final = Parameter(
+    "standing_delay_s", "s", "0 ms",
+    "one drive stands under load while the other turns: 3# takes 1 kW, harm is 40 J", NOT_NEGATIVE,
+    direction=Direction.LOWER, hardest="0 ms",
+    because="a belt that jams under 430 N makes 38 J until it is unloaded, with no delay at all; harm is 40 J",
+)  # fmt: skip
+
+
+def _one_stands(v: Inputs) -> bool:
+    r, p = v.readings, v.parameters
+    if r.force_z_n < UNLOADED_N or v.unpowered:
+        return False
+    wheel, belt, still = r.wheel_speed_m_s, r.belt_speed_m_s, p[STANDING_M_S]
+    belt_moves = belt > still or belt < -still
+    if v.pressing and not (v.turning and belt_moves):
+        return True
+    if v.turning is belt_moves:
+        return False
+    # While they come down together one may stand a moment before the other: that is no wheel on a stopped belt.
+    most = p[APART_M_S]
+    slow = -most <= wheel <= most and -most <= belt <= most
+    # A quick stop takes both down at once, whatever their difference: it cannot be made any quicker.
+    quick = v.stopped_s >= 0.0 and v.stop.fast_s <= r.now_s
+    return not slow and not quick
+
+
+def _slower(v: Inputs) -> Compared:
+    wheel_m_s, belt_m_s = abs(v.readings.wheel_speed_m_s), abs(v.readings.belt_speed_m_s)
+    still_m_s = v.parameters[STANDING_M_S]
+    return Compared(belt_m_s if not (belt_m_s > still_m_s) else wheel_m_s, still_m_s, "m/s")
+
+
+STANDING_UNDER_LOAD: Final = Interlock(
+    name="drive standing under load",
+    cause="wheel on a stopped belt, or belt under a stopped wheel",
+    level="load > 20 N, one below standing, the other above apart",
+    condition=_one_stands,
+    compared=_slower,
+    parameters=(STANDING_M_S, APART_M_S),
+    delay=STANDING_DELAY_S,
+    reaction=FAST,
+    reset=ACK,
+)
+
+TORN_SHARE: Final = Parameter(
+    "torn_share", "1", "0.05", "friction and torque below this share of the load while sliding: no belt [A] ...",
+    SHARE, direction=Direction.HIGHER, hardest="0.02",
+    because="a wheel on the bare roller shows friction of a few hundredths of its load [A]",
+)  # fmt: skip
+TORN_SLIP_M_S: Final = Parameter(
+    "torn_slip_m_s", "m/s", "50 mm/s", "... above this slip [A]",
+    direction=Direction.LOWER, hardest="100 mm/s",
+    because="most conditions of a friction test slide at 0.1 m/s or more",
+)  # fmt: skip
+TORN_DELAY_S: Final = Parameter(
+    "torn_delay_s", "s", "100 ms", "... for this long", NOT_NEGATIVE,
+    direction=Direction.LOWER, hardest="200 ms",
+    because="at 1.3 m/s a torn belt has run off its rollers by 0.26 m",
+)  # fmt: skip
+TORN_FRICTION_NM: Final = Parameter(
+    "torn_friction_nm", "N m", "0.25 N m",
+    "of the wheel's torque, taken off first: its shaft unloaded, rather too much [A]", NOT_NEGATIVE,
+    direction=Direction.HIGHER, hardest="0.1 N m",
+    because="a shaft with 0.2 N m then hides a torn belt below 45 N, with nothing taken off below 92 N",
+)  # fmt: skip
+
+
+def _no_friction(v: Inputs) -> bool:
+    r, p = v.readings, v.parameters
+    if not (v.pressing and v.contact.in_contact and v.contact.loaded and r.slip_m_s > p[TORN_SLIP_M_S]):
+        return False
+    least_n = p[TORN_SHARE] * r.force_z_n
+    # Bearings and seals take torque without any belt; without a deduction they pass for friction at a small load.
+    rubbing_nm = abs(r.drive_torque_nm) - p[TORN_FRICTION_NM]
+    return not (v.friction_n >= least_n) and not (rubbing_nm >= least_n * r.diameter_mm * 0.5e-3)
+
+
+BELT_TORN: Final = Interlock(
+    name="belt torn",
+    cause="friction and drive torque collapsed while sliding under load",
+    level="friction, and torque less torn_friction, < torn_share of the load at slip > torn_slip",
+    condition=_no_friction,
+    compared=lambda v: Compared(v.friction_n, v.parameters[TORN_SHARE] * v.readings.force_z_n, "N"),
+    parameters=(TORN_SHARE, TORN_SLIP_M_S, TORN_FRICTION_NM),
+    delay=TORN_DELAY_S,
+    when=LOADED,
+    reaction=FAST,
+    reset=REPAIR,
+)
+
+ROWS: Final[tuple[Interlock, ...]] = (
+    DRIVE_DATA_STALE, INPUTS_STALE, DRIVE_DROPPED_OUT, OVERSPEED, WHEEL_SPEED, BELT_SPEED, PRESS_SPEED, PRESS_TRAVEL,
+    STANDING_UNDER_LOAD, BELT_TORN,
+)  # fmt: skip

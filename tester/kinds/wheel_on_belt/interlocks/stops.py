@@ -1,0 +1,245 @@
+"""Stops that do not work: what must have happened by when."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from tester.kinds.wheel_on_belt.interlocks.inputs import Inputs
+from tester.kinds.wheel_on_belt.interlocks.known import CLEAR_MM, SPEEDS_OLD_S, contactor_open, standing, unloaded
+from tester.machine.row import CONTROLLED, ENDING, FAST, POWER_OFF, REPAIR, Compared, Interlock, always
+from tester.rig.parameter import POSITIVE, Direction, Parameter
+
+LIFT_LATE_S: Final = Parameter(
+    "lift_late_s", "s", "1 s", "after a stop: unloaded by then, else both drives stop fast [A]",
+    direction=Direction.LOWER, hardest="1.5 s",
+    because="lifting 2.5 mm at 10 mm/s takes 0.3 s; what does not lift must have lost its power 2.5 s after the stop",
+)  # fmt: skip
+
+
+def _still_loaded(v: Inputs) -> bool:
+    return v.lifting_s >= 0.0 and not (v.lifting_s <= v.parameters[LIFT_LATE_S]) and not unloaded(v)
+
+
+NOT_LIFTED: Final = Interlock(
+    name="not lifted",
+    cause="still loaded after a stop or in a hold",
+    level="Fz >= 20 N at lift_late after it began",
+    condition=_still_loaded,
+    compared=lambda v: Compared(v.lifting_s, v.parameters[LIFT_LATE_S], "s"),
+    parameters=(LIFT_LATE_S, SPEEDS_OLD_S, CLEAR_MM),
+    when=ENDING,
+    reaction=FAST,
+    reset=REPAIR,
+)
+
+LIFT_FAILED_S: Final = Parameter(
+    "lift_failed_s", "s", "1800 ms", "... and by then, else the power is taken off and the press's spring lifts [A]",
+    direction=Direction.LOWER, hardest="2 s",
+    because="the spring takes half a second more, and a rig is to be safe 3 s after its trip",
+)  # fmt: skip
+PUSHED_MM: Final = Parameter(
+    "pushed_mm", "mm", "0.3 mm", "told to lift or to rest, the press goes on by this at most: 50 N at 200 N [A]",
+    direction=Direction.LOWER, hardest="0.5 mm",
+    because="0.5 mm are 86 N at 400 N (172 N/mm): 486 N, and harm begins at 500 N",
+)  # fmt: skip
+PRESS_LAG_S: Final = Parameter(
+    "press_lag_s", "s", "50 ms", "from a command to the press following it: scan, wire and drive together [A]",
+    direction=Direction.LOWER, hardest="100 ms",
+    because="at 2 mm/s of loading it is another 0.2 mm that the press may go on unseen",
+)  # fmt: skip
+
+
+def _lift_failed(v: Inputs) -> bool:
+    p = v.parameters
+    late = v.lifting_s >= 0.0 and not (v.lifting_s <= p[LIFT_LATE_S]) and not (v.lifting_s <= p[LIFT_FAILED_S])
+    goes_on = v.stopped_s >= 0.0 and not (v.readings.press_mm <= v.stop_start.press_mm + p[PUSHED_MM])
+    return (late or goes_on) and not unloaded(v)
+
+
+def _still_pressing(v: Inputs) -> Compared:
+    press_mm, most_mm = v.readings.press_mm, v.stop_start.press_mm + v.parameters[PUSHED_MM]
+    if v.stopped_s >= 0.0 and not (press_mm <= most_mm):
+        return Compared(press_mm, most_mm, "mm")
+    return Compared(v.lifting_s, v.parameters[LIFT_FAILED_S], "s")
+
+
+LIFT_FAILED: Final = Interlock(
+    name="lift failed",
+    cause="still loaded after the quick stop, or the press goes on",
+    level="Fz >= 20 N at lift_failed after it began; or the press beyond its ramp and lag by pushed",
+    condition=_lift_failed,
+    compared=_still_pressing,
+    parameters=(LIFT_FAILED_S, PUSHED_MM, PRESS_LAG_S),
+    when=ENDING,
+    reaction=POWER_OFF,
+    reset=REPAIR,
+)
+
+SLIP_OUT_S: Final = Parameter(
+    "slip_out_s", "s", "500 ms", "slip is taken out for this long at most before both drives come down [A]",
+    direction=Direction.LOWER, hardest="1 s",
+    because="the press has lifted by then: later there is no slip to take out",
+)  # fmt: skip
+STOP_MARGIN_S: Final = Parameter(
+    "stop_margin_s", "s", "500 ms", "drives may stand this much later than their ramps say [A]",
+    direction=Direction.LOWER, hardest="1 s",
+    because="a drive that does not stop loses its power after two of these; a rig is to be safe 3 s after its trip",
+)  # fmt: skip
+
+
+def _ramp_s(v: Inputs) -> float:
+    # Slip is taken out first, then both come down on the ramp.
+    p = v.parameters
+    return p[SLIP_OUT_S] + v.stop_start.speed_m_s / v.limits.deceleration_m_s2 + p[STOP_MARGIN_S]
+
+
+def _ramp_over(v: Inputs) -> bool:
+    if v.stop.creeps or not v.stopped_s >= 0.0 or standing(v):
+        return False
+    return not (v.stopped_s <= _ramp_s(v))
+
+
+NOT_STOPPING: Final = Interlock(
+    name="not stopping",
+    cause="a drive turns longer than its ramp allows",
+    level="turning at slip_out + v / deceleration + stop_margin",
+    condition=_ramp_over,
+    compared=lambda v: Compared(v.stopped_s, _ramp_s(v), "s"),
+    parameters=(SLIP_OUT_S, STOP_MARGIN_S),
+    when=ENDING,
+    reaction=FAST,
+    reset=REPAIR,
+)
+
+
+def _quick_stop_s(v: Inputs) -> float:
+    return v.stop_start.fast_speed_m_s / v.limits.quick_stop_m_s2 + v.parameters[STOP_MARGIN_S]
+
+
+def _quick_stop_over(v: Inputs) -> bool:
+    if v.stop.creeps or not v.stopped_s >= 0.0 or standing(v):
+        return False
+    return not (v.readings.now_s - v.stop.fast_s <= _quick_stop_s(v))
+
+
+QUICK_STOP_FAILED: Final = Interlock(
+    name="quick stop failed",
+    cause="a drive turns longer than its quick stop allows",
+    level="turning at v / quick-stop deceleration + stop_margin",
+    condition=_quick_stop_over,
+    compared=lambda v: Compared(v.readings.now_s - v.stop.fast_s, _quick_stop_s(v), "s"),
+    parameters=(STOP_MARGIN_S,),
+    when=ENDING,
+    reaction=POWER_OFF,
+    reset=REPAIR,
+)
+
+HEAT_OFF_S: Final = Parameter(
+    "heat_off_s", "s", "1 s", "after a stop: no heat by then, or the contactor is open [A]",
+    direction=Direction.LOWER, hardest="2 s",
+    because="full output heats the hub by 1 K in 2 s, and 2 K are left above limits.jacket and its margin",
+)  # fmt: skip
+
+
+def _gives_output(v: Inputs) -> bool:
+    due = v.stopped_s >= 0.0 and not (v.stopped_s <= v.parameters[HEAT_OFF_S])
+    return due and not (v.readings.heat_percent <= 0.0)
+
+
+def _output(v: Inputs) -> Compared:
+    return Compared(v.readings.heat_percent, 0.0, "%")
+
+
+def _still_heats(v: Inputs) -> bool:
+    return _gives_output(v) and not contactor_open(v)
+
+
+HEAT_NOT_OFF: Final = Interlock(
+    name="heat not off",
+    cause="the jacket heats after a stop",
+    level="output and contactor on at heat_off after the stop",
+    condition=_still_heats,
+    compared=_output,
+    parameters=(HEAT_OFF_S,),
+    when=ENDING,
+    ends_lease=True,
+    reaction=FAST,
+    reset=REPAIR,
+)
+
+
+def _output_on(v: Inputs) -> bool:
+    return _gives_output(v) or (v.resting and not (v.readings.heat_percent <= 0.0))
+
+
+OUTPUT_NOT_OFF: Final = Interlock(
+    name="output not off",
+    cause="the jacket's controller gives output after a stop, whatever the contactor does",
+    level="output on at heat_off after the stop, or at rest",
+    condition=_output_on,
+    compared=_output,
+    parameters=(HEAT_OFF_S,),
+    when=ENDING,
+    ends_lease=True,
+    reaction=CONTROLLED,
+    reset=REPAIR,
+)
+
+STOP_TIMEOUT_S: Final = Parameter(
+    "stop_timeout_s", "s", "10 s",
+    "a stop that has not ended by then takes the power off and latches [A]",
+    direction=Direction.LOWER, hardest="15 s",
+    because="every part of a stop has been escalated 2.5 s after it began; nothing gets better by waiting longer",
+)  # fmt: skip
+LIFTED_MM: Final = Parameter(
+    "lifted_mm", "mm", "0.2 mm", "the press is where it was sent within this [A]",
+    direction=Direction.LOWER, hardest="1 mm",
+    because="lifted means 2 mm off the contact: half of that must be there",
+)  # fmt: skip
+
+
+def _endless(v: Inputs) -> bool:
+    if v.stop.creeps or not v.stopped_s >= 0.0:
+        return False
+    return not (v.readings.now_s - v.mode_since_s <= v.parameters[STOP_TIMEOUT_S])
+
+
+STOP_NOT_ENDED: Final = Interlock(
+    name="stop not ended",
+    cause="a stop has not come to its end: standing, lifted, unloaded, without heat",
+    level="stop_timeout after it began, and once more after the power was taken",
+    condition=_endless,
+    compared=lambda v: Compared(v.readings.now_s - v.mode_since_s, v.parameters[STOP_TIMEOUT_S], "s"),
+    parameters=(STOP_TIMEOUT_S, LIFTED_MM),
+    when=ENDING,
+    reaction=POWER_OFF,
+    reset=REPAIR,
+)
+
+CONTACTOR_DELAY_S: Final = Parameter(
+    "contactor_delay_s", "s", "500 ms", "the contactor has not followed its request by then [A]", POSITIVE,
+    direction=Direction.LOWER, hardest="1 s",
+    because="a contactor opens within 0.1 s [A]; the input word that says so may be 0.25 s old",
+)  # fmt: skip
+
+
+def _contactor_closed(v: Inputs) -> bool:
+    return v.readings.contactor_closed and not v.setpoints.contactor
+
+
+CONTACTOR_WELDED: Final = Interlock(
+    name="contactor welded",
+    cause="the contactor is closed without request",
+    level="feedback closed, request off",
+    condition=_contactor_closed,
+    delay=CONTACTOR_DELAY_S,
+    at_rest=always,
+    ends_lease=True,
+    reaction=CONTROLLED,
+    reset=REPAIR,
+)
+
+ROWS: Final[tuple[Interlock, ...]] = (
+    NOT_LIFTED, LIFT_FAILED, NOT_STOPPING, QUICK_STOP_FAILED, HEAT_NOT_OFF, OUTPUT_NOT_OFF, STOP_NOT_ENDED,
+    CONTACTOR_WELDED,
+)  # fmt: skip

@@ -1,0 +1,33 @@
+"""The interlock table of this machine: the rows of every subject, in the order of their importance."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from tester.kinds.wheel_on_belt.interlocks import (
+    devices,
+    friction,
+    hub,
+    load,
+    motion,
+    operation,
+    rest,
+    stops,
+    surface,
+    witness,
+)
+from tester.machine import wires
+from tester.machine.interlock_table import InterlockTable
+from tester.machine.row import Interlock
+from tester.rig.parameter import Parameter
+
+TABLE: Final = InterlockTable(
+    (
+        *wires.ROWS, *motion.ROWS, *load.ROWS, *witness.ROWS, *friction.ROWS, *surface.ROWS, *hub.ROWS, *devices.ROWS,
+        *stops.ROWS, *rest.ROWS, *wires.WARNINGS,
+    ),
+    operation.PARAMETERS,
+)  # fmt: skip
+INTERLOCKS: Final[tuple[Interlock, ...]] = TABLE.rows
+PARAMETERS: Final[tuple[Parameter, ...]] = TABLE.parameters
+"""Every key of the rig file's section ``interlocks``, in its order."""

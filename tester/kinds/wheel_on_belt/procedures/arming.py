@@ -1,0 +1,124 @@
+"""What is shown before every run: both drives follow, brake alike, and every drive stops without our heartbeat.
+
+It is tried out unloaded: ``tester.kinds.wheel_on_belt.procedures.lift_check`` has seen to that, and goes on watching.
+"""
+
+from __future__ import annotations
+
+from enum import Enum
+
+from drivers.canopen import objects as o
+from tester.kinds.wheel_on_belt.devices import Devices
+from tester.kinds.wheel_on_belt.rig import RigConfig
+from tester.kinds.wheel_on_belt.rig.checks import EQUAL_DECELERATIONS
+from tester.machine.proof import ProofStage, WatchdogProof
+
+BUMP_S = 0.3
+"""Ramp and lag are over by then: 25 ms at 2 m/s2 to 0.05 m/s [A]."""
+BUMP_SHARE = 0.3
+"""A speed within this share of its target follows; the other drive stands below the same speed [A]."""
+PRESS_BUMP_MM_S = 2.0
+PRESS_BUMP_MM = 0.2
+"""The press moves by at least this in the bump, away from rest and back [A]."""
+
+
+class Bump(Enum):
+    """Which drive is moved to see that it follows."""
+
+    WHEEL = "turn the wheel"
+    BELT = "turn the belt"
+    PRESS = "move the press"
+
+
+class Proof(WatchdogProof):
+    """Wheel, belt and press follow, each alone; wheel and belt creep while our heartbeat is withheld."""
+
+    def __init__(self, devices: Devices, rig: RigConfig) -> None:
+        """Nothing moves before the first ``step``."""
+        arming = rig.arming
+        super().__init__(devices, follow=arming.bump_test, watchdog=arming.watchdog_proof, withhold_s=arming.withhold_s)
+        self.axes = devices.axes
+        self.lease = devices.jacket.has_lease
+        self.creep_m_s = arming.creep_m_s
+        self.bump = Bump.WHEEL
+        self.pressed_from_mm = 0.0
+        self.radius_m = 0.5e-3 * rig.geometry.wheel_diameter_mm
+        self.failure = unequal_decelerations(devices, self.radius_m)
+
+    def proven(self) -> str:
+        """Return a line for the journal: what was shown, and what was not because the rig file says so."""
+        shown = ["lifted and unloaded", "decelerations equal"]
+        left_out: list[str] = []
+        self.watchdogs(shown, left_out)
+        (shown if self.lease else left_out).append("jacket's lease set and read back")
+        text = "shown: " + ", ".join(shown)
+        return f"{text}; NOT shown: {', '.join(left_out)}" if left_out else text
+
+    def stand(self) -> None:
+        """Command zero to the drives with a speed."""
+        axes = self.axes
+        axes.wheel.target = axes.belt.target = axes.press.target = 0.0
+
+    def still(self) -> bool:
+        """Tell whether wheel and belt stand."""
+        axes, least = self.axes, 0.1 * self.creep_m_s
+        return abs(axes.wheel.actual) * self.radius_m < least and abs(axes.belt.actual) < least
+
+    def begin(self, now: float) -> None:
+        """Turn the wheel; both, where nobody asks whether each follows."""
+        self.bump = Bump.WHEEL
+        self._creep(belt=not self.follow)
+
+    def _creep(self, *, belt: bool) -> None:
+        axes, creep = self.axes, self.creep_m_s
+        axes.wheel.target = creep / self.radius_m
+        axes.belt.target = creep if belt else 0.0
+
+    def move(self, now: float, elapsed: float) -> bool:
+        """See that each drive follows, one after the other."""
+        if elapsed < BUMP_S:
+            return False
+        if self.bump is Bump.PRESS:
+            return self._pressed()
+        axes, creep = self.axes, self.creep_m_s
+        wheel, belt = axes.wheel.actual * self.radius_m, axes.belt.actual
+        second = self.bump is Bump.BELT or not self.follow
+        near = BUMP_SHARE * creep
+        if not abs(wheel - creep) <= near:
+            self.failure = f"the wheel turns at {wheel:.3f} m/s, asked for {creep:g} m/s"
+        elif not abs(belt - (creep if second else 0.0)) <= near:
+            asked = f"{creep:g} m/s" if second else "standstill"
+            self.failure = f"the belt runs at {belt:.3f} m/s, asked for {asked}"
+        elif not second:
+            self._creep(belt=True)
+            self._next(Bump.BELT, now)
+        elif self.follow:
+            self.pressed_from_mm = axes.press.actual
+            axes.press.target = PRESS_BUMP_MM_S
+            self._next(Bump.PRESS, now)
+        else:
+            return True
+        return False
+
+    def _next(self, bump: Bump, now: float) -> None:
+        self.bump = bump
+        self.enter(ProofStage.MOVE, now)
+
+    def _pressed(self) -> bool:
+        press = self.axes.press
+        moved = press.actual - self.pressed_from_mm
+        press.target = 0.0
+        if not moved >= PRESS_BUMP_MM:
+            self.failure = f"the press moved by {moved:.2f} mm, asked for {BUMP_S * PRESS_BUMP_MM_S:.2f} mm"
+        return True
+
+
+def unequal_decelerations(devices: Devices, radius_m: float) -> str:
+    """Return "" or how the ramps read back from wheel and belt differ, in m/s2."""
+    wheel, belt = devices.axes.wheel, devices.axes.belt
+    for index, name in ((o.PROFILE_DECELERATION, "deceleration"), (o.QUICK_STOP_DECELERATION, "quick stop")):
+        at_rim = wheel.parameters.get((index, 0), 0) / wheel.config.velocity_increments * radius_m
+        of_belt = belt.parameters.get((index, 0), 0) / belt.config.velocity_increments
+        if not abs(at_rim - of_belt) <= EQUAL_DECELERATIONS * of_belt:
+            return f"{name}: wheel {at_rim:.3g} m/s2 at the rim, belt {of_belt:.3g} m/s2: must be equal within 5 %"
+    return ""

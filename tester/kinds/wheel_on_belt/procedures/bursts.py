@@ -1,0 +1,389 @@
+"""One repeat: whole revolutions inside the gates, collected in as many bursts as it needs.
+
+Straight running: the wheel stays in rolling contact and the belt brings the slip in and takes it out again (a slip
+pulse). With sideslip there is no matched speed, so every burst lifts, yaws, touches, counts and lifts again
+(docs/decisions/0013). Without slip there is nothing to pulse: one window of rolling.
+
+A burst begins with the surface below the setpoint and ends as far above it, so that its samples centre on the
+setpoint; how far below is learned, because some conditions heat up before the first sample counts.
+"""
+
+from __future__ import annotations
+
+from math import isnan, pi
+from typing import Final
+
+from sim.physics.slip import slip_velocity
+from tester.analysis.blocks import BlockCounter
+from tester.analysis.collected import collected
+from tester.analysis.judge import ALONE
+from tester.kinds.wheel_on_belt.axes import held_by
+from tester.kinds.wheel_on_belt.context import Context
+from tester.kinds.wheel_on_belt.procedures.burst_state import BurstNotes, Phase
+from tester.kinds.wheel_on_belt.procedures.motions import Lift, Load, TakeTare, Turn, Yaw
+from tester.kinds.wheel_on_belt.procedures.thermal_steps import roll
+from tester.kinds.wheel_on_belt.quantities import QUANTITIES
+from tester.kinds.wheel_on_belt.recipe.steps import WheelCondition
+from tester.machine.measured import Ending
+from tester.machine.motions import Power, Sequence, Settle
+from tester.quantities import Quantities
+
+TARE_S: Final = 1.0
+"""Averaging time of the zero before each repeat, s [A]: about three turns."""
+TARE_WAIT_S: Final = 0.4
+"""The cell settles this long after lifting, s [A]."""
+TARE_FRESH_S: Final = 110.0
+"""A zero is taken anew before the first burst if it is older than this, s: when the first sample counts, which is some
+seconds later, it is to be at most 120 s old (the cell's zero moves by 0.1 N/K with its temperature)."""
+COLDER_K: Final = 0.3
+"""A burst does not start further than this below where it is meant to: its samples would lie too cold, K [A]."""
+OFFSET_STEP_K: Final = 0.5
+"""How much lower the next burst starts after one that warmed through the band too quickly, K [A]."""
+OFFSET_BEYOND_BAND_K: Final = 1.5
+"""How far below the band a burst may start: what warms up before the first sample counts, K [A]."""
+FEW_REVOLUTIONS: Final = 3
+"""A burst with fewer whole turns than this starts the next one lower."""
+SLOW_COOLING_S: Final = 45.0
+SLOW_COOLING_K: Final = 0.15
+"""Cooling by less than this in that time is not worth waiting for, as long as the surface is below the setpoint [A]."""
+CENTRED_K: Final = 0.2
+"""A start this far below the setpoint still lets samples centre on it [A]."""
+MEAN_LIMIT_K: Final = 0.45
+"""A burst ends before the mean surface temperature of the repeat's samples is more than this off the setpoint [A]
+(asked: within 0.7 K)."""
+ROLLING_START_K: Final = 0.4
+"""Without slip nothing moves the surface during the window: it starts this near to the setpoint, K [A]."""
+BELOW_K: Final = 0.3
+"""A burst whose samples lie further below the setpoint than this, in the mean, starts the next one higher, K [A]."""
+OFFSET_LEAST_K: Final = 0.2
+SPLIT_RISE_K: Final = 0.25
+"""A burst that has warmed by this much ends at half the window, any other at a whole one: a second rise tells
+temperature from time [A]."""
+BLIND_S: Final = 20.0
+"""A burst in which nothing has counted for this long is given up, s [A]."""
+LIFT_TO_COOL_S: Final = 180.0
+"""Rolling that has not brought the temperature back by then is tried lifted, s [A]."""
+COOL_AT_MOST_S: Final = 360.0
+"""Longest cooling lifted before rolling is tried again, s [A]."""
+EMPTY_BURSTS: Final = 3
+"""That many bursts in a row without a whole turn, begun as low as it goes: the condition cannot be held [A]."""
+WARM_SHARE: Final = 1.2
+"""Revolutions a condition must hold, with the ramp, to be called possible: used for the band that would do."""
+
+
+# Bound once: a look-up on the enum class costs several times as much in every scan (CPython 3.11).
+_TARE: Final = Phase.TARE
+_ROLL: Final = Phase.ROLL
+_READY: Final = Phase.READY
+_COOL: Final = Phase.COOL
+_MOVE_IN: Final = Phase.MOVE_IN
+_COUNT: Final = Phase.COUNT
+_MOVE_OUT: Final = Phase.MOVE_OUT
+
+
+class MeasureRepeat:
+    """State object of one repeat."""
+
+    def __init__(
+        self, step: WheelCondition, reference_tare: list[float], offset_k: float, quantities: Quantities = QUANTITIES
+    ) -> None:
+        """``offset_k``: how far below the setpoint its bursts start, from the repeat before; ``quantities``: the run's
+        table of channels."""
+        self.condition = step
+        self.setpoint = held_by(step.setpoint)
+        self.offset_k = offset_k
+        self.reference = reference_tare
+        self.phase = Phase.TARE
+        self.moves = Sequence()
+        self.tare: TakeTare | None = None
+        self.tared_s = float("-inf")
+        self.counter = BlockCounter(quantities)
+        self.burst = BurstNotes()
+        self.bursts = 0
+        self.ending: Ending | None = None
+        self.detail = ""
+        self.warming_k_s = float("nan")
+        self.holdable_band_k = float("nan")
+        """Where the temperature could not be held: the rate seen, and the band that would hold one turn."""
+        self.empty = 0
+        """Bursts without a whole turn since the last one with any."""
+        self.ready_since_s = float("nan")
+        """Since when the next burst has been waited for; NaN while none is."""
+        self.rolling_since_s = float("nan")
+        self.cooling_since_s = float("nan")
+        self.mark_s = 0.0
+        self.mark_c = float("inf")
+        self.surface_sum_k = 0.0
+        self.surface_count = 0
+        sp = self.setpoint
+        self.belt_m_s = sp.belt_speed_m_s
+        self.slip_m_s = slip_velocity(sp.wheel_speed_m_s, self.belt_m_s, sp.sideslip_deg)[2]
+        self.target_c = sp.temperature_c
+        self.band_k = step.temperature_band_k
+        self.window_rev = step.window.revolutions
+        self.yawed = sp.yawed
+        self.rolling_only = not self.yawed and abs(sp.slip_velocity_m_s) < 1e-9
+
+    # -- what the step needs ----------------------------------------------------------------------------------
+
+    @property
+    def revolutions(self) -> int:
+        """Whole revolutions that count so far."""
+        return len(self.counter.blocks)
+
+    def step(self, ctx: Context) -> bool:
+        """Advance by one scan; done when lifted with ``ending`` set."""
+        self._show(ctx)
+        phase = self.phase
+        if phase is _COUNT:
+            self._count(ctx)
+        elif phase is _READY:
+            self._ready(ctx)
+        elif phase is _ROLL:
+            self._demand_heat(ctx)
+            if self.moves.step(ctx):
+                self._to_ready(ctx)
+        elif phase is _TARE:
+            self._tare(ctx)
+        elif phase is _COOL:
+            self._cool(ctx)
+        elif phase is _MOVE_IN:
+            ctx.demand.freeze_heat = True
+            if self.moves.step(ctx):
+                self._begin_burst(ctx)
+        elif phase is _MOVE_OUT:
+            if self.moves.step(ctx):
+                self._to_ready(ctx)
+        elif self.moves.step(ctx):
+            return True
+        return False
+
+    # -- phases -----------------------------------------------------------------------------------------------
+
+    def _tare(self, ctx: Context) -> None:
+        if self.tare is None:
+            limits = ctx.rig.interlocks
+            self.tare = TakeTare(TARE_S, self.reference, limits.zero_warn_n, limits.zero_stop_n)
+            wheel = self.setpoint.wheel_speed_m_s
+            self.moves = Sequence(Power(True), Lift(), Turn(wheel, wheel), Settle(TARE_WAIT_S), self.tare)
+        self._demand_heat(ctx)
+        if not self.moves.step(ctx):
+            return
+        if self.tare.failed:
+            self._end(ctx, Ending.ZERO_DRIFT, self.tare.failed)
+            return
+        self.tared_s = ctx.now
+        self._roll()
+
+    def _tare_again(self) -> None:
+        """Take the zero anew: the wait for the temperature was long, and the cell has warmed meanwhile."""
+        self.phase = Phase.TARE
+        self.tare = None
+
+    def _roll(self) -> None:
+        self.phase = Phase.ROLL
+        self.moves = roll(self.setpoint.wheel_speed_m_s, self.setpoint.load_n)
+
+    def _to_ready(self, ctx: Context) -> None:
+        self.phase = Phase.READY
+        if isnan(self.ready_since_s):
+            self.ready_since_s = ctx.now
+        self.rolling_since_s = ctx.now
+        self.mark_s, self.mark_c = ctx.now, float("inf")
+
+    def _ready(self, ctx: Context) -> None:
+        self._demand_heat(ctx)
+        surface, target = ctx.gates.surface_now_c(), self.setpoint.temperature_c
+        waited = ctx.now - self.ready_since_s
+        if waited > self.condition.soak.at_most_s:
+            self._end(ctx, Ending.NOT_REACHED, f"surface at {surface:.1f} degC after {waited / 60:.0f} min")
+        elif self._start_now(ctx, surface, target):
+            if self.bursts == 0 and ctx.now - self.tared_s > TARE_FRESH_S:
+                self._tare_again()
+            else:
+                self._slip_in()
+        elif surface > target and ctx.now - self.rolling_since_s > LIFT_TO_COOL_S:
+            self.phase = Phase.COOL
+            self.cooling_since_s = ctx.now
+            self.moves = Sequence(Lift())
+
+    def _start_now(self, ctx: Context, surface: float, target: float) -> bool:
+        if self.rolling_only:
+            return abs(surface - target) <= min(ROLLING_START_K, self.condition.temperature_band_k)
+        if surface < target - max(self.offset_k, ctx.rig.loops.heat.rolling_offset_k) - COLDER_K:
+            return False
+        if surface <= target - self.offset_k + 0.1:
+            return True
+        if ctx.now - self.mark_s >= SLOW_COOLING_S:
+            slow = self.mark_c - surface < SLOW_COOLING_K
+            self.mark_s, self.mark_c = ctx.now, surface
+            return slow and surface <= target - CENTRED_K
+        return False
+
+    def _cool(self, ctx: Context) -> None:
+        """Turn lifted until the surface is back, then touch again; the waiting time goes on."""
+        self._demand_heat(ctx)
+        self.moves.step(ctx)
+        surface, target = ctx.gates.surface_now_c(), self.setpoint.temperature_c
+        if surface <= target - self.offset_k or ctx.now - self.cooling_since_s > COOL_AT_MOST_S:
+            self._roll()
+
+    def _slip_in(self) -> None:
+        sp = self.setpoint
+        self.phase = Phase.MOVE_IN
+        self.ready_since_s = float("nan")
+        if self.yawed:
+            self.moves = Sequence(
+                Lift(),
+                Yaw(sp.positions),
+                Turn(sp.wheel_speed_m_s, sp.belt_speed_m_s),
+                Load(sp.load_n, percent=5.0, for_s=0.0, quick=True),
+            )
+        else:
+            # The belt's ramp is part of the burst: the gates say when samples count.
+            self.moves = Sequence()
+
+    def _begin_burst(self, ctx: Context) -> None:
+        self.phase = Phase.COUNT
+        self.bursts += 1
+        self.burst = BurstNotes(
+            ctx.now,
+            blocks_before=self.revolutions,
+            counted_s=ctx.now,
+            sum_before_k=self.surface_sum_k,
+            count_before=self.surface_count,
+        )
+        ctx.burst = self.bursts
+        demand = ctx.demand
+        demand.freeze_heat = not self.rolling_only
+        demand.belt_speed_m_s = self.belt_m_s
+        self._aim(ctx)
+        self._count(ctx)
+
+    def _count(self, ctx: Context) -> None:
+        r, burst = ctx.readings, self.burst
+        ctx.moving = not self.rolling_only
+        done = self.counter.add(ctx.sample) is not None
+        trend = ctx.gates.surface
+        surface, rate = trend.now_c, trend.rate_k_s
+        if rate > burst.peak_rate_k_s:
+            burst.peak_rate_k_s = rate
+        if isnan(burst.slid_s) and r.slip_m_s >= 0.5 * self.slip_m_s:
+            burst.slid_s, burst.slid_c = ctx.now, r.surface_c
+        if ctx.gate == 0:
+            if isnan(burst.began_c):
+                burst.began_c = surface
+            burst.counted_s = ctx.now
+            self.surface_sum_k += r.surface_c - self.target_c
+            self.surface_count += 1
+        if done and self._complete(ctx):
+            self._learn_offset(FEW_REVOLUTIONS, self.offset_k)
+            self._end(ctx, Ending.COMPLETE, "")
+        elif self._burst_over(ctx, surface, rate):
+            self._end_burst(ctx)
+
+    def _complete(self, ctx: Context) -> bool:
+        """Tell whether the repeat has what it collects; without siblings, whether its drift is shown to be small."""
+        window = self.condition.window
+        alone = self.condition.repeats <= ALONE and not self.rolling_only
+        return collected(self.counter, window.revolutions, window.seconds, window.extend_to, alone=alone)
+
+    def _burst_over(self, ctx: Context, surface: float, rate: float) -> bool:
+        if self.rolling_only:
+            return ctx.now - self.burst.counted_s > BLIND_S
+        target, band = self.target_c, self.band_k
+        start = self.burst.began_c
+        below = self.offset_k if isnan(start) else target - start
+        limit = target + min(band, max(below, CENTRED_K) + 0.2)
+        if surface >= limit:
+            return True
+        mean = self.surface_sum_k / self.surface_count if self.surface_count else 0.0
+        if mean > MEAN_LIMIT_K and surface > target + MEAN_LIMIT_K:
+            return True
+        window = self.window_rev
+        if window is not None and not isnan(start):
+            share = 0.5 if surface - start > SPLIT_RISE_K else 1.0
+            if self.revolutions - self.burst.blocks_before >= share * window:
+                return True
+        return ctx.now - self.burst.counted_s > BLIND_S
+
+    def _end_burst(self, ctx: Context) -> None:
+        gained = self.revolutions - self.burst.blocks_before
+        ctx.burst = 0
+        self.empty = 0 if gained else self.empty + 1
+        furthest = self.condition.temperature_band_k + OFFSET_BEYOND_BAND_K
+        if self.empty >= EMPTY_BURSTS and self.offset_k >= furthest:
+            self._end(ctx, Ending.CANNOT_HOLD, self._band_needed(ctx))
+            return
+        self._learn_offset(gained, furthest)
+        if self.bursts >= self.condition.max_bursts:
+            enough = self.revolutions >= (self.condition.window.revolutions or 0.0) and self.revolutions > 0
+            self._end(
+                ctx,
+                Ending.COMPLETE if enough else Ending.CANNOT_HOLD if gained == 0 else Ending.INCOMPLETE,
+                f"{self.revolutions} revolutions in {self.bursts} bursts; {self._band_needed(ctx)}",
+            )
+            return
+        self.phase = Phase.MOVE_OUT
+        wheel = self.setpoint.wheel_speed_m_s
+        if self.yawed:
+            self.moves = Sequence(Lift(), Yaw(), Turn(wheel, wheel), Load(self.setpoint.load_n))
+        else:
+            self.moves = Sequence(Turn(wheel, wheel))
+
+    def _learn_offset(self, gained: int, furthest_k: float) -> None:
+        """Start lower after a burst that warmed up too quickly, higher after one that stayed below the setpoint."""
+        count = self.surface_count - self.burst.count_before
+        mean_k = (self.surface_sum_k - self.burst.sum_before_k) / count if count else 0.0
+        if gained < FEW_REVOLUTIONS:
+            self.offset_k = min(self.offset_k + OFFSET_STEP_K, furthest_k)
+        elif mean_k < -BELOW_K:
+            self.offset_k = max(self.offset_k + 0.7 * mean_k, OFFSET_LEAST_K)
+
+    def _band_needed(self, ctx: Context) -> str:
+        """Work out how fast the surface warms and which band would hold one whole revolution; return it as text.
+
+        The trend's filter needs seconds to follow: of a short burst the rise from reading to reading says more.
+        A band in which nothing could be counted is never said to do.
+        """
+        r, burst = ctx.readings, self.burst
+        turn_s = pi * r.diameter_mm * 1e-3 / self.setpoint.wheel_speed_m_s
+        lag_s = ctx.rig.gates.ir_lag_s
+        elapsed = r.surface_at_s - burst.slid_s
+        rise = (r.surface_c - burst.slid_c) / elapsed if elapsed >= lag_s else 0.0
+        self.warming_k_s = max(burst.peak_rate_k_s, rise)
+        self.holdable_band_k = 0.5 * self.warming_k_s * (WARM_SHARE * turn_s + lag_s)
+        if self.empty:
+            self.holdable_band_k = max(self.holdable_band_k, WARM_SHARE * self.condition.temperature_band_k)
+        return f"surface warms by {self.warming_k_s:.2f} K/s; a band of {self.holdable_band_k:.1f} K would do"
+
+    def _end(self, ctx: Context, ending: Ending, detail: str) -> None:
+        ctx.burst = 0
+        self.ending = ending
+        self.detail = detail
+        self.phase = Phase.LIFT
+        wheel = self.setpoint.wheel_speed_m_s
+        first = () if self.yawed else (Turn(wheel, wheel),)
+        self.moves = Sequence(*first, Lift(), Turn(wheel, wheel))
+
+    # -- shared -----------------------------------------------------------------------------------------------
+
+    def _demand_heat(self, ctx: Context) -> None:
+        ctx.demand.surface_c = self.setpoint.temperature_c - (0.0 if self.rolling_only else self.offset_k)
+        ctx.demand.freeze_heat = False
+
+    def _aim(self, ctx: Context) -> None:
+        """Point the gates at this condition."""
+        target, sp = ctx.gates.target, self.setpoint
+        target.load_n = sp.load_n
+        target.wheel_speed_m_s = sp.wheel_speed_m_s
+        target.belt_speed_m_s = self.belt_m_s
+        target.slip_m_s = self.slip_m_s
+        target.temperature_c = sp.temperature_c
+        target.band_k = self.condition.temperature_band_k
+
+    def _show(self, ctx: Context) -> None:
+        progress = ctx.progress
+        progress.phase = self.phase._value_
+        progress.burst = self.bursts
+        progress.revolutions = float(len(self.counter.blocks))

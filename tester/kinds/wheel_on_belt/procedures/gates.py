@@ -1,0 +1,142 @@
+"""The gates: which samples count. Evaluated live in every scan and stored with each sample.
+
+Load within 2 % (1 s average), both speeds within 1 %, slip within max(2 %, 2 mm/s) (0.2 s average), surface
+temperature inside the band with the infrared thermometer's lag allowed for.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import inf, isfinite
+from typing import Final
+
+from tester.kinds.wheel_on_belt.process import (
+    GATE_LOAD,
+    GATE_SETTLING,
+    GATE_SLIP,
+    GATE_SPEED,
+    GATE_TEMPERATURE,
+    Readings,
+)
+from tester.kinds.wheel_on_belt.rig import GatesConfig
+
+_INF: Final = inf
+RESTART_SHARE: Final = 0.15
+"""An average starts again while the instant value is this far off: it holds only what followed the approach [A]."""
+RATE_FAST_S: Final = 0.3
+RATE_SLOW_S: Final = 1.5
+"""Time constants of the two averages whose difference gives the surface's rate of change [A]."""
+RATE_LIMIT_K_S: Final = 5.0
+"""A faster surface is a sensor fault, not a rate."""
+
+
+@dataclass(slots=True)
+class Average:
+    """Average over up to ``window_s``: exact mean while young, exponential afterwards. Restarts on a jump."""
+
+    window_s: float
+    floor: float
+    """Smallest distance that counts as a jump, in the value's unit."""
+    value: float = float("nan")
+    age_s: float = 0.0
+
+    def update(self, x: float, target: float, dt: float) -> float:
+        """Take in one value that stood for ``dt`` s; return the average."""
+        value = self.value
+        off, jump = abs(x - target), RESTART_SHARE * abs(target)
+        if (off > self.floor and off > jump) or not -_INF < value < _INF:
+            self.value = x
+            self.age_s = 0.0
+            return x
+        self.age_s = age_s = self.age_s + dt
+        span_s = age_s if age_s < self.window_s else self.window_s
+        self.value = value = value + (x - value) * (dt / span_s if dt < span_s else 1.0)
+        return value
+
+
+@dataclass(slots=True)
+class Target:
+    """What the gates compare with; written by the activity that measures."""
+
+    load_n: float = 0.0
+    wheel_speed_m_s: float = 0.0
+    belt_speed_m_s: float = 0.0
+    slip_m_s: float = 0.0
+    """Resultant slip speed that the setpoints give."""
+    temperature_c: float = 0.0
+    band_k: float = 2.0
+
+
+@dataclass(slots=True)
+class SurfaceTrend:
+    """Surface temperature filtered, and its rate in K/s, updated with each new reading of the thermometer."""
+
+    fast_c: float = float("nan")
+    slow_c: float = float("nan")
+    stamp_s: float = float("-inf")
+    rate_k_s: float = 0.0
+    now_c: float = float("nan")
+    """The temperature with the thermometer's lag and that of the filter allowed for, degC."""
+
+    def update(self, surface_c: float, stamp_s: float, lag_s: float) -> None:
+        """Take in a reading of a thermometer with a lag; one that is not newer than the last is ignored."""
+        if stamp_s <= self.stamp_s or not isfinite(surface_c):
+            return
+        dt, self.stamp_s = stamp_s - self.stamp_s, stamp_s
+        if not isfinite(self.fast_c) or dt > 10.0:
+            self.fast_c = self.slow_c = self.now_c = surface_c
+            self.rate_k_s = 0.0
+            return
+        self.fast_c += (surface_c - self.fast_c) * dt / (RATE_FAST_S + dt)
+        self.slow_c += (surface_c - self.slow_c) * dt / (RATE_SLOW_S + dt)
+        rate = (self.fast_c - self.slow_c) / (RATE_SLOW_S - RATE_FAST_S)
+        self.rate_k_s = rate = min(max(rate, -RATE_LIMIT_K_S), RATE_LIMIT_K_S)
+        self.now_c = self.fast_c + rate * (lag_s + RATE_FAST_S)
+
+
+class Gates:
+    """The live gates of one rig."""
+
+    def __init__(self, config: GatesConfig) -> None:
+        """Start with nothing known: every gate closed."""
+        self.config = config
+        self.target = Target()
+        self.load = Average(config.load_filter_s, 10.0)
+        self.slip = Average(config.slip_filter_s, 0.02)
+        self.surface = SurfaceTrend()
+        self._lag_s = config.ir_lag_s
+        self._transient_s = config.contact_transient_s
+        self._load_share = config.load_percent * 0.01
+        self._speed_share = config.speed_percent * 0.01
+        self._slip_share = config.slip_percent * 0.01
+        self._slip_floor_m_s = config.slip_floor_mm_s * 1e-3
+        self.touched_s = float("inf")
+        """When the wheel last touched; samples settle for a second after it (contact transient)."""
+
+    def surface_now_c(self) -> float:
+        """Return the surface temperature with the thermometer's lag and that of its filter allowed for, degC."""
+        return self.surface.now_c
+
+    def update(self, r: Readings, dt: float) -> int:
+        """Return the mask of closed gates for this scan (0 = the sample counts)."""
+        t = self.target
+        mask = 0
+        load = self.load.update(r.force_z_n, t.load_n, dt)
+        if not abs(load - t.load_n) <= self._load_share * t.load_n:
+            mask |= GATE_LOAD
+        share = self._speed_share
+        if not abs(r.wheel_speed_m_s - t.wheel_speed_m_s) <= share * t.wheel_speed_m_s or not (
+            abs(r.belt_speed_m_s - t.belt_speed_m_s) <= share * t.belt_speed_m_s
+        ):
+            mask |= GATE_SPEED
+        slip = self.slip.update(r.slip_m_s, t.slip_m_s, dt)
+        if not abs(slip - t.slip_m_s) <= max(self._slip_share * t.slip_m_s, self._slip_floor_m_s):
+            mask |= GATE_SLIP
+        surface = self.surface
+        if r.surface_at_s > surface.stamp_s:
+            surface.update(r.surface_c, r.surface_at_s, self._lag_s)
+        if not abs(surface.now_c - t.temperature_c) <= t.band_k:
+            mask |= GATE_TEMPERATURE
+        if not r.now_s - self.touched_s >= self._transient_s:
+            mask |= GATE_SETTLING
+        return mask

@@ -1,0 +1,205 @@
+"""The moves of this machine: lift, turn, load, yaw, tare. Those of any machine are in ``tester.machine.motions``.
+
+An activity's ``step`` writes the demand it needs and returns True in the scan in which it is done. It keeps its
+state in plain attributes: a running activity can be copied.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from math import isfinite
+from typing import Final
+
+from tester.kinds.wheel_on_belt.context import Context
+from tester.kinds.wheel_on_belt.procedures.lift_check import loaded
+from tester.kinds.wheel_on_belt.process import CELL, Press, Readings
+from tester.machine.motions import Move
+
+SPEED_SHARE: Final = 0.01
+SPEED_FLOOR_M_S: Final = 0.003
+"""A speed counts as reached within 1 % or 3 mm/s, whichever is more [A]."""
+Zero = tuple[float, float, float, float]
+"""Offsets of the load cell: Fx, Fy, Fz in N, Mz in N m."""
+
+NEAR: Final = 0.05
+"""A positioned axis is where it is to be within this, in its unit (deg) [A]."""
+LIFTED_N: Final = 5.0
+"""Below this force the wheel counts as lifted [A]."""
+LIFTED_MM: Final = 0.3
+"""... or this near to the lifted position: the zero of the cell may have drifted by more than that force [A]."""
+TARE_LEAST: Final = 10
+"""Readings that a tare averages at least."""
+CELL_SILENT_S: Final = 5.0
+"""A tare that has not got its readings this long after its time is given up, s [A]."""
+
+
+class Lift(Move):
+    """Take the wheel off the belt."""
+
+    limit_s = 30.0  # [A]; the whole travel takes 3 s
+    name = "lifting"
+
+    def step(self, ctx: Context) -> bool:
+        """Done when the force is gone, or the press is back and what the cell still shows is its zero."""
+        ctx.demand.press = Press.LIFT
+        ctx.demand.load_n = 0.0
+        ctx.moving = True
+        if ctx.contact.in_contact:
+            return False
+        force, lifted_mm = ctx.readings.force_z_n, ctx.contact.lifted_mm(ctx.rig.loops.load)
+        return force < LIFTED_N or (isfinite(force) and ctx.readings.press_mm <= lifted_mm + LIFTED_MM)
+
+
+class Turn(Move):
+    """Bring wheel and belt to their speeds (m/s)."""
+
+    limit_s = 30.0  # [A]; the ramps take under a second
+    name = "reaching the speeds"
+
+    def __init__(self, wheel_m_s: float, belt_m_s: float) -> None:
+        """Both line speeds."""
+        self.wheel_m_s = wheel_m_s
+        self.belt_m_s = belt_m_s
+
+    def step(self, ctx: Context) -> bool:
+        """Done when both are reached."""
+        ctx.demand.wheel_speed_m_s = self.wheel_m_s
+        ctx.demand.belt_speed_m_s = self.belt_m_s
+        ctx.moving = True
+        return speeds_reached(ctx)
+
+
+def speeds_reached(ctx: Context) -> bool:
+    """Tell whether both measured speeds are at their demands."""
+    r, d = ctx.readings, ctx.demand
+    return abs(r.wheel_speed_m_s - d.wheel_speed_m_s) <= max(
+        SPEED_SHARE * abs(d.wheel_speed_m_s), SPEED_FLOOR_M_S
+    ) and abs(r.belt_speed_m_s - d.belt_speed_m_s) <= max(SPEED_SHARE * abs(d.belt_speed_m_s), SPEED_FLOOR_M_S)
+
+
+class Load(Move):
+    """Press to a load (N) and wait until it stands within ``percent`` for ``for_s`` seconds."""
+
+    limit_s = 180.0  # [A]; a first touch takes 15 s
+    name = "loading"
+
+    def __init__(self, load_n: float, *, percent: float = 2.0, for_s: float = 1.0, quick: bool = False) -> None:
+        """``quick``: the fast approach to a known contact."""
+        self.load_n = load_n
+        self.percent = percent
+        self.for_s = for_s
+        self.quick = quick
+        self.since_s = float("inf")
+
+    def step(self, ctx: Context) -> bool:
+        """Done when the averaged load has been in band long enough."""
+        ctx.demand.press = Press.LOAD
+        ctx.demand.load_n = self.load_n
+        ctx.demand.quick_touch = self.quick
+        ctx.gates.target.load_n = self.load_n
+        ctx.moving = True
+        inside = abs(ctx.gates.load.value - self.load_n) <= 0.01 * self.percent * self.load_n
+        self.since_s = min(self.since_s, ctx.now) if inside else float("inf")
+        return ctx.now - self.since_s >= self.for_s
+
+
+def straight(r: Readings) -> dict[str, float]:
+    """Return where positioned axes are when nothing is turned: 0 for each, by name."""
+    return dict.fromkeys(r.positions, 0.0)
+
+
+def near(r: Readings, positions: Mapping[str, float]) -> bool:
+    """Tell whether positioned axes are at positions, by name."""
+    return all(abs(r.positions[name] - wanted) < NEAR for name, wanted in positions.items())
+
+
+class Yaw(Move):
+    """Bring positioned axes to positions, by name, in their units; only ever unloaded."""
+
+    limit_s = 60.0  # [A]; 30 degrees take 2 s
+    name = "reaching the angles"
+
+    def __init__(self, positions: Mapping[str, float] | None = None) -> None:
+        """Where to; None: all of them to zero, straight."""
+        self.positions = positions
+        self.began_s = float("nan")
+
+    def step(self, ctx: Context) -> bool:
+        """Done when the axes report their targets reached at the wanted positions."""
+        wanted = self.positions if self.positions is not None else straight(ctx.readings)
+        ctx.demand.positions.update(wanted)
+        ctx.moving = True
+        return near(ctx.readings, wanted) and ctx.readings.yaw_reached
+
+
+class TakeTare:
+    """Average the unloaded load cell over whole turns and make that its zero.
+
+    The reference zero (the first of this wheel) is kept: a zero that has wandered off it by more than ``stop_n``
+    is a damaged or touching cell (5 N warn, 20 N stop). The reference itself is no more than an
+    unloaded cell may show (``arming.unloaded``), else it is not taken.
+    """
+
+    def __init__(
+        self, seconds: float, reference: list[float], warn_n: float, stop_n: float, *, ends_run: bool = True
+    ) -> None:
+        """``reference``: shared list, empty until the first tare fills it.
+
+        ``ends_run``: a zero that has wandered too far ends the run, which comes to its standstill with that zero: with
+        the one before, its stop would take the cell's drift for a load. Where work goes on, such a zero is not taken.
+        """
+        self.seconds = seconds
+        self.reference = reference
+        self.warn_n = warn_n
+        self.stop_n = stop_n
+        self.ends_run = ends_run
+        self.began_s = float("nan")
+        self.stamp_s = float("-inf")
+        self.sums = [0.0, 0.0, 0.0, 0.0]
+        self.count = 0
+        self.drift_n = 0.0
+        """How far off the reference the zero is, N: of the three forces the one that has moved most."""
+        self.failed = ""
+
+    def step(self, ctx: Context) -> bool:
+        """Done when the average is taken; ``failed`` says why the zero is not to be trusted."""
+        r = ctx.readings
+        ctx.moving = True
+        if self.began_s != self.began_s:
+            self.began_s = ctx.now
+        if r.cell_valid and r.cell_at_s > self.stamp_s and r.cell_at_s > self.began_s:
+            self.stamp_s = r.cell_at_s
+            for i, value in enumerate(r.cell):
+                self.sums[i] += value
+            self.count += 1
+        late_s = ctx.now - self.began_s - self.seconds
+        if late_s < 0.0 or self.count < TARE_LEAST:
+            if late_s > CELL_SILENT_S:
+                self.failed = f"the load cell gave {self.count} valid readings in {ctx.now - self.began_s:.0f} s"
+            return bool(self.failed)
+        ox, oy, oz, om = ctx.cell.tare
+        sx, sy, sz, sm = self.sums
+        new = (ox + sx / self.count, oy + sy / self.count, oz + sz / self.count, om + sm / self.count)
+        if not self.reference:
+            # A tare has nothing to be compared with yet: what it may take off is bounded, or it hides a load.
+            self.failed = loaded(new, ctx.rig)
+            if not self.failed:
+                self.reference.extend(new)
+                self._take(ctx, "reference", new)
+            return True
+        self.failed = self._wandered(ctx, new)
+        if self.ends_run or not self.failed:
+            self._take(ctx, "repeat", new)
+        return True
+
+    def _take(self, ctx: Context, kind: str, new: Zero) -> None:
+        ctx.cell.set_tare(new)
+        ctx.journal.tare(ctx.now, kind, dict(zip(CELL, new, strict=True)), ctx.repeat_key)
+
+    def _wandered(self, ctx: Context, new: Zero) -> str:
+        """Return "" or how far a zero is off the reference; one that is worth a warning is written down."""
+        self.drift_n = drift = max(abs(n - r) for n, r in zip(new[:3], self.reference[:3], strict=True))
+        text = f"load cell zero drifted by {drift:.1f} N since the wheel's reference tare"
+        if drift > self.warn_n:
+            ctx.journal.event(ctx.now, "tare", text, "warning")
+        return text if drift > self.stop_n else ""

@@ -1,0 +1,23 @@
+"""Put steps that are about to begin where an interrupted run stands in the store."""
+
+from __future__ import annotations
+
+from tester.kinds.wheel_on_belt.procedures.results import WheelResults
+from tester.kinds.wheel_on_belt.procedures.steps import WheelProcedures
+from tester.kinds.wheel_on_belt.process import CELL
+from tester.store.resume import ResumePoint
+
+
+def take_up(procedures: WheelProcedures, results: WheelResults, point: ResumePoint) -> None:
+    """Let the procedures of the remaining plan know what is committed: repeats, wheels, the load cell's reference
+    zero."""
+    results.earlier = dict(point.conditions)
+    results.pool = point.pool
+    if point.reference_tare is not None:
+        procedures.reference_tare.extend(point.reference_tare[name] for name in CELL)
+    wheels = point.stand.mounted
+    procedures.wheels = max([procedures.wheels, *(wheel.number for wheel in wheels)])
+    # The wheel that is on has measured before, so that a condition it would not outlast gets a new one. A condition
+    # that is half measured stays on its wheel, as in a run without an interruption.
+    if wheels and wheels[-1].last_condition and point.next_repeat is None:
+        procedures.measured_wheel = wheels[-1].number

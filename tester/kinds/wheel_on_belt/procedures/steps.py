@@ -1,0 +1,202 @@
+"""Which activity serves which step of a plan, and what the plan did not foresee: a worn wheel, a person at it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Final
+
+from tester.analysis.wear_check import NO_CONDITION
+from tester.axes import condition_words
+from tester.kinds.wheel_on_belt.context import Context
+from tester.kinds.wheel_on_belt.procedures.condition import MeasureCondition, Results
+from tester.kinds.wheel_on_belt.procedures.operator_access import AskAtRest
+from tester.kinds.wheel_on_belt.procedures.thermal_steps import CoolDown, HeatUp, RestStep
+from tester.kinds.wheel_on_belt.procedures.wear_check import CheckByPerson, CheckByRolling
+from tester.kinds.wheel_on_belt.procedures.wheel_steps import InstallWheel, PreGrindStep, ShowContact
+from tester.kinds.wheel_on_belt.process import Press
+from tester.kinds.wheel_on_belt.recipe.steps import Cool, Heat, Install, PreGrind, Rest, WheelCondition, WheelPlan
+from tester.kinds.wheel_on_belt.recipe.wheel_change import INSERTED, wheel_change
+from tester.machine.activity import Activity
+from tester.machine.executor import Procedures, Unforeseen
+from tester.recipe.plan import Plan, PromptStep, Step
+
+DEFAULT_SPEED_M_S: Final = 0.8
+"""Wheel speed for heating when no condition follows (the paper's)."""
+DEFAULT_LOAD_N: Final = 200.0
+WEAR_CHECK: Final = "check the wheel's diameter and wear"
+
+
+class WheelProcedures(Procedures[Context]):
+    """The steps of this machine, and what it remembers of wheels from step to step."""
+
+    def __init__(self, plan: Plan, results: Results, *, hardware: bool) -> None:
+        """``hardware``: people are asked where a simulated rig just goes on."""
+        self.plan = WheelPlan.of(plan)
+        self.results = results
+        self.hardware = hardware
+        self.reference_tare: list[float] = []
+        """The present wheel's first zero."""
+        self.wheels = max((step.wheel for step in plan.steps if isinstance(step, Install)), default=0)
+        """Highest wheel number in use: one that the plan did not foresee gets the next."""
+        self.unchecked: WheelCondition | None = None
+        """A condition whose wear nothing has measured yet, though its recipe asks for it."""
+        self.checked = 0
+        """The last condition before which a person has looked at the wheel."""
+        self.measured_wheel = 0
+        """The wheel of the last condition. A new one measures at least one condition, else changing never ends."""
+
+    def title(self, step: Step) -> str:
+        """Return a line that says what a step does."""
+        return title(step)
+
+    def number_after(self, last: int) -> None:
+        """Give wheels that the plan did not foresee numbers behind ``last``."""
+        self.wheels = max(self.wheels, last)
+
+    def resumed(self, ctx: Context) -> None:
+        """Stay lifted and without slip, at the wheel's speed."""
+        demand = ctx.demand
+        demand.press, demand.load_n, demand.freeze_heat = Press.LIFT, 0.0, False
+        demand.belt_speed_m_s = demand.wheel_speed_m_s
+
+    def measuring(self, activity: Activity[Context]) -> bool:
+        """Tell whether a condition has been soaked and makes its repeats."""
+        return isinstance(activity, MeasureCondition) and activity.measuring is not None
+
+    def activity(self, step: Step, to_come: Sequence[Step], ctx: Context) -> Activity[Context]:
+        """Return what serves a step."""
+        match step:
+            case Install():
+                return InstallWheel(step, self.reference_tare)
+            case PreGrind():
+                return PreGrindStep(step, self.reference_tare)
+            case Rest():
+                return RestStep(step, ask_when_late=self.hardware)
+            case Heat():
+                return _heat(step, to_come, ctx)
+            case WheelCondition():
+                self.measured_wheel = ctx.wheel.wheel
+                return MeasureCondition(step, self.results, self.reference_tare)
+            case Cool():
+                return CoolDown(step, ctx.rig.interlocks.cooldown_speed_m_s)
+            case PromptStep() if step.text == WEAR_CHECK:
+                follower = to_come[0] if to_come else None
+                return CheckByPerson(follower.condition if isinstance(follower, WheelCondition) else NO_CONDITION)
+            case PromptStep():
+                return AskAtRest(step.text)
+            case _:
+                raise TypeError(f"{step.kind}: no step of this machine")
+
+    def before(self, step: Step, ctx: Context) -> Unforeseen[Context] | None:
+        """Return what has to be done before a condition can begin: a wheel changed, a look at it."""
+        if not isinstance(step, WheelCondition):
+            return None
+        if self._wheel_too_worn(step, ctx):
+            if self.unchecked is not None:
+                return Unforeseen(self._last_check(self.unchecked), WEAR_CHECK)
+            return Unforeseen(steps=self._change_steps(step))
+        if step.wear_check != "prompt" or step.condition == self.checked or self.results.over(step) is not None:
+            return None
+        self.checked = step.condition
+        return Unforeseen(steps=[PromptStep(INSERTED, WEAR_CHECK)])
+
+    def after(self, activity: Activity[Context], to_come: Sequence[Step], ctx: Context) -> Unforeseen[Context] | None:
+        """Return what a step leads to: a check of the wheel, a contact to be shown, a wheel to be warmed again."""
+        if isinstance(activity, CheckByRolling | CheckByPerson):
+            self.unchecked = None
+        if isinstance(activity, MeasureCondition | InstallWheel | ShowContact) and activity.failed:
+            if isinstance(activity, MeasureCondition):
+                self._note_measured(activity.condition, ctx)
+            return Unforeseen(failed=activity.failed)
+        if isinstance(activity, InstallWheel):
+            return self._mounted(activity, to_come)
+        if isinstance(activity, MeasureCondition):
+            return self._measured(activity.condition, to_come, ctx)
+        if isinstance(activity, AskAtRest | CheckByPerson) and to_come:
+            return self._attended(to_come[0])
+        return None
+
+    def _attended(self, follower: Step) -> Unforeseen[Context]:
+        """Return what a person's having been at the wheel leads to."""
+        # The wheel may have been off, the belt another one: before anything else the contact is shown again.
+        shown = self.reference_tare and not isinstance(follower, Install | PromptStep)
+        # And it has cooled: nothing is measured before it is warm again.
+        surface = follower.setpoint.number("temperature") if isinstance(follower, WheelCondition) else None
+        warmed = [Heat(INSERTED, surface)] if surface is not None else []
+        return Unforeseen(ShowContact(self.reference_tare) if shown else None, steps=warmed)
+
+    # -- checks of the wheel -----------------------------------------------------------------------------------
+
+    def _mounted(self, activity: InstallWheel, to_come: Sequence[Step]) -> Unforeseen[Context] | None:
+        """Check a new wheel as it is mounted, before it is ground in: then its diameter is known."""
+        first = next((one for one in to_come if isinstance(one, WheelCondition | Install)), None)
+        new = activity.install.worn is None
+        if new and isinstance(first, WheelCondition) and first.wear_check == "each_condition":
+            return Unforeseen(CheckByRolling(first.setpoint.number("wheel_speed"), self.reference_tare), WEAR_CHECK)
+        return None
+
+    def _measured(self, step: WheelCondition, to_come: Sequence[Step], ctx: Context) -> Unforeseen[Context] | None:
+        """Note that a condition is over; check the wheel where no check of the next condition will."""
+        self._note_measured(step, ctx)
+        follower = next((one for one in to_come if isinstance(one, WheelCondition | Install)), None)
+        checked_next = isinstance(follower, WheelCondition) and follower.wear_check == step.wear_check
+        if self.unchecked is None or checked_next:
+            return None
+        if step.wear_check == "prompt":
+            return Unforeseen(steps=[PromptStep(INSERTED, WEAR_CHECK)])
+        return Unforeseen(self._last_check(step), WEAR_CHECK)
+
+    def _note_measured(self, step: WheelCondition, ctx: Context) -> None:
+        ctx.wheel.condition = step.condition
+        self.unchecked = step if step.wear_check != "never" else None
+
+    def _last_check(self, step: WheelCondition) -> Activity[Context]:
+        """Return the check after a wheel's last condition."""
+        self.unchecked = None
+        if step.wear_check == "prompt":
+            return CheckByPerson()
+        return CheckByRolling(step.setpoint.number("wheel_speed"), self.reference_tare)
+
+    # -- a wheel that the plan did not foresee ----------------------------------------------------------------
+
+    def _wheel_too_worn(self, step: WheelCondition, ctx: Context) -> bool:
+        """Tell whether what is left of the wheel does not cover this condition's predicted wear."""
+        left_mm = self.plan.replace_after_mm - ctx.wheel.loss_mm
+        return ctx.wheel.wheel == self.measured_wheel and self.results.predicted_loss_mm(step, ctx.rig) > left_mm
+
+    def _change_steps(self, step: WheelCondition) -> list[Step]:
+        self.wheels += 1
+        specimen = self.plan.specimen(step.specimen)
+        return list(wheel_change(self.plan, step, specimen, self.wheels))
+
+
+def _heat(step: Heat, to_come: Sequence[Step], ctx: Context) -> HeatUp:
+    """Heat under the load and at the speed of the condition that follows: it soaks there next."""
+    loop = ctx.rig.loops.heat
+    for follower in to_come:
+        if isinstance(follower, WheelCondition):
+            sp = follower.setpoint
+            speed_m_s, load_n = sp.number("wheel_speed"), sp.number("load")
+            return HeatUp(step, speed_m_s, load_n, follower.soak.within_k, loop.rolling_offset_k)
+    return HeatUp(step, DEFAULT_SPEED_M_S, DEFAULT_LOAD_N, 1.0, loop.rolling_offset_k)
+
+
+def title(step: Step) -> str:
+    """Return a line that says what a step does."""
+    match step:
+        case Install():
+            return f"install wheel {step.wheel} ({step.compound})"
+        case PreGrind():
+            return f"pre-grind {step.duration_s / 60:g} min at {step.load_n:g} N"
+        case Rest():
+            return f"rest {step.at_least_s / 60:g} min"
+        case Heat():
+            return f"heat to {step.temperature_c:g} degC"
+        case WheelCondition():
+            return condition_words(step.setpoint)
+        case Cool():
+            return f"cool the hub to {step.hub_below_c:g} degC"
+        case PromptStep():
+            return step.text
+        case _:
+            return step.kind

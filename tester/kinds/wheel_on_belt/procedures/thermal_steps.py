@@ -1,0 +1,220 @@
+"""Steps that wait for a temperature: soak, heat, rest, cool."""
+
+from __future__ import annotations
+
+from math import isfinite
+from typing import Final, NamedTuple
+
+from tester.kinds.wheel_on_belt.context import Context
+from tester.kinds.wheel_on_belt.heatings import KIND, LEAST_J, LEAST_RISE_K, heating_data
+from tester.kinds.wheel_on_belt.procedures.motions import Lift, Load, Turn, Yaw, near, straight
+from tester.kinds.wheel_on_belt.recipe.steps import Cool, Heat, Rest
+from tester.machine.activity import Activity
+from tester.machine.motions import Ask, Power, Sequence
+from tester.recipe.plan import Soak
+
+NEAR_AMBIENT_K: Final = 3.0
+"""A setpoint this near to ambient can be neither heated nor cooled to quickly: it soaks to the band [A]."""
+HEAT_LOAD_N: Final = 200.0
+"""Highest load for heating up in rolling contact [A]: the paper's reference load."""
+HEAT_AT_MOST_S: Final = 5400.0
+"""Longest heating up to one temperature [A]."""
+COOL_AT_MOST_S: Final = 3 * 3600.0
+"""Longest cooling of a hub before a person may touch it; then a prompt says how warm it is [A]."""
+
+SHOW_S: Final = 1.0
+"""How often people are told how far a wait has come, s."""
+
+
+def roll(wheel_speed_m_s: float, load_n: float) -> Sequence:
+    """Return the moves into rolling contact: drives on, straight, matched speeds, load. No slip, hardly any heat."""
+    return Sequence(Power(True), Straighten(), Turn(wheel_speed_m_s, wheel_speed_m_s), Load(load_n))
+
+
+class Straighten:
+    """Bring the positioned axes to zero, lifting first if they are not there."""
+
+    def __init__(self) -> None:
+        """Nothing is known before the first scan."""
+        self.moves: Sequence | None = None
+
+    def step(self, ctx: Context) -> bool:
+        """Done when all are zero."""
+        if self.moves is None:
+            r = ctx.readings
+            self.moves = Sequence(Yaw()) if near(r, straight(r)) else Sequence(Lift(), Yaw())
+        return self.moves.step(ctx)
+
+
+def soak_within_k(soak: Soak, setpoint_c: float, ambient_c: float, band_k: float) -> float:
+    """Return how near the surface must come, in K: the recipe's value, or the band near ambient."""
+    return band_k if abs(setpoint_c - ambient_c) <= NEAR_AMBIENT_K else soak.within_k
+
+
+class SoakTo:
+    """Hold until the surface has stayed within ``within_k`` of ``target_c`` for ``for_s``, or until time is up."""
+
+    def __init__(self, target_c: float, within_k: float, for_s: float, at_most_s: float) -> None:
+        """Temperatures in degC and K, times in s."""
+        self.target_c = target_c
+        self.within_k = within_k
+        self.for_s = for_s
+        self.at_most_s = at_most_s
+        self.began_s = float("nan")
+        self.since_s = float("inf")
+        self.shown_s = float("-inf")
+        self.reached = False
+
+    def step(self, ctx: Context) -> bool:
+        """Done when soaked or given up; ``reached`` tells which."""
+        if not isfinite(self.began_s):
+            self.began_s = ctx.now
+        ctx.demand.surface_c = self.target_c
+        ctx.demand.freeze_heat = False
+        surface = ctx.gates.surface.slow_c
+        if ctx.now >= self.shown_s:
+            self.shown_s = ctx.now + SHOW_S
+            ctx.progress.phase = f"soak {surface:.1f} of {self.target_c:.1f} degC"
+        inside = abs(surface - self.target_c) <= self.within_k
+        self.since_s = min(self.since_s, ctx.now) if inside else float("inf")
+        self.reached = ctx.now - self.since_s >= self.for_s
+        return self.reached or ctx.now - self.began_s > self.at_most_s
+
+
+class HeatUp:
+    """Bring the surface near a temperature in rolling contact, so that the conditions there only have to soak."""
+
+    def __init__(self, step: Heat, wheel_speed_m_s: float, load_n: float, within_k: float, offset_k: float) -> None:
+        """``offset_k``: how far below the setpoint rolling is held (slip pulses then rise through the setpoint)."""
+        self.target_c = step.temperature_c
+        self.soak = SoakTo(step.temperature_c - offset_k, within_k, 0.0, HEAT_AT_MOST_S)
+        self.rolling_at = (wheel_speed_m_s, min(load_n, HEAT_LOAD_N))
+        self.moves = roll(*self.rolling_at)
+        self.rolling = False
+        self.start: _Heat | None = None
+
+    def resume(self, ctx: Context) -> None:
+        """Touch and roll again."""
+        self.moves = roll(*self.rolling_at)
+        self.rolling = False
+        self.start = None
+
+    def step(self, ctx: Context) -> bool:
+        """Done when near enough, or out of time."""
+        ctx.demand.surface_c = self.soak.target_c
+        ctx.demand.freeze_heat = False
+        if not self.rolling:
+            self.rolling = self.moves.step(ctx)
+            if self.rolling:
+                self.start = _heat(ctx)
+            return False
+        if not self.soak.step(ctx):
+            return False
+        if not self.soak.reached:
+            ctx.journal.event(ctx.now, "heat", f"{self.target_c:g} degC not reached in time", "warning")
+        else:
+            self._note_balance(ctx)
+        return True
+
+    def _note_balance(self, ctx: Context) -> None:
+        """Record what this heating says of ``observer.thermal``: heat put in over heat shown, where there was enough.
+
+        A hold, or a person at the wheel, has made it another one: nothing is said of it. With its data it is evidence
+        for runs to come (tester.kinds.wheel_on_belt.heatings).
+        """
+        start, end = self.start, _heat(ctx)
+        if start is None or end is None or start.begun != end.begun:
+            return
+        put_j, shown_j, rise_k = end.put_j - start.put_j, end.shown_j - start.shown_j, end.hub_c - start.hub_c
+        if shown_j >= LEAST_J and rise_k >= LEAST_RISE_K:
+            text = f"heat balance: {1e-3 * put_j:.1f} kJ put in, {put_j / shown_j:.2f} of what the temperatures show"
+            ctx.journal.event(ctx.now, KIND, text, data=heating_data(ctx.rig, put_j, shown_j, rise_k))
+
+
+class _Heat(NamedTuple):
+    """The heat balance at a moment: heat put in and shown, J, since its ``begun``th beginning, and the hub, degC."""
+
+    begun: int
+    put_j: float
+    shown_j: float
+    hub_c: float
+
+
+def _heat(ctx: Context) -> _Heat | None:
+    heat, r = ctx.heat, ctx.readings
+    if heat is None or not r.jacket_valid:
+        return None
+    return _Heat(heat.begun, heat.put_j, heat.shown_j, r.hub_c)
+
+
+class RestStep:
+    """Stand lifted, heat and drives off, for a time and until the surface is cool."""
+
+    def __init__(self, step: Rest, *, ask_when_late: bool) -> None:
+        """``ask_when_late``: a real rig asks a person once the longest time is over."""
+        self.rest = step
+        self.moves = Sequence(Lift(), Turn(0.0, 0.0), Power(False))
+        self.standing = False
+        self.began_s = float("nan")
+        self.shown_s = float("-inf")
+        self.late: Activity[Context] | None = None
+        self.ask_when_late = ask_when_late
+
+    def resume(self, ctx: Context) -> None:
+        """Go on standing, or coming to a stand."""
+        self.moves.resume(ctx)
+
+    def step(self, ctx: Context) -> bool:
+        """Done when rested."""
+        ctx.demand.surface_c = float("nan")
+        if not self.standing:
+            self.standing = self.moves.step(ctx)
+            return False
+        if not isfinite(self.began_s):
+            self.began_s = ctx.now
+        waited = ctx.now - self.began_s
+        surface, until = ctx.readings.surface_c, self.rest.until_c
+        if ctx.now >= self.shown_s:
+            self.shown_s = ctx.now + SHOW_S
+            minutes = f"{waited / 60:.0f} of {self.rest.at_least_s / 60:.0f} min"
+            ctx.progress.phase = f"rest {minutes}, surface {surface:.1f} degC"
+        # Resting only cools: a laboratory colder than `until` is not a reason to wait.
+        cool = until is None or surface <= until + self.rest.within_k
+        if waited >= self.rest.at_least_s and cool:
+            return True
+        if waited < self.rest.at_most_s:
+            return False
+        if self.late is None:
+            text = f"after {waited / 60:.0f} min of rest the surface is at {surface:.1f} degC, not at {until} degC"
+            ctx.journal.event(ctx.now, "rest", f"not reached: {text}", "warning")
+            self.late = Ask(f"{text}: go on?", near=False) if self.ask_when_late else Sequence()
+        return self.late.step(ctx)
+
+
+class CoolDown:
+    """Turn unloaded, heat off, until the hub is cool enough to touch."""
+
+    def __init__(self, step: Cool, creep_m_s: float) -> None:
+        """``creep_m_s``: line speed while cooling."""
+        self.below_c = step.hub_below_c
+        self.moves = Sequence(Power(True), Lift(), Turn(creep_m_s, creep_m_s))
+        self.turning = False
+        self.began_s = float("nan")
+        self.shown_s = float("-inf")
+
+    def resume(self, ctx: Context) -> None:
+        """Go on turning, or beginning to."""
+        self.moves.resume(ctx)
+
+    def step(self, ctx: Context) -> bool:
+        """Done when cool, or out of time (the prompt to install follows and tells the temperature)."""
+        ctx.demand.surface_c = float("nan")
+        if not self.turning:
+            self.turning = self.moves.step(ctx)
+            return False
+        if not isfinite(self.began_s):
+            self.began_s = ctx.now
+        if ctx.now >= self.shown_s:
+            self.shown_s = ctx.now + SHOW_S
+            ctx.progress.phase = f"cool to {self.below_c:.0f} degC, hub {ctx.readings.hub_c:.1f} degC"
+        return ctx.readings.hub_c < self.below_c or ctx.now - self.began_s > COOL_AT_MOST_S

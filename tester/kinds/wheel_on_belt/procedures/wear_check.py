@@ -1,0 +1,258 @@
+"""Checks of the wheel's diameter: by rolling at a light load, or a number that a person has measured.
+
+Rolling, at equal load, the press stands deeper by the radius that was lost. What else moves it is taken off or stated:
+the load in the check (its mean is corrected to the nominal one by the contact's stiffness), the cell's zero (a tare
+just before), runout (whole turns), and heat, which makes the wheel grow: every check is brought back to the reference
+temperature with the rig file's ``wear.growth``, so that cold is compared with cold. A wheel's first roll check is the
+reference of those after it.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from math import hypot, isfinite, pi
+from typing import Final, NamedTuple
+
+from tester.analysis.wear_check import NO_CONDITION, WearCheck
+from tester.kinds.wheel_on_belt.context import Context
+from tester.kinds.wheel_on_belt.interlocks.contact import depth_mm
+from tester.kinds.wheel_on_belt.procedures.motions import Lift, Load, TakeTare, Turn
+from tester.kinds.wheel_on_belt.procedures.operator_access import AskAtRest
+from tester.kinds.wheel_on_belt.procedures.thermal_steps import Straighten
+from tester.kinds.wheel_on_belt.procedures.wheel_life import CheckReference, WheelLife, rubber_c
+from tester.kinds.wheel_on_belt.process import NAN
+from tester.kinds.wheel_on_belt.recipe.steps import WearCheck as Method
+from tester.machine.motions import Power, Sequence, Settle
+
+ROLL_CHECK_N: Final = 50.0
+"""Load of the automatic diameter check, N [A]: little penetration, and above the press's friction."""
+ROLL_CHECK_TURNS: Final = 6.0
+"""Whole turns averaged by the check: runout drops out, and the load loop's ripple."""
+TARE_WAIT_S: Final = 0.4
+"""From lifted to the first reading of the tare, s [A]: the cell's filter."""
+TARE_S: Final = 1.0
+LARGER_BY: Final = 3.0
+"""A wheel that measures larger than at the check before by more than this many standard uncertainties has not grown:
+that check is not believed [A]."""
+CLEAR_BY: Final = 4.0
+"""A loss of this many standard uncertainties tells the wheel's rate well enough to reckon with it [A]: to 25 %."""
+QUESTION: Final = "measure the wheel's diameter and answer with it, such as 89.62 mm (yes: not measured)"
+
+
+class RollCheck:
+    """Measure the loss of diameter by rolling, corrected for load and temperature; ``before``: the condition to come.
+
+    Done when the check is in the record and the wheel's estimated loss is corrected by it.
+    """
+
+    def __init__(self, before: int = NO_CONDITION) -> None:
+        """Nothing is averaged yet."""
+        self.before = before
+        self.hold = Load(ROLL_CHECK_N, for_s=1.0)
+        self.held = False
+        self.angle_rev = float("nan")
+        self.sums = [0.0, 0.0, 0.0]
+        self.count = 0
+
+    def step(self, ctx: Context) -> bool:
+        """Average press, load and temperature over whole turns."""
+        if not self.held:
+            self.held = self.hold.step(ctx)
+            return False
+        r = ctx.readings
+        ctx.moving = True
+        if not isfinite(self.angle_rev):
+            self.angle_rev = r.wheel_angle_rev
+        for i, value in enumerate((r.press_mm, r.force_z_n, rubber_c(r.hub_c, r.surface_c))):
+            self.sums[i] += value
+        self.count += 1
+        if r.wheel_angle_rev - self.angle_rev < ROLL_CHECK_TURNS:
+            return False
+        press_mm, load_n, mean_c = (total / self.count for total in self.sums)
+        if isfinite(press_mm + load_n + mean_c):
+            self._conclude(ctx, press_mm, load_n, mean_c)
+        else:
+            ctx.journal.event(ctx.now, "wear", "roll check without value: a reading was missing", "warning")
+        return True
+
+    def _conclude(self, ctx: Context, press_mm: float, load_n: float, mean_c: float) -> None:
+        wear, wheel = ctx.rig.wear, ctx.wheel
+        stiffness = ctx.rig.loops.load.stiffness_n_per_mm
+        off_mm = depth_mm(load_n, stiffness) - depth_mm(ROLL_CHECK_N, stiffness)
+        per_n = 2.0 * (depth_mm(ROLL_CHECK_N + 0.5, stiffness) - depth_mm(ROLL_CHECK_N - 0.5, stiffness))
+        u_mm = hypot(
+            2.0 * wear.check_press_mm,
+            per_n * wear.check_load_n,
+            0.01 * wear.check_stiffness_percent * 2.0 * off_mm,
+            wear.growth_mm_per_k * wear.check_rubber_k,
+        )
+        cold_mm = press_mm - off_mm + 0.5 * wear.growth_mm(mean_c)
+        reference = wheel.reference
+        if reference is None:
+            reference = wheel.reference = CheckReference(ctx.now, cold_mm, wheel.loss_mm)
+        loss_mm = reference.loss_mm + 2.0 * (cold_mm - reference.press_mm)
+        conclude(ctx, self.before, Taken("roll", reference.at_s, loss_mm, u_mm, mean_c, press_mm, load_n))
+
+
+class CheckByRolling:
+    """The whole check: lift, tare, roll at matched speeds under the light load, measure."""
+
+    def __init__(self, wheel_speed_m_s: float, reference_tare: list[float], before: int = NO_CONDITION) -> None:
+        """``reference_tare``: the wheel's first zero."""
+        self.wheel_speed_m_s = wheel_speed_m_s
+        self.reference_tare = reference_tare
+        self.before = before
+        self.moves: Sequence | None = None
+
+    def resume(self, ctx: Context) -> None:
+        """Begin anew after a hold."""
+        self.moves = None
+
+    def step(self, ctx: Context) -> bool:
+        """Done when the check is in the record."""
+        if self.moves is None:
+            limits, speed = ctx.rig.interlocks, self.wheel_speed_m_s
+            # A zero that has wandered too far is not taken: the tare of the repeat that follows ends the run with it.
+            tare = TakeTare(TARE_S, self.reference_tare, limits.zero_warn_n, limits.zero_stop_n, ends_run=False)
+            self.moves = Sequence(
+                Power(True), Lift(), Straighten(), Turn(speed, speed), Settle(TARE_WAIT_S), tare, Load(ROLL_CHECK_N),
+                RollCheck(self.before),
+            )  # fmt: skip
+        return self.moves.step(ctx)
+
+
+class CheckByPerson:
+    """Ask for the wheel's diameter; an answer with a number is a check, any other says that none was measured."""
+
+    def __init__(self, before: int = NO_CONDITION) -> None:
+        """``before``: the condition to come."""
+        self.before = before
+        self.ask = AskAtRest(QUESTION)
+
+    def resume(self, ctx: Context) -> None:
+        """Go on coming to rest."""
+        self.ask.resume(ctx)
+
+    def step(self, ctx: Context) -> bool:
+        """Done when it is answered; an answer that cannot be the diameter is asked for again."""
+        if not self.ask.step(ctx):
+            return False
+        asked = self.ask.ask
+        answer = ctx.prompts.asked[asked.number - 1].answer if asked is not None else None
+        found = measured_mm(answer or "")
+        wheel = ctx.wheel
+        if found is None:
+            ctx.journal.event(ctx.now, "wear", f'no diameter measured: "{answer}"')
+            return True
+        layer_mm = 2.0 * ctx.rig.observer.wheel.rubber_layer
+        least_mm, most_mm = wheel.installed_mm - layer_mm, wheel.installed_mm + MORE_THAN_NEW_MM
+        if not least_mm <= found <= most_mm:
+            text = f"{found:g} mm cannot be the wheel's diameter (expected {least_mm:g} to {most_mm:g} mm)"
+            ctx.journal.event(ctx.now, "wear", text, "warning")
+            self.ask = AskAtRest(f"{text}: {QUESTION}")
+            return False
+        r, wear = ctx.readings, ctx.rig.wear
+        mean_c = rubber_c(r.hub_c, r.surface_c)
+        if not isfinite(wheel.by_hand_s):
+            wheel.by_hand_s = ctx.now
+        u_mm = hypot(wear.gauge_mm, wear.growth_mm_per_k * wear.check_rubber_k)
+        loss_mm = wheel.installed_mm - (found - wear.growth_mm(mean_c))
+        conclude(ctx, self.before, Taken("person", wheel.by_hand_s, loss_mm, u_mm, mean_c))
+        return True
+
+
+MORE_THAN_NEW_MM: Final = 2.0
+"""A wheel may measure this much more than the rig file says of a new one, mm [A]: moulds differ."""
+
+
+def measured_mm(answer: str) -> float | None:
+    """Return the number of an answer such as ``89.62 mm`` or ``89,62``; None where there is none."""
+    found = re.fullmatch(r"\s*(\d{1,4}(?:[.,]\d{1,6})?)\s*(?:mm)?\s*", answer, re.ASCII)
+    return float(found[1].replace(",", ".")) if found is not None else None
+
+
+class Taken(NamedTuple):
+    """What a check found: loss of diameter and its standard uncertainty, mm, and what they come from."""
+
+    method: str
+    reference_s: float
+    loss_mm: float
+    u_mm: float
+    rubber_c: float
+    press_mm: float = NAN
+    load_n: float = NAN
+
+
+def conclude(ctx: Context, before: int, taken: Taken) -> None:
+    """Put a check on record and reckon with its loss of diameter from now on, where it can be believed."""
+    wheel, wear, loss_mm, u_mm = ctx.wheel, ctx.rig.wear, taken.loss_mm, taken.u_mm
+    check = WearCheck(
+        piece=wheel.wheel,
+        method=taken.method,
+        t_s=ctx.now,
+        reference_s=taken.reference_s,
+        before=before,
+        after=wheel.condition,
+        diameter_mm=wheel.installed_mm - loss_mm,
+        u_mm=u_mm,
+        rubber_c=taken.rubber_c,
+        u_growth_mm_k=wear.growth_uncertainty_mm_per_k,
+        press_mm=taken.press_mm,
+        load_n=taken.load_n,
+        sliding_m=wheel.sliding_m,
+        exposure_n_m=wheel.exposure_n_m,
+        width_mm=wheel.width_mm,
+        u_rate_percent=wear.rate_uncertainty_percent,
+        used=1,
+    )
+    doubt = _doubt(ctx, check)
+    text = f"loss of diameter {loss_mm:.3f} mm by {taken.method} check (u {u_mm:.3f} mm)"
+    text += f", {wheel.loss_mm:.3f} mm estimated"
+    ctx.journal.wear_check(replace(check, used=int(not doubt)))
+    if doubt:
+        ctx.journal.event(ctx.now, "wear", f"{text}; not used: {doubt}", "warning")
+        return
+    ctx.journal.event(ctx.now, "wear", text)
+    _learn_rate(wheel, check)
+    wheel.last_check = check
+    wheel.loss_mm = max(loss_mm, 0.0)
+    ctx.journal.piece_state(wheel.wheel, wheel.cold_mm, wheel.sliding_m, ctx.now)
+
+
+def _learn_rate(wheel: WheelLife, check: WearCheck) -> None:
+    """Reckon with the rate that two checks have shown, where it is clear of their uncertainty.
+
+    A wrong rate makes the wheel slip unseen where its speed is to match the belt's: the line speed is reckoned with
+    the estimated diameter.
+    """
+    last = wheel.last_check
+    if last is None or last.reference_s != check.reference_s or check.exposure_n_m <= last.exposure_n_m:
+        return
+    lost_mm = last.diameter_mm - check.diameter_mm
+    u_mm = hypot(check.u_mm, last.u_mm, check.u_growth_mm_k * (check.rubber_c - last.rubber_c))
+    if lost_mm > CLEAR_BY * u_mm:
+        volume_mm3 = 0.25 * pi * check.width_mm * (last.diameter_mm**2 - check.diameter_mm**2)
+        wheel.rate_mm3_per_n_m = volume_mm3 / (check.exposure_n_m - last.exposure_n_m)
+
+
+def _doubt(ctx: Context, check: WearCheck) -> str:
+    """Return why a check is not believed, "" where it is."""
+    wheel, last = ctx.wheel, ctx.wheel.last_check
+    left_mm = check.diameter_mm - (wheel.installed_mm - 2.0 * ctx.rig.observer.wheel.rubber_layer)
+    if left_mm < 0.0:
+        return "more than the whole rubber layer"
+    if last is None or last.reference_s != check.reference_s:
+        return ""
+    grown_mm = check.diameter_mm - last.diameter_mm
+    u_mm = hypot(check.u_mm, last.u_mm, check.u_growth_mm_k * (check.rubber_c - last.rubber_c))
+    return f"{grown_mm:.3f} mm larger than at the check before" if grown_mm > LARGER_BY * u_mm else ""
+
+
+def check_activity(
+    method: Method, wheel_speed_m_s: float, reference_tare: list[float], before: int
+) -> CheckByRolling | CheckByPerson | None:
+    """Return the check that a recipe asks for; None where it asks for none."""
+    if method == "each_condition":
+        return CheckByRolling(wheel_speed_m_s, reference_tare, before)
+    return CheckByPerson(before) if method == "prompt" else None

@@ -1,0 +1,203 @@
+"""Steps around a wheel: install it, show its contact, grind it in."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from tester.kinds.wheel_on_belt.context import Context
+from tester.kinds.wheel_on_belt.procedures.first_contact import FirstContact
+from tester.kinds.wheel_on_belt.procedures.motions import Lift, Load, TakeTare, Turn, speeds_reached
+from tester.kinds.wheel_on_belt.procedures.operator_access import AskAtRest
+from tester.kinds.wheel_on_belt.procedures.thermal_steps import Straighten
+from tester.kinds.wheel_on_belt.procedures.wheel_life import WheelLife
+from tester.kinds.wheel_on_belt.procedures.zero_check import ZeroCheck, is_due
+from tester.kinds.wheel_on_belt.recipe.steps import Install, PreGrind, WornState
+from tester.machine.motions import Power, Sequence
+from tester.store.records import PieceInfo
+
+REFERENCE_TARE_S: Final = 2.0
+"""Averaging time of a wheel's first tare, s [A]."""
+
+
+class ShowContact:
+    """Take the zero and sweep the first contact: a person has mounted the wheel, or been at it or at the belt."""
+
+    def __init__(self, reference_tare: list[float]) -> None:
+        """``reference_tare``: the wheel's first zero; filled where it is empty."""
+        self.reference = reference_tare
+        self.tare: TakeTare | None = None
+        self.moves = Sequence()
+
+    def resume(self, ctx: Context) -> None:
+        """Begin anew after a hold."""
+        self.tare = None
+
+    def step(self, ctx: Context) -> bool:
+        """Done when shown, or when the zero is not to be trusted: nothing is pressed by it."""
+        ctx.demand.surface_c = float("nan")
+        if self.tare is None:
+            limits = ctx.rig.interlocks
+            self.tare = TakeTare(REFERENCE_TARE_S, self.reference, limits.zero_warn_n, limits.zero_stop_n)
+            self.moves = Sequence(Power(True), Straighten(), self.tare, FirstContact())
+        return bool(self.failed) or self.moves.step(ctx)
+
+    @property
+    def failed(self) -> str:
+        """Why the run cannot go on with this zero, or ""."""
+        return self.tare.failed if self.tare is not None else ""
+
+
+class InstallWheel:
+    """Stand still, ask a person to mount the wheel, then take its reference tare and show its first contact."""
+
+    def __init__(self, step: Install, reference_tare: list[float]) -> None:
+        """``reference_tare``: filled with the new wheel's zero."""
+        self.install = step
+        self.reference = reference_tare
+        note = f" ({step.note})" if step.note else ""
+        text = f"install wheel {step.wheel}: {step.compound}{note}"
+        if step.worn is not None:
+            text = f"the run goes on with wheel {step.wheel}: {step.compound}{note}, mounted as it was"
+        self.ask = AskAtRest(text)
+        self.mounted = False
+        self.contact: ShowContact | None = None
+
+    def resume(self, ctx: Context) -> None:
+        """Take the tare anew, where it had begun."""
+        self.ask.resume(ctx)
+        if self.contact is not None:
+            self._begin_contact()
+
+    def step(self, ctx: Context) -> bool:
+        """Done when mounted and tared."""
+        ctx.demand.surface_c = float("nan")
+        if not self.mounted:
+            self.mounted = self.ask.step(ctx)
+            return False
+        if self.contact is None:
+            self._mount(ctx)
+            self.contact = self._begin_contact()
+        return self.contact.step(ctx)
+
+    def _begin_contact(self) -> ShowContact:
+        if self.install.worn is None:
+            self.reference.clear()
+        self.contact = ShowContact(self.reference)
+        return self.contact
+
+    @property
+    def failed(self) -> str:
+        """Why the run cannot go on with this wheel, or ""."""
+        return self.contact.failed if self.contact is not None else ""
+
+    def _mount(self, ctx: Context) -> None:
+        step, old = self.install, ctx.wheel
+        if step.worn is not None:
+            self._remount(ctx, step.worn)
+            return
+        new_specimen = (old.specimen, old.replicate) != (step.specimen, step.replicate)
+        ctx.attendant.install(step.specimen, step.wheel, step.compound, new_specimen=new_specimen)
+        geometry = ctx.rig.geometry
+        ctx.wheel = WheelLife(
+            specimen=step.specimen,
+            replicate=step.replicate,
+            wheel=step.wheel,
+            compound=step.compound,
+            installed_mm=geometry.wheel_diameter_mm,
+            width_mm=geometry.wheel_width_mm,
+        )
+        ctx.contact.forget_contact()
+        ctx.wheel_changed(ctx.now)
+        ctx.readings.wheel_angle_rev = 0.0
+        wheel = ctx.wheel
+        record = PieceInfo(
+            wheel.wheel,
+            wheel.specimen,
+            wheel.replicate,
+            wheel.compound,
+            ctx.now,
+            wheel.installed_mm,
+            wheel.cold_mm,
+            updated_s=ctx.now,
+        )
+        ctx.journal.piece_mounted(record)
+
+    def _remount(self, ctx: Context, worn: WornState) -> None:
+        """Go on with a wheel as the store knows it: its record, its first tare and its number stay."""
+        step, geometry = self.install, ctx.rig.geometry
+        ctx.attendant.remount(step.specimen, step.wheel, step.compound, worn.diameter_mm, worn.sliding_m)
+        ctx.wheel = WheelLife(
+            specimen=step.specimen,
+            replicate=step.replicate,
+            wheel=step.wheel,
+            compound=step.compound,
+            installed_mm=geometry.wheel_diameter_mm,
+            width_mm=geometry.wheel_width_mm,
+            loss_mm=geometry.wheel_diameter_mm - worn.diameter_mm,
+            sliding_m=worn.sliding_m,
+        )
+        ctx.contact.forget_contact()
+        ctx.readings.wheel_angle_rev = 0.0
+
+
+class Grind:
+    """Count the seconds in which the load is in band and both speeds are reached, up to ``seconds``."""
+
+    def __init__(self, load_n: float, seconds: float) -> None:
+        """Load in N."""
+        self.load_n = load_n
+        self.seconds = seconds
+        self.done_s = 0.0
+        self.counting = False
+
+    def step(self, ctx: Context) -> bool:
+        """Done when the whole time has been ground."""
+        ctx.moving = True
+        ready = speeds_reached(ctx) and abs(ctx.gates.load.value - self.load_n) <= 0.02 * self.load_n
+        if ready and self.counting:
+            self.done_s += ctx.dt
+        self.counting = ready
+        ctx.progress.phase = f"grind {self.done_s:.0f} of {self.seconds:.0f} s"
+        return self.done_s >= self.seconds - 0.5 * ctx.dt
+
+
+class PreGrindStep:
+    """Run a new wheel in: 4 min at 0.8 / 0.6 m/s and 200 N in the paper (its section 2.2.2)."""
+
+    def __init__(self, step: PreGrind, reference_tare: list[float] | None = None) -> None:
+        """The step of the plan; ``reference_tare``: the wheel's first zero, None where it has none."""
+        self.pre_grind = step
+        self.reference_tare = [] if reference_tare is None else reference_tare
+        self.grind = Grind(step.load_n, step.duration_s)
+        self.moves = self._moves()
+
+    def _moves(self) -> Sequence:
+        step = self.pre_grind
+        wheel, belt = step.wheel_speed_m_s, step.belt_speed_m_s
+        return Sequence(
+            Power(True),
+            Straighten(),
+            Turn(wheel, wheel),
+            Load(step.load_n, for_s=2.0),
+            Turn(wheel, belt),
+            self.grind,
+            Turn(wheel, wheel),
+            Lift(),
+        )
+
+    def resume(self, ctx: Context) -> None:
+        """Touch again and grind for what is left of the time."""
+        self.grind.counting = False
+        self.moves = self._moves()
+
+    def step(self, ctx: Context) -> bool:
+        """Done when ground and lifted."""
+        ctx.demand.surface_c = float("nan")
+        if self.grind.counting and is_due(ctx):
+            self.grind.counting = False
+            self.moves = Sequence(ZeroCheck(self.pre_grind.wheel_speed_m_s, self.reference_tare), self._moves())
+        if not self.moves.step(ctx):
+            return False
+        wheel = ctx.wheel
+        ctx.journal.piece_ground(wheel.wheel, wheel.cold_mm, wheel.sliding_m, ctx.now)
+        return True

@@ -1,0 +1,61 @@
+"""A check of the load cell's zero after long contact: between two steps that press, never inside a repeat or a soak.
+
+Every repeat lifts and takes its zero first; heating up, soaks and pre-grinding stay in contact as long as they take.
+"""
+
+from __future__ import annotations
+
+from math import inf
+from typing import Final
+
+from tester.kinds.wheel_on_belt.context import Context
+from tester.kinds.wheel_on_belt.procedures.motions import Lift, TakeTare, Turn
+from tester.machine.activity import MoveFailedError
+from tester.machine.motions import Sequence, Settle
+
+TARE_S: Final = 1.0
+"""Averaging time of the zero, s [A]: about three turns."""
+SETTLE_S: Final = 0.4
+"""The cell settles this long after lifting, s [A]."""
+
+
+def contact_s(ctx: Context) -> float:
+    """Return for how long the wheel has been in contact without a break, s; 0 where it is not."""
+    return max(0.0, ctx.now - ctx.gates.touched_s)
+
+
+def is_due(ctx: Context) -> bool:
+    """Tell whether the zero has to be checked before the contact goes on."""
+    return contact_s(ctx) > ctx.rig.interlocks.zero_check_every_s
+
+
+class ZeroCheck:
+    """Lift at matched speeds, let the cell settle, and take its zero; how far it has moved goes into the record."""
+
+    def __init__(self, wheel_speed_m_s: float, reference_tare: list[float]) -> None:
+        """``reference_tare``: the wheel's first zero."""
+        self.wheel_speed_m_s = wheel_speed_m_s
+        self.reference_tare = reference_tare
+        self.after_s = -inf
+        self.tare: TakeTare | None = None
+        self.moves = Sequence()
+
+    def step(self, ctx: Context) -> bool:
+        """Done when lifted with the new zero; raises MoveFailedError where it has moved further than it may."""
+        limits, speed = ctx.rig.interlocks, self.wheel_speed_m_s
+        if self.tare is None:
+            self.after_s = contact_s(ctx)
+            self.tare = TakeTare(TARE_S, self.reference_tare, limits.zero_warn_n, limits.zero_stop_n)
+            self.moves = Sequence(Turn(speed, speed), Lift(), Settle(SETTLE_S), self.tare)
+        if not self.moves.step(ctx):
+            return False
+        drift_n, stop_n = self.tare.drift_n, limits.zero_stop_n
+        text = f"zero checked after {self.after_s / 60:.0f} min of contact: {drift_n:.1f} N off, at most {stop_n:g} N"
+        ctx.journal.event(ctx.now, "tare", text)
+        if self.tare.failed:
+            raise MoveFailedError(self.tare.failed)
+        return True
+
+    def resume(self, ctx: Context) -> None:
+        """Begin anew after a hold."""
+        self.tare = None

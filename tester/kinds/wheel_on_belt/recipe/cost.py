@@ -1,0 +1,254 @@
+"""What measuring one condition takes: closed formulas, remembered by what is held and how it is measured.
+
+How long a slip pulse may last follows from the square root of time by which friction heats a half-space (H. S.
+Carslaw, J. C. Jaeger, Conduction of Heat in Solids, 2nd ed., 2.9: rise = 2 q sqrt(t / pi) / sqrt(k rho c)).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, NamedTuple, Protocol
+
+from sim.physics import laws
+from sim.physics.friction import KNOWN
+from sim.physics.slip import cornering_factor, slip_velocity
+from tester.analysis.judge import ALONE
+from tester.analysis.stability import REPEAT_WINDOWS
+from tester.axes import Axes, Setpoint
+from tester.kinds.wheel_on_belt.axes import AXES, Held, held_by
+from tester.kinds.wheel_on_belt.recipe.body import Body
+from tester.recipe.estimate import StepEstimate
+from tester.recipe.plan import Soak, Window
+from tester.recipe.repeats import HISTORIC_PERCENT, Counted, expected
+
+if TYPE_CHECKING:
+    from tester.kinds.wheel_on_belt.recipe.constants import EstimateConstants
+    from tester.kinds.wheel_on_belt.rig import RigConfig
+
+ROLLING_M_S = 1e-9
+"""Slower slip than this is none: the wheel rolls, in one contact a repeat."""
+
+
+class Procedure(Counted, Protocol):
+    """How a condition is measured, as far as its cost goes: a WheelCondition, or a grid's WheelSettings."""
+
+    @property
+    def window(self) -> Window:
+        """What a repeat collects."""
+        ...
+
+    @property
+    def temperature_band_k(self) -> float:
+        """Half the width of the temperature gate, K."""
+        ...
+
+    @property
+    def soak(self) -> Soak:
+        """What comes before the first repeat."""
+        ...
+
+    @property
+    def max_bursts(self) -> int:
+        """Most pulses a repeat."""
+        ...
+
+
+class ConditionMotion(NamedTuple):
+    """What is settled before load and temperature are: a grid has few of them beside its conditions."""
+
+    model: laws.FrictionLaw | None
+    cornering: float
+    """Factor of the coefficient at the sideslip angle."""
+    slip_m_s: float
+    """Resultant."""
+    turn_s: float
+    soak_s: float
+    """Before the first repeat."""
+    window_s: float
+    """Collected a repeat, with what some of them go on."""
+    edge_s: float
+    """Sliding in a pulse that does not count."""
+    repeat_s: float
+    """Moves around a repeat."""
+    moves_s: float
+    """Moves around a pulse, beyond those around a repeat."""
+    repeats: float
+    """Expected, with those made up for."""
+    swing_k: float
+    """Rise during a pulse that starts below the setpoint and ends as far above it."""
+
+
+class ConditionCosts:
+    """Costs of conditions on one rig; whole grids are measured alike, so they are looked up by setpoint."""
+
+    def __init__(
+        self, rig: RigConfig, constants: EstimateConstants, body: Body, repeatability: Mapping[str, float] | None = None
+    ) -> None:
+        """Work out what depends on the rig alone. ``repeatability``: s between repeats, per cent, by compound."""
+        self.repeatability = repeatability or {}
+        believed = rig.observer
+        thermal = believed.thermal
+        diameter_m = 1e-3 * rig.geometry.wheel_diameter_mm
+        width_m = 1e-3 * rig.geometry.wheel_width_mm
+        effusivity = math.sqrt(thermal.conductivity * thermal.density * thermal.heat_capacity)
+        area_m2 = math.pi * diameter_m * width_m
+        self.constants = constants
+        self.body = body
+        self.ambient_c = rig.ambient_c
+        self.turn_m = math.pi * diameter_m
+        # K per W of friction and per sqrt(s): the heat spreads over the whole tread, which turns below it.
+        self.rise_k = 2.0 * believed.friction_heat_fraction / (area_m2 * effusivity * math.sqrt(math.pi))
+        # V = k F s; a ring of the tread's area, on both sides of the diameter.
+        self.loss_mm_per_nm = 2.0 * rig.wear.rate_mm3_per_n_m / (area_m2 * 1e6)
+        self.rubber_share = believed.friction_heat_fraction
+        self.offset_k = rig.loops.heat.rolling_offset_k
+        self.models = {name: laws.make(rig.sim.friction_model, name) for name in KNOWN}
+        self._take_off(AXES)
+        self._procedure: tuple[object, ...] = ()
+        self._costs: dict[tuple[object, ...], StepEstimate] = {}
+        self._motions: dict[tuple[object, ...], ConditionMotion] = {}
+        self._remembered: dict[
+            tuple[object, ...], tuple[dict[tuple[object, ...], StepEstimate], dict[tuple[object, ...], ConditionMotion]]
+        ] = {}
+
+    def _take_off(self, axes: Axes) -> None:
+        """Prepare for setpoints of these axes: which of their numbers a cost begins with."""
+        self._axes = axes
+        self._loaded = axes.numbers_of("load", "temperature")
+        self._moving = axes.numbers_of(*(axis.name for axis in axes if axis.name not in ("load", "temperature")))
+        """What is settled before load and temperature are."""
+
+    def mu(self, compound: str, temperature_c: float, load_n: float, slip_m_s: float, sideslip_deg: float) -> float:
+        """Return the friction coefficient expected; a round figure for a compound without a model."""
+        model = self.models.get(compound)
+        if model is None:
+            return self.constants.unknown_mu
+        return model.mu(temperature_c, load_n, slip_m_s) * cornering_factor(compound, sideslip_deg)
+
+    def s_percent(self, compound: str) -> float:
+        """Return the standard deviation between repeats that is expected, per cent of the coefficient."""
+        return self.repeatability.get(compound, HISTORIC_PERCENT)
+
+    def ground_mm(self, load_n: float, sliding_m: float) -> float:
+        """Return the loss of diameter, mm, of sliding a distance (m) under a load (N)."""
+        return self.loss_mm_per_nm * load_n * sliding_m
+
+    def of(self, setpoint: Setpoint, how: Procedure) -> StepEstimate:
+        """Return what holding a setpoint takes when it is measured like this."""
+        key = (
+            how.repeats, how.at_most, how.until_percent, how.window, how.temperature_band_k, how.soak, how.max_bursts
+        )  # fmt: skip
+        if key != self._procedure:
+            self._procedure = key
+            self._costs, self._motions = self._remembered.setdefault(key, ({}, {}))
+        held = setpoint.compound, setpoint.values
+        known = self._costs.get(held)
+        if known is None:
+            known = self._costs[held] = self._cost(setpoint, how)
+        return known
+
+    def _cost(self, sp: Setpoint, how: Procedure) -> StepEstimate:
+        """Return the cost of a condition; comparisons instead of min and max, which take a third of a microsecond."""
+        if sp.axes is not self._axes:
+            self._take_off(sp.axes)
+        load_n, temperature_c = self._loaded(sp.values)
+        key = (sp.compound, self._moving(sp.values))
+        motion = self._motions.get(key)
+        if motion is None:
+            motion = self._motions[key] = self._motion(held_by(sp), how)
+        model, cornering, slip_m_s, _, soak_s, window_s, edge_s, repeat_s, moves_s, repeats, _ = motion
+        c = self.constants
+        if slip_m_s < ROLLING_M_S:
+            seconds = soak_s + repeats * (repeat_s + window_s)
+            return StepEstimate(seconds, 0.0, 0.0, 0.0, temperature_c, 1, repeats=repeats)
+        mu = c.unknown_mu if model is None else model.mu(temperature_c, load_n, slip_m_s) * cornering
+        power_w = mu * load_n * slip_m_s
+        rise_k = self.rise_k * power_w
+        bursts, counted_s, held = self._bursts(motion, how, rise_k)
+        if not held:
+            repeats = 1.0
+        slide_s = counted_s + bursts * edge_s
+        sliding_m = repeats * slip_m_s * slide_s
+        heat_w = self.rubber_share * power_w
+        waiting_s = repeats * slide_s * self._cooling(temperature_c, heat_w)
+        if heat_w > c.sink_from_w:
+            waiting_s += c.sink_s_w * (heat_w - c.sink_from_w)
+        above_k, most_k = rise_k * math.sqrt(slide_s / bursts), how.temperature_band_k
+        if self.offset_k < most_k:
+            most_k = self.offset_k
+        return StepEstimate(
+            soak_s + repeats * (repeat_s + slide_s + bursts * moves_s) + waiting_s,
+            sliding_m,
+            self.loss_mm_per_nm * load_n * sliding_m,
+            repeats * power_w * slide_s,
+            temperature_c + (above_k if above_k < most_k else most_k),
+            bursts,
+            held,
+            waiting_s,
+            heat_w,
+            repeats,
+        )
+
+    def _motion(self, sp: Held, how: Procedure) -> ConditionMotion:
+        c = self.constants
+        turn_s = self.turn_m / sp.wheel_speed_m_s
+        yawed = sp.yawed
+        model = self.models.get(sp.compound)
+        collected = REPEAT_WINDOWS * c.surplus if how.repeats > ALONE else c.alone
+        return ConditionMotion(
+            model=model,
+            cornering=1.0 if model is None else cornering_factor(sp.compound, sp.sideslip_deg),
+            slip_m_s=slip_velocity(sp.wheel_speed_m_s, sp.belt_speed_m_s, sp.sideslip_deg)[2],
+            turn_s=turn_s,
+            soak_s=how.soak.for_s + c.next_condition_s,
+            window_s=collected * how.window.duration_s(1.0 / turn_s),
+            edge_s=(c.yawed_slide_s if yawed else c.burst_edge_s) + c.split_turns * turn_s,
+            repeat_s=0.0 if yawed else c.repeat_moves_s,
+            moves_s=c.yawed_moves_s + 2.0 * abs(sp.sideslip_deg) / c.yaw_deg_s if yawed else 0.0,
+            repeats=expected(how, self.s_percent(sp.compound)),
+            swing_k=self.offset_k + min(how.temperature_band_k, self.offset_k),
+        )
+
+    def _cooling(self, temperature_c: float, heat_w: float) -> float:
+        """Return the seconds of waiting per second of sliding, in which the surface comes back below the setpoint."""
+        c = self.constants
+        above_k = temperature_c - self.offset_k - self.ambient_c
+        if above_k < 1.0:
+            above_k = 1.0
+        heat_w -= c.carried_w + c.near_carried_wk / above_k
+        if heat_w <= 0.0:
+            return 0.0
+        if heat_w > c.hot_w:
+            heat_w = c.hot_w + c.hot_share * (heat_w - c.hot_w)
+        return c.cooling_per_j * heat_w * (1.0 + c.near_k / (above_k + c.near_shift_k))
+
+    def _bursts(self, motion: ConditionMotion, how: Procedure, rise_k: float) -> tuple[int, float, bool]:
+        """Return bursts a repeat, seconds counted a repeat, and whether the temperature holds for a revolution.
+
+        ``rise_k`` is the surface's rise in K per square root of a second.
+        """
+        _, _, _, turn_s, _, window_s, edge_s, _, _, _, swing_k = motion
+        if rise_k <= 0.0:
+            return 1, window_s, True
+        c = self.constants
+        # From below the setpoint to as far above it, so that the samples centre on it ...
+        each_s = (swing_k / rise_k) ** 2 - edge_s
+        few_s = c.few_turns * turn_s
+        if each_s < few_s:
+            # ... or, where that is over too soon, from below the band to its top.
+            whole_s = ((2.0 * how.temperature_band_k + c.below_band_k) / rise_k) ** 2
+            counted_s = whole_s - max(edge_s, (c.below_band_k / rise_k) ** 2)
+            each_s = max(each_s, min(counted_s, few_s))
+        if each_s < turn_s:
+            return c.bursts_tried, 0.0, False
+        # A pulse that warms ends at half the window, so that a second rise tells temperature from time.
+        least_s = window_s / REPEAT_WINDOWS
+        if rise_k * math.sqrt(0.5 * least_s) > c.half_rise_k:
+            least_s *= 0.5
+        bursts = math.ceil(window_s / min(each_s, least_s) - 0.1)
+        each_s = max(each_s, window_s / bursts)
+        if bursts > how.max_bursts:
+            bursts = how.max_bursts
+        counted_s = bursts * each_s
+        return bursts, counted_s if counted_s < window_s else window_s, True

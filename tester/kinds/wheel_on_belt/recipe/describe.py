@@ -1,0 +1,212 @@
+"""A plan for wheels in words and as JSON: what is this machine's beside what all plans say (``tester.recipe``)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+from tester.analysis.difference import pieces_needed
+from tester.axes import Axes, condition_words
+from tester.kinds.wheel_on_belt.axes import held_by
+from tester.kinds.wheel_on_belt.budget import BETWEEN_PERCENT
+from tester.kinds.wheel_on_belt.recipe.steps import (
+    Cool,
+    Heat,
+    Install,
+    PreGrind,
+    Rest,
+    WheelCondition,
+    WheelPlan,
+)
+from tester.recipe.describe import duration, repeats_words, window_words
+from tester.recipe.estimate import Estimate, StepEstimate
+from tester.recipe.plan import ConditionStep, PromptStep, Step
+from tester.recipe.plan_json import ConditionJson, quoted
+from tester.recipe.repeats import HISTORIC_PERCENT
+
+
+def words(step: Step, one: StepEstimate) -> str:
+    """Return one line that says what a step does."""
+    match step:
+        case Install():
+            return f"install wheel {step.wheel}"
+        case PreGrind():
+            speeds = f"{step.wheel_speed_m_s:g} / {step.belt_speed_m_s:g} m/s"
+            return f"pre-grind {duration(step.duration_s)}, {step.load_n:g} N, wheel / belt {speeds}"
+        case Rest():
+            least = f"rest at least {duration(step.at_least_s)}" if step.at_least_s else "rest"
+            return least if step.until_c is None else f"{least}, to {step.until_c:g} degC +- {step.within_k:g} K"
+        case Heat():
+            return f"heat to {step.temperature_c:g} degC"
+        case WheelCondition():
+            held = condition_words(step.setpoint, compound=False)
+            bursts = f", {one.bursts} bursts" if one.bursts > 1 else ""
+            return f"{step.condition:>4}  {held}  {repeats_words(step)} x {window_words(step.window)}{bursts}"
+        case Cool():
+            return f"cool the hub below {step.hub_below_c:g} degC"
+        case PromptStep():
+            return f"ask: {step.text}"
+        case _:
+            return step.kind
+
+
+def heading(plan: WheelPlan, step: Install) -> str:
+    """Return what is on a wheel: compound, note, replicate, and what it is predicted to lose."""
+    replicated = any(one.replicate > 1 for one in plan.wear)
+    note = f" ({step.note})" if step.note else ""
+    replicate = f", replicate {step.replicate}" if replicated else ""
+    worn = plan.wear[step.wheel - 1]
+    conditions = "1 condition" if worn.conditions == 1 else f"{worn.conditions} conditions"
+    loss = f"{worn.loss_mm:.2f} mm of diameter"
+    return f"wheel {step.wheel}: {step.compound}{note}{replicate}, {conditions}, {loss}"
+
+
+def _wheels(plan: WheelPlan) -> int:
+    return sum(isinstance(step, Install) for step in plan.steps)
+
+
+def totals(plan: WheelPlan, estimate: Estimate) -> Iterator[str]:
+    """Yield wear, heat, and the conditions whose temperature is not expected to hold."""
+    count = _wheels(plan)
+    wheels = "wheel" if count == 1 else "wheels"
+    yield f"wear              {estimate.loss_mm:.2f} mm of diameter on {count} {wheels}"
+    yield f"                  (a wheel is replaced after {plan.replace_after_mm:g} mm)"
+    if math.isfinite(estimate.peak_c):
+        yield f"peak temperature  {estimate.peak_c:.0f} degC on the rubber"
+    yield from _telling(plan)
+    if estimate.not_held:
+        listed = ", ".join(str(number) for number in estimate.not_held[:20])
+        more = f" and {len(estimate.not_held) - 20} more" if len(estimate.not_held) > 20 else ""
+        yield f"not expected to hold their temperature for one revolution: conditions {listed}{more}"
+
+
+TOLD_APART_PERCENT = (10.0, 5.0)
+"""Differences of two compounds for which a plan says beforehand what they take."""
+
+
+def _telling(plan: WheelPlan) -> Iterator[str]:
+    """Yield how many wheels of each compound tell a difference; repeats and wheels scatter as they are assumed to."""
+    fewest = min((step.repeats for step in plan.conditions()), default=0)
+    if not fewest:
+        return
+    repeats = HISTORIC_PERCENT / math.sqrt(fewest)
+    needed = [(percent, pieces_needed(percent, BETWEEN_PERCENT, repeats)) for percent in TOLD_APART_PERCENT]
+    words = ", ".join(f"{percent:g} % takes {count}" for percent, count in needed)
+    have = max(step.replicate for step in plan.conditions())
+    yield f"two compounds     to tell {words} wheels each (replicates; here {have})"
+
+
+def plan_fields(plan: WheelPlan, estimate: Estimate) -> dict[str, object]:
+    """Return what a plan's JSON says of wear and heat."""
+    return {
+        "loss_mm": round(estimate.loss_mm, 4),
+        "friction_j": round(estimate.friction_j, 1),
+        "peak_c": round(estimate.peak_c, 2) if math.isfinite(estimate.peak_c) else None,
+        "wheels": _wheels(plan),
+        "replace_after_mm": plan.replace_after_mm,
+    }
+
+
+def step_fields(step: Step, one: StepEstimate) -> dict[str, object]:
+    """Return what a plan's JSON says of a step that is no condition; units in the keys."""
+    match step:
+        case Install():
+            return {
+                "specimen": step.specimen,
+                "replicate": step.replicate,
+                "wheel": step.wheel,
+                "compound": step.compound,
+                "note": step.note,
+            }
+        case PreGrind():
+            return {
+                "wheel_speed_m_s": step.wheel_speed_m_s,
+                "belt_speed_m_s": step.belt_speed_m_s,
+                "load_n": step.load_n,
+                "duration_s": step.duration_s,
+                "sliding_m": round(one.sliding_m, 3),
+                "loss_mm": round(one.loss_mm, 5),
+            }
+        case Rest():
+            return {
+                "at_least_s": step.at_least_s,
+                "until_c": step.until_c,
+                "within_k": step.within_k,
+                "at_most_s": step.at_most_s,
+            }
+        case Heat():
+            return {"temperature_c": step.temperature_c}
+        case Cool():
+            return {"hub_below_c": step.hub_below_c}
+        case PromptStep():
+            return {"text": step.text}
+        case _:
+            return {}
+
+
+class WheelConditionJson(ConditionJson):
+    """Conditions on wheels as JSON: with wheel, belt speed, slip pulses and wear."""
+
+    def __init__(self, axes: Axes) -> None:
+        """Belt speeds are written once, too."""
+        super().__init__(axes)
+        self._held = axes.numbers_of(*(axis.name for axis in axes))
+        self._speeds = axes.numbers_of("wheel_speed", "slip_velocity")
+        """What the belt's speed follows from."""
+        self._belts: dict[tuple[float, ...], str] = {}
+
+    def keys(self) -> tuple[str, ...]:
+        """Return the keys after kind, index and seconds; units in them."""
+        return (
+            "condition",
+            "row",
+            "specimen",
+            "replicate",
+            "wheel",
+            "grid",
+            "compound",
+            *(axis.field for axis in self.axes),
+            "belt_speed_m_s",
+            "repeats",
+            "at_most",
+            "until_percent",
+            "repeats_expected",
+            "min_valid",
+            "window",
+            "temperature_band_k",
+            "bursts",
+            "held",
+            "sliding_m",
+            "loss_mm",
+        )
+
+    def texts(self, step: ConditionStep, one: StepEstimate) -> tuple[object, ...]:
+        """Return what stands under each key."""
+        assert isinstance(step, WheelCondition)
+        setpoint, number = step.setpoint, self.number
+        speeds = self._speeds(setpoint.values)
+        belt = self._belts.get(speeds)
+        if belt is None:
+            belt = self._belts[speeds] = repr(held_by(setpoint).belt_speed_m_s)
+        return (
+            step.condition,
+            step.row,
+            step.specimen,
+            step.replicate,
+            step.wheel,
+            quoted(step.grid),
+            quoted(setpoint.compound),
+            *map(number.__getitem__, self._held(setpoint.values)),
+            belt,
+            step.repeats,
+            step.at_most,
+            "null" if step.until_percent is None else number[step.until_percent],
+            round(one.repeats, 2),
+            step.min_valid,
+            self.window(step.window),
+            number[step.temperature_band_k],
+            one.bursts,
+            "true" if one.held else "false",
+            round(one.sliding_m, 3),
+            round(one.loss_mm, 5),
+        )

@@ -1,0 +1,255 @@
+"""How long a plan takes, what it rubs off and how warm it gets: closed formulas, no simulation.
+
+The times are sums of the moves that the executor makes; those of a condition are in ``.cost``.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+from sim.physics.slip import slip_velocity
+from tester.analysis.uncertainty import Budget
+from tester.kinds.wheel_on_belt.axes import held_by
+from tester.kinds.wheel_on_belt.budget import instruments_budget
+from tester.kinds.wheel_on_belt.recipe.body import Body
+from tester.kinds.wheel_on_belt.recipe.constants import CONSTANTS, EstimateConstants
+from tester.kinds.wheel_on_belt.recipe.cost import ROLLING_M_S, ConditionCosts
+from tester.kinds.wheel_on_belt.recipe.order import Before, OrderCosts
+from tester.kinds.wheel_on_belt.recipe.steps import (
+    Cool,
+    Heat,
+    Install,
+    PreGrind,
+    Rest,
+    WheelCondition,
+)
+from tester.kinds.wheel_on_belt.recipe.wheel_change import TOUCH
+from tester.recipe.estimate import StepEstimate
+from tester.recipe.plan import ConditionStep, Plan, PromptStep, Step
+from tester.recipe.repeats import MADE_UP, POOLED_DF, SURE, expected
+
+if TYPE_CHECKING:
+    from tester.kinds.wheel_on_belt.rig import RigConfig
+
+
+def predicted_loss_mm(step: WheelCondition, rig: RigConfig) -> float:
+    """Return the loss of diameter, mm, that a condition is expected to cost."""
+    return WheelEstimator(rig).condition(step).loss_mm
+
+
+def _precision_range_s(plan: Plan, steps: Sequence[StepEstimate]) -> tuple[float, float]:
+    """Return by how much sooner and later, s, precisions are reached that a run's own deviation decides."""
+    sooner_s = later_s = 0.0
+    least, most = SURE
+    for step, one in zip(plan.steps, steps, strict=True):
+        if isinstance(step, WheelCondition) and step.until_percent is not None and one.repeats:
+            moves_s = one.seconds - one.waiting_s
+            sooner_s += (1.0 - min(max(least * least, step.repeats / one.repeats), 1.0)) * moves_s
+            later_s += (max(min(most * most, step.at_most / one.repeats), 1.0) - 1.0) * moves_s
+    return sooner_s, later_s
+
+
+class WheelEstimator:
+    """Estimates for one rig; the costs of conditions are remembered."""
+
+    def __init__(
+        self,
+        rig: RigConfig,
+        constants: EstimateConstants = CONSTANTS,
+        repeatability: Mapping[str, float] | None = None,
+    ) -> None:
+        """Work out what depends on the rig alone. ``repeatability``: s between repeats, per cent, by compound."""
+        self.constants = constants
+        self.ambient_c = rig.ambient_c
+        self.diameter_mm = rig.geometry.wheel_diameter_mm
+        self.cool_c, self.cool_at_most_s = rig.interlocks.cooldown_hub_c, rig.interlocks.cooldown_at_most_s
+        self.parts = rig.simulated
+        """Each specimen, and each replicate of it, is a part of the run, on a rig of its own."""
+        self.person_s = 0.0 if rig.simulated else constants.person_s
+        self.body = Body(rig)
+        self.costs = ConditionCosts(rig, constants, self.body, repeatability)
+        self.order = OrderCosts(rig, constants, self.body)
+
+    def walk(self, plan: Plan) -> list[StepEstimate]:
+        """Return an estimate for every step; the wheel's temperature is carried from one to the next."""
+        compound = ""
+        part = (0, 0)
+        body_c = self.ambient_c
+        cold_rubber = False
+        last: WheelCondition | None = None
+        before = Before(self.ambient_c)
+        prompted = False
+        result: list[StepEstimate] = []
+        for place, step in enumerate(plan.steps):
+            if isinstance(step, WheelCondition):
+                one = self.condition(step)
+                looked_at = step.wear_check == "prompt"
+                if looked_at or prompted:
+                    if last is not None:
+                        body_c = self.body.steady_c(last.setpoint.number("temperature"))
+                    one = self._after_person(one, step, body_c, asked=looked_at)
+                    prompted = False
+                if step.until_percent is not None:
+                    one = self._until(before, step, one)
+                one = self.order.after(before, step.setpoint, one)
+                last = step
+                result.append(one)
+                continue
+            prompted = isinstance(step, PromptStep)
+            if last is not None:
+                body_c = self.body.steady_c(last.setpoint.number("temperature"))
+                last = None
+            if self._begins_part(plan, place, part):
+                body_c, before = self.ambient_c, Before(self.ambient_c)
+            if cold_rubber and isinstance(step, Rest):
+                one = StepEstimate(step.at_least_s)  # new rubber is at ambient, whatever the hub below it
+            else:
+                if isinstance(step, Install):
+                    compound, part = step.compound, (step.specimen, step.replicate)
+                cold_rubber = isinstance(step, Install) or (cold_rubber and isinstance(step, PromptStep))
+                if isinstance(step, Heat):
+                    before.heat(self.body.surface_c(body_c))
+                one, body_c = self._preparation(step, compound, body_c)
+            result.append(one)
+        return result
+
+    def _begins_part(self, plan: Plan, place: int, part: tuple[int, int]) -> bool:
+        """Tell whether a step is the first of a further part on a rig of its own: its wheel, or a cool-down before.
+
+        ``part``: specimen and replicate before, zeros for none. A rig of its own is at ambient, with nothing to cool.
+        """
+        if not self.parts or part == (0, 0):
+            return False
+        step = plan.steps[place]
+        if isinstance(step, Cool) and place + 1 < len(plan.steps):
+            step = plan.steps[place + 1]
+        return isinstance(step, Install) and (step.specimen, step.replicate) != part
+
+    def _until(self, before: Before, step: WheelCondition, one: StepEstimate) -> StepEstimate:
+        """Return an estimate with the repeats that a precision takes so early in a run: little is pooled yet."""
+        repeats = one.repeats
+        if one.held and before.pooled < POOLED_DF:
+            repeats = expected(step, self.costs.s_percent(step.setpoint.compound), before.pooled)
+        before.pooled += int(repeats) - 1
+        if repeats == one.repeats:
+            return one
+        share = repeats / one.repeats
+        soak_s = step.soak.for_s + self.constants.next_condition_s
+        return one._replace(
+            seconds=soak_s + share * (one.seconds - soak_s),
+            sliding_m=share * one.sliding_m,
+            loss_mm=share * one.loss_mm,
+            friction_j=share * one.friction_j,
+            waiting_s=share * one.waiting_s,
+            repeats=repeats,
+        )
+
+    def range_s(self, plan: Plan, steps: Sequence[StepEstimate], down_s: float) -> tuple[float, float]:
+        """Return the range of the rig time, s, that is to hold 95 % of runs.
+
+        What waits for temperatures follows the thermometer's bias, one for all of a session, hence adds up;
+        repeats that are made up for come one by one (Poisson); a precision's repeats follow the run's own deviation.
+        """
+        seconds, waits_s, scattered = 0.0, down_s, 0.0
+        for one in steps:
+            took_s = one.seconds
+            seconds += took_s
+            waits_s += one.waiting_s
+            if one.repeats:
+                scattered += MADE_UP * took_s * took_s / one.repeats
+        sooner_s, later_s = _precision_range_s(plan, steps)
+        seconds += down_s
+        low = seconds - (1.0 - self.constants.waits_least) * waits_s - sooner_s
+        return low, seconds + (self.constants.waits_most - 1.0) * waits_s + later_s + 2.0 * math.sqrt(scattered)
+
+    def s_percent(self, compound: str) -> float:
+        """Return the standard deviation between repeats that is expected, per cent of the coefficient."""
+        return self.costs.s_percent(compound)
+
+    def budget(self, step: ConditionStep) -> tuple[float, Budget] | None:
+        """Return the coefficient expected, and what the instruments add to its uncertainty; None where it rolls."""
+        sp = held_by(step.setpoint)
+        slip_m_s = slip_velocity(sp.wheel_speed_m_s, sp.belt_speed_m_s, sp.sideslip_deg)[2]
+        if slip_m_s < ROLLING_M_S:
+            return None
+        mu = self.costs.mu(sp.compound, sp.temperature_c, sp.load_n, slip_m_s, sp.sideslip_deg)
+        return mu, instruments_budget(sp, mu, slip_m_s, self.diameter_mm)
+
+    def shut_down_s(self, plan: Plan) -> float:
+        """Return the seconds from the last step to standstill: a hot jacket is cooled turning."""
+        last: dict[tuple[int, int], WheelCondition] = {}
+        for step in plan.steps:
+            if isinstance(step, WheelCondition):
+                last[(step.specimen, step.replicate) if self.parts else (0, 0)] = step
+        cool_c = self.body.mean_at_hub_c(self.cool_c)
+        return math.fsum(
+            min(
+                self.body.cooling_s(self.body.steady_c(step.setpoint.number("temperature")), cool_c, turning=True),
+                self.cool_at_most_s,
+            )
+            for step in last.values()
+        )
+
+    def condition(self, step: WheelCondition) -> StepEstimate:
+        """Return what a condition takes, without the heating before it."""
+        return self.costs.of(step.setpoint, step)
+
+    def _after_person(self, one: StepEstimate, step: WheelCondition, body_c: float, *, asked: bool) -> StepEstimate:
+        """Return a condition's estimate with what a person at the wheel costs: cooling, his time, warming again.
+
+        ``asked``: the cooling and the person are not in a prompt's step before it, but in the condition's own check.
+        """
+        seconds = one.seconds
+        if asked:
+            person, body_c = self._asking(body_c)
+            seconds += person.seconds
+        warmed, _ = self._preparation(Heat(step.index, step.setpoint.number("temperature")), "", body_c)
+        return one._replace(seconds=seconds + warmed.seconds)
+
+    def _asking(self, body_c: float) -> tuple[StepEstimate, float]:
+        """Return what a question at the wheel takes: cooling, turning, until it may be touched; its contact again."""
+        cool, body_c = self._preparation(TOUCH, "", body_c)
+        return StepEstimate(cool.seconds + self.person_s + self.constants.install_s), body_c
+
+    def pre_grind(self, step: PreGrind, compound: str) -> StepEstimate:
+        """Return what grinding a new wheel takes."""
+        slip = abs(step.wheel_speed_m_s - step.belt_speed_m_s)
+        power = self.costs.mu(compound, self.ambient_c, step.load_n, slip, 0.0) * step.load_n * slip
+        sliding = slip * step.duration_s
+        return StepEstimate(
+            seconds=step.duration_s + self.constants.pre_grind_moves_s,
+            sliding_m=sliding,
+            loss_mm=self.costs.ground_mm(step.load_n, sliding),
+            friction_j=power * step.duration_s,
+            peak_c=self.ambient_c + self.costs.rise_k * power * math.sqrt(step.duration_s),
+        )
+
+    def _preparation(self, step: Step, compound: str, body_c: float) -> tuple[StepEstimate, float]:
+        """Return what a step other than a condition takes, and the wheel's mean temperature after it."""
+        c = self.constants
+        match step:
+            case Install():
+                return StepEstimate(c.install_s + self.person_s), self.body.with_new_rubber(body_c)
+            case PreGrind():
+                one = self.pre_grind(step, compound)
+                return one, body_c + self.body.warmed_k(self.costs.rubber_share * one.friction_j)
+            case Rest():
+                cooled = math.inf if step.until_c is None else step.until_c + step.within_k
+                wait = max(step.at_least_s, self.body.cooling_s(body_c, cooled, turning=False))
+                wait = min(wait, step.at_most_s)
+                return StepEstimate(wait), self.body.after_c(body_c, wait)
+            case Heat():
+                seconds = self.order.heat_s(self.body.surface_c(body_c), step.temperature_c)
+                heated = StepEstimate(seconds, peak_c=step.temperature_c, waiting_s=seconds)
+                return heated, self.body.steady_c(step.temperature_c)
+            case Cool():
+                seconds = self.body.cooling_s(body_c, step.hub_below_c, turning=True)
+                return StepEstimate(seconds), min(body_c, step.hub_below_c)
+            case PromptStep():
+                return self._asking(body_c)
+            case WheelCondition():
+                return self.condition(step), body_c
+            case _:
+                raise TypeError(f"{step.kind}: no step of this machine")

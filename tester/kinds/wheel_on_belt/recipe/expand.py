@@ -1,0 +1,224 @@
+"""A recipe to a plan: conditions in their order (tester.recipe.conditions), with a wheel under each of them.
+
+Wheels are changed only between conditions, before one whose predicted wear exceeds what is
+left, and at a temperature boundary where that costs no further wheel.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import accumulate, count
+from typing import TYPE_CHECKING
+
+from tester.axes import Setpoint
+from tester.kinds.wheel_on_belt.recipe.estimate import WheelEstimator
+from tester.kinds.wheel_on_belt.recipe.schema import WheelRecipe
+from tester.kinds.wheel_on_belt.recipe.settings import WheelSettings, wheel_settings
+from tester.kinds.wheel_on_belt.recipe.steps import (
+    Heat,
+    PreGrind,
+    PreparePolicy,
+    Rest,
+    WheelCondition,
+    WheelPlan,
+    WheelStep,
+    WheelWear,
+)
+from tester.kinds.wheel_on_belt.recipe.wheel_change import INSERTED, prepare_wheel
+from tester.recipe.conditions import BlockValue, Condition, conditions_of, metadata_of, ordered
+from tester.recipe.estimate import StepEstimate
+from tester.recipe.plan import PromptStep, Specimen
+
+if TYPE_CHECKING:
+    from tester.kinds.wheel_on_belt.rig import RigConfig
+
+
+def expand(recipe: WheelRecipe, rig: RigConfig, estimator: WheelEstimator | None = None) -> WheelPlan:
+    """Return the plan of a valid recipe on a rig (its wear rate and geometry decide the wheel changes).
+
+    ``estimator``: one for this rig, if the caller goes on to estimate the plan; it remembers every condition.
+    """
+    return _Expansion(recipe, rig, estimator or WheelEstimator(rig)).plan()
+
+
+def change_points(losses: Sequence[Sequence[float]], first_mm: float, limit_mm: float) -> list[set[int]]:
+    """Return, for every block of conditions, the positions in it before which a new wheel goes on.
+
+    ``losses``: predicted loss of diameter (mm) of the conditions, block by block; ``first_mm``: what preparing a
+    wheel costs; ``limit_mm``: loss after which a wheel is replaced. A wheel always takes at least one condition.
+    """
+    sums = [0.0, *accumulate(loss for block in losses for loss in block)]
+    fresh = limit_mm - first_mm
+    room, used, start = fresh, False, 0
+    changes: list[set[int]] = []
+    for block in losses:
+        points: set[int] = set()
+        fits = sums[start + len(block)] - sums[start] <= room
+        # A block that does not fit: change at its beginning, where that costs no more wheels in the end.
+        if used and not fits and _changes(sums, start, fresh, fresh) < _changes(sums, start, room, fresh):
+            points.add(0)
+            room, used = fresh, False
+        for position, loss in enumerate(block):
+            if used and loss > room:
+                points.add(position)
+                room = fresh
+            room -= loss
+            used = True
+        changes.append(points)
+        start += len(block)
+    return changes
+
+
+def _changes(sums: list[float], start: int, room: float, fresh: float) -> int:
+    """Return how many changes the conditions from ``start`` on need if each wheel is used up, mm left ``room``."""
+    changes = 0
+    while True:
+        reached = bisect_right(sums, sums[start] + room, lo=start) - 1
+        if reached >= len(sums) - 1:
+            return changes
+        if reached == start and room >= fresh:
+            reached += 1  # a new wheel takes at least one condition
+        start, room = reached, fresh
+        changes += 1
+
+
+@dataclass(slots=True)
+class _Wheel:
+    """What the wheel in hand has been given so far."""
+
+    number: int
+    specimen: int
+    replicate: int
+    loss_mm: float
+    sliding_m: float
+    conditions: int = 0
+
+    def wear(self) -> WheelWear:
+        return WheelWear(self.number, self.specimen, self.replicate, self.conditions, self.loss_mm, self.sliding_m)
+
+
+class _Expansion:
+    """Builds the steps of one plan."""
+
+    def __init__(self, recipe: WheelRecipe, rig: RigConfig, estimator: WheelEstimator) -> None:
+        self.recipe = recipe
+        self.held: BlockValue = recipe.axes.number_of(recipe.axes.blocks)
+        self.estimator = estimator
+        self.prepare = _prepare(recipe, rig)
+        self.conditions = conditions_of(recipe, wheel_settings)
+        self.steps: list[WheelStep] = []
+        self.wheels: list[_Wheel] = []
+        self.count = 0
+        self.every_condition = [one.prompt for one in recipe.steps if one.every == "condition"]
+        self.every_temperature = [one.prompt for one in recipe.steps if one.every == "temperature"]
+
+    def plan(self) -> WheelPlan:
+        """Return the whole plan."""
+        recipe = self.recipe
+        specimens = tuple(
+            Specimen(index, one.compound, one.note) for index, one in enumerate(recipe.specimens, start=1)
+        )
+        for specimen in specimens:
+            compound = specimen.compound
+            setpoints = [Setpoint(compound, one.values, recipe.axes) for one in self.conditions]
+            cost = self.estimator.costs.of
+            costs = [cost(setpoint, one.settings) for setpoint, one in zip(setpoints, self.conditions, strict=True)]
+            for replicate in range(1, recipe.replicates + 1):
+                self._replicate(specimen, replicate, setpoints, costs)
+        return WheelPlan(
+            name=recipe.recipe,
+            kind=recipe.kind,
+            axes=recipe.axes,
+            steps=tuple(self.steps),
+            specimens=specimens,
+            wear=tuple(wheel.wear() for wheel in self.wheels),
+            replace_after_mm=recipe.wheel.replace_after,
+            min_valid=min((one.settings.min_valid for one in self.conditions), default=1),
+            prepare=self.prepare,
+            metadata=metadata_of(recipe),
+        )
+
+    def _replicate(
+        self, specimen: Specimen, replicate: int, setpoints: list[Setpoint], costs: list[StepEstimate]
+    ) -> None:
+        """Add all conditions of one replicate, on as many wheels as they wear; both lists go by row."""
+        blocks = ordered(self.conditions, self.held, self.recipe.order, specimen.index, replicate)
+        losses = [[costs[one.row - 1].loss_mm for one in block] for block in blocks]
+        self._new_wheel(specimen, replicate, None)
+        changes = change_points(losses, self.wheels[-1].loss_mm, self.recipe.wheel.replace_after)
+        for block, points in zip(blocks, changes, strict=True):
+            if 0 in points:
+                self._new_wheel(specimen, replicate, None)
+            temperature = self.held(block[0].values)
+            self._prompts(self.every_temperature)
+            self.steps.append(Heat(len(self.steps), temperature))
+            for position, one in enumerate(block):
+                if position and position in points:
+                    self._new_wheel(specimen, replicate, temperature)
+                if self.every_condition:
+                    self._prompts(self.every_condition)
+                self._measure(one, setpoints[one.row - 1], costs[one.row - 1])
+
+    def _new_wheel(self, specimen: Specimen, replicate: int, heat_c: float | None) -> None:
+        number = len(self.wheels) + 1
+        self.steps += prepare_wheel(
+            self.prepare,
+            specimen,
+            replicate,
+            number,
+            cool=number > 1,
+            heat_c=heat_c,
+            numbers=count(len(self.steps)),
+        )
+        grind = self.prepare.pre_grind
+        ground = self.estimator.pre_grind(grind, specimen.compound) if grind else StepEstimate(0.0)
+        self.wheels.append(_Wheel(number, specimen.index, replicate, ground.loss_mm, ground.sliding_m))
+
+    def _measure(self, one: Condition[WheelSettings], setpoint: Setpoint, cost: StepEstimate) -> None:
+        _, row, grid, how = one
+        wheel, steps = self.wheels[-1], self.steps
+        wheel.conditions += 1
+        wheel.loss_mm += cost.loss_mm
+        wheel.sliding_m += cost.sliding_m
+        self.count += 1
+        # By position: with names the call costs twice as much, and there may be 250,000 of them.
+        steps.append(
+            WheelCondition(
+                len(steps),
+                self.count,
+                (wheel.specimen - 1) * len(self.conditions) + row,
+                wheel.specimen,
+                wheel.replicate,
+                grid,
+                setpoint,
+                how.repeats,
+                how.min_valid,
+                how.window,
+                how.temperature_band_k,
+                how.soak,
+                how.at_most,
+                how.until_percent,
+                wheel.number,
+                how.max_bursts,
+                how.wear_check,
+            )
+        )
+
+    def _prompts(self, texts: list[str]) -> None:
+        for text in texts:
+            self.steps.append(PromptStep(len(self.steps), text))
+
+
+def _prepare(recipe: WheelRecipe, rig: RigConfig) -> PreparePolicy:
+    """Return what every new wheel goes through."""
+    grind, rest = recipe.pre_grind, recipe.rest
+    return PreparePolicy(
+        pre_grind=None
+        if grind is None
+        else PreGrind(INSERTED, grind.wheel_speed, grind.belt_speed, grind.load, grind.duration),
+        rest=None if rest is None else Rest(INSERTED, rest.at_least, rest.until, rest.within, rest.at_most),
+        person_steps=tuple(one.prompt for one in recipe.steps if one.every == "wheel"),
+        ready_c=rig.ambient_c,
+    )

@@ -1,0 +1,317 @@
+"""What a recipe asks for beyond the rig's limits, with the position of the value and the source of the limit.
+
+The file's tree is checked rather than the validated recipe, value by value: a recipe with a misspelt key still hears
+of its load beyond the limit, so that everything is reported at once. Values that cannot be read are left to the
+schema's own problems.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from difflib import get_close_matches
+from itertools import product
+from typing import TYPE_CHECKING, NamedTuple
+
+from sim.physics import laws
+from sim.physics.friction import KNOWN
+from sim.physics.slip import cornering_factor, slip_velocity
+from tester.axes import Axis
+from tester.base.source import Location, Problem, Tree, Value
+from tester.base.units import Quantity, UnitError, show, shown
+from tester.kinds.wheel_on_belt.axes import POSITIONED
+from tester.kinds.wheel_on_belt.rig.press import RIPPLE_N
+
+if TYPE_CHECKING:
+    from tester.kinds.wheel_on_belt.rig import RigConfig
+
+DEFAULT_BAND_K = 2.0
+"""Temperature band of a recipe that names none (``tester.recipe.schema.MeasureModel``)."""
+TOUCHES = 1.5
+"""The least load is this times the touching force [A]: the press goes on until it feels that, and runout and noise come
+on top, some 12 N. On the simulated rig 10 N trip "load overshoot", 12 N sometimes do, 15 N do not."""
+OVERHEAT_K = 3.0
+"""Rubber gets hotter than its band by this [A]: a burst that has to end goes on until the press has lifted, and the
+thermometer shows it late (gates.ir_lag) and off by its bias. On the simulated rig it is 1.2 K, and its bias 1 K."""
+POWER_SCATTER = 0.15
+"""Friction is greater than the model's by this share [A]: two standard deviations of wheel, condition and repeat."""
+
+
+def least_load_n(rig: RigConfig) -> float:
+    """Return the least load that a rig can hold, N."""
+    return TOUCHES * rig.loops.load.touch_load_n
+
+
+def greatest_load_n(rig: RigConfig) -> float:
+    """Return the greatest load that a rig can hold, N: with the tread's runout it stays below limits.load."""
+    return rig.limits.load_n - RIPPLE_N
+
+
+class Given(NamedTuple):
+    """A quantity of the file: its value in the unit asked for, and where it stands."""
+
+    value: float
+    at: Location
+
+
+class Motion(NamedTuple):
+    """A wheel and a belt speed in m/s at a sideslip angle, with the resultant slip speed."""
+
+    wheel: float
+    belt: float
+    sideslip_deg: float
+    slip: float
+
+
+class _Case(NamedTuple):
+    """A compound at the temperature at which it rubs most, at one slip speed."""
+
+    compound: str
+    model: laws.FrictionLaw
+    hottest: float
+    slip: float
+    cornering: float
+
+
+def limit_problems(tree: Tree, rig: RigConfig) -> list[Problem]:
+    """Return what is beyond the rig's limits, as far as the tree's values can be read."""
+    return sorted(set(_Limits(tree, rig).problems()))
+
+
+class _Limits:
+    """One tree held against one rig."""
+
+    def __init__(self, tree: Tree, rig: RigConfig) -> None:
+        self.tree = tree
+        self.rig = rig
+        said = self._given(("ambient",), "degC")
+        self.ambient_c = said[0].value if said else rig.ambient_c
+        self.ambient_from = "ambient of this recipe" if said else f'ambient of rig "{rig.name}"'
+        names = [self._node(("specimens", index, "compound")) for index in self._indices(("specimens",))]
+        self.compounds = list(dict.fromkeys(name for name in names if isinstance(name, str)))
+        self.models = {name: laws.make(rig.sim.friction_model, name) for name in self.compounds if name in KNOWN}
+
+    def problems(self) -> Iterator[Problem]:
+        """Yield every problem, in no order, perhaps twice."""
+        yield from self._specimens()
+        yield from self._pre_grind()
+        yield from self._rest()
+        yield from self._wheel_speeds(("measure",))
+        for index in self._indices(("grids",)):
+            yield from self._grid(("grids", index))
+
+    # -- reading the tree -------------------------------------------------------------------------------------
+
+    def _node(self, at: Location) -> Value:
+        node = self.tree.data
+        for piece in at:
+            if isinstance(node, dict) and isinstance(piece, str):
+                node = node.get(piece)
+            elif isinstance(node, list) and isinstance(piece, int):
+                node = node[piece]
+            else:
+                return None
+        return node
+
+    def _indices(self, at: Location) -> range:
+        node = self._node(at)
+        return range(len(node)) if isinstance(node, list) else range(0)
+
+    def _given(self, at: Location, unit: str) -> list[Given]:
+        """Return the readable quantities of an axis or a single value; an empty list where there is none."""
+        node = self._node(at)
+        if node is None:
+            return []
+        quantity = Quantity(unit)
+        places = [((*at, index), one) for index, one in enumerate(node)] if isinstance(node, list) else [(at, node)]
+        found: list[Given] = []
+        for place, value in places:
+            try:
+                found.append(Given(quantity.read(value), place))
+            except UnitError:
+                continue
+        return found
+
+    def _limit(self, key: str, value: float, unit: str) -> str:
+        return f'(limit {show(value, unit)}: {key} of rig "{self.rig.name}")'
+
+    def _above(self, given: Given, limit: float, unit: str, key: str) -> Iterator[Problem]:
+        """Yield a problem for a value (of either sign) beyond a limit."""
+        if abs(given.value) > limit:
+            name = next(piece for piece in reversed(given.at) if isinstance(piece, str))
+            message = f"{name}: {show(given.value, unit)} is more than the rig allows"
+            yield self.tree.problem(given.at, f"{message} {self._limit(key, limit, unit)}")
+
+    def _too_light(self, given: Given) -> Iterator[Problem]:
+        """Yield a problem for a load too near to touching to be held; what is no load at all is the schema's to say."""
+        touch_n = self.rig.loops.load.touch_load_n
+        least_n = least_load_n(self.rig)
+        if 0.0 < given.value < least_n:
+            asked, touching = show(given.value, "N"), show(touch_n, "N")
+            message = f"load: {asked} is too near to touching, which is {touching}, to be held"
+            source = f'{TOUCHES:g} x loops.load.touch_load of rig "{self.rig.name}"'
+            yield self.tree.problem(given.at, f"{message} (expected at least {show(least_n, 'N')}: {source})")
+
+    def _too_heavy(self, given: Given) -> Iterator[Problem]:
+        """Yield a problem for a load that is beyond its limit, or gets there with every turn of the wheel."""
+        limit_n, most_n = self.rig.limits.load_n, greatest_load_n(self.rig)
+        yield from self._above(given, limit_n, "N", "limits.load")
+        if most_n < given.value <= limit_n:
+            message = f"load: {show(given.value, 'N')} is too near to limits.load, {show(limit_n, 'N')}, to be held"
+            source = f'{show(RIPPLE_N, "N")} of runout below limits.load of rig "{self.rig.name}"'
+            yield self.tree.problem(given.at, f"{message} (expected at most {show(most_n, 'N')}: {source})")
+
+    def _by_hand(self, given: Given, axis: Axis, *, driven: bool) -> Iterator[Problem]:
+        """Yield a problem for an angle on an axis that a person sets: every burst turns it in and out."""
+        if given.value != 0.0 and not driven:
+            asked = show(given.value, axis.recipe_unit)
+            message = f"{axis.name}: {asked} needs a driven axis; this rig's is set by hand"
+            yield self.tree.problem(given.at, f'{message} ({axis.drive} of rig "{self.rig.name}")')
+
+    # -- what may be wrong --------------------------------------------------------------------------------------
+
+    def _specimens(self) -> Iterator[Problem]:
+        for index in self._indices(("specimens",)):
+            at = ("specimens", index, "compound")
+            name = self._node(at)
+            if self.rig.simulated and isinstance(name, str) and name not in KNOWN:
+                near = get_close_matches(name, KNOWN, 1)
+                meant = f", did you mean {near[0]}?" if near else ""
+                message = f"compound: the simulated rig has no friction model for {shown(name)}{meant}"
+                yield self.tree.problem(at, f"{message} (expected one of {', '.join(KNOWN)})")
+
+    def _wheel_speeds(self, at: Location) -> Iterator[Problem]:
+        for wheel in self._given((*at, "wheel_speed"), "m/s"):
+            yield from self._above(wheel, self.rig.limits.wheel_speed_m_s, "m/s", "limits.wheel_speed")
+
+    def _pre_grind(self) -> Iterator[Problem]:
+        at: Location = ("pre_grind",)
+        limits = self.rig.limits
+        yield from self._wheel_speeds(at)
+        for belt in self._given((*at, "belt_speed"), "m/s"):
+            yield from self._above(belt, limits.belt_speed_m_s, "m/s", "limits.belt_speed")
+            for wheel, load in product(self._given((*at, "wheel_speed"), "m/s"), self._given((*at, "load"), "N")):
+                motion = Motion(wheel.value, belt.value, 0.0, abs(wheel.value - belt.value))
+                yield from self._powers([load], [motion], [self.ambient_c])
+        for load in self._given((*at, "load"), "N"):
+            yield from self._too_heavy(load)
+            yield from self._too_light(load)
+
+    def _rest(self) -> Iterator[Problem]:
+        until = self._given(("rest", "until"), "degC")
+        within = self._given(("rest", "within"), "K")
+        for given in until:
+            highest = given.value + (within[0].value if within else DEFAULT_BAND_K)
+            if highest <= self.ambient_c:
+                message = f"until: a wheel at rest does not cool to {show(highest, 'degC')}"
+                yield self.tree.problem(given.at, f"{message} ({show(self.ambient_c, 'degC')}: {self.ambient_from})")
+
+    def _grid(self, at: Location) -> Iterator[Problem]:
+        limits = self.rig.limits
+        loads = self._given((*at, "load"), "N")
+        for load in loads:
+            yield from self._too_heavy(load)
+            yield from self._too_light(load)
+        driven, allowed = self.rig.axes.driven(), limits.positions()
+        for axis in POSITIONED:
+            most = allowed[axis.name]
+            for angle in self._given((*at, axis.name), axis.recipe_unit):
+                yield from self._above(angle, most, axis.recipe_unit, axis.limit)
+                yield from self._by_hand(angle, axis, driven=axis.name in driven)
+        yield from self._wheel_speeds(at)
+        yield from self._temperatures(at)
+        yield from self._slips(at)
+        motions = self._motions(at)
+        band_k = self._band_k(at)
+        # Within its band rubber may be colder, and friction the greater by several per cent a kelvin.
+        temperatures = [
+            max(one.value + off_k, self.ambient_c)
+            for one in self._given((*at, "temperature"), "degC")
+            for off_k in (-band_k, 0.0, band_k)
+        ]
+        yield from self._powers(loads, motions, temperatures)
+
+    def _band_k(self, at: Location) -> float:
+        bands = self._given((*at, "temperature_band"), "K") or self._given(("measure", "temperature_band"), "K")
+        return bands[0].value if bands else DEFAULT_BAND_K
+
+    def _temperatures(self, at: Location) -> Iterator[Problem]:
+        surface_c, jacket_c = self.rig.limits.surface_c, self.rig.limits.jacket_c
+        band = self._band_k(at)
+        for given in self._given((*at, "temperature"), "degC"):
+            reached = f"temperature: {show(given.value, 'degC')} with its band of {show(band, 'K')}"
+            if given.value + band > surface_c:
+                source = self._limit("limits.surface", surface_c, "degC")
+                yield self.tree.problem(given.at, f"{reached} is hotter than the rig allows rubber {source}")
+            elif given.value + band > surface_c - OVERHEAT_K:
+                source = self._limit("limits.surface", surface_c, "degC")
+                nearer = f"leaves less than {show(OVERHEAT_K, 'K')}, by which a burst overshoots, to what rubber may be"
+                yield self.tree.problem(given.at, f"{reached} {nearer} {source}")
+            if given.value > jacket_c:
+                source = self._limit("limits.jacket", jacket_c, "degC")
+                yield self.tree.problem(given.at, f"{reached} is hotter than the jacket may get {source}")
+            if given.value + band < self.ambient_c:
+                source = f"({show(self.ambient_c, 'degC')}: {self.ambient_from})"
+                yield self.tree.problem(given.at, f"{reached} is below ambient, and the rig cannot cool {source}")
+
+    def _slips(self, at: Location) -> Iterator[Problem]:
+        belt_limit, most = self.rig.limits.belt_speed_m_s, self.rig.interlocks.max_slip_m_s
+        for slip, wheel in product(self._given((*at, "slip_velocity"), "m/s"), self._speeds(at)):
+            belt = round(wheel - slip.value, 9)
+            asked = f"slip_velocity: {show(slip.value, 'm/s')} at a wheel speed of {show(wheel, 'm/s')}"
+            if belt > belt_limit:
+                source = self._limit("limits.belt_speed", belt_limit, "m/s")
+                yield self.tree.problem(slip.at, f"{asked} needs {show(belt, 'm/s')} of the belt {source}")
+            if abs(slip.value) > most:
+                source = self._limit("interlocks.max_slip", most, "m/s")
+                yield self.tree.problem(slip.at, f"{asked} is more than is ever loaded {source}")
+                continue
+            off = 0.01 * self.rig.gates.speed_percent * (wheel + abs(belt))
+            if abs(slip.value) + off > most:
+                source = self._limit("interlocks.max_slip", most, "m/s")
+                nearer = f"leaves less than {show(off, 'm/s')}, by which the speeds may be off (gates.speed)"
+                yield self.tree.problem(slip.at, f"{asked} {nearer}, to what is ever loaded {source}")
+
+    def _speeds(self, at: Location) -> list[float]:
+        own = self._given((*at, "wheel_speed"), "m/s") or self._given(("measure", "wheel_speed"), "m/s")
+        return list(dict.fromkeys(one.value for one in own))
+
+    def _motions(self, at: Location) -> list[Motion]:
+        slips = dict.fromkeys(one.value for one in self._given((*at, "slip_velocity"), "m/s"))
+        angles = dict.fromkeys(one.value for one in self._given((*at, "sideslip"), "deg")) or {0.0: None}
+        motions: list[Motion] = []
+        for wheel, slip, angle in product(self._speeds(at), slips, angles):
+            belt = wheel - slip
+            motions.append(Motion(wheel, belt, angle, slip_velocity(wheel, belt, angle)[2]))
+        return motions
+
+    def _powers(self, loads: list[Given], motions: list[Motion], temperatures: list[float]) -> Iterator[Problem]:
+        """Yield a problem for every load that makes too much friction heat somewhere, naming the worst place."""
+        pressing = [load for load in loads if load.value > 0.0]
+        if not motions or not temperatures or not pressing:
+            return
+        cases: list[_Case] = []
+        for name, model in self.models.items():
+            # Both friction models are a factor of temperature times one of load and slip: the worst temperature
+            # is the same everywhere.
+            hottest = max(temperatures, key=lambda one: model.mu(one, pressing[0].value, motions[0].slip))
+            cases += [
+                _Case(name, model, hottest, motion.slip, cornering_factor(name, motion.sideslip_deg))
+                for motion in motions
+            ]
+        for load in pressing:
+            yield from self._power(load, cases)
+
+    def _power(self, load: Given, cases: list[_Case]) -> Iterator[Problem]:
+        limit = self.rig.limits.slip_power_w
+        newtons, most, worst = load.value, limit / (1.0 + POWER_SCATTER), None
+        for case in cases:
+            _, model, hottest, slip, cornering = case
+            power = model.mu(hottest, newtons, slip) * cornering * newtons * slip
+            if power > most:
+                most, worst = power, case
+        if worst is not None:
+            where = f"{show(worst.slip, 'm/s')} of slip with {shown(worst.compound)} at {show(worst.hottest, 'degC')}"
+            message = f"load: {show(newtons, 'N')} makes {most:.0f} W of friction heat at {where}"
+            if most <= limit:
+                message += f", and with the scatter of friction {100.0 * POWER_SCATTER:.0f} % more"
+            yield self.tree.problem(load.at, f"{message} {self._limit('limits.slip_power', limit, 'W')}")

@@ -1,0 +1,111 @@
+"""What this machine says about recipes (``tester.recipe.part``)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import ClassVar, Final
+
+from tester.axes import Axes, numbers
+from tester.base.source import Location, Problem, Tree
+from tester.base.units import show
+from tester.kinds.wheel_on_belt.axes import AXES, KIND, LEAST_SPEED_M_S
+from tester.kinds.wheel_on_belt.recipe import describe
+from tester.kinds.wheel_on_belt.recipe.estimate import WheelEstimator
+from tester.kinds.wheel_on_belt.recipe.expand import expand
+from tester.kinds.wheel_on_belt.recipe.limits import limit_problems
+from tester.kinds.wheel_on_belt.recipe.remaining import remaining
+from tester.kinds.wheel_on_belt.recipe.schema import WheelGrid, WheelMeasure, WheelRecipe, for_wheels
+from tester.kinds.wheel_on_belt.recipe.settings import WheelSettings, wheel_settings
+from tester.kinds.wheel_on_belt.recipe.steps import Install, WheelPlan
+from tester.kinds.wheel_on_belt.recipe.wear import wear_problems
+from tester.kinds.wheel_on_belt.rig import RigConfig
+from tester.recipe.estimate import Estimate, Estimator, StepEstimate
+from tester.recipe.part import RecipePart
+from tester.recipe.plan import Plan, Step
+from tester.recipe.schema import GridModel, MeasureModel, Recipe
+from tester.recipe.semantics import listed
+from tester.recipe.settings import values_of
+from tester.recipe.stand import Stand
+from tester.rig import Rig
+
+
+class WheelPart(RecipePart):
+    """Recipes for a rubber wheel on a belt."""
+
+    kind: ClassVar[str] = KIND
+    axes: ClassVar[Axes] = AXES
+    recipe: ClassVar[type[Recipe]] = WheelRecipe
+    measure: ClassVar[type[MeasureModel]] = WheelMeasure
+    grid: ClassVar[type[GridModel]] = WheelGrid
+
+    def settings(self, measure: MeasureModel, grid: GridModel) -> WheelSettings:
+        """Return how the conditions of a grid are measured."""
+        return wheel_settings(measure, grid)
+
+    def whole(self, recipe: Recipe | None, tree: Tree) -> Iterator[Problem]:
+        """Yield that there is nothing to do: grinding a wheel alone is something."""
+        top = tree.data if isinstance(tree.data, dict) else {}
+        if not top.get("grids") and top.get("pre_grind") is None:
+            yield tree.problem((), "there is nothing to do: neither grids nor pre_grind")
+
+    def sense(self, measure: MeasureModel, grid: GridModel, at: Location, tree: Tree) -> Iterator[Problem]:
+        """Yield each slip at which the belt would stand or run backwards."""
+        slips, speeds = grid.axes["slip_velocity"], grid.axes["wheel_speed"]
+        for index, slip in enumerate(numbers(listed(grid, slips))):
+            for wheel in numbers(values_of(speeds, measure, grid)):
+                belt = round(wheel - slip, 9)
+                if belt < LEAST_SPEED_M_S:
+                    message = (
+                        f"slip_velocity: {show(slip, 'm/s')} leaves {show(belt, 'm/s')} for the belt at a wheel speed "
+                        f"of {show(wheel, 'm/s')} (expected at least {LEAST_SPEED_M_S} m/s: "
+                        "a standing belt is never loaded)"
+                    )
+                    yield tree.problem((*at, "slip_velocity", index), message)
+
+    def limits(self, tree: Tree, rig: Rig) -> Iterator[Problem]:
+        """Yield what is beyond the rig's limits."""
+        yield from limit_problems(tree, RigConfig.of(rig))
+
+    def outlasted(self, recipe: Recipe, tree: Tree, rig: Rig) -> Iterator[Problem]:
+        """Yield what would wear a wheel beyond ``wheel.replace_after`` in one go."""
+        yield from wear_problems(for_wheels(recipe), tree, RigConfig.of(rig))
+
+    def estimator(self, rig: Rig, repeatability: Mapping[str, float] | None = None) -> WheelEstimator:
+        """Return what tells how long steps take on a rig."""
+        return WheelEstimator(RigConfig.of(rig), repeatability=repeatability)
+
+    def expand(self, recipe: Recipe, rig: Rig, estimator: Estimator | None = None) -> WheelPlan:
+        """Return the plan of a valid recipe on a rig; its wear rate and geometry decide the wheel changes."""
+        own = estimator if isinstance(estimator, WheelEstimator) else None
+        return expand(for_wheels(recipe), RigConfig.of(rig), own)
+
+    def remaining(self, plan: Plan, stand: Stand) -> WheelPlan:
+        """Return the plan of what is left to do after an interruption."""
+        return remaining(WheelPlan.of(plan), stand)
+
+    def words(self, step: Step, one: StepEstimate) -> str:
+        """Return what a step does, in a line."""
+        return describe.words(step, one)
+
+    def heading(self, plan: Plan, step: Step) -> str:
+        """Return what is on a wheel where it is installed."""
+        return describe.heading(WheelPlan.of(plan), step) if isinstance(step, Install) else ""
+
+    def totals(self, plan: Plan, estimate: Estimate) -> Iterator[str]:
+        """Yield wear and heat."""
+        yield from describe.totals(WheelPlan.of(plan), estimate)
+
+    def plan_fields(self, plan: Plan, estimate: Estimate) -> dict[str, object]:
+        """Return wear and heat for a plan's JSON."""
+        return describe.plan_fields(WheelPlan.of(plan), estimate)
+
+    def step_fields(self, step: Step, one: StepEstimate) -> dict[str, object]:
+        """Return what a plan's JSON says of a step that is no condition."""
+        return describe.step_fields(step, one)
+
+    def condition_json(self) -> describe.WheelConditionJson:
+        """Return what writes conditions as JSON."""
+        return describe.WheelConditionJson(self.axes)
+
+
+PART: Final = WheelPart()

@@ -1,0 +1,115 @@
+"""What is left of a plan after an interruption: the fifth reader of the plan's steps.
+
+Goes on at the first condition that is not over, with the wheel that is on the rig if that is the one it is to be
+measured with: it is mounted as it is (worn), ground in only where that was not complete, rested where nothing had been
+measured on it, then heated again. Every specimen is looked at by itself, because a simulated run may measure them at
+the same time.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from itertools import repeat
+
+from tester.kinds.wheel_on_belt.recipe.steps import (
+    Cool,
+    Heat,
+    Install,
+    PreGrind,
+    Rest,
+    WheelCondition,
+    WheelPlan,
+    WheelStep,
+    WornState,
+)
+from tester.kinds.wheel_on_belt.recipe.wheel_change import INSERTED, prepare_wheel
+from tester.recipe.plan import PromptStep
+from tester.recipe.stand import Mounted, Stand
+
+
+def remaining(plan: WheelPlan, stand: Stand) -> WheelPlan:
+    """Return the plan of what is left to do; without steps where nothing is."""
+    steps: list[WheelStep] = []
+    for segment in _segments(plan):
+        steps += _rest_of(plan, segment, stand)
+    return replace(plan, steps=tuple(steps))
+
+
+def _segments(plan: WheelPlan) -> Iterator[Sequence[WheelStep]]:
+    """Yield the steps of each specimen; a Cool before a wheel is mounted belongs to that wheel."""
+    first, specimen = 0, 0
+    for place, step in enumerate(plan.steps):
+        if not isinstance(step, Install) or step.specimen == specimen:
+            continue
+        begin = place - 1 if place and isinstance(plan.steps[place - 1], Cool) else place
+        if specimen:
+            yield plan.steps[first:begin]
+            first = begin
+        specimen = step.specimen
+    yield plan.steps[first:]
+
+
+def _rest_of(plan: WheelPlan, segment: Sequence[WheelStep], stand: Stand) -> list[WheelStep]:
+    """Return what is left of one specimen's steps."""
+    places = [place for place, step in enumerate(segment) if isinstance(step, WheelCondition)]
+    numbers = {place: step.condition for place, step in enumerate(segment) if isinstance(step, WheelCondition)}
+    left = [place for place in places if numbers[place] not in stand.ended]
+    specimens = {step.specimen for step in segment if isinstance(step, Install)}
+    wheels = [wheel for wheel in stand.mounted if wheel.specimen in specimens]
+    if not wheels:
+        return list(segment)
+    wheel = wheels[-1]
+    mounted = {one.number for one in wheels}
+    if not places:
+        return _only_prepared(plan, segment, wheel, mounted)
+    if not left:
+        return []
+    here = left[0]
+    over = max((place for place in places if place < here), default=-1)
+    if any(isinstance(step, Install) and step.wheel not in mounted for step in segment[over + 1 : here]):
+        return list(segment[over + 1 :])
+    condition = segment[here]
+    assert isinstance(condition, WheelCondition)
+    steps = [_mounted(plan, wheel), *_prepare(plan, wheel)]
+    if numbers[here] not in stand.begun:
+        steps += [s for s in segment[over + 1 : here] if isinstance(s, PromptStep) and s.text not in _person(plan)]
+    steps.append(Heat(INSERTED, condition.setpoint.number("temperature")))
+    return [*steps, *segment[here:]]
+
+
+def _only_prepared(plan: WheelPlan, segment: Sequence[WheelStep], wheel: Mounted, mounted: set[int]) -> list[WheelStep]:
+    """Return what is left where wheels are ground in and nothing is measured."""
+    steps = [] if wheel.ground else [_mounted(plan, wheel), *_prepare(plan, wheel)]
+    for place, step in enumerate(segment):
+        if isinstance(step, Install) and step.wheel not in mounted:
+            begin = place - 1 if place and isinstance(segment[place - 1], Cool) else place
+            return [*steps, *segment[begin:]]
+    return steps
+
+
+def _mounted(plan: WheelPlan, wheel: Mounted) -> Install:
+    specimen = plan.specimen(wheel.specimen)
+    state = WornState(wheel.diameter_mm, wheel.sliding_m)
+    return Install(
+        INSERTED, wheel.specimen, wheel.number, specimen.compound, specimen.note, wheel.replicate, worn=state
+    )
+
+
+def _prepare(plan: WheelPlan, wheel: Mounted) -> list[WheelStep]:
+    """Return what the wheel still has to go through before it measures."""
+    if wheel.last_condition:
+        return []
+    specimen = plan.specimen(wheel.specimen)
+    steps = prepare_wheel(
+        plan.prepare, specimen, wheel.replicate, wheel.number, cool=True, heat_c=None, numbers=repeat(INSERTED)
+    )
+    wanted: list[WheelStep] = [step for step in steps if not isinstance(step, Cool | Install)]
+    if not wheel.ground:
+        return wanted
+    ground = next((i for i, step in enumerate(wanted) if isinstance(step, PreGrind)), -1)
+    return [step for step in wanted[ground + 1 :] if isinstance(step, Rest)]
+
+
+def _person(plan: WheelPlan) -> tuple[str, ...]:
+    return plan.prepare.person_steps

@@ -1,0 +1,91 @@
+"""What a recipe for this machine may say beyond the common sections: grinding, resting, wheels, slip pulses."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Annotated, Literal, TypeAlias
+
+from pydantic import Field, model_validator
+
+from tester.base.units import Quantity
+from tester.kinds.wheel_on_belt.axes import LEAST_SPEED_M_S
+from tester.recipe.schema import Band, GridModel, Load, MeasureModel, Recipe, Seconds, Section, Temperature, Text
+
+Speed: TypeAlias = Annotated[float, Quantity("m/s", ge=LEAST_SPEED_M_S)]
+MaxBursts: TypeAlias = Annotated[int, Field(ge=1, le=10_000)]
+WearCheckName: TypeAlias = Literal["never", "each_condition", "prompt"]
+
+
+class PreGrindModel(Section, frozen=True):
+    """Grinding of a new wheel before it measures."""
+
+    wheel_speed: Speed
+    belt_speed: Speed
+    load: Load
+    duration: Annotated[float, Quantity("s", gt=0, le=24 * 3600)]
+
+
+class RestModel(Section, frozen=True):
+    """Standing lifted after pre-grinding, until the surface is at a temperature again."""
+
+    at_least: Seconds = 0.0
+    until: Temperature | None = None
+    within: Band = 2.0
+    at_most: Annotated[float, Quantity("s", gt=0)] = 5400.0
+    """longest wait (default 90 min), then a prompt on hardware and "not reached" otherwise"""
+
+    @model_validator(mode="after")
+    def _long_enough(self) -> RestModel:
+        if self.at_most < self.at_least:
+            raise ValueError(f"at_most, {self.at_most:g} s, is shorter than at_least, {self.at_least:g} s")
+        return self
+
+
+class WheelModel(Section, frozen=True):
+    """When a wheel is worn."""
+
+    replace_after: Annotated[float, Quantity("mm", gt=0, le=20)] = 2.0
+    """loss of diameter after which a wheel is replaced"""
+
+
+class PersonStepModel(Section, frozen=True):
+    """Something a person does, again and again."""
+
+    prompt: Text
+    """what to do; it is shown and waits to be acknowledged"""
+    every: Literal["condition", "temperature", "wheel"]
+    """before every condition, before every temperature, or after every installed wheel"""
+
+
+class WheelMeasure(MeasureModel, frozen=True):
+    """How a condition is measured; the defaults of every grid."""
+
+    wheel_speed: Speed
+    max_bursts: MaxBursts = 40
+    """slip pulses in which a repeat may collect its window"""
+    wear_check: WearCheckName = "never"
+
+
+class WheelGrid(GridModel, frozen=True):
+    """All combinations of its axes; what is not said here is as in ``measure``."""
+
+    max_bursts: MaxBursts | None = None
+    wear_check: WearCheckName | None = None
+
+
+class WheelRecipe(Recipe, frozen=True):
+    """A recipe for this machine."""
+
+    pre_grind: PreGrindModel | None = None
+    rest: RestModel | None = None
+    measure: WheelMeasure | None = None
+    grids: Sequence[WheelGrid] = ()
+    steps: Annotated[Sequence[PersonStepModel], Field(max_length=100)] = ()
+    wheel: WheelModel = WheelModel()
+
+
+def for_wheels(recipe: Recipe) -> WheelRecipe:
+    """Return a recipe as one for this machine; raises TypeError."""
+    if not isinstance(recipe, WheelRecipe):
+        raise TypeError(f"{recipe.recipe}: the recipe is for a rig of kind {recipe.kind}")
+    return recipe

@@ -1,0 +1,36 @@
+"""How the conditions of a grid are measured on this machine: in how many slip pulses, and whether wear is checked."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from tester.kinds.wheel_on_belt.recipe.schema import WheelGrid, WheelMeasure
+from tester.kinds.wheel_on_belt.recipe.steps import WearCheck
+from tester.recipe.schema import GridModel, MeasureModel
+from tester.recipe.settings import Settings, settings_of
+
+
+@dataclass(frozen=True, slots=True)
+class WheelSettings(Settings):
+    """How every condition of a grid is measured."""
+
+    max_bursts: int
+    wear_check: WearCheck
+
+
+def wheel_settings(measure: MeasureModel, grid: GridModel) -> WheelSettings:
+    """Return a grid's settings; raises TypeError for one of another kind."""
+    if not isinstance(measure, WheelMeasure) or not isinstance(grid, WheelGrid):
+        raise TypeError(f"grid {grid.name} is for a rig of another kind")
+    common = settings_of(measure, grid)
+    return WheelSettings(
+        common.repeats,
+        common.at_most,
+        common.until_percent,
+        common.min_valid,
+        common.window,
+        common.temperature_band_k,
+        common.soak,
+        grid.max_bursts or measure.max_bursts,
+        grid.wear_check or measure.wear_check,
+    )

@@ -1,0 +1,145 @@
+"""Steps and plan of this machine: wheels are mounted, ground, rested, heated, measured in slip pulses, cooled.
+
+Units are in the names: _m_s, _n, _mm, _c (temperature in degC), _k (temperature difference in K), _s.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import ClassVar, Literal, TypeAlias
+
+from tester.recipe.plan import ConditionStep, Plan, PromptStep, Step
+
+WearCheck: TypeAlias = Literal["never", "each_condition", "prompt"]
+"""Diameter check after a condition: not at all, by rolling at zero slip, or measured by a person."""
+
+
+@dataclass(frozen=True, slots=True)
+class WornState:
+    """What a wheel that goes on after an interruption was like: diameter in mm, sliding distance in m."""
+
+    diameter_mm: float
+    sliding_m: float
+
+
+@dataclass(frozen=True, slots=True)
+class Install(Step):
+    """A person mounts a wheel. ``wheel`` counts from 1 in the plan, ``replicate`` from 1 in a specimen.
+
+    ``worn``: the wheel is still on, as an interruption left it; None for a new one.
+    """
+
+    kind: ClassVar[str] = "install"
+    specimen: int
+    wheel: int
+    compound: str
+    note: str = ""
+    replicate: int = 1
+    worn: WornState | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class PreGrind(Step):
+    """Grind a new wheel: line speeds m/s, load N, seconds with load in band and both speeds reached."""
+
+    kind: ClassVar[str] = "pre_grind"
+    contact: ClassVar[bool] = True
+    wheel_speed_m_s: float
+    belt_speed_m_s: float
+    load_n: float
+    duration_s: float
+
+
+@dataclass(frozen=True, slots=True)
+class Rest(Step):
+    """Stand lifted for ``at_least_s`` and until the surface is within ``within_k`` of ``until_c``.
+
+    ``until_c`` None: only the time counts. Past ``at_most_s`` it is a prompt on hardware, "not reached"
+    otherwise.
+    """
+
+    kind: ClassVar[str] = "rest"
+    at_least_s: float
+    until_c: float | None
+    within_k: float
+    at_most_s: float
+
+
+@dataclass(frozen=True, slots=True)
+class Heat(Step):
+    """Bring the surface to a temperature (degC) before the conditions at it; they soak on their own."""
+
+    kind: ClassVar[str] = "heat"
+    contact: ClassVar[bool] = True
+    temperature_c: float
+
+
+@dataclass(frozen=True, slots=True)
+class WheelCondition(ConditionStep):
+    """A condition on a wheel: each repeat is collected in up to ``max_bursts`` contacts."""
+
+    wheel: int
+    max_bursts: int
+    wear_check: WearCheck
+
+
+@dataclass(frozen=True, slots=True)
+class Cool(Step):
+    """Turn unloaded, without heat, until the hub is below ``hub_below_c`` [A]: safe to touch."""
+
+    kind: ClassVar[str] = "cool"
+    hub_below_c: float = 45.0
+
+
+WheelStep: TypeAlias = Install | PreGrind | Rest | Heat | WheelCondition | Cool | PromptStep
+
+
+@dataclass(frozen=True, slots=True)
+class WheelWear:
+    """What a wheel is predicted to lose in the plan: loss of diameter in mm, sliding distance in m."""
+
+    wheel: int
+    specimen: int
+    replicate: int
+    conditions: int
+    loss_mm: float
+    sliding_m: float
+
+
+@dataclass(frozen=True, slots=True)
+class PreparePolicy:
+    """What a new wheel goes through before it measures; None where the recipe leaves a step out.
+
+    ``person_steps`` are prompts after every installation, in the recipe's order. ``ready_c`` and
+    ``ready_within_k``: the surface is this near to ambient before pre-grinding.
+    """
+
+    pre_grind: PreGrind | None = None
+    rest: Rest | None = None
+    person_steps: tuple[str, ...] = ()
+    ready_c: float = 25.0
+    ready_within_k: float = 5.0
+
+
+@dataclass(frozen=True, slots=True)
+class WheelPlan(Plan):
+    """A whole recipe for wheels. ``replace_after_mm``: loss of diameter after which a wheel is replaced."""
+
+    steps: tuple[WheelStep, ...]
+    wear: tuple[WheelWear, ...] = ()
+    replace_after_mm: float = 2.0
+    prepare: PreparePolicy = field(default_factory=PreparePolicy)
+
+    @classmethod
+    def of(cls, plan: Plan) -> WheelPlan:
+        """Return a plan as one of this machine's; raises TypeError."""
+        if not isinstance(plan, cls):
+            raise TypeError(f"{plan.name}: the plan is for a rig of kind {plan.kind}")
+        return plan
+
+    def conditions(self) -> Iterator[WheelCondition]:
+        """Yield the condition steps in the order in which they are measured."""
+        for step in self.steps:
+            if isinstance(step, WheelCondition):
+                yield step

@@ -1,0 +1,37 @@
+"""The sections of this kind's rig file, and what must fit together in them."""
+
+from __future__ import annotations
+
+from tester.kinds.wheel_on_belt.rig.config import RigConfig
+from tester.kinds.wheel_on_belt.rig.sections import (
+    ArmingConfig,
+    AxesConfig,
+    CertificatesConfig,
+    GatesConfig,
+    GeometryConfig,
+    HeatLoopConfig,
+    InterlocksConfig,
+    LimitsConfig,
+    LoadLoopConfig,
+    LoopsConfig,
+    ObserverConfig,
+    WearConfig,
+    interlock_values,
+)
+
+__all__ = [
+    "ArmingConfig",
+    "AxesConfig",
+    "CertificatesConfig",
+    "GatesConfig",
+    "GeometryConfig",
+    "HeatLoopConfig",
+    "InterlocksConfig",
+    "LimitsConfig",
+    "LoadLoopConfig",
+    "LoopsConfig",
+    "ObserverConfig",
+    "RigConfig",
+    "WearConfig",
+    "interlock_values",
+]

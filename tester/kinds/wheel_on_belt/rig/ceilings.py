@@ -1,0 +1,76 @@
+"""How far each safety key of this rig may be loosened: its direction, its hardest value, and why there.
+
+The parameters of interlocks say it themselves (tester.rig.parameter); the keys of the other sections stand here.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+from tester.kinds.wheel_on_belt.axes import POSITIONED
+from tester.kinds.wheel_on_belt.interlocks.table import PARAMETERS
+from tester.kinds.wheel_on_belt.rig.sections import VELOCITY_AXES
+from tester.rig.ceilings import AXES, TRUE, Ceiling, ceilings_of
+from tester.rig.parameter import SECTION, Direction
+
+LOWER, HIGHER = Direction.LOWER, Direction.HIGHER
+
+_OWN: Final = (
+    Ceiling("limits.load", "N", LOWER, "450 N",
+            "the load trips at once above it, and the press still comes for some 50 ms: harm begins at 500 N"),
+    Ceiling("limits.wheel_speed", "m/s", LOWER, "1.5 m/s",
+            "at 1.5 m/s a wheel that does not stop loses its power after 2.5 s; no step of a stop may begin later"),
+    Ceiling("limits.belt_speed", "m/s", LOWER, "1.5 m/s",
+            "at 1.5 m/s a belt that does not stop loses its power after 2.5 s; no step of a stop may begin later"),
+    Ceiling("limits.slip_power", "W", LOWER, "400 W",
+            "the wheel's drive gives 400 W at its rated torque: 16 N m at 25 rad/s"),
+    Ceiling("limits.jacket", "degC", LOWER, "150 degC",
+            "3 K of margin and 2 K of what comes after the heat is off make 155 degC, which harms"),
+    Ceiling("limits.surface", "degC", LOWER, "100 degC",
+            "the contact is hotter than the surface beside it by some 20 K [A]; harm begins at 130 degC there"),
+    *(Ceiling(axis.limit, axis.recipe_unit, LOWER, axis.hardest, axis.because) for axis in POSITIONED),
+    Ceiling("arming.watchdog_proof", "", HIGHER, TRUE,
+            "without it nobody knows whether the drives stop when this program does"),
+    Ceiling("arming.bump_test", "", HIGHER, TRUE, "without it wheel and belt may be exchanged, or turn the wrong way"),
+    Ceiling("arming.listen", "s", HIGHER, "0.5 s", "another master sends twice a second or oftener [A]"),
+    Ceiling("arming.withhold", "s", HIGHER, "300 ms",
+            "half as long again as the 200 ms after which a drive must report the missing heartbeat"),
+    Ceiling("arming.creep", "m/s", LOWER, "0.1 m/s", "nothing is proven yet: a wheel turns once in three seconds"),
+    Ceiling("arming.unloaded", "N", LOWER, "30 N",
+            "450 N, the most that is asked for, and 30 N of a wrong zero are 480 N; harm begins at 500 N"),
+    Ceiling("scan.sliding", "Hz", HIGHER, "50 Hz", "a delay of 50 ms is two scans and a half: fewer are one reading"),
+    Ceiling("scan.enabled", "Hz", HIGHER, "10 Hz", "two setpoints within the 200 ms after which a drive stops"),
+    Ceiling("scan.idle", "Hz", HIGHER, "5 Hz", "the inputs are too old after 250 ms: one scan at least looks at them"),
+    Ceiling("can.heartbeat", "s", LOWER, "100 ms", "two of the PC's heartbeats within the 200 ms that the drives wait"),
+    Ceiling("can.drive_heartbeat", "s", LOWER, "100 ms", "three are missed before a drive is lost: 0.3 s"),
+    Ceiling("can.consumer_heartbeat", "s", LOWER, "300 ms",
+            "a drive that hears nothing goes on as told: another 0.1 s at 400 W (limits.slip_power) are 40 J: harm"),
+    Ceiling(f"{AXES}heartbeat", "s", LOWER, "100 ms", "as can.drive_heartbeat"),
+    Ceiling(f"{AXES}consumer_heartbeat", "s", LOWER, "300 ms", "as can.consumer_heartbeat"),
+    Ceiling(f"{AXES}proves_watchdog", "", HIGHER, TRUE, "as arming.watchdog_proof, for one drive"),
+    *(Ceiling(f"axes.{name}.rpdo_deadline", "s", LOWER, "250 ms",
+              "a drive that hears no setpoint costs 3# 45 J without it; harm is 40 J", zero_is_off=True)
+      for name in VELOCITY_AXES),
+    Ceiling("axes.wheel.quick_stop_deceleration", "", HIGHER, "200",
+            "rad/s2; at 8 m/s2 (178 rad/s2) a jammed belt costs 3# 45 J at 430 N, harm is 40 J"),
+    Ceiling("axes.belt.quick_stop_deceleration", "", HIGHER, "9", "m/s2; as the wheel's"),
+    Ceiling("axes.wheel.speed_zero", "", HIGHER, "0.1",
+            "rad/s; 0 is off: a jam is then seen with the next scan, and costs 3# 77 J; harm is 40 J"),
+    Ceiling("axes.belt.speed_zero", "", HIGHER, "0.005", "m/s; as the wheel's"),
+    Ceiling("axes.press.acceleration", "", HIGHER, "600",
+            "mm/s2; at 400 and 30 mm/s a wheel in local mode costs 3# 42 J, at 600 and 40 mm/s 39.5 J: harm is 40 J"),
+    Ceiling("axes.press.max_speed", "", HIGHER, "40", "mm/s, of a fast stop; as axes.press.acceleration"),
+    Ceiling("axes.press.quick_stop_deceleration", "", HIGHER, "100", "mm/s2; from 10 mm/s it comes 0.5 mm further"),
+    Ceiling("loops.load.touch_load", "N", LOWER, "20 N",
+            "what is wrong with direction or scale of wheel and belt is told at 20 N or less"),
+    Ceiling("loops.load.follow_rate", "N/s", HIGHER, "50 N/s",
+            "the load is watched against the one before until a change is followed: 450 N to none take 9 s then"),
+    Ceiling("loops.load.touch_speed", "mm/s", LOWER, "15 mm/s", "it comes 0.75 mm in the 50 ms until it is seen"),
+    Ceiling("loops.load.loading_speed", "mm/s", LOWER, "4 mm/s", "at 172 N/mm the load rises by 34 N in 50 ms"),
+    Ceiling("loops.load.lift_speed", "mm/s", HIGHER, "5 mm/s", "lifting 2.5 mm takes 0.5 s, half of what it may"),
+    Ceiling("loops.load.clearance", "mm", HIGHER, "1 mm", "twenty times the runout of the tread"),
+    Ceiling("loops.heat.hub_max", "degC", LOWER, "150 degC", "as limits.jacket"),
+)  # fmt: skip
+
+CEILINGS: Final[tuple[Ceiling, ...]] = (*_OWN, *ceilings_of(SECTION, PARAMETERS))
+"""Every safety key of a rig file, in the order of the page docs/safety.md."""

@@ -1,0 +1,125 @@
+"""A rig of this kind: its sections together, and what its file's reader has to know (tester.rig.config)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from typing import ClassVar
+
+from drivers.axis import AxisConfig
+from sim.physics.parameters import SimParameters
+from tester.base.source import Location
+from tester.kinds.wheel_on_belt import KIND
+from tester.kinds.wheel_on_belt.axes import POSITIONED
+from tester.kinds.wheel_on_belt.interlocks.table import TABLE
+from tester.kinds.wheel_on_belt.quantities import QUANTITIES
+from tester.kinds.wheel_on_belt.rig.ceilings import CEILINGS
+from tester.kinds.wheel_on_belt.rig.checks import problems_between
+from tester.kinds.wheel_on_belt.rig.press import with_torque_limit
+from tester.kinds.wheel_on_belt.rig.sections import (
+    ArmingConfig,
+    AxesConfig,
+    CertificatesConfig,
+    GatesConfig,
+    GeometryConfig,
+    InterlocksConfig,
+    LimitsConfig,
+    LoopsConfig,
+    ObserverConfig,
+    WearConfig,
+)
+from tester.machine.interlock_table import InterlockTable
+from tester.quantities import Quantities
+from tester.rig.ceilings import Ceiling
+from tester.rig.config import OwnDevice, Rig
+from tester.rig.parameter import Parameter
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RigConfig(Rig):
+    """A rig: everything about the machine that software needs to know, and nothing about a test."""
+
+    packaged: ClassVar[Mapping[str, str]] = KIND.rigs
+    may_lack: ClassVar[tuple[str, ...]] = (
+        *Rig.may_lack,
+        "axes.*.rpdo_deadline",
+        "axes.*.speed_zero",
+        "axes.*.inputs_period",
+        "axes.*.max_torque_per_mille",
+        "axes.*.home_timeout",
+        "devices.*.emissivity",
+        "loops",
+        "gates",
+        "interlocks",
+        "arming",
+        "wear",
+        "observer.friction_heat_fraction",
+        "observer.belt_conductance",
+        "observer.thermal",
+    )
+    stated: ClassVar[tuple[str, ...]] = ("observer.wheel",)
+    manual: ClassVar[tuple[str, ...]] = tuple(axis.name for axis in POSITIONED)
+    own: ClassVar[Mapping[str, OwnDevice]] = {
+        "load_cell": OwnDevice("load cell", "load_cell"),
+        "jacket": OwnDevice("jacket", "jacket"),
+        "ir_thermometer": OwnDevice("infrared thermometer", "ir_thermometer"),
+    }
+    quantities: ClassVar[Quantities] = QUANTITIES
+    table: ClassVar[InterlockTable] = TABLE
+    """The rows that control evaluates; a laboratory's own kind may have more."""
+    parameters: ClassVar[tuple[Parameter, ...]] = TABLE.parameters
+    ceilings: ClassVar[tuple[Ceiling, ...]] = CEILINGS
+    real: ClassVar[tuple[tuple[str, str], ...]] = (
+        ("the estimates and the thermal interlocks believe of the wheel. The simulated wheel behaves by `sim`\n",
+         "the estimates and the thermal interlocks believe of the wheel. All [A].\n"),
+        ("# below, so a wrong belief can be tried out: --set observer.friction_heat_fraction=0.2. All [A].\n", ""),
+        ("# air around a real rig; the simulated rig's is sim.ambient", "# air around the rig"),
+    )  # fmt: skip
+
+    geometry: GeometryConfig
+    limits: LimitsConfig
+    axes: AxesConfig
+    loops: LoopsConfig
+    gates: GatesConfig
+    interlocks: InterlocksConfig
+    arming: ArmingConfig
+    wear: WearConfig
+    observer: ObserverConfig
+    calibration: CertificatesConfig = field(default_factory=CertificatesConfig)
+    sim: SimParameters = field(default_factory=SimParameters)
+    """The simulated rig's physics; without meaning on a real one."""
+
+    @property
+    def ambient_c(self) -> float:
+        """Temperature of the air around the rig, degC: of the simulated rig's air, else as the file states it."""
+        return self.sim.ambient if self.simulated else self.observer.ambient_c
+
+    def in_air(self, ambient_c: float) -> RigConfig:
+        """Return a rig whose file states this temperature of the air around a real one, degC."""
+        return replace(self, observer=replace(self.observer, ambient_c=ambient_c))
+
+    def certificates(self) -> CertificatesConfig:
+        """Return the days on which the certificates of the sensors end."""
+        return self.calibration
+
+    def drives(self) -> Mapping[str, AxisConfig]:
+        """Return the axes that have a drive, by name."""
+        return self.axes.driven()
+
+    @property
+    def plant(self) -> SimParameters:
+        """The section ``sim``."""
+        return self.sim
+
+    @property
+    def faults(self) -> tuple[str, ...]:
+        """What fails by itself on the simulated rig."""
+        return self.sim.faults
+
+    def settled(self) -> RigConfig:
+        """Return the rig with the limit of the press's torque."""
+        return with_torque_limit(self)
+
+    def problems(self) -> Iterator[tuple[Location, str]]:
+        """Yield what does not fit together between the kind's sections, with its place."""
+        return problems_between(self)

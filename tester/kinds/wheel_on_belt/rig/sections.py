@@ -1,0 +1,264 @@
+"""The sections that only a rig of this kind has; each section alone is checked by its types.
+
+The numbers and their sources stand in the packaged file of the simulated rig, ``sim/rig.yaml``. The keys of the section
+``interlocks`` are declared each beside the interlock that it belongs to.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, fields, make_dataclass
+from typing import TYPE_CHECKING, Annotated, Any, Final
+
+from drivers.axis import AxisConfig
+from sim.physics.parameters import ThermalParameters, WheelParameters
+from tester.base.config_reader import Range
+from tester.kinds.wheel_on_belt.axes import POSITIONED
+from tester.kinds.wheel_on_belt.interlocks.table import PARAMETERS
+from tester.rig.config import CalibrationConfig, section_of, values_of
+from tester.rig.parameter import Values
+
+HARMFUL_N: Final = 500.0
+"""From here on a force on the wheel counts as harm (sim.harm)."""
+
+VELOCITY_AXES: Final = ("wheel", "belt", "press")
+"""The drives that every rig of the kind has; the others position an axis each (``axes.POSITIONED``)."""
+
+_POSITIVE = Range(gt=0.0)
+_NOT_NEGATIVE = Range(ge=0.0)
+_SHARE = Range(gt=0.0, le=1.0)
+
+
+@dataclass(frozen=True, slots=True)
+class GeometryConfig:
+    """Sizes of the machine."""
+
+    wheel_diameter_mm: Annotated[float, "mm", _POSITIVE]
+    """Outer diameter of a new wheel, at ``wear.reference``."""
+    wheel_width_mm: Annotated[float, "mm", _POSITIVE]
+    belt_roller_diameter_mm: Annotated[float, "mm", _POSITIVE]
+    touch_mm: Annotated[float, "mm", _POSITIVE]
+    """Press travel from fully lifted to touching a new wheel."""
+
+
+def _with(base: type, further: Iterable[tuple[str, object]]) -> Any:
+    """Return a section with further fields: those of the axes that a drive positions."""
+    name = base.__name__.removeprefix("_")
+    namespace = {"__module__": __name__, "__doc__": base.__doc__}
+    return make_dataclass(name, list(further), bases=(base,), frozen=True, slots=True, namespace=namespace)
+
+
+@dataclass(frozen=True, slots=True)
+class _LimitsConfig:
+    """Hard limits: no recipe and no loop gets past them."""
+
+    load_n: Annotated[float, "N", Range(gt=0.0, le=HARMFUL_N)]
+    """At most 500 N: above it docs/safety.md counts harm."""
+    wheel_speed_m_s: Annotated[float, "m/s", _POSITIVE]
+    belt_speed_m_s: Annotated[float, "m/s", _POSITIVE]
+    slip_power_w: Annotated[float, "W", _POSITIVE]
+    jacket_c: Annotated[float, "degC", Range(gt=0.0, le=155.0)]
+    """At most 155 degC: above it docs/safety.md counts harm."""
+    surface_c: Annotated[float, "degC", Range(gt=0.0, le=130.0)]
+    """At most 130 degC: above it docs/safety.md counts harm."""
+
+    def positions(self) -> dict[str, float]:
+        """Return how far the positioned axes may go to either side, by name."""
+        return {axis.name: getattr(self, axis.field) for axis in POSITIONED}
+
+
+@dataclass(frozen=True, slots=True)
+class _AxesConfig:
+    """The drives; None for an axis that is set by hand (``manual: true`` in the file)."""
+
+    wheel: AxisConfig
+    belt: AxisConfig
+    press: AxisConfig
+
+    def driven(self) -> dict[str, AxisConfig]:
+        """Return the axes that have a drive, by name."""
+        axes: dict[str, AxisConfig | None] = {one.name: getattr(self, one.name) for one in fields(self)}
+        return {name: axis for name, axis in axes.items() if axis is not None}
+
+
+if TYPE_CHECKING:
+
+    class LimitsConfig(_LimitsConfig):
+        """Limits, with one for each positioned axis."""
+
+        def __getattr__(self, name: str) -> float:
+            """Return the limit of a positioned axis, by the axis's field."""
+            ...
+
+    class AxesConfig(_AxesConfig):
+        """Drives, with that of each positioned axis."""
+
+        def __getattr__(self, name: str) -> AxisConfig | None:
+            """Return the drive of a positioned axis, by the axis's name."""
+            ...
+
+else:
+    _LIMITS = ((one.field, Annotated[float, one.recipe_unit, Range(ge=0.0, le=one.most)]) for one in POSITIONED)
+    LimitsConfig = _with(_LimitsConfig, _LIMITS)
+    AxesConfig = _with(_AxesConfig, ((one.name, AxisConfig | None) for one in POSITIONED))
+
+
+@dataclass(frozen=True, slots=True)
+class LoadLoopConfig:
+    """Press control: approach, touch, hold (tester.kinds.wheel_on_belt.control.load_loop)."""
+
+    bandwidth_hz: Annotated[float, "Hz", _POSITIVE]
+    rolling_bandwidth_hz: Annotated[float, "Hz", _POSITIVE]
+    """While holding in band: too slow to chase the wheel's runout."""
+    error_filter_s: Annotated[float, "s", _POSITIVE]
+    """The load error is averaged over this time before it decides between the two bandwidths."""
+    stiffness_n_per_mm: Annotated[float, "N/mm", _POSITIVE]
+    """Tangent stiffness of the contact at 200 N."""
+    integral_s: Annotated[float, "s", _POSITIVE]
+    touch_load_n: Annotated[float, "N", _POSITIVE]
+    open_share: Annotated[float, "1", _SHARE]
+    """Below this share of the touching force the contact was seen open: only then is the next touch a first one."""
+    follow_rate_n_s: Annotated[float, "N/s", _POSITIVE]
+    """A change of load is expected to be followed at this rate at least: what the load is watched against."""
+    touch_speed_mm_s: Annotated[float, "mm/s", _POSITIVE]
+    loading_speed_mm_s: Annotated[float, "mm/s", _POSITIVE]
+    lift_speed_mm_s: Annotated[float, "mm/s", _POSITIVE]
+    acceleration_mm_s2: Annotated[float, "mm/s2", _POSITIVE]
+    """Profiles to a position are planned with it: at most ``axes.press.acceleration``, which is what a lift takes."""
+    clearance_mm: Annotated[float, "mm", _POSITIVE]
+    """Lifted means this far off the last contact."""
+
+
+@dataclass(frozen=True, slots=True)
+class HeatLoopConfig:
+    """Outer heat loop: surface error to hub setpoint (tester.kinds.wheel_on_belt.control.heat_loop)."""
+
+    outer_gain: Annotated[float, "1", _NOT_NEGATIVE]
+    """Kelvin of hub setpoint per kelvin of surface error."""
+    outer_integral_s: Annotated[float, "s", _POSITIVE]
+    integral_band_k: Annotated[float, "K", _POSITIVE]
+    """The integral moves only inside this error."""
+    integral_limit_k: Annotated[float, "K", _NOT_NEGATIVE]
+    hub_min_c: Annotated[float, "degC"]
+    hub_max_c: Annotated[float, "degC"]
+    period_s: Annotated[float, "s", _POSITIVE]
+    rolling_offset_k: Annotated[float, "K", _NOT_NEGATIVE]
+    """While rolling between slip pulses the target is this much below the setpoint."""
+
+
+@dataclass(frozen=True, slots=True)
+class LoopsConfig:
+    """Gains and times of the loops."""
+
+    load: LoadLoopConfig
+    heat: HeatLoopConfig
+
+
+@dataclass(frozen=True, slots=True)
+class GatesConfig:
+    """When a sample counts (tester.kinds.wheel_on_belt.procedures.gates)."""
+
+    load_percent: Annotated[float, "%", _POSITIVE]
+    load_filter_s: Annotated[float, "s", _POSITIVE]
+    speed_percent: Annotated[float, "%", _POSITIVE]
+    slip_percent: Annotated[float, "%", _POSITIVE]
+    slip_floor_mm_s: Annotated[float, "mm/s", _NOT_NEGATIVE]
+    slip_filter_s: Annotated[float, "s", _POSITIVE]
+    ir_lag_s: Annotated[float, "s", _NOT_NEGATIVE]
+    contact_transient_s: Annotated[float, "s", _NOT_NEGATIVE]
+
+
+if TYPE_CHECKING:
+
+    @dataclass(frozen=True, slots=True)
+    class InterlocksConfig:
+        """The section ``interlocks``: a field for each parameter of the interlock table."""
+
+        def __getattr__(self, name: str) -> float:
+            """Return a parameter's value in its unit, by the name of its field (``Parameter.name``)."""
+            ...
+
+else:
+    InterlocksConfig = section_of("InterlocksConfig", PARAMETERS, __name__)
+
+
+def interlock_values(section: InterlocksConfig) -> Values:
+    """Return what a rig's section ``interlocks`` says, by parameter."""
+    return values_of(section, PARAMETERS)
+
+
+@dataclass(frozen=True, slots=True)
+class ArmingConfig:
+    """What is shown before a run may move anything (tester.kinds.wheel_on_belt.procedures.arming)."""
+
+    listen_s: Annotated[float, "s", _NOT_NEGATIVE]
+    """Nothing is sent for this long at first: another master on the bus would be heard."""
+    bump_test: bool
+    """Turn wheel and belt a little, one after the other: each must follow, and only it."""
+    watchdog_proof: bool
+    """Withhold the PC's heartbeat with the drives enabled and creeping: every drive must report it and stop."""
+    withhold_s: Annotated[float, "s", _POSITIVE]
+    creep_m_s: Annotated[float, "m/s", _POSITIVE]
+    """Wheel and belt, unloaded, in the bump test and in the proof."""
+    unloaded_n: Annotated[float, "N", Range(gt=0.0, le=50.0)]
+    """Normal force and friction of an unloaded load cell without tare, at most: at connecting and at a reference tare.
+
+    At most 50 N: a contact firmer than that must not pass for the cell's zero.
+    """
+
+
+@dataclass(frozen=True, slots=True)
+class WearConfig:
+    """Wear law V = k F s: what the plan predicts and the current diameter is estimated with.
+
+    Then what a check of the diameter reckons with (procedures.wear_check); uncertainties are standard ones.
+    """
+
+    rate_mm3_per_n_m: Annotated[float, "mm3/(N m)", _NOT_NEGATIVE]
+    growth_mm_per_k: Annotated[float, "mm/K", _NOT_NEGATIVE]
+    """The diameter, rubber and hub together, grows by this per K of the rubber's mean temperature."""
+    reference_c: Annotated[float, "degC", Range(ge=0.0, le=40.0)]
+    """At which a diameter is called cold: that of a new wheel, of every check and of the record."""
+    growth_uncertainty_mm_per_k: Annotated[float, "mm/K", _NOT_NEGATIVE]
+    check_press_mm: Annotated[float, "mm", _NOT_NEGATIVE]
+    """Of where the press stands in a roll check, beside what load and heat do."""
+    check_load_n: Annotated[float, "N", _NOT_NEGATIVE]
+    """Of the mean load in a roll check, from one check to another."""
+    check_stiffness_percent: Annotated[float, "%", _NOT_NEGATIVE]
+    """Of the contact's stiffness, with which a load off its nominal value is corrected."""
+    check_rubber_k: Annotated[float, "K", _NOT_NEGATIVE]
+    """Of the rubber's mean temperature, taken as that of hub and surface by halves."""
+    gauge_mm: Annotated[float, "mm", _NOT_NEGATIVE]
+    """Of a diameter that a person measures on rubber."""
+    rate_uncertainty_percent: Annotated[float, "%", _NOT_NEGATIVE]
+    """Of a wear rate from load, slip and width of the tread."""
+
+    def growth_mm(self, rubber_c: float) -> float:
+        """Return what the diameter has gained over the cold one at a mean temperature of the rubber (degC), mm."""
+        return self.growth_mm_per_k * (rubber_c - self.reference_c)
+
+
+@dataclass(frozen=True, slots=True)
+class CertificatesConfig(CalibrationConfig):
+    """The sensors that have a certificate."""
+
+    load_cell: str = ""
+    thermometer: str = ""
+    jacket: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class ObserverConfig:
+    """What software believes of the wheel's thermal behaviour: heat loop, estimates and thermal interlocks use it.
+
+    The simulated wheel has parameters of its own (``sim``), so that a wrong belief can be tested.
+    """
+
+    ambient_c: Annotated[float, "degC", Range(ge=-40.0, le=60.0)]
+    """The air around a real rig; a simulated one has its own (``RigConfig.ambient_c``)."""
+    friction_heat_fraction: Annotated[float, "1", Range(ge=0.0, le=1.0)]
+    """The rubber's share of friction heat."""
+    belt_conductance: Annotated[float, "W/K", _NOT_NEGATIVE]
+    """Rubber to belt, in contact."""
+    wheel: WheelParameters
+    thermal: ThermalParameters

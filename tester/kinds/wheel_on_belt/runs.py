@@ -1,0 +1,91 @@
+"""This machine, for a run (``tester.machine.run_parts``)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import ClassVar, Final
+
+from tester.analysis.kelvin import KnownSlope
+from tester.analysis.terms import Term
+from tester.kinds.wheel_on_belt.budget import TERMS, known_slopes
+from tester.kinds.wheel_on_belt.build import build_run
+from tester.kinds.wheel_on_belt.context import Attendant, Nobody
+from tester.kinds.wheel_on_belt.heatings import known_heat
+from tester.kinds.wheel_on_belt.interlocks.heat_ratio import NO_HISTORY
+from tester.kinds.wheel_on_belt.left_on_rig import HeatHistory
+from tester.kinds.wheel_on_belt.procedures.steps import WheelProcedures
+from tester.kinds.wheel_on_belt.rig import RigConfig
+from tester.kinds.wheel_on_belt.split import split
+from tester.machine.ports import Ports
+from tester.machine.prompts import Prompts
+from tester.machine.run import Run
+from tester.machine.run_parts import KindRun, Part
+from tester.machine.served import History
+from tester.recipe.plan import Plan
+from tester.rig import Rig
+from tester.store.recorder import Recorder
+from tester.store.records import Calibration
+from tester.store.resume import ResumePoint
+
+
+class WheelRuns:
+    """Says how a run of this machine is built, and what goes with it."""
+
+    plant: str = "wheel_on_belt"
+    procedures: ClassVar[type[WheelProcedures]] = WheelProcedures
+    """What serves the steps of a plan; a laboratory's own kind may do more before and after one."""
+
+    def split(self, plan: Plan) -> tuple[Part, ...]:
+        """Return a part for each specimen and replicate."""
+        return split(plan)
+
+    def build(
+        self,
+        rig: Rig,
+        plan: Plan,
+        ports: Ports,
+        attendant: Attendant,
+        recorder: Recorder,
+        prompts: Prompts,
+        point: ResumePoint | None = None,
+        history: History | None = None,
+    ) -> Run:
+        """Return a run that is ready to be ticked."""
+        heat = history.ratio if isinstance(history, HeatHistory) else NO_HISTORY
+        return build_run(RigConfig.of(rig), plan, ports, attendant, recorder, prompts, point, heat, self.procedures)
+
+    def nobody(self) -> Nobody:
+        """Return the attendant of a real rig."""
+        return Nobody()
+
+    def mount(self, attendant: Attendant, compound: str) -> None:
+        """Put a new wheel on; "" is compound 1#."""
+        attendant.install(0, 0, compound or "1#", new_specimen=True)
+
+    def history(self, runs: Path, rig: Rig) -> HeatHistory:
+        """Return what the runs make known of the heat balance."""
+        return HeatHistory(known_heat(runs, RigConfig.of(rig)))
+
+    def calibration(self, rig: Rig) -> Iterator[Calibration]:
+        """Yield the diameters that make speeds of turns."""
+        geometry = RigConfig.of(rig).geometry
+        yield Calibration("wheel", "diameter when new", repr(geometry.wheel_diameter_mm), "mm")
+        yield Calibration("belt", "roller diameter", repr(geometry.belt_roller_diameter_mm), "mm")
+
+    def terms(self, rig: Rig) -> tuple[Term, ...]:
+        """Return what the measuring chain may be off by."""
+        return TERMS
+
+    def known_slopes(self, plan: Plan) -> Iterator[KnownSlope]:
+        """Return what is published of the plan's compounds."""
+        return known_slopes(plan)
+
+    def store_state(self, run: Run, recorder: Recorder, now_s: float) -> None:
+        """Store how worn the wheel is."""
+        wheel = run.engine.ctx.wheel
+        if wheel.wheel:
+            recorder.piece_state(wheel.wheel, wheel.cold_mm, wheel.sliding_m, now_s)
+
+
+RUNS: Final[KindRun] = WheelRuns()

@@ -1,0 +1,297 @@
+"""Bring the rig up: listen, configure the drives, hear every device, lift, home, show what must hold.
+
+Nothing moves before every device is heard, and nothing but what lifts before the kind has shown that nothing is loaded.
+"""
+
+from __future__ import annotations
+
+from enum import Enum
+from math import inf
+from typing import Protocol
+
+from drivers.cia402 import Goal, State
+from drivers.ports import BusLost
+from tester.machine.devices import DeviceList
+from tester.rig import Rig
+
+CONNECT_S = 0.01
+"""Period of the ticks while connecting, s: an SDO exchange takes half a millisecond on the wire."""
+TIMEOUT_S = 90.0
+"""Everything must be up by then; homing of a slow axis takes the most [A]."""
+RAMP_S = 0.5
+"""After a failure every axis stands by then: the ramp from creep speed takes 25 ms, that of homing 0.2 s [A]."""
+RELEASE_S = 3.0
+"""After a failure, drives that were configured are released by then [A]."""
+
+
+class Stage(Enum):
+    """How far the connection is."""
+
+    LISTEN = "listen for another master"
+    CONFIGURE = "configure drives"
+    HEAR = "hear every device"
+    LIFT = "lift and ask the load cell"
+    HOME = "home position axes"
+    PROVE = "try out the drives' watchdogs"
+    RELEASE = "release the drives"
+    READY = "ready"
+    FAILED = "failed"
+
+
+_HEARD = frozenset({Stage.LIFT, Stage.HOME, Stage.PROVE})
+_MOVING = _HEARD | {Stage.HEAR}
+"""Every drive is configured, and axes move or are about to: slowly, unloaded and cold."""
+_SCANNING = _MOVING | {Stage.RELEASE}
+
+
+_POWERED = (State.OPERATION_ENABLED, State.QUICK_STOP_ACTIVE, State.FAULT_REACTION)
+"""In these a drive applies torque; one that obeys nothing never leaves its quick stop by itself."""
+
+
+class Showing(Protocol):
+    """Something that is tried out before a run may begin, one call of ``step`` a scan."""
+
+    @property
+    def done(self) -> bool:
+        """It has been shown, or could not be."""
+        ...
+
+    @property
+    def failure(self) -> str:
+        """Why it could not be shown; "" while nothing speaks against it."""
+        ...
+
+    def step(self, now: float) -> None:
+        """Advance by one scan at ``now`` s."""
+        ...
+
+    def stop(self) -> None:
+        """Bring what it has moved to standstill, power off."""
+        ...
+
+
+class Lifting(Showing, Protocol):
+    """Shows that nothing is loaded, and watches that from then on."""
+
+    def trouble(self, now: float) -> str:
+        """Return "" or why the rig, once found unloaded, is not known to be so any more."""
+        ...
+
+
+class Proving(Showing, Protocol):
+    """Shows that drives follow, and stop without our heartbeat."""
+
+    @property
+    def provokes(self) -> bool:
+        """Drives are made to stop by themselves, or have not been reset yet after that."""
+        ...
+
+    def proven(self) -> str:
+        """Return a line for the journal: what was shown, and what was not because the rig file says so."""
+        ...
+
+
+class Arming(Protocol):
+    """What a kind asks of its machine and shows before a run may begin."""
+
+    def heard(self) -> bool:
+        """Tell whether every device and the safety inputs have been heard."""
+        ...
+
+    def renew(self) -> None:
+        """Renew the leases of devices that a program before us left behind; they stay off."""
+        ...
+
+    def unfit(self, now: float, configured_s: float) -> str:
+        """Return why no axis may move, "" while all may. The drives send by themselves since ``configured_s``."""
+        ...
+
+    def silent(self) -> str:
+        """Return what it means that no drive is heard."""
+        ...
+
+    def lift(self) -> Lifting:
+        """Begin to show that nothing is loaded."""
+        ...
+
+    def prove(self) -> Proving:
+        """Begin to show that drives follow and stop."""
+        ...
+
+
+class Connector:
+    """Drives the connection, tick by tick."""
+
+    def __init__(self, devices: DeviceList, rig: Rig, arming: Arming, listen_s: float) -> None:
+        """Nothing is sent before the first ``tick``, and on the CAN bus not before the listening is over."""
+        self.devices = devices
+        self.rig = rig
+        self.listen_s = listen_s
+        self.arming = arming
+        self.stage = Stage.LISTEN
+        self.failure = ""
+        self.shown = ""
+        """What the proof has shown; a line for the journal."""
+        self._lifting: Lifting | None = None
+        self._proof: Proving | None = None
+        self._configured_s = -inf
+        self._started_s: float | None = None
+        self._released_s: float | None = None
+
+    @property
+    def finished(self) -> bool:
+        """Ready or failed."""
+        return self.stage in (Stage.READY, Stage.FAILED)
+
+    @property
+    def failed(self) -> bool:
+        """Given up; drives may still be being released."""
+        return self.stage in (Stage.RELEASE, Stage.FAILED)
+
+    @property
+    def watches_drives(self) -> bool:
+        """Every drive is configured, and one that stops by itself ends the connection at once."""
+        return self.stage in _MOVING and not (self._proof is not None and self._proof.provokes)
+
+    def tick(self, now: float) -> float:
+        """Do what is due at ``now``; return when to be called again (s). Raises BusLost: the drives hear no more."""
+        devices = self.devices
+        if self._started_s is None:
+            self._started_s = now
+        devices.receive(now)
+        if self.stage is Stage.RELEASE:
+            self._release(now)
+        else:
+            self._advance(now, now - self._started_s)
+        if self.stage is Stage.LISTEN or self.stage is Stage.FAILED:
+            devices.transmit_lines(now)  # who gave up while listening has not spoken on the CAN bus
+        else:
+            devices.transmit(now, scan=self.stage in _SCANNING)
+        if devices.lost and not devices.can_alive():
+            raise BusLost(devices.lost)
+        return now + CONNECT_S
+
+    def abort(self, why: str) -> None:
+        """Give up: whatever moves stops, and drives that were configured are released."""
+        if not self.finished and self.stage is not Stage.RELEASE:
+            self._fail(why)
+
+    def _advance(self, now: float, elapsed: float) -> None:
+        devices = self.devices
+        refused = devices.refused()
+        unfit = self._unfit(now) if self.stage in _MOVING else ""
+        if self.stage in _HEARD:
+            self.arming.renew()
+        if devices.lost:
+            self._fail(devices.lost)
+        elif refused:
+            self._fail(refused)
+        elif devices.master.foreign_master:
+            self._fail(f"another CANopen master is sending on this bus: {devices.master.foreign_frame}")
+        elif unfit:
+            self._fail(f"not armed: {unfit}")
+        elif elapsed > TIMEOUT_S:
+            self._fail(f"not up after {TIMEOUT_S:g} s: {self._missing()}")
+        elif self.stage is Stage.LISTEN:
+            self._listen(elapsed)
+        elif not devices.busy():
+            self._next(now)
+
+    def _listen(self, elapsed: float) -> None:
+        if elapsed < self.listen_s:
+            return
+        devices = self.devices
+        for drive in devices.drives:
+            devices.master.start(drive, drive.connect(self.rig.can.node))
+        for node in devices.nodes:
+            devices.master.start(node, node.connect())
+        self.stage = Stage.CONFIGURE
+
+    def _next(self, now: float) -> None:
+        """Go on: no conversation with a drive is under way."""
+        devices = self.devices
+        if self.stage is Stage.CONFIGURE:
+            devices.master.sync = True
+            self._configured_s = now
+            self.stage = Stage.HEAR
+        elif self.stage is Stage.HEAR and self.arming.heard():
+            self._lifting = self.arming.lift()
+            self.stage = Stage.LIFT
+        elif self.stage is Stage.LIFT and self._lifting is not None:
+            self._lift(self._lifting, now)
+        elif self.stage is Stage.HOME:
+            self._proof = self.arming.prove()
+            self.stage = Stage.PROVE
+        elif self.stage is Stage.PROVE and self._proof is not None:
+            self._prove(self._proof, now)
+
+    def _lift(self, lifting: Lifting, now: float) -> None:
+        lifting.step(now)
+        if lifting.failure:
+            self._fail(f"not armed: {lifting.failure}")
+        elif lifting.done:
+            devices = self.devices
+            for drive in devices.drives:
+                if drive.config.mode == "position":
+                    devices.master.start(drive, drive.home())
+            self.stage = Stage.HOME
+
+    def _prove(self, proof: Proving, now: float) -> None:
+        if not proof.done:
+            proof.step(now)
+        if proof.failure:
+            self._fail(f"not armed: {proof.failure}")
+        elif proof.done:
+            self.shown = proof.proven()
+            self.stage = Stage.READY
+
+    def _unfit(self, now: float) -> str:
+        """Return why no axis may move, or go on moving; "" while all may."""
+        if all(drive.lost for drive in self.devices.drives):
+            return self.arming.silent()
+        for drive in self.devices.drives:
+            name = f"{drive.config.name} drive"
+            if drive.lost:
+                return f"{name} rebooted" if drive.rebooted else f"{name}: heartbeat lost"
+            if self.watches_drives and drive.state in (State.FAULT, State.FAULT_REACTION):
+                return f"{name} in fault" + (f": {drive.emergency.text}" if drive.emergency is not None else "")
+        unfit = self.arming.unfit(now, self._configured_s)
+        if unfit or self._lifting is None:
+            return unfit
+        return self._lifting.trouble(now)
+
+    # -- giving up ------------------------------------------------------------------------------------------
+
+    def _fail(self, why: str) -> None:
+        self.failure = why
+        if self.stage is Stage.LISTEN:
+            self.stage = Stage.FAILED
+            return
+        if self._lifting is not None:
+            self._lifting.stop()
+        if self._proof is not None:
+            self._proof.stop()
+        master = self.devices.master
+        for node in master.nodes:
+            master.cancel(node)
+        self._released_s = None
+        self.stage = Stage.RELEASE
+
+    def _release(self, now: float) -> None:
+        """Let go of every drive that was configured, so that none takes our end for a fault."""
+        devices, master = self.devices, self.devices.master
+        if self._released_s is None:
+            self._released_s = now
+            for drive in devices.drives:
+                if drive.connected:
+                    master.start(drive, drive.release())
+        elif not any(master.busy(drive) for drive in devices.drives) or now - self._released_s > RELEASE_S:
+            self.stage = Stage.FAILED
+        elif now - self._released_s > RAMP_S:
+            for drive in devices.drives:
+                if drive.state in _POWERED:
+                    drive.goal = Goal.FREE  # it does not come to its standstill
+
+    def _missing(self) -> str:
+        """Name what has not answered."""
+        return ", ".join(self.devices.missing()) or "unknown"

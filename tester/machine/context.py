@@ -1,0 +1,96 @@
+"""What a step of the plan may see and do: the context every activity is handed in every scan."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Generic, TypeAlias, TypeVar
+
+from tester.machine.image import BaseDemand, BaseReadings
+from tester.machine.prompts import Prompts
+from tester.rig import Rig
+from tester.store.recorder import Recorder
+
+
+@dataclass(slots=True)
+class Progress:
+    """Where the run is, for people: plain values, overwritten as it goes."""
+
+    step: int = 0
+    steps: int = 0
+    title: str = "connecting"
+    phase: str = ""
+    condition: int = 0
+    conditions: int = 0
+    repeat: int = 0
+    repeats: int = 0
+    revolutions: float = 0.0
+    revolutions_wanted: float = 0.0
+    burst: int = 0
+    part: int = 1
+    """Which of the run's parts this is, and how many there are (tester.run.part_run)."""
+    parts: int = 1
+
+
+RigT_co = TypeVar("RigT_co", bound=Rig, covariant=True)
+ReadingsT_co = TypeVar("ReadingsT_co", bound=BaseReadings, covariant=True)
+DemandT_co = TypeVar("DemandT_co", bound=BaseDemand, covariant=True)
+
+
+class BaseContext(Generic[RigT_co, ReadingsT_co, DemandT_co]):
+    """One per run; activities read and write it, nothing else. A kind adds its specimen, gates and devices.
+
+    The engine calls the methods at their places of a scan (``tester.machine``).
+    """
+
+    def __init__(
+        self,
+        rig: RigT_co,
+        readings: ReadingsT_co,
+        demand: DemandT_co,
+        prompts: Prompts,
+        journal: Recorder,
+    ) -> None:
+        """``journal``: the run's record. Events, prompts and trips are queued in order before the outputs leave."""
+        self.rig = rig
+        self.readings = readings
+        self.demand = demand
+        self.prompts = prompts
+        self.journal = journal
+        self.now = 0.0
+        self.dt = 0.0
+        self.moving = False
+        """Set by an activity while something that is measured is on its way: the next scans come at the sliding
+        rate."""
+        self.sample: tuple[float, ...] = ()
+        """The row recorded in the scan before: a value for each recorded channel."""
+        self.setpoints: Any = None
+        """What the scan commands, as it is recorded: the kind's own."""
+        self.repeat_key = 0
+        self.burst = 0
+        self.gate = 0
+        """Mask of the gates that are closed; 0: this scan counts."""
+        self.progress = Progress()
+
+    def before_reading(self) -> None:
+        """Bring into the image what the devices need to fill it."""
+
+    def after_reading(self) -> None:
+        """Account for what this scan has done to the specimen; ``dt`` is its length, s."""
+
+    def closed_gates(self) -> int:
+        """Return the mask of the gates that are closed in this scan of a RUN."""
+        return 0
+
+    def after_control(self) -> None:
+        """Take note of what control has just made of the demand."""
+
+    def touching(self) -> bool:
+        """Tell whether contact is wanted, or measured: then every scan is recorded."""
+        return False
+
+    def known(self) -> list[str]:
+        """Return what earlier runs make known of this rig, a line each, for the journal at arming."""
+        return []
+
+
+AnyContext: TypeAlias = BaseContext[Rig, BaseReadings, BaseDemand]

@@ -1,0 +1,410 @@
+"""One control step of any machine: readings and demand in, bounded setpoints out. No I/O, no clock.
+
+Modes, requests, the timing of interlocks and what a trip leads to are the same for every kind. What is commanded in a
+mode is the kind's: it inherits from ``Control`` and fills in what stands under "what a kind says".
+"""
+
+from __future__ import annotations
+
+from math import copysign, inf, isfinite
+from typing import Any, Final, Generic, TypeVar
+
+from tester.machine.image import BaseDemand, BaseReadings, BaseSetpoints
+from tester.machine.inputs import ScanInputs
+from tester.machine.interlock_table import InterlockTable
+from tester.machine.row import NOTHING_COMPARED, Interlock, Reaction
+from tester.machine.state import ACKNOWLEDGED, ControlEvent, ControlState, Mode, Trip
+
+# Bound once: a look-up on the enum class costs several times as much in every scan (CPython 3.11).
+_IDLE: Final = Mode.IDLE
+_RUN: Final = Mode.RUN
+_HOLD: Final = Mode.HOLD
+_STOPPING: Final = Mode.STOPPING
+_COOLDOWN: Final = Mode.COOLDOWN
+_FAST_STOP: Final = Mode.FAST_STOP
+_EMERGENCY: Final = Mode.EMERGENCY
+_LATCHED: Final = Mode.LATCHED
+_AT_REST: Final = frozenset({Mode.IDLE, Mode.ARMED, Mode.LATCHED})
+_WORKING: Final = frozenset({Mode.RUN, Mode.HOLD})
+
+StateT = TypeVar("StateT", bound=ControlState[BaseSetpoints])
+ReadingsT = TypeVar("ReadingsT", bound=BaseReadings)
+DemandT = TypeVar("DemandT", bound=BaseDemand)
+InputsT = TypeVar("InputsT", bound=ScanInputs)
+
+
+class Control(Generic[StateT, ReadingsT, DemandT, InputsT]):
+    """A machine's control: its state, its interlock table with what the table looks at, and nothing else."""
+
+    def __init__(
+        self,
+        state: StateT,
+        view: InputsT,
+        table: InterlockTable,
+        withdrawn: DemandT,
+        held: DemandT,
+        *,
+        hold_at_most_s: float,
+        ack_wait_s: float,
+    ) -> None:
+        """Take the kind's parts; two fresh demands serve the modes in which the recipe's does not count.
+
+        ``hold_at_most_s``: a hold ends in a controlled stop after this. ``ack_wait_s``: an acknowledgement waits this
+        long for the last cause to go.
+        """
+        self.state = state
+        self.view = view
+        self.table = table
+        self._withdrawn = withdrawn
+        """What is wanted in every mode but RUN and HOLD: nothing. A stop is not watched against the load it lifts."""
+        self._held = held
+        """What is wanted in HOLD."""
+        self._hold_at_most_s, self._ack_wait_s = hold_at_most_s, ack_wait_s
+        self._delays = table.delays_s(view.parameters)
+        state.pending_s = table.nothing_pending()
+
+    def step(self, demand: DemandT, readings: ReadingsT, scan_s: float) -> None:
+        """Work out ``state.setpoints`` for this scan; ``state.events`` must be journalled before they leave."""
+        state, now = self.state, readings.now_s
+        mode = state.mode
+        if mode is not _RUN:
+            if mode is _HOLD:
+                demand = self._held
+            else:
+                demand = self._withdrawn
+                demand.enabled = state.setpoints.enable
+        dt = now - state.last_s
+        if not (0.0 <= dt <= 0.2):
+            dt = 0.2 if dt > 0.2 else 0.0
+        self._watch(demand, readings, scan_s, dt)
+        mode = state.mode
+        state.last_s = now
+        if mode is _RUN:
+            self.run_outputs(demand, readings, dt)
+        else:
+            self._other(mode, readings, dt)
+
+    def _other(self, mode: Mode, readings: ReadingsT, dt: float) -> None:
+        state, now = self.state, readings.now_s
+        if mode is _HOLD:
+            self._hold(readings, dt)
+        elif mode is _STOPPING or mode is _FAST_STOP:
+            self.stop_outputs()
+            if self.stop_ended():
+                self._after_stop(now)
+        elif mode is _EMERGENCY:
+            self.emergency_outputs()
+            if self.stop_ended():
+                self._after_stop(now)
+        elif mode is _COOLDOWN:
+            over = self.cool_outputs()
+            if over:
+                state.cooled = True
+                state.enter(_STOPPING, now, over)
+                self._begin_stop(now)
+        else:
+            self.rest_outputs()
+            if mode is _LATCHED and state.ack_until_s > -inf:
+                self._acknowledge(now)
+
+    # -- requests -------------------------------------------------------------------------------------------
+
+    def start(self, readings: ReadingsT) -> str:
+        """Arm and enter RUN: one arming edge. Return "" or which levels stand in the way.
+
+        ``readings`` are of now; every level of the table is evaluated on them.
+        """
+        state, now = self.state, readings.now_s
+        if state.mode is not _IDLE:
+            return f"the rig is in {state.mode.value}, not idle"
+        state.last_s = now
+        state.stop_requested = ""
+        state.cooled = False
+        state.stop.began_s = inf
+        state.held = state.tripped = 0
+        state.pending_s = self.table.nothing_pending()
+        self.withdraw_escalation()
+        demand = self._withdrawn
+        demand.enabled = False
+        self.look(demand, readings, 0.0, 0.0)
+        holding = self.table.names_of(self.table.held(self.view) & ~self.table.warnings) + self.unfit(readings)
+        if holding:
+            return "not armed: " + ", ".join(holding)
+        state.enter(Mode.ARMED, now, "every level clear")
+        state.enter(_RUN, now, "start")
+        return ""
+
+    def request_hold(self, demand: DemandT, now: float, why: str) -> str:
+        """Hold a run: open the contact, keep the heat. Return "" or why not; idempotent."""
+        state = self.state
+        if state.mode is _HOLD:
+            return ""
+        if state.mode is not _RUN:
+            return f"nothing runs that could be held: the rig is in {state.mode.value}"
+        self._held.enabled, self._held.attended = demand.enabled, demand.attended
+        self.keep(self._held, demand)
+        state.enter(_HOLD, now, why)
+        return ""
+
+    def request_release(self, now: float, why: str) -> str:
+        """Go on after a hold; return "" or why not."""
+        if self.state.mode is not _HOLD:
+            return f"nothing to release: the rig is in {self.state.mode.value}"
+        self.state.enter(_RUN, now, why)
+        return ""
+
+    def request_stop(self, now: float, why: str, *, fast: bool = False, cool: bool = True) -> None:
+        """Begin a controlled (or fast) stop; idempotent, and never slows one that is under way.
+
+        ``cool``: the machine goes on turning, unloaded, while it is too hot to stand.
+        """
+        state = self.state
+        mode = state.mode
+        if not cool:
+            state.cooled = True
+        if mode in _AT_REST or mode is _FAST_STOP or mode is _EMERGENCY:
+            return
+        if mode is _COOLDOWN and not fast and not state.cooled:
+            return
+        state.stop_requested = state.stop_requested or why
+        if mode is not _STOPPING:
+            self._begin_stop(now)
+        if fast:
+            self._begin_fast(now)
+            state.enter(_FAST_STOP, now, why)
+        elif mode in _WORKING or (mode is _COOLDOWN and state.cooled):
+            state.enter(_STOPPING, now, why)
+
+    def request_ack(self, now: float, by: str = "") -> str:
+        """Acknowledge a latched trip: IDLE follows once every cause is gone. Return "" or why not; idempotent."""
+        state = self.state
+        if state.mode is not _LATCHED:
+            return f"nothing to acknowledge: the rig is in {state.mode.value}"
+        if state.ack_until_s < now:
+            state.ack_until_s, state.ack_by = now + self._ack_wait_s, by
+            self.withdraw_escalation()
+        return ""
+
+    def _acknowledge(self, now: float) -> None:
+        """Leave LATCHED where nothing holds any more; refuse when something still does after a while."""
+        state, table = self.state, self.table
+        holding = (state.held | table.still_there(self.view) & state.tripped) & ~table.warnings
+        if not holding:
+            state.ack_until_s = -inf
+            state.trip = None
+            state.tripped = 0
+            state.events.append(ControlEvent(now, ACKNOWLEDGED, state.ack_by))
+            state.enter(_IDLE, now, "acknowledged")
+        elif now > state.ack_until_s:
+            state.ack_until_s = -inf
+            state.tripped &= ~table.at_rest  # what still moves or heats loses its power again
+            names = ", ".join(table.names_of(holding))
+            state.events.append(ControlEvent(now, "acknowledgement", f"refused, still there: {names}"))
+
+    # -- interlocks -----------------------------------------------------------------------------------------
+
+    def _watch(self, demand: DemandT, readings: ReadingsT, scan_s: float, dt: float) -> None:
+        """Evaluate every row of the table: a level that has held for its delay trips."""
+        self.look(demand, readings, scan_s, dt)
+        now_held = self.table.held(self.view)
+        if now_held or self.state.held:
+            self._time(now_held, readings)
+
+    def _time(self, now_held: int, readings: ReadingsT) -> None:
+        """Note since when rows hold, and trip those that have for their delay."""
+        state, now, delays = self.state, readings.now_s, self._delays
+        pending = state.pending_s
+        gone = state.held & ~now_held
+        state.held = now_held
+        state.tripped &= ~(gone & self.table.warnings)
+        while gone:
+            lowest = gone & -gone
+            gone ^= lowest
+            pending[lowest.bit_length() - 1] = inf
+        due = now_held & ~state.tripped
+        while due:
+            lowest = due & -due
+            due ^= lowest
+            i = lowest.bit_length() - 1
+            if pending[i] > now:
+                pending[i] = now
+            if now - pending[i] >= delays[i] - 1e-9:
+                self._trip(i, lowest, readings)
+
+    def _trip(self, i: int, own: int, readings: ReadingsT) -> None:
+        """Act on a row that is due: warn, or stop by its reaction. At rest little is left to stop."""
+        state, row, now = self.state, self.table.rows[i], readings.now_s
+        if row.reaction is Reaction.WARN:
+            state.tripped |= own
+            state.events.append(ControlEvent(now, "warning", f"{row.name}: {row.cause}"))
+            return
+        resting = state.mode in _AT_REST
+        if resting and not self._acts_at_rest(row):
+            return
+        state.tripped |= own
+        said = "; ".join(readings.faults())
+        text = row.cause + (f" [{said}]" if said else "") + f" ({self.detail(readings)})"
+        if state.trip is None:
+            compared = row.compared(self.view) if row.compared is not None else NOTHING_COMPARED
+            state.trip = Trip(now, row.name, text, row.reaction, compared)
+            state.events.append(ControlEvent(now, "trip", f"{row.name}: {text}"))
+        else:
+            state.events.append(ControlEvent(now, "alarm", f"{row.name}: {text}"))
+        if row.ends_lease:
+            self.end_lease(readings)
+        if not resting:
+            self._react(row.reaction, now, row.name)
+        else:
+            state.setpoints.power_off = state.setpoints.power_off or row.reaction is Reaction.POWER_OFF
+            if state.mode is not _LATCHED:
+                state.enter(_LATCHED, now, row.name)
+
+    def _acts_at_rest(self, row: Interlock) -> bool:
+        """Tell whether a row trips at rest: something is on that is to be off."""
+        return row.at_rest is not None and row.at_rest(self.view)
+
+    def _react(self, reaction: Reaction, now: float, why: str) -> None:
+        state, mode = self.state, self.state.mode
+        if mode in _WORKING or mode is _COOLDOWN:
+            self._begin_stop(now)
+        if reaction is Reaction.EMERGENCY:
+            if mode is not _EMERGENCY:
+                self._begin_fast(now)
+                state.enter(_EMERGENCY, now, why)
+        elif reaction is Reaction.CONTROLLED:
+            if mode in _WORKING:
+                state.enter(_STOPPING, now, why)
+            elif mode is _COOLDOWN:
+                state.stop.creeps = True
+        elif mode is not _EMERGENCY:
+            self._begin_fast(now)
+            if mode is not _FAST_STOP:
+                state.enter(_FAST_STOP, now, why)
+        if reaction is Reaction.POWER_OFF:
+            state.setpoints.power_off = True
+
+    # -- holds and stops ------------------------------------------------------------------------------------
+
+    def _hold(self, readings: ReadingsT, dt: float) -> None:
+        """Command what a hold wants; one that lasts too long ends in a controlled stop."""
+        now = readings.now_s
+        if now - self.state.mode_since_s > self._hold_at_most_s:
+            self.request_stop(now, "held too long")
+            self.stop_outputs()
+        else:
+            self.run_outputs(self._held, readings, dt)
+
+    def _begin_stop(self, now: float) -> None:
+        """Note when a stop began, and what it begins from."""
+        stop = self.state.stop
+        stop.began_s = now
+        stop.fast_s = inf
+        stop.creeps = False
+        self.note_stop()
+
+    def _begin_fast(self, now: float) -> None:
+        """Note when the quick stop began, and what it begins from."""
+        if self.state.stop.fast_s > now:
+            self.state.stop.fast_s = now
+            self.note_fast_stop()
+
+    def _after_stop(self, now: float) -> None:
+        """Leave a stop that has ended: to the cool-down, to LATCHED after a trip, else to IDLE."""
+        state = self.state
+        hot = self.must_cool() if state.mode is _STOPPING and not state.cooled else ""
+        if hot:
+            state.enter(_COOLDOWN, now, hot)
+            state.stop.creeps = True
+            return
+        state.stop.began_s = inf
+        self.note_rest()
+        if state.trip is not None or state.mode is not _STOPPING:
+            state.enter(_LATCHED, now, "standstill")
+        else:
+            state.enter(_IDLE, now, "standstill")
+        self.rest_outputs()
+
+    # -- what a kind says: the inputs of its rows -------------------------------------------------------------
+
+    def look(self, demand: DemandT, readings: ReadingsT, scan_s: float, dt: float) -> None:
+        """Bring ``view`` up to date with this scan (``ScanInputs.note_times`` is a part of that)."""
+        raise NotImplementedError
+
+    def unfit(self, readings: ReadingsT) -> list[str]:
+        """Return what beside the rows stands in the way of arming."""
+        return []
+
+    def detail(self, readings: ReadingsT) -> str:
+        """Return the values that a reader of a trip wants first."""
+        raise NotImplementedError
+
+    # -- what a kind says: outputs, written to ``state.setpoints`` --------------------------------------------
+
+    def run_outputs(self, demand: DemandT, readings: ReadingsT, dt: float) -> None:
+        """Command what is wanted, within the bounds; in RUN and in HOLD."""
+        raise NotImplementedError
+
+    def keep(self, held: DemandT, demand: DemandT) -> None:
+        """Write into ``held`` what a hold wants after ``demand``: no contact."""
+        raise NotImplementedError
+
+    def stop_outputs(self) -> None:
+        """Command a controlled stop, or a fast one (``state.mode``)."""
+        raise NotImplementedError
+
+    def safe_outputs(self) -> None:
+        """Command what is safe at once, without looking: the program cannot go on."""
+        raise NotImplementedError
+
+    def emergency_outputs(self) -> None:
+        """Mirror the hardware's emergency stop: nothing may start when it gives the power back."""
+        raise NotImplementedError
+
+    def rest_outputs(self) -> None:
+        """Command nothing, want no power. What was escalated stays so until it is acknowledged."""
+        raise NotImplementedError
+
+    def withdraw_escalation(self) -> None:
+        """Let drives and devices hear from us again: a person has acknowledged, or a run is armed."""
+        self.state.setpoints.power_off = False
+
+    def end_lease(self, readings: ReadingsT) -> None:
+        """Leave a device that is still on to its lease (``Interlock.ends_lease``)."""
+
+    # -- what a kind says: its stops --------------------------------------------------------------------------
+
+    def note_stop(self) -> None:
+        """Note speeds and places that a stop begins from."""
+
+    def note_fast_stop(self) -> None:
+        """Note speeds that a quick stop begins from."""
+
+    def note_rest(self) -> None:
+        """Note places that everything is to rest at."""
+
+    def stop_ended(self) -> bool:
+        """Tell whether the rig stands, unloaded and without heat, or the time for it is over."""
+        raise NotImplementedError
+
+    def must_cool(self) -> str:
+        """Return why the machine must not stand yet after a controlled stop; "" where it may."""
+        return ""
+
+    def cool_outputs(self) -> str:
+        """Command the cool-down; return why it is over, "" while it is not."""
+        raise NotImplementedError
+
+
+AnyControl = Control[Any, Any, Any, Any]
+
+
+def may_move(readings: BaseReadings) -> bool:
+    """Tell whether drives may be powered: safety chain and guard closed, every drive without a fault."""
+    return readings.safety_chain and readings.guard_closed and not readings.drive_fault
+
+
+def bounded(value: float, limit: float) -> float:
+    """Clamp to +-limit; what is not a finite number becomes 0."""
+    if -limit <= value <= limit:
+        return value
+    return copysign(limit, value) if isfinite(value) else 0.0

@@ -1,0 +1,266 @@
+"""The devices of a rig as lists: drives on CAN, Modbus devices on any number of lines, and their ports.
+
+What a kind of machine reads from them and commands is its own (``fill`` and ``apply`` of its devices).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import inf, nan
+from typing import Any, Final
+
+from drivers.canopen.master import CanMaster
+from drivers.canopen.sensor_node import SensorNode
+from drivers.cia402 import State
+from drivers.modbus import Device, ModbusLink
+from drivers.ports import BusLost, CanPort, ForeseeingPort, LinePort
+from drivers.sensor import Sensor
+from drivers.servo import ServoDrive
+from tester.machine.image import BaseReadings
+from tester.machine.modbus_health import Inspector
+
+INPUT_SAFETY_CHAIN: Final = 1 << 16
+INPUT_GUARD: Final = 1 << 17
+"""Bits of the digital inputs 0x60FD of the drive with the safety inputs (docs/safety.md)."""
+
+# Bound once: a look-up on the enum class costs several times as much in every scan (CPython 3.11).
+_OPERATING: Final = State.OPERATION_ENABLED
+_FAULT_REACTION: Final = State.FAULT_REACTION
+_FAULT: Final = State.FAULT
+
+NEVER: Final = float("-inf")
+"""Time stamp of a source that has not reported yet: older than anything, hence stale."""
+
+
+@dataclass(slots=True)
+class FieldDevice:
+    """A Modbus device of the rig file."""
+
+    name: str
+    """Its key in the rig file."""
+    title: str
+    """What people call it."""
+    line: str
+    driver: Device
+
+
+class DeviceList:
+    """Drivers and the ports they speak through.
+
+    ``lines``: ports and links in the order of the rig file; ``modbus``: devices on them in the order of the rig file,
+    among them the further sensors (``sensors``), whose channels are recorded, as are those of ``nodes`` on the CAN bus.
+    ``news``: a drive's state, an input or an emergency is new in this scan. ``lost``: why a wire is gone; it is never
+    used again: what waits in its queues must not be sent later. A kind inherits from this: ``fill`` and ``apply``.
+    """
+
+    def __init__(
+        self,
+        can: CanPort,
+        master: CanMaster,
+        drives: Sequence[ServoDrive],
+        lines: Sequence[tuple[LinePort, ModbusLink]],
+        modbus: Sequence[FieldDevice],
+        sensors: Sequence[Sensor],
+        nodes: Sequence[SensorNode],
+        prompt: ModbusLink,
+    ) -> None:
+        """Take the parts; ``prompt``: the link that may ask for a tick of its own between two scans."""
+        self.can = can
+        self.master = master
+        self.drives = tuple(drives)
+        self.lines = list(lines)
+        self.modbus = tuple(modbus)
+        self.sensors = tuple(sensors)
+        self.nodes = tuple(nodes)
+        self.news = True
+        self.lost = ""
+        self.inspector = Inspector([(device.title, device.driver) for device in self.modbus])
+        self._prompt = prompt
+        self._can_alive = True
+        self._can_heard_s = NEVER
+        self._lines: tuple[tuple[LinePort, ModbusLink, ForeseeingPort | None], ...] = ()
+        self._foreseeing: ForeseeingPort | None = None
+        self._foresee()
+
+    def _foresee(self) -> None:
+        self._lines = tuple(
+            (port, link, port if isinstance(port, ForeseeingPort) else None) for port, link in self.lines
+        )
+        self._foreseeing = next((port for _, link, port in self._lines if link is self._prompt), None)
+
+    def rewire(self, can: CanPort, lines: Sequence[LinePort]) -> None:
+        """Speak through other ports from now on; ``lines`` in the order of the ones in use."""
+        self.can = can
+        self.lines = [(port, link) for port, (_, link) in zip(lines, self.lines, strict=True)]
+        self._foresee()
+
+    def fill(self, r: Any, now: float) -> None:
+        """Bring the kind's readings up to date at ``now`` s."""
+        raise NotImplementedError
+
+    def apply(self, out: Any) -> None:
+        """Hand the kind's setpoints to the drivers; the frames leave with ``transmit``."""
+        raise NotImplementedError
+
+    def fill_status(self, r: BaseReadings, with_inputs: ServoDrive) -> int:
+        """Bring up to date how the drives are and what the safety inputs say; return the input word of their drive."""
+        enabled = disabled = True
+        fault = ""
+        for drive in self.drives:
+            state = drive.state
+            if state is _OPERATING:
+                disabled = False
+            else:
+                enabled = False
+                if not fault and (state is _FAULT or state is _FAULT_REACTION):
+                    fault = _fault_text(drive)
+            if not fault and (
+                drive.lost or drive.rebooted or drive.emergency is not None or (drive.connected and not drive.remote)
+            ):
+                fault = _fault_text(drive)
+        r.drives_enabled, r.drives_disabled, r.drive_fault = enabled, disabled, fault
+        inputs = with_inputs.inputs
+        r.safety_chain = inputs & INPUT_SAFETY_CHAIN != 0
+        r.guard_closed = inputs & INPUT_GUARD != 0
+        return inputs
+
+    def receive(self, now: float) -> None:
+        """Take in everything that arrived; a wire that is lost is left alone from then on (``lost`` says why)."""
+        try:
+            frames = self.can.receive(now)
+        except BusLost as error:
+            self._lose_can(error)
+        else:
+            # What comes over a wire that was lost and came back is taken off it, and not believed.
+            if frames and self._can_alive:
+                self._can_heard_s = frames[-1][0]
+                self.master.feed(frames, now)
+        for port, link, foreseen in self._lines:
+            if foreseen is None or foreseen.arrives_s <= now:
+                try:
+                    chunks = port.read(now)
+                except BusLost as error:
+                    self._lose_line(link, error, now)
+                    continue
+                if chunks:
+                    link.feed(chunks, now)
+
+    def _lose_can(self, error: BusLost) -> None:
+        self.lost = self.lost or f"bus lost: {error}"
+        self._can_alive = False
+
+    def _lose_line(self, link: ModbusLink, error: BusLost, now: float) -> None:
+        """Go on without a line: what it carried is not valid any more."""
+        self.lost = self.lost or f"line lost: {error}"
+        self._lines = tuple(entry for entry in self._lines if entry[1] is not link)
+        if link is self._prompt:
+            self._foreseeing = None
+        for station in link.stations:
+            station.owner.lost(now)
+        link.deadline = inf  # nobody serves it any more, and it must not ask for that either
+
+    def transmit(self, now: float, *, scan: bool, next_scan_s: float = NEVER) -> float:
+        """Send what is due and return the next time a driver wants to be served; ``next_scan_s`` if it is known."""
+        deadline = inf
+        if self._can_alive:
+            try:
+                if scan:
+                    self.master.scan(self.can, now, next_scan_s)
+                else:
+                    self.master.service(self.can, now)
+            except BusLost as error:
+                self._lose_can(error)
+            else:
+                deadline = self.master.deadline
+        self.transmit_lines(now, scan=scan)
+        # Only one line may ask for a tick of its own (a retry there has to fit into a scan); the next request of any
+        # other can wait for the next scan. A simulated line knows that the reply will be in time.
+        watch = self._prompt
+        wish = watch.deadline
+        if wish >= deadline or wish >= next_scan_s > now:
+            return deadline
+        wire = self._foreseeing
+        return deadline if wire is not None and watch.only_watches and wire.arrives_s <= wish else wish
+
+    def transmit_lines(self, now: float, *, scan: bool = True) -> None:
+        """Send what is due on the Modbus lines alone."""
+        for port, link, _ in self._lines:
+            if now >= link.wants_s:
+                try:
+                    link.service(port, now, scan=scan)
+                except BusLost as error:
+                    self._lose_line(link, error, now)
+
+    def fill_channels(self, channels: list[float], now: float) -> None:
+        """Bring the readings of the further sensors up to date, in place: NaN for one that is not fresh and valid."""
+        place = 0
+        for sensor in self.sensors:
+            fresh = sensor.fresh(now)
+            for value in sensor.values:
+                channels[place] = value if fresh else nan
+                place += 1
+        for node in self.nodes:
+            fresh = node.fresh(now)
+            for value in node.values:
+                channels[place] = value if fresh else nan
+                place += 1
+
+    def busy(self) -> bool:
+        """Tell whether a conversation with a node of the CAN bus is under way."""
+        return any(self.master.busy(node) for node in self.master.nodes)
+
+    def refused(self) -> str:
+        """Return why a device cannot be used, or ""."""
+        for drive in self.drives:
+            if drive.refused:
+                return f"{drive.config.name} drive (node {drive.config.node_id}): {drive.refused}"
+        for node in self.nodes:
+            if node.refused:
+                return f"{node.name} (node {node.node_id}): {node.refused}"
+        for device in self.modbus:
+            if device.driver.refused:
+                return f"{device.title}: {device.driver.refused}"
+        return ""
+
+    def alarm(self) -> bool:
+        """Tell whether a drive has something to report that the next regular scan should not wait for."""
+        for drive in self.drives:
+            if drive.stands or drive.state >= State.FAULT_REACTION or drive.lost or drive.rebooted:
+                return True
+            if drive.emergency is not None:
+                return True
+        return False
+
+    def all_off(self) -> bool:
+        """Tell whether no drive's power stage is on."""
+        return all(drive.state <= State.READY_TO_SWITCH_ON or drive.lost for drive in self.drives)
+
+    def can_alive(self) -> bool:
+        """Tell whether drives can still be told anything."""
+        return self._can_alive
+
+    def answering(self) -> bool:
+        """Tell whether every Modbus device, and every node that measures, has reported a valid value."""
+        if any(node.stamp_s == -inf for node in self.nodes):
+            return False
+        return all(device.driver.stamp_s > -inf and device.driver.valid for device in self.modbus)
+
+    def missing(self) -> list[str]:
+        """Name what has not answered."""
+        names = [node.name for node in self.master.nodes if self.master.busy(node) or not node.online]
+        return names + [device.title for device in self.modbus if not device.driver.valid]
+
+
+def _fault_text(drive: ServoDrive) -> str:
+    """Describe what is wrong with a drive."""
+    name = f"{drive.config.name} drive"
+    if drive.lost:
+        return f"{name}: heartbeat lost"
+    if drive.rebooted:
+        return f"{name}: rebooted"
+    if drive.emergency is not None:
+        return f"{name}: {drive.emergency.text} (0x{drive.emergency.code:04X})"
+    if drive.connected and not drive.remote:
+        return f"{name}: under local control"
+    return f"{name}: fault"

@@ -1,0 +1,161 @@
+"""One synchronous scan: take in, decide, send out, record. No awaits, no threads, no clock inside."""
+
+from __future__ import annotations
+
+from math import inf
+from typing import Any, Final
+
+from tester.machine.context import AnyContext
+from tester.machine.control import AnyControl
+from tester.machine.devices import DeviceList
+from tester.machine.executor import Executor
+from tester.machine.sampler import Sampler
+from tester.machine.state import ACKNOWLEDGED, Mode
+
+SOONEST_S: Final = 5e-4
+"""No tick is asked for sooner after another."""
+
+# Bound once: a look-up on the enum class costs several times as much in every scan (CPython 3.11).
+_RUN: Final = Mode.RUN
+_HOLD: Final = Mode.HOLD
+_STOPPING: Final = Mode.STOPPING
+_FAST_STOP: Final = Mode.FAST_STOP
+_EMERGENCY: Final = Mode.EMERGENCY
+HOLD_MOVES_S: Final = 3.0
+"""A hold has opened the contact within this, s [A]: scans come at the sliding rate until then."""
+SEVERITIES: Final = {"trip": "trip", "alarm": "alarm", "warning": "warning"}
+"""Of control's events, by their kind; any other is information."""
+
+
+class Engine:
+    """The scan of one rig and one run."""
+
+    def __init__(
+        self, devices: DeviceList, control: AnyControl, executor: Executor[Any], ctx: AnyContext, sampler: Sampler
+    ) -> None:
+        """Take the kind's parts; nothing is sent before the first ``tick``."""
+        # Any: who knows the kind finds its own classes here, with all that they have beyond a machine's.
+        self.devices: Any = devices
+        self.control: Any = control
+        self.executor: Executor[Any] = executor
+        self.ctx: Any = ctx
+        self.sampler = sampler
+        scan = ctx.rig.scan
+        self.sliding_s = 1.0 / scan.sliding_hz
+        self.enabled_s = 1.0 / scan.enabled_hz
+        self.idle_s = 1.0 / scan.idle_hz
+        self.period_s = self.enabled_s
+        self.next_scan_s = 0.0
+        self.last_scan_s = -inf
+        self.scans = 0
+        self.finished = False
+        self._trip = 0
+        """Number of the trip that is latched, in the record."""
+
+    def tick(self, now: float) -> float:
+        """Do what is due at ``now`` (s) and return when the next tick is due at the latest."""
+        devices: DeviceList = self.devices
+        devices.receive(now)
+        scan = now >= self.next_scan_s - 1e-7 or self._urgent()
+        if scan:
+            self._scan(now)
+        deadline = devices.transmit(now, scan=scan, next_scan_s=self.next_scan_s)
+        if deadline >= self.next_scan_s:
+            return self.next_scan_s
+        return min(self.next_scan_s, max(deadline, now + SOONEST_S))
+
+    def abandon(self) -> None:
+        """Command what is safe at once; send that, and nothing after it.
+
+        What goes over CAN leaves at once. A request on a Modbus line leaves only where that line is free: one into a
+        reply under way would spoil both. Otherwise what is on there ends by its lease.
+        """
+        devices: DeviceList = self.devices
+        control: AnyControl = self.control
+        control.safe_outputs()
+        devices.apply(control.state.setpoints)
+        devices.transmit(self.ctx.now, scan=True)
+
+    def _urgent(self) -> bool:
+        """Tell whether a drive reported a fault or an emergency that the next regular scan should not wait for."""
+        ctx: AnyContext = self.ctx
+        return not ctx.readings.drive_fault and bool(self.devices.alarm())
+
+    def _scan(self, now: float) -> None:
+        ctx: AnyContext = self.ctx
+        control: AnyControl = self.control
+        devices: DeviceList = self.devices
+        readings, state = ctx.readings, control.state
+        ctx.dt = min(now - self.last_scan_s, 1.0) if self.scans else 0.0
+        self.last_scan_s = now
+        ctx.now = now
+        self.scans += 1
+        ctx.before_reading()
+        devices.fill(readings, now)
+        ctx.after_reading()
+        ctx.moving = False
+        events = state.events
+        if events:
+            self._journal()  # commands given since the last scan: before what the executor says in this one
+        if devices.news:
+            self._journal_emergencies()
+        if state.mode is _RUN:
+            ctx.gate = ctx.closed_gates()
+            self.executor.step(ctx)
+        control.step(ctx.demand, readings, self.period_s)
+        ctx.after_control()
+        if events:
+            self._journal()
+        devices.apply(state.setpoints)
+        self._choose_rate(now)
+        self.sampler.record(ctx, state.setpoints)
+
+    def _journal(self) -> None:
+        """Queue control's events in their order; they are queued before this scan's outputs leave."""
+        control: AnyControl = self.control
+        ctx: AnyContext = self.ctx
+        state, journal = control.state, ctx.journal
+        if not state.events:
+            return
+        for event in state.events:
+            if event.kind == "trip" and state.trip is not None:
+                compared = state.trip.compared
+                self._trip = journal.trip(
+                    event.at_s, state.trip.name, event.text, compared.value, compared.limit, compared.unit
+                )
+            elif event.kind == ACKNOWLEDGED and self._trip:
+                journal.trip_acknowledged(self._trip, event.at_s, event.text)
+                self._trip = 0
+            journal.event(event.at_s, event.kind, event.text, SEVERITIES.get(event.kind, "info"))
+        if state.mode is Mode.LATCHED and not self._trip:
+            # A fast stop that a person has made latches too: who comes next has to know.
+            self._trip = journal.trip(ctx.now, "fast stop", state.stop_requested)
+        state.events.clear()
+
+    def _journal_emergencies(self) -> None:
+        """Queue what the drives reported by themselves, before the trip that it leads to."""
+        devices: DeviceList = self.devices
+        for drive in devices.drives:
+            if drive.emergency_log:
+                for emergency in drive.take_emergencies():
+                    text = f"{drive.config.name} drive: {emergency.text} (0x{emergency.code:04X})"
+                    self.ctx.journal.event(emergency.t, "emergency", text, "alarm")
+
+    def _choose_rate(self, now: float) -> None:
+        """Set the period of the next scan: it follows the state (docs/decisions/0003)."""
+        ctx: AnyContext = self.ctx
+        control: AnyControl = self.control
+        state = control.state
+        mode = state.mode
+        # A level that has yet to stand for its delay is looked at often: the delay is not rounded up to slow scans.
+        pending = state.held & ~state.tripped
+        stops = mode is _STOPPING or mode is _FAST_STOP or mode is _EMERGENCY
+        if pending or ctx.moving or stops or (mode is _HOLD and now - state.mode_since_s < HOLD_MOVES_S):
+            self.period_s = self.sliding_s
+        elif ctx.demand.enabled or not ctx.readings.drives_disabled:
+            self.period_s = self.enabled_s
+        else:
+            self.period_s = self.idle_s
+        # Absolute deadlines: a late scan does not delay the ones after it; an early (urgent) one starts anew.
+        late = now - self.next_scan_s
+        self.next_scan_s = (self.next_scan_s if 0.0 <= late < self.period_s else now) + self.period_s

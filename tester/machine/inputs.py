@@ -1,0 +1,61 @@
+"""What any interlock's condition may look at: how a scan lies in time, and what is under way.
+
+A kind's inputs inherit from this and add its readings, demand, setpoints and whatever several conditions ask for.
+What is not known stays NaN, infinite or the value that trips.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from math import inf
+from typing import Any, Final
+
+from tester.machine.state import ControlState, Mode, StopProgress
+from tester.rig.parameter import Values
+
+# Bound once: a look-up on the enum class costs several times as much in every scan (CPython 3.11).
+_HOLD: Final = Mode.HOLD
+_IDLE: Final = Mode.IDLE
+_ARMED: Final = Mode.ARMED
+_LATCHED: Final = Mode.LATCHED
+
+
+@dataclass(slots=True)
+class ScanInputs:
+    """One scan, as the interlock table sees it."""
+
+    parameters: Values = field(init=False)
+    stop: StopProgress = field(init=False)
+    scan_s: float = 0.0
+    """Period of the scan, s."""
+    last_s: float = -inf
+    """When the scan before was."""
+    late_s: float = inf
+    """How much later than its period this scan is, s."""
+    mode_since_s: float = 0.0
+    """Since when the rig has been in its mode."""
+    loaded: bool = True
+    """Contact is wanted or cannot be excluded. The kind writes it in every scan."""
+    stopped_s: float = -inf
+    """How long a stop has been under way; -inf while none is."""
+    lifting_s: float = -inf
+    """How long a stop or a hold has been lifting; -inf while neither is."""
+    resting: bool = True
+    """Everything is to rest: idle, armed or latched."""
+    unpowered: bool = False
+    """A run that wants no drives has seen them without power: until all are in operation again, nothing may move. The
+    kind writes it in every scan."""
+    attended: bool = False
+    """A person was asked to come near; what hands do to sensors is nobody's fault."""
+
+    def note_times(self, state: ControlState[Any], now_s: float, scan_s: float) -> None:
+        """Take over when this scan is, and how long mode and stop have been under way."""
+        self.scan_s = scan_s
+        self.last_s = last_s = state.last_s
+        self.late_s = now_s - last_s - scan_s
+        self.mode_since_s = state.mode_since_s
+        mode = state.mode
+        self.stopped_s = self.lifting_s = now_s - state.stop.began_s
+        if mode is _HOLD:
+            self.lifting_s = now_s - state.mode_since_s
+        self.resting = mode is _IDLE or mode is _LATCHED or mode is _ARMED

@@ -1,0 +1,100 @@
+"""The interlock table of a kind of machine: its rows in one order, and their bits.
+
+The order is that of importance: of rows that trip in one scan the first becomes the cause. A row's bit is its place.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from math import inf
+
+from tester.machine.inputs import ScanInputs
+from tester.machine.row import ALWAYS, ENDING, LOADED, WARN, Condition, Interlock, When
+from tester.rig.parameter import Parameter, Values
+
+
+def parameters_of(rows: Iterable[Interlock]) -> tuple[Parameter, ...]:
+    """Return the parameters that rows declare, each once, with the first row that has it."""
+    return tuple(dict.fromkeys(parameter for row in rows for parameter in row.declared()))
+
+
+class Group:
+    """Conditions that are evaluated together, with their bits."""
+
+    __slots__ = ("bits", "conditions")
+
+    def __init__(self, members: Iterable[tuple[int, Condition]]) -> None:
+        """Take (bit, condition) pairs."""
+        found = tuple(members)
+        self.bits: tuple[int, ...] = tuple(one for one, _ in found)
+        self.conditions: tuple[Condition, ...] = tuple(condition for _, condition in found)
+
+    def held(self, v: ScanInputs) -> int:
+        """Return the bits of the conditions that hold. Nearly always none does: only then is it asked which."""
+        for condition in self.conditions:
+            if condition(v):
+                return self._which(v)
+        return 0
+
+    def _which(self, v: ScanInputs) -> int:
+        held = 0
+        for i, condition in enumerate(self.conditions):
+            if condition(v):
+                held |= self.bits[i]
+        return held
+
+
+class InterlockTable:
+    """Rows, the bounds that belong to no row, and what both are asked in a scan. It never changes."""
+
+    def __init__(self, rows: Iterable[Interlock], operation: Iterable[Parameter] = ()) -> None:
+        """Take the rows in their order; ``operation``: parameters of the section ``interlocks`` that no row has."""
+        self.rows: tuple[Interlock, ...] = tuple(rows)
+        self.operation: tuple[Parameter, ...] = tuple(operation)
+        self.parameters: tuple[Parameter, ...] = (*parameters_of(self.rows), *self.operation)
+        """Every key of the rig file's section ``interlocks``, in its order."""
+        self._bits = {row.name: 1 << i for i, row in enumerate(self.rows)}
+        self.always = self._group(ALWAYS)
+        self.while_loaded = self._group(LOADED)
+        self.while_ending = self._group(ENDING)
+        self._unseen = Group((self.bit(row.name), row.unseen) for row in self.rows if row.unseen is not None)
+        self.at_rest = sum(self.bit(row.name) for row in self.rows if row.at_rest is not None)
+        """Rows that trip in idle, too."""
+        self.warnings = sum(self.bit(row.name) for row in self.rows if row.reaction is WARN)
+        """Rows that stop nothing: they do not stand in the way of arming or acknowledging."""
+
+    def __deepcopy__(self, memo: dict[int, object]) -> InterlockTable:
+        """Return itself: copies of a running machine share its table."""
+        return self
+
+    def _group(self, when: When) -> Group:
+        return Group((self.bit(row.name), row.condition) for row in self.rows if row.when is when)
+
+    def bit(self, name: str) -> int:
+        """Return the bit of a row; raises KeyError for a name that is not in the table."""
+        return self._bits[name]
+
+    def names_of(self, bits: int) -> list[str]:
+        """Return the names of the rows whose bits are set."""
+        return [row.name for i, row in enumerate(self.rows) if bits >> i & 1]
+
+    def held(self, v: ScanInputs) -> int:
+        """Return the bits of the rows that hold in a scan; every row that can apply is evaluated."""
+        found = self.always.held(v)
+        if v.loaded and not v.unpowered:
+            found |= self.while_loaded.held(v)
+        if v.lifting_s >= 0.0 or v.resting or v.unpowered:
+            found |= self.while_ending.held(v)
+        return found
+
+    def still_there(self, v: ScanInputs) -> int:
+        """Return the bits of rows that are watched only while something is wanted, as if it were."""
+        return self._unseen.held(v)
+
+    def delays_s(self, values: Values) -> tuple[float, ...]:
+        """Return how long each row's condition must hold on a rig, s."""
+        return tuple(row.delay_s(values) for row in self.rows)
+
+    def nothing_pending(self) -> list[float]:
+        """Return since when each row has held (s), where none holds."""
+        return [inf] * len(self.rows)

@@ -1,0 +1,114 @@
+"""Manual mode: a person moves the rig in bounded steps. Control's limits and interlocks stand as in a run.
+
+A terminal cannot see a key being released, so a key press is one step and nothing moves on by itself. The mode ends by
+itself when nobody has pressed a key for a minute, and when the client that armed it is gone.
+"""
+
+from __future__ import annotations
+
+from math import isfinite
+from typing import Any, Final, Protocol
+
+from tester.machine.context import AnyContext
+from tester.machine.executor import Executor, Procedures
+from tester.recipe.plan import Plan
+
+NAME: Final = "manual mode"
+ARMED_S: Final = 60.0
+"""Manual mode disarms after this long without a step."""
+STEPS_PER_S: Final = 5.0
+"""More key presses a second are refused [A]: an auto-repeating key makes 30."""
+MOVING_S: Final = 2.0
+"""After a step scans come at the sliding rate for this long, s [A]."""
+
+
+class Hand(Protocol):
+    """What a kind's axes do when a person moves them. Whoever asks gets "" or why not; ``ctx`` is the kind's own."""
+
+    @property
+    def busy(self) -> str:
+        """Why no step is taken at present, "" where one may be."""
+        ...
+
+    @property
+    def tare_text(self) -> str:
+        """The newest zero of the load cell in words, "" before the first."""
+        ...
+
+    def demand(self, ctx: Any) -> None:
+        """Demand what was asked for so far; called in every scan."""
+        ...
+
+    def step(self, ctx: Any, axis: str, sign: float) -> str:
+        """Take one step of an axis of the kind's table, up (+1) or down (-1)."""
+        ...
+
+    def tare(self, ctx: Any) -> str:
+        """Begin to zero the load cell."""
+        ...
+
+
+def _empty_plan() -> Plan:
+    """Return the plan of a run without a recipe."""
+    return Plan(NAME, (), (), 1)
+
+
+class ManualExecutor(Executor[Any]):
+    """Stands in the executor's place: what it demands is what a person asked for."""
+
+    def __init__(self, hand: Hand) -> None:
+        """Nothing is wanted: drives enabled, standing, lifted."""
+        super().__init__(_empty_plan(), Procedures())
+        self.hand = hand
+        self.used_s = float("nan")
+        self.pressed_s = float("-inf")
+        self.moved_s = float("-inf")
+
+    def left_s(self, now: float) -> float:
+        """Return for how many more seconds the mode stays armed."""
+        return ARMED_S if not isfinite(self.used_s) else max(ARMED_S - (now - self.used_s), 0.0)
+
+    def step(self, ctx: AnyContext) -> None:
+        """Demand what is wanted; the run ends when nobody has asked for anything for a minute."""
+        if not isfinite(self.used_s):
+            self.used_s = ctx.now
+            ctx.progress.title = NAME
+        self.expire(ctx.now)
+        if self.finished:
+            return
+        ctx.demand.enabled = True
+        ctx.moving = ctx.now - self.moved_s < MOVING_S
+        self.hand.demand(ctx)
+
+    def expire(self, now: float) -> None:
+        """End the mode when nobody has asked for anything for a minute, in a hold as well."""
+        if self.left_s(now) <= 0.0:
+            self.disarm()
+
+    def disarm(self) -> None:
+        """End the mode: a controlled stop follows."""
+        self.finished = True
+
+    # -- what a person may do ---------------------------------------------------------------------------------
+
+    def jog(self, ctx: AnyContext, axis: str, direction: int) -> str:
+        """Take one step; return "" or why not."""
+        refusal = self._busy(ctx)
+        if refusal:
+            return refusal
+        if ctx.now - self.pressed_s < 1.0 / STEPS_PER_S:
+            return f"no more than {STEPS_PER_S:g} steps a second"
+        refusal = self.hand.step(ctx, axis, float(direction))
+        if not refusal:
+            self.used_s = self.pressed_s = self.moved_s = ctx.now
+        return refusal
+
+    def tare(self, ctx: AnyContext) -> str:
+        """Begin a tare; return "" or why not."""
+        refusal = self._busy(ctx) or self.hand.tare(ctx)
+        if not refusal:
+            self.used_s = ctx.now
+        return refusal
+
+    def _busy(self, ctx: AnyContext) -> str:
+        return self.hand.busy if ctx.readings.drives_enabled else "the drives are not on yet"

@@ -1,0 +1,49 @@
+"""How repeats and conditions end, whatever machine they are measured on."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+from math import nan
+from typing import Protocol
+
+from tester.analysis.results import RepeatStatus
+
+
+class Ending(Enum):
+    """How a repeat ended."""
+
+    COMPLETE = "complete"
+    INCOMPLETE = "incomplete"
+    """Less than the window asks for, after all bursts."""
+    CANNOT_HOLD = "temperature cannot be held"
+    NOT_REACHED = "not reached"
+    ZERO_DRIFT = "load cell zero drifted"
+
+
+class CommitTicket(Protocol):
+    """A commit under way."""
+
+    @property
+    def done(self) -> bool:
+        """COMMIT has returned."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class RepeatOutcome:
+    """What became of a repeat, and its commit."""
+
+    status: RepeatStatus
+    text: str
+    ticket: CommitTicket
+
+
+@dataclass(frozen=True, slots=True)
+class ConditionEnd:
+    """How a condition was left: None = no further repeat was wanted."""
+
+    ending: Ending | None = None
+    detail: str = ""
+    warming_k_s: float = nan
+    holdable_band_k: float = nan

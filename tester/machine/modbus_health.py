@@ -1,0 +1,74 @@
+"""A slower look at the Modbus devices: what they refuse, and how many of their answers fail."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import inf
+from typing import Final
+
+from drivers.modbus import Device
+from drivers.modbus.request import Counters
+
+PERIOD_S: Final = 0.5
+"""Between two looks, s [A]. Silence and age are watched in every scan; this is for what lasts."""
+WINDOW: Final = 4
+"""Looks that a share of failed requests is taken over: 2 s [A]."""
+LEAST_REQUESTS: Final = 8
+"""Fewer requests in the window than this say nothing about a line [A]."""
+
+
+class _Record:
+    """Requests and failures of a station at the last few looks, oldest first."""
+
+    __slots__ = ("device", "looks", "title")
+
+    def __init__(self, title: str, device: Device) -> None:
+        self.title = title
+        self.device = device
+        self.looks: list[tuple[int, int]] = [(0, 0)]
+
+    def look(self) -> float:
+        """Take the counters; return the share of failed requests over the window."""
+        counters = self.device.station.counters
+        looks = self.looks
+        looks.append((counters.requests, failures(counters)))
+        if len(looks) > WINDOW + 1:
+            looks.pop(0)
+        requests = looks[-1][0] - looks[0][0]
+        return (looks[-1][1] - looks[0][1]) / requests if requests >= LEAST_REQUESTS else 0.0
+
+
+def failures(counters: Counters) -> int:
+    """Return how many requests of a station have not had a good reply."""
+    return counters.timeouts + counters.crc_errors + counters.garbage + counters.late
+
+
+class Inspector:
+    """Looks at the Modbus devices of a rig; ``due_s`` is when to look again.
+
+    ``fault``: the first device that refuses what it is asked or says that our commands do not come; "" = none.
+    ``line_errors``: the largest share of failed requests among the devices, of the last few seconds, 0..1.
+    """
+
+    def __init__(self, devices: Sequence[tuple[str, Device]]) -> None:
+        """Look at these, with what people call them."""
+        self.records = tuple(_Record(title, device) for title, device in devices)
+        self.due_s = -inf
+        self.fault = ""
+        self.line_errors = 0.0
+
+    def inspect(self, now: float) -> None:
+        """Take a look at ``now`` s."""
+        self.due_s = now + PERIOD_S
+        fault = complaint = ""
+        worst = 0.0
+        for record in self.records:
+            share = record.look()
+            if share > worst:
+                worst = share
+            device = record.device
+            if not fault and device.refused is not None:
+                fault = f"{record.title}: {device.refused}"
+            if not complaint and device.complaint:
+                complaint = f"{record.title}: {device.complaint}"
+        self.fault, self.line_errors = fault or complaint, worst

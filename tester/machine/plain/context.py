@@ -1,0 +1,76 @@
+"""What a step of a plain machine may see and do, and the hands at the rig."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Final, Protocol
+
+from drivers.sensor import Sensor
+from tester.machine.context import BaseContext
+from tester.machine.plain.image import PlainDemand, PlainReadings
+from tester.machine.prompts import Prompts
+from tester.quantities import Quantities
+from tester.recipe.plain import Mount
+from tester.rig.plain import PlainRig
+from tester.store.recorder import Recorder
+
+SPEED_SHARE: Final = 0.02
+"""A drive has its speed within this share of it; the gate is closed while one has not [A]."""
+GATE_SPEED: Final = 1
+"""Bit of that gate."""
+
+
+class PlainAttendant(Protocol):
+    """The hands at the rig. A simulated rig is told; at a real one nothing happens."""
+
+    def install(self, specimen: int, compound: str) -> None:
+        """Put a new specimen on."""
+        ...
+
+    def begin_repeat(self, condition: int, repeat: int, attempt: int) -> None:
+        """Mark the start of a repeat (keys of the simulator's random streams)."""
+        ...
+
+
+class PlainNobody:
+    """The attendant of a real rig: people answer prompts, software does nothing."""
+
+    def install(self, specimen: int, compound: str) -> None:
+        """Do nothing: the prompt has been answered."""
+
+    def begin_repeat(self, condition: int, repeat: int, attempt: int) -> None:
+        """Do nothing."""
+
+
+class PlainContext(BaseContext[PlainRig, PlainReadings, PlainDemand]):
+    """What a step may see and do."""
+
+    def __init__(
+        self,
+        rig: PlainRig,
+        readings: PlainReadings,
+        prompts: Prompts,
+        journal: Recorder,
+        attendant: PlainAttendant,
+        quantities: Quantities,
+        sensors: Mapping[str, Sensor],
+    ) -> None:
+        """``sensors``: the machine's own, to be zeroed."""
+        super().__init__(rig, readings, PlainDemand(), prompts, journal)
+        self.attendant = attendant
+        self.quantities = quantities
+        self.sensors = sensors
+        self.mounted: Mount | None = None
+
+    def at_speed(self) -> bool:
+        """Tell whether every drive has the speed that is wanted of it."""
+        drives = self.readings.drives
+        return all(abs(drives[name] - v) <= SPEED_SHARE * abs(v) for name, v in self.demand.speeds.items())
+
+    def closed_gates(self) -> int:
+        """Close the gate while a drive has not its speed."""
+        return 0 if self.at_speed() else GATE_SPEED
+
+    def touching(self) -> bool:
+        """Record every scan while something is to move."""
+        return bool(self.demand.speeds)

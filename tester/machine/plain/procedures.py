@@ -1,0 +1,267 @@
+"""The steps of a plain machine: a specimen is put on, its sensors are zeroed, a condition is measured in repeats."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from math import nan
+from typing import Final
+
+from tester.analysis.blocks import BlockCounter
+from tester.analysis.collected import collected
+from tester.analysis.judge import ALONE
+from tester.axes import Setpoint
+from tester.machine.activity import Activity, MoveFailedError
+from tester.machine.executor import Procedures
+from tester.machine.measured import ConditionEnd, Ending, RepeatOutcome
+from tester.machine.motions import Ask
+from tester.machine.plain.context import PlainContext
+from tester.machine.plain.image import PlainReadings
+from tester.machine.results import StoredResults
+from tester.quantities import Quantities
+from tester.recipe.plain import Mount, PlainPart
+from tester.recipe.plan import ConditionStep, Step
+from tester.store.records import PieceInfo
+
+MOVE_AT_MOST_S: Final = 15.0
+"""Drives are on and have their speed, or stand, by then, s [A]."""
+BLIND_S: Final = 20.0
+"""A repeat in which nothing has counted for this long is given up, s [A]."""
+ZERO_S: Final = 1.0
+"""A zero is the mean over this long, s [A]."""
+
+SpeedsOf = Callable[[Setpoint, PlainReadings], Mapping[str, float]]
+"""What a condition demands of the drives, asked for each repeat as it begins."""
+
+
+class Standstill:
+    """Drives on, or off, and everything known to stand."""
+
+    def __init__(self, *, enabled: bool) -> None:
+        """With the drives ``enabled``, or without power."""
+        self.enabled = enabled
+        self.since_s = nan
+
+    def step(self, ctx: PlainContext) -> bool:
+        """Done when it is measured; raises MoveFailedError after ``MOVE_AT_MOST_S``."""
+        ctx.moving, r = True, ctx.readings
+        ctx.demand.enabled = self.enabled
+        ctx.demand.speeds.clear()
+        self.since_s = ctx.now if self.since_s != self.since_s else self.since_s
+        if r.standing and (r.drives_enabled if self.enabled else r.drives_disabled):
+            return True
+        if ctx.now - self.since_s > MOVE_AT_MOST_S:
+            raise MoveFailedError(f"not at a stand with drives {'on' if self.enabled else 'off'}: {r.drive_fault}")
+        return False
+
+
+class PutOn:
+    """Stand without power, ask a person to put a specimen on, then zero the sensors."""
+
+    def __init__(self, step: Mount, title: str) -> None:
+        """``title``: what the person is asked."""
+        self.mount = step
+        self.stand = Standstill(enabled=False)
+        self.ask = Ask(title)
+        self.answered = False
+        self._sums: dict[str, list[float]] = {}
+        self._count = 0
+        self._zero_s = nan
+
+    def resume(self, ctx: PlainContext) -> None:
+        """Come to a stand anew."""
+        self.stand = Standstill(enabled=False)
+
+    def step(self, ctx: PlainContext) -> bool:
+        """Done when it is on and zeroed."""
+        if not self.answered:
+            if not self.stand.step(ctx) or not self.ask.step(ctx):
+                return False
+            self.answered = True
+            self._put_on(ctx)
+        return self._zero(ctx)
+
+    def _put_on(self, ctx: PlainContext) -> None:
+        one = self.mount
+        ctx.attendant.install(one.specimen, one.compound)
+        ctx.mounted, ctx.readings.slid_m = one, 0.0
+        ctx.journal.piece_mounted(
+            PieceInfo(one.piece, one.specimen, one.replicate, one.compound, ctx.now, nan, nan, updated_s=ctx.now)
+        )
+        self._zero_s = ctx.now
+
+    def _zero(self, ctx: PlainContext) -> bool:
+        ctx.moving = True
+        if ctx.now - self._zero_s > MOVE_AT_MOST_S:
+            raise MoveFailedError("a sensor gives no valid readings to be zeroed by")
+        tared = {name: sensor for name, sensor in ctx.sensors.items() if sensor.profile.tare}
+        if all(sensor.valid and sensor.stamp_s > self._zero_s for sensor in tared.values()):
+            for name, sensor in tared.items():
+                sums = self._sums.setdefault(name, [0.0] * len(sensor.raw))
+                self._sums[name] = [a + b for a, b in zip(sums, sensor.raw, strict=True)]
+            self._count += 1
+        if ctx.now - self._zero_s < ZERO_S or not self._count:
+            return False
+        for name, sensor in tared.items():
+            zero = tuple(one / self._count for one in self._sums[name])
+            sensor.set_tare(zero)
+            words = ", ".join(f"{key} {value:.4g}" for key, value in zip(sensor.channels, zero, strict=True))
+            ctx.journal.event(ctx.now, "tare", f"{name}: {words}")
+        return True
+
+
+class SteadyRepeat:
+    """One repeat: at speed, settled, counted (``tester.machine.results.MeasuredRepeat``)."""
+
+    rolling_only = False
+    warming_k_s = nan
+    holdable_band_k = nan
+
+    def __init__(self, step: ConditionStep, speeds: Mapping[str, float], settle_s: float, table: Quantities) -> None:
+        """``speeds``: of the drives; ``settle_s``: from being at speed to the first sample that counts."""
+        self.condition = step
+        self.speeds = speeds
+        self.settle_s = settle_s
+        self.counter = BlockCounter(table)
+        self.ending: Ending | None = None
+        self.detail = ""
+        self._since_s = self._settled_s = nan
+
+    def step(self, ctx: PlainContext) -> bool:
+        """Advance by one scan; done when it has its samples, or gets none."""
+        ctx.moving = True
+        ctx.demand.speeds.update(self.speeds)
+        if self._since_s != self._since_s:
+            self._since_s = ctx.now
+        if not ctx.burst:
+            return self._settle(ctx)
+        if self.counter.add(ctx.sample) is not None:
+            self._since_s = ctx.now
+            window, alone = self.condition.window, self.condition.repeats <= ALONE
+            if collected(self.counter, window.revolutions, window.seconds, window.extend_to, alone=alone):
+                self.ending = Ending.COMPLETE
+        if self.ending is None and ctx.now - self._since_s > BLIND_S:
+            self.ending, self.detail = Ending.INCOMPLETE, f"nothing has counted for {BLIND_S:g} s"
+        ctx.progress.revolutions = float(len(self.counter.blocks))
+        return self.ending is not None
+
+    def _settle(self, ctx: PlainContext) -> bool:
+        ctx.progress.phase = "settle"
+        if not ctx.at_speed():
+            self._settled_s = nan
+            if ctx.now - self._since_s > MOVE_AT_MOST_S:
+                raise MoveFailedError("the drives do not get to their speed")
+            return False
+        if self._settled_s != self._settled_s:
+            self._settled_s = ctx.now
+        if ctx.now - self._settled_s >= self.settle_s:
+            ctx.burst, ctx.progress.burst, ctx.progress.phase, self._since_s = 1, 1, "slide", ctx.now
+        return False
+
+
+class PlainResults(StoredResults[PlainContext]):
+    """Results of a plain machine."""
+
+    def mounted(self, ctx: PlainContext) -> int:
+        """Return the number of the specimen that is on."""
+        return ctx.mounted.piece if ctx.mounted is not None else 0
+
+    def record_mounted(self, ctx: PlainContext) -> None:
+        """Put on record how far it has slid."""
+        if ctx.mounted is not None:
+            self.recorder.piece_state(ctx.mounted.piece, nan, ctx.readings.slid_m, ctx.now)
+
+
+class MeasureSteady:
+    """One condition: its repeats from standstill to standstill, each committed before the next begins."""
+
+    def __init__(self, step: ConditionStep, results: PlainResults, speeds: SpeedsOf, settle_s: float) -> None:
+        """``speeds``: what the condition demands of the drives."""
+        self.condition = step
+        self.results = results
+        self.speeds = speeds
+        self.settle_s = settle_s
+        self.repeat = results.repeats_done(step)
+        self.voided = 0
+        """Attempts at the present repeat that a hold cut off."""
+        self.key = 0
+        self.stand = Standstill(enabled=True)
+        self.measuring: SteadyRepeat | None = None
+        self.outcome: RepeatOutcome | None = None
+
+    def resume(self, ctx: PlainContext) -> None:
+        """Do a repeat again that a hold has cut off."""
+        self.stand = Standstill(enabled=True)
+        if self.outcome is None and self.measuring is not None:
+            self.results.void_repeat(ctx, self.key, "held by the operator")
+            ctx.journal.event(ctx.now, "repeat", f"repeat {self.repeat}: void, held by the operator")
+            self.measuring = None
+            self.repeat -= 1
+            self.voided += 1
+
+    def step(self, ctx: PlainContext) -> bool:
+        """Advance by one scan; done when the condition is committed."""
+        progress = ctx.progress
+        progress.condition, progress.repeat = self.condition.condition, self.repeat
+        progress.repeats = max(self.condition.repeats, self.repeat)
+        if self.measuring is not None and self.outcome is None:
+            if self.measuring.step(ctx):
+                self._finish(ctx, self.measuring)
+            return False
+        if not self.stand.step(ctx):
+            return False
+        if self.outcome is None:
+            over = self.results.over(self.condition)
+            return self._close(ctx, over) if over is not None else self._begin(ctx)
+        if not self.outcome.ticket.done:
+            return False
+        self.measuring = self.outcome = None
+        self.voided = 0
+        if self.results.another(self.condition):
+            return self._begin(ctx)
+        return self._close(ctx, ConditionEnd())
+
+    def _begin(self, ctx: PlainContext) -> bool:
+        step = self.condition
+        self.repeat += 1
+        attempt = self.results.attempt(step, self.repeat) + self.voided
+        ctx.attendant.begin_repeat(step.row, self.repeat, attempt)
+        ctx.repeat_key = self.key = self.results.begin_repeat(ctx, step, self.repeat, attempt)
+        speeds = self.speeds(step.setpoint, ctx.readings)
+        self.measuring = SteadyRepeat(step, speeds, self.settle_s, ctx.quantities)
+        return False
+
+    def _finish(self, ctx: PlainContext, measured: SteadyRepeat) -> None:
+        self.outcome = self.results.finish_repeat(ctx, self.condition, self.key, self.repeat, measured)
+        ctx.repeat_key = ctx.burst = 0
+        self.stand = Standstill(enabled=True)
+        ctx.journal.event(ctx.now, "repeat", f"repeat {self.repeat}: {self.outcome.text}")
+
+    def _close(self, ctx: PlainContext, end: ConditionEnd) -> bool:
+        ctx.journal.event(ctx.now, "condition", self.results.finish_condition(ctx, self.condition, end))
+        return True
+
+
+class PlainProcedures(Procedures[PlainContext]):
+    """Which activity serves which step."""
+
+    def __init__(self, part: PlainPart, results: PlainResults, speeds: SpeedsOf) -> None:
+        """``speeds``: the kind's word for what a condition demands."""
+        self.part = part
+        self.results = results
+        self.speeds = speeds
+
+    def title(self, step: Step) -> str:
+        """Return a line that says what a step does."""
+        return self.part.title(step)
+
+    def activity(self, step: Step, to_come: Sequence[Step], ctx: PlainContext) -> Activity[PlainContext]:
+        """Return what serves a step."""
+        if isinstance(step, Mount):
+            return PutOn(step, self.part.title(step))
+        if isinstance(step, ConditionStep):
+            return MeasureSteady(step, self.results, self.speeds, self.part.settle_s)
+        raise TypeError(f"{step.kind}: no step of this machine")
+
+    def measuring(self, activity: Activity[PlainContext]) -> bool:
+        """Tell whether repeats are made."""
+        return isinstance(activity, MeasureSteady)

@@ -1,0 +1,291 @@
+"""The interlock rows that every plain machine has, and what they look at. A kind puts its own rows before them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any, Final, Generic, TypeVar
+
+from tester.machine.inputs import ScanInputs
+from tester.machine.interlock_table import InterlockTable
+from tester.machine.plain.image import PlainDemand, PlainReadings
+from tester.machine.row import ACK, ENDING, FAST, LOADED, POWER_OFF, REPAIR, Compared, Interlock
+from tester.machine.state import ControlState, Mode
+from tester.machine.wires import (
+    DEVICE_REFUSED,
+    INPUTS_STALE,
+    LINE_NOISY,
+    STALE_CAN_S,
+    STALE_CAN_SCANS,
+    WARNINGS,
+    drive_data_allowed_s,
+)
+from tester.machine.wires import ROWS as WIRE_ROWS
+from tester.rig.parameter import NOT_NEGATIVE, Direction, Parameter
+from tester.rig.plain import PlainRig
+
+ReadingsT = TypeVar("ReadingsT", bound=PlainReadings)
+_WORKING: Final = frozenset({Mode.RUN, Mode.HOLD})
+
+
+@dataclass(frozen=True, slots=True)
+class PlainLimits:
+    """What conditions compare with beside their parameters, from the rig file's other sections."""
+
+    heartbeat_s: float
+    """``can.drive_heartbeat``."""
+    ramp_s: float
+    quick_stop_s: float
+    """From its greatest speed every drive stands after this, by its ramp, and by its quick stop."""
+
+
+@dataclass(slots=True)
+class PlainInputs(ScanInputs, Generic[ReadingsT]):
+    """One scan, as the rows of a plain machine see it. ``loaded`` stays true: a contact cannot be excluded."""
+
+    rig: PlainRig = field(kw_only=True)
+    readings: ReadingsT = field(kw_only=True)
+    demand: PlainDemand = field(default_factory=PlainDemand)
+    limits: PlainLimits = field(init=False)
+    confirmed: bool = False
+    """Every drive has been in operation since they were last wanted to be."""
+
+    def __post_init__(self) -> None:
+        """Take over what conditions compare with."""
+        axes = self.rig.axes.values()
+        self.parameters = self.rig.values()
+        self.limits = PlainLimits(
+            self.rig.can.drive_heartbeat_s,
+            max(one.max_speed / one.deceleration for one in axes),
+            max(one.max_speed / one.quick_stop_deceleration for one in axes),
+        )
+
+    def look(self, state: ControlState[Any], demand: PlainDemand, readings: ReadingsT, scan_s: float) -> None:
+        """Take this scan's demand and readings."""
+        self.readings, self.demand = readings, demand
+        self.note_times(state, readings.now_s, scan_s)
+        self.attended = demand.attended
+        working = state.mode in _WORKING
+        if not (demand.enabled and working):
+            self.confirmed = False
+        elif readings.drives_enabled:
+            self.confirmed = True
+        if self.confirmed or not working:
+            self.unpowered = False
+        elif not demand.enabled and readings.drives_disabled:
+            self.unpowered = True
+
+
+AnyInputs = PlainInputs[PlainReadings]
+
+
+def _drive_data_old(v: AnyInputs) -> bool:
+    r = v.readings
+    return v.demand.enabled and r.drives_enabled and not (r.now_s - r.drives_at_s <= drive_data_allowed_s(v))
+
+
+DRIVE_DATA_STALE: Final = Interlock(
+    name="drive data stale",
+    cause="no fresh drive data",
+    level="age > stale_can_scans periods, or > stale_can",
+    condition=_drive_data_old,
+    compared=lambda v: Compared(v.readings.now_s - v.readings.drives_at_s, drive_data_allowed_s(v), "s"),
+    parameters=(STALE_CAN_SCANS, STALE_CAN_S),
+    reaction=FAST,
+    reset=ACK,
+)
+
+DROPPED_DELAY_S: Final = Parameter(
+    "dropped_delay_s", "s", "50 ms", "a drive leaves operation by itself, or has power at rest [A]", NOT_NEGATIVE,
+    direction=Direction.LOWER, hardest="100 ms",
+    because="one scan of 20 Hz may see a drive on its way; two may not",
+)  # fmt: skip
+
+
+def _dropped_out(v: AnyInputs) -> bool:
+    return v.confirmed and v.demand.enabled and not v.readings.drives_enabled
+
+
+DRIVE_DROPPED_OUT: Final = Interlock(
+    name="drive dropped out",
+    cause="a drive left operation by itself (local control, torque off)",
+    level="not OPERATION_ENABLED although wanted",
+    condition=_dropped_out,
+    delay=DROPPED_DELAY_S,
+    reaction=FAST,
+    reset=ACK,
+)
+
+OVERSPEED_SHARE: Final = Parameter(
+    "overspeed_share", "1", "5 %", "above its greatest speed by this share [A]", NOT_NEGATIVE,
+    direction=Direction.LOWER, hardest="10 %",
+    because="a drive that follows its ramp does not overshoot by a tenth",
+)  # fmt: skip
+OVERSPEED_DELAY_S: Final = Parameter(
+    "overspeed_delay_s", "s", "50 ms", "... for this long [A]", NOT_NEGATIVE,
+    direction=Direction.LOWER, hardest="100 ms",
+    because="a runaway drive gains with every scan that waits",
+)  # fmt: skip
+
+
+def _fastest(v: AnyInputs) -> float:
+    """Return the greatest speed as a share of what its axis may do; NaN where one is not known."""
+    shares = [
+        abs(v.readings.drives.get(name, float("nan"))) / axis.max_speed
+        for name, axis in v.rig.axes.items()
+    ]
+    return max(shares, key=lambda share: (share != share, share))
+
+
+def _too_fast(v: AnyInputs) -> bool:
+    return not v.readings.drives_disabled and not (_fastest(v) <= 1.0 + v.parameters[OVERSPEED_SHARE])
+
+
+OVERSPEED: Final = Interlock(
+    name="overspeed",
+    cause="a drive is faster than its axis may be",
+    level="speed > max_speed + overspeed_share",
+    condition=_too_fast,
+    compared=lambda v: Compared(_fastest(v), 1.0 + v.parameters[OVERSPEED_SHARE], "1"),
+    parameters=(OVERSPEED_SHARE,),
+    delay=OVERSPEED_DELAY_S,
+    reaction=FAST,
+    reset=REPAIR,
+)
+
+STALE_SENSOR_S: Final = Parameter(
+    "stale_sensor_s", "s", "200 ms", "age of what a sensor measures; what it calls invalid is too old at once",
+    direction=Direction.LOWER, hardest="500 ms",
+    because="a row that looks at a sensor is blind that long",
+)  # fmt: skip
+
+
+def _sensor_silent(v: AnyInputs) -> bool:
+    r = v.readings
+    return not (r.now_s - r.sensors_at_s <= v.parameters[STALE_SENSOR_S])
+
+
+SENSOR_SILENT: Final = Interlock(
+    name="sensor silent",
+    cause="a sensor does not answer, or says that it is not valid",
+    level="age > stale_sensor, or invalid",
+    condition=_sensor_silent,
+    compared=lambda v: Compared(v.readings.now_s - v.readings.sensors_at_s, v.parameters[STALE_SENSOR_S], "s"),
+    parameters=(STALE_SENSOR_S,),
+    when=LOADED,
+    unseen=_sensor_silent,
+    reaction=FAST,
+    reset=ACK,
+)
+
+STOP_MARGIN_S: Final = Parameter(
+    "stop_margin_s", "s", "500 ms", "drives may stand this much later than their ramps say [A]",
+    direction=Direction.LOWER, hardest="1 s",
+    because="a drive that does not stop loses its power after two of these",
+)  # fmt: skip
+
+
+def _turns_after(v: AnyInputs, since_s: float, ramp_s: float) -> bool:
+    late = v.stopped_s >= 0.0 and not (v.readings.now_s - since_s <= ramp_s + v.parameters[STOP_MARGIN_S])
+    return late and not v.readings.standing
+
+
+NOT_STOPPING: Final = Interlock(
+    name="not stopping",
+    cause="a drive turns longer than its ramp allows",
+    level="turning at max_speed / deceleration + stop_margin after the stop",
+    condition=lambda v: _turns_after(v, v.stop.began_s, v.limits.ramp_s),
+    compared=lambda v: Compared(v.stopped_s, v.limits.ramp_s + v.parameters[STOP_MARGIN_S], "s"),
+    parameters=(STOP_MARGIN_S,),
+    when=ENDING,
+    reaction=FAST,
+    reset=REPAIR,
+)
+QUICK_STOP_FAILED: Final = Interlock(
+    name="quick stop failed",
+    cause="a drive turns longer than its quick stop allows",
+    level="turning at max_speed / quick-stop deceleration + stop_margin after it began",
+    condition=lambda v: _turns_after(v, v.stop.fast_s, v.limits.quick_stop_s),
+    compared=lambda v: Compared(
+        v.readings.now_s - v.stop.fast_s, v.limits.quick_stop_s + v.parameters[STOP_MARGIN_S], "s"
+    ),
+    parameters=(STOP_MARGIN_S,),
+    when=ENDING,
+    reaction=POWER_OFF,
+    reset=REPAIR,
+)
+
+STOP_TIMEOUT_S: Final = Parameter(
+    "stop_timeout_s", "s", "10 s", "a stop that has not ended by then takes the power off and latches [A]",
+    direction=Direction.LOWER, hardest="15 s",
+    because="every part of a stop has been escalated by then; nothing gets better by waiting longer",
+)  # fmt: skip
+
+
+def _endless(v: AnyInputs) -> bool:
+    return v.stopped_s >= 0.0 and not (v.readings.now_s - v.mode_since_s <= v.parameters[STOP_TIMEOUT_S])
+
+
+STOP_NOT_ENDED: Final = Interlock(
+    name="stop not ended",
+    cause="a stop has not come to standstill",
+    level="stop_timeout after it began",
+    condition=_endless,
+    compared=lambda v: Compared(v.readings.now_s - v.mode_since_s, v.parameters[STOP_TIMEOUT_S], "s"),
+    parameters=(STOP_TIMEOUT_S,),
+    when=ENDING,
+    reaction=POWER_OFF,
+    reset=REPAIR,
+)
+
+REST_AFTER_S: Final = Parameter(
+    "rest_after_s", "s", "500 ms", "data of a drive at rest that are older say nothing [A]",
+    direction=Direction.LOWER, hardest="1 s",
+    because="the scan at rest comes ten times a second",
+)  # fmt: skip
+
+
+def _moving_at_rest(v: AnyInputs) -> bool:
+    r = v.readings
+    known = r.now_s - r.drives_at_s <= v.parameters[REST_AFTER_S]
+    if v.resting or v.demand.enabled:
+        return not (known and r.standing)
+    return v.unpowered and not (known and r.drives_disabled)
+
+
+MOVING_AT_REST: Final = Interlock(
+    name="moving at rest",
+    cause="a drive turns, or has power, although everything is to rest",
+    level="not known to stand; in a run: power that is not wanted",
+    condition=lambda v: (v.resting or v.unpowered) and _moving_at_rest(v),
+    parameters=(REST_AFTER_S,),
+    delay=DROPPED_DELAY_S,
+    when=ENDING,
+    at_rest=lambda v: not v.readings.drives_disabled,
+    reaction=POWER_OFF,
+    reset=REPAIR,
+)
+
+HOLD_AT_MOST_S: Final = Parameter(
+    "hold_at_most_s", "s", "60 min", "a hold ends in a controlled stop after this [A]",
+    direction=Direction.LOWER, hardest="120 min",
+    because="nobody is expected to attend to a powered machine for longer than that",
+)  # fmt: skip
+ACK_WAIT_S: Final = Parameter(
+    "ack_wait_s", "s", "1 s", "an acknowledged drive has reset its fault by then, or it is refused [A]",
+)  # fmt: skip
+OPERATION: Final = (HOLD_AT_MOST_S, ACK_WAIT_S)
+ABOUT: Final = "holds and acknowledgements"
+"""Parameters of no row, and what they are for."""
+
+ROWS: Final[tuple[Interlock, ...]] = (
+    INPUTS_STALE, DEVICE_REFUSED, LINE_NOISY, DRIVE_DATA_STALE, DRIVE_DROPPED_OUT, OVERSPEED, NOT_STOPPING,
+    QUICK_STOP_FAILED, STOP_NOT_ENDED, MOVING_AT_REST,
+)  # fmt: skip
+
+
+def plain_table(*own: Interlock) -> InterlockTable:
+    """Return the interlock table of a kind with rows of its own.
+
+    A sensor that says nothing is told as such: its row comes before those that look at what it measures.
+    """
+    return InterlockTable((*WIRE_ROWS, SENSOR_SILENT, *own, *ROWS, *WARNINGS), OPERATION)

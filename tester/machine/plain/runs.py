@@ -1,0 +1,126 @@
+"""A plain machine, for a run (``tester.machine.run_parts.KindRun``). A kind says its twin, its table and its speeds."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from math import nan
+from pathlib import Path
+
+from tester.analysis.kelvin import KnownSlope
+from tester.analysis.terms import Term
+from tester.axes import Setpoint
+from tester.machine.connect import Connector
+from tester.machine.engine import Engine
+from tester.machine.executor import Executor
+from tester.machine.interlock_table import InterlockTable
+from tester.machine.plain.arming import PlainArming
+from tester.machine.plain.context import PlainAttendant, PlainContext, PlainNobody
+from tester.machine.plain.control import PlainControl
+from tester.machine.plain.devices import PlainDevices
+from tester.machine.plain.image import PlainReadings
+from tester.machine.plain.procedures import PlainProcedures, PlainResults
+from tester.machine.ports import Ports
+from tester.machine.prompts import Prompts
+from tester.machine.run import Run
+from tester.machine.run_parts import Part
+from tester.machine.sampler import Sampler
+from tester.machine.served import History, Left
+from tester.recipe.plain import Mount, PlainPart
+from tester.recipe.plan import Plan
+from tester.rig import Rig
+from tester.rig.plain import PlainRig
+from tester.rig.sensors import quantities_on
+from tester.screen import Check
+from tester.store.recorder import Recorder
+from tester.store.records import Calibration
+from tester.store.resume import ResumePoint
+
+
+@dataclass(frozen=True, slots=True)
+class NoHistory:
+    """Earlier runs make nothing known of a plain machine."""
+
+    def checks(self, rig: Rig, left: Left | None, now_utc: str) -> tuple[Check, ...]:
+        """Return no line."""
+        return ()
+
+
+class PlainRuns:
+    """Builds runs of a plain machine. A kind inherits from it."""
+
+    plant: str
+    """Where the twin is: ``package.module:OBJECT`` (sim.machines.find)."""
+    part: PlainPart
+    table: InterlockTable
+
+    def readings(self, rig: PlainRig) -> PlainReadings:
+        """Return the kind's readings before anything was read."""
+        raise NotImplementedError
+
+    def speeds(self, setpoint: Setpoint, readings: PlainReadings) -> Mapping[str, float]:
+        """Return what a condition demands of the drives; asked for each repeat as it begins."""
+        raise NotImplementedError
+
+    def split(self, plan: Plan) -> tuple[Part, ...]:
+        """Return a part for each specimen that is put on."""
+        starts = [place for place, step in enumerate(plan.steps) if isinstance(step, Mount)] or [0]
+        parts: list[Part] = []
+        for number, (begin, end) in enumerate(zip(starts, [*starts[1:], len(plan.steps)], strict=True), start=1):
+            parts.append(Part(number, replace(plan, steps=plan.steps[begin:end]), number))
+        return tuple(parts)
+
+    def build(
+        self,
+        rig: Rig,
+        plan: Plan,
+        ports: Ports,
+        attendant: PlainAttendant,
+        recorder: Recorder,
+        prompts: Prompts,
+        point: ResumePoint | None = None,
+        history: History | None = None,
+    ) -> Run:
+        """Return a run that is ready to be ticked."""
+        own, quantities = PlainRig.of(rig), quantities_on(rig)
+        devices = PlainDevices(own, ports)
+        readings = self.readings(own)
+        readings.channels = [nan] * len(quantities.further)
+        control = PlainControl(own, self.table, readings)
+        ctx = PlainContext(own, readings, prompts, recorder, attendant, quantities, devices.own)
+        results = PlainResults(recorder)
+        if point is not None:
+            results.earlier, results.pool = dict(point.conditions), point.pool
+        executor = Executor(plan, PlainProcedures(self.part, results, self.speeds))
+        engine = Engine(devices, control, executor, ctx, Sampler(recorder, quantities))
+        return Run(Connector(devices, own, PlainArming(devices, own), own.arming.listen_s), engine)
+
+    def nobody(self) -> PlainNobody:
+        """Return the attendant of a real rig."""
+        return PlainNobody()
+
+    def mount(self, attendant: PlainAttendant, compound: str) -> None:
+        """Put a new specimen on."""
+        attendant.install(0, compound)
+
+    def history(self, runs: Path, rig: Rig) -> NoHistory:
+        """Return that nothing is known of earlier runs."""
+        return NoHistory()
+
+    def calibration(self, rig: Rig) -> Iterator[Calibration]:
+        """Yield nothing beside the figures of devices and drives."""
+        yield from ()
+
+    def terms(self, rig: Rig) -> tuple[Term, ...]:
+        """Return nothing beside the repeats: what its chain may be off by, a kind of one's own says."""
+        return ()
+
+    def known_slopes(self, plan: Plan) -> tuple[KnownSlope, ...]:
+        """Return that nothing is published of its rubbers."""
+        return ()
+
+    def store_state(self, run: Run, recorder: Recorder, now_s: float) -> None:
+        """Store how far the specimen has slid."""
+        ctx: PlainContext = run.engine.ctx
+        if ctx.mounted is not None:
+            recorder.piece_state(ctx.mounted.piece, nan, ctx.readings.slid_m, now_s)

@@ -1,0 +1,168 @@
+"""A plain machine, for a service (``tester.machine.served.ServedKind``): its screen, and its drives by hand."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Final
+
+from tester.axes import Axes
+from tester.machine.engine import Engine
+from tester.machine.manual import NAME, ManualExecutor
+from tester.machine.plain.context import GATE_SPEED, PlainAttendant, PlainContext
+from tester.machine.plain.runs import PlainRuns
+from tester.machine.ports import Ports
+from tester.machine.prompts import Prompts
+from tester.machine.served import ByHand, History, Left, News, Wanted
+from tester.machine.wires import STALE_INPUTS_S
+from tester.quantities import Quantities
+from tester.recipe.plan import Plan, Step
+from tester.rig import Rig
+from tester.rig.plain import PlainRig
+from tester.screen import AxisView, Check, Gate, HandAxis, MachineView, PlotView, SoakView, trend_columns
+from tester.store.reader import RunReader
+from tester.store.recorder import Recorder
+
+STEPS_TO_TOP: Final = 20
+"""By hand a drive gets to its greatest speed in this many steps [A]."""
+
+
+@dataclass(frozen=True, slots=True)
+class PlainLeft:
+    """What a run left on a plain machine: a specimen that nobody goes on with."""
+
+    known: bool
+
+    def usable(self, rig: Rig) -> bool:
+        """Tell that another one is taken to be on."""
+        return False
+
+
+class PlainPanel:
+    """One run on a plain machine, to look at."""
+
+    def __init__(self, engine: Engine) -> None:
+        """Look only."""
+        self.engine = engine
+        self._ctx: PlainContext = engine.ctx
+        self._stale_s = self._ctx.rig.values()[STALE_INPUTS_S]
+
+    def news(self) -> dict[str, News]:
+        """Return the news of the drives, as "can", and of each of the machine's own sensors."""
+        r = self._ctx.readings
+        found = {"can": News(r.drives_at_s, not r.drive_fault, self._stale_s)}
+        return found | {
+            name: News(one.stamp_s, one.valid, one.stale_s) for name, one in self._ctx.sensors.items()
+        }  # fmt: skip
+
+    def wanted(self) -> dict[str, Wanted]:
+        """Return nothing: a kind with setpoints on its screen says them."""
+        return {}
+
+    def gates(self) -> tuple[Gate, ...]:
+        """Return the gate of the speeds."""
+        return (Gate("speed", not self._ctx.gate & GATE_SPEED),)
+
+    def soak(self, now: float) -> SoakView | None:
+        """Return that nothing is soaked."""
+        return None
+
+    def checks(self) -> tuple[Check, ...]:
+        """Return what the connected rig says of its readiness."""
+        r = self._ctx.readings
+        return (
+            Check("safety chain", r.safety_chain, "closed" if r.safety_chain else "open"),
+            Check("guard closed", r.guard_closed, "" if r.guard_closed else "the guard is open"),
+        )
+
+    def mounted(self) -> tuple[int, str]:
+        """Return the specimen that is on."""
+        one = self._ctx.mounted
+        return (one.specimen, one.compound) if one is not None else (0, "")
+
+
+class SpeedHand:
+    """A person gives drives speeds, in steps."""
+
+    busy = ""
+    tare_text = ""
+
+    def __init__(self, tops: Mapping[str, float]) -> None:
+        """``tops``: the greatest speed of each drive, in the unit of its axis."""
+        self.tops = tops
+        self.wanted = dict.fromkeys(tops, 0)
+
+    def demand(self, ctx: PlainContext) -> None:
+        """Demand what was asked for so far."""
+        for name, steps in self.wanted.items():
+            ctx.demand.speeds[name] = self.tops[name] * steps / STEPS_TO_TOP
+
+    def step(self, ctx: PlainContext, axis: str, sign: float) -> str:
+        """Take one step of a drive, up or down; return "" or why not."""
+        if axis not in self.wanted:
+            return f"there is no drive {axis} (expected {', '.join(self.wanted)})"
+        self.wanted[axis] = max(-STEPS_TO_TOP, min(STEPS_TO_TOP, self.wanted[axis] + (1 if sign > 0.0 else -1)))
+        return ""
+
+    def tare(self, ctx: PlainContext) -> str:
+        """Refuse: a zero is taken when a specimen is put on."""
+        return "sensors are zeroed when a specimen is put on"
+
+
+class PlainServed:
+    """Answers what a service asks of a plain kind."""
+
+    def __init__(
+        self,
+        kind: str,
+        runs: PlainRuns,
+        axes: Axes,
+        quantities: Quantities,
+        drives: Mapping[str, str],
+        plots: tuple[PlotView, ...] = (),
+        compound: str = "1#",
+    ) -> None:
+        """``drives``: what people call each; ``plots``: trends to draw; ``compound``: of a specimen by hand."""
+        self.runs = runs
+        self.quantities = quantities
+        self.compound = compound
+        step = f"a {STEPS_TO_TOP}th of its greatest speed a step"
+        self.machine = MachineView(
+            kind,
+            trend_columns(quantities),
+            plots,
+            hand=tuple(HandAxis(name, title, step) for name, title in drives.items()),
+            axes=tuple(AxisView(one.name, one.unit, one.column, one.title, one.word, one.default) for one in axes),
+            moves=" and ".join(drives.values()),
+        )
+
+    def title(self, step: Step) -> str:
+        """Return a line that says what a step does."""
+        return self.runs.part.title(step)
+
+    def panel(self, engine: Engine) -> PlainPanel:
+        """Look at a run."""
+        return PlainPanel(engine)
+
+    def alone(self, rig: Rig) -> str:
+        """Return what the drives do by themselves."""
+        if rig.simulated:
+            return "The simulated rig was part of the service and is gone with it."
+        waits = {name: 1e3 * axis.consumer_heartbeat_s for name, axis in rig.drives().items()}
+        stops = ", ".join(f"{name}: {ms:.0f} ms" for name, ms in waits.items())
+        return f"Without heartbeat each drive makes a quick stop by itself ({stops})."
+
+    def left(self, reader: RunReader, name: str) -> PlainLeft:
+        """Return whether a run put a specimen on."""
+        return PlainLeft(any(True for _ in reader.pieces()))
+
+    def by_hand(
+        self, rig: Rig, ports: Ports, attendant: PlainAttendant, record: Recorder, left: Left | None, history: History
+    ) -> ByHand:
+        """Put a person in the place of a recipe."""
+        own = PlainRig.of(rig)
+        run = self.runs.build(own, Plan(NAME, (), (), 1), ports, attendant, record, Prompts())
+        attendant.install(1, self.compound)
+        executor = ManualExecutor(SpeedHand({name: axis.max_speed for name, axis in own.axes.items()}))
+        run.engine.executor = executor
+        return ByHand(run, executor, "the specimen is taken to be a new one")

@@ -1,0 +1,27 @@
+"""The wires to a rig, as a run is built on them: simulated, or real."""
+
+from __future__ import annotations
+
+from contextlib import ExitStack
+from dataclasses import dataclass
+
+from drivers.ports import CanPort, LinePort
+from tester.base.pace import Pace
+
+
+@dataclass(frozen=True, slots=True)
+class Ports:
+    """The wires to a rig: one CAN bus, and the Modbus lines by their names in the rig file.
+
+    Real ones come with the clock that stamps what arrives on them (``pace``) and are closed by ``opened``.
+    """
+
+    can: CanPort
+    lines: dict[str, LinePort]
+    pace: Pace | None = None
+    opened: ExitStack | None = None
+
+    def close(self) -> None:
+        """Give the wires back."""
+        if self.opened is not None:
+            self.opened.close()

@@ -1,0 +1,188 @@
+"""What every machine shows before a run: its drives follow, and stop without our heartbeat.
+
+CiA 301 starts watching a heartbeat only with the first one it hears, and a wrong parameter shows only when it is
+needed: so the watchdog is tried out at creep speed, with nothing loaded. How a machine creeps is its kind's.
+"""
+
+from __future__ import annotations
+
+from enum import Enum
+from math import inf, nan
+
+from drivers.cia402 import Goal, State
+from drivers.servo import ServoDrive
+from tester.machine.devices import DeviceList
+
+ENABLE_S = 5.0
+"""Brake release and power stage [A]."""
+HEARTBEAT_LOST = 0x8130
+"""EMCY code of a heartbeat that stays away (CiA 301, table 26)."""
+STILL_S = 1.5
+"""From the end of the withheld heartbeat to standstill, at most [A]."""
+RESTORE_S = 3.0
+"""Faults are reset and every drive is off by then [A]."""
+RESET_EVERY_S = 0.2
+
+
+class ProofStage(Enum):
+    """Where a proof is."""
+
+    ENABLE = "enable the drives"
+    MOVE = "let them creep"
+    WITHHOLD = "withhold the heartbeat"
+    STILL = "wait for standstill"
+    RESTORE = "reset and switch off"
+    DONE = "done"
+
+
+class WatchdogProof:
+    """Goes through the stages, one call of ``step`` a scan. ``failure`` says what was not shown; "" while all is."""
+
+    def __init__(self, devices: DeviceList, *, follow: bool, watchdog: bool, withhold_s: float) -> None:
+        """Nothing moves before the first ``step``.
+
+        ``follow``: drives are to be seen to follow; ``watchdog``: to stop by themselves when our heartbeat is withheld
+        for ``withhold_s``.
+        """
+        self.devices = devices
+        self.follow, self.watchdog, self.withhold_s = follow, watchdog, withhold_s
+        self.failure = ""
+        self.stage = ProofStage.ENABLE if follow or watchdog else ProofStage.RESTORE
+        self.since_s = nan
+        self.reset_s = -inf
+        self.reported: set[str] = set()
+
+    # -- what a kind says -----------------------------------------------------------------------------------
+
+    def begin(self, now: float) -> None:
+        """Begin to creep: every drive is in operation."""
+        raise NotImplementedError
+
+    def move(self, now: float, elapsed: float) -> bool:
+        """Go on for ``elapsed`` s since ``begin``; tell whether the drives creep, and were seen to follow if asked."""
+        raise NotImplementedError
+
+    def stand(self) -> None:
+        """Command zero to every drive."""
+        raise NotImplementedError
+
+    def still(self) -> bool:
+        """Tell whether everything stands."""
+        raise NotImplementedError
+
+    # ---------------------------------------------------------------------------------------------------------
+
+    @property
+    def done(self) -> bool:
+        """Everything has been shown, or something has not."""
+        return self.stage is ProofStage.DONE or bool(self.failure)
+
+    @property
+    def provokes(self) -> bool:
+        """Drives are made to stop by themselves, or have not been reset yet after that."""
+        if self.stage is ProofStage.RESTORE:
+            return self.watchdog
+        return self.stage in (ProofStage.WITHHOLD, ProofStage.STILL)
+
+    def watchdogs(self, shown: list[str], left_out: list[str]) -> None:
+        """Sort the drives' watchdogs into those that were shown, and those that were not."""
+        (shown if self.follow else left_out).append("drives follow")
+        for drive in self.devices.drives:
+            proven = drive.config.name in self.reported
+            (shown if proven else left_out).append(f"{drive.config.name} stops without our heartbeat")
+
+    def step(self, now: float) -> None:
+        """Advance by one scan at ``now`` s."""
+        if self.since_s != self.since_s:
+            self.since_s = now
+        for drive in self.devices.drives:
+            for emergency in drive.take_emergencies():
+                if emergency.code == HEARTBEAT_LOST and self.stage in (ProofStage.WITHHOLD, ProofStage.STILL):
+                    self.reported.add(drive.config.name)
+        if not self.failure:
+            self._stage(now, now - self.since_s)
+        if self.failure:
+            self.stop()
+
+    def stop(self) -> None:
+        """Bring every drive to standstill and power off; our heartbeat is there again."""
+        self.devices.master.withhold_heartbeat = False
+        for drive in self.devices.drives:
+            drive.goal = Goal.DISABLED
+        self.stand()
+
+    def _stage(self, now: float, elapsed: float) -> None:
+        stage = self.stage
+        if stage is ProofStage.ENABLE:
+            self._enable(now, elapsed)
+        elif stage is ProofStage.MOVE:
+            if self.move(now, elapsed) and not self.failure:
+                self._moved(now)
+        elif stage is ProofStage.WITHHOLD:
+            self._withhold(now, elapsed)
+        elif stage is ProofStage.STILL:
+            if self.still():
+                self.enter(ProofStage.RESTORE, now)
+            elif elapsed > STILL_S:
+                self.failure = "a drive still turns after it lost our heartbeat"
+        elif stage is ProofStage.RESTORE:
+            self._restore(now, elapsed)
+
+    def enter(self, stage: ProofStage, now: float) -> None:
+        """Be in a stage from ``now`` on; a kind enters ``MOVE`` anew with each of its moves."""
+        self.stage = stage
+        self.since_s = now
+
+    def _enable(self, now: float, elapsed: float) -> None:
+        late: list[str] = []
+        for drive in self.devices.drives:
+            drive.goal = Goal.ENABLED
+            if drive.state is not State.OPERATION_ENABLED:
+                late.append(drive.config.name)
+        if not late:
+            self.enter(ProofStage.MOVE, now)
+            self.begin(now)
+        elif elapsed > ENABLE_S:
+            self.failure = f"not enabled after {ENABLE_S:g} s: {', '.join(late)}"
+
+    def _moved(self, now: float) -> None:
+        if not self.watchdog:
+            self.enter(ProofStage.RESTORE, now)
+            return
+        self.reported.clear()
+        self.devices.master.withhold_heartbeat = True
+        self.enter(ProofStage.WITHHOLD, now)
+
+    def _withhold(self, now: float, elapsed: float) -> None:
+        if elapsed < self.withhold_s:
+            return
+        self.devices.master.withhold_heartbeat = False
+        for drive in self._watched():
+            if drive.config.name not in self.reported or drive.state is State.OPERATION_ENABLED:
+                self.failure = (
+                    f"the {drive.config.name} drive did not stop with EMCY 0x8130 when our heartbeat was missing"
+                    f" for {self.withhold_s * 1000:g} ms (0x1016, 0x6007)"
+                )
+                return
+        self.stop()
+        self.enter(ProofStage.STILL, now)
+
+    def _watched(self) -> list[ServoDrive]:
+        return [drive for drive in self.devices.drives if drive.config.proves_watchdog]
+
+    def _restore(self, now: float, elapsed: float) -> None:
+        self.stop()
+        devices = self.devices
+        waiting = [
+            drive.config.name
+            for drive in devices.drives
+            if drive.emergency is not None or not drive.online or drive.state > State.READY_TO_SWITCH_ON
+        ]
+        if not waiting:
+            self.enter(ProofStage.DONE, now)
+        elif elapsed > RESTORE_S:
+            self.failure = f"not reset after the proof: {', '.join(waiting)}"
+        elif self.provokes and elapsed > RESET_EVERY_S and now - self.reset_s > RESET_EVERY_S:
+            self.reset_s = now
+            for drive in devices.drives:
+                drive.reset_fault()

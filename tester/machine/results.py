@@ -1,0 +1,304 @@
+"""From a measured repeat to a committed result: reduction and store behind the executor's one door."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from math import isfinite
+from typing import Generic, Protocol, TypeVar
+
+from tester.analysis.blocks import Block
+from tester.analysis.closest import Combining
+from tester.analysis.judge import ALONE, judge
+from tester.analysis.reduce import bursts_of, counted, reduce_repeat, without_value
+from tester.analysis.repeatability import Pool
+from tester.analysis.repeats import ConditionResult, combine_repeats, counting
+from tester.analysis.results import (
+    IMPRECISE,
+    NOT_JUDGED,
+    NOT_SHOWN,
+    ConditionStatus,
+    RepeatResult,
+    RepeatStatus,
+    flags_in,
+    joined,
+)
+from tester.axes import condition_words
+from tester.machine.context import AnyContext
+from tester.machine.measured import ConditionEnd, Ending, RepeatOutcome
+from tester.recipe.plan import ConditionStep, Plan
+from tester.recipe.settings import LEAST_REPEATS
+from tester.store.recorder import Recorder
+from tester.store.records import ConditionInfo
+from tester.store.resume import ConditionSoFar
+from tester.store.statements import Judged
+
+REPEAT_STATUS: dict[Ending, RepeatStatus] = {
+    Ending.CANNOT_HOLD: RepeatStatus.CANNOT_HOLD,
+    Ending.NOT_REACHED: RepeatStatus.NOT_REACHED,
+    Ending.ZERO_DRIFT: RepeatStatus.VOID,
+}
+"""Endings that leave no value, whatever was collected; the others are for the reduction to judge."""
+
+CONDITION_STATUS: dict[Ending, ConditionStatus] = {
+    Ending.CANNOT_HOLD: ConditionStatus.CANNOT_HOLD,
+    Ending.NOT_REACHED: ConditionStatus.NOT_REACHED,
+    Ending.ZERO_DRIFT: ConditionStatus.SKIPPED,
+}
+
+
+class CountedBlocks(Protocol):
+    """What a repeat has counted live."""
+
+    @property
+    def blocks(self) -> Sequence[Block]:
+        """The blocks, in order."""
+        ...
+
+
+class MeasuredRepeat(Protocol):
+    """A repeat that has ended, as the activity that measured it says."""
+
+    @property
+    def ending(self) -> Ending | None:
+        """How it ended."""
+        ...
+
+    @property
+    def detail(self) -> str:
+        """Why, in words."""
+        ...
+
+    @property
+    def counter(self) -> CountedBlocks:
+        """What was counted."""
+        ...
+
+    @property
+    def rolling_only(self) -> bool:
+        """It was a repeat without slip."""
+        ...
+
+    @property
+    def warming_k_s(self) -> float:
+        """How fast the surface warmed in contact, K/s; NaN where that was not seen."""
+        ...
+
+    @property
+    def holdable_band_k(self) -> float:
+        """The narrowest temperature band that could be held, K; NaN where that was not seen."""
+        ...
+
+
+ContextT = TypeVar("ContextT", bound=AnyContext)
+
+
+class StoredResults(Generic[ContextT]):
+    """Reduces repeats from the blocks counted live (the stored samples give the same ones), judges, commits."""
+
+    def __init__(self, recorder: Recorder, combining: Combining = "mean") -> None:
+        """``recorder``: the run's store; ``combining``: how the recipe combines repeats."""
+        self.recorder = recorder
+        self.combining: Combining = combining
+        self.condition = 0
+        """The condition that what follows is of."""
+        self.repeats: list[RepeatResult] = []
+        self.keys: list[int] = []
+        self.blocks: list[Sequence[Block]] = []
+        """Of each repeat, those that count."""
+        self.judgement = NOT_JUDGED
+        self.judged = 0
+        """Repeats that the judgement has seen."""
+        self.pool = Pool()
+        """Repeatability of the conditions that are over."""
+        self.earlier: dict[int, ConditionSoFar] = {}
+        """What earlier stretches of an interrupted run committed of conditions that were not over."""
+
+    def repeats_done(self, step: ConditionStep) -> int:
+        """Return how many repeats of a condition an earlier stretch of the run committed."""
+        earlier = self.earlier.get(step.condition)
+        return len(earlier.results) if earlier is not None else 0
+
+    def over(self, step: ConditionStep) -> ConditionEnd | None:
+        """Return how the last of these ended the condition; None where it goes on."""
+        earlier = self.earlier.get(step.condition)
+        if earlier is None:
+            return None
+        self._turn_to(step)
+        ending = next((e for e, status in REPEAT_STATUS.items() if status is earlier.over), None)
+        if ending is None and self.another(step):
+            return None
+        detail = earlier.results[-1].reason if ending is not None else ""
+        return ConditionEnd(ending, detail, earlier.warming_k_s, earlier.holdable_band_k)
+
+    def another(self, step: ConditionStep) -> bool:
+        """Tell whether a further repeat is to be made: one is missing or undecided, and there may be one more."""
+        made = len(self.repeats)
+        if made < step.repeats or made >= step.at_most:
+            return made < step.repeats
+        counted = len(counting(self.repeats))
+        if not counted and not any(result.drifts for result in self.repeats):
+            return False  # none gave a value for reasons that one more would meet, too
+        if counted < step.repeats or (step.repeats > ALONE and NOT_SHOWN in flags_in(self.judgement.flags)):
+            return True
+        return not self._precise(step)
+
+    def attempt(self, step: ConditionStep, repeat: int) -> int:
+        """Return the number of the next attempt at a repeat, from 1."""
+        earlier = self.earlier.get(step.condition)
+        return 1 + (earlier.attempts.get(repeat, 0) if earlier is not None else 0)
+
+    def begin_repeat(self, ctx: ContextT, step: ConditionStep, repeat: int, attempt: int) -> int:
+        """Open a repeat; return the key that its samples carry."""
+        self._turn_to(step)
+        if repeat == self.repeats_done(step) + 1:
+            self.recorder.begin_condition(step.condition, ctx.now)
+        return self.recorder.begin_repeat(step.condition, repeat, attempt, ctx.now, self.mounted(ctx))
+
+    def finish_repeat(
+        self, ctx: ContextT, step: ConditionStep, key: int, repeat: int, measured: MeasuredRepeat
+    ) -> RepeatOutcome:
+        """Reduce and commit a repeat; with the last that was missing, judge the condition."""
+        assert measured.ending is not None
+        blocks, window = measured.counter.blocks, step.window
+        status = REPEAT_STATUS.get(measured.ending)
+        if status is not None:
+            result = without_value(status, measured.detail, ended_s=ctx.now)
+        else:
+            result = reduce_repeat(
+                blocks,
+                window.revolutions,
+                window.seconds,
+                rolling=measured.rolling_only,
+                alone=step.repeats <= ALONE,
+            )
+        self.repeats.append(result)
+        self.keys.append(key)
+        self.blocks.append(counted(blocks, window.revolutions, window.seconds))
+        refused = self._judge(step) if self._enough_to_judge(step) else []
+        result = self.repeats[-1]
+        self.record_mounted(ctx)
+        if isfinite(measured.warming_k_s):
+            self.recorder.condition_rate(step.condition, measured.warming_k_s, measured.holdable_band_k)
+        ticket = self.recorder.commit_repeat(key, result, bursts_of(blocks), self._for_the_record())
+        said = "".join(f"; repeat {i + 1} {_line(self.repeats[i])}" for i in refused if self.repeats[i] is not result)
+        return RepeatOutcome(result.status, _line(result) + said, ticket)
+
+    def void_repeat(self, ctx: ContextT, key: int, reason: str) -> None:
+        """Record that a repeat was cut off; a further attempt follows."""
+        self.recorder.void_repeat(key, reason, ctx.now)
+
+    def finish_condition(self, ctx: ContextT, step: ConditionStep, end: ConditionEnd) -> str:
+        """Sum a condition up from its repeats and commit it; return a line for people."""
+        self._turn_to(step)
+        if not self.repeats:
+            self.recorder.begin_condition(step.condition, ctx.now)
+        if self.judged < len(self.repeats):
+            self._judge(step)
+        if step.until_percent is not None and self.repeats and not self._precise(step):
+            self.judgement = replace(self.judgement, flags=joined([*flags_in(self.judgement.flags), IMPRECISE]))
+        status = CONDITION_STATUS[end.ending] if end.ending is not None else None
+        reason = end.detail
+        if not self.repeats:
+            found = ConditionResult(status or ConditionStatus.INSUFFICIENT, reason)
+        else:
+            found = combine_repeats(self.repeats, step.repeats, step.min_valid, status or ConditionStatus.OK, reason,
+                                    judged=self.judgement, combining=self.combining)  # fmt: skip
+        self.pool = self._pooled()
+        left = ConditionStatus.OK if found.ok else found.status
+        self.recorder.end_condition(
+            step.condition,
+            left,
+            found.reason,
+            ctx.now,
+            warming_k_s=end.warming_k_s,
+            holdable_band_k=end.holdable_band_k,
+            judged=self._for_the_record(),
+        )
+        self.condition = 0
+        name = f"condition {step.condition} ({condition_words(step.setpoint)})"
+        if not found.ok:
+            return f"{name}: {left.value}: {found.reason}"
+        flags = f" ({found.flags})" if found.doubts else ""
+        return f"{name}: mu {found.mu_resultant:.4f}, s {found.s:.4f}, {found.n_valid} of {found.n}{flags}"
+
+    # -- of the present condition -------------------------------------------------------------------------------
+
+    def _turn_to(self, step: ConditionStep) -> None:
+        """Begin a condition, with what an earlier stretch of the run committed of it."""
+        if self.condition == step.condition:
+            return
+        self.condition = step.condition
+        earlier = self.earlier.get(step.condition)
+        self.repeats = list(earlier.results) if earlier is not None else []
+        self.keys = list(earlier.keys) if earlier is not None else []
+        window = step.window
+        found = earlier.blocks if earlier is not None else ()
+        self.blocks = [counted(blocks, window.revolutions, window.seconds) for blocks in found]
+        self.judgement = earlier.judged if earlier is not None else NOT_JUDGED
+        self.judged = len(self.repeats) if self.judgement.made else 0
+        if self._enough_to_judge(step):
+            self._judge(step)
+
+    def _enough_to_judge(self, step: ConditionStep) -> bool:
+        return sum(result.valid for result in self.repeats) >= step.repeats
+
+    def _judge(self, step: ConditionStep) -> list[int]:
+        """Judge the condition by what there is; return the positions of the repeats that are refused now."""
+        window = step.window
+        before = self.repeats
+        self.repeats, self.judgement = judge(before, self.blocks, step.repeats, window.revolutions, window.seconds)
+        self.judged = len(before)
+        return [i for i, result in enumerate(self.repeats) if before[i].valid and not result.valid]
+
+    def _for_the_record(self) -> Judged | None:
+        if not self.judged:
+            return None
+        return Judged(self.condition, self.judgement, dict(zip(self.keys, self.repeats, strict=True)))
+
+    def _pooled(self) -> Pool:
+        return self.pool.with_condition([self.repeats[i].mu_resultant for i in counting(self.repeats)])
+
+    def _precise(self, step: ConditionStep) -> bool:
+        """Tell whether the condition's expanded repeatability is what the recipe asks for, if it asks."""
+        if step.until_percent is None:
+            return True
+        n = len(counting(self.repeats))
+        return n >= LEAST_REPEATS and self._pooled().expanded_percent(n) <= step.until_percent
+
+    # -- what a kind says ---------------------------------------------------------------------------------------
+
+    def mounted(self, ctx: ContextT) -> int:
+        """Return the number of what is mounted to be measured."""
+        raise NotImplementedError
+
+    def record_mounted(self, ctx: ContextT) -> None:
+        """Put on record what state a repeat leaves it in."""
+        raise NotImplementedError
+
+
+def condition_records(plan: Plan) -> Iterator[ConditionInfo]:
+    """Yield a plan's conditions as the store keeps them."""
+    for step in plan.conditions():
+        yield ConditionInfo(
+            condition=step.condition,
+            row=step.row,
+            specimen=step.specimen,
+            replicate=step.replicate,
+            grid=step.grid,
+            note=plan.specimen(step.specimen).note,
+            setpoint=step.setpoint,
+            temperature_band_k=step.temperature_band_k,
+            repeats=step.repeats,
+            min_valid=step.min_valid,
+            window_revolutions=step.window.revolutions,
+            window_s=step.window.seconds,
+            at_most=step.at_most,
+            until_percent=step.until_percent,
+        )
+
+
+def _line(result: RepeatResult) -> str:
+    if result.status is RepeatStatus.VALID:
+        return f"mu {result.mu_resultant:.4f}, {result.revolutions} revolutions, {result.bursts} bursts"
+    return f"{result.status.value}: {result.reason}"

@@ -1,0 +1,193 @@
+"""One run from connection to standstill: what a ticker drives."""
+
+from __future__ import annotations
+
+from enum import Enum
+from typing import Final
+
+from drivers.ports import BusLost
+from tester.machine.connect import Connector, Stage
+from tester.machine.context import AnyContext
+from tester.machine.devices import DeviceList
+from tester.machine.engine import Engine
+from tester.machine.state import Mode, Trip
+
+POWER_OFF_S: Final = 2.0
+"""A drive that has not switched its power off by then is released all the same, s [A]."""
+RELEASE_S: Final = 5.0
+"""The drives have let go of our heartbeat by then, s [A]."""
+
+
+class Outcome(Enum):
+    """How a run ended."""
+
+    RUNNING = "running"
+    DONE = "done"
+    UNREACHABLE = "rig unreachable"
+    FAILED = "failed"
+    TRIPPED = "tripped"
+    STOPPED = "stopped"
+
+
+class Run:
+    """Connection, recipe, stop, standstill."""
+
+    def __init__(self, connector: Connector, engine: Engine) -> None:
+        """Nothing is sent before the first ``tick``."""
+        self.connector = connector
+        self.engine = engine
+        self.outcome = Outcome.RUNNING
+        self.finished = False
+        self.reason = ""
+        self.stays_latched = False
+        """After a trip the run goes on until it is acknowledged; else it ends, and a new one has to be started."""
+        self._ended_s: float | None = None
+        self._started = False
+        self._refused = False
+        self._trip: Trip | None = None
+        self._releasing = False
+
+    @property
+    def connected(self) -> bool:
+        """Every device has answered and was read back; the recipe is under way, or over."""
+        return self._started
+
+    @property
+    def waiting(self) -> bool:
+        """A prompt waits for its answer."""
+        return self.engine.ctx.prompts.waiting is not None and not self.engine.control.state.stop_requested
+
+    # Each command may be given at any time and any number of times; "" or why it had no effect is returned.
+
+    def request_stop(self, why: str, *, fast: bool = False, cool: bool = True) -> None:
+        """Stop the run: a controlled stop, or a fast one. ``cool``: turn on, unloaded, while it is too hot to stand."""
+        self.reason = self.reason or why
+        if not self._started:
+            self.outcome = Outcome.STOPPED
+            self.connector.abort(why)
+            self.finished = self.connector.finished
+            return
+        self.engine.control.request_stop(self.engine.ctx.now, why, fast=fast, cool=cool)
+
+    def request_abort(self, why: str = "aborted by the operator") -> None:
+        """Give the recipe up in a controlled stop."""
+        self.request_stop(why)
+
+    def request_hold(self, why: str = "held by the operator") -> str:
+        """Hold: open the contact, keep the heat; the repeat under way will be done again."""
+        engine = self.engine
+        if not self._started:
+            return "the rig is not up yet"
+        held = engine.control.state.mode is Mode.HOLD
+        refused = engine.control.request_hold(engine.ctx.demand, engine.ctx.now, why)
+        if not refused and not held:
+            engine.executor.hold(engine.ctx)
+        return refused
+
+    def request_release(self, why: str = "released by the operator") -> str:
+        """Go on after a hold."""
+        engine = self.engine
+        refused = engine.control.request_release(engine.ctx.now, why)
+        if not refused:
+            engine.executor.resume(engine.ctx)
+        return refused
+
+    def request_ack(self, by: str = "") -> str:
+        """Acknowledge a trip: drives are told to reset their faults, IDLE follows when every cause is gone."""
+        engine = self.engine
+        refused = engine.control.request_ack(engine.ctx.now, by)
+        if not refused:
+            for drive in engine.devices.drives:
+                drive.reset_fault()
+        return refused
+
+    def abandon(self) -> None:
+        """Leave the rig at once, because the program cannot go on: safe outputs are sent once, without looking.
+
+        Nobody scans after that: drives and devices end by their own watchdogs whatever has not arrived
+        (``Engine.abandon``).
+        """
+        self.engine.abandon()
+
+    def tick(self, now: float) -> float:
+        """Do what is due at ``now``; return when to be called again at the latest (s)."""
+        if self._started:
+            due = self.engine.tick(now)
+            self._supervise(now)
+            return due
+        try:
+            return self._connect(now)
+        except BusLost as lost:
+            self._lose(lost)
+            return now
+
+    def _connect(self, now: float) -> float:
+        due = self.connector.tick(now)
+        if self.connector.stage is Stage.FAILED:
+            if self.outcome is Outcome.RUNNING:
+                self.outcome, self.reason = Outcome.UNREACHABLE, self.connector.failure
+            self.finished = True
+        elif self.connector.stage is Stage.READY:
+            self._arm(now, due)
+        return due
+
+    def _arm(self, now: float, due: float) -> None:
+        """Enter RUN, or refuse to where a level of the interlock table holds."""
+        engine = self.engine
+        engine.next_scan_s = due
+        ctx: AnyContext = engine.ctx
+        ctx.now = now
+        ctx.before_reading()
+        engine.devices.fill(ctx.readings, now)
+        for line in (self.connector.shown, *ctx.known()):
+            ctx.journal.event(now, "arming", line)
+        self._started = True
+        refused = engine.control.start(ctx.readings)
+        if refused:
+            self._refused, self.reason = True, refused
+            ctx.journal.event(now, "arming", refused, "alarm")
+
+    def _lose(self, lost: BusLost) -> None:
+        """End: nothing reaches the drives any more, and those that move stop without our heartbeat.
+
+        A lost serial line does not come here: the connector fails by it, and stops them.
+        """
+        self.outcome, self.finished = Outcome.UNREACHABLE, True
+        self.reason = f"bus lost: {lost}" if "lost" not in str(lost) else str(lost)
+
+    def _supervise(self, now: float) -> None:
+        engine = self.engine
+        state = engine.control.state
+        self._trip = state.trip or self._trip
+        if state.mode is Mode.RUN or state.mode is Mode.HOLD:
+            # In a hold no recipe comes to its end, but whoever moves the rig by hand may have ended it.
+            if engine.executor.finished:
+                engine.control.request_stop(now, engine.executor.failed or "recipe finished")
+            return
+        if state.mode not in (Mode.IDLE, Mode.LATCHED) or (state.mode is Mode.LATCHED and self.stays_latched):
+            return
+        devices: DeviceList = engine.devices
+        if self._ended_s is None:
+            self._ended_s = now
+        elif not self._releasing:
+            if devices.all_off() or now - self._ended_s > POWER_OFF_S:
+                self._releasing = True
+                for drive in devices.drives:
+                    devices.master.start(drive, drive.release())
+        elif not any(devices.master.busy(drive) for drive in devices.drives) or now - self._ended_s > RELEASE_S:
+            self._finish()
+
+    def _finish(self) -> None:
+        engine = self.engine
+        trip = self._trip
+        if self._refused:
+            self.outcome = Outcome.UNREACHABLE
+        elif trip is not None:
+            self.outcome, self.reason = Outcome.TRIPPED, f"{trip.name}: {trip.text}"
+        elif engine.executor.failed:
+            self.outcome, self.reason = Outcome.FAILED, engine.executor.failed
+        elif engine.executor.finished:
+            self.outcome, self.reason = Outcome.DONE, ""
+        else:
+            self.outcome = Outcome.STOPPED
+        self.finished = True

@@ -1,0 +1,84 @@
+"""Which scans are recorded: every one in contact, two a second otherwise."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import reduce
+from itertools import groupby
+from operator import attrgetter, itemgetter
+from typing import Any, Final, Protocol, TypeAlias
+
+from tester.machine.context import BaseContext
+from tester.quantities import LAST, Quantities
+
+IDLE_PERIOD_S: Final = 0.5
+"""Recording period out of contact (2 Hz, interface: exports)."""
+
+
+class Sink(Protocol):
+    """Takes one row: a value for each recorded channel, in the order of the table."""
+
+    def sample(self, row: tuple[float, ...]) -> None:
+        """Record one row."""
+        ...
+
+
+Values: TypeAlias = Callable[[BaseContext[Any, Any, Any]], tuple[float, ...]]
+"""Takes values off the context of a run."""
+
+
+def values_at(sources: Sequence[str]) -> Values:
+    """Return what takes the values at these sources (``Channel.source``), in order: a call in C for each stretch of
+    them that are attributes, or keys of one mapping."""
+    parts = [_stretch(holder, list(stretch)) for holder, stretch in groupby(sources, _holder)]
+    return reduce(_joined, parts)
+
+
+def _holder(source: str) -> str:
+    """Return the mapping that a source is a key of, "" for an attribute."""
+    holder, bracket, _ = source.partition("[")
+    return holder if bracket else ""
+
+
+def _stretch(holder: str, sources: list[str]) -> Values:
+    if not holder:
+        return _tuple_of(attrgetter(*sources), len(sources))
+    keys = [source[len(holder) + 1 : -1] for source in sources]
+    mapping, taken = attrgetter(holder), _tuple_of(itemgetter(*keys), len(keys))
+    return lambda ctx: taken(mapping(ctx))
+
+
+def _tuple_of(getter: Callable[[Any], Any], count: int) -> Callable[[Any], tuple[float, ...]]:
+    return getter if count > 1 else lambda one: (getter(one),)
+
+
+def _joined(first: Values, then: Values) -> Values:
+    return lambda ctx: first(ctx) + then(ctx)
+
+
+def row_builder(quantities: Quantities) -> Values:
+    """Return what makes a row of a scan, without the last three channels, from the table, once."""
+    own = values_at([one.source for one in quantities.recorded[: -len(LAST) - len(quantities.further)]])
+    if not quantities.further:
+        return own
+    return lambda ctx: (*own(ctx), *ctx.readings.channels)
+
+
+class Sampler:
+    """Picks scans and makes rows of them."""
+
+    def __init__(self, sink: Sink, quantities: Quantities) -> None:
+        """``sink``: the run's store; ``quantities``: what a row is made of."""
+        self.sink = sink
+        self._measured = row_builder(quantities)
+        self.due_s = float("-inf")
+
+    def record(self, ctx: BaseContext[Any, Any, Any], out: Any) -> None:
+        """Record this scan if it is due."""
+        if not ctx.touching() and ctx.now < self.due_s:
+            return
+        self.due_s = ctx.now + IDLE_PERIOD_S
+        ctx.setpoints = out
+        row = (*self._measured(ctx), float(ctx.gate), float(ctx.burst), float(ctx.repeat_key))
+        self.sink.sample(row)
+        ctx.sample = row

@@ -1,0 +1,105 @@
+"""What control remembers between scans: mode, latched trip, timers of the interlocks, the stop under way."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+from math import inf
+from typing import Final, Generic, TypeVar
+
+from tester.machine.image import BaseSetpoints
+from tester.machine.row import NOTHING_COMPARED, Compared, Reaction
+
+
+class Mode(Enum):
+    """Operating mode of the rig (docs/safety.md)."""
+
+    IDLE = "idle"
+    ARMED = "armed"
+    """Every level was found clear; passed through on the way to RUN."""
+    RUN = "run"
+    HOLD = "hold"
+    """Contact open, heat held, drives enabled: until the operator releases it."""
+    STOPPING = "stopping"
+    """Controlled stop: heat off, contact opened, drives ramp down together."""
+    COOLDOWN = "cooldown"
+    """Unloaded creep, heat off, on a machine that would be harmed if it stood hot; until it is cool."""
+    FAST_STOP = "fast stop"
+    """Contact opened, quick stop of every drive, heat off: all in one scan."""
+    EMERGENCY = "emergency stop mirrored"
+    """The hardware's emergency stop is open: software has set all its commands to zero."""
+    LATCHED = "latched"
+    """Nothing moves until the cause is gone, the operator has acknowledged and the rig is armed again."""
+
+
+@dataclass(frozen=True, slots=True)
+class Trip:
+    """First cause of a stop ("first-up")."""
+
+    at_s: float
+    name: str
+    text: str
+    reaction: Reaction
+    compared: Compared = NOTHING_COMPARED
+
+
+ACKNOWLEDGED: Final = "acknowledged"
+"""Kind of the event that ends a trip; its text is who has acknowledged."""
+
+
+@dataclass(frozen=True, slots=True)
+class ControlEvent:
+    """Something for the journal: a mode change, a command, a trip, an acknowledgement."""
+
+    at_s: float
+    kind: str
+    text: str
+
+
+@dataclass(slots=True)
+class StopProgress:
+    """The stop under way."""
+
+    began_s: float = inf
+    """When the rig left RUN, HOLD or COOLDOWN; infinity while no stop is under way."""
+    fast_s: float = inf
+    """When the quick stop began."""
+    creeps: bool = False
+    """Something is meant to turn: cool-down."""
+
+
+SetpointsT_co = TypeVar("SetpointsT_co", bound=BaseSetpoints, covariant=True)
+
+
+class ControlState(Generic[SetpointsT_co]):
+    """Everything ``Control.step`` carries from one scan to the next; plain data, copyable. A kind adds its loops."""
+
+    def __init__(self, setpoints: SetpointsT_co) -> None:
+        """Begin in idle; ``setpoints``: what the devices are handed."""
+        self.setpoints = setpoints
+        self.mode = Mode.IDLE
+        self.mode_since_s = 0.0
+        self.trip: Trip | None = None
+        self.held = 0
+        """Levels that hold in this scan, a bit for each row of the interlock table in its order."""
+        self.tripped = 0
+        """Rows that have tripped (or warned, while their level stands) since the last acknowledgement."""
+        self.pending_s: list[float] = []
+        """Since when each interlock's level has held (inf = it does not hold), in the table's order."""
+        self.events: list[ControlEvent] = []
+        """Raised since the last scan, in order; the engine takes them out before the outputs leave."""
+        self.last_s = -inf
+        self.stop = StopProgress()
+        self.stop_requested = ""
+        self.cooled = False
+        """The cool-down of this run is over (or not wanted), whether everything got cool or not."""
+        self.ack_until_s = -inf
+        """An acknowledgement was given: it counts if every cause is gone by then."""
+        self.ack_by = ""
+        """Who gave it."""
+
+    def enter(self, mode: Mode, now_s: float, why: str) -> None:
+        """Change the mode and journal it."""
+        self.events.append(ControlEvent(now_s, "mode", f"{self.mode.value} -> {mode.value}: {why}"))
+        self.mode = mode
+        self.mode_since_s = now_s

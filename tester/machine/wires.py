@@ -1,0 +1,305 @@
+"""Rows of any machine: safety chain, wires and their masters, the scan's own clock, guard, Modbus devices as such."""
+
+from __future__ import annotations
+
+from math import nan
+from typing import Final, Protocol
+
+from tester.machine.image import BaseDemand, BaseReadings
+from tester.machine.row import ACK, CONTROLLED, EMERGENCY, FAST, REPAIR, WARN, Compared, Interlock
+from tester.rig.parameter import AT_LEAST_ONE, NOT_NEGATIVE, SHARE, Direction, Parameter, Values
+
+
+class Limits(Protocol):
+    """Numbers of the rig file's other sections."""
+
+    @property
+    def heartbeat_s(self) -> float:
+        """``can.drive_heartbeat``."""
+        ...
+
+
+class WireInputs(Protocol):
+    """What these rows look at, of any kind's inputs."""
+
+    @property
+    def readings(self) -> BaseReadings: ...
+
+    @property
+    def demand(self) -> BaseDemand: ...
+
+    @property
+    def parameters(self) -> Values: ...
+
+    @property
+    def limits(self) -> Limits: ...
+
+    @property
+    def scan_s(self) -> float: ...
+
+    @property
+    def last_s(self) -> float: ...
+
+    @property
+    def late_s(self) -> float: ...
+
+
+def _chain_open(v: WireInputs) -> bool:
+    return not v.readings.safety_chain
+
+
+SAFETY_CHAIN: Final = Interlock(
+    name="safety chain",
+    cause="emergency stop circuit open (drive input)",
+    level="input 0x60FD bit 16 = 0",
+    condition=_chain_open,
+    reaction=EMERGENCY,
+    reset=ACK,
+)
+
+
+SILENT_CAN_SCANS: Final = Parameter(
+    "silent_can_scans", "1", "2.5", "nothing heard over CAN for this many scan periods ...", AT_LEAST_ONE,
+    direction=Direction.LOWER, hardest="5",
+    because="as stale_can_scans",
+)  # fmt: skip
+SILENT_CAN_HEARTBEATS: Final = Parameter(
+    "silent_can_heartbeats", "1", "1.5", "... or, if that is less, for this many heartbeats of a drive [A]",
+    AT_LEAST_ONE, direction=Direction.LOWER, hardest="3",
+    because="after three each drive counts as lost by itself",
+)  # fmt: skip
+
+
+def _nobody_heard(v: WireInputs) -> bool:
+    r, p = v.readings, v.parameters
+    allowed_s = p[SILENT_CAN_HEARTBEATS] * v.limits.heartbeat_s
+    # Enabled drives answer every scan's SYNC; without power they only send their heartbeats.
+    if r.drives_enabled:
+        scans_s = p[SILENT_CAN_SCANS] * v.scan_s
+        allowed_s = scans_s if scans_s < allowed_s else allowed_s
+    # A scan that comes late has not listened meanwhile: that is for "scan late" to judge.
+    late_s = v.late_s if v.late_s > 0.0 else 0.0
+    return not (r.now_s - late_s - r.can_heard_s <= allowed_s)
+
+
+CAN_SILENT: Final = Interlock(
+    name="CAN silent",
+    cause="CAN cable, its terminators or the drives' supply: no drive is heard",
+    level="no frame for silent_can_scans periods (drives on), or silent_can_heartbeats",
+    condition=_nobody_heard,
+    parameters=(SILENT_CAN_SCANS, SILENT_CAN_HEARTBEATS),
+    reaction=FAST,
+    reset=ACK,
+)
+
+
+def _drive_faulty(v: WireInputs) -> bool:
+    return v.readings.drive_fault != ""
+
+
+DRIVE_FAULT: Final = Interlock(
+    name="drive fault",
+    cause="drive in fault, lost, rebooted or with an emergency message",
+    level="state FAULT, heartbeat missing 3 x 50 ms, boot-up, or EMCY",
+    condition=_drive_faulty,
+    reaction=FAST,
+    reset="drive reset by the acknowledgement",
+)
+
+
+def _bus_gone(v: WireInputs) -> bool:
+    return v.readings.bus_fault != ""
+
+
+BUS_LOST: Final = Interlock(
+    name="bus lost",
+    cause="CAN adapter or serial line gone, bus-off",
+    level="the wire's port is lost: it is never reopened",
+    condition=_bus_gone,
+    reaction=FAST,
+    reset="started anew",
+)
+
+
+def _other_master(v: WireInputs) -> bool:
+    return v.readings.foreign_master != ""
+
+
+SECOND_MASTER: Final = Interlock(
+    name="second master",
+    cause="another master on the CAN bus",
+    level="a frame only a master sends",
+    condition=_other_master,
+    reaction=FAST,
+    reset="other master gone, started anew",
+)
+
+
+def _clock_back(v: WireInputs) -> bool:
+    return not (v.readings.now_s >= v.last_s)
+
+
+CLOCK_JUMP: Final = Interlock(
+    name="clock jump",
+    cause="the scan's clock went back",
+    level="now < last scan",
+    condition=_clock_back,
+    compared=lambda v: Compared(v.readings.now_s - v.last_s, 0.0, "s"),
+    reaction=FAST,
+    reset=ACK,
+)
+
+LATE_WARN_S: Final = Parameter("late_warn_s", "s", "50 ms", "a scan this late is a warning ...")
+LATE_SCAN_S: Final = Parameter(
+    "late_scan_s", "s", "150 ms", "... this late a trip",
+    direction=Direction.LOWER, hardest="200 ms",
+    because="the drives stop by themselves 200 ms after the PC's last heartbeat or setpoint",
+)  # fmt: skip
+
+
+def _late(v: WireInputs) -> bool:
+    return not (v.late_s <= v.parameters[LATE_SCAN_S])
+
+
+SCAN_LATE: Final = Interlock(
+    name="scan late",
+    cause="the controlling process was late",
+    level="scan later than late_scan",
+    condition=_late,
+    compared=lambda v: Compared(v.late_s, v.parameters[LATE_SCAN_S], "s"),
+    parameters=(LATE_WARN_S, LATE_SCAN_S),
+    reaction=FAST,
+    reset=ACK,
+)
+
+
+def _guard_open(v: WireInputs) -> bool:
+    return v.demand.enabled and not v.readings.guard_closed
+
+
+def _guard_still_open(v: WireInputs) -> bool:
+    return not v.readings.guard_closed
+
+
+GUARD_OPEN: Final = Interlock(
+    name="guard open",
+    cause="guard open with drives on",
+    level="input 0x60FD bit 17 = 0, drives wanted",
+    condition=_guard_open,
+    unseen=_guard_still_open,
+    reaction=FAST,
+    reset=ACK,
+)
+
+
+STALE_INPUTS_S: Final = Parameter(
+    "stale_inputs_s", "s", "250 ms", "age of the inputs (safety chain, guard): one in a row may be lost [A]",
+    direction=Direction.LOWER, hardest="500 ms",
+    because="five periods of the drive's input word: four lost in a row are no noise, the drive no longer sends them",
+)  # fmt: skip
+
+
+def _inputs_old(v: WireInputs) -> bool:
+    r = v.readings
+    return not (r.now_s - r.inputs_at_s <= v.parameters[STALE_INPUTS_S])
+
+
+INPUTS_STALE: Final = Interlock(
+    name="inputs stale",
+    cause="no fresh input word from the drive with the safety inputs",
+    level="age > stale_inputs",
+    condition=_inputs_old,
+    compared=lambda v: Compared(v.readings.now_s - v.readings.inputs_at_s, v.parameters[STALE_INPUTS_S], "s"),
+    parameters=(STALE_INPUTS_S,),
+    reaction=FAST,
+    reset=ACK,
+)
+
+
+STALE_CAN_SCANS: Final = Parameter(
+    "stale_can_scans", "1", "2.5", "age of the drives' data in scan periods ...", AT_LEAST_ONE,
+    direction=Direction.LOWER, hardest="5",
+    because="the drives' own watch of the setpoints ends at 200 ms, twenty periods at 100 Hz: a quarter of that",
+)  # fmt: skip
+STALE_CAN_S: Final = Parameter(
+    "stale_can_s", "s", "150 ms", "... and never more than this",
+    direction=Direction.LOWER, hardest="200 ms",
+    because="a drive without setpoints stops by itself after 200 ms; nothing older may be believed of it",
+)  # fmt: skip
+
+
+def drive_data_allowed_s(v: WireInputs) -> float:
+    """Return how old the drives' data may be, s."""
+    # Drives answer a scan's SYNC: after a late one their data is as old as that scan was ("scan late" judges).
+    p = v.parameters
+    allowed = p[STALE_CAN_SCANS] * max(v.scan_s, v.readings.now_s - v.last_s)
+    most = p[STALE_CAN_S]
+    return allowed if allowed < most else most
+
+
+def _device_refuses(v: WireInputs) -> bool:
+    return v.readings.device_fault != ""
+
+
+DEVICE_REFUSED: Final = Interlock(
+    name="device refused",
+    cause="a Modbus device refuses a request, or misses our commands",
+    level="exception 01 to 03, or its lease ran out",
+    condition=_device_refuses,
+    reaction=CONTROLLED,
+    reset=REPAIR,
+)
+
+LINE_ERRORS: Final = Parameter(
+    "line_errors", "1", "0.3", "share of failed requests to a Modbus device over 2 s or more ... [A]", SHARE,
+    direction=Direction.LOWER, hardest="0.5",
+    because="a line on which every second request fails reaches its devices half as often as was planned",
+)  # fmt: skip
+LINE_ERRORS_DELAY_S: Final = Parameter(
+    "line_errors_delay_s", "s", "3 s", "... for this long [A]", NOT_NEGATIVE,
+    direction=Direction.LOWER, hardest="10 s",
+    because="the values' own ages are watched besides: this row only names the line",
+)  # fmt: skip
+
+
+def _line_noisy(v: WireInputs) -> bool:
+    return not (v.readings.line_errors <= v.parameters[LINE_ERRORS])
+
+
+LINE_NOISY: Final = Interlock(
+    name="line noisy",
+    cause="a Modbus device answers badly (CRC, time-outs, late replies)",
+    level="failed requests > line_errors",
+    condition=_line_noisy,
+    compared=lambda v: Compared(v.readings.line_errors, v.parameters[LINE_ERRORS], "1"),
+    parameters=(LINE_ERRORS,),
+    delay=LINE_ERRORS_DELAY_S,
+    reaction=CONTROLLED,
+    reset=ACK,
+)
+
+
+def _delayed(v: WireInputs) -> bool:
+    return not (v.late_s <= v.parameters[LATE_WARN_S])
+
+
+SCAN_DELAYED: Final = Interlock(
+    name="scan delayed",
+    cause="the controlling process was late, but not dangerously",
+    level="scan later than late_warn",
+    condition=_delayed,
+    parameters=(LATE_WARN_S,),
+    reaction=WARN,
+    reset="by itself",
+)
+
+ROWS: Final[tuple[Interlock, ...]] = (
+    SAFETY_CHAIN, CAN_SILENT, DRIVE_FAULT, BUS_LOST, SECOND_MASTER, CLOCK_JUMP, SCAN_LATE, GUARD_OPEN,
+)  # fmt: skip
+WARNINGS: Final[tuple[Interlock, ...]] = (SCAN_DELAYED,)
+"""Only said: they stand last in the table."""
+
+
+def answered_s(silent: bool, now_s: float, at_s: float) -> float:
+    """Return how long ago a device last answered, s; NaN where several requests in a row went without an answer."""
+    return nan if silent else now_s - at_s

@@ -1,0 +1,62 @@
+"""A figure as data, before anything is drawn: panels with series of points, bars and curves."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+Look = Literal["measured", "published", "law", "left out"]
+"""How a series is drawn: filled marks with bars; hollow marks; a line alone; crosses."""
+
+
+@dataclass(frozen=True, slots=True)
+class Series:
+    """Points of one look: ``style`` is the place of colour, mark and dash, the same for what belongs together."""
+
+    label: str
+    x: tuple[float, ...]
+    y: tuple[float, ...]
+    look: Look
+    style: int
+    bars: tuple[float, ...] = ()
+    """Half the length of the bar at each point, NaN for none."""
+    widths: tuple[float, ...] = ()
+    """Half the extent of each point along x, such as of the time that it took."""
+
+
+@dataclass(frozen=True, slots=True)
+class ChartPanel:
+    """One pair of axes."""
+
+    title: str
+    series: tuple[Series, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Chart:
+    """A figure of panels that share their axes. ``name`` is that of its file, ``note`` stands below it."""
+
+    name: str
+    title: str
+    x_label: str
+    y_label: str
+    panels: tuple[ChartPanel, ...]
+    note: str = ""
+    from_zero: bool = True
+    """Whether the upright axis begins at 0."""
+
+
+@dataclass(frozen=True, slots=True)
+class Surface:
+    """A coefficient over two axes, a panel a table: ``values[j][i]`` belongs to ``x[i]`` and ``y[j]``, NaN for none."""
+
+    name: str
+    title: str
+    x_label: str
+    y_label: str
+    z_label: str
+    panels: tuple[tuple[str, tuple[float, ...], tuple[float, ...], tuple[tuple[float, ...], ...]], ...]
+    note: str = ""
+
+
+Figure = Chart | Surface

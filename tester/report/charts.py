@@ -1,0 +1,221 @@
+"""From the conditions of runs to charts: the coefficient over each axis that was varied, and over two of them."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import permutations
+from math import isfinite
+
+from tester.axes import Axis, AxisValue, Setpoint, condition_words, plain
+from tester.export.results import Measured, RunResults
+from tester.report.chart import Chart, ChartPanel, Figure, Series, Surface
+
+NAN = float("nan")
+Y_LABEL = "friction coefficient"
+BARS = "bars: expanded uncertainty U (95 %)"
+HOLLOW = "hollow: as published"
+CURVE_POINTS = 61
+
+Law = Callable[[Setpoint], float]
+
+
+@dataclass(frozen=True, slots=True)
+class ChartValue:
+    """A coefficient with what it was held at; ``u`` expanded, NaN where it is not known."""
+
+    held: Setpoint
+    mu: float
+    u: float = NAN
+
+
+@dataclass(frozen=True, slots=True)
+class Material:
+    """What a figure may show: values of runs, published ones, and a law by its name."""
+
+    measured: Sequence[ChartValue]
+    published: Sequence[ChartValue] = ()
+    law: Law | None = None
+    law_name: str = ""
+
+
+def values_of(results: RunResults) -> list[ChartValue]:
+    """Return the rows of a run that have a value."""
+    return [
+        ChartValue(row.info.setpoint, row.result.mu_resultant, row.result.expanded)
+        for row in results.rows
+        if row.result.ok
+    ]
+
+
+def charts_of(material: Material) -> Iterator[Figure]:
+    """Yield a chart for each pair of axes that were varied together, or for an axis alone, then surfaces."""
+    varied = _varied(material.measured)
+    told: set[str] = set()
+    for along, across in permutations(varied, 2):
+        chart = _chart(material, along, across)
+        if chart is not None:
+            told.add(along.name)
+            yield chart
+    for along in varied:
+        chart = _chart(material, along, None) if along.name not in told else None
+        if chart is not None:
+            yield chart
+    if len(varied) > 1:
+        yield from _surfaces(material.measured, varied[0], varied[1])
+
+
+def _varied(values: Sequence[ChartValue]) -> list[Axis]:
+    """Return the axes of numbers that differ between values, by their turn to be plotted against."""
+    if not values:
+        return []
+    axes = values[0].held.axes.differing(one.held for one in values)
+    return sorted((axis for axis in axes if axis.plotted and not axis.choices), key=lambda axis: axis.plotted)
+
+
+def _chart(material: Material, along: Axis, across: Axis | None) -> Chart | None:
+    """Return the chart of the coefficient over ``along``, a series for each value of ``across``."""
+    panels = [panel for name in _compounds(material.measured) if (panel := _panel(material, name, along, across))]
+    if not panels or (across is not None and not any(_styles(panel) > 1 for panel in panels)):
+        return None
+    notes = [BARS]
+    looks = {series.look for panel in panels for series in panel.series}
+    notes += [HOLLOW] if "published" in looks else []
+    notes += [f"lines: {material.law_name}"] if "law" in looks else []
+    by = f"-by-{across.name}" if across is not None else ""
+    title = f"{Y_LABEL} over {_words(along)}" + (f" at each {_words(across)}" if across is not None else "")
+    return Chart(f"{along.name}{by}", title, _label(along), Y_LABEL, tuple(panels), "; ".join(notes))
+
+
+def _styles(panel: ChartPanel) -> int:
+    return len({series.style for series in panel.series})
+
+
+def _compounds(values: Iterable[ChartValue]) -> list[str]:
+    return sorted({one.held.compound for one in values})
+
+
+def _panel(material: Material, compound: str, along: Axis, across: Axis | None) -> ChartPanel | None:
+    own = [one for one in material.measured if one.held.compound == compound]
+    free = {along.name, *([across.name] if across is not None else [])}
+    fixed = _usual(own, free)
+    own = _fixed(own, fixed)
+    published = _fixed([one for one in material.published if one.held.compound == compound], fixed)
+    series: list[Series] = []
+    # A style stands for one value of ``across`` in all panels.
+    levels = sorted({across.number(one.held) for one in material.measured}) if across is not None else [0.0]
+    for style, level in enumerate(levels):
+        here = [one for one in own if across is None or across.number(one.held) == level]
+        if len({along.number(one.held) for one in here}) < 2:
+            continue
+        label = f"{plain(level)} {_unit(across)}" if across is not None else "measured"
+        series.append(_points(label, here, along, "measured", style))
+        shown = [one for one in published if across is None or across.number(one.held) == level]
+        if shown:
+            series.append(_points("", shown, along, "published", style))
+        if material.law is not None:
+            series.append(_curve(material.law, here, along, style))
+    if not series:
+        return None
+    said = [axis for axis in own[0].held.axes if axis.name not in free and not axis.at_default(own[0].held)]
+    return ChartPanel(condition_words(own[0].held, said), tuple(series))
+
+
+def _usual(values: Sequence[ChartValue], free: set[str]) -> dict[str, AxisValue]:
+    """Return what most values are held at on the axes that are not free."""
+    axes = values[0].held.axes
+    (most, _), *_ = Counter(
+        tuple((axis.name, axis.of(one.held)) for axis in axes if axis.name not in free) for one in values
+    ).most_common(1)
+    return dict(most)
+
+
+def _fixed(values: Sequence[ChartValue], fixed: Mapping[str, AxisValue]) -> list[ChartValue]:
+    return [one for one in values if all(one.held.axes[name].of(one.held) == at for name, at in fixed.items())]
+
+
+def _points(label: str, values: Sequence[ChartValue], along: Axis, look: str, style: int) -> Series:
+    ordered = sorted(values, key=lambda one: along.number(one.held))
+    x, y = tuple(along.number(one.held) for one in ordered), tuple(one.mu for one in ordered)
+    bars = tuple(one.u for one in ordered) if look == "measured" else ()
+    return Series(label, x, y, "measured" if look == "measured" else "published", style, bars)
+
+
+def _curve(law: Law, values: Sequence[ChartValue], along: Axis, style: int) -> Series:
+    found = [along.number(one.held) for one in values]
+    low, high = min(found), max(found)
+    x = [low + (high - low) * i / (CURVE_POINTS - 1) for i in range(CURVE_POINTS)]
+    y = [law(values[0].held.but(**{along.name: value / along.scale})) for value in x]
+    return Series("", tuple(x), tuple(y), "law", style)
+
+
+def _surfaces(values: Sequence[ChartValue], along: Axis, upward: Axis) -> Iterator[Surface]:
+    """Yield the coefficient over two axes, for each compound at what most of its conditions share."""
+    panels: list[tuple[str, tuple[float, ...], tuple[float, ...], tuple[tuple[float, ...], ...]]] = []
+    for compound in _compounds(values):
+        own = [one for one in values if one.held.compound == compound]
+        own = _fixed(own, _usual(own, {along.name, upward.name}))
+        x, y = (tuple(sorted({axis.number(one.held) for one in own})) for axis in (along, upward))
+        if len(x) < 2 or len(y) < 2:
+            continue
+        at = {(along.number(one.held), upward.number(one.held)): one.mu for one in own}
+        said = [axis for axis in own[0].held.axes if axis not in (along, upward) and not axis.at_default(own[0].held)]
+        grid = tuple(tuple(at.get((one, other), NAN) for one in x) for other in y)
+        panels.append((condition_words(own[0].held, said), x, y, grid))
+    if panels:
+        title = f"{Y_LABEL} over {_words(along)} and {_words(upward)}"
+        yield Surface("surface", title, _label(along), _label(upward), Y_LABEL, tuple(panels), "empty: not measured")
+
+
+def repeats_chart(measured: Measured) -> Chart:
+    """Return the repeats of a condition: each at its time, as long as it took, with the scatter of its batch means."""
+    counted: list[int] = []
+    left_out: list[int] = []
+    for i, repeat in enumerate(measured.repeats):
+        if isfinite(repeat.result.mu_resultant):
+            (left_out if measured.exclusion(repeat) else counted).append(i)
+    series = [
+        _windows(label, [measured.repeats[i].result for i in places], look, style)
+        for label, places, look, style in (
+            ("in the mean", counted, "measured", 0),
+            ("left out", left_out, "left out", 1),
+        )
+        if places
+    ]
+    result = measured.result
+    title = f"repeats of {condition_words(measured.info.setpoint)}"
+    if isfinite(result.mu_resultant):
+        title += f": {result.mu_resultant:.3f}\u00a0±\u00a0{result.expanded:.3f}"
+    note = "along: from begin to end of each repeat; bars: standard deviation of its batch means"
+    return Chart(f"repeats-{measured.info.condition}", title, "rig time (min)", Y_LABEL,
+                 (ChartPanel("", tuple(series)),), note, from_zero=False)  # fmt: skip
+
+
+def _windows(label: str, results: Sequence[object], look: str, style: int) -> Series:
+    from tester.analysis.results import RepeatResult
+
+    own = [one for one in results if isinstance(one, RepeatResult)]
+    begin, end = [one.started_s / 60.0 for one in own], [one.ended_s / 60.0 for one in own]
+    return Series(
+        label,
+        tuple(0.5 * (a + b) for a, b in zip(begin, end, strict=True)),
+        tuple(one.mu_resultant for one in own),
+        "measured" if look == "measured" else "left out",
+        style,
+        tuple(0.01 * one.fluctuation_percent * one.mu_resultant for one in own),
+        tuple(0.5 * (b - a) for a, b in zip(begin, end, strict=True)),
+    )
+
+
+def _label(axis: Axis) -> str:
+    unit = f" ({_unit(axis)})" if axis.unit else ""
+    return f"{_words(axis)}{unit}"
+
+
+def _unit(axis: Axis) -> str:
+    return {"degC": "°C", "deg": "°"}.get(axis.unit, axis.unit)
+
+
+def _words(axis: Axis) -> str:
+    return axis.name.replace("_", " ")

@@ -1,0 +1,144 @@
+"""Draws charts with matplotlib, which comes with the extra ``report`` and is imported when something is drawn.
+
+Readable in grey and by colour-blind people: what belongs together has a colour, a mark and a dash of its own, and the
+colours differ in lightness. Without a screen, a clock or anything random: the same chart gives the same file.
+"""
+
+from __future__ import annotations
+
+from math import ceil
+from pathlib import Path
+from textwrap import fill
+from typing import TYPE_CHECKING, Any, Final
+
+from tester.base.extras import MissingExtraError, needs
+from tester.report.chart import Chart, ChartPanel, Figure, Series, Surface
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+COLOURS: Final = ("#000000", "#D55E00", "#56B4E9", "#0072B2", "#E69F00", "#009E73", "#CC79A7", "#404040")
+"""Okabe and Ito's palette (jfly.uni-koeln.de/color), which colour-blind people can tell apart, in an order in which
+neighbours differ in lightness; a grey instead of its yellow, which is too light for lines."""
+MARKS: Final = ("o", "s", "^", "D", "v", "P", "X", "<")
+DASHES: Final = ("-", "--", "-.", ":", (0, (5, 1)), (0, (3, 1, 1, 1)), (0, (1, 1)), (0, (8, 2)))
+FORMATS: Final = ("png", "svg", "pdf")
+PANEL_INCH: Final = (3.6, 3.2)
+COLUMNS: Final = 3
+"""Panels side by side."""
+TITLE_WIDTH, NOTE_WIDTH = 52, 64
+"""Characters of title and note that fit over a panel."""
+RC: Final[dict[str, object]] = {
+    "font.family": "DejaVu Sans",
+    "font.size": 8.0,
+    "axes.grid": True,
+    "grid.color": "#D0D0D0",
+    "grid.linewidth": 0.5,
+    "axes.axisbelow": True,
+    "lines.linewidth": 1.1,
+    "lines.markersize": 4.5,
+    "legend.fontsize": 7.0,
+    "legend.framealpha": 0.8,
+    "svg.hashsalt": "friction-tester",
+    "svg.fonttype": "path",
+}
+"""matplotlib's own font, so that a figure looks the same everywhere."""
+NO_DATES: Final = {"png": {"Software": None}, "svg": {"Date": None}, "pdf": {"CreationDate": None}}
+
+
+def draw(figure: Figure, path: Path, dpi: float = 150.0) -> None:
+    """Write a figure; the ending of ``path`` says the format. Raises MissingExtraError, OSError, ValueError."""
+    ending = path.suffix.removeprefix(".").lower()
+    if ending not in FORMATS:
+        raise ValueError(f"{path.name}: a figure is one of {', '.join(FORMATS)}")
+    try:
+        import matplotlib  # pyright: ignore
+        from matplotlib.figure import Figure as Canvas  # pyright: ignore
+    except ImportError as error:
+        raise MissingExtraError(needs("a figure", "matplotlib", "report")) from error
+    library: Any = matplotlib
+    with library.rc_context(RC):
+        across = min(COLUMNS, len(figure.panels))
+        down = ceil(len(figure.panels) / across)
+        canvas: Any = Canvas(figsize=(PANEL_INCH[0] * across, PANEL_INCH[1] * down + 0.5), layout="constrained")
+        places: Any = canvas.subplots(down, across, squeeze=False, sharex=True, sharey=True)
+        flat: list[Any] = [place for row in places for place in row]
+        if isinstance(figure, Chart):
+            _draw_chart(figure, flat)
+        else:
+            _draw_surface(figure, canvas, flat)
+        for place in flat[len(figure.panels) :]:
+            place.set_axis_off()
+        canvas.suptitle(fill(figure.title, TITLE_WIDTH * across), fontsize=9.0)
+        if figure.note:
+            canvas.supxlabel(fill(figure.note, NOTE_WIDTH * across), fontsize=7.0, color="#404040")
+        canvas.savefig(path, dpi=dpi, metadata=NO_DATES[ending])
+
+
+def _draw_chart(chart: Chart, places: Sequence[Any]) -> None:
+    for panel, place in zip(chart.panels, places, strict=False):
+        _draw_panel(panel, place)
+        place.set_xlabel(chart.x_label)
+        place.set_ylabel(chart.y_label)
+        if chart.from_zero:
+            place.set_ylim(bottom=0.0)
+
+
+def _draw_panel(panel: ChartPanel, place: Any) -> None:
+    lined = {series.style for series in panel.series if series.look == "law"}
+    for series in panel.series:
+        _draw_series(series, place, joined=not series.widths and series.style not in lined)
+    place.set_title(panel.title, fontsize=8.0)
+    if any(series.label for series in panel.series):
+        place.legend()
+
+
+def _draw_series(series: Series, place: Any, joined: bool) -> None:
+    """Draw measured points filled, published ones hollow, a law as a line, what was left out as crosses.
+
+    ``joined``: measured points by a line, where no law is drawn through them.
+    """
+    i = series.style % len(COLOURS)
+    colour = COLOURS[i]
+    label = series.label or None
+    if series.look == "law":
+        place.plot(series.x, series.y, color=colour, linestyle=DASHES[i], linewidth=1.0)
+        return
+    if series.look == "published":
+        place.plot(series.x, series.y, color=colour, marker=MARKS[i], linestyle="none", markerfacecolor="none")
+        return
+    mark = "x" if series.look == "left out" else MARKS[i]
+    place.errorbar(
+        series.x,
+        series.y,
+        yerr=series.bars or None,
+        xerr=series.widths or None,
+        color=colour,
+        marker=mark,
+        linestyle=DASHES[i] if joined and series.look == "measured" else "none",
+        elinewidth=0.8,
+        capsize=2.0,
+        label=label,
+    )
+
+
+def _draw_surface(surface: Surface, canvas: Any, places: Sequence[Any]) -> None:
+    """Draw a field for each pair of values, its number in it; lightness alone tells the colours apart."""
+    every = [v for _, _, _, grid in surface.panels for row in grid for v in row if v == v]
+    low, high = min(every), max(every)
+    drawn: Any = None
+    for (title, x, y, grid), place in zip(surface.panels, places, strict=False):
+        drawn = place.imshow(grid, origin="lower", aspect="auto", cmap="cividis", vmin=low, vmax=high)
+        place.set_xticks(range(len(x)), [f"{value:g}" for value in x])
+        place.set_yticks(range(len(y)), [f"{value:g}" for value in y])
+        place.grid(False)
+        for j, row in enumerate(grid):
+            for i, value in enumerate(row):
+                if value == value:
+                    dark = value < 0.5 * (low + high)
+                    place.text(i, j, f"{value:.2f}", ha="center", va="center", color="white" if dark else "black")
+        place.set_title(title, fontsize=8.0)
+        place.set_xlabel(surface.x_label)
+        place.set_ylabel(surface.y_label)
+    if drawn is not None:
+        canvas.colorbar(drawn, ax=[*places[: len(surface.panels)]], label=surface.z_label)

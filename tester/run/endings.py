@@ -1,0 +1,112 @@
+"""How parts end, what that makes of the run, and the exit code."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import IntFlag
+
+from tester.base.exits import (
+    EXIT_DONE,
+    EXIT_FAILED,
+    EXIT_INCOMPLETE,
+    EXIT_INTERRUPTED,
+    EXIT_TRIPPED,
+    EXIT_UNREACHABLE,
+)
+from tester.machine.run import Outcome, Run
+
+EXIT_CODES: dict[Outcome, int] = {
+    Outcome.DONE: EXIT_DONE,
+    Outcome.FAILED: EXIT_FAILED,
+    Outcome.UNREACHABLE: EXIT_UNREACHABLE,
+    Outcome.TRIPPED: EXIT_TRIPPED,
+    Outcome.STOPPED: EXIT_TRIPPED,
+}
+
+_BY_SEVERITY = (Outcome.DONE, Outcome.STOPPED, Outcome.UNREACHABLE, Outcome.FAILED, Outcome.TRIPPED)
+
+
+class CannotStartError(Exception):
+    """The run cannot begin; the message says why, ``code`` is the exit code."""
+
+    def __init__(self, message: str, code: int = 1) -> None:
+        """``code``: 1 unless told."""
+        super().__init__(message)
+        self.code = code
+
+
+class StopLevel(IntFlag):
+    """Who wants a run to stop. Wishes add up: what one has ordered, no other takes back."""
+
+    NONE = 0
+    OTHER_PART = 1
+    UNSEEN = 2
+    """Nothing can be shown any more: screen, pipe or file is gone."""
+    HUNG_UP = 4
+    """The terminal is gone (HUP)."""
+    TERMINATED = 8
+    INTERRUPTED = 16
+    FAST = 32
+
+    @property
+    def text(self) -> str:
+        """The reason that is recorded: that of the highest."""
+        return next((text for stop, text in _STOP_TEXTS.items() if stop in self), "")
+
+    def tell(self, run: Run) -> None:
+        """Have a run stop. Who sends TERM or closes the terminal gets the end at standstill, without the cool-down."""
+        run.request_stop(self.text, fast=StopLevel.FAST in self, cool=not self & _NOT_COOLED)
+
+
+_NOT_COOLED = StopLevel.TERMINATED | StopLevel.HUNG_UP
+_STOP_TEXTS = {
+    StopLevel.FAST: "interrupted by the operator",
+    StopLevel.INTERRUPTED: "interrupted by the operator",
+    StopLevel.TERMINATED: "terminated",
+    StopLevel.HUNG_UP: "the terminal is gone",
+    StopLevel.UNSEEN: "the run can no longer be shown",
+    StopLevel.OTHER_PART: "another part has ended early",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class PartEnd:
+    """How one part ended. ``failed``: why not everything could be recorded, None where it could."""
+
+    part: int
+    outcome: Outcome
+    reason: str = ""
+    failed: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class RunEnding:
+    """How the whole run ended: the worst of its parts."""
+
+    outcome: Outcome
+    reason: str
+    failed: str | None
+
+    def exit_code(self, *, interrupted_once: bool, missing: bool) -> int:
+        """Return the exit code; ``missing``: a condition has no value to be trusted."""
+        if self.outcome is Outcome.STOPPED and interrupted_once:
+            return EXIT_INTERRUPTED
+        if self.failed:
+            return EXIT_CODES[Outcome.FAILED]
+        if self.outcome is Outcome.DONE and missing:
+            return EXIT_INCOMPLETE
+        return EXIT_CODES[self.outcome]
+
+
+def ending_of(ends: Sequence[PartEnd], parts: int, stop: StopLevel = StopLevel.NONE) -> RunEnding:
+    """Return the ending of a run of ``parts`` parts, of which those in ``ends`` were begun; ``stop``: who wanted one.
+
+    The first of the worst gives the reason. A run with a part that was not begun has been stopped, if nothing worse.
+    """
+    failed = next((end.failed for end in ends if end.failed), None)
+    worst = max(ends, key=lambda end: (_BY_SEVERITY.index(end.outcome), -end.part), default=None)
+    if worst is None or (worst.outcome is Outcome.DONE and len(ends) < parts):
+        return RunEnding(Outcome.STOPPED, stop.text, failed)
+    reason = f"part {worst.part}: {worst.reason}" if parts > 1 and worst.reason else worst.reason
+    return RunEnding(worst.outcome, reason, failed)

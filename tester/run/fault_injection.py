@@ -1,0 +1,195 @@
+"""A run on a simulated rig that things happen to: what stands between ticker, run and rig when faults are scripted."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import inf
+
+from drivers.ports import CanFrame, CanPort, CanWatcher, LinePort, LineWatcher, Unwatch
+from sim.faults import FaultScript, Scene
+from sim.rig import SimRig
+from tester.machine.run import Run
+
+RIG_STEP_S = 0.01
+"""Without a controlling process the rig is advanced in steps of this length, s."""
+
+
+class Skew:
+    """How far the computer's clock is ahead of the rig's, s."""
+
+    __slots__ = ("ahead_s",)
+
+    def __init__(self) -> None:
+        """No difference."""
+        self.ahead_s = 0.0
+
+
+class SkewedCan:
+    """A CAN port on which the computer's times are those of its own clock."""
+
+    def __init__(self, port: CanPort, skew: Skew) -> None:
+        """Translate for ``port``."""
+        self.port = port
+        self.skew = skew
+
+    def send(self, can_id: int, data: bytes, now: float) -> None:
+        """Send a frame; raises BusLost."""
+        self.port.send(can_id, data, now - self.skew.ahead_s)
+
+    def send_cycle(self, can_ids: tuple[int, ...], payloads: tuple[bytes, ...], now: float) -> None:
+        """Send the frames of a bus cycle; raises BusLost."""
+        self.port.send_cycle(can_ids, payloads, now - self.skew.ahead_s)
+
+    def receive(self, now: float) -> list[CanFrame]:
+        """Return what arrived, stamped with the computer's clock; raises BusLost."""
+        ahead_s = self.skew.ahead_s
+        return [(t + ahead_s, can_id, data) for t, can_id, data in self.port.receive(now - ahead_s)]
+
+    def watch(self, watcher: CanWatcher) -> Unwatch:
+        """Have ``watcher`` told of every frame, by the computer's clock."""
+        return self.port.watch(lambda t, can_id, data, sent: watcher(t + self.skew.ahead_s, can_id, data, sent))
+
+
+class SkewedLine:
+    """A Modbus line on which the computer's times are those of its own clock."""
+
+    def __init__(self, port: LinePort, skew: Skew) -> None:
+        """Translate for ``port``."""
+        self.port = port
+        self.skew = skew
+
+    def write(self, data: bytes, now: float) -> None:
+        """Send bytes; raises BusLost."""
+        self.port.write(data, now - self.skew.ahead_s)
+
+    def read(self, now: float) -> list[tuple[float, bytes]]:
+        """Return what arrived, stamped with the computer's clock; raises BusLost."""
+        ahead_s = self.skew.ahead_s
+        return [(t + ahead_s, data) for t, data in self.port.read(now - ahead_s)]
+
+    def watch(self, watcher: LineWatcher) -> Unwatch:
+        """Have ``watcher`` told of all bytes, by the computer's clock."""
+        return self.port.watch(lambda t, data, sent: watcher(t + self.skew.ahead_s, data, sent))
+
+
+class FaultyRun:
+    """Run and rig under a fault script: what a ticker drives in place of both (``Ticked`` and ``World``).
+
+    ``killed`` is set when the controlling process is killed; ``on_kill``, where given, is called then.
+    """
+
+    def __init__(self, run: Run, rig: SimRig, script: FaultScript, on_kill: Callable[[], None] | None = None) -> None:
+        """Begin with what the script says for time 0."""
+        self.run = run
+        self.script = script
+        self.killed = False
+        self.skew = Skew()
+        self._scene = Scene(rig, self)
+        self._rig = rig
+        self._stalled_until_s = -inf
+        self._now_s = 0.0
+        self._step = -1
+        self._phase = ""
+        self._on_kill = on_kill
+
+    # the ticker's side ---------------------------------------------------------------------------------------
+
+    @property
+    def finished(self) -> bool:
+        """Nothing is left to do."""
+        return self.run.finished
+
+    @property
+    def waiting(self) -> bool:
+        """A person is asked."""
+        return self.run.waiting
+
+    @property
+    def urgent_s(self) -> float:
+        """When something arrives that a scan should not wait for, or happens by script, s."""
+        urgent = self.script.due_s
+        if not self.killed and self._stalled_until_s <= self._now_s:
+            urgent = min(urgent, self._rig.urgent_s)
+        return urgent
+
+    def advance(self, now: float) -> None:
+        """Let the rig live until ``now`` s, and let happen on the way what is to happen."""
+        script, scene = self.script, self._scene
+        while script.due_s <= now:
+            due_s = max(script.due_s, self._now_s)
+            self._live(due_s)
+            script.act(scene, due_s)
+        self._live(now)
+        if script.happened:
+            self._tell(now)
+
+    def tick(self, now: float) -> float:
+        """Do what is due in the controlling process, if it gets to do anything."""
+        if self.killed:
+            return now + RIG_STEP_S
+        if now < self._stalled_until_s:
+            return min(self._stalled_until_s, now + RIG_STEP_S)
+        ahead_s = self.skew.ahead_s
+        due = self.run.tick(now + ahead_s) - ahead_s
+        if self.script.waiting:
+            self._notice(now)
+        return due
+
+    def _live(self, until_s: float) -> None:
+        script, rig = self.script, self._rig
+        if script.renewed:
+            script.renew(self._scene, rig.now_s)
+        rig.advance(until_s)
+        self._now_s = until_s
+
+    def _notice(self, now: float) -> None:
+        """Tell the script where the run is; the names of a step count once, when it begins."""
+        engine = self.run.engine
+        progress = engine.ctx.progress
+        names: list[str] = []
+        if progress.step != self._step:
+            self._step = progress.step
+            names += progress.title.split() if progress.step else ["connect"]
+            if progress.conditions and ":" in progress.title:
+                names.append("soak")
+        phase = progress.phase.split(" ")[0]
+        if phase != self._phase:
+            self._phase = phase
+            names.append(phase)
+        self.script.notice(now, engine.scans, names)
+
+    def _tell(self, now: float) -> None:
+        """Write into the run's journal what was done to it."""
+        for t, text in self.script.happened:
+            self.run.engine.ctx.journal.event(t, "injected", text)
+        self.script.happened.clear()
+
+    # the script's side ---------------------------------------------------------------------------------------
+
+    def stall(self, seconds: float) -> None:
+        """Do no scan for this long."""
+        self._stalled_until_s = max(self._stalled_until_s, self._now_s + seconds)
+
+    def kill(self) -> None:
+        """Do no scan ever again."""
+        self.killed = True
+        if self._on_kill is not None:
+            self._on_kill()
+
+    def jump(self, seconds: float) -> None:
+        """Let the computer's clock be ahead by this much more."""
+        if self.skew.ahead_s == 0.0:
+            devices = self.run.engine.devices
+            lines = [SkewedLine(port, self.skew) for port, _ in devices.lines]
+            devices.rewire(SkewedCan(devices.can, self.skew), lines)
+        self.skew.ahead_s += seconds
+
+    def operate(self, action: str) -> None:
+        """Let the operator ask for something."""
+        run = self.run
+        if action == "hold":
+            run.request_hold()
+        elif action == "release":
+            run.request_release()
+        else:
+            run.request_stop(f"operator: {action}", fast=action == "fast stop")

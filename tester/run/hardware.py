@@ -1,0 +1,42 @@
+"""Open the wires to a real rig: a CAN adapter and Modbus lines, all stamped by the run's one clock."""
+
+from __future__ import annotations
+
+from contextlib import ExitStack
+
+from drivers.ports import LinePort
+from drivers.transports.can_bus import open_can
+from drivers.transports.serial_line import SerialLine, open_serial_line
+from drivers.transports.tcp_line import TcpLine, open_tcp_line
+from tester.base.pace import UrgentPace
+from tester.base.priority import RealTimePriority
+from tester.machine.ports import Ports
+from tester.rig import LineConfig, Rig
+from tester.run.bus_log import BusLog
+
+CATCH_UP_S = 0.002
+"""The CAN edge's thread takes some 0.1 ms for a frame, and 20 are on their way after a late scan, s [A]."""
+
+
+def hardware_ports(rig: Rig, log: BusLog | None) -> Ports:
+    """Open every wire of a rig file; raises BusLost for the first that cannot be opened, with none left open."""
+    pace = UrgentPace(CATCH_UP_S)
+    with ExitStack() as opened:
+        bus = open_can(rig.can.interface, rig.can.channel, rig.can.bitrate, pace.now, pace.hurry)
+        opened.callback(bus.close)
+        lines: dict[str, LinePort] = {}
+        for name, config in rig.lines.items():
+            line = _line(config)
+            opened.callback(line.close)
+            lines[name] = line
+        if log is not None:
+            log.watch(bus, lines)
+        opened.callback(RealTimePriority().close)
+        return Ports(bus, lines, pace, opened.pop_all())
+
+
+def _line(config: LineConfig) -> TcpLine | SerialLine:
+    if config.framing == "socket":
+        host, _, port = config.port.rpartition(":")
+        return open_tcp_line(host, int(port))
+    return open_serial_line(config.port, config.baud, config.parity)

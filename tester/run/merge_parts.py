@@ -1,0 +1,105 @@
+"""The parts of a run put together: one record, one ending."""
+
+from __future__ import annotations
+
+import sqlite3
+from collections.abc import Callable, Generator
+from contextlib import closing, suppress
+from dataclasses import replace
+from pathlib import Path
+from shutil import rmtree
+
+from tester.base import clock
+from tester.base.trouble import in_words
+from tester.quantities import Quantities
+from tester.rig.sensors import quantities_on
+from tester.run.endings import PartEnd, RunEnding, StopLevel, ending_of
+from tester.run.folder import PARTS, Begin, Job, Work
+from tester.store.files import sync_folder
+from tester.store.merge import Merge
+from tester.store.reader import DATABASE
+from tester.store.schema import NotBegunError, StoreError
+from tester.store.writer import RunWriter
+
+MERGED = "parts.merged"
+"""The parts' folder once the run's own record holds everything: to be deleted."""
+
+
+def put_together(
+    job: Job,
+    work: Work,
+    begin: Begin,
+    ends: Generator[PartEnd],
+    wanted: Callable[[], StopLevel],
+    tell: Callable[[PartEnd], None],
+) -> RunEnding:
+    """Merge the records of parts, as they end, into the run's own, in the plan's order; return the run's ending.
+
+    ``wanted`` says who wants a stop, ``tell`` is told of every part's end. The parts' own records go when all are in.
+    """
+    ended: dict[int, PartEnd] = {}
+    failed: str | None = None
+    with closing(ends):
+        try:
+            _begin(job.folder, quantities_on(work.rig), begin)
+            with Merge(job.folder) as merge:
+                _merge(job, work, ends, ended, merge, tell)
+                ending = ending_of(list(ended.values()), len(work.parts), wanted())
+                merge.finish(ending.outcome.value, ending.reason, clock.utc_now())
+            drop_parts(job.folder)
+        except (sqlite3.Error, StoreError, OSError) as error:
+            failed = in_words(error)
+    ending = ending_of(list(ended.values()), len(work.parts), wanted())
+    return replace(ending, failed=failed) if failed else ending
+
+
+def recover(folder: Path) -> None:
+    """Merge the parts of a run that was cut off, as far as they are recorded; nothing where there are none.
+
+    Afterwards the run's own record stands for all of it, and the run can go on there. Raises StoreError, OSError.
+    """
+    if (folder / PARTS).is_dir():
+        found = sorted((folder / PARTS).glob(f"*/{DATABASE}"), key=lambda record: int(record.parent.name))
+        try:
+            with Merge(folder) as merge:
+                for record in found:
+                    with suppress(NotBegunError):  # cut off as it began: nothing was measured in it
+                        merge.add(record.parent)
+        except sqlite3.Error as error:
+            raise StoreError(f"the parts of {folder.name} cannot be put together: {error}") from error
+    drop_parts(folder)
+
+
+def drop_parts(folder: Path) -> None:
+    """Delete the parts' records, whole or not at all as far as anybody can see who comes after a power cut."""
+    if (folder / PARTS).is_dir():
+        (folder / PARTS).rename(folder / MERGED)
+        sync_folder(folder)
+    if (folder / MERGED).is_dir():
+        rmtree(folder / MERGED)
+
+
+def _begin(folder: Path, quantities: Quantities, begin: Begin) -> None:
+    """Record what is going to be done: a run that is cut off shows what it was to be."""
+    record = folder / DATABASE
+    with closing(RunWriter(record, quantities, clock=clock.monotonic, utc=clock.utc_now, synchronous=True)) as writer:
+        begin(writer)
+
+
+def _merge(
+    job: Job,
+    work: Work,
+    ends: Generator[PartEnd],
+    ended: dict[int, PartEnd],
+    merge: Merge,
+    tell: Callable[[PartEnd], None],
+) -> None:
+    """Add every part as soon as those before it are in; then those behind one that was never begun."""
+    folders = {part.number: work.folder_of(part, job.folder) for part in work.parts}
+    for end in ends:
+        ended[end.part] = end
+        tell(end)
+        while (following := min(folders, default=0)) in ended:
+            merge.add(folders.pop(following))
+    for number in sorted(folders.keys() & ended.keys()):
+        merge.add(folders[number])

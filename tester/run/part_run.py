@@ -1,0 +1,254 @@
+"""One part from its connection to its standstill, recorded in a file of its own."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Protocol
+
+from drivers.ports import BusLost
+from tester.base import clock
+from tester.base.pace import Pace
+from tester.base.trouble import in_words
+from tester.machine.ports import Ports
+from tester.machine.prompts import Prompts
+from tester.machine.run import Outcome, Run
+from tester.machine.run_parts import Part
+from tester.machine.tickers import Ticked, TickedWorld, TickStatistics, collector_at_rest, run_real_time, run_simulated
+from tester.machine.time_left import TimeLeft
+from tester.rig import Rig
+from tester.rig.sensors import quantities_on
+from tester.run.bus_log import BusLog
+from tester.run.endings import PartEnd
+from tester.run.folder import Begin, Job, Work
+from tester.run.kinds import recipe_part, run_parts
+from tester.run.provenance import record_parameters, record_statistics
+from tester.run.truth import Witnessed, truth_of
+from tester.store.reader import DATABASE
+from tester.store.writer import RESERVE_BYTES, RunWriter
+
+if TYPE_CHECKING:
+    from sim.rig import SimRig
+
+KILLED = 137
+"""Exit status of a process that a fault script kills: what a shell shows for SIGKILL."""
+INTERRUPTED = "interrupted"
+"""Status of a run that the program broke off."""
+STATE_EVERY_S = 1.0
+"""The state of the specimen is stored this often of wall time: what an interruption loses of it."""
+
+
+class Watch(Protocol):
+    """Who looks after a part while it runs."""
+
+    statistics: TickStatistics
+    """Is told how punctual the ticks are, in real time."""
+
+    def begun(self, run: Run) -> None:
+        """Take notice of the run: from now on it can be stopped."""
+        ...
+
+    def rested(self) -> None:
+        """Take notice that the run is at rest: nothing ticks any more, its record is not closed yet."""
+        ...
+
+    def poll(self, now_s: float, run: Run, share: float) -> None:
+        """Look at the run, about ten times a second of wall time; ``share`` of the part that is done, 0..1."""
+        ...
+
+
+class Unsampled(RunWriter):
+    """A record without samples: repeats and conditions are all that is wanted of it."""
+
+    def sample(self, row: tuple[float, ...]) -> None:
+        """Forget the sample."""
+
+
+class RunNotes:
+    """What is stored beside the scan: parameters once they were read back, and the state of the specimen."""
+
+    def __init__(self, run: Run, recorder: RunWriter) -> None:
+        """Nothing is stored before the rig is connected."""
+        self.run = run
+        self.recorder = recorder
+        self.kind = run_parts(run.engine.ctx.rig)
+        self.connected = False
+        self.state_due_s = 0.0
+
+    def poll(self, now_s: float) -> None:
+        """Store what is due; ``now_s`` is rig time."""
+        if not self.run.connected:
+            return
+        if not self.connected:
+            self.connected, engine = True, self.run.engine
+            record_parameters(engine.ctx.rig, engine.devices, self.recorder, now_s)
+        wall_s = clock.monotonic()
+        if wall_s >= self.state_due_s:
+            self.state_due_s = wall_s + STATE_EVERY_S
+            self.kind.store_state(self.run, self.recorder, now_s)
+
+
+def run_part(job: Job, work: Work, part: Part, begin: Begin, watch: Watch, prompts: Prompts) -> PartEnd:
+    """Carry out a part; its record is closed when this returns. Raises OSError, sqlite3.Error, StoreError."""
+    folder = work.folder_of(part, job.folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    open_record = RunWriter if job.samples else Unsampled
+    lossless = work.rig.can.interface == "sim"
+    path, quantities = folder / DATABASE, quantities_on(work.rig)
+    writer = open_record(
+        path, quantities, clock=clock.monotonic, utc=clock.utc_now, lossless=lossless, reserve=RESERVE_BYTES
+    )
+    try:
+        with closed_early(writer):
+            begin(writer)
+            outcome, reason, seconds = _execute(job, work, part, writer, watch, prompts)
+            writer.finish(outcome.value, reason, seconds)
+    finally:
+        writer.close()
+    return PartEnd(part.number, outcome, reason, writer.lost)
+
+
+class closed_early:  # noqa: N801 - reads as a statement
+    """Record what has broken the program off, if anything has: the run is interrupted, and can go on later."""
+
+    def __init__(self, writer: RunWriter) -> None:
+        """``writer``: its record stays open."""
+        self.writer = writer
+
+    def __enter__(self) -> None:
+        """Nothing has happened yet."""
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: object) -> None:
+        """Record the error, if there is one, and let it go on."""
+        if kind is not None:
+            self.writer.finish(INTERRUPTED, _broken_off(kind, error))
+
+
+class left_safe:  # noqa: N801 - reads as a statement
+    """Send safe outputs once if the block is left with the rig still running, whatever the reason."""
+
+    def __init__(self, run: Run) -> None:
+        """``run``: the one that is ticked in the block."""
+        self.run = run
+
+    def __enter__(self) -> None:
+        """Nothing has happened yet."""
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: object) -> None:
+        """Send, write it down, and let the error go on."""
+        if kind is not None and not self.run.finished:
+            self.run.abandon()
+            ctx = self.run.engine.ctx
+            ctx.journal.event(ctx.now, "run", f"{_broken_off(kind, error)}: safe outputs sent", "alarm")
+
+
+def _broken_off(kind: type[BaseException], error: BaseException | None) -> str:
+    return f"the program broke off: {kind.__name__}: {in_words(error) if error is not None else ''}"
+
+
+def _execute(
+    job: Job, work: Work, part: Part, writer: RunWriter, watch: Watch, prompts: Prompts
+) -> tuple[Outcome, str, float]:
+    rig = work.rig
+    log = BusLog(_log_folder(job.bus_log, work, part), rig) if job.bus_log is not None else None
+    ports: Ports | None = None
+    try:
+        faults = rig.faults + job.faults
+        spoilable = {"faulty": True} if faults else {}
+        ports, world, attendant = connect_ports(rig, job.seed, log, **spoilable)
+        truth = truth_of(world, rig.plant) if world is not None else None
+        if truth is not None:
+            attendant = Witnessed(attendant, truth, part.plan, writer)
+        build = run_parts(rig).build
+        run = build(rig, part.plan, ports, attendant, writer, prompts, work.point, job.history)
+        _place(run, work, part)
+        left = TimeLeft(part.plan, recipe_part(rig).estimate(part.plan, rig))
+        ticked, lives = _with_faults(run, world, faults) if world is not None and faults else (run, world)
+        with collector_at_rest():  # already: from here to the first tick nothing takes long, and STOP waits for that
+            watch.begun(run)
+            with left_safe(run):
+                seconds = _tick(run, ticked, lives, ports.pace, job.lapse, left, writer, watch)
+        watch.rested()
+        record_statistics(run.engine.devices, writer, seconds)
+        return run.outcome, run.reason, seconds
+    except BusLost as lost:
+        return Outcome.UNREACHABLE, str(lost), 0.0
+    finally:
+        if ports is not None:
+            ports.close()
+        if log is not None:
+            log.close()
+
+
+def _log_folder(folder: Path, work: Work, part: Part) -> Path:
+    return folder if len(work.parts) == 1 else folder / f"part-{part.number}"
+
+
+def _place(run: Run, work: Work, part: Part) -> None:
+    """Tell a run which part of the whole it is: numbers of unforeseen specimens, what people are shown."""
+    executor, progress = run.engine.executor, run.engine.ctx.progress
+    executor.procedures.number_after(part.last_mounted)
+    executor.conditions = sum(1 for _ in work.plan.conditions())
+    progress.part, progress.parts = part.number, len(work.parts)
+
+
+def _tick(
+    run: Run,
+    ticked: Ticked,
+    world: TickedWorld | None,
+    pace: Pace | None,
+    lapse: float | None,
+    left: TimeLeft,
+    recorder: RunWriter,
+    watch: Watch,
+) -> float:
+    notes = RunNotes(run, recorder)
+
+    def poll(now_s: float) -> None:
+        notes.poll(now_s)
+        left.look(now_s, run)
+        watch.poll(now_s, run, left.share())
+        if recorder.failed:
+            run.request_stop(f"the run can no longer be recorded: {recorder.failed}")
+
+    if world is not None:
+        # Also at --speed 1: counted ticks, not measured ones, so that no speed changes a result.
+        return run_simulated(ticked, world, lapse=lapse, poll=poll)
+    return run_real_time(run, world, poll=poll, statistics=watch.statistics, pace=pace)
+
+
+def _with_faults(run: Run, world: SimRig, texts: Sequence[str]) -> tuple[Ticked, TickedWorld]:
+    """Return what a ticker drives in place of run and rig while faults happen to them."""
+    from sim import machines
+    from sim.faults import FaultScript
+    from tester.run.fault_injection import FaultyRun
+
+    language = machines.find(run_parts(run.engine.ctx.rig).plant).language()
+    faulty = FaultyRun(run, world, FaultScript().add(language.parse_script(texts)), on_kill=_die)
+    return faulty, faulty
+
+
+def _die() -> None:
+    """End this process as a kill does: at once, nothing closed, nothing flushed."""
+    os._exit(KILLED)
+
+
+def connect_ports(
+    rig: Rig, seed: int, log: BusLog | None, *, faulty: bool = False
+) -> tuple[Ports, SimRig | None, Any]:
+    """Open the wires to the rig: simulated in this process (its bus spoilable where ``faulty``), or real.
+
+    Return them, the simulated rig, and the hands at the rig (tester.machine.run_parts).
+    """
+    if rig.can.interface == "sim":
+        from tester.run.simulated import simulated_ports
+
+        if faulty:
+            from sim.faults.can import FaultyCanWire
+
+            return simulated_ports(rig, seed, log, FaultyCanWire)
+        return simulated_ports(rig, seed, log)
+    from tester.run.hardware import hardware_ports
+
+    return hardware_ports(rig, log), None, run_parts(rig).nobody()

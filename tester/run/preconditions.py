@@ -1,0 +1,45 @@
+"""What a run claims before it begins: room on the disk, the rig's buses, its folder."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from tester.base.lock import RUN_LOCK, ExclusiveUse, RigInUseError
+from tester.machine.run import Outcome
+from tester.recipe.estimate import Estimate
+from tester.recipe.plan import Plan
+from tester.rig import Rig
+from tester.run.endings import EXIT_CODES, CannotStartError
+from tester.run.kinds import recipe_part
+from tester.store.space import expected_bytes, too_little_room
+
+
+def enough_room(folder: Path, plan: Plan, rig: Rig, expected: Estimate | None = None) -> None:
+    """Raise CannotStartError unless twice what the run will take is free; ``expected``: its estimate."""
+    missing = too_little_room(folder, expected_bytes(plan, expected or recipe_part(rig).estimate(plan, rig)))
+    if missing:
+        raise CannotStartError(missing, EXIT_CODES[Outcome.FAILED])
+
+
+def hold_rig(use: ExclusiveUse, rig: Rig, run: str) -> None:
+    """Lock a rig's buses; nothing for a rig simulated in this process. Raises CannotStartError."""
+    try:
+        use.lock(buses_of(rig), run)
+    except RigInUseError as error:
+        raise CannotStartError(str(error), EXIT_CODES[Outcome.UNREACHABLE]) from error
+
+
+def hold_run(use: ExclusiveUse, folder: Path) -> None:
+    """Lock a run's folder, so that nobody resumes a run that is under way. Raises CannotStartError."""
+    try:
+        use.lock_file(f"the run {folder.name}", folder / RUN_LOCK, folder.name, lasting=False)
+    except RigInUseError as error:
+        raise CannotStartError(str(error)) from error
+
+
+def buses_of(rig: Rig) -> list[str]:
+    """Return the buses of a rig that only one process may use."""
+    if rig.can.interface == "sim":
+        return []
+    lines = [f"line {line.port}" for line in rig.lines.values()]
+    return [f"can {rig.can.interface}:{rig.can.channel}", *lines]

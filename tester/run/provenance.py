@@ -1,0 +1,198 @@
+"""What a run keeps of where its numbers come from: software, libraries, rig, calibration, devices, bus counters."""
+
+from __future__ import annotations
+
+import json
+import os
+import platform
+import shlex
+import subprocess
+from collections.abc import Iterator, Mapping
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+
+import recipes
+from tester import kinds
+from tester.base import clock
+from tester.base.plugins import plugins
+from tester.machine.devices import DeviceList
+from tester.recipe.loader import LoadedRecipe
+from tester.recipe.plan import Plan
+from tester.rig import Rig
+from tester.rig.load import risks_of
+from tester.rig.profiles import profile_of
+from tester.rig.sensors import title_of
+from tester.run.kinds import run_parts, served_kind
+from tester.store.recorder import Recorder
+from tester.store.records import ACCEPTED_RISK, EXTENSION, LOOSE_KEYS, Calibration, RunInfo, SessionInfo
+
+LIBRARIES = ("friction-tester", "numpy", "pyarrow", "pydantic", "pymodbus", "pyserial", "python-can", "pyyaml")
+"""Distributions whose versions are stored with a run."""
+
+ABSENT = "not installed"
+"""Stands for the version of a distribution that is not there, as of one that comes with an extra."""
+
+PACKAGED = "packaged: "
+"""Begins the source of a recipe that comes with the program."""
+
+_GIT_AT_MOST_S = 2.0
+
+
+def run_info(
+    name: str,
+    plan: Plan,
+    recipe: LoadedRecipe,
+    rig: Rig,
+    *,
+    seed: int = 0,
+    operator: str = "",
+    recipe_source: str = "",
+    rig_source: str = "",
+    risks: Mapping[str, str] | None = None,
+) -> RunInfo:
+    """Return what the store keeps of a run's beginning. ``risks``: as ``accepted_risks`` returns them."""
+    return RunInfo(
+        name=name,
+        recipe_name=plan.name,
+        recipe_text=recipe.tree.text,
+        rig_text=rig.text,
+        started_utc=clock.utc_now(),
+        simulated=rig.simulated,
+        kind=plan.kind,
+        worn=served_kind(rig).machine.specimen,
+        axes=plan.axes,
+        seed=seed if rig.simulated else None,
+        software_version=_version("friction-tester"),
+        git_revision=git_revision(),
+        operator=operator,
+        recipe_source=recipe_source,
+        rig_source=rig_source,
+        calibration=calibration_of(rig),
+        metadata={**plan.metadata, **(risks or {})},
+        versions=library_versions(),
+        terms=tuple(run_parts(rig).terms(rig)),
+        known=tuple(run_parts(rig).known_slopes(plan)),
+    )
+
+
+def accepted_risks(rig: Rig, reason: str) -> dict[str, str]:
+    """Return what is kept with a run of the safety keys that are looser than they should be; nothing where none is."""
+    risks = risks_of(rig)
+    return {ACCEPTED_RISK: reason, LOOSE_KEYS: "; ".join(map(str, risks))} if risks else {}
+
+
+def session_info(number: int, origin_s: float, operator: str) -> SessionInfo:
+    """Return what the store keeps of the stretch that begins now."""
+    return SessionInfo(
+        session=number,
+        origin_s=origin_s,
+        started_utc=clock.utc_now(),
+        host=platform.node(),
+        pid=os.getpid(),
+        operator=operator,
+        software_version=_version("friction-tester"),
+        git_revision=git_revision(),
+        versions=json.dumps(library_versions()),
+    )
+
+
+def library_versions() -> dict[str, str]:
+    """Return the versions of what a result depends on: libraries (ABSENT where one is not there), Python, platform.
+
+    And every extension that this process has loaded, with its package and the hash of its file.
+    """
+    found = {package: _version(package, ABSENT) for package in LIBRARIES}
+    found |= {f"{EXTENSION}{one.group}/{one.name}": one.describe() for one in plugins().loaded}
+    return found | {"python": platform.python_version(), "platform": platform.platform()}
+
+
+def recipe_source(path: Path) -> str:
+    """Return where a recipe was read from, as it is stored: its path, or the name of a packaged one."""
+    if path.parent == recipes.FOLDER:
+        return f"{PACKAGED}{path.stem}"
+    return str(path.absolute())
+
+
+def rig_source(name: str, overrides: tuple[str, ...]) -> str:
+    """Return where a rig was read from, as it is stored: path or a packaged rig's name, then the overrides, quoted for
+    a shell."""
+    where = name if kinds.shipping(name) is not None else str(Path(name).absolute())
+    return shlex.join([where, *overrides])
+
+
+def calibration_of(rig: Rig) -> tuple[Calibration, ...]:
+    """Return every figure that turns what devices say into quantities."""
+    return tuple(_calibration_of(rig))
+
+
+def _calibration_of(rig: Rig) -> Iterator[Calibration]:
+    for key, config in rig.devices.items():
+        device = title_of(rig, key)
+        profile = profile_of(config.profile)
+        yield Calibration(device, "profile", config.profile, "")
+        for block in profile.blocks:
+            for signal in block.signals:
+                if signal.unit:
+                    yield Calibration(device, f"scale of {signal.name}", repr(signal.scale), signal.unit)
+        for name, value in config.parameters.items():
+            unit = profile.writes[name].unit if name in profile.writes else ""
+            yield Calibration(device, name, repr(value), unit or "1")
+    for name, node in rig.can.nodes.items():
+        for channel, datum in node.channels.items():
+            yield Calibration(name, f"scale of {channel}", repr(datum.scale), datum.unit)
+    for name, axis in rig.drives().items():
+        yield Calibration(name, "velocity increments", repr(axis.velocity_increments), f"1/({axis.unit})")
+        yield Calibration(name, "position increments", repr(axis.position_increments), f"1/({axis.unit})")
+        yield Calibration(name, "rated torque", repr(axis.rated_torque_nm), "N m")
+    yield from run_parts(rig).calibration(rig)
+
+
+def record_parameters(rig: Rig, devices: DeviceList, recorder: Recorder, now_s: float) -> None:
+    """Store everything that was read back from the devices before the run was armed."""
+    for drive in devices.drives:
+        for (index, sub), value in drive.parameters.items():
+            recorder.device_parameter(now_s, drive.config.name, f"0x{index:04X}:{sub:02X}", str(value))
+    for device in devices.modbus:
+        name, profile = title_of(rig, device.name), device.driver.profile
+        recorder.device_parameter(now_s, name, "profile", profile.name, profile.title)
+        if profile.identity is not None:
+            register = f"0x{profile.identity.address:04X}"
+            recorder.device_parameter(now_s, name, register, str(profile.identity.value), "device type, as read back")
+
+
+def record_statistics(devices: DeviceList, recorder: Recorder, now_s: float) -> None:
+    """Store the counters of the buses as they stand."""
+    recorder.bus_statistic(now_s, "can", "", "unknown frames", devices.master.unknown_frames)
+    for drive in devices.drives:
+        recorder.bus_statistic(now_s, "can", drive.config.name, "malformed", drive.malformed)
+    for node in devices.nodes:
+        recorder.bus_statistic(now_s, "can", node.name, "malformed", node.malformed)
+    for number, (_, link) in enumerate(devices.lines, start=1):
+        bus = f"line {number}"
+        recorder.bus_statistic(now_s, bus, "", "garbage", link.garbage)
+        for station in link.stations:
+            counters, name = station.counters, f"unit {station.unit_id}"
+            for counter in ("requests", "replies", "timeouts", "crc_errors", "garbage", "late"):
+                recorder.bus_statistic(now_s, bus, name, counter, float(getattr(counters, counter)))
+            for code, times in sorted(counters.exceptions.items()):
+                recorder.bus_statistic(now_s, bus, name, f"exception {code:02X}", times)
+
+
+def git_revision() -> str:
+    """Return the revision this program runs from, with ``-dirty`` where files differ; empty outside a checkout."""
+    root = Path(__file__).resolve().parent.parent
+    if not (root / ".git").exists():
+        return ""
+    command = ["git", "-C", str(root), "describe", "--always", "--dirty", "--abbrev=40", "--exclude=*"]
+    try:
+        done = subprocess.run(command, capture_output=True, text=True, timeout=_GIT_AT_MOST_S, check=True)
+    except (OSError, subprocess.SubprocessError):
+        return ""
+    return done.stdout.strip()
+
+
+def _version(package: str, absent: str = "unknown") -> str:
+    try:
+        return version(package)
+    except PackageNotFoundError:
+        return absent

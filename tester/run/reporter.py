@@ -1,0 +1,151 @@
+"""Who shows a run to people, and what becomes of the run when nothing can be shown any more."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import suppress
+from typing import Protocol, runtime_checkable
+
+from tester.base.trouble import in_words
+from tester.machine.context import Progress
+from tester.machine.prompts import Prompts
+
+
+class ReportScreen(Protocol):
+    """Who shows a run to people. A method whose screen, pipe or file is gone raises OSError."""
+
+    answer_yes: bool
+
+    @property
+    def can_ask(self) -> bool:
+        """A person is there to answer prompts."""
+        ...
+
+    def begin(self, name: str) -> None:
+        """Show that a run has begun."""
+        ...
+
+    def show(self, now_s: float, run: Progress, share: float) -> None:
+        """Show where the run is, or one of its parts (``run.part`` of ``run.parts``)."""
+        ...
+
+    def attend(self, prompts: Prompts) -> None:
+        """Ask and answer prompts without blocking."""
+        ...
+
+    def end(self) -> None:
+        """Take the progress away."""
+        ...
+
+    def message(self, text: str) -> None:
+        """Say something to people."""
+        ...
+
+    def emit(self, record: dict[str, object]) -> None:
+        """Write a record for programs."""
+        ...
+
+    def result(self, line: str) -> None:
+        """Write the run's folder."""
+        ...
+
+
+@runtime_checkable
+class Commanding(Protocol):
+    """A screen at which a person can give commands to the run."""
+
+    def commands(self) -> list[str]:
+        """Return the commands given since the last call: those of ``tester.base.keys``."""
+        ...
+
+
+class LastingScreen:
+    """A screen that may fail without taking the run with it.
+
+    With its first error nothing more is shown or asked, and ``lost`` is called with the cause; messages and records are
+    still tried, in case only one of two outputs is gone.
+    """
+
+    def __init__(self, screen: ReportScreen, lost: Callable[[str], None]) -> None:
+        """``lost``: called once."""
+        self._screen = screen
+        self._lost = lost
+        self.answer_yes = screen.answer_yes
+        self.gone = False
+
+    @property
+    def can_ask(self) -> bool:
+        """A person is there to answer prompts."""
+        return self._screen.can_ask
+
+    def begin(self, name: str) -> None:
+        """Show that a run has begun."""
+        try:
+            self._screen.begin(name)
+        except OSError as error:
+            self._lose(error)
+
+    def show(self, now_s: float, run: Progress, share: float) -> None:
+        """Show where the run is."""
+        if self.gone:
+            return
+        try:
+            self._screen.show(now_s, run, share)
+        except OSError as error:
+            self._lose(error)
+
+    def attend(self, prompts: Prompts) -> None:
+        """Ask and answer prompts without blocking."""
+        if self.gone:
+            return
+        try:
+            self._screen.attend(prompts)
+        except OSError as error:
+            self._lose(error)
+
+    def commands(self) -> list[str]:
+        """Return the commands given since the last call."""
+        if self.gone or not isinstance(self._screen, Commanding):
+            return []
+        try:
+            return self._screen.commands()
+        except OSError as error:
+            self._lose(error)
+            return []
+
+    def end(self) -> None:
+        """Take the progress away."""
+        try:
+            self._screen.end()
+        except OSError as error:
+            self._lose(error)
+
+    def message(self, text: str) -> None:
+        """Say something to people."""
+        try:
+            self._screen.message(text)
+        except OSError as error:
+            self._lose(error)
+
+    def emit(self, record: dict[str, object]) -> None:
+        """Write a record for programs."""
+        try:
+            self._screen.emit(record)
+        except OSError as error:
+            self._lose(error)
+
+    def result(self, line: str) -> None:
+        """Write the run's folder."""
+        try:
+            self._screen.result(line)
+        except OSError as error:
+            self._lose(error)
+
+    def _lose(self, error: OSError) -> None:
+        if self.gone:
+            return
+        self.gone = True
+        text = f"the run can no longer be shown: {in_words(error)}"
+        self._lost(text)
+        with suppress(OSError):
+            self._screen.message(text)

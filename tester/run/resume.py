@@ -1,0 +1,207 @@
+"""Prepare an interrupted run to go on: what is left of its plan, and whether recipe and rig are still its own.
+
+The run's folder holds the texts it began with. Somebody may have changed those on purpose, or the files they were
+copied from: both are found by their hashes, and told with what is to be done.
+"""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from tester.base import clock
+from tester.base.source import read_tree
+from tester.machine.results import condition_records
+from tester.recipe.check import load_checked
+from tester.recipe.plan import Plan
+from tester.rig import Rig
+from tester.run.kinds import recipe_part
+from tester.run.provenance import PACKAGED, accepted_risks, calibration_of, session_info
+from tester.run.rigs import load_rig, load_rig_text
+from tester.store.files import write_text
+from tester.store.reader import RunReader
+from tester.store.records import LOOSE_KEYS, Change, ConditionInfo, StoredCondition, StoredRun, risk_text
+from tester.store.resume import ResumePoint, resume_point
+from tester.store.statements import calibration_sha256, text_sha256
+from tester.store.writer import RunWriter
+
+LATER = "asked for when it is known which text the run goes on with"
+"""Stands for the word that a rig's risks need, while texts are compared."""
+
+
+@dataclass(frozen=True, slots=True)
+class Resumed:
+    """An interrupted run that can go on."""
+
+    rig: Rig
+    plan: Plan
+    """What is left to do."""
+    seed: int
+    point: ResumePoint
+    begin: Callable[[RunWriter], None]
+    summary: str
+    """What goes on, a line for people."""
+
+
+@dataclass(frozen=True, slots=True)
+class Found:
+    """The texts a run is to go on with, and what in them is not as it was."""
+
+    recipe_text: str
+    rig: Rig
+    recipe_source: str
+    rig_source: str
+    changes: tuple[Change, ...]
+    where: tuple[str, ...]
+    """The files that differ, a line each."""
+
+
+def prepare(folder: Path, reason: str, operator: str, accept_risk: str = "") -> Resumed | str:
+    """Return the run in a folder as it can go on, or why it is refused.
+
+    ``reason``: why it may go on although recipe, rig or calibration changed; stored with each change. ``accept_risk``:
+    why safety keys of the rig may be looser than they should be: asked for again whenever a run goes on. Raises
+    StoreError for a record that cannot be read, InvalidSource for a recipe or rig file that is invalid now.
+    """
+    with RunReader(folder) as reader:
+        run, stored, point = reader.run(), reader.conditions(), resume_point(reader)
+    found = _found(folder, run, point.session, reason)
+    if found.changes and not reason:
+        subjects = ", ".join(dict.fromkeys(change.subject for change in found.changes))
+        return f"{subjects} changed since the run began ({'; '.join(found.where)}): --reason TEXT goes on all the same"
+    risks = accepted_risks(found.rig, accept_risk)
+    if risks and not accept_risk:
+        return f"{risks[LOOSE_KEYS]}: --accept-risk REASON goes on all the same"
+    part = recipe_part(found.rig)
+    recipe = load_checked(found.recipe_text, found.rig, part, str(folder / "recipe.yaml"))
+    plan = part.expand(recipe.recipe, found.rig)
+    conditions = list(condition_records(plan))
+    refused = _another_plan(conditions, stored)
+    if refused:
+        return refused
+    begun = {s.info.condition for s in stored if _begun(s)}
+    to_come = [c for c in conditions if c.condition not in begun]
+    session = session_info(point.session, point.origin_s, operator)
+
+    def begin(writer: RunWriter) -> None:
+        writer.begin_session(session)
+        writer.resume_run(found.changes)
+        for change in found.changes:
+            if change.subject == "recipe":
+                writer.replace_recipe(found.recipe_text, to_come, found.recipe_source)
+        if any(change.subject != "recipe" for change in found.changes):
+            writer.replace_rig(found.rig.text, calibration_of(found.rig), point.session, found.rig_source)
+        if found.changes:
+            write_text(folder / "recipe.yaml", found.recipe_text)
+            write_text(folder / "rig.yaml", found.rig.text)
+        writer.add_metadata(risks)
+        if risks:
+            writer.event(0.0, "risk", risk_text(risks), "warning")
+        writer.event(0.0, "resume", f"stretch {session.session} of the run{': ' + reason if reason else ''}")
+
+    if any(change.subject == "calibration" for change in found.changes):
+        # Another scale, another zero: the old reference says nothing.
+        point = replace(point, reference_tare=None)
+    return Resumed(
+        rig=found.rig,
+        plan=part.remaining(plan, point.stand),
+        seed=run.info.seed or 0,
+        point=point,
+        begin=begin,
+        summary=_summary(folder, point, len(conditions)),
+    )
+
+
+def _summary(folder: Path, point: ResumePoint, conditions: int) -> str:
+    over = len(point.stand.ended)
+    at = point.next_repeat
+    where = f", goes on at repeat {at[1]} of condition {at[0]}" if at is not None else ""
+    return f"{folder.name}: {over} of {conditions} conditions are over{where}"
+
+
+# -- what changed -------------------------------------------------------------------------------------------------
+
+
+def _found(folder: Path, run: StoredRun, session: int, reason: str) -> Found:
+    where: list[str] = []
+    stored = run.info.rig_text
+    recipe_text, recipe_source = _present(
+        run.info.recipe_text, folder / "recipe.yaml", _text_of, run.info.recipe_source, _recipe_at_source(run), where
+    )
+    rig_text, rig_source = _present(
+        stored, folder / "rig.yaml", lambda path: _rig_text(path, stored), run.info.rig_source, _rig_at_source(run),
+        where,
+    )
+    rig = load_rig_text(rig_text)
+    figures = calibration_sha256(calibration_of(rig))
+    utc = clock.utc_now()
+    changes = [
+        Change(session, utc, subject, before, after, text, reason)
+        for subject, before, after, text in (
+            ("recipe", run.recipe_sha256, text_sha256(recipe_text), run.info.recipe_text),
+            ("rig", run.rig_sha256, text_sha256(rig_text), run.info.rig_text),
+            ("calibration", run.calibration_sha256 or figures, figures, ""),
+        )
+        if before != after
+    ]
+    if changes and not where:
+        where.append("the profile of a device")
+    return Found(recipe_text, rig, recipe_source, rig_source, tuple(changes), tuple(where))
+
+
+def _present(
+    stored: str, copy: Path, read: Callable[[Path], str], source: str, at_source: str | None, where: list[str]
+) -> tuple[str, str]:
+    """Return the text to go on with, and its source: the folder's copy where that was changed, else its original."""
+    if copy.is_file():
+        text = read(copy)
+        if text != stored:
+            where.append(str(copy))
+            return text, ""
+    if at_source is not None and at_source != stored:
+        where.append(f"what {copy.name} was copied from: {source}")
+        return at_source, source
+    return stored, source
+
+
+def _text_of(path: Path) -> str:
+    return read_tree(path)[0].text
+
+
+def _rig_text(path: Path | str, stored: str, overrides: Sequence[str] = ()) -> str:
+    """Return what a rig file says now: as it is stored where that is the same rig, written by an older version."""
+    rig = load_rig(path, overrides, LATER)
+    return stored if rig == load_rig_text(stored) else rig.text
+
+
+def _recipe_at_source(run: StoredRun) -> str | None:
+    source = run.info.recipe_source
+    if not source or source.startswith(PACKAGED) or not Path(source).is_file():
+        return None
+    return _text_of(Path(source))
+
+
+def _rig_at_source(run: StoredRun) -> str | None:
+    """Return the rig as its file says now; None for a packaged one, which changes with the program alone."""
+    where, *overrides = shlex.split(run.info.rig_source) or [""]
+    if not (Path(where).is_absolute() and Path(where).is_file()):
+        return None
+    return _rig_text(where, run.info.rig_text, overrides)
+
+
+def _begun(stored: StoredCondition) -> bool:
+    return stored.started_s == stored.started_s
+
+
+def _another_plan(conditions: Sequence[ConditionInfo], stored: Sequence[StoredCondition]) -> str:
+    """Return why a changed recipe is another test: a condition that was begun is not in it as it was."""
+    now = {condition.condition: condition for condition in conditions}
+    for one in stored:
+        if _begun(one) and now.get(one.info.condition) != one.info:
+            return (
+                f"the recipe is another one: condition {one.info.condition}, of which something was measured, "
+                "is not in it as it was; begin a new run"
+            )
+    return ""

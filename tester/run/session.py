@@ -1,0 +1,384 @@
+"""One recipe on one rig from the outside: files, folder, rig, parts, results, exit code."""
+
+from __future__ import annotations
+
+import signal
+from collections.abc import Callable, Generator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from threading import current_thread, main_thread
+from types import FrameType
+from typing import TypeVar
+
+from tester.base.exits import EXIT_INVALID, EXIT_USAGE
+from tester.base.lock import ExclusiveUse, user
+from tester.base.plain import plain_text
+from tester.base.signals import HANG_UP, QUIT, handled
+from tester.base.trouble import in_words
+from tester.export import doubtful, write_all
+from tester.export.results import TableRow, results_of
+from tester.machine.prompts import Prompts
+from tester.machine.results import condition_records
+from tester.machine.run import Outcome, Run
+from tester.machine.run_parts import Part
+from tester.machine.tickers import TickStatistics
+from tester.recipe.loader import LoadedRecipe
+from tester.rig import Rig
+from tester.rig.ceilings import counts_as_simulated
+from tester.rig.load import risks_of
+from tester.run.endings import EXIT_CODES, CannotStartError, PartEnd, RunEnding, StopLevel, ending_of
+from tester.run.folder import Begin, Job, Work, beginning_of, make_folder, specimens_of, write_sources
+from tester.run.kinds import run_parts
+from tester.run.latch import acknowledge, open_trips
+from tester.run.merge_parts import put_together, recover
+from tester.run.part_run import run_part
+from tester.run.pool import WorkerPool
+from tester.run.preconditions import enough_room, hold_rig, hold_run
+from tester.run.preparing import Prepared, prepared
+from tester.run.provenance import accepted_risks, recipe_source, rig_source, run_info, session_info
+from tester.run.reporter import LastingScreen, ReportScreen
+from tester.run.resume import prepare
+from tester.run.workers import Sight, side_by_side
+from tester.store.catalogue import MANIFEST, cut_off
+from tester.store.reader import DATABASE, RunReader
+from tester.store.schema import StoreError
+from tester.store.status import WENT_THROUGH
+from tester.store.writer import RunWriter
+
+Got = TypeVar("Got")
+
+
+@dataclass(frozen=True, slots=True)
+class SessionOptions:
+    """What the command line said."""
+
+    recipe: str = ""
+    rig: str = "sim"
+    overrides: tuple[str, ...] = ()
+    accept_risk: str = ""
+    """Why safety keys may be looser than they should be; "" = they may not."""
+    out: Path = Path("runs")
+    seed: int = 0
+    lapse: float | None = None
+    bus_log: Path | None = None
+    operator: str = ""
+    jobs: int = 1
+    """Processes in which independent parts run side by side (simulated rig only)."""
+    samples: bool = True
+    """Whether samples are kept."""
+    faults: tuple[str, ...] = ()
+    """Lines of a fault script (sim.faults.language), beside those of the rig file."""
+
+
+def only_plain(**texts: str) -> None:
+    """Raise CannotStartError for a text of a person's that holds more than a line of characters, with its name."""
+    try:
+        for where, text in texts.items():
+            plain_text(text, where)
+    except ValueError as error:
+        raise CannotStartError(str(error), EXIT_USAGE) from error
+
+
+class Session:
+    """Prepares, runs and closes one run."""
+
+    def __init__(self, options: SessionOptions, screen: ReportScreen) -> None:
+        """Nothing is read or written before ``run``."""
+        self.options = options
+        self.screen = LastingScreen(screen, self._lose_screen)
+        self.interrupts = 0
+        self.run_: Run | None = None
+        """The part that runs in this process, or ran in it last."""
+        self.folder: Path | None = None
+        self.ending: RunEnding | None = None
+        self.prompts = Prompts(automatic=screen.answer_yes)
+        """Of all parts that run in this process: each has a number of its own."""
+        self.statistics = TickStatistics()
+        self._level = StopLevel.NONE
+        self._pool: WorkerPool | None = None
+
+    def run(self) -> int:
+        """Run to the end; return the exit code. Raises InvalidSource for an invalid recipe or rig file,
+        FileNotFoundError where there is no such recipe, CannotStartError."""
+        options = self.options
+        only_plain(operator=options.operator, recipe=options.recipe, rig=options.rig)
+        found = self.prepare()
+        work, rig, recipe = found.work, found.work.rig, found.recipe
+        faults = rig.faults + options.faults
+        if faults:
+            _check_faults(faults, rig)
+        refusal = self._refusal(work.rig)
+        if refusal:
+            self.screen.message(refusal)
+            return EXIT_USAGE
+        options.out.mkdir(parents=True, exist_ok=True)
+        for left in cut_off(options.out):
+            self.screen.message(f"{left.name} was cut off: tester resume {left} goes on with it")
+        enough_room(options.out, work.plan, rig, found.expected)
+        with ExclusiveUse() as use:
+            hold_rig(use, rig, work.plan.name)
+            folder = make_folder(options.out, work.plan.name)
+            hold_run(use, folder)
+            write_sources(folder, recipe.tree.text, rig)
+            begin = self._beginning(folder, found.path, recipe, work)
+            return self._record(self._job(folder, options.seed, rig), work, begin)
+
+    def prepare(self) -> Prepared:
+        """Read and plan the recipe; raises as ``run`` does."""
+        options = self.options
+        return prepared(options.recipe, options.rig, options.overrides, options.accept_risk)
+
+    def resume(self, folder: Path, reason: str = "") -> int:
+        """Go on with an interrupted run; return the exit code. ``reason``: why it may although something changed.
+
+        Raises CannotStartError, StoreError, InvalidSource.
+        """
+        only_plain(operator=self.options.operator, reason=reason)
+        with RunReader(folder) as reader:
+            finished = reader.run().status == WENT_THROUGH
+        if finished and (folder / MANIFEST).is_file():
+            self.screen.message(f"{folder.name} is complete: nothing is left to do")
+            self.screen.result(str(folder))
+            return 0
+        with ExclusiveUse() as use:
+            hold_run(use, folder)
+            if finished:  # cut off between its end and its tables
+                return self._report(folder, RunEnding(Outcome.DONE, "", None))
+            self.aside(lambda: recover(folder))
+            resumed = self.aside(lambda: prepare(folder, reason, self.options.operator, self.options.accept_risk))
+            if isinstance(resumed, str):
+                raise CannotStartError(resumed, EXIT_INVALID)
+            refusal = self._refusal(resumed.rig)
+            if refusal:
+                self.screen.message(refusal)
+                return EXIT_USAGE
+            enough_room(folder, resumed.plan, resumed.rig)
+            hold_rig(use, resumed.rig, folder.name)
+            self.screen.message(resumed.summary)
+            # What is left goes on in the run's own record, one specimen after the other.
+            work = Work(resumed.rig, resumed.plan, (Part(1, resumed.plan),), resumed.point)
+            return self._record(self._job(folder, resumed.seed, resumed.rig), work, resumed.begin)
+
+    def aside(self, work: Callable[[], Got]) -> Got:
+        """Do what reads or writes many files while nothing moves; a service hears its clients meanwhile."""
+        return work()
+
+    def stop(self, level: StopLevel) -> None:
+        """Stop the run, from a signal handler or another thread too: what is begun ends, and nothing more is begun."""
+        self._level |= level
+        if self._pool is not None:
+            self._pool.stop(self._level)
+        if self.run_ is not None:
+            self._level.tell(self.run_)
+
+    def _lose_screen(self, text: str) -> None:
+        """Stop a run that nobody sees any more: it is not left to itself."""
+        if self.run_ is not None:
+            self.run_.reason = self.run_.reason or text
+        self.stop(StopLevel.UNSEEN)
+
+    # -- a watch over the part in this process (tester.run.part_run.Watch) -----------------------------------
+
+    def begun(self, run: Run) -> None:
+        """Take notice of a part's run; a stop that came between two parts is for it."""
+        self.run_ = run
+        if self._level:
+            self.stop(self._level)
+
+    def rested(self) -> None:
+        """Nothing: who is at this screen asks for nothing while a record is closed."""
+
+    def poll(self, now_s: float, run: Run, share: float) -> None:
+        """Show the part that runs in this process and attend to its prompts."""
+        ctx = run.engine.ctx
+        self.screen.show(now_s, ctx.progress, share)
+        self.screen.attend(ctx.prompts)
+        for command in self.screen.commands():
+            self._command(run, command)
+
+    def _command(self, run: Run, command: str) -> None:
+        """Carry out what was asked for at the screen; what has no effect is said."""
+        refused = ""
+        if command == "hold":
+            refused = run.request_hold()
+        elif command == "release":
+            refused = run.request_release()
+        elif command == "stop":
+            run.request_stop("stopped by the operator")
+        elif command == "fast stop":
+            run.request_stop("stopped by the operator", fast=True)
+        self.screen.message(refused or command)
+
+    # -- parts ------------------------------------------------------------------------------------------------
+
+    def _refusal(self, rig: Rig) -> str:
+        """Return why the options do not go with the rig or the recipe, "" where they do."""
+        jobs = self.options.jobs
+        if jobs > 1 and not rig.simulated:
+            return f"--jobs {jobs}: only a simulated rig can be there several times, and this one is real"
+        if self.screen.answer_yes and not (self.screen.can_ask or counts_as_simulated(rig)):
+            return "--yes: nobody is at this terminal, and only a person can answer what is asked beside a real rig"
+        if self.screen.answer_yes:
+            return ""
+        if jobs > 1:
+            return f"--jobs {jobs}: nobody can answer the prompts of several parts; use --yes, or one job"
+        if not self.screen.can_ask:
+            return "the recipe asks a person, and nobody is at this terminal: use --yes"
+        return ""
+
+    def _job(self, folder: Path, seed: int, rig: Rig) -> Job:
+        o = self.options
+        history = self.aside(lambda: run_parts(rig).history(folder.parent, rig))
+        return Job(folder, seed, o.lapse, o.bus_log, o.samples, o.faults, history)
+
+    def _beginning(self, folder: Path, path: Path, recipe: LoadedRecipe, work: Work) -> Begin:
+        """Return what begins the run's record: the whole plan, and where everything comes from."""
+        o = self.options
+        info = run_info(
+            folder.name,
+            work.plan,
+            recipe,
+            work.rig,
+            seed=o.seed,
+            operator=o.operator,
+            recipe_source=recipe_source(path),
+            rig_source=rig_source(o.rig, o.overrides),
+            risks=accepted_risks(work.rig, o.accept_risk),
+        )
+
+        def begin(writer: RunWriter) -> None:
+            writer.begin_run(info, specimens_of(work.plan), condition_records(work.plan))
+            writer.begin_session(session_info(1, 0.0, o.operator))
+            if info.risk:
+                writer.event(0.0, "risk", info.risk, "warning")
+
+        return begin
+
+    def _record(self, job: Job, work: Work, begin: Begin) -> int:
+        """Carry out the work into the folder; write the tables and return the exit code."""
+        self.folder = job.folder
+        self.prompts.real = not counts_as_simulated(work.rig)
+        for risk in risks_of(work.rig):
+            self.screen.message(f"accepted risk ({self.options.accept_risk}): {risk}")
+        self._acknowledge(job.folder, work.rig)
+        with self._signals():
+            self.screen.begin(work.plan.name)
+            try:
+                if len(work.parts) == 1:
+                    end = run_part(job, work, work.parts[0], begin, self, self.prompts)
+                    self.ending = ending_of([end], 1)
+                else:
+                    ends = self._ends(job, work)
+                    self.ending = put_together(job, work, begin, ends, lambda: self._level, self._tell)
+            finally:
+                self.screen.end()
+            return self._report(job.folder, self.ending)
+
+    def _acknowledge(self, folder: Path, rig: Rig) -> None:
+        """Take this start as the acknowledgement of what has tripped on the rig before. Raises StoreError, OSError."""
+        found = open_trips(self.options.out, rig, folder)
+        for one in found:
+            self.screen.message(f"acknowledged by this start: {one}")
+        acknowledge(found, f"{self.options.operator or user()}, by the start of {folder.name}", folder)
+
+    def _ends(self, job: Job, work: Work) -> Generator[PartEnd]:
+        """Yield how the parts ended: one after the other in this process, or side by side in others."""
+        if self.options.jobs > 1:
+            yield from side_by_side(job, work, self.options.jobs, self._show, self._take)
+            return
+        for part in work.parts:
+            end = run_part(job, work, part, beginning_of(part, job, work), self, self.prompts)
+            yield end
+            if end.outcome is not Outcome.DONE:
+                return
+
+    def _tell(self, end: PartEnd) -> None:
+        self.screen.emit({"event": "part end", "part": end.part, "outcome": end.outcome.value, "reason": end.reason})
+
+    def _show(self, sight: Sight) -> None:
+        self.screen.show(sight.now_s, sight.progress, sight.share)
+
+    def _take(self, pool: WorkerPool) -> None:
+        self._pool = pool
+        if self._level:
+            pool.stop(self._level)
+
+    # -- signals ----------------------------------------------------------------------------------------------
+
+    @contextmanager
+    def _signals(self) -> Generator[None]:
+        """Stop on INT, TERM and HUP while the block lasts; only the main thread can be told."""
+        if current_thread() is not main_thread():
+            yield
+            return
+        with handled(self._on_signal):
+            yield
+
+    def _on_signal(self, number: int, _frame: FrameType | None) -> None:
+        """Stop: TERM, HUP and a first INT in a controlled way, a second INT and QUIT fast."""
+        if number == QUIT:
+            self.stop(StopLevel.FAST)
+            return
+        if number != signal.SIGINT:
+            self.stop(StopLevel.HUNG_UP if number == HANG_UP else StopLevel.TERMINATED)
+            return
+        self.interrupts += 1
+        self.stop(StopLevel.FAST if self.interrupts > 1 else StopLevel.INTERRUPTED)
+
+    # -- results ----------------------------------------------------------------------------------------------
+
+    def _report(self, folder: Path, ending: RunEnding) -> int:
+        """Write the tables, say what to do about what is missing in them, and return the exit code.
+
+        Conditions that the run did not come to are no news each: the screen's result counts them.
+        """
+        try:
+            lost, advice = self.aside(lambda: _tables(folder))
+        except (OSError, StoreError) as error:
+            return self._without_tables(folder, ending, in_words(error))
+        missing = [row.describe() for row in lost]
+        for line in advice:
+            self.screen.message(line)
+        if ending.reason:
+            self.screen.message(f"{ending.outcome.value}: {ending.reason}")
+        code = ending.exit_code(interrupted_once=self.interrupts == 1, missing=bool(missing))
+        if ending.failed:
+            self.screen.message(f"not everything could be recorded: {ending.failed}")
+        self.screen.emit({"event": "end", "outcome": ending.outcome.value, "exit": code, "missing": missing})
+        self.screen.result(str(folder))
+        return code
+
+
+    def _without_tables(self, folder: Path, ending: RunEnding, why: str) -> int:
+        """Say how a run has ended whose tables cannot be written, and return the exit code."""
+        self.screen.message(f"{ending.outcome.value}: {ending.reason}" if ending.reason else ending.outcome.value)
+        if ending.failed:
+            self.screen.message(f"not everything could be recorded: {ending.failed}")
+        then = f"; then `tester resume {folder}` goes on" if (folder / DATABASE).is_file() else ""
+        self.screen.message(f"the tables cannot be written: {why}{then}")
+        code = EXIT_CODES[Outcome.FAILED]
+        self.screen.emit({"event": "end", "outcome": ending.outcome.value, "exit": code, "missing": []})
+        self.screen.result(str(folder))
+        return code
+
+
+def _tables(folder: Path) -> tuple[list[TableRow], list[str]]:
+    """Write a run's tables; return what is missing in them, and lines of advice and of wear."""
+    lost = list(write_all(folder))
+    advice = [row.advise() for row in [*(row for row in lost if row.tried), *doubtful(folder)]]
+    with RunReader(folder) as reader:
+        return lost, [*advice, *results_of(reader).wear_lines()]
+
+
+def _check_faults(texts: tuple[str, ...], rig: Rig) -> None:
+    """Raise CannotStartError for a fault script that cannot be read, or a rig that is real."""
+    if rig.can.interface != "sim":
+        raise CannotStartError("faults happen only on a rig that is simulated in this process", EXIT_USAGE)
+    from sim import machines
+    from sim.faults import FaultTextError
+
+    try:
+        machines.find(run_parts(rig).plant).language().parse_script(texts)
+    except FaultTextError as error:
+        raise CannotStartError(str(error), EXIT_USAGE) from error

@@ -1,0 +1,48 @@
+"""Wire a run to the simulated rig in this process."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from sim import machines
+from sim.nodes.profile_slave import UnknownQuantityError
+from sim.rig import DeviceSpec, LineSpec, RigSpec, SimRig
+from sim.wires.can_wire import CanWire
+from tester.base.source import InvalidSource, Problem
+from tester.machine.ports import Ports
+from tester.rig import DeviceConfig, Rig
+from tester.rig.profiles import profile_of
+from tester.run.bus_log import BusLog
+from tester.run.kinds import run_parts
+
+
+def simulated_ports(
+    rig: Rig, seed: int, log: BusLog | None, can_wire: type[CanWire] = CanWire
+) -> tuple[Ports, SimRig, Any]:
+    """Return the wires of a new simulated rig, the rig, and the hands at it (the same object).
+
+    Raises InvalidSource where a sensor is to show what the plant does not have.
+    ``can_wire``: the kind of bus, ``sim.faults.can.FaultyCanWire`` where it is to be spoiled.
+    """
+    try:
+        world = machines.find(run_parts(rig).plant).world(spec_of(rig), rig.plant, seed, can_wire)
+    except UnknownQuantityError as error:
+        raise InvalidSource([Problem("rig file", 1, 1, f"devices: {error}")]) from error
+    if log is not None:
+        log.watch(world.can, world.lines)
+    return Ports(world.can, dict(world.lines)), world, world
+
+
+def spec_of(rig: Rig) -> RigSpec:
+    """Return the wiring that a rig file describes."""
+    return RigSpec(
+        bitrate=rig.can.bitrate,
+        axes=rig.drives(),
+        lines={name: LineSpec(line.baud, line.parity) for name, line in rig.lines.items()},
+        devices={name: _device(config) for name, config in rig.devices.items()},
+        nodes=tuple(rig.can.nodes.values()),
+    )
+
+
+def _device(config: DeviceConfig) -> DeviceSpec:
+    return DeviceSpec(profile_of(config.profile), config.line, config.unit_id, config.simulated)

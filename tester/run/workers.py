@@ -1,0 +1,108 @@
+"""Parts side by side, each in a worker process."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from concurrent.futures import FIRST_COMPLETED, Future, wait
+from concurrent.futures.process import BrokenProcessPool
+from functools import lru_cache
+from typing import NamedTuple
+
+from tester.machine.context import Progress
+from tester.machine.prompts import Prompts
+from tester.machine.run import Outcome, Run
+from tester.machine.tickers import TickStatistics
+from tester.run.endings import PartEnd, StopLevel
+from tester.run.folder import Job, Work, beginning_of, read_work
+from tester.run.kinds import recipe_part
+from tester.run.part_run import run_part
+from tester.run.pool import WorkerPool, say, stop_level
+
+POLL_S = 0.1
+"""How often the parent looks for reports, s of wall time."""
+
+
+class Sight(NamedTuple):
+    """How far a part is: its rig time in s, where it is, its share of the expected rig time."""
+
+    now_s: float
+    progress: Progress
+    share: float
+
+
+def side_by_side(
+    job: Job, work: Work, jobs: int, show: Callable[[Sight], None], pool_made: Callable[[WorkerPool], None]
+) -> Iterator[PartEnd]:
+    """Carry out a run's parts in up to ``jobs`` processes; yield how they ended, as they end.
+
+    A part that does not end well stops the others in a controlled way; parts that were not begun by then yield nothing.
+    ``pool_made`` gets the pool, through which a stop can be ordered.
+    """
+    with WorkerPool(min(jobs, len(work.parts))) as pool:
+        pool_made(pool)
+        running = {pool.submit(run_in_worker, job, number): number for number in longest_first(work)}
+        while running:
+            done, _ = wait(running, timeout=POLL_S, return_when=FIRST_COMPLETED)
+            for sight in pool.reports():
+                if isinstance(sight, Sight):
+                    show(sight)
+            for future in sorted(done, key=running.__getitem__):
+                end = _end_of(future, running.pop(future))
+                if end is None:
+                    continue
+                if end.outcome is not Outcome.DONE:
+                    pool.stop(StopLevel.OTHER_PART)
+                yield end
+
+
+def longest_first(work: Work) -> list[int]:
+    """Return the numbers of a run's parts, what is expected to take longest first: it must not be left for the end."""
+    expected_s = {part.number: recipe_part(work.rig).estimate(part.plan, work.rig).rig_seconds for part in work.parts}
+    return sorted(expected_s, key=lambda number: (-expected_s[number], number))
+
+
+def _end_of(future: Future[PartEnd | None], part: int) -> PartEnd | None:
+    try:
+        return future.result()
+    except BrokenProcessPool:
+        return PartEnd(part, Outcome.FAILED, "its process ended unexpectedly")
+
+
+def run_in_worker(job: Job, number: int) -> PartEnd | None:
+    """Carry out one part in this process, prompts answered with yes; None where a stop came first."""
+    if stop_level():
+        return None
+    work = _work_of(job)
+    part = work.parts[number - 1]
+    return run_part(job, work, part, beginning_of(part, job, work), _Reporting(), Prompts(automatic=True))
+
+
+@lru_cache(maxsize=1)
+def _work_of(job: Job) -> Work:
+    return read_work(job.folder)
+
+
+class _Reporting:
+    """A watch that tells the parent how far the part is, and hears from it when to stop."""
+
+    def __init__(self) -> None:
+        self.statistics = TickStatistics()
+        self._heard = StopLevel.NONE
+
+    def begun(self, run: Run) -> None:
+        """Obey a stop that was ordered meanwhile."""
+        self._obey(run)
+
+    def rested(self) -> None:
+        """Nothing: the parent hears STOP."""
+
+    def poll(self, now_s: float, run: Run, share: float) -> None:
+        """Report and obey."""
+        say(Sight(now_s, run.engine.ctx.progress, share))
+        self._obey(run)
+
+    def _obey(self, run: Run) -> None:
+        level = stop_level()
+        if level != self._heard:
+            self._heard = level
+            level.tell(run)

@@ -1,0 +1,58 @@
+"""A child process and a socket to it: inherited where the system can, else over loopback with a secret.
+
+POSIX hands the child one end of a socket pair. Windows (not tried) has it connect back and show a secret first.
+"""
+
+from __future__ import annotations
+
+import hmac
+import os
+import secrets
+import socket
+import subprocess
+from collections.abc import Sequence
+
+from tester.base.children import module_command
+
+INHERITS = os.name == "posix"
+BACK_S = 20.0
+"""A child that is to connect back has done so by then, s [A]."""
+SECRET = "TESTER_LINK_SECRET"
+
+
+def spawn(module: str, arguments: Sequence[str]) -> tuple[subprocess.Popen[bytes], socket.socket]:
+    """Run ``python -m module LINK ARGUMENTS``; return the process and the socket to it. Raises OSError."""
+    if INHERITS:
+        ours, theirs = socket.socketpair()
+        with theirs:
+            process = subprocess.Popen(
+                module_command(module, f"fd:{theirs.fileno()}", *arguments),
+                pass_fds=[theirs.fileno()],
+                stdin=subprocess.DEVNULL,
+                start_new_session=True,  # Ctrl+C at the terminal is for the owner alone
+            )
+        return process, ours
+    secret = secrets.token_hex(32)
+    with socket.create_server(("127.0.0.1", 0), backlog=1) as door:
+        door.settimeout(BACK_S)
+        process = subprocess.Popen(
+            module_command(module, f"port:{door.getsockname()[1]}", *arguments),
+            stdin=subprocess.DEVNULL,
+            env=os.environ | {SECRET: secret},
+        )
+        while True:
+            ours, _ = door.accept()
+            ours.settimeout(BACK_S)
+            if hmac.compare_digest(ours.recv(len(secret)), secret.encode()):
+                return process, ours
+            ours.close()
+
+
+def link_of(text: str) -> socket.socket:
+    """Return the child's end: what ``spawn`` named in the first argument. Raises OSError."""
+    kind, _, number = text.partition(":")
+    if kind == "fd":
+        return socket.socket(fileno=int(number))
+    back = socket.create_connection(("127.0.0.1", int(number)), timeout=BACK_S)
+    back.sendall(os.environ.pop(SECRET).encode())
+    return back

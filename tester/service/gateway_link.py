@@ -1,0 +1,247 @@
+"""The owner's side of the talk with clients: the gateway process, numbered events, states. It never waits.
+
+A gateway that dies or hangs is replaced, and told again what clients may ask for; the run does not notice.
+"""
+
+from __future__ import annotations
+
+import secrets
+import select
+import subprocess
+from collections import deque
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from pydantic import JsonValue
+from pydantic_core import to_json
+
+from tester import __version__
+from tester.base import clock
+from tester.screen import MachineView
+from tester.service.address import Address, TcpAddress, UnixAddress, stop_path, unlink_socket
+from tester.service.child_socket import spawn
+from tester.service.gateway_process import SETTINGS, GatewaySettings
+from tester.service.link import LinkLost, Order, OwnerEnd, Presence
+from tester.service.protocol import EVENTS_KEPT, TREND_ROWS, Accepted, Event, Frames, Refused, encode
+from tester.service.state import ClientsView, PlanView, StateView
+from tester.service.stop_lane import StopLane
+
+AGAIN_S = 1.0
+"""A gateway is started anew at most this often, s."""
+END_S = 5.0
+"""A gateway that has not ended by then is killed, s."""
+
+
+@dataclass(frozen=True, slots=True)
+class LinkConfig:
+    """Where clients connect, and what the gateway needs for its answers. ``card``: of a TCP address."""
+
+    address: Address
+    card: Path
+    runs: Path
+    rig: str
+    notify: str = ""
+    accept_risk: str = ""
+
+
+@dataclass(slots=True)
+class GatewayLink:
+    """Says things to clients, and hears their orders."""
+
+    config: LinkConfig
+    service: str = field(default_factory=lambda: secrets.token_hex(8))
+    began_s: float = field(default_factory=clock.monotonic)
+    presence: Presence = field(default_factory=lambda: Presence("", 0, 0, False))
+    sign_s: float = float("-inf")
+    """When whoever controls gave the newest sign of life (tester.base.clock.monotonic)."""
+    sequence: int = 0
+    restarts: int = 0
+    lane: StopLane = field(default_factory=StopLane)
+    """STOP's own way here, past the gateway."""
+    _end: OwnerEnd | None = None
+    _process: subprocess.Popen[bytes] | None = None
+    _events: deque[bytes] = field(default_factory=lambda: deque[bytes](maxlen=EVENTS_KEPT))
+    _rows: deque[bytes] = field(default_factory=lambda: deque[bytes](maxlen=TREND_ROWS))
+    _plan: bytes = b"pnull"
+    _machine: bytes = b""
+    _again_s: float = float("-inf")
+
+    @property
+    def wall_s(self) -> float:
+        """Seconds since the service began."""
+        return clock.monotonic() - self.began_s
+
+    @property
+    def silent_s(self) -> float:
+        """Seconds without a sign of life of whoever controls."""
+        return clock.monotonic() - self.sign_s
+
+    def attended(self) -> None:
+        """Take a sign of life of whoever controls: silence counts from now on."""
+        self.sign_s = clock.monotonic()
+
+    @property
+    def clients(self) -> ClientsView:
+        """Who is connected."""
+        return ClientsView(self.presence.controller, self.presence.controller_id, self.presence.viewers)
+
+    @property
+    def watched(self) -> bool:
+        """Somebody is connected."""
+        return self.presence.viewers > 0 or self.presence.controller_id != 0
+
+    # -- saying -----------------------------------------------------------------------------------------------
+
+    def event(self, kind: str, text: str, severity: str = "info", t_s: float = 0.0, run: str = "") -> None:
+        """Tell an event."""
+        self.sequence += 1
+        line = b"e%d " % self.sequence
+        line += encode(Event(self.sequence, t_s, clock.utc_now(), kind, severity, text, run))
+        self._events.append(line)
+        self._say(line)
+
+    def state(self, view: StateView, row: tuple[float | None, ...]) -> None:
+        """Tell the state; one that has not left yet is replaced."""
+        made = to_json(row, inf_nan_mode="null")
+        self._rows.append(made)
+        if self._end is not None:
+            try:
+                self._end.say_state(b"s" + to_json(view, inf_nan_mode="null") + b"\t" + made)
+            except LinkLost as lost:
+                self._lose(lost)
+
+    def machine(self, machine: MachineView) -> None:
+        """Tell the tables of the kind of rig, before its first state; a trend of another kind's columns ends."""
+        line = b"m" + to_json(machine)
+        if line != self._machine:
+            self._machine = line
+            self._rows.clear()
+            self._say(line)
+
+    def plan(self, plan: PlanView | None) -> None:
+        """Tell the plan."""
+        self._plan = b"p" + to_json(plan, inf_nan_mode="null")
+        self._say(self._plan)
+
+    def frames(self, frames: Frames) -> None:
+        """Tell frames to those who watch them."""
+        self._say(b"f" + encode(frames))
+
+    def accept(self, order: Order, result: JsonValue = None) -> None:
+        """Answer an order: it was taken."""
+        self._say(b"a%d " % order.client + encode(Accepted(order.id, result)))
+
+    def refuse(self, order: Order, reason: str) -> None:
+        """Answer an order: it was not."""
+        self._say(b"a%d " % order.client + encode(Refused(order.id, reason)))
+
+    def notify(self, event: str, text: str, run: str, folder: str) -> None:
+        """Have the user's hook run."""
+        self._say(b"n" + to_json({"event": event, "text": text, "run": run, "folder": folder, "utc": clock.utc_now()}))
+
+    # -- hearing ----------------------------------------------------------------------------------------------
+
+    def hear(self) -> list[Order | Presence]:
+        """Return what clients want, a bounded piece of it; starts a gateway where there is none."""
+        self.lane.look()
+        if self._end is None:
+            self._revive()
+        if self._end is None:
+            return []
+        try:
+            self._end.flush()
+            heard = self._end.hear()
+        except LinkLost as lost:
+            self._lose(lost)
+            return []
+        for one in heard:
+            if isinstance(one, Presence):
+                if one.signs != self.presence.signs:
+                    self.attended()
+                self.presence = one
+        return heard
+
+    def wait(self, seconds: float) -> None:
+        """Wait until something can be heard, or the time is over."""
+        if self._end is None:
+            clock.sleep_until(clock.monotonic() + seconds)
+        elif not self._end.heard:
+            select.select([self._end.socket, self.lane.bell], [], [], max(seconds, 0.0))
+
+    # -- the gateway ------------------------------------------------------------------------------------------
+
+    def open(self) -> None:
+        """Open the lane for STOP, then start the gateway. Raises OSError."""
+        self.lane.open(self.config.address)
+        self._open_gateway()
+
+    def _open_gateway(self) -> None:
+        self._process, ours = spawn("tester.service.gateway_process", ())
+        self.adopt(OwnerEnd(ours))
+
+    def adopt(self, end: OwnerEnd) -> None:
+        """Talk through ``end`` from now on: tell the gateway behind it what it must know."""
+        address = self.config.address
+        self._end = end
+        tcp = isinstance(address, TcpAddress)
+        path = self.config.card if isinstance(address, TcpAddress) else address.path
+        settings = GatewaySettings(
+            self.service, __version__, str(path), str(self.config.runs), self.config.rig, self.config.notify,
+            address.token if tcp else "", address.port if tcp else 0, self.lane.port, self.config.accept_risk,
+        )  # fmt: skip
+        self._say(SETTINGS.dump_json(settings))
+        if self._machine:
+            self._say(self._machine)
+        for row in self._rows:
+            self._say(b"t" + row)
+        for event in self._events:
+            self._say(event)
+        self._say(self._plan)
+
+    def close(self) -> None:
+        """End the gateway; it says goodbye to everybody. STOP is taken until then."""
+        self._say(b"b")
+        if self._end is not None:
+            self._end.drain(END_S)
+        if self._process is not None:
+            try:
+                self._process.wait(END_S)
+            except subprocess.TimeoutExpired:
+                self._process.kill()
+                self._process.wait()
+        if self._end is not None:
+            self._end.close()
+            self._end = None
+        self.lane.close()
+        if isinstance(self.config.address, UnixAddress):
+            for path in (self.config.address.path, stop_path(self.config.address.path)):
+                unlink_socket(path)
+        self.config.card.unlink(missing_ok=True)
+
+    def _say(self, line: bytes) -> None:
+        if self._end is None:
+            return
+        try:
+            self._end.say(line)
+        except LinkLost as lost:
+            self._lose(lost)
+
+    def _lose(self, lost: LinkLost) -> None:
+        """Give a gateway up; the next ``hear`` starts another."""
+        if self._end is not None:
+            self._end.close()
+        self._end = None
+        if self._process is not None:
+            self._process.kill()
+        self.presence = Presence("", 0, 0, False)
+        self._again_s = clock.monotonic() + AGAIN_S
+        self.event("service", f"the gateway is gone ({lost}) and is started anew", "warning")
+
+    def _revive(self) -> None:
+        if clock.monotonic() < self._again_s:
+            return
+        if self._process is not None and self._process.poll() is None:
+            return
+        self.restarts += 1
+        self._again_s = clock.monotonic() + AGAIN_S
+        self._open_gateway()

@@ -1,0 +1,382 @@
+"""The desk between rig and clients: what is known goes out, what clients want comes in, between two ticks."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+from tester.base import clock
+from tester.base.trouble import in_words
+from tester.machine.manual import ManualExecutor
+from tester.machine.run import Outcome, Run
+from tester.machine.served import History, ServedKind
+from tester.rig import Rig
+from tester.run.kinds import served_kind
+from tester.run.latch import acknowledge, open_trips
+from tester.screen import Value
+from tester.service.address import with_peer
+from tester.service.alarms import AlarmList, Cause
+from tester.service.gateway_link import GatewayLink
+from tester.service.link import Order
+from tester.service.preflight import Past, known_checks
+from tester.service.progress import PlanTrack
+from tester.service.protocol import SNAPSHOT_S
+from tester.service.state import DiskView, ManualView, ProgressView, RunView, StateView, TickView
+from tester.service.values import trend_row, unknown_values
+from tester.service.watch import RunWatch, risk_of
+from tester.store.schema import StoreError
+from tester.store.space import MARGIN, FreeRoom
+
+UNWATCHED_S = 1.0
+"""Period of states while nobody is connected, s: the gateway's trend goes on, at a rate that costs nothing."""
+SOONEST_S = 0.05
+"""What a client has done is not shown sooner than this after what was shown last, s: nobody makes states by talking."""
+DISK_EVERY_S = 10.0
+DISK_FIRST_S = 1.0
+"""The first answer about the disk is waited for so long: the service is only beginning, s."""
+LOW_BYTES = 500_000_000
+"""Less than this is low whatever the run needs [A]: one compound of Table 2 takes some tens of MB."""
+NOTIFIED = frozenset({"trip"})
+"""Kinds of events of which the notify hook is told; hold, prompt, finished, disk come from elsewhere."""
+
+
+def nobody_obeys(order: Order) -> None:
+    """Leave an order undone: nobody has taken the desk yet."""
+
+
+def nothing_stops(name: str, fast: bool) -> None:
+    """Let STOP pass: nobody has taken the desk yet."""
+
+
+def nobody_minds() -> None:
+    """Do nothing about a change of control."""
+
+
+def nothing_rests(fast: bool) -> None:
+    """Do nothing: the run is all there is."""
+
+
+@dataclass(slots=True)
+class Desk:
+    """What is known now. ``obey`` is called with every order, ``lost_control`` when another client controls; ``watch``
+    is the run under way."""
+
+    gateway: GatewayLink
+    rig: Rig
+    runs: Path
+    obey: Callable[[Order], None] = field(default=nobody_obeys)
+    stop: Callable[[str, bool], None] = field(default=nothing_stops)
+    """Called with who wants STOP, and whether a fast one."""
+    lost_control: Callable[[], None] = field(default=nobody_minds)
+    stop_rest: Callable[[bool], None] = field(default=nothing_rests)
+    """Called with STOP (fast or not) for what the run under way has not begun yet."""
+    watch: RunWatch | None = None
+    hand: ManualExecutor | None = None
+    run: RunView | None = None
+    tick: TickView = field(default_factory=lambda: TickView(0.0, 0.0, 0))
+    latched: str = ""
+    """Why nothing may start before somebody has acknowledged."""
+    tripped: str = ""
+    """Name of the alarm of that trip."""
+    interrupted: tuple[str, ...] = ()
+    past: Past | None = None
+    """What the newest run in the store left; looked at while no run ticks."""
+    history: History | None = None
+    """What the runs make known of the rig; looked at then, too."""
+    needed: int = 0
+    """Bytes that the run is expected to take."""
+    now_s: float = 0.0
+    """Rig time of the run."""
+    _due_s: float = float("-inf")
+    _shown_s: float = float("-inf")
+    _mode: str = ""
+    _mode_since_s: float = 0.0
+    _asked: int = 0
+    _controller: int = 0
+    _low: bool = False
+    _disk_due_s: float = float("-inf")
+    _room: FreeRoom = field(init=False)
+    _unknown: tuple[Value, ...] = ()
+    _alone: str = ""
+    _risk: str = ""
+    kind: ServedKind = field(init=False)
+    """Of the service's own rig."""
+    alarms: AlarmList = field(init=False)
+
+    def __post_init__(self) -> None:
+        """Begin with no alarm."""
+        self.alarms = AlarmList(clock.utc_now, self._alarm_changed)
+        self.kind = served_kind(self.rig)
+        self.gateway.machine(self.kind.machine)
+        self._unknown = unknown_values(self.rig)
+        self._alone = self.kind.alone(self.rig)
+        self._room = FreeRoom(self.runs)
+        self._look_at_disk()
+        self._room.wait(DISK_FIRST_S)
+        self._risk = risk_of(self.rig)
+
+    # -- runs -------------------------------------------------------------------------------------------------
+
+    def attach(self, run: Run, track: PlanTrack, view: RunView, hand: ManualExecutor | None = None) -> None:
+        """Look after a run from now on."""
+        kind = served_kind(run.engine.ctx.rig)
+        self.gateway.machine(kind.machine)
+        self.watch, self.hand, self.run = RunWatch(run, track, kind), hand, view
+        run.engine.ctx.journal.heard = self.heard
+        self.gateway.lane.begin_ticking()
+        self.now_s = 0.0
+        self._asked = 0
+        self.gateway.plan(None if hand is not None else self.watch.track.view())
+
+    def specimen(self, run: Run) -> None:
+        """Note which compound is on the rig."""
+        watch, view = self.watch, self.run
+        number, compound = watch.panel.mounted() if watch is not None else (0, "")
+        if view is not None and number and view.compound != compound:
+            note = run.engine.executor.plan.specimen(number).note
+            self.run = replace(view, compound=compound, note=note)
+
+    def detach(self, view: RunView | None) -> None:
+        """The run is over."""
+        self.gateway.lane.end_ticking()
+        if self.watch is not None:
+            self.watch.run.engine.ctx.journal.heard = None
+            for name in self.watch.watched:
+                self.alarms.clear(name)
+        self.watch = self.hand = None
+        self.gateway.machine(self.kind.machine)
+        self.stop_rest = nothing_rests
+        self.run = view
+        self._due_s = float("-inf")
+
+    def ended(self, view: RunView, outcome: Outcome) -> None:
+        """The run is over: tell how, and latch after a trip."""
+        text = f"{view.name}: {view.outcome}" + (f": {view.reason}" if view.reason else "")
+        self.run = view
+        self.tell("run", text, "info" if outcome is Outcome.DONE else "warning")
+        self.notify("finished", text)
+        watch = self.watch
+        if watch is not None and not watch.acknowledged and (outcome is Outcome.TRIPPED or watch.latched):
+            self._latch(view.reason or view.outcome, watch)
+        self.detach(view)
+
+    def _latch(self, reason: str, watch: RunWatch) -> None:
+        """Let nothing begin before somebody has acknowledged."""
+        watch.watch_trip(self.alarms, self.now_s)
+        if not watch.tripped and not watch.latched:  # the wire is gone: control has had nothing to decide
+            watch.tripped = "rig lost"
+            self.alarms.raise_(Cause(watch.tripped, 1, reason, "the drives stop by their own watchdogs"), self.now_s)
+        self.latched, self.tripped = reason, watch.tripped
+
+    def latch_again(self) -> None:
+        """Latch a hardware rig after a restart, where a trip on it has not been acknowledged."""
+        found = open_trips(self.runs, self.rig)
+        if found:
+            first = found[0].trip
+            self.latched, self.tripped = f"{found[0]}; not acknowledged", first.interlock
+            consequence = "nothing begins before it is acknowledged"
+            self.alarms.raise_(Cause(first.interlock, 1, f"{first.text}; not acknowledged", consequence), self.now_s)
+
+    def unlatch(self, by: str) -> None:
+        """Take an acknowledgement: the next run may begin. It goes on record with the trips that it is for."""
+        if self.latched:
+            self.tell("mode", f"acknowledged by {by}")
+            self.alarms.clear(self.tripped)
+            try:
+                acknowledge(open_trips(self.runs, self.rig), by)
+            except (StoreError, OSError) as error:
+                self.tell("mode", f"the acknowledgement cannot be recorded: {in_words(error)}", "warning")
+        self.latched, self.tripped, self.interrupted = "", "", ()
+
+    def heard(self, t_s: float, kind: str, text: str, severity: str) -> None:
+        """Pass on what the run records."""
+        if kind == "emergency" and self.watch is not None:
+            self.watch.buses.count_emergency(text)
+        self.tell(kind, text, severity, t_s)
+        if kind in NOTIFIED:
+            self.notify(kind, text)
+
+    def tell(self, kind: str, text: str, severity: str = "info", t_s: float | None = None) -> None:
+        """Tell every client."""
+        self.gateway.event(kind, text, severity, self.now_s if t_s is None else t_s, self.run.name if self.run else "")
+
+    def command(self, text: str, severity: str = "info", kind: str = "command") -> None:
+        """Tell what a client has commanded, and by whom; while a run is under way, in its record too."""
+        if self.watch is None:
+            self.tell(kind, text, severity)
+        else:
+            ctx = self.watch.run.engine.ctx
+            ctx.journal.event(ctx.now, kind, text, severity)  # which tells it
+
+    def notify(self, event: str, text: str) -> None:
+        """Have the user's hook run."""
+        run = self.run
+        self.gateway.notify(event, text, run.name if run else "", run.folder if run else "")
+
+    def _alarm_changed(self, kind: str, text: str, severity: str) -> None:
+        self.tell(kind, text, severity)
+
+    # -- between two ticks ------------------------------------------------------------------------------------
+
+    def poll(self, now_s: float) -> None:
+        """Hear what clients want, and show the state when its time has come. ``now_s``: rig time."""
+        self.now_s = now_s
+        self.stop_first()
+        for heard in self.gateway.hear():
+            if isinstance(heard, Order):
+                self.obey(heard)
+            self._due_s = min(self._due_s, self._shown_s + SOONEST_S)  # what has changed is seen soon
+        self._notice_control()
+        wall_s = clock.monotonic()
+        if wall_s >= self._due_s:
+            period_s = SNAPSHOT_S if self.gateway.watched else UNWATCHED_S
+            late_s = wall_s - self._due_s
+            self._due_s = wall_s + (period_s - late_s if late_s < period_s else period_s)
+            self._shown_s = wall_s
+            self.show()
+
+    def stop_first(self) -> None:
+        """Carry out what came through STOP's own lane; the rest waits."""
+        for wish in self.gateway.lane.taken():
+            self.stop(wish.name, wish.fast)
+            self.gateway.lane.answer(wish)
+            self._due_s = min(self._due_s, self._shown_s + SOONEST_S)
+
+    def wait(self) -> None:
+        """Wait, while no run ticks, until there is something to do."""
+        self.gateway.wait(max(self._due_s - clock.monotonic(), 0.0))
+
+    def _notice_control(self) -> None:
+        number = self.gateway.presence.controller_id
+        if number == self._controller:
+            return
+        self._controller = number
+        who = with_peer(self.gateway.presence.controller, self.gateway.presence.peer)
+        self.command(f"{who} has control" if number else "nobody has control", kind="control")
+        self.lost_control()
+
+    def show(self) -> None:
+        """Tell the state."""
+        watch, now = self.watch, self.now_s
+        if watch is not None:
+            self._watch_frames(watch)
+            if watch.track.look(now, watch.run):
+                self.gateway.plan(watch.track.view())
+            watch.watch_trip(self.alarms, now)
+        view = self.view()
+        if watch is not None:
+            watch.watch_values(self.alarms, now, view.values)
+        self.gateway.state(view, self._row(view))
+        self._notice_prompt(view)
+
+    def _watch_frames(self, watch: RunWatch) -> None:
+        watch.frames.watch(self.gateway.presence.frames)
+        if watch.frames.watching and (frames := watch.frames.take()) is not None:
+            self.gateway.frames(frames)
+
+    def _notice_prompt(self, view: StateView) -> None:
+        number = view.prompt.number if view.prompt is not None else 0
+        if number and number != self._asked and view.prompt is not None:
+            self.tell("prompt", view.prompt.text, "warning")
+            self.notify("prompt", view.prompt.text)
+        self._asked = number
+
+    # -- the view ---------------------------------------------------------------------------------------------
+
+    def view(self) -> StateView:
+        """Return the whole state."""
+        watch, gateway, now = self.watch, self.gateway, self.now_s
+        mode, text, since_s = self._situation()
+        disk = self._disk_view()
+        rig = watch.rig if watch is not None else self.rig
+        lapse = (self.run.speed if self.run.simulated else 1.0) if self.run is not None else None
+        known = known_checks(
+            self.rig, disk, self.alarms.listed(), self.past, self.latched, clock.utc_now(), self.history
+        )
+        own = watch.preflight() if watch is not None else ()
+        said = {check.name for check in own}
+        return StateView(
+            mode=mode,
+            mode_text=text,
+            mode_since_s=since_s,
+            t_s=now,
+            wall_s=gateway.wall_s,
+            utc=clock.utc_now(),
+            rig=rig.name,
+            simulated=rig.simulated,
+            run=self.run,
+            progress=watch.progress(now, lapse) if watch is not None else ProgressView(),
+            values=watch.values.values() if watch is not None else self._unknown,
+            gates=watch.gates() if watch is not None else (),
+            soak=watch.soak(now) if watch is not None else None,
+            alarms=self.alarms.listed(),
+            prompt=watch.prompt() if watch is not None else None,
+            manual=self._manual_view(),
+            devices=watch.buses.device_views(now) if watch is not None else (),
+            buses=watch.buses.bus_views() if watch is not None else (),
+            disk=disk,
+            tick=self._tick_view(),
+            clients=gateway.clients,
+            interrupted=self.interrupted,
+            preflight=(*(check for check in known if check.name not in said), *own),
+            alone=watch.alone if watch is not None else self._alone,
+            risk=watch.risk if watch is not None else self._risk,
+        )
+
+    def _situation(self) -> tuple[str, str, float]:
+        """Return mode, why, and for how long; tell the hook of a hold."""
+        if self.watch is not None:
+            mode, text, since_s = self.watch.mode
+            if self.hand is not None and mode == "RUN":
+                mode = "MANUAL"
+            if mode == "HOLD" and self._mode != "HOLD":
+                self.notify("hold", text or "held")
+            self._mode = mode
+            return mode, text, since_s
+        mode, text = "OFFLINE", "the rig is connected when a run begins"
+        if self.latched:
+            mode, text = "LATCHED", self.latched
+        elif self.interrupted:
+            mode, text = "INTERRUPTED", f"{self.interrupted[-1]} was cut off"
+        if mode != self._mode:
+            self._mode, self._mode_since_s = mode, self.gateway.wall_s
+        return mode, text, self.gateway.wall_s - self._mode_since_s
+
+    def _manual_view(self) -> ManualView:
+        hand = self.hand
+        return ManualView(None, "") if hand is None else ManualView(hand.left_s(self.now_s), hand.hand.tare_text)
+
+    def _tick_view(self) -> TickView:
+        if self.watch is None:
+            return TickView(0.0, 0.0, 0)
+        return replace(self.tick, rate_hz=round(1.0 / self.watch.run.engine.period_s, 1))
+
+    def _look_at_disk(self) -> None:
+        self._disk_due_s = clock.monotonic() + DISK_EVERY_S
+        self._room.look()
+
+    def _disk_view(self) -> DiskView:
+        if clock.monotonic() >= self._disk_due_s:
+            self._look_at_disk()
+        silent = Cause("disk silent", 2, f"{self.runs} does not say how much room is left",
+                       "a run that cannot be recorded is stopped")  # fmt: skip
+        self.alarms.set(self._room.hangs, silent, self.now_s)
+        free, least = self._room.free, max(LOW_BYTES, MARGIN * self.needed)
+        if free is None:
+            return DiskView(None, self.needed, self._low)
+        was_low, self._low = self._low, free < least
+        text = f"{free / 1e6:.0f} MB free"
+        cause = Cause("disk nearly full", 2, text, "a run that cannot be recorded is stopped", "ack", free / 1e6,
+                      least / 1e6, "MB")  # fmt: skip
+        self.alarms.set(self._low, cause, self.now_s)
+        if self._low and not was_low:
+            self.notify("disk", text)
+        return DiskView(free, self.needed, self._low)
+
+    def _row(self, view: StateView) -> tuple[float | None, ...]:
+        found = {value.key: value for value in view.values}
+        row: list[float | None] = [round(view.wall_s, 3), round(view.t_s, 3)]
+        kind = self.watch.kind if self.watch is not None else self.kind
+        row += trend_row(kind.quantities, found)
+        return tuple(None if x is None else round(x, 4) for x in row)

@@ -1,0 +1,45 @@
+"""A kind's axes as rows of the record's table ``axis``, and a condition's setpoint as columns of ``condition``."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import cast
+
+from tester.axes import Axes, AxisValue, Setpoint, axes_from
+from tester.store import older
+from tester.store.statements import Statement, Value, insert
+
+_COLUMNS = {"column": "column_name", "default": "default_value"}
+"""Fields of an axis whose names SQL keeps for itself."""
+
+
+def axis_rows(axes: Axes) -> Iterator[Statement]:
+    """Yield the statements that give a new record its axes: a row of ``axis`` and a column of ``condition`` each."""
+    for position, (one, data) in enumerate(zip(axes, axes.as_data(), strict=True)):
+        row = {_COLUMNS.get(name, name): cast("Value", value) for name, value in data.items()}
+        yield insert("axis", {"position": position} | row | {"choices": "\n".join(one.choices)})
+        yield f"ALTER TABLE condition ADD COLUMN {one.field} {'TEXT' if one.choices else 'REAL'}", ()
+
+
+def axes_of(rows: Sequence[Mapping[str, object]]) -> Axes:
+    """Return the axes that a record's table has, by position; those of older schemas where it has none."""
+    if not rows:
+        return older.AXES
+    fields = {column: field for field, column in _COLUMNS.items()}
+    found = [{fields.get(name, name): value for name, value in row.items()} for row in rows]
+    return axes_from(row | {"choices": str(row["choices"]).splitlines()} for row in found)
+
+
+def setpoint_columns(setpoint: Setpoint) -> dict[str, Value]:
+    """Return what is held as columns of ``condition``."""
+    held: dict[str, Value] = {one.field: setpoint.value(one.name) for one in setpoint.axes}
+    return {"compound": setpoint.compound} | held
+
+
+def setpoint_of(row: Mapping[str, object], axes: Axes) -> Setpoint:
+    """Return what is held by a row of ``condition``."""
+    held: dict[str, AxisValue] = {}
+    for one in axes:
+        value = row[one.field]
+        held[one.name] = value if isinstance(value, str | float) else float("nan")
+    return axes.setpoint(str(row["compound"]), **held)

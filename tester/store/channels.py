@@ -1,0 +1,139 @@
+"""A record's own table of channels: what its samples and its measured means are, without the kind of rig at hand.
+
+Records before schema 8 did not say it; all of them had the same channels, and these are kept here as a file.
+"""
+
+from __future__ import annotations
+
+import json
+import sqlite3
+from collections.abc import Iterable, Mapping
+from dataclasses import asdict
+from functools import lru_cache
+from importlib.resources import files
+from typing import Any
+
+from tester.quantities import Channel, Figure, Quantities, Roles, Screen
+from tester.store.statements import Statement, Value, insert
+
+COLUMNS = ("position", "name", "unit", "label", "source", "mean", "decimals", "whole", "shown_name", "shown_unit",
+           "scale", "role", "block", "screen")  # fmt: skip
+"""Of the table ``channel``. ``role``: words of _ROLES, joined; ``block`` beside the role ``turn``; ``screen``: JSON."""
+
+_FIGURES = ("low", "high", "limit")
+_BEFORE_8 = "channels_before_schema_8.json"
+_ALONG, _ACROSS, _NORMAL, _TURN, _TEMPERATURE, _SLIDING = _ROLES = (
+    "along", "across", "normal", "turn", "temperature", "sliding",
+)  # fmt: skip
+
+
+def channel_rows(quantities: Quantities) -> list[dict[str, Value]]:
+    """Return a row of the table ``channel`` for each channel, in order."""
+    roles = quantities.roles
+    held = {
+        _ALONG: roles.friction[0],
+        _ACROSS: roles.friction[1] if len(roles.friction) > 1 else "",
+        _NORMAL: roles.normal,
+        _TURN: roles.turn,
+        _TEMPERATURE: roles.temperature,
+        _SLIDING: roles.sliding,
+    }
+    return [
+        {
+            "position": position,
+            "name": one.name,
+            "unit": one.unit,
+            "label": one.label,
+            "source": one.source,
+            "mean": one.mean,
+            "decimals": one.decimals,
+            "whole": int(one.whole),
+            "shown_name": one.column,
+            "shown_unit": one.shown_unit,
+            "scale": one.scale,
+            "role": " ".join(role for role, name in held.items() if name == one.name),
+            "block": roles.block if one.name == roles.turn else None,
+            "screen": "" if one.screen is None else json.dumps(asdict(one.screen)),
+        }
+        for position, one in enumerate(quantities)
+    ]
+
+
+def channel_statements(quantities: Quantities) -> list[Statement]:
+    """Return the INSERTs of a record's channels."""
+    return [insert("channel", row) for row in channel_rows(quantities)]
+
+
+def quantities_of(rows: Iterable[Mapping[str, object]]) -> Quantities:
+    """Return the table whose rows these are, in order; raises ValueError, KeyError, TypeError where it is none."""
+    listed = list(rows)
+    holder = {role: str(row["name"]) for row in listed for role in str(row["role"]).split()}
+    blocks = [float(str(row["block"])) for row in listed if row["block"] is not None]
+    along = [holder[role] for role in (_ALONG, _ACROSS) if role in holder]
+    roles = Roles(
+        tuple(along), holder[_NORMAL], holder[_TURN], blocks[0], holder.get(_TEMPERATURE, ""), holder.get(_SLIDING, "")
+    )
+    return Quantities(tuple(map(_channel, listed)), roles)
+
+
+def _channel(row: Mapping[str, object]) -> Channel:
+    return Channel(
+        name=str(row["name"]),
+        unit=str(row["unit"]),
+        label=str(row["label"]),
+        source=str(row["source"]),
+        mean=int(str(row["mean"])),
+        decimals=int(str(row["decimals"])),
+        whole=bool(row["whole"]),
+        column=str(row["shown_name"]),
+        shown_unit=str(row["shown_unit"]),
+        scale=float(str(row["scale"])),
+        screen=_screen(str(row["screen"])),
+    )
+
+
+def _screen(text: str) -> Screen | None:
+    if not text:
+        return None
+    said = json.loads(text)
+    figures: dict[str, Any] = {name: Figure(**said[name]) for name in _FIGURES if said[name] is not None}
+    return Screen(**{**said, **figures})
+
+
+@lru_cache(maxsize=1)
+def channels_before_8() -> Quantities:
+    """Return the channels of every record of a schema before 8."""
+    return quantities_of(json.loads(files("tester.store").joinpath(_BEFORE_8).read_text("utf-8")))
+
+
+def recorded_channels(connection: sqlite3.Connection) -> Quantities | None:
+    """Return the channels of the record that a connection is open on, None of one that is new; raises sqlite3.Error.
+
+    Also ValueError where its table of channels is none.
+    """
+    found = connection.execute(f"SELECT {', '.join(COLUMNS)} FROM channel ORDER BY position").fetchall()
+    if found:
+        try:
+            return quantities_of([dict(zip(COLUMNS, tuple(row), strict=True)) for row in found])
+        except (KeyError, TypeError) as error:
+            raise ValueError(f"the table of channels cannot be read: {error}") from error
+    named = connection.execute("SELECT count(*) FROM sample_column").fetchone()[0]
+    return channels_before_8() if named else None
+
+
+def make_columns(connection: sqlite3.Connection, quantities: Quantities) -> None:
+    """Give the repeats a column for the mean of each averaged channel that has none yet, tares one for each force.
+
+    Raises ValueError for a channel that is called as another column of theirs.
+    """
+    there = {row[1] for row in connection.execute("PRAGMA main.table_info(repeat)")}
+    means = {*channels_before_8().names, *(recorded_channels(connection) or channels_before_8()).names}
+    for one in quantities.averaged:
+        if one.name not in there:
+            connection.execute(f"ALTER TABLE repeat ADD COLUMN {one.name} REAL")
+        elif one.name not in means:
+            raise ValueError(f"channel {one.name}: a repeat has another column of this name, rename the channel")
+    there = {row[1] for row in connection.execute("PRAGMA main.table_info(tare)")}
+    for name in dict.fromkeys((*quantities.roles.friction, quantities.roles.normal)):
+        if name not in there:
+            connection.execute(f"ALTER TABLE tare ADD COLUMN {name} REAL")

@@ -1,0 +1,194 @@
+"""Bus: devices with the age of their data and their errors, buses with their load, and the frames as they pass."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+from textual.widgets import Input
+
+from tester.base import clock
+from tester.base.trouble import in_words
+from tester.service.commands import WatchFrames
+from tester.service.protocol import Frame
+from tester.service.state import BusView as BusState
+from tester.service.state import DeviceView
+from tester.tui.bundle import write_bundle
+from tester.tui.formatting import clean, fit, number
+from tester.tui.pages.view import Keys, View
+from tester.tui.scene import STALE_S, ScreenScene
+from tester.tui.widgets.panel import FAINT, NOTICE, WARNING, Panel, Parts, rows
+
+HELP = """\
+Devices: state, age of the newest data, requests, errors since the run began and per hour. ✘ is a device that does not
+answer. Buses: load and errors. Frames: rig time, bus, direction, address, bytes in hex.
+
+f     freeze the frames, and let them run again.
+/     show only frames with this text (bus, address in hex, bytes); Esc shows all.
+b     support bundle: a zip file with state, events, plan, frames and the service's log, to send to somebody.
+"""
+
+
+class DevicesPanel(Panel):
+    """A row a device."""
+
+    def picture(self, scene: ScreenScene, width: int, height: int) -> Parts:
+        """Return the table."""
+        devices = scene.state.devices if scene.state is not None else ()
+        if not devices:
+            return [("no rig is connected: a run or manual mode connects it", FAINT)]
+        hourly = f"{'/h':>7}" if width >= HOURLY_FROM else ""
+        head = f"  {'device':<11} {'bus':<9} {'at':>3} {'age':>8} {'requests':>9} {'errors':>6}{hourly}  state"
+        return rows([[(fit(head, width), "bold")], *(device_row(one, width) for one in devices[: height - 1])])
+
+
+HOURLY_FROM = 90
+"""Columns from which on there is room for errors per hour beside a drive's state."""
+
+
+def device_row(one: DeviceView, width: int) -> Parts:
+    """Return a device."""
+    age = "—" if one.age_s is None else f"{one.age_s:.3f} s"
+    hourly = f"{one.errors_per_hour:>7.1f}" if width >= HOURLY_FROM else ""
+    text = (
+        f"{'✔' if one.online else '✘'} {clean(one.name):<11} {clean(one.bus):<9} {one.address:>3} {age:>8} "
+        f"{one.requests:>9} {one.errors:>6}{hourly}  {clean(one.state)} {clean(one.detail)}"
+    ).rstrip()
+    old = one.age_s is not None and one.age_s > STALE_S
+    return [(fit(text, width), WARNING if not one.online else FAINT if old else NOTICE if one.errors else "")]
+
+
+class BusesPanel(Panel):
+    """A row a bus; the title says how punctual the scan is."""
+
+    def picture(self, scene: ScreenScene, width: int, height: int) -> Parts:
+        """Return the table."""
+        if scene.state is None:
+            return []
+        tick = scene.state.tick
+        late = f"{1e3 * tick.late_s:.1f} ms late, at most {1e3 * tick.late_max_s:.1f}"
+        self.entitle(fit(f"Buses ── scan {tick.rate_hz:g} Hz, {late}, {tick.overruns} overruns", width - 2))
+        return rows([[fit(bus_row(one), width)] for one in scene.state.buses[:height]])
+
+
+def bus_row(one: BusState) -> str:
+    """Return a bus."""
+    load = f"{number(one.load_percent, 1)} %" if one.load_percent is not None else "load unknown"
+    return f"{clean(one.name):<9} {one.kind:<7} {load:>12}  {one.errors} errors  {clean(one.detail)}"
+
+
+class FramesPanel(Panel):
+    """The newest frames, or those at the moment of freezing."""
+
+    frozen: tuple[Frame, ...] | None = None
+    wanted = ""
+
+    def picture(self, scene: ScreenScene, width: int, height: int) -> Parts:
+        """Return a row a frame."""
+        source = self.frozen if self.frozen is not None else scene.frames
+        lines = [frame_row(frame) for frame in source]
+        if self.wanted:
+            lines = [line for line in lines if self.wanted in line.lower()]
+        seen = f"{scene.frames_seen} seen, {scene.frames_dropped} not shown"
+        head = f"{'FROZEN' if self.frozen is not None else 'live'}, {seen}" + (
+            f", with {self.wanted}" if self.wanted else ""
+        )
+        shown: list[Parts] = [[fit(line, width)] for line in lines[-max(height - 1, 0) :]]
+        return rows([[(fit(clean(head), width), NOTICE if self.frozen is not None else "bold")], *shown])
+
+
+def frame_row(frame: Frame) -> str:
+    """Return a frame."""
+    return f"{frame.t_s:12.4f} {clean(frame.bus):<8} {'>' if frame.sent else '<'} {frame.ident:4X}  {clean(frame.data)}"
+
+
+class BusPage(View, can_focus=True):
+    """What passes on the wires."""
+
+    KEYS: ClassVar[Keys] = (("f", "Freeze"), ("/", "Filter"), ("b", "Bundle"), ("space", "Hold"), ("a", "Ack"),
+                            ("F1", "Help"), ("q", "Detach"))  # fmt: skip
+    HELP: ClassVar[str | None] = HELP
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("f", "freeze", "Freeze", show=False),
+        Binding("slash", "filter", "Filter", show=False),
+        Binding("escape", "unfilter", "All", show=False),
+        Binding("b", "bundle", "Bundle", show=False),
+    ]
+
+    def __init__(self, *, id: str) -> None:  # noqa: A002 - as in Textual
+        """Nobody has asked for frames yet."""
+        super().__init__(id=id)
+        self._epoch = 0
+
+    def compose(self) -> ComposeResult:
+        """Lay out the tables."""
+        yield DevicesPanel(id="devices", classes="box")
+        yield BusesPanel(id="buses", classes="box")
+        yield Input(id="filter", placeholder="frames with this text", compact=True, max_length=40)
+        yield FramesPanel(id="frames", classes="box")
+
+    def on_mount(self) -> None:
+        """Name the boxes."""
+        for name, title in (("devices", "Devices"), ("frames", "Frames")):
+            self.query_one(f"#{name}").border_title = title
+
+    def enter(self) -> None:
+        """Ask for the frames."""
+        super().enter()
+        self._epoch = self.host.scene.epoch
+        self._watch(on=True)
+
+    def show(self, scene: ScreenScene) -> None:
+        """Ask for the frames again where the connection is another one."""
+        if scene.epoch != self._epoch:
+            self._epoch = scene.epoch
+            self._watch(on=True)
+        super().show(scene)
+
+    def leave(self) -> None:
+        """Frames cost: nobody looks at them any more."""
+        self._watch(on=False)
+
+    def _watch(self, *, on: bool) -> None:
+        if self.host.link is not None and self.host.link.client is not None and not self.host.options.view_only:
+            self.host.order(WatchFrames(on))
+
+    def action_freeze(self) -> None:
+        """Hold the frames still, or let them run."""
+        panel = self.query_one(FramesPanel)
+        panel.frozen = tuple(self.host.scene.frames) if panel.frozen is None else None
+        panel.redraw()
+
+    def action_filter(self) -> None:
+        """Ask for a text."""
+        entry = self.query_one("#filter", Input)
+        entry.add_class("-open")
+        entry.focus()
+
+    def action_unfilter(self) -> None:
+        """Show all frames."""
+        entry = self.query_one("#filter", Input)
+        entry.value = ""
+        entry.remove_class("-open")
+        self.focus()
+
+    def on_input_changed(self, event: Input.Changed) -> None:
+        """Filter as it is typed."""
+        panel = self.query_one(FramesPanel)
+        panel.wanted = event.value.strip().lower()
+        panel.redraw()
+
+    def on_input_submitted(self, event: Input.Submitted) -> None:
+        """Leave the field."""
+        event.stop()
+        self.focus()
+
+    def action_bundle(self) -> None:
+        """Write the support bundle."""
+        try:
+            path = write_bundle(self.host.scene, clock.local_stamp())
+        except OSError as error:
+            self.host.say(f"no bundle: {in_words(error)}", problem=True)
+        else:
+            self.host.say(f"support bundle: {path}", lasting=True)

@@ -1,0 +1,162 @@
+"""Manual: armed explicitly; a key press is one bounded step, which the service allows or refuses."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+from textual.containers import Horizontal, Vertical
+from textual.content import Content
+from textual.widgets import OptionList
+from textual.widgets.option_list import Option
+
+from tester.screen import HandAxis
+from tester.service.commands import Arm, Jog, Tare
+from tester.service.state import StateView
+from tester.tui.formatting import clean
+from tester.tui.pages.view import Keys, View
+from tester.tui.scene import ScreenScene
+from tester.tui.widgets.events import EventsPanel
+from tester.tui.widgets.panel import FAINT, WARNING, Panel, Part, Parts, rows
+from tester.tui.widgets.values import value_row
+
+CALIBRATION = "load cell calibration by a wizard: not here yet, see the rig file"
+SIGN_S = 0.25
+"""Signs of life are given this often, s; a second without one ends manual mode."""
+SOON_S = 15.0
+"""Less time left than this is worth a warning."""
+HELP = """\
+Manual mode moves the rig in bounded steps. A terminal cannot see a key being released: one press is one step, never
+more than five a second. Limits and interlocks are those of a run.
+
+m         arm manual mode, or disarm it. It disarms 60 s after the last step, and when this screen is left.
+up, down  choose an axis.     right or +, left or -   one step up, one step down.
+t         zero (tare) of the load cell: lifted and standing. Says the old and the new zero.
+F12       STOP stops manual motion too, F9 is a fast stop. A screen that stands still for 1 s ends the mode.
+The calibration of the load cell is in the rig file (`tester rig show`); it is not changed from here.
+"""
+
+
+class ArmedPanel(Panel):
+    """Whether manual mode is armed, for how long, and what the last zero gave."""
+
+    def picture(self, scene: ScreenScene, width: int, height: int) -> Parts:
+        """Return some lines."""
+        state = scene.state
+        if state is None:
+            return []
+        lines: list[Parts] = [[armed_words(state)]]
+        if state.manual.tare:
+            for piece in _wrapped(f"Zero: {clean(state.manual.tare)}", width):
+                lines.append([piece])
+        return rows(lines[:height])
+
+
+def _wrapped(text: str, width: int) -> list[str]:
+    return [text[at : at + width] for at in range(0, len(text), max(width, 1))]
+
+
+def armed_words(state: StateView) -> Part:
+    """Return whether manual mode is armed, in words."""
+    left_s = state.manual.left_s
+    if left_s is None:
+        busy = state.mode not in ("OFFLINE", "IDLE", "INTERRUPTED")
+        return ("not armed: a run has the rig", FAINT) if busy else ("not armed: m arms it", FAINT)
+    return f"ARMED, disarms in {left_s:.0f} s", WARNING if left_s < SOON_S else "bold reverse"
+
+
+class ManualValues(Panel):
+    """The values that move by hand."""
+
+    def picture(self, scene: ScreenScene, width: int, height: int) -> Parts:
+        """Return a row for each."""
+        found = [value for key in scene.machine.by_hand if (value := scene.value(key)) is not None]
+        return rows([value_row(value, width, linked=scene.linked) for value in found[:height]])
+
+
+def axis_words(axis: HandAxis) -> str:
+    """Return what may be moved, and how far a step of it goes."""
+    return f"{clean(axis.title):<12} {clean(axis.step)}"
+
+
+class ManualPage(View):
+    """Jog, zero, heat by hand."""
+
+    axes: tuple[HandAxis, ...] = ()
+    """Those of the machine, as listed."""
+
+    KEYS: ClassVar[Keys] = (("m", "Arm"), ("↑↓", "Axis"), ("←→", "Step"), ("t", "Tare"), ("a", "Ack"),
+                            ("F1", "Help"), ("q", "Detach"))  # fmt: skip
+    HELP: ClassVar[str | None] = HELP
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("m", "arm", "Arm", show=False),
+        Binding("t", "tare", "Tare", show=False),
+        Binding("right,plus,equals_sign", "jog(1)", "Step up", show=False),
+        Binding("left,minus", "jog(-1)", "Step down", show=False),
+    ]
+
+    def compose(self) -> ComposeResult:
+        """Lay out values, axes, state."""
+        yield ManualValues(id="manual-values", classes="box")
+        with Horizontal():
+            yield OptionList(id="manual-axes", markup=False)
+            with Vertical():
+                yield ArmedPanel(id="manual-state", classes="box")
+                yield EventsPanel(id="manual-events", classes="box")
+
+    def on_mount(self) -> None:
+        """Name the boxes."""
+        for name, title in (("manual-values", "Values"), ("manual-axes", "Axis"), ("manual-state", "Manual mode"),
+                            ("manual-events", "Events")):  # fmt: skip
+            self.query_one(f"#{name}").border_title = title
+        self.query_one("#manual-values").border_subtitle = CALIBRATION
+        self.set_interval(SIGN_S, self._give_sign)
+
+    def show(self, scene: ScreenScene) -> None:
+        """Show the scene, and the axes of its machine."""
+        super().show(scene)
+        if scene.machine.hand != self.axes:
+            self.axes = scene.machine.hand
+            listed = self.query_one("#manual-axes", OptionList)
+            listed.set_options([Option(Content(axis_words(one)), id=one.name) for one in self.axes])
+            listed.highlighted = 0 if self.axes else None
+
+    def _give_sign(self) -> None:
+        """Say that somebody sees what moves: from the loop that draws, so that one that stands still says nothing."""
+        link = self.host.link
+        if self.display and self.host.scene.controls and link is not None and link.client is not None:
+            link.client.attend()
+
+    def take_focus(self) -> None:
+        """Begin at the axes."""
+        self.query_one("#manual-axes").focus()
+
+    def leave(self) -> None:
+        """Disarm: nobody moves the rig from a screen that is not seen."""
+        if self.armed and self.host.scene.controls:
+            self.host.order(Arm(on=False), "manual mode disarmed")
+
+    @property
+    def armed(self) -> bool:
+        """Return whether manual mode is armed."""
+        state = self.host.scene.state
+        return state is not None and state.manual.left_s is not None
+
+    def action_arm(self) -> None:
+        """Arm, or disarm."""
+        self.host.order(Arm(on=not self.armed), "manual mode disarmed" if self.armed else "manual mode armed")
+
+    def action_tare(self) -> None:
+        """Zero the load cell."""
+        self.host.order(Tare(), "zero of the load cell begins")
+
+    def action_jog(self, direction: int) -> None:
+        """Take one step of the chosen axis."""
+        at = self.query_one("#manual-axes", OptionList).highlighted
+        if at is None:
+            return
+        if not self.armed:
+            self.host.say("not armed: m arms manual mode")
+            return
+        self.host.order(Jog(self.axes[at].name, 1 if direction > 0 else -1))

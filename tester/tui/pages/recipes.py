@@ -1,0 +1,252 @@
+"""Recipes: the list with what is wrong, the text, the problems; from here a run starts."""
+
+from __future__ import annotations
+
+import os
+import shlex
+import subprocess
+from functools import partial
+from pathlib import Path
+from typing import ClassVar
+
+from textual.app import ComposeResult, SuspendNotSupported
+from textual.binding import Binding, BindingType
+from textual.containers import Horizontal, Vertical
+from textual.content import Content
+from textual.widgets import OptionList, TextArea
+from textual.widgets.option_list import Option
+
+from tester.base.trouble import in_words
+from tester.service.commands import CheckRecipe
+from tester.tui.dialogs.plan import PlanDialog
+from tester.tui.dialogs.start import StartDialog
+from tester.tui.formatting import clean, clean_lines
+from tester.tui.pages.view import Keys, View
+from tester.tui.recipe_library import Checked, ListedRecipe, RecipeProblem, own_copy, read_again, shelf
+from tester.tui.scene import ScreenScene
+
+FIRST = "quickstart"
+EDITORS = ("VISUAL", "EDITOR")
+DEFAULT_EDITOR = "notepad" if os.name == "nt" else "vi"
+TAKES_A_LINE = ("vi", "vim", "nvim", "nano", "emacs")
+"""Editors that open a file at +LINE."""
+HELP = """\
+The list on the left: ✔ valid on this rig, ✘ with how many problems. Problems stand below the text, each with line,
+column, what is wrong and where the limit comes from.
+
+Enter   on a recipe: the start dialog, or with problems the first of them. On a problem: jump to its line.
+e       edit in $EDITOR, from a copy of your own where the recipe is a shipped one; then it is checked again.
+d       the plan: steps, durations, total, sliding distance, wear.
+g       look for recipes again.
+Tab     from list to text to problems.
+While the editor has the terminal, keys go to it: `tester stop` in another shell stops the rig.
+"""
+
+
+class RecipesView(View):
+    """Choose, correct, start."""
+
+    KEYS: ClassVar[Keys] = (("Enter", "Start"), ("e", "Edit"), ("d", "Plan"), ("space", "Hold"), ("a", "Ack"),
+                            ("F1", "Help"), ("q", "Detach"))  # fmt: skip
+    HELP: ClassVar[str | None] = HELP
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("e", "edit", "Edit", show=False),
+        Binding("d", "plan", "Plan", show=False),
+        Binding("g", "reload", "Look again", show=False),
+    ]
+
+    def __init__(self, *, id: str) -> None:  # noqa: A002 - as in Textual
+        """Nothing is read yet."""
+        super().__init__(id=id)
+        self.recipes: list[ListedRecipe] = []
+        self.checked: dict[str, Checked] = {}
+        """By the path of the recipe."""
+        self.failed: dict[str, str] = {}
+        self._asked = False
+
+    def compose(self) -> ComposeResult:
+        """Lay out list, text, problems."""
+        with Horizontal():
+            yield OptionList(id="recipe-list", markup=False)
+            with Vertical(id="recipe-right"):
+                yield TextArea("", read_only=True, show_line_numbers=True, soft_wrap=False, id="recipe-text")
+                yield OptionList(id="problems", markup=False)
+
+    def on_mount(self) -> None:
+        """Read the shelf."""
+        self.query_one("#recipe-list").border_title = "Recipes"
+        self.query_one("#problems").border_title = "Problems"
+        self.query_one("#problems").display = False
+        self._read(FIRST)
+
+    def take_focus(self) -> None:
+        """Begin at the list."""
+        self.query_one("#recipe-list").focus()
+
+    def show(self, scene: ScreenScene) -> None:
+        """Have the recipes checked once there is a service."""
+        if scene.linked and not self._asked and not scene.replayed and not scene.view_only:
+            self._asked = True
+            self._check_all()
+
+    # -- the list ---------------------------------------------------------------------------------------------
+
+    def _read(self, chosen: str) -> None:
+        self.recipes = shelf(self.host.options.recipe_folder)
+        options = self.query_one("#recipe-list", OptionList)
+        options.clear_options()
+        options.add_options([Option(self._label(recipe), id=str(at)) for at, recipe in enumerate(self.recipes)])
+        options.highlighted = next((at for at, one in enumerate(self.recipes) if one.name == chosen), 0)
+        self._open()
+
+    def _label(self, recipe: ListedRecipe) -> Content:
+        checked = self.checked.get(str(recipe.path))
+        if recipe.unreadable or str(recipe.path) in self.failed:
+            sign = "✘"
+        elif checked is None:
+            sign = "…"
+        else:
+            sign = f"✘ {len(checked)}" if checked else "✔"
+        bad = sign.startswith("✘")
+        return Content.assemble((f"{sign:<4}", "bold reverse" if bad else ""), clean(recipe.name, 60))
+
+    @property
+    def chosen(self) -> ListedRecipe | None:
+        """Return the recipe under the cursor."""
+        at = self.query_one("#recipe-list", OptionList).highlighted
+        return self.recipes[at] if at is not None and at < len(self.recipes) else None
+
+    def _open(self) -> None:
+        """Show the chosen recipe's text and problems."""
+        recipe = self.chosen
+        if recipe is None:
+            return
+        text = self.query_one("#recipe-text", TextArea)
+        shown = clean_lines(recipe.text) if not recipe.unreadable else f"cannot be read: {clean(recipe.unreadable)}"
+        if text.text != shown:
+            text.load_text(shown)
+        text.border_title = Content(clean(str(recipe.path) if not recipe.shipped else f"{recipe.name} (shipped)"))
+        found = self.checked.get(str(recipe.path)) or ()
+        problems = self.query_one("#problems", OptionList)
+        problems.clear_options()
+        failed = self.failed.get(str(recipe.path), "")
+        if not found and not failed and problems.has_focus:
+            self.take_focus()
+        problems.display = bool(found or failed)
+        if failed:
+            problems.add_option(Option(clean(failed)))
+        problems.add_options([Option(f"{one.line}:{one.column} {clean(one.message)}") for one in found])
+
+    def _relabel(self, recipe: ListedRecipe) -> None:
+        for at, one in enumerate(self.recipes):
+            if one.path == recipe.path:
+                self.query_one("#recipe-list", OptionList).replace_option_prompt_at_index(at, self._label(one))
+        if self.chosen is not None and self.chosen.path == recipe.path:
+            self._open()
+
+    # -- checking ---------------------------------------------------------------------------------------------
+
+    def _check_all(self) -> None:
+        order = sorted(self.recipes, key=lambda one: one is not self.chosen)
+        self._begin_check(order)
+
+    def _begin_check(self, recipes: list[ListedRecipe]) -> None:
+        """Check these, in the place of what was being checked."""
+        self.run_worker(partial(self._check, recipes), group="check", exclusive=True, exit_on_error=False)
+
+    async def _check(self, recipes: list[ListedRecipe]) -> None:
+        for recipe in recipes:
+            if not recipe.unreadable:
+                await self._check_one(recipe)
+
+    async def _check_one(self, recipe: ListedRecipe) -> None:
+        answer = await self.host.ask(CheckRecipe(recipe.reference, recipe.sent))
+        found = answer.get("problems") if isinstance(answer, dict) else None
+        self.failed.pop(str(recipe.path), None)
+        if isinstance(found, list):
+            self.checked[str(recipe.path)] = tuple(_problem(one) for one in found)
+        else:
+            self.failed[str(recipe.path)] = "could not be checked"
+        if self.is_attached:
+            self._relabel(recipe)
+
+    # -- keys -------------------------------------------------------------------------------------------------
+
+    def on_option_list_option_highlighted(self, event: OptionList.OptionHighlighted) -> None:
+        """Show another recipe."""
+        if event.option_list.id == "recipe-list":
+            self._open()
+
+    def on_option_list_option_selected(self, event: OptionList.OptionSelected) -> None:
+        """Enter: start, or jump to a problem."""
+        event.stop()
+        if event.option_list.id == "problems":
+            self._jump(event.option_index)
+            return
+        recipe = self.chosen
+        if recipe is None or recipe.unreadable:
+            return
+        checked = self.checked.get(str(recipe.path))
+        if checked:
+            self._jump(0)
+            self.query_one("#problems").focus()
+        elif checked is None:
+            self.host.say(f"{recipe.name} has not been checked yet")
+        else:
+            self.host.push_screen(StartDialog(recipe))
+
+    def _jump(self, at: int) -> None:
+        recipe = self.chosen
+        found = (self.checked.get(str(recipe.path)) if recipe is not None else None) or ()
+        if at < len(found):
+            text = self.query_one("#recipe-text", TextArea)
+            row = min(max(found[at].line - 1, 0), text.document.line_count - 1)
+            text.move_cursor((row, max(found[at].column - 1, 0)))
+
+    def action_plan(self) -> None:
+        """Show the plan."""
+        recipe = self.chosen
+        if recipe is not None and not recipe.unreadable:
+            self.host.push_screen(PlanDialog(recipe))
+
+    def action_reload(self) -> None:
+        """Look for recipes again."""
+        self._read(self.chosen.name if self.chosen is not None else FIRST)
+        self._check_all()
+
+    def action_edit(self) -> None:
+        """Edit in $EDITOR, then check again."""
+        recipe = self.chosen
+        if recipe is None or self.host.options.view_only:
+            return
+        try:
+            own = own_copy(recipe, self.host.options.recipe_folder) if recipe.shipped else recipe
+            self._edit(own)
+        except OSError as error:
+            self.host.say(f"cannot be edited: {in_words(error)}", problem=True)
+            return
+        except SuspendNotSupported:
+            self.host.say("no editor can be shown here: edit the file, then press g", problem=True)
+            return
+        if recipe.shipped:
+            self.host.say(f"a copy of your own: {own.path}")
+        self.checked.pop(str(own.path), None)
+        self._read(own.name)
+        others = [one for one in self.recipes if one.path != own.path and str(one.path) not in self.checked]
+        self._begin_check([read_again(own), *others])
+
+    def _edit(self, recipe: ListedRecipe) -> None:
+        command = shlex.split(next((os.environ[name] for name in EDITORS if os.environ.get(name)), DEFAULT_EDITOR))
+        found = self.checked.get(str(recipe.path))
+        if found and Path(command[0]).name in TAKES_A_LINE:
+            command.append(f"+{found[0].line}")
+        with self.host.suspend():
+            subprocess.run([*command, str(recipe.path)], check=False)
+
+
+def _problem(found: object) -> RecipeProblem:
+    match found:
+        case {"line": int(line), "column": int(column), "message": str(message)}:
+            return RecipeProblem(line, column, message)
+        case _:
+            return RecipeProblem(1, 1, str(found))

@@ -1,0 +1,92 @@
+"""The recipes that can be chosen: those that ship, and the files of the folder one works in."""
+
+from __future__ import annotations
+
+import shutil
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TypeAlias
+
+import recipes
+from tester.base.trouble import in_words
+
+MOST_BYTES = 262_144
+"""Longest recipe that is read (safety.md): the service takes no longer one."""
+OWN = "recipes"
+"""Folder of a user's recipes, below the one they work in."""
+
+
+@dataclass(frozen=True, slots=True)
+class RecipeProblem:
+    """One problem of a recipe: line and column from 1, message with where the limit comes from."""
+
+    line: int
+    column: int
+    message: str
+
+
+Checked: TypeAlias = "tuple[RecipeProblem, ...] | None"
+"""The problems that were found; None where nobody has looked yet."""
+
+
+@dataclass(frozen=True, slots=True)
+class ListedRecipe:
+    """A recipe that can be chosen. ``text``: as it was read; ``unreadable``: why it could not be."""
+
+    name: str
+    path: Path
+    shipped: bool
+    text: str
+    unreadable: str = ""
+
+    @property
+    def reference(self) -> str:
+        """Return what the service calls it."""
+        return self.name if self.shipped else str(self.path)
+
+    @property
+    def sent(self) -> str:
+        """Return the text that goes to the service: it need not find our files, and shipped ones it has."""
+        return "" if self.shipped else self.text
+
+
+def shelf(folder: Path) -> list[ListedRecipe]:
+    """Return the shipped recipes, then those in ``folder/recipes`` and ``folder``, each by name."""
+    found = [_read(name, recipes.find(name), shipped=True) for name in recipes.names()]
+    shipped = recipes.FOLDER.resolve()
+    for where in (folder / OWN, folder):
+        if where.is_dir() and where.resolve() != shipped:
+            files = sorted(where.glob("*.yaml"))
+            found += [one for one in (_read(file.stem, file, shipped=False) for file in files) if _looks_like_one(one)]
+    return found
+
+
+def read_again(recipe: ListedRecipe) -> ListedRecipe:
+    """Return the recipe as its file is now."""
+    return _read(recipe.name, recipe.path, shipped=recipe.shipped)
+
+
+def own_copy(recipe: ListedRecipe, folder: Path) -> ListedRecipe:
+    """Copy a shipped recipe into the user's folder, under a name that is free, and return the copy; raises OSError."""
+    where = folder / OWN
+    where.mkdir(exist_ok=True)
+    path, count = where / f"my-{recipe.name}.yaml", 1
+    while path.exists():
+        count += 1
+        path = where / f"my-{recipe.name}-{count}.yaml"
+    shutil.copyfile(recipe.path, path)
+    return _read(path.stem, path, shipped=False)
+
+
+def _looks_like_one(recipe: ListedRecipe) -> bool:
+    """Return whether a file is a recipe, or one that is being written: other YAML files lie about."""
+    return bool(recipe.unreadable) or "recipe:" in recipe.text
+
+
+def _read(name: str, path: Path, *, shipped: bool) -> ListedRecipe:
+    try:
+        if path.stat().st_size > MOST_BYTES:
+            return ListedRecipe(name, path, shipped, "", f"longer than {MOST_BYTES} bytes")
+        return ListedRecipe(name, path, shipped, path.read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError) as error:
+        return ListedRecipe(name, path, shipped, "", in_words(error))

@@ -1,0 +1,33 @@
+"""What a topic is."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+
+from tests.campaigns.acceptance.bench import Bench, ProductError, RunSpec
+from tests.campaigns.acceptance.figure import Figure
+
+
+def no_runs(bench: Bench) -> list[RunSpec]:
+    """Name no run."""
+    return []
+
+
+@dataclass(frozen=True, slots=True)
+class Topic:
+    """One acceptance check."""
+
+    name: str
+    title: str
+    figures: Callable[[Bench], Iterable[Figure]]
+    """Measures; a generator, so that what was measured before a failure is still shown."""
+    runs: Callable[[Bench], list[RunSpec]] = no_runs
+    """Names the runs it builds on, so that they can be started early."""
+
+    def measured(self, bench: Bench) -> Iterable[Figure]:
+        """Yield the figures; what keeps one from being measured is a miss, with its reason."""
+        try:
+            yield from self.figures(bench)
+        except (ProductError, LookupError, ValueError, OSError) as error:
+            yield Figure(self.name, f"{type(error).__name__}: {error}", "can be measured", False)

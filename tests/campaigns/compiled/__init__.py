@@ -1,0 +1,1 @@
+"""Is the compiled scan the same program? Run by ``python -m tests.campaigns.compiled``."""

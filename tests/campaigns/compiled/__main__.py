@@ -1,0 +1,112 @@
+"""`python -m tests.campaigns.compiled [--sample | --full]`: is the compiled scan its source, bit by bit?
+
+Every case is run twice: by the `tester` that is installed, which has to be the compiled one, and by this checkout's
+source. Exit code, tables, every event with its time and every stored sample have to be the same. `--sample`: recipes
+and some faults; `--full`: every fault of the catalogue too. Prints a line a figure; exit code 1 where one misses, 2
+where there is no compiled installation to compare with.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import subprocess
+import sys
+from collections import Counter
+from collections.abc import Iterator
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from recipes import find
+from sim.machines.wheel_on_belt.faults import CATALOGUE
+from tests.campaigns.acceptance.figure import Figure, equal
+from tests.campaigns.compiled.worker import Case
+from tests.campaigns.faults.recipes import HEATED, QUICK, SIDESLIP
+from tests.tester.kinds.wheel_on_belt.bench import QUIET, SHORT
+
+CHECKOUT = Path(__file__).parents[3]
+WORKER = Path(__file__).with_name("worker.py")
+SAMPLE_EVERY = 12
+"""Of the catalogue's faults, one in so many belongs to the sample."""
+FAULT_AT_S = 40.0
+"""A short run slides under load at this time (s of rig time)."""
+
+
+def cases(full: bool) -> list[Case]:
+    """Return what is run on both sides."""
+    quickstart = find("quickstart").read_text(encoding="utf-8")
+    recipes = {"short": SHORT, "quick": QUICK, "sideslip": SIDESLIP, "heated": HEATED}
+    found = [_case(f"{name}, seed {seed}", text, seed) for name, text in recipes.items() for seed in (0, 1)]
+    found.append(_case("short, perfect sensors", SHORT, 0, QUIET))
+    found.append(_case("quickstart", quickstart, 0))
+    for phrase in list(CATALOGUE)[:: 1 if full else SAMPLE_EVERY]:
+        found.append(_case(f"fault: {phrase}", SHORT, 0, faults=(f"t={FAULT_AT_S:g} s: {phrase}",)))
+    return found
+
+
+def _case(
+    name: str, recipe: str, seed: int, overrides: tuple[str, ...] = (), faults: tuple[str, ...] = ()
+) -> Case:
+    return {"name": name, "recipe": recipe, "seed": seed, "overrides": list(overrides), "faults": list(faults)}
+
+
+def side(file: Path, source: bool) -> subprocess.Popen[str]:
+    """Start a worker on the installed `tester`, or on this checkout's."""
+    environment = {key: value for key, value in os.environ.items() if key != "PYTHONPATH"}
+    if source:
+        environment["PYTHONPATH"] = str(CHECKOUT)
+    # -P: the worker's own folder is not searched; outside the checkout nothing else is but what is installed.
+    command = [sys.executable, "-P", str(WORKER), str(file)]
+    return subprocess.Popen(command, stdout=subprocess.PIPE, text=True, cwd=file.parent, env=environment)
+
+
+def lines(process: subprocess.Popen[str]) -> Iterator[dict[str, object]]:
+    """Yield the worker's lines; raises RuntimeError where it fails."""
+    assert process.stdout is not None
+    for line in process.stdout:
+        yield json.loads(line)
+    if process.wait():
+        raise RuntimeError(f"a worker ended with exit code {process.returncode}")
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Compare; return the exit code."""
+    parser = argparse.ArgumentParser(prog="python -m tests.campaigns.compiled", description=__doc__)
+    kind = parser.add_mutually_exclusive_group(required=True)
+    kind.add_argument("--sample", action="store_true", help="recipes and some faults")
+    kind.add_argument("--full", action="store_true", help="every fault of the catalogue too")
+    options = parser.parse_args(arguments)
+    todo = cases(options.full)
+    with TemporaryDirectory(prefix="compiled-") as folder:
+        file = Path(folder) / "cases.json"
+        file.write_text(json.dumps(todo), encoding="utf-8")
+        with side(file, source=False) as installed, side(file, source=True) as source:
+            return report(todo, lines(installed), lines(source))
+
+
+def report(
+    todo: list[Case], installed: Iterator[dict[str, object]], source: Iterator[dict[str, object]]
+) -> int:
+    """Print what the two sides have in common; return the exit code."""
+    one, other = next(installed), next(source)
+    if not one["compiled"] or other["compiled"]:
+        print(f"nothing to compare: installed {one}, checkout {other}", file=sys.stderr)
+        return 2
+    print(f"compiled: {one['where']}\nsource:   {other['where']}", flush=True)
+    differing: list[str] = []
+    exits: Counter[str] = Counter()
+    for left, right in zip(installed, source, strict=True):
+        exits[str(right["exit"])] += 1
+        unlike = [key for key in left.keys() | right.keys() if left.get(key) != right.get(key)]
+        if unlike:
+            differing.append(f"{left['name']} ({', '.join(sorted(unlike))}: {left.get('exit')}, {right.get('exit')})")
+            print(f"MISS {differing[-1]}", flush=True)
+    figure: Figure = equal(f"runs that differ, of {len(todo)}", len(differing), 0)
+    print(f"exit codes: {', '.join(f'{code} x {count}' for code, count in sorted(exits.items()))}")
+    print(figure)
+    return 0 if figure.ok else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,275 @@
+"""Seeded bugs of the control code: does the campaign notice them?
+
+Each mutant is put into a copy of the source tree, never into the tree itself, and hunted there by a process of its own
+(``--probe``): the recipes must still run to their end, the sample campaign and the stateful test must find nothing,
+every row of the interlock table must be the first cause of its faults, and a wheel's first contact must tell what
+turns wrongly. What notices anything has killed the mutant. Beside the bugs by hand each row is masked. The unchanged
+copy is hunted first and must pass.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import shutil
+import subprocess
+import sys
+import unittest
+from collections.abc import Iterable
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import redirect_stdout
+from dataclasses import dataclass
+from io import StringIO
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import pytest
+
+from tester.kinds.wheel_on_belt.interlocks.table import INTERLOCKS
+from tests.campaigns.faults.first_up import FIRST
+
+ROOT = Path(__file__).resolve().parents[3]
+COPIED = ("tester", "drivers", "sim", "recipes", "tests")
+ASKED_FOR = 0.9
+"""Share of the mutants that must be killed: 18 of 20."""
+SHORT_CASES, PROBED = 90, 420
+"""Cases of the short recipe, and of the three of the grid."""
+FIRST_CONTACT = "tests/tester/kinds/wheel_on_belt/procedures/test_first_contact.py"
+BATCH = 70
+"""Cases between two looks at the result: each batch runs its recipes anew."""
+
+
+@dataclass(frozen=True, slots=True)
+class Mutant:
+    """One bug: a text in a file, replaced by another; ``row`` is the interlock it concerns, looked at first."""
+
+    name: str
+    path: str
+    old: str
+    new: str
+    row: str = ""
+
+
+_CONTROL, _STOPS = "tester/machine/control.py", "tester/kinds/wheel_on_belt/control/stops.py"
+_SAFE, _MAY = "tester/kinds/wheel_on_belt/control/safe_outputs.py", "tester/kinds/wheel_on_belt/control/permissives.py"
+_ROWS = "tester/kinds/wheel_on_belt/interlocks"
+_TABLE, _WIRES, _MOTION = "tester/machine/interlock_table.py", "tester/machine/wires.py", f"{_ROWS}/motion.py"
+_LOAD, _HUB = "tester/kinds/wheel_on_belt/interlocks/load.py", "tester/kinds/wheel_on_belt/interlocks/hub.py"
+_CONTACT = "tester/kinds/wheel_on_belt/procedures/first_contact.py"
+
+
+def _masked(name: str) -> Mutant:
+    """Return the mutant in which a row of the table never holds."""
+    row = next(one for one in INTERLOCKS if one.name == name)
+    condition = row.condition
+    path = condition.__module__.replace(".", "/") + ".py"
+    return Mutant(
+        f"row masked: {name}", path, f"condition={condition.__name__},\n", "condition=lambda v: False,\n", name
+    )
+
+
+BY_HAND: tuple[Mutant, ...] = (
+    Mutant("a comparison inverted: overload", _LOAD,
+           "not (v.readings.force_z_n <= v.limits.load_n)", "not (v.readings.force_z_n >= v.limits.load_n)"),
+    Mutant("a comparison inverted: standing under load", _MOTION,
+           "if v.turning is belt_moves:", "if v.turning is not belt_moves:"),
+    Mutant("a comparison inverted: overshoot", _LOAD,
+           "return not (v.readings.force_z_n <= _most_n(v))", "return v.readings.force_z_n <= -_most_n(v)"),
+    Mutant("a comparison inverted: wheel speed", _MOTION,
+           "return not (wheel.low_m_s - error <= v.readings.wheel_speed_m_s <= wheel.high_m_s + error)",
+           "return wheel.low_m_s - error <= v.readings.wheel_speed_m_s <= wheel.high_m_s + error"),
+    Mutant("a delay x 10: stale temperatures", _HUB,
+           "parameters=(STALE_JACKET_S,),\n    delay=STALE_DELAY_S,",
+           "parameters=(STALE_JACKET_S,),\n    delay=JACKET_DELAY_S,"),
+    Mutant("a delay x 10: load overshoot", _LOAD,
+           "    delay=OVERLOAD_DELAY_S,\n", "    delay=FROZEN_CELL_S,\n"),
+    Mutant("a level made an edge", _CONTROL,
+           "        state.held = now_held\n        state.tripped",
+           "        now_held, state.held = now_held & ~state.held, now_held\n        state.tripped"),
+    Mutant("an early return hides the other levels", _TABLE,
+           "        if v.loaded and not v.unpowered:\n", "        if found & 1:\n            return 0\n"
+           "        if v.loaded and not v.unpowered:\n"),
+    Mutant("stale accepted: drives", _WIRES,
+           "return allowed if allowed < most else most", "return 1e9"),
+    Mutant("stale accepted: load", _LOAD,
+           "return not (_cell_answered_s(v) <= v.parameters[STALE_CELL_S])",
+           "return not (v.readings.now_s - v.readings.cell_at_s <= 1e9)"),
+    Mutant("not a number passes: hub", _HUB,
+           "not (_hub_answered_s(v) <= v.parameters[STALE_JACKET_S])",
+           "_hub_answered_s(v) > v.parameters[STALE_JACKET_S]"),
+    Mutant("acknowledged without the cause gone", _CONTROL,
+           "        holding = (state.held | table.still_there(self.view) & state.tripped) & ~table.warnings\n",
+           "        holding = 0\n"),
+    Mutant("the drives do not watch our heartbeat", "drivers/servo_setup.py",
+           "    watched = heartbeat.consumer_entry(pc_node_id, config.consumer_heartbeat_s)\n", "    watched = 0\n"),
+    Mutant("a unit factor 1000: late scans", _WIRES,
+           "return not (v.late_s <= v.parameters[LATE_SCAN_S])",
+           "return not (1e-3 * v.late_s <= v.parameters[LATE_SCAN_S])"),
+    Mutant("safe outputs without: heat off", _SAFE, "    setpoints.heat = False\n", ""),
+    Mutant("safe outputs without: contactor off", _SAFE, "    setpoints.contactor = False\n", ""),
+    Mutant("safe outputs without: lift", _SAFE,
+           "    setpoints.press_mm_s = -rig.axes.press.max_speed if fast else -rig.loops.load.lift_speed_mm_s\n", ""),
+    Mutant("safe outputs without: belt to zero", _SAFE, "    setpoints.belt_m_s = 0.0\n", ""),
+    Mutant("safe outputs without: quick stop", _SAFE, "    setpoints.quick_stop = fast\n", ""),
+    Mutant("no power off when the lift has failed", _CONTROL, "            state.setpoints.power_off = True\n",
+           "            state.setpoints.power_off = False\n"),
+    Mutant("heat without the wheel seen turning", _MAY,
+           "now - state.turning_since_s >= p[TURNING_CONFIRMED_S]", "now >= 0.0"),
+    Mutant("latched before the contact is open", _STOPS,
+           "return standing(view) and lifted and unloaded(view)", "return standing(view)"),
+    Mutant("first contact: a wheel touched too early is taken", _CONTACT,
+           "if early or not place_mm <= expected_mm + self.off_mm:",
+           "if not place_mm <= expected_mm + self.off_mm:"),
+    Mutant("first contact: a wheel touched too late is taken", _CONTACT,
+           "if early or not place_mm <= expected_mm + self.off_mm:", "if early:"),
+    Mutant("first contact: friction need not turn round", _CONTACT,
+           "if not (faster.sign < 0.0 < slower.sign):", "if not (faster.sign < 0.0 or 0.0 < slower.sign):"),
+    Mutant("first contact: friction may turn the wrong way round", _CONTACT,
+           "if not (faster.sign < 0.0 < slower.sign):", "if not (faster.sign * slower.sign < 0.0):"),
+    Mutant("first contact: only slowly", _CONTACT,
+           "SpeedSweep(slow, share * slow + creep), SpeedSweep(fast, share * fast + creep),",
+           "SpeedSweep(slow, share * slow + creep),"),
+)  # fmt: skip
+"""Bugs by hand; each row of the interlock table that is the first cause of something is masked besides."""
+
+MASKED = tuple(_masked(name) for name in dict.fromkeys(row.interlock for row in FIRST))
+MUTANTS = (*BY_HAND, *MASKED)
+
+
+def copy_tree(to: Path) -> None:
+    """Copy the source tree."""
+    for name in COPIED:
+        shutil.copytree(ROOT / name, to / name, ignore=shutil.ignore_patterns("__pycache__"))
+    shutil.copy(ROOT / "pyproject.toml", to / "pyproject.toml")
+
+
+def apply(mutant: Mutant, tree: Path) -> None:
+    """Put a mutant into a copy. Raises ValueError when its text is not there exactly once."""
+    path = tree / mutant.path
+    text = path.read_text(encoding="utf-8")
+    if text.count(mutant.old) != 1:
+        raise ValueError(f"mutant {mutant.name!r}: its text stands {text.count(mutant.old)} times in {mutant.path}")
+    path.write_text(text.replace(mutant.old, mutant.new), encoding="utf-8")
+
+
+def hunt(mutant: Mutant | None) -> tuple[str, str]:
+    """Hunt a mutant (or the unchanged tree) in a copy; return its name and what noticed it ("" if nothing)."""
+    with TemporaryDirectory() as folder:
+        tree = Path(folder)
+        copy_tree(tree)
+        if mutant is not None:
+            apply(mutant, tree)
+        environment = {**os.environ, "PYTHONPATH": folder, "PYTHONDONTWRITEBYTECODE": "1"}
+        row = mutant.row if mutant is not None else ""
+        done = subprocess.run(
+            [sys.executable, "-m", "tests.campaigns.faults.mutants", "--probe", "--row", row],
+            cwd=tree, env=environment, capture_output=True, text=True, check=False,
+        )  # fmt: skip
+    said = (done.stdout.strip() or done.stderr.strip()).splitlines()
+    return mutant.name if mutant is not None else "unchanged", (said[-1] if said else "?") if done.returncode else ""
+
+
+def probe(row: str = "") -> str:
+    """Return what is wrong with the tree this runs in, "" if nothing is found.
+
+    An interlock's faults are tried first where one is given, else what is quick.
+    """
+    from tests.campaigns.faults.recipes import GRID
+
+    found = _rows(row) if row else ""
+    return (
+        found
+        or _recipes(("short",), SHORT_CASES)
+        or _first_contact()
+        or _late()
+        or _stateful()
+        or _rows()
+        or _recipes(GRID, PROBED)
+    )
+
+
+def _rows(only: str = "") -> str:
+    """See that rows of the interlock table are the first cause of their faults."""
+    from tests.campaigns.faults.first_up import conduct
+
+    rows = [row for row in FIRST if only in ("", row.interlock)]
+    for row, cause in conduct(rows).items():
+        if cause != row.interlock:
+            return f"{row.faults[0]}: tripped by {cause or 'nothing'}, not by {row.interlock}"
+    return ""
+
+
+def _recipes(names: Iterable[str], count: int) -> str:
+    """Run recipes to their end, and a sample of ``count`` cases of them."""
+    from tests.campaigns.faults.campaign import all_cases, conduct, faults_of_campaign, sample
+    from tests.campaigns.faults.moments import Moment, rehearse
+
+    moments: list[Moment] = []
+    for recipe in names:
+        found, stage = rehearse(recipe)
+        if stage.run.outcome.value != "done":
+            return f"{recipe} ends {stage.run.outcome.value}: {stage.run.reason}"
+        if stage.observer.found or stage.invariants.broken:
+            return f"{recipe}: {stage.observer.found or stage.invariants.broken}"
+        moments += found
+    cases = sample(all_cases(moments, faults_of_campaign(everything=True)), count)
+    for start in range(0, len(cases), BATCH):
+        tally = conduct("probe", cases[start : start + BATCH])
+        if tally.failed:
+            verdict = tally.failed[0]
+            return f"{verdict.case}: {verdict.failures[0]}"
+    return ""
+
+
+def _late() -> str:
+    from tests.campaigns.faults.late_scans import conduct
+
+    failed = conduct().failed
+    return f"late scans: {failed[0].case}: {failed[0].failures[0]}" if failed else ""
+
+
+def _first_contact() -> str:
+    """See that what turns wrongly ends the run at a wheel's first contact, and at a load that a hand can hold."""
+    with redirect_stdout(StringIO()) as said:
+        code = pytest.main(["-q", "-x", "-n", "0", "-p", "no:cacheprovider", "--no-header", FIRST_CONTACT])
+    failed = [line for line in said.getvalue().splitlines() if line.startswith(("FAILED", "ERROR"))]
+    return (failed or ["the tests of the first contact could not run"])[0] if code else ""
+
+
+def _stateful() -> str:
+    from tests.campaigns.faults.test_stateful import AnythingHappens
+
+    outcome = unittest.TestResult()
+    unittest.defaultTestLoader.loadTestsFromTestCase(AnythingHappens.TestCase).run(outcome)
+    problems = [text for _, text in (*outcome.failures, *outcome.errors)]
+    return f"stateful test: {problems[0].strip().splitlines()[-1]}" if problems else ""
+
+
+def main(jobs: int = 1, mutants: Iterable[Mutant] = MUTANTS) -> int:
+    """Hunt every mutant; print each and the figure; return 1 when too few are killed."""
+    chosen = list(mutants)
+    _, wrong = hunt(None)
+    if wrong:
+        print(f"MISS the unchanged tree: {wrong}", flush=True)
+        return 1
+    killed = 0
+    with ThreadPoolExecutor(jobs) as pool:
+        for name, noticed in pool.map(hunt, chosen):
+            killed += bool(noticed)
+            print(f"     {'killed' if noticed else 'ALIVE '} {name}{': ' + noticed if noticed else ''}", flush=True)
+    met = killed >= ASKED_FOR * len(chosen)
+    print(f"{'ok  ' if met else 'MISS'} mutants killed: {killed} of {len(chosen)} (asked: >= {ASKED_FOR:.0%})")
+    return 0 if met else 1
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--probe", action="store_true", help="look for anything wrong with the tree this runs in")
+    parser.add_argument("--row", default="", metavar="NAME", help="the interlock to look at first")
+    parser.add_argument("--only", default="", metavar="TEXT", help="mutants whose name has this text")
+    options = parser.parse_args()
+    if options.probe:
+        found = probe(options.row)
+        print(found)
+        sys.exit(1 if found else 0)
+    sys.exit(main(1, [mutant for mutant in MUTANTS if options.only in mutant.name]))

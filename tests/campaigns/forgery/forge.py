@@ -1,0 +1,129 @@
+"""What somebody might change in a run's folder; and the chain, tables and manifest made anew to hide it."""
+
+from __future__ import annotations
+
+import shutil
+import sqlite3
+import zlib
+from collections.abc import Callable
+from contextlib import closing
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from tester import export
+from tester.export.manifest import MANIFEST, manifest_text
+from tester.export.verify import verify
+from tester.kinds.wheel_on_belt.quantities import QUANTITIES
+from tester.store.chain import add_entries, hashes_of, tables_in
+from tester.store.reader import RunReader
+from tester.store.sample_blocks import unpack_array
+
+
+@dataclass(frozen=True, slots=True)
+class Forgery:
+    """One way: ``change`` alters the folder (second argument: another run's folder)."""
+
+    name: str
+    change: Callable[[Path, Path], None]
+
+
+def _sql(*statements: str) -> Callable[[Path, Path], None]:
+    def change(folder: Path, _other: Path) -> None:
+        with closing(sqlite3.connect(folder / "run.db")) as database, database:
+            for trigger in ("exclusion_is_not_changed", "exclusion_is_not_deleted"):
+                database.execute(f"DROP TRIGGER {trigger}")
+            for sql in statements:
+                assert database.execute(sql).rowcount != 0, sql
+
+    return change
+
+
+def _samples(folder: Path, _other: Path) -> None:
+    """Raise Fx of every sample by 3 %."""
+    fx = QUANTITIES.index("force_x_n")
+    with closing(sqlite3.connect(folder / "run.db")) as database, database:
+        blocks = database.execute("SELECT id, rows, data FROM sample_block WHERE repeat_id > 0").fetchall()
+        for key, rows, data in blocks:
+            table = unpack_array(data, rows, len(QUANTITIES.names)).copy()
+            table[fx] *= 1.03
+            packed = zlib.compress(np.ascontiguousarray(table, dtype="<f8").tobytes(), 1)
+            database.execute("UPDATE sample_block SET data = ? WHERE id = ?", (packed, key))
+
+
+def _no_manifest(folder: Path, _other: Path) -> None:
+    (folder / MANIFEST).unlink()
+
+
+def _manifest_remade(folder: Path, _other: Path) -> None:
+    """Change a reason and make the manifest anew, with the record's own head."""
+    _sql("UPDATE exclusion SET reason = 'debris'")(folder, folder)
+    remake_manifest(folder)
+
+
+def _table(folder: Path, _other: Path) -> None:
+    """Exchange a coefficient in conditions.csv and make the manifest anew."""
+    path = folder / "conditions.csv"
+    text = path.read_text("utf-8")
+    path.write_text(text.replace(",0.", ",1.", 1), encoding="utf-8", newline="")
+    assert path.read_text("utf-8") != text
+    remake_manifest(folder)
+
+
+def _other_record(folder: Path, other: Path) -> None:
+    shutil.copyfile(other / "run.db", folder / "run.db")
+
+
+_SWAP = """UPDATE repeat SET mu_resultant = (SELECT r.mu_resultant FROM repeat r WHERE r.id = 3 - repeat.id)
+ WHERE id IN (1, 2)"""
+_CUT = "DELETE FROM chain WHERE seq >= (SELECT min(seq) FROM chain WHERE name = 'exclusion')"
+
+FORGERIES = (
+    Forgery("samples changed", _samples),
+    Forgery("a repeat's mean", _sql("UPDATE repeat SET mu_resultant = mu_resultant * 1.02 WHERE id = 1")),
+    Forgery("a trip's row deleted", _sql("DELETE FROM trip")),
+    Forgery("operator's name", _sql("UPDATE run SET operator = 'somebody'")),
+    Forgery("an exclusion's reason", _sql("UPDATE exclusion SET reason = 'debris'")),
+    Forgery("last exclusion deleted", _sql("DELETE FROM exclusion WHERE id = (SELECT max(id) FROM exclusion)")),
+    Forgery("an event deleted", _sql("DELETE FROM event WHERE sequence = 3")),
+    Forgery("manifest removed", _no_manifest),
+    Forgery("manifest remade over a changed reason", _manifest_remade),
+    Forgery("tail of the chain cut with its rows", _sql(_CUT, "DELETE FROM exclusion")),
+    Forgery("means of two repeats swapped", _sql(_SWAP)),
+    Forgery("recipe's text", _sql("UPDATE run SET recipe_text = recipe_text || '# same'")),
+    Forgery("a wear check", _sql("UPDATE wear_check SET diameter_mm = diameter_mm + 0.1 WHERE id = 1")),
+    Forgery("a table exchanged, manifest remade", _table),
+    Forgery("run.db of another run", _other_record),
+)
+
+
+def remake_manifest(folder: Path) -> None:
+    """Make the manifest anew, over whatever is there."""
+    with RunReader(folder) as reader:
+        head = reader.record_head()
+    (folder / MANIFEST).write_text(manifest_text(folder, head), encoding="utf-8")
+
+
+def remake_all(folder: Path) -> None:
+    """Make the chain anew over the rows as they are, then tables and manifest: what only a kept head shows."""
+    with closing(sqlite3.connect(folder / "run.db")) as database, database:
+        database.execute("DELETE FROM chain")
+        rows = ((table, key, row) for table in tables_in(database) for key, row in hashes_of(database, table))
+        add_entries(database, rows)
+    export.write_all(folder)
+
+
+def told(run: Path, other: Path, forgery: Forgery, scratch: Path) -> tuple[bool, bool, bool, bool]:
+    """Forge a copy of a run; return whether it is told: with the head kept, without; and both with all made anew."""
+    head = verify(run).head
+    found: list[bool] = []
+    for number, anew in enumerate((False, True)):
+        folder = scratch / str(number) / run.name
+        shutil.copytree(run, folder)
+        forgery.change(folder, other)
+        if anew:
+            remake_all(folder)
+        found += [bool(verify(folder, head).problems), bool(verify(folder).problems)]
+        shutil.rmtree(folder)
+    return found[0], found[1], found[2], found[3]

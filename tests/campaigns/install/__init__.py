@@ -1,0 +1,1 @@
+"""What the README's commands take on a fresh copy. Run by ``python -m tests.campaigns.install``."""

@@ -1,0 +1,41 @@
+"""`python -m tests.campaigns.install [NAME ...] [--sample]`: what the README's commands take on a fresh copy.
+
+Fresh environments, no package cache. Prints a line a figure; exit code 1 where one misses. Needs bash and a package
+index. The limits of CPU time are scaled by what `python3 -c pass` takes in the same run; wall times are not.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from tests.campaigns.install.topics import SAMPLE, TOPICS
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Measure the named topics; 1 where a figure misses."""
+    parser = argparse.ArgumentParser("python -m tests.campaigns.install", description="What the README takes.")
+    parser.add_argument("names", nargs="*", metavar="NAME", help="topics, all unless named: " + ", ".join(TOPICS))
+    parser.add_argument("--sample", action="store_true", help="only " + ", ".join(SAMPLE))
+    read = parser.parse_args(arguments)
+    if unknown := [name for name in read.names if name not in TOPICS]:
+        parser.error(f"no topic {', '.join(unknown)}; there are {', '.join(TOPICS)}")
+    missed = 0
+    for name in read.names or (SAMPLE if read.sample else TOPICS):
+        print(f"== {name}: {TOPICS[name].__doc__}", flush=True)
+        with TemporaryDirectory(prefix="install-", ignore_cleanup_errors=True) as folder:
+            try:
+                for figure in TOPICS[name](Path(folder)):
+                    missed += not figure.ok
+                    print(figure, flush=True)
+            except (LookupError, ValueError, OSError) as error:
+                missed += 1
+                print(f"MISS {name}: {type(error).__name__}: {error}  [can be measured]", flush=True)
+    print(f"== {'every figure is kept' if not missed else f'{missed} missed'}")
+    return 1 if missed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

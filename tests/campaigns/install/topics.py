@@ -1,0 +1,184 @@
+"""What is measured: the README's two commands, the ways of installing, interpreters, the compiled installation."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import re
+import shutil
+import zipfile
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+from tests.campaigns.acceptance.figure import Figure, at_most, equal, holds
+from tests.campaigns.install.place import (
+    PASS_S,
+    Told,
+    carry_out,
+    fresh_copy,
+    megabytes,
+    pass_s,
+    readme_command,
+    without_warnings,
+)
+
+CPU_AT_MOST_S = 60.0
+"""From the first keystroke to the table, where `python3 -c pass` takes PASS_S."""
+INSTALLED_AT_MOST_MB = 250.0
+TESTS_BEGIN_WITHIN_S = 90.0
+"""Wall time where `python3 -c pass` takes PASS_S or less; more on a slower machine, as for the CPU time."""
+COMPILED_AT_MOST = 0.6
+"""Two cores against one."""
+VERSIONS = ("3.11", "3.12", "3.13", "3.14")
+_ROW = re.compile(r"^1#\s+300\s+(100|200)\s+0\s+40\s+0\.\d{3}\s+0\.\d{3}\s+\d of \d", re.MULTILINE)
+_SDIST = "import sys; sys.path.insert(0, '.'); from compiling import backend; backend.build_sdist(sys.argv[1])"
+_DOTS = re.compile(r"^[.sxFE]", re.MULTILINE)
+
+
+def main_command(work: Path) -> Iterator[Figure]:
+    """The README's main command, from the first keystroke to the table."""
+    copy = fresh_copy(work / "main")
+    told = carry_out(readme_command("run quickstart --yes"), copy)
+    unit = pass_s(copy / ".venv" / "bin" / "python")
+    limit = CPU_AT_MOST_S * unit / PASS_S
+    note = f" ({told.cpu_s / unit:.0f} x `python3 -c pass`, {1e3 * unit:.1f} ms)"
+    yield equal("exit code", told.code, 0)
+    yield at_most("CPU time to the table", told.cpu_s, round(limit, 1), "s", 1, note=note)
+    yield told_only("wall time, downloads included", f"{told.wall_s:.0f} s; load {os.getloadavg()[0]:.1f}")
+    yield told_only("first output; longest silence", f"{told.first_s:.1f} s; {told.silence_s:.1f} s")
+    yield at_most("installed", megabytes(copy / ".venv"), INSTALLED_AT_MOST_MB, "MB", 0)
+    folder = told.text.rstrip().splitlines()[-1]
+    table = copy / folder / "appendix.csv"
+    yield holds("last line is the run's folder", table.is_file(), folder, "holds appendix.csv")
+    rows = {match[1] for match in _ROW.finditer(told.text)}
+    yield equal("loads in the table that is printed, with uncertainty (N)", sorted(rows), ["100", "200"])
+    yield holds("a command to try next", "\nnext: " in told.text, "named" if "\nnext: " in told.text else "no", "named")
+    left = [path.name for path in copy.iterdir() if path.name in ("build", "dist", ".mypy_cache")]
+    yield equal("left behind by the build", left, [])
+
+
+def test_command(work: Path) -> Iterator[Figure]:
+    """The README's test command, from the first keystroke to the first test's result."""
+    copy = fresh_copy(work / "tests")
+
+    def begun(text: str) -> bool:
+        return _DOTS.search(text, text.find("Successfully installed") + 1) is not None and "Successfully" in text
+
+    told = carry_out(readme_command("/pytest"), copy, until=begun)
+    if told.code is not None:
+        yield holds("tests begin", False, without_warnings(told.text), "a test's result")
+        return
+    unit = pass_s(copy / ".venv" / "bin" / "python")
+    limit = TESTS_BEGIN_WITHIN_S * max(1.0, unit / PASS_S)
+    note = f" (wall, downloads included; `python3 -c pass` {1e3 * unit:.1f} ms, load {os.getloadavg()[0]:.1f})"
+    yield at_most("tests begin after", told.wall_s, round(limit, 1), "s", 0, note=note)
+
+
+def ways(work: Path) -> Iterator[Figure]:
+    """From a checkout, twice, and from its source archive: the same wheel, for any platform."""
+    copy = fresh_copy(work / "ways")
+    stale = copy / "build" / "lib" / "tester" / "stale.py"
+    stale.parent.mkdir(parents=True)
+    stale.write_text("raise SystemExit('of an earlier build')\n", encoding="ascii")
+    must(carry_out("python3 -m venv .venv && .venv/bin/pip install -q 'setuptools>=77'", copy))
+    must(carry_out(f'.venv/bin/python -c "{_SDIST}" sdist', copy))
+    (archive,) = (copy / "sdist").glob("*.tar.gz")
+    for name, source in (("one", "."), ("two", "."), ("archive", f"sdist/{archive.name}")):
+        must(carry_out(f".venv/bin/pip wheel -q --no-deps -w wheels-{name} {source}", copy))
+    wheels = {name: next((copy / f"wheels-{name}").glob("*.whl")) for name in ("one", "two", "archive")}
+    yield holds("wheel", wheels["one"].name.endswith("-py3-none-any.whl"), wheels["one"].name, "for any platform")
+    contents = {name: digests(path) for name, path in wheels.items()}
+    yield equal("files that differ when built again", differing(contents["one"], contents["two"]), [])
+    yield equal("files that differ when built from the archive", differing(contents["one"], contents["archive"]), [])
+    yield equal("files of an earlier build", [name for name in contents["one"] if "stale" in name], [])
+
+
+def interpreters(work: Path) -> Iterator[Figure]:
+    """Every interpreter that this machine has: installs, and runs the quickstart with the same table."""
+    tables: dict[str, bytes] = {}
+    for version in VERSIONS:
+        python = interpreter(version)
+        if python is None:
+            yield told_only(f"Python {version}", "not on this machine")
+            continue
+        copy = fresh_copy(work / f"python-{version}")
+        command = f"{python} -m venv .venv && .venv/bin/pip install -q . && .venv/bin/tester run quickstart --yes"
+        told = carry_out(command, copy)
+        yield holds(f"Python {version}", told.code == 0, f"exit {told.code}, {told.cpu_s:.0f} s of CPU", "exit 0")
+        if told.code:
+            print(without_warnings(told.text))
+        else:
+            tables[version] = (copy / told.text.rstrip().splitlines()[-1] / "appendix.csv").read_bytes()
+    yield equal("different tables", len(set(tables.values())), 1)
+
+
+def compiled(work: Path) -> Iterator[Figure]:
+    """The compiled installation on one core and on two; both need to be idle. Takes some minutes."""
+    usable = sorted(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else []
+    if len(usable) < 2:
+        yield holds("cores", False, str(len(usable)), "two")
+        return
+    copy = fresh_copy(work / "compiled")
+    took: dict[int, float] = {}
+    for cores in (2, 1):
+        load = os.getloadavg()[0]
+        must(carry_out(f"python3 -m venv venv-{cores}", copy))
+        told = must(
+            carry_out(
+                f"venv-{cores}/bin/pip install -v --no-deps .", copy, cores=set(usable[:cores]),
+                FRICTION_TESTER_COMPILE="1",
+            )
+        )  # fmt: skip
+        took[cores] = told.wall_s
+        said = len(re.findall(r"friction-tester: ", told.text))
+        name = f"cores: {cores}; wall, CPU, lines of progress"
+        yield told_only(name, f"{told.wall_s:.0f} s, {told.cpu_s:.0f} s, {said}; load before it {load:.1f}")
+        library = list((copy / f"venv-{cores}").rglob("friction_tester__mypyc*"))
+        yield holds(f"compiled on {cores}", len(library) == 1, str(len(library)), "one library")
+    yield at_most("two cores against one", took[2] / took[1], COMPILED_AT_MOST, "", 2)
+    refused = carry_out("venv-1/bin/pip install --no-deps .", copy, FRICTION_TESTER_COMPILE="1", CC="no-such-compiler")
+    clear = refused.code != 0 and "asks for a compiled scan: no C compiler" in refused.text
+    yield holds("without a compiler", clear, f"exit {refused.code}", "fails and says why")
+
+
+TOPICS: dict[str, Callable[[Path], Iterator[Figure]]] = {
+    "main": main_command,
+    "tests": test_command,
+    "ways": ways,
+    "interpreters": interpreters,
+    "compiled": compiled,
+}
+SAMPLE = ("main", "tests", "ways")
+"""What takes two minutes together."""
+
+
+def told_only(name: str, value: str) -> Figure:
+    """State a figure of which nothing is asked."""
+    return Figure(name, value, "no limit", True)
+
+
+def must(told: Told) -> Told:
+    """Return what was told; raises ValueError with its last lines unless it went well."""
+    if told.code:
+        raise ValueError(f"exit {told.code}: {without_warnings(told.text)}")
+    return told
+
+
+def interpreter(version: str) -> str | None:
+    """Return the path of an interpreter that starts: on the search path or of pyenv."""
+    pyenv = sorted((Path.home() / ".pyenv" / "versions").glob(f"{version}.*/bin/python3"))
+    for found in (*map(str, pyenv), shutil.which(f"python{version}")):
+        if found and carry_out(f"{found} -c 'import venv, ssl'", Path.cwd()).code == 0:
+            return found
+    return None
+
+
+def digests(wheel: Path) -> dict[str, str]:
+    """Return the digest of every file in a wheel."""
+    with zipfile.ZipFile(wheel) as archive:
+        return {name: hashlib.sha256(archive.read(name)).hexdigest() for name in archive.namelist()}
+
+
+def differing(one: dict[str, str], other: dict[str, str]) -> list[str]:
+    """Return the names of the files that are not the same in both."""
+    return sorted(name for name in one.keys() | other.keys() if one.get(name) != other.get(name))

@@ -1,0 +1,1 @@
+"""How often the rule for repeats errs, measured; `python -m tests.campaigns.repeats`."""

@@ -1,0 +1,230 @@
+"""A service under attack, the operator who uses it, and what they leave behind in files."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import subprocess
+import sys
+from array import array
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from random import Random
+
+from tester.base import clock
+from tester.service.address import UnixAddress
+from tester.service.client import Client, NoServiceError
+from tester.service.commands import TakeControl
+from tester.service.gateway_process import NICE as GATEWAY_NICE
+from tester.service.state import StateView
+from tester.service.stop_call import NotTakenError, StopCall
+from tests.campaigns.stop.hostile import KINDS
+from tests.campaigns.stop.loop import PERIOD_S
+from tests.campaigns.stop.owner import OPERATOR, PROBE, SCANS, STOPS
+
+LOOK_S = 0.02
+START_S = 180.0
+"""The service is there by then: on a machine that is busy it was seen to take one minute."""
+ROLLING = 500
+"""Scans over which the difference of both clocks is taken for constant."""
+
+
+class NotReachedError(Exception):
+    """What is to be measured does not come about; the message says what, and what was there instead."""
+
+
+@dataclass(frozen=True, slots=True)
+class Try:
+    """One STOP: when it was sent, when it was in control, when the answer was there (tester.base.clock.monotonic)."""
+
+    sent_s: float
+    control_s: float | None
+    answered_s: float | None
+
+
+NICE = 10
+"""Of hostile clients."""
+LOOPS = tuple(f"loop{number}.txt" for number in range(4))
+"""What the bare loops write that come as the owner does.
+
+One would be woken half as often as a scan that it is compared with: the worst of few moments says little.
+"""
+NICED_LOOPS = ("niced.txt",)
+"""What the one writes that comes as the gateway does."""
+
+
+def started(*words: str, nice: int = 0, mute: bool = False) -> subprocess.Popen[bytes]:
+    """Run a module of this package; ``mute``: nobody reads its troubles."""
+    before = ["nice", "-n", str(nice)] if nice else []
+    errors = subprocess.DEVNULL if mute else None
+    return subprocess.Popen([*before, sys.executable, "-m", *words], stdin=subprocess.DEVNULL, stderr=errors)
+
+
+def ended(process: subprocess.Popen[bytes]) -> None:
+    """End a process, in an orderly way first."""
+    process.terminate()
+    try:
+        process.wait(30.0)
+    except subprocess.TimeoutExpired:
+        process.kill()
+        process.wait()
+
+
+class Place:
+    """One folder, one service, bare loops."""
+
+    def __init__(self, folder: Path, stack: ExitStack) -> None:
+        """Start them; they end with ``stack``."""
+        self.folder = folder
+        self.address = UnixAddress(folder / "service.sock")
+        self._owner = started("tests.campaigns.stop.owner", str(folder))
+        stack.callback(ended, self._owner)
+        for files, nice in ((LOOPS, 0), (NICED_LOOPS, GATEWAY_NICE)):
+            for number, file in enumerate(files):
+                phase_s = PERIOD_S * number / len(files)
+                stack.callback(ended, started("tests.campaigns.stop.loop", str(folder / file), str(phase_s), nice=nice))
+        self._probes = 0
+        self._random = Random(7)
+
+    async def operator(self) -> Client:
+        """Connect once the service is there, and control. Raises NotReachedError."""
+        end_s = clock.monotonic() + START_S
+        while clock.monotonic() < end_s:
+            try:
+                return await Client.connect(self.address, name="operator at the screen", control=True)
+            except NoServiceError:
+                await asyncio.sleep(LOOK_S)
+        raise NotReachedError(f"no service within {START_S:g} s")
+
+    @contextmanager
+    def attack(self, kinds: Sequence[str] = KINDS) -> Iterator[None]:
+        """Let the hostile clients loose while the block lasts. Raises NotReachedError where they have ended."""
+        module, folder = "tests.campaigns.stop.hostile", str(self.folder)
+        processes = [started(module, kind, folder, nice=NICE, mute=True) for kind in kinds]
+        try:
+            yield
+            if gone := [kind for kind, one in zip(kinds, processes, strict=True) if one.poll() is not None]:
+                raise NotReachedError(f"an attack to its end: {', '.join(gone)} ended before")
+        finally:
+            for process in processes:
+                process.kill()
+                process.wait()
+
+    async def until(
+        self, client: Client, true: Callable[[StateView], bool], what: str, within_s: float = 90.0
+    ) -> None:
+        """Wait for a state. Raises NotReachedError."""
+        end_s = clock.monotonic() + within_s
+        while not true(client.state):
+            if clock.monotonic() > end_s or client.lost:
+                state = client.state
+                why = f"{state.mode}: {state.mode_text} {client.lost}"
+                raise NotReachedError(f"{what}: not within {within_s:g} s; {why}")
+            await asyncio.sleep(LOOK_S)
+
+    async def take_control(self, client: Client) -> None:
+        """Have control, whoever has it."""
+        await client.command(TakeControl(force=True))
+
+    # -- STOP -------------------------------------------------------------------------------------------------
+
+    async def stop(self, call: StopCall, after_s: float = 0.0) -> tuple[str, float, float | None]:
+        """Send a probe's STOP; return its name, when it was sent and when it was answered (None: not)."""
+        self._probes += 1
+        name = f"{PROBE}{self._probes}"
+        await asyncio.sleep(after_s)
+
+        def say() -> tuple[float, float | None]:
+            call.name = name
+            sent_s = clock.monotonic()
+            try:
+                call.stop()
+            except NotTakenError:
+                return sent_s, None
+            return sent_s, clock.monotonic()
+
+        sent_s, answered_s = await asyncio.to_thread(say)
+        return name, sent_s, answered_s
+
+    async def tries(self, count: int, kept: bool = False) -> list[Try]:
+        """STOP so many times at random moments, over a connection that stays open as a screen's does.
+
+        ``kept``: where nothing ticks it is enough that nothing begins any more.
+        """
+        return self.judged(await self.stops(count), kept)
+
+    async def stops(self, count: int) -> list[tuple[str, float, float | None]]:
+        """As ``tries``, not judged yet."""
+        made: list[tuple[str, float, float | None]] = []
+        with StopCall(self.address, "probe") as call:
+            call.connect()
+            for _ in range(count):
+                made.append(await self.stop(call, 0.05 + 0.2 * self._random.random()))
+        return made
+
+    def judged(self, made: list[tuple[str, float, float | None]], kept: bool = False) -> list[Try]:
+        """Return the tries with when control had them."""
+        taken: dict[str, float] = {}
+        for line in (self.folder / STOPS).read_text(encoding="utf-8").splitlines():
+            at, how, names = line.split(" ", 2)
+            for name in names.split(", ") if kept or how == "done" else ():
+                taken.setdefault(name.split(" ", 1)[0], float(at))  # behind it: the peer
+        return [Try(sent_s, taken.get(name), answered_s) for name, sent_s, answered_s in made]
+
+    def early(self, name: str) -> bool:
+        """Return whether a STOP came while nothing ticked."""
+        lines = (self.folder / STOPS).read_text(encoding="utf-8").splitlines()
+        return any(line.split(" ")[1:3] == ["kept", name] for line in lines)
+
+    def end_for_real(self) -> None:
+        """The operator's STOP, which is carried out. Raises NotTakenError."""
+        with StopCall(self.address, OPERATOR) as call:
+            call.stop()
+
+    def scheduling(self) -> str:
+        """Return how the operating system schedules whoever ticks now."""
+        if sys.platform != "linux":
+            return f"not known on {sys.platform}"
+        kind = os.sched_getscheduler(self._owner.pid) & ~os.SCHED_RESET_ON_FORK
+        return "real-time priority" if kind == os.SCHED_RR else "an ordinary process: no real-time priority is granted"
+
+    # -- what was noted ---------------------------------------------------------------------------------------
+
+    def loop_late_s(self, from_s: float, to_s: float, files: Sequence[str] = LOOPS) -> float:
+        """Return the worst lateness of the bare loops in a time."""
+        return max(self.loops_late_s(from_s, to_s, files), default=0.0)
+
+    def loops_late_s(self, from_s: float, to_s: float, files: Sequence[str] = LOOPS) -> list[float]:
+        """Return how late the bare loops were in a time, each time."""
+        lines = [line for file in files for line in (self.folder / file).read_text(encoding="utf-8").splitlines()]
+        rows = [line.split() for line in lines]
+        return [float(row[1]) for row in rows if len(row) == 2 and from_s <= float(row[0]) <= to_s]
+
+    def scans(self) -> list[tuple[float, float]]:
+        """Return every scan of the runs that have ended: when it began by the clock, and how late that was, s."""
+        notes: array[float] = array("d")
+        file = self.folder / SCANS
+        if not file.exists():
+            return []
+        with file.open("rb") as stream:
+            notes.frombytes(stream.read())
+        return late_scans(list(zip(notes[::2], notes[1::2], strict=True)))
+
+
+def late_scans(scans: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
+    """Return when scans began and how late that was, s, from when they began by the clock and for when they were meant.
+
+    Each run has a clock of its own, which begins at 0: no piece of ``ROLLING`` scans has two of them.
+    """
+    late: list[tuple[float, float]] = []
+    first = 0
+    for end in range(1, len(scans) + 1):
+        if end < len(scans) and end - first < ROLLING and scans[end][1] >= scans[end - 1][1]:
+            continue
+        piece = scans[first:end]
+        least = min(at - meant for at, meant in piece)
+        late += [(at, at - meant - least) for at, meant in piece]
+        first = end
+    return late

@@ -1,0 +1,444 @@
+"""What the rig is doing while STOP is pressed: sliding at 100 Hz, resting at 10 Hz, moved by hand, not there yet."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import AsyncGenerator, AsyncIterator, Callable, Iterable, Sequence
+from contextlib import AbstractContextManager, asynccontextmanager, suppress
+from math import ceil
+from pathlib import Path
+
+from tester.base import clock
+from tester.service.client import Client, LostError, RefusedError
+from tester.service.commands import Action, Arm, Jog, RunRecipe
+from tester.service.service import SILENT_S
+from tester.service.state import RunView, StateView
+from tester.store.reader import RunReader
+from tests.campaigns.acceptance.figure import Figure, at_least, at_most, equal, holds
+from tests.campaigns.stop.hostile import BY_FORCE, KINDS
+from tests.campaigns.stop.owner import PROBE
+from tests.campaigns.stop.place import NICED_LOOPS, NotReachedError, Place, Try
+
+ASKED_S = 0.1
+QUIET_S = 10.0
+"""Scans are watched for so long without anybody hostile."""
+MOST_ROUNDS = 3
+"""Where the latest scan of the first round misses, all are watched and judged as one, by the same inequality: a virtual
+machine's processor is taken away for 4 to 10 ms at any moment, and 10 s show little of how late that makes."""
+SETTLE_S = 3.0
+"""Hostile clients have begun by then, s."""
+SLIDES = """\
+recipe: sliding and resting
+specimens: [{compound: "1#"}]
+pre_grind: {wheel_speed: 0.8 m/s, belt_speed: 0.6 m/s, load: 100 N, duration: %d s}
+rest: {at_least: 60 min, until: 25 degC, within: 2 degC}
+measure: {wheel_speed: 0.8 m/s, repeats: 1, min_valid: 1, window: 14 rev}
+grids:
+  - {name: one, slip_velocity: 100 mm/s, load: 100 N, temperature: 25 degC}
+"""
+SIGN_S = 0.25
+"""Between two signs of life, s: as the operator's screen gives them."""
+SHARE_S = SILENT_S - 2.0 * SIGN_S
+"""A loop as nice as the gateway that is later than this: a sign of life may be a second on its way."""
+ARM_S = 120.0
+MOST_TRIES = 4
+"""As many tries as asked for are made at most, to have those while the rig is moved."""
+WHY = ("mode", "control", "run", "alarm", "service")
+"""Events that say why manual mode has ended."""
+TAKEN_S = 0.3
+"""An order that is refused for want of control has been by then, s."""
+ENDED = ("OFFLINE", "INTERRUPTED")
+Attack = Callable[[Sequence[str]], AbstractContextManager[None]]
+
+
+def big(conditions: int) -> str:
+    """Return a recipe of so many conditions (a multiple of 2,000)."""
+    slips = ", ".join(f"{100 + i} mm/s" for i in range(conditions // 2000))
+    loads = ", ".join(f"{100 + i} N" for i in range(100))
+    temperatures = ", ".join(f"{30 + i} degC" for i in range(20))
+    return (
+        'recipe: big\nspecimens: [{compound: "1#"}]\n'
+        "measure: {wheel_speed: 0.8 m/s, repeats: 3, window: 30 rev}\n"
+        f"grids:\n  - name: g\n    slip_velocity: [{slips}]\n    load: [{loads}]\n    temperature: [{temperatures}]\n"
+    )
+
+
+def figures_of(place: Place, name: str, tries: list[Try], began_s: float) -> list[Figure]:
+    """Compare the tries of a scene with what is asked of STOP."""
+    worst_s = place.loop_late_s(began_s, clock.monotonic())
+    delays = [one.control_s - one.sent_s for one in tries if one.control_s is not None]
+    answers = [one.answered_s - one.sent_s for one in tries if one.answered_s is not None]
+    limit_ms = 1e3 * (ASKED_S + worst_s)
+    kept = sum(delay <= ASKED_S + worst_s for delay in delays)
+    median = 1e3 * sorted(delays)[len(delays) // 2] if delays else float("nan")
+    return [
+        holds(f"{name}: a bare loop of 20 ms is late by at most", True, f"{1e3 * worst_s:.1f} ms", "no limit"),
+        equal(f"{name}: STOP in control in time", f"{kept} of {len(tries)}", f"{len(tries)} of {len(tries)}"),
+        at_most(f"{name}: STOP to control, worst", 1e3 * max(delays, default=float("nan")), limit_ms, "ms", 1,
+                note=f" (median {median:.1f})"),
+        equal(f"{name}: STOP answered", f"{len(answers)} of {len(tries)}", f"{len(tries)} of {len(tries)}"),
+    ]  # fmt: skip
+
+
+async def ended_by_the_operator(place: Place, client: Client) -> Figure:
+    """Stop for real, and look that the rig does."""
+    sent_s = clock.monotonic()
+    await asyncio.to_thread(place.end_for_real)
+    stopping = ("STOPPING", "COOLDOWN", "OFFLINE", "INTERRUPTED")
+    await place.until(client, lambda view: view.mode in stopping, "a stop", 10.0)
+    seen_ms = 1e3 * (clock.monotonic() - sent_s)
+    await place.until(client, lambda view: view.mode in ENDED, "standstill, and the end", 120.0)
+    return holds("the operator's own STOP stops the rig", True, f"seen after {seen_ms:.0f} ms", "stops")
+
+
+def at_rest(view: StateView) -> bool:
+    """Nothing is under way."""
+    return view.mode in ("OFFLINE", "INTERRUPTED", "IDLE")
+
+
+async def sliding_and_resting(place: Place, client: Client, attack: Attack, count: int) -> AsyncIterator[Figure]:
+    """100 Hz and 10 Hz: a run that slides, then rests."""
+    quiet = await begin_to_slide(place, client, max(QUIET_S, 0.4 * count))
+    with attack(BY_FORCE):
+        await asyncio.sleep(SETTLE_S)
+        began_s = clock.monotonic()
+        tries = await place.tries(count)
+        await asyncio.sleep(began_s + QUIET_S - clock.monotonic())
+        loud = (began_s, clock.monotonic())
+        yield holds("at 100 Hz: the run ticks as", True, place.scheduling(), "no limit")
+        yield holds("at 100 Hz: the wheel still slides", slides(client.state), client.state.mode, "RUN")
+        for figure in figures_of(place, "at 100 Hz", tries, began_s):
+            yield figure
+        await place.until(client, lambda view: view.tick.rate_hz <= 10.0, "a rest", 120.0)
+        began_s = clock.monotonic()
+        for figure in figures_of(place, "at 10 Hz", await place.tries(count), began_s):
+            yield figure
+        yield at_most("rate at a rest", client.state.tick.rate_hz, 10.0, "Hz", 1)
+    yield await ended_by_the_operator(place, client)
+    scans = Scans(place, quiet, loud)
+    for figure in scans.figures():
+        yield figure
+    rounds = [scans]
+    while not latest_kept(rounds[:1]) and len(rounds) < MOST_ROUNDS:
+        quiet = await begin_to_slide(place, client, QUIET_S)
+        with attack(BY_FORCE):
+            await asyncio.sleep(SETTLE_S)
+            began_s = clock.monotonic()
+            await asyncio.sleep(QUIET_S)
+            loud = (began_s, clock.monotonic())
+        await ended_by_the_operator(place, client)
+        rounds.append(Scans(place, quiet, loud))
+        yield holds("latest scan once more", True, latest_of(rounds[-1:]), limit_of(rounds[-1:]))
+    yield holds(f"latest scan beside them, {len(rounds)} rounds", latest_kept(rounds),
+                latest_of(rounds), limit_of(rounds))  # fmt: skip
+
+
+async def begin_to_slide(place: Place, client: Client, loud_s: float) -> tuple[float, float]:
+    """Begin a run that slides; return from when to when it did with nobody hostile there (tester.base.clock.monotonic).
+
+    ``loud_s``: how long it is to slide beside hostile clients.
+    """
+    await place.until(client, alone, "hostile clients gone")
+    if not client.controls:
+        await place.take_control(client)
+    text = SLIDES % (QUIET_S + SETTLE_S + loud_s + 8.0)
+    await client.command(RunRecipe("slides", text=text, speed=1.0, yes=True))
+    await place.until(client, lambda view: slides(view), "a wheel that slides", 120.0)
+    from_s = clock.monotonic()
+    await asyncio.sleep(QUIET_S)
+    return from_s, from_s + QUIET_S
+
+
+class Scans:
+    """How late scans were without hostile clients and beside them, as long watched, and how late bare loops, s."""
+
+    def __init__(self, place: Place, quiet: tuple[float, float], loud: tuple[float, float]) -> None:
+        """``quiet``, ``loud``: from when to when (tester.base.clock.monotonic); the run has ended."""
+        scans = place.scans()
+        self.seconds = loud[1] - loud[0]
+        self.before = sorted(late for at, late in scans if quiet[0] <= at <= quiet[1])
+        self.beside = sorted(late for at, late in scans if loud[0] <= at <= loud[1])
+        self.loops = sorted(place.loops_late_s(*loud))
+
+    def figures(self) -> list[Figure]:
+        """What was seen in the first round; the latest scan is judged over all of them."""
+        limit_ms = 1e3 * (nth(self.before, 0.99) + nth(self.loops, 0.99))
+        return [
+            at_least("scans beside hostile clients", len(self.beside), 0.9 * 100.0 * self.seconds),
+            at_most("99 % of scans beside them are late by", 1e3 * nth(self.beside, 0.99), limit_ms, "ms", 2,
+                    note=f" (without them {1e3 * nth(self.before, 0.99):.2f}, "
+                    f"bare loops {1e3 * nth(self.loops, 0.99):.2f})"),
+            holds("latest scan without them", True,
+                  f"{1e3 * nth(self.before, 1.0):.1f} ms of {len(self.before)}", "no limit"),
+        ]  # fmt: skip
+
+
+def latest_kept(rounds: Sequence[Scans]) -> bool:
+    """The latest scan beside hostile clients is no later than the latest without them by more than the loops show."""
+    seen = all(one.before and one.beside and one.loops for one in rounds)
+    return seen and worst(one.beside for one in rounds) <= latest_limit_s(rounds)
+
+
+def latest_limit_s(rounds: Sequence[Scans]) -> float:
+    """Return how late a scan may be beside hostile clients, of all rounds, s."""
+    return worst(one.before for one in rounds) + worst(one.loops for one in rounds)
+
+
+def latest_of(rounds: Sequence[Scans]) -> str:
+    """Return the latest scan beside hostile clients, in words."""
+    loop_s = worst(one.loops for one in rounds)
+    return f"{1e3 * worst(one.beside for one in rounds):.1f} ms (bare loop {1e3 * loop_s:.1f})"
+
+
+def limit_of(rounds: Sequence[Scans]) -> str:
+    """Return what it may be, in words."""
+    return f"at most {1e3 * latest_limit_s(rounds):.1f} ms"
+
+
+def worst(late: Iterable[Sequence[float]]) -> float:
+    """Return the greatest of sorted numbers, NaN where there are none."""
+    return max((nth(one, 1.0) for one in late), default=float("nan"))
+
+
+def nth(late: Sequence[float], share: float) -> float:
+    """Return what so great a share of sorted numbers does not exceed, NaN for none."""
+    return late[ceil(share * len(late)) - 1] if late else float("nan")
+
+
+def slides(view: StateView) -> bool:
+    """The wheel slides under load."""
+    slip, load = view.value("slip"), view.value("load")
+    return (slip is not None and load is not None and slip.value is not None and load.value is not None
+            and slip.value > 50.0 and load.value > 50.0)  # fmt: skip
+
+
+async def by_hand(place: Place, client: Client, attack: Attack, count: int) -> AsyncIterator[Figure]:
+    """Manual mode that moves, a step of both speeds up or down twice a second.
+
+    Where the gateway gets no share of the processor for a second, no sign of life reaches the owner, and the mode
+    ends as it must. It is armed again then, until enough tries fell into it; every try is judged.
+    """
+    # What those of the scene before have said is worked off by then.
+    await place.until(client, alone, "hostile clients gone")
+    await place.take_control(client)
+    hand = Hand(place, client)
+    async with hand.at_work():
+        await hand.armed()
+        with attack(KINDS):
+            await asyncio.sleep(SETTLE_S)
+            began_s = clock.monotonic()
+            tries: list[Try] = []
+            inside = 0
+            while inside < count and len(tries) < MOST_TRIES * count:
+                await hand.armed()
+                tries += await place.tries(1)
+                inside += moved(client.state)
+            to_s = clock.monotonic()
+            for figure in figures_of(place, "by hand", tries, began_s):
+                yield figure
+        yield equal("by hand: tries while it moves", inside, count)
+        yield at_least("by hand: steps taken", hand.steps, 4)
+        niced_s = place.loop_late_s(began_s, to_s, NICED_LOOPS)
+        yield holds("by hand: manual mode stands, or the gateway gets no share of the processor",
+                    hand.again == 0 or niced_s > SHARE_S,
+                    f"armed {hand.again} times again ({hand.why}); a bare loop beside the gateway is late by "
+                    f"{1e3 * niced_s:.0f} ms",
+                    f"0, or later than {1e3 * SHARE_S:g} ms")  # fmt: skip
+        await hand.armed()
+        yield await ended_by_the_operator(place, client)
+
+
+def moved(view: StateView) -> bool:
+    """The rig is moved by hand."""
+    return view.mode == "MANUAL" and view.tick.rate_hz > 0.0
+
+
+def alone(view: StateView) -> bool:
+    """Nobody but the operator is there."""
+    return view.clients.viewers + (view.clients.controller_id != 0) <= 1
+
+
+class Hand:
+    """The operator who moves the rig: gives signs of life, takes steps, arms again where the mode has ended."""
+
+    def __init__(self, place: Place, client: Client) -> None:
+        """Nothing is armed."""
+        self.place, self.client = place, client
+        self.steps = 0
+        self.again = 0
+        """How often the mode was armed after it had ended."""
+        self.why = ""
+        """Why it had ended, the last time."""
+        self._armed = False
+
+    @asynccontextmanager
+    async def at_work(self) -> AsyncGenerator[None]:
+        """Give signs of life and take steps while the block lasts."""
+        tasks = [asyncio.create_task(self._attend()), asyncio.create_task(self._move())]
+        try:
+            yield
+        finally:
+            for task in tasks:
+                task.cancel()
+
+    async def armed(self) -> None:
+        """See that manual mode stands. Raises NotReachedError."""
+        end_s = clock.monotonic() + ARM_S
+        while not moved(self.client.state):
+            if clock.monotonic() > end_s or self.client.lost:
+                state = self.client.state
+                raise NotReachedError(f"manual mode: not within {ARM_S:g} s; {state.mode}: {state.mode_text}")
+            if at_rest(self.client.state):
+                with suppress(RefusedError, TimeoutError):
+                    await self.client.command(Arm(), within_s=ARM_S)
+                    if self._armed:
+                        self.again += 1
+                        self.why = "; ".join(one.text for one in self.client.events if one.kind in WHY)[-300:]
+                    self._armed = True
+            await asyncio.sleep(SIGN_S)
+
+    async def arm_by_force(self) -> None:
+        """Take control and arm, again and again."""
+        while not self.client.lost:
+            with suppress(RefusedError, LostError, TimeoutError):
+                await (await begun(self.place, self.client, Arm()))
+                self.again += 1
+            await asyncio.sleep(SIGN_S)
+
+    async def _attend(self) -> None:
+        while not self.client.lost:
+            self.client.attend()
+            await asyncio.sleep(SIGN_S)
+
+    async def _move(self) -> None:
+        while not self.client.lost:
+            if moved(self.client.state):
+                with suppress(RefusedError, LostError, TimeoutError):
+                    await self.client.command(Jog("both", 1 if self.steps % 8 < 4 else -1), within_s=5.0)
+                    self.steps += 1
+            await asyncio.sleep(0.5)
+
+
+async def torn_away(place: Place, client: Client, attack: Attack, count: int) -> AsyncIterator[Figure]:
+    """The operator arms manual mode again and again, others tear control away: it ends each time, STOP is heard."""
+    hand = Hand(place, client)
+    with attack(BY_FORCE):
+        await asyncio.sleep(SETTLE_S)
+        began_s = clock.monotonic()
+        arming = asyncio.create_task(hand.arm_by_force())
+        try:
+            tries = await place.tries(count, kept=True)
+            while not hand.again and clock.monotonic() < began_s + ARM_S:
+                tries += await place.tries(1, kept=True)
+        finally:
+            arming.cancel()
+        for figure in figures_of(place, "control torn away", tries, began_s):
+            yield figure
+    yield at_least("control torn away: manual mode armed", hand.again, 1)
+    await place.until(client, lambda view: alone(view) and view.mode in ENDED, "the end of manual mode", 60.0)
+    yield holds("control torn away: manual mode ends", True, client.state.mode, "OFFLINE")
+
+
+async def planning(place: Place, client: Client, attack: Attack, count: int, conditions: int) -> AsyncIterator[Figure]:
+    """A large recipe is being planned and handed over: STOP ends that, and nothing moves."""
+    recipe = place.folder / "big.yaml"
+    recipe.write_text(big(conditions), encoding="utf-8")
+    order = RunRecipe(str(recipe), speed=1.0, yes=True)
+    made: list[tuple[str, float, float | None]] = []
+    ends: list[str] = []
+    with attack(BY_FORCE):
+        await asyncio.sleep(SETTLE_S)
+        began_s = clock.monotonic()
+        taken = await begun(place, client, order)
+        await taken
+        whole_s = clock.monotonic() - began_s
+        await asyncio.to_thread(place.end_for_real)
+        await over(place, client, taken)
+        began_s = clock.monotonic()
+        for number in range(count):
+            taken = await begun(place, client, order)
+            await asyncio.sleep(whole_s * moment(number, count))
+            made += await place.stops(1)
+            ends.append(await end_of(place, client, taken, made[-1][0]))
+        for figure in figures_of(place, f"planning {conditions} conditions", place.judged(made, kept=True), began_s):
+            yield figure
+    yield holds("planning: it takes, from the order to the run", True, f"{whole_s:.2f} s", "no limit")
+    early = sum(end in (REFUSED, AT_ONCE) for end in ends)
+    counts = ", ".join(f"{end} {ends.count(end)}" for end in sorted(set(ends)))
+    yield holds("planning: STOP before the first scan, and nothing moves", early + ends.count(LATER) == count,
+                counts, f"{REFUSED}, {AT_ONCE} or {LATER}")  # fmt: skip
+    yield at_least("planning: tries before the first scan", early, count // 2, "", 0)
+
+
+REFUSED, AT_ONCE, LATER = "refused", "ended at the first scan", "sent after the first scan"
+"""How a planned run ends that STOP was sent to."""
+
+
+def moment(number: int, count: int) -> float:
+    """Return when a try comes, as a share of the time from the order to the run: over all of it, each second one near
+    its end, where the plan is handed over."""
+    return number / count if number % 2 else 0.85 + 0.2 * number / count
+
+
+async def end_of(place: Place, client: Client, order: asyncio.Task[object], name: str) -> str:
+    """Return how a run has ended that STOP was sent to under this name."""
+    why = await refusal_of(order)
+    if why:
+        return REFUSED if PROBE in why else why
+    if not place.early(name):
+        await asyncio.to_thread(place.end_for_real)
+    run = await over(place, client, order)
+    if not place.early(name):
+        return LATER
+    return AT_ONCE if name in run.reason and still(Path(run.folder)) else f"it ran: {run.reason}"
+
+
+async def over(place: Place, client: Client, order: asyncio.Task[object]) -> RunView:
+    """Wait for the end of a run that has begun, its tables included, and return what is told of it."""
+    answer = await order
+    begun = answer.get("run") if isinstance(answer, dict) else None
+
+    def true(view: StateView) -> bool:
+        return view.run is not None and view.run.name == begun and view.run.outcome != "running"
+
+    await place.until(client, true, "the end of a run that was stopped", TABLES_S)
+    assert client.state.run is not None
+    return client.state.run
+
+
+TABLES_S = 1200.0
+"""Tables of 200,000 conditions are written by then, s."""
+STILL_M_S = 1e-3
+"""A drive at rest shows less, m/s."""
+
+
+def still(folder: Path) -> bool:
+    """Return whether neither wheel nor belt has turned in a run, by its record."""
+    with RunReader(folder) as reader:
+        found = reader.samples()
+    turned = [value for name in ("wheel_speed_m_s", "belt_speed_m_s") for value in found[name].tolist()]
+    return all(abs(value) < STILL_M_S for value in turned)
+
+
+async def begun(place: Place, client: Client, action: Action) -> asyncio.Task[object]:
+    """Give an order although others tear control away; return what waits for its answer. Raises NotReachedError."""
+    end_s = clock.monotonic() + ARM_S
+    while clock.monotonic() < end_s:
+        take = asyncio.create_task(place.take_control(client))
+        order: asyncio.Task[object] = asyncio.create_task(client.command(action, within_s=ARM_S))  # right behind it
+        with suppress(RefusedError, TimeoutError):
+            await take
+        order.add_done_callback(lambda done: done.cancelled() or done.exception())  # whoever gave it may be gone
+        await asyncio.wait({order}, timeout=TAKEN_S)
+        if not order.done() or "control" not in await refusal_of(order):
+            return order
+    raise NotReachedError(f"{action.command}: somebody else had control for {ARM_S:g} s")
+
+
+async def refusal_of(order: asyncio.Task[object]) -> str:
+    """Return why an order was refused, "" where it was not."""
+    try:
+        await order
+    except RefusedError as error:
+        return str(error)
+    return ""

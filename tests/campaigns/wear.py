@@ -1,0 +1,131 @@
+"""`python -m tests.campaigns.wear [--sample] [--jobs N]`: does the wear rate put into the simulated rig come back?
+
+The recipe ``wear`` runs for several seeds at three rates. What the software believes of the rate is wrong by a factor
+of three or more each time, and how much the tread grows with heat is drawn, for every run, from the whole range that
+its stated uncertainty stands for. Prints a line a figure and exits 1 where one misses.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
+from pathlib import Path
+from random import Random
+from statistics import median
+from tempfile import TemporaryDirectory
+from typing import NamedTuple
+
+from tester.analysis.wear import condition_wear, wear_rate
+from tester.run.session import Session, SessionOptions
+from tester.store.reader import RunReader
+from tests.campaigns.compiled.worker import Silent
+
+RATES = {0.02: 0.08, 0.08: 0.24, 0.24: 0.08}
+"""Rate put into the simulated rig, and the rate that the software believes, mm3/(N m)."""
+RUBBER_LAYER_MM = 8.0
+RUBBER_EXPANSION = (0.0029 / (2.0 * RUBBER_LAYER_MM), 0.0087 / (2.0 * RUBBER_LAYER_MM))
+"""Radial expansion of the layer, 1/K: the range of the rubber's part of the growth of the diameter, 0.0029 to
+0.0087 mm/K, that ``wear.growth_uncertainty`` stands for (sim/rig.yaml)."""
+SEEDS, SAMPLE = 20, 2
+OF_EACH, OF_ALL = 0.8, 53 / 60
+"""Shares of seeds whose stated interval has to hold the rate: 16 of 20, 53 of 60."""
+WIDEST, WIDEST_MM3_N_M = 0.25, 0.012
+"""An interval that is wider than both, as a share of the rate and by itself, says nothing [A]."""
+
+
+class Case(NamedTuple):
+    """One run to be made."""
+
+    rate: float
+    seed: int
+
+
+class Found(NamedTuple):
+    """What a run has found of the whole wheel, and in how many of its conditions the interval held the rate."""
+
+    case: Case
+    exit_code: int
+    rate: float
+    expanded: float
+    conditions: int
+    held: int
+    resolved: int
+
+    @property
+    def covered(self) -> bool:
+        """Tell whether the stated interval holds the rate that was put in."""
+        return abs(self.rate - self.case.rate) <= self.expanded
+
+
+def carry_out(case: Case) -> Found:
+    """Run the recipe on the simulated rig."""
+    expansion = Random(f"growth {case.seed} {case.rate}").uniform(*RUBBER_EXPANSION)
+    overrides = (
+        f"sim.abrasion.wear_rate={case.rate}",
+        f"sim.contact.rubber_expansion={expansion:.6f}",
+        f"wear.rate={RATES[case.rate]}",
+    )
+    with TemporaryDirectory(prefix="wear-") as name:
+        screen = Silent()
+        session = Session(
+            SessionOptions("wear", "sim", overrides, Path(name), seed=case.seed, samples=False), screen
+        )
+        code = session.run()
+        if session.folder is None:
+            raise RuntimeError(" ".join(screen.messages))
+        with RunReader(session.folder) as reader:
+            checks = reader.wear_checks()
+            numbers = [one.info.condition for one in reader.conditions()]
+    whole = wear_rate(checks)
+    parts = [one.rate for number in numbers if (one := condition_wear(checks, number)) is not None]
+    held = sum(abs(one.rate - case.rate) <= one.expanded for one in parts)
+    return Found(case, code, whole.rate, whole.expanded, len(parts), held, sum(one.resolved for one in parts))
+
+
+def figures(found: Sequence[Found], seeds: int) -> Iterator[tuple[str, bool]]:
+    """Yield every figure in words, and whether it is kept."""
+    ended = sum(one.exit_code == 0 for one in found)
+    yield f"runs that ended in order: {ended} of {len(found)} (asked: all)", ended == len(found)
+    for rate, believed in RATES.items():
+        ours = [one for one in found if one.case.rate == rate]
+        covered, least = sum(one.covered for one in ours), int(OF_EACH * seeds)
+        mean = sum(one.rate for one in ours) / len(ours)
+        text = f"rate {rate:g} (believed {believed:g}): in the stated interval in {covered} of {len(ours)} seeds"
+        yield f"{text} (asked: {least}); mean {mean:.4f} mm3/(N m)", covered >= least
+        wide, most = median(one.expanded for one in ours), max(WIDEST * rate, WIDEST_MM3_N_M)
+        yield f"rate {rate:g}: interval of the wheel +- {wide:.4f} (asked: at most {most:.4f})", wide <= most
+        conditions, held = sum(one.conditions for one in ours), sum(one.held for one in ours)
+        resolved = sum(one.resolved for one in ours)
+        text = f"rate {rate:g}: single conditions in their interval {held} of {conditions}, {resolved} resolved from 0"
+        yield f"{text} (asked: {int(OF_EACH * conditions)} held)", held >= int(OF_EACH * conditions)
+    covered, least = sum(one.covered for one in found), int(OF_ALL * len(found))
+    yield f"together: {covered} of {len(found)} (asked: {least})", covered >= least
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Run everything; 1 where a figure misses."""
+    parser = argparse.ArgumentParser("python -m tests.campaigns.wear", description=(__doc__ or "").partition("\n")[2])
+    parser.add_argument("--sample", action="store_true", help=f"{SAMPLE} seeds a rate instead of {SEEDS}")
+    parser.add_argument("--jobs", type=int, default=1, metavar="N", help="runs side by side (default 1)")
+    read = parser.parse_args(arguments)
+    seeds = SAMPLE if read.sample else SEEDS
+    cases = [Case(rate, seed) for seed in range(1, seeds + 1) for rate in RATES]
+    found: list[Found] = []
+    with ProcessPoolExecutor(read.jobs, mp_context=get_context("spawn")) as pool:
+        for one in pool.map(carry_out, cases):
+            found.append(one)
+            off = "" if one.covered else "  OUTSIDE"
+            seed, rate = one.case.seed, one.case.rate
+            print(f"   seed {seed:2} rate {rate:g}: {one.rate:.4f} +- {one.expanded:.4f}{off}", flush=True)
+    missed = 0
+    for text, kept in figures(found, seeds):
+        missed += not kept
+        print(f"{'ok  ' if kept else 'MISS'} {text}", flush=True)
+    return 1 if missed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,1 +1,0 @@
-"""Is the compiled scan the same program? Run by ``python -m tests.compiled``."""

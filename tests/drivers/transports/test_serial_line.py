@@ -1,0 +1,76 @@
+"""The serial edge on a pseudo-terminal: bytes through, nothing blocks, every failure is BusLost."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from select import select
+
+import pytest
+
+from drivers.ports import BusLost
+from drivers.transports.serial_line import SerialLine, open_serial_line
+
+if sys.platform == "win32":
+    pytest.skip("this system has no pseudo-terminals", allow_module_level=True)
+
+import os
+import tty
+
+PATIENCE_S = 5.0
+"""Bound of every wait for the kernel."""
+
+
+@pytest.fixture
+def ends() -> Iterator[tuple[SerialLine, int, int]]:
+    """Give an open line, and both descriptors of its pseudo-terminal."""
+    master, slave = os.openpty()
+    tty.setraw(slave)
+    line = open_serial_line(os.ttyname(slave), 115200)
+    yield line, master, slave
+    line.close()
+    for descriptor in (master, slave):
+        try:
+            os.close(descriptor)
+        except OSError:
+            continue  # the test closed it
+
+
+def test_what_is_written_arrives(ends: tuple[SerialLine, int, int]) -> None:
+    line, master, _ = ends
+    line.write(b"\x01\x03\x00", 0.0)
+    assert select([master], [], [], PATIENCE_S)[0]
+    assert os.read(master, 10) == b"\x01\x03\x00"
+
+
+def test_what_arrives_is_stamped_with_the_time_of_asking(ends: tuple[SerialLine, int, int]) -> None:
+    line, master, slave = ends
+    os.write(master, b"\x0d\x0a\x11\x13\x00\xff")
+    assert select([slave], [], [], PATIENCE_S)[0]
+    assert line.read(12.5) == [(12.5, b"\x0d\x0a\x11\x13\x00\xff")]
+
+
+def test_reading_nothing_does_not_block(ends: tuple[SerialLine, int, int]) -> None:
+    line, _, _ = ends
+    assert line.read(0.0) == []
+
+
+def test_a_port_that_goes_away_is_bus_lost(ends: tuple[SerialLine, int, int]) -> None:
+    line, master, slave = ends
+    os.close(slave)
+    os.close(master)
+    with pytest.raises(BusLost, match="serial port"):
+        line.read(0.0)
+        line.write(b"\x01", 0.0)
+
+
+def test_a_port_that_is_not_there_is_bus_lost(tmp_path: Path) -> None:
+    with pytest.raises(BusLost, match="no_such_port"):
+        open_serial_line(str(tmp_path / "no_such_port"), 9600)
+
+
+def test_a_port_in_use_is_bus_lost(ends: tuple[SerialLine, int, int]) -> None:
+    _, _, slave = ends
+    with pytest.raises(BusLost):
+        open_serial_line(os.ttyname(slave), 9600)

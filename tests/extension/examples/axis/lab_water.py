@@ -1,0 +1,68 @@
+"""The wheel on a belt with one axis more: a condition says whether the belt is dry or wet, and a person sees to it."""
+
+from dataclasses import replace
+
+from tester.axes import Axes, Axis
+from tester.kinds import wheel_on_belt
+from tester.kinds.wheel_on_belt import axes
+from tester.kinds.wheel_on_belt.context import Context
+from tester.kinds.wheel_on_belt.procedures.steps import WheelProcedures
+from tester.kinds.wheel_on_belt.recipe.part import WheelPart
+from tester.kinds.wheel_on_belt.recipe.steps import WheelCondition
+from tester.kinds.wheel_on_belt.recipe.wheel_change import INSERTED
+from tester.kinds.wheel_on_belt.runs import WheelRuns
+from tester.kinds.wheel_on_belt.screen import MACHINE
+from tester.kinds.wheel_on_belt.served import WheelOnBelt
+from tester.machine.executor import Unforeseen
+from tester.recipe.plan import PromptStep, Step
+from tester.screen import axis_views
+
+NAME = "lab_water:KIND"
+INTERFACE = Axis("interface", "", "interface", "", 1.0, "interface", "Interface", "Interface", "", "dry", False,
+                 choices=("dry", "wet"))  # fmt: skip
+AXES = Axes((INTERFACE, *axes.AXES), blocks="temperature")
+
+
+class WetPart(WheelPart):
+    """Recipes may say it."""
+
+    kind = NAME
+    axes = AXES
+
+
+class WetProcedures(WheelProcedures):
+    """A person is asked before a condition that wants the belt otherwise than it is."""
+
+    interface = "dry"
+    """What the belt is: a run begins, and goes on, with a dry one."""
+
+    def before(self, step: Step, ctx: Context) -> Unforeseen[Context] | None:
+        """Ask for the belt first, then do what any condition needs."""
+        wanted = str(step.setpoint.value("interface")) if isinstance(step, WheelCondition) else self.interface
+        if wanted == self.interface:
+            return super().before(step, ctx)
+        self.interface = wanted
+        return Unforeseen(steps=[PromptStep(INSERTED, f"the belt is to be {wanted}")])
+
+
+class WetRuns(WheelRuns):
+    """Runs are made of those procedures."""
+
+    procedures = WetProcedures
+
+
+class WetService(WheelOnBelt):
+    """Screens tell the axis."""
+
+    machine = replace(MACHINE, axes=axis_views(AXES))
+
+
+KIND = replace(
+    wheel_on_belt.KIND,
+    name=NAME,
+    title="rubber wheel on a belt that is dry or wet",
+    rigs={},
+    recipe=WetPart,
+    runs=WetRuns,
+    served=WetService,
+)

@@ -1,0 +1,63 @@
+"""The wheel on a belt with one interlock more: the rubber is hotter than its hub by more than friction makes it."""
+
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar
+
+from tester.kinds import wheel_on_belt
+from tester.kinds.wheel_on_belt.interlocks import operation
+from tester.kinds.wheel_on_belt.interlocks.inputs import Inputs
+from tester.kinds.wheel_on_belt.interlocks.table import TABLE
+from tester.kinds.wheel_on_belt.rig.config import RigConfig
+from tester.machine.interlock_sheet import SECTION, InterlockSheet
+from tester.machine.interlock_table import InterlockTable
+from tester.machine.row import ACK, CONTROLLED, Compared, Interlock
+from tester.rig.ceilings import ceilings_of
+from tester.rig.config import section_of
+from tester.rig.parameter import Direction, Parameter
+
+FAULT = "thermometer drift 2 K/s"
+"""Trips it first: a line of a fault script, behind the time at which it begins."""
+EXCESS_K = Parameter(
+    "surface_excess_k", "K", "8 K", "the rubber hotter than its hub by this: friction makes a few kelvin [A]",
+    direction=Direction.LOWER, hardest="30 K",
+    because="at limits.surface a hub that cold says that nothing heats but friction",
+)  # fmt: skip
+
+
+def _hotter_than_hub(v: Inputs) -> bool:
+    r = v.readings
+    return r.surface_valid and r.jacket_valid and not (r.surface_c - r.hub_c <= v.parameters[EXCESS_K])
+
+
+HOTTER_THAN_HUB = Interlock(
+    name="rubber hotter than hub",
+    cause="rubber far hotter than its hub: thermometer wrong, or far too much friction",
+    level="surface - hub > surface_excess",
+    condition=_hotter_than_hub,
+    compared=lambda v: Compared(v.readings.surface_c - v.readings.hub_c, v.parameters[EXCESS_K], "K"),
+    parameters=(EXCESS_K,),
+    reaction=CONTROLLED,
+    reset=ACK,
+)
+ROWS = InterlockTable((HOTTER_THAN_HUB, *TABLE.rows), operation.PARAMETERS)
+Section: Any = section_of("Section", ROWS.parameters, __name__)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LabRig(RigConfig):
+    """The wheel's rig file, with the parameter of the row."""
+
+    table: ClassVar[InterlockTable] = ROWS
+    parameters: ClassVar[tuple[Parameter, ...]] = ROWS.parameters
+    ceilings: ClassVar = (*RigConfig.ceilings, *ceilings_of(SECTION, (EXCESS_K,)))
+    interlocks: Section
+
+
+KIND = replace(
+    wheel_on_belt.KIND,
+    name="lab_wheel:KIND",
+    title="rubber wheel on a belt, watched against its hub",
+    rigs={},
+    rig=lambda: LabRig,
+    interlocks=lambda: InterlockSheet(ROWS.rows, operation.PARAMETERS, operation.ABOUT),
+)

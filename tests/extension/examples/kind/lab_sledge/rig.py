@@ -1,0 +1,67 @@
+"""The sledge's rig file, and its interlock: a spring that is drawn too far."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Annotated, Any, ClassVar
+
+from lab_sledge.image import QUANTITIES, SledgeReadings
+from lab_sledge.twin import SledgeSim
+from tester.base.config_reader import Range
+from tester.machine.plain.rows import PlainInputs, plain_table
+from tester.machine.row import FAST, LOADED, REPAIR, Compared, Interlock
+from tester.quantities import Quantities
+from tester.rig.ceilings import Ceiling, ceilings_of
+from tester.rig.config import OwnDevice, section_of
+from tester.rig.parameter import SECTION, Direction, Parameter
+from tester.rig.plain import PlainRig
+
+SPRING_N = Parameter(
+    "spring_n", "N", "40 N", "the spring pulls at most this: a sledge that slides needs half of it [A]",
+    direction=Direction.LOWER, hardest="60 N",
+    because="at 60 N the spring is drawn by 12 mm: a sledge that comes loose jumps that far",
+)  # fmt: skip
+
+
+def _overdrawn(v: PlainInputs[SledgeReadings]) -> bool:
+    return not (abs(v.readings.force_n) <= v.parameters[SPRING_N])
+
+
+OVERDRAWN = Interlock(
+    name="spring overdrawn",
+    cause="the spring is drawn too far: the sledge sticks or has jammed",
+    level="pull > spring, or unknown",
+    condition=_overdrawn,
+    compared=lambda v: Compared(abs(v.readings.force_n), v.parameters[SPRING_N], "N"),
+    parameters=(SPRING_N,),
+    when=LOADED,
+    unseen=_overdrawn,
+    reaction=FAST,
+    reset=REPAIR,
+)
+TABLE = plain_table(OVERDRAWN)
+Interlocks: Any = section_of("Interlocks", TABLE.parameters, __name__)
+
+
+@dataclass(frozen=True, slots=True)
+class SledgeSection:
+    """What the laboratory has built."""
+
+    weight_n: Annotated[float, "N", Range(gt=0.0, le=50.0)]
+    """Of the sledge with its rubber: the load."""
+    speed_mm_s: Annotated[float, "mm/s", Range(gt=0.0, le=50.0)]
+    """No recipe pulls faster."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SledgeRig(PlainRig):
+    """A rig of this kind."""
+
+    packaged: ClassVar[Mapping[str, str]] = {"sledge": "lab_sledge:rig.yaml"}
+    own: ClassVar[Mapping[str, OwnDevice]] = {"load_cell": OwnDevice("load cell", "load_cell")}
+    quantities: ClassVar[Quantities] = QUANTITIES
+    parameters: ClassVar[tuple[Parameter, ...]] = TABLE.parameters
+    ceilings: ClassVar[tuple[Ceiling, ...]] = (*PlainRig.ceilings, *ceilings_of(SECTION, TABLE.parameters))
+
+    sledge: SledgeSection
+    interlocks: Interlocks
+    sim: SledgeSim = field(default_factory=SledgeSim)

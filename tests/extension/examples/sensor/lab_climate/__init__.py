@@ -1,0 +1,1 @@
+"""Profiles of the sensors of a laboratory, each a TOML file of this package."""

@@ -1,1 +1,0 @@
-"""What the README's commands take on a fresh copy. Run by ``python -m tests.install``."""

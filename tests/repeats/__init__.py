@@ -1,1 +1,0 @@
-"""How often the rule for repeats errs, measured; `python -m tests.repeats`."""

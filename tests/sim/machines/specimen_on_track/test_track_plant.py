@@ -1,0 +1,190 @@
+"""The plant against closed forms."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import exp
+
+import pytest
+
+from sim.machines.specimen_on_track.plant import TrackPlant
+from sim.physics.track import TrackContact, TrackParameters
+from sim.physics.wlf import PoleError, WlfBell, WlfBellParameters
+
+CLEAN = TrackParameters(noise=0.0, scatter=0.0)
+LAW = WlfBell(WlfBellParameters())
+STIFFNESS_N_M = 1e3 * CLEAN.contact.stiffness
+
+
+def lowered(parameters: TrackParameters = CLEAN, weights_n: float = 20.0, compound: str = "SBR") -> TrackPlant:
+    plant = TrackPlant(parameters, 1)
+    plant.install(0, compound)
+    plant.put_on(weights_n)
+    plant.advance(0.01, 0.0, 0.0, 0.0)
+    return plant
+
+
+def slid(plant: TrackPlant, track_m_s: float, seconds: float, dt: float = 0.01) -> TrackPlant:
+    for _ in range(round(seconds / dt)):
+        plant.advance(dt, track_m_s, 0.0, 0.0)
+    return plant
+
+
+@pytest.mark.parametrize(("lift_mm", "share"), [(10.0, 0.0), (1.0, 0.0), (0.25, 0.75), (0.0, 1.0)])
+def test_the_load_comes_on_with_the_last_of_the_lift(lift_mm: float, share: float) -> None:
+    plant = lowered()
+    plant.advance(0.01, 0.0, lift_mm, 0.0)
+    assert plant.load_n == pytest.approx(20.0 * share)
+
+
+def test_while_it_sticks_the_force_is_the_springs() -> None:
+    plant = slid(lowered(), 1e-5, 5.0)
+    assert plant.force_n == pytest.approx(STIFFNESS_N_M * 1e-5 * 5.0) and plant.slid_m == 0.0
+
+
+def test_it_breaks_loose_at_the_static_limit() -> None:
+    speed, plant = 1e-4, lowered()
+    limit_n = 20.0 * LAW.mu(23.0, 20.0, speed) * (1.0 + CLEAN.contact.static_excess)
+    most_n = 0.0
+    for _ in range(600):
+        plant.advance(0.01, speed, 0.0, 0.0)
+        most_n = max(most_n, plant.force_n)
+    assert most_n == pytest.approx(limit_n, rel=0.01)
+
+
+@pytest.mark.parametrize("speed", [1e-5, 1e-4, 1e-3, 1e-2])
+def test_sliding_steadily_the_force_is_the_laws(speed: float) -> None:
+    plant = slid(lowered(), speed, 2e-3 / speed, 0.1 * 1e-4 / speed)
+    assert plant.force_n == pytest.approx(20.0 * LAW.mu(plant.specimen_c, 20.0, speed), rel=1e-6)
+
+
+def test_the_other_way_the_force_is_the_other_way() -> None:
+    plant = slid(slid(lowered(), 1e-3, 2.0), -1e-3, 3.0)
+    assert plant.force_n == pytest.approx(-20.0 * LAW.mu(23.0, 20.0, 1e-3), rel=1e-4)
+
+
+def test_turning_back_it_sticks_until_the_spring_is_drawn_the_other_way() -> None:
+    plant = slid(lowered(), 1e-3, 2.0)
+    distance_m, force_n = plant.slid_m, plant.force_n
+    plant.advance(0.01, -1e-3, 0.0, 0.0)
+    assert plant.slid_m == distance_m and plant.force_n == pytest.approx(force_n - STIFFNESS_N_M * 1e-5)
+
+
+def test_a_standing_track_keeps_the_force_and_the_contact_rests() -> None:
+    plant = slid(lowered(), 1e-3, 2.0)
+    force_n = plant.force_n
+    slid(plant, 0.0, 1.0)
+    assert plant.force_n == force_n and plant.slip_m_s == 0.0
+    slid(plant, 1e-3, 0.05)
+    assert plant.force_n > 1.1 * force_n
+
+
+def test_raised_nothing_is_left_of_the_force() -> None:
+    plant = slid(lowered(), 1e-3, 2.0)
+    plant.advance(0.01, 1e-3, 10.0, 0.0)
+    assert (plant.force_n, plant.load_n, plant.slip_m_s, plant.power_w) == (0.0, 0.0, 0.0, 0.0)
+
+
+@pytest.mark.parametrize(("interface", "share"), [("dry", 1.0), ("wet", 0.6), ("talc", 0.5)])
+def test_the_interface_takes_its_share(interface: str, share: float) -> None:
+    plant = lowered()
+    plant.prepare(interface)  # type: ignore[arg-type]
+    assert slid(plant, 1e-3, 3.0).mu == pytest.approx(share * LAW.mu(plant.specimen_c, 20.0, 1e-3), rel=1e-6)
+
+
+def test_friction_heats_nothing_at_the_slow_tracks_speeds() -> None:
+    plant = slid(lowered(), 1e-2, 200.0, 0.1)
+    assert plant.power_w < 0.5 and plant.specimen_c - 23.0 < 0.2
+
+
+def test_friction_warms_the_pin_on_a_disc_and_the_exit_edge_more() -> None:
+    plant = slid(lowered(replace(CLEAN, motion="disc", enclosed=False)), 1.0, 2000.0, 0.1)
+    heat = CLEAN.heat
+    assert plant.specimen_c - 23.0 == pytest.approx(heat.specimen_rise * heat.friction_share * plant.power_w, rel=0.01)
+    assert plant.exit_c == pytest.approx(plant.specimen_c + heat.exit_rise * plant.power_w)
+
+
+def test_the_air_of_the_chamber_follows_its_output_exponentially() -> None:
+    plant, heat = TrackPlant(CLEAN, 1), CLEAN.heat
+    for _ in range(6000):
+        plant.advance(0.1, 0.0, 10.0, -50.0)
+    end_k = -0.5 * heat.chamber_rate * heat.chamber_time
+    assert plant.air_c - 23.0 == pytest.approx(end_k * (1.0 - exp(-600.0 / heat.chamber_time)), rel=1e-9)
+
+
+def test_the_specimen_follows_the_air_late() -> None:
+    plant = TrackPlant(CLEAN, 1)
+    plant.air_c = 60.0
+    parameters = replace(CLEAN, enclosed=False)  # the air stays as it is
+    plant.parameters = parameters
+    for _ in range(3000):
+        plant.advance(0.1, 0.0, 10.0, 0.0)
+    assert plant.specimen_c == pytest.approx(60.0 - 37.0 * exp(-1.0), rel=1e-9)
+
+
+def test_a_specimen_colder_than_its_law_is_told() -> None:
+    plant = lowered()
+    plant.specimen_c = plant.air_c = -110.0
+    with pytest.raises(PoleError):
+        plant.advance(0.01, 1e-3, 0.0, 0.0)
+
+
+def test_without_noise_the_cell_reads_the_force_within_its_range() -> None:
+    plant = slid(lowered(), 1e-3, 1.0)
+    assert plant.forces_measured(0.0) == (plant.force_n, 0.0, 0.0, 0.0)
+    plant.force_n = -900.0
+    assert plant.forces_measured(0.0)[0] == -200.0
+
+
+def test_equal_seeds_make_equal_rigs_and_others_other_ones() -> None:
+    noisy = TrackParameters()
+
+    def reading(seed: int) -> tuple[float, ...]:
+        plant = TrackPlant(noisy, seed)
+        plant.install(3, "NR")
+        plant.begin_repeat(1, 2, 0)
+        plant.put_on(20.0)
+        slid(plant, 1e-3, 1.0)
+        cell_n = plant.forces_measured(0.0)[0]
+        return plant.force_n, cell_n, plant.surface_measured_c(0.0), plant.chamber_measured_c(0.0)
+
+    assert reading(5) == reading(5)
+    assert all(one != other for one, other in zip(reading(5), reading(6), strict=True))
+
+
+def test_a_repeat_does_not_depend_on_what_was_measured_before() -> None:
+    def reading(before: int) -> float:
+        plant = TrackPlant(TrackParameters(), 5)
+        plant.install(3, "SBR")
+        for _ in range(before):
+            plant.forces_measured(0.0)
+        plant.begin_repeat(1, 2, 0)
+        return plant.forces_measured(0.0)[0]
+
+    assert reading(0) == reading(17)
+
+
+def test_another_law_is_found_by_its_name() -> None:
+    assert slid(lowered(replace(CLEAN, law="paper"), compound="1#"), 1e-2, 1.0).mu > 0.0
+
+
+@pytest.mark.parametrize(
+    ("wrong", "message"),
+    [
+        ({"noise": -1.0}, "noise"), ({"ambient": 90.0}, "ambient"), ({"law": "magic"}, "law"),
+        ({"switches": 150.0}, "switches"),
+    ],
+)  # fmt: skip
+def test_parameters_out_of_range_are_refused_by_name(wrong: dict[str, object], message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        TrackParameters(**wrong)  # type: ignore[arg-type]
+
+
+def test_a_lift_that_never_leaves_the_track_is_refused() -> None:
+    with pytest.raises(ValueError, match="touch must be below lift_travel"):
+        TrackContact(touch=10.0)
+
+
+def test_a_rubber_that_is_not_known_is_refused_with_those_that_are() -> None:
+    with pytest.raises(ValueError, match=r"no rubber 'XY'.*known: SBR, NR, NBR"):
+        lowered(compound="XY")

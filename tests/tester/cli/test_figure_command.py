@@ -1,0 +1,71 @@
+"""``tester figure``."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import pytest
+
+from tester.cli.main import invoke
+from tests.tester.kinds.wheel_on_belt.fit.made import made_run
+
+
+@pytest.fixture
+def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    made_run(tmp_path / "runs" / "one", [(25.0, 100.0, 0.3), (25.0, 200.0, 0.3)])
+    return tmp_path
+
+
+def out(capsys: pytest.CaptureFixture[str], *arguments: str, code: int = 0) -> str:
+    found = invoke(["figure", *arguments])
+    captured = capsys.readouterr()
+    assert found == code, captured.err
+    return captured.err if code else captured.out
+
+
+def test_the_figures_of_a_run_are_named(home: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert [line.partition(":")[0] for line in out(capsys, "one", "--list").splitlines()] == [
+        "load",
+        "repeats-1",
+        "repeats-2",
+    ]
+    assert not (home / "figures").exists()
+
+
+@pytest.mark.parametrize(("ending", "begin"), [("png", b"\x89PNG"), ("svg", b"<?xml"), ("pdf", b"%PDF")])
+def test_a_figure_is_written_in_each_format(
+    home: Path, capsys: pytest.CaptureFixture[str], ending: str, begin: bytes
+) -> None:
+    pytest.importorskip("matplotlib", reason="needs the extra `report`")
+    told = out(capsys, "one", "--name", "load", "--format", ending, "--law", "paper", "--out", "drawn")
+    path = home / "drawn" / "one" / f"load.{ending}"
+    assert told.splitlines() == [str(path.relative_to(home))]
+    assert path.read_bytes().startswith(begin)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("one", "--name", "slip"), "no figure slip of one (there are load, repeats-1, repeats-2)"),
+        (("one", "--law", "v3"), "no law 'v3' (expected v2, paper)"),
+        (("two",), "no run two"),
+    ],
+)
+def test_what_is_not_there_is_refused(
+    home: Path, capsys: pytest.CaptureFixture[str], arguments: tuple[str, ...], message: str
+) -> None:
+    assert message in out(capsys, *arguments, code=2)
+
+
+def test_a_run_without_values_has_nothing_to_draw(home: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    made_run(home / "runs" / "none", [(25.0, 100.0, 0.3)], failed=[1])
+    assert "there is nothing to draw" in out(capsys, "none", code=1)
+
+
+def test_without_matplotlib_the_line_that_installs_it_is_named(
+    home: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
+    assert "pip install" in out(capsys, "one", code=2)

@@ -1,0 +1,161 @@
+"""``tester fit`` and ``tester paper``."""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tester.cli.main import invoke
+from tester.kinds.wheel_on_belt.fit import published
+from tests.campaigns.fit import DESIGN
+from tests.tester.kinds.wheel_on_belt.fit.made import made_run
+
+pytest.importorskip("scipy", reason="needs the extra `report`")
+
+
+@pytest.fixture
+def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    return tmp_path / "runs"
+
+
+def out(capsys: pytest.CaptureFixture[str], *arguments: str, code: int = 0) -> str:
+    found = invoke([*arguments])
+    captured = capsys.readouterr()
+    assert found == code, captured.err
+    return captured.out if not code or captured.out else captured.err
+
+
+def data(capsys: pytest.CaptureFixture[str], *arguments: str, code: int = 0) -> dict[str, Any]:
+    return json.loads(out(capsys, *arguments, "--json", code=code))
+
+
+def test_the_papers_table_is_told_and_met(capsys: pytest.CaptureFixture[str]) -> None:
+    told = out(capsys, "paper").splitlines()
+    assert any(line.split()[-5:] == ["10.62", "5.90", "50.1", "36", "54"] for line in told)
+    assert sum(line.startswith("  ok") for line in told) == 2
+
+
+def test_a_figure_that_misses_is_told_and_is_the_exit_code(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(published, "V2_MEAN", 0.06)
+    found = data(capsys, "paper", code=1)
+    assert found["missed"] == ["v2, fitted to appendix A"]
+    assert data(capsys, "fit", "appendix-a", "--validate", "appendix-b", "--check", code=1)["check"] == found
+
+
+def test_a_fit_to_appendix_a_is_seen_on_b(capsys: pytest.CaptureFixture[str]) -> None:
+    found = data(capsys, "fit", "appendix-a", "--validate", "appendix-b")
+    assert [one["group"] for one in found["groups"]] == ["1#", "2#", "3#"]
+    seen = found["all"]["validation"]
+    assert (seen["rows"], seen["near"], seen["far"]) == (79, 37, 64)
+    assert seen["mean"] == pytest.approx(0.0636, abs=1e-4)
+    tm = found["groups"][1]["parameters"]["tm"]
+    assert tm["interval"][0] < tm["value"] < tm["interval"][1]
+
+
+def test_it_ends_with_peaks_exponents_and_signs(capsys: pytest.CaptureFixture[str]) -> None:
+    told = out(capsys, "fit", "appendix-a", "appendix-b")
+    end = told.partition("what it says:")[2]
+    assert end.count("rises to a peak, then falls") == 3
+    assert end.count("no peak between 0 mm/s and 400 mm/s; exponent +0.") == 3
+    assert end.count("no peak between 100 N and 400 N; exponent -0.") == 3
+
+
+def test_the_papers_law_is_told_as_table_3_with_the_caution(capsys: pytest.CaptureFixture[str]) -> None:
+    told = out(capsys, "fit", "appendix-a", "--law", "paper")
+    assert "as Table 3" in told and "a1 is an extrapolation to 1 N: compare predictions, never a1" in told
+
+
+def test_a_run_is_fitted_with_what_its_repeats_say(home: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    made_run(home / "one")
+    (group,) = data(capsys, "fit", "one", "--validate", "appendix-b")["groups"]
+    assert group["conditions"] == len(DESIGN)
+    assert group["parameters"]["tm"]["value"] == pytest.approx(66.478, abs=0.05)
+    assert group["lack_of_fit"]["repeats"] == pytest.approx(0.01 / 3.0**0.5, rel=1e-3)
+    assert group["validation"]["rows"] == 26
+
+
+def test_several_runs_are_fitted_together(home: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    made_run(home / "one", DESIGN[:20])
+    made_run(home / "two", DESIGN[20:])
+    assert data(capsys, "fit", "one", "two")["groups"][0]["conditions"] == len(DESIGN)
+
+
+def test_what_was_left_out_is_said(home: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    made_run(home / "one", carried=[1], sideslip={2: 10.0})
+    assert invoke(["fit", "one"]) == 0
+    said = capsys.readouterr().err
+    assert "left out (carry-over): one/1 (" in said
+    assert "left out (sideslip: the laws know none): one/2" in said
+
+
+def test_one_temperature_is_refused_and_held_parameters_do(home: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    cold = [(25.0, load, slip) for load in (100.0, 200.0, 400.0) for slip in (0.1, 0.2, 0.4)]
+    made_run(home / "cold", cold)
+    message = out(capsys, "fit", "cold", code=1)
+    assert "one temperature only (25 degC), and a, beta, tm need at least 4" in message
+    assert "--hold a,beta,tm" in message
+    parameters = data(capsys, "fit", "cold", "--hold", "a,beta,tm=70")["groups"][0]["parameters"]
+    assert parameters["tm"] == {"value": 70.0, "unit": "degC", "interval": [70.0, 70.0], "held": True}
+    assert parameters["a"]["value"] == 0.234637 and not parameters["c"]["held"]
+
+
+def test_an_unknown_compound_has_nothing_published_to_hold(home: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    made_run(home / "one", compound="2#")
+    assert invoke(["fit", "one", "--hold", "tm"]) == 0
+    capsys.readouterr()
+    assert "no parameter 'k2'" in out(capsys, "fit", "one", "--hold", "k2", code=2)
+    assert "'hot' is no number" in out(capsys, "fit", "one", "--hold", "tm=hot", code=2)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["appendix-c"], "no run appendix-c"),
+        (["appendix-a", "appendix-a"], "named twice"),
+        (["appendix-a", "--validate", "appendix-a"], "is fitted, and says nothing of other conditions"),
+        (["appendix-a", "--law", "v3"], "no law 'v3' can be fitted (expected v2, paper)"),
+        (["appendix-b", "--check"], "expected appendix-a --validate appendix-b"),
+        ([], "Missing argument 'SOURCE...'"),
+    ],
+)
+def test_a_command_that_makes_no_sense_is_refused(
+    home: Path, capsys: pytest.CaptureFixture[str], arguments: list[str], message: str
+) -> None:
+    assert message in out(capsys, "fit", *arguments, code=2)
+
+
+def test_a_run_without_values_says_why(home: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    made_run(home / "one", DESIGN[:2], failed=[1, 2])
+    assert "no condition of one can be fitted: left out for not reached" in out(capsys, "fit", "one", code=1)
+
+
+def test_a_run_of_a_kind_without_laws_is_refused(home: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    made_run(home / "one", DESIGN[:2], kind="tests.tester.cli.test_fit_command:LAWLESS")
+    assert "no law can be fitted to conditions of the kind lawless" in out(capsys, "fit", "one", code=2)
+
+
+def test_without_scipy_the_line_that_installs_it_is_named(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, "scipy.optimize", None)
+    for command in (["paper"], ["fit", "appendix-a"]):
+        message = out(capsys, *command, code=2)
+        assert 'a fit needs scipy: pip install "friction-tester[report]"' in message
+
+
+def _lawless() -> object:
+    from dataclasses import replace
+
+    from tester.kinds.wheel_on_belt import KIND
+
+    return replace(KIND, name="lawless", fits=None)
+
+
+LAWLESS = _lawless()

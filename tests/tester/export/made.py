@@ -1,0 +1,15 @@
+"""A record in a format, as bytes."""
+
+from __future__ import annotations
+
+from io import BytesIO
+
+from tester.export.formats import FORMATS, Record
+from tester.store.reader import RunReader
+
+
+def made(kind: str, reader: RunReader, decimals: int = 2) -> bytes:
+    """Return what a format makes of a record."""
+    file = BytesIO()
+    FORMATS[kind].write(Record(reader, decimals), file)
+    return file.getvalue()

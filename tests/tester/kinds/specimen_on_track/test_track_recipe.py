@@ -1,0 +1,69 @@
+"""Recipes for a specimen on a track: what is refused, the plan, what is left of it."""
+
+from __future__ import annotations
+
+import pytest
+
+from tester.kinds import load_rig
+from tester.kinds.specimen_on_track.recipe.part import PART
+from tester.kinds.specimen_on_track.recipe.steps import MountSpecimen, Prepare, Temper, TrackCondition
+from tester.recipe.check import check
+from tester.recipe.describe import lines
+from tester.recipe.loader import load_recipe
+from tester.recipe.plan import Plan
+from tester.recipe.stand import Mounted, Stand
+from tests.tester.kinds.specimen_on_track.bench import DISC, GROSCH
+
+
+def plan(text: str = DISC, rig: str = "pin-on-disc") -> Plan:
+    return PART.expand(load_recipe(text, PART, "r.yaml").recipe, load_rig(rig))
+
+
+def problems(text: str, rig: str) -> list[str]:
+    return [problem.message for problem in check(text, load_rig(rig), PART)]
+
+
+@pytest.mark.parametrize(
+    ("change", "rig", "said"),
+    [
+        (("3 mm/s", "30 mm/s"), "grosch", "is beyond what the track does"),
+        (("0.1 mm/s", "0.1 um/s"), "grosch", "track_speed"),
+        (("load: 20 N", "load: 15 N"), "grosch", "no weights make 15 N (weights of rig"),
+        (("temperature: 23 degC", "temperature: -60 degC"), "grosch", "is beyond the air's range"),
+        (("distance: 0.4 mm", "window: 30 rev"), "grosch", "this machine slides for a way (expected distance)"),
+    ],
+)
+def test_what_the_rig_cannot_do_is_refused(change: tuple[str, str], rig: str, said: str) -> None:
+    assert any(said in one for one in problems(GROSCH.replace(*change), rig))
+
+
+def test_a_check_says_where_friction_heat_would_matter() -> None:
+    text = GROSCH.replace("load: 20 N", "load: 40 N").replace("3 mm/s", "10 mm/s")
+    text = text.replace("repeats: 1", "repeats: 1, temperature_band: 0.2 K").replace("within: 1 K", "within: 0.2 K")
+    (said,) = problems(text, "grosch")
+    assert "friction warms the contact by 0.4 K at SBR, 40 N, 23 degC, 10 mm/s, more than its band of 0.2 K" in said
+
+
+def test_on_a_disc_the_plan_says_how_much_friction_warms() -> None:
+    text = DISC.replace("0.2 m/s", "1 m/s").replace("5 K", "2 K").replace("within: 3 K", "within: 2 K")
+    made, rig = plan(text), load_rig("pin-on-disc")
+    assert problems(text, "pin-on-disc") == []
+    assert any("friction warms it by 10 K" in line for line in lines(made, PART.estimate(made, rig), PART))
+
+
+def test_a_person_is_asked_only_for_what_changes() -> None:
+    asked = [step.text for step in plan().steps if isinstance(step, Prepare)]
+    assert asked == ["hang 10 N of weights on the arm and make the track clean and dry", "make the track wet"]
+
+
+def test_what_is_left_begins_with_what_has_to_be_done_again() -> None:
+    left = PART.remaining(plan(), Stand(frozenset({1}), frozenset({1}), (Mounted(1, 1, 1, float("nan"), 0.2, False),)))
+    install, temper, prepare, condition = left.steps
+    assert isinstance(install, MountSpecimen) and install.again and install.sliding_m == 0.2
+    assert isinstance(temper, Temper) and isinstance(condition, TrackCondition) and condition.condition == 2
+    assert isinstance(prepare, Prepare)
+    assert prepare.text == "hang 10 N of weights on the arm and make the track wet"
+
+
+def test_nothing_is_left_of_a_plan_that_is_done() -> None:
+    assert PART.remaining(plan(), Stand(frozenset({1, 2}))).steps == ()

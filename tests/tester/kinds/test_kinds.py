@@ -1,0 +1,78 @@
+"""Kinds of rigs, found by name; a rig file says which it is of."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tester.base.source import InvalidSource
+from tester.kinds import (
+    PACKAGED,
+    UnknownKindError,
+    find,
+    load_rig,
+    load_rig_text,
+    packaged_conditions,
+    packaged_rigs,
+    packaged_text,
+)
+from tester.kinds.wheel_on_belt.rig import RigConfig
+from tester.rig import Rig, WrongKindError
+
+
+@pytest.mark.parametrize("name", PACKAGED)
+def test_a_packaged_kind_is_found_by_its_name_and_ships_rigs_of_itself(name: str) -> None:
+    kind = find(name)
+    assert kind.name == name and kind.rigs
+    for rig in kind.rigs:
+        assert packaged_rigs()[rig] is kind
+        assert isinstance(load_rig(rig), kind.rig()) and load_rig(rig).kind == name
+
+
+@pytest.mark.parametrize("name", ["wheel", "no.such:kind", "a/path.py", "tester.kinds:PACKAGED"])
+def test_what_is_no_kind_is_refused(name: str) -> None:
+    with pytest.raises(UnknownKindError):
+        find(name)
+
+
+def test_a_kind_comes_from_an_installed_module_by_its_dotted_name() -> None:
+    assert find("tester.kinds.wheel_on_belt:KIND") is find("wheel_on_belt")
+
+
+def test_a_file_without_a_kind_is_a_wheel_on_a_belt() -> None:
+    text = packaged_text()
+    old = text.replace(next(line for line in text.splitlines() if line.startswith("kind:")), "")
+    assert load_rig_text(old) == load_rig()
+
+
+def test_a_file_of_a_kind_that_is_none_is_told_with_its_place(tmp_path: Path) -> None:
+    path = tmp_path / "rig.yaml"
+    path.write_text(packaged_text().replace("kind: wheel_on_belt ", "kind: wheel_on_bolt "), encoding="utf-8")
+    with pytest.raises(InvalidSource, match=r"rig.yaml:10:7: kind: .*did you mean wheel_on_belt\?"):
+        load_rig(path)
+
+
+def test_the_kind_cannot_be_set_for_one_command() -> None:
+    with pytest.raises(InvalidSource, match=r"--set kind=x.*stands in its file"):
+        load_rig("sim", ["kind=x"])
+
+
+def test_a_packaged_rig_that_is_none_is_refused_by_name() -> None:
+    with pytest.raises(InvalidSource, match="no_rig is no packaged rig of the kind"):
+        load_rig("sim", ["like=no_rig"])
+
+
+def test_a_rig_of_another_kind_is_not_taken_for_this_one() -> None:
+    class Other(Rig):
+        pass
+
+    with pytest.raises(WrongKindError, match="kind wheel_on_belt"):
+        Other.of(load_rig())
+    assert RigConfig.of(load_rig()) == load_rig()
+
+
+def test_conditions_that_ship_are_found_by_name_with_their_kind() -> None:
+    for name, kind in packaged_conditions().items():
+        assert kind.fits is not None and kind.fits().packaged_points(name).points
+    assert set(packaged_conditions()) == {"appendix-a", "appendix-b"}

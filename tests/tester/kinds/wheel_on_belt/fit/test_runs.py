@@ -1,0 +1,62 @@
+"""The conditions of a run, as a fit takes them."""
+
+from __future__ import annotations
+
+from math import sqrt
+from pathlib import Path
+
+import pytest
+
+from tester.fit.law import Sourced
+from tester.kinds.wheel_on_belt.fit.laws import TEMPERATURE
+from tester.kinds.wheel_on_belt.fit.runs import run_points
+from tester.store.schema import StoreError
+from tests.tester.kinds.wheel_on_belt.fit.made import LOAD_OFF_N, WARM_K, made_run
+
+DESIGN = [(25.0, 100.0, 0.3), (25.0, 200.0, 0.3), (40.0, 200.0, 0.0), (40.0, 200.0, 0.3)]
+
+
+@pytest.fixture(scope="module")
+def found(tmp_path_factory: pytest.TempPathFactory) -> Sourced:
+    folder = tmp_path_factory.mktemp("runs") / "one"
+    return run_points(made_run(folder, DESIGN, alone=[4], metadata={"uncertainty.temperature_k": "0.5"}))
+
+
+def test_what_was_measured_is_fitted_and_what_was_asked_for_tells_the_cell(found: Sourced) -> None:
+    first = found.points[0]
+    assert first.nominal == (25.0, 100.0, 0.3)
+    assert first.measured == pytest.approx((25.0 + WARM_K, 100.0 + LOAD_OFF_N, 0.3))
+
+
+def test_repeats_tell_the_scatter_of_their_mean(found: Sourced) -> None:
+    first = found.points[0]
+    assert first.type_a == pytest.approx(0.01 / sqrt(3.0), rel=1e-3)
+    assert first.df == 2.0
+
+
+def test_a_single_repeat_tells_none(found: Sourced) -> None:
+    assert found.points[3].type_a != found.points[3].type_a and found.points[3].df == 0.0
+
+
+def test_what_all_conditions_of_a_run_share_goes_with_it(found: Sourced) -> None:
+    gain, thermometer = found.points[0].source.common
+    assert 0.005 < gain.standard < 0.03 and gain.variable is None
+    assert thermometer.variable == TEMPERATURE
+    assert thermometer.standard == pytest.approx(0.5 / sqrt(3.0))
+    assert len({one.source for one in found.points}) == 1
+
+
+def test_what_laws_do_not_know_or_nobody_should_rely_on_is_left_out_with_the_reason(tmp_path: Path) -> None:
+    found = run_points(made_run(tmp_path / "one", DESIGN, sideslip={1: 10.0}, carried=[2], failed=[3]))
+    assert [one.nominal for one in found.points] == [DESIGN[3]]
+    assert [reason for _, reason in found.left_out] == [
+        "sideslip: the laws know none",
+        "carry-over",
+        "not reached",
+    ]
+    assert found.left_out[0][0] == "one/1 (1#, 300 mm/s, 100 N, sideslip 10 deg, 25 degC)"
+
+
+def test_what_is_no_run_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(StoreError):
+        run_points(tmp_path)

@@ -1,0 +1,94 @@
+"""The interlock table: every row is complete, and declares what its condition compares with."""
+
+from __future__ import annotations
+
+import copy
+import math
+from collections.abc import Callable
+from types import FunctionType
+
+import pytest
+
+from tester.base.config_reader import Range
+from tester.kinds import load_rig
+from tester.kinds.wheel_on_belt.interlocks.inputs import Inputs
+from tester.kinds.wheel_on_belt.interlocks.table import INTERLOCKS, PARAMETERS, TABLE
+from tester.kinds.wheel_on_belt.rig import interlock_values
+from tester.machine.row import Interlock
+from tester.rig.parameter import Direction, Parameter
+
+OURS = ("tester.kinds.wheel_on_belt.interlocks", "tester.machine.wires")
+
+
+def compared(condition: Callable[[Inputs], bool], known: set[FunctionType] | None = None) -> set[Parameter]:
+    """Return the parameters that a condition, and whatever function of ours it calls, names."""
+    known = set() if known is None else known
+    assert isinstance(condition, FunctionType)
+    if condition in known:
+        return set()
+    known.add(condition)
+    names = [condition.__globals__.get(name) for name in condition.__code__.co_names]
+    found = {one for one in names if isinstance(one, Parameter)}
+    for one in names:
+        if isinstance(one, FunctionType) and one.__module__.startswith(OURS):
+            found |= compared(one, known)
+    return found
+
+
+INSIDE = {"rate_filter_s", "rate_window_s", "rate_settle_s", "blind_s", "ramp_share", "open_output_percent",
+          "open_below_k", "runaway_window_s", "press_lag_s", "lifted_mm", "late_warn_s",
+          "heat_share", "heat_share_known", "heat_leak_w",
+          "force_step_cross_share", "force_step_seen_share", "force_step_unseen_share"}  # fmt: skip
+"""Parameters of rows whose monitor, or whose stop, uses them and not the condition itself."""
+SHARED = {"stale_inputs_s", "speeds_old_s", "standing_m_s", "clear_mm", "lift_late_s"}
+"""Parameters that ``known`` and earlier rows bring into a condition."""
+
+
+@pytest.mark.parametrize("row", INTERLOCKS, ids=lambda row: row.name)
+def test_a_row_declares_what_its_condition_compares_with(row: Interlock) -> None:
+    used = {one.name for one in compared(row.condition)}
+    declared = {one.name for one in row.parameters}
+    assert used - declared <= SHARED
+    assert declared - used <= INSIDE
+
+
+def test_names_of_rows_and_parameters_stand_for_one_thing() -> None:
+    assert len({row.name for row in INTERLOCKS}) == len(INTERLOCKS)
+    assert len({one.name for one in PARAMETERS}) == len({one.key for one in PARAMETERS}) == len(PARAMETERS)
+
+
+@pytest.mark.parametrize("one", PARAMETERS, ids=lambda one: one.key)
+def test_a_parameter_says_what_it_is(one: Parameter) -> None:
+    assert one.text
+    assert inside(one.bounds, one.value)
+
+
+@pytest.mark.parametrize("one", [p for p in PARAMETERS if p.direction], ids=lambda one: one.key)
+def test_the_packaged_value_is_not_looser_than_the_hardest(one: Parameter) -> None:
+    hardest = one.hardest_value
+    assert one.because and hardest is not None and inside(one.bounds, hardest)
+    assert not one.looser(one.value) and not one.looser(hardest)
+    assert one.looser(math.nan)
+    step = 1.0 if one.direction is Direction.LOWER else -1.0
+    assert one.looser(hardest + step * max(abs(hardest), 1e-3))
+
+
+def inside(bounds: Range, value: float) -> bool:
+    low = (bounds.gt is None or value > bounds.gt) and (bounds.ge is None or value >= bounds.ge)
+    return low and (bounds.lt is None or value < bounds.lt) and (bounds.le is None or value <= bounds.le)
+
+
+def test_a_rig_has_a_value_for_every_parameter() -> None:
+    values = interlock_values(load_rig("sim", ["interlocks.pushed=0.25 mm"]).interlocks)
+    assert {one.key: value for one, value in values.items() if value != one.value} == {"pushed": 0.25}
+
+
+def test_a_copied_rig_finds_its_values_under_the_same_parameters() -> None:
+    values = {one: one.value for one in PARAMETERS}
+    assert copy.deepcopy(values) == values
+
+
+def test_masks_and_names_go_by_the_place_in_the_table() -> None:
+    assert TABLE.names_of(TABLE.bit("overload") | TABLE.bit("safety chain")) == ["safety chain", "overload"]
+    assert TABLE.names_of(TABLE.at_rest) == ["heating at standstill", "contactor welded", "moving at rest"]
+    assert TABLE.names_of(TABLE.warnings) == ["scan delayed"]

@@ -1,0 +1,148 @@
+"""A person at the rig: what has to be so before a question about the wheel is put, and before the run goes on."""
+
+from __future__ import annotations
+
+from math import isnan
+
+import pytest
+
+from tester.kinds.wheel_on_belt.procedures.operator_access import AskAtRest
+from tester.kinds.wheel_on_belt.procedures.thermal_steps import roll
+from tester.kinds.wheel_on_belt.process import Press
+from tester.machine.activity import MoveFailedError
+from tester.machine.prompts import Prompt
+from tests.tester.kinds.wheel_on_belt.bench import Bench, Simulation, make_bench
+
+
+@pytest.fixture
+def bench() -> Bench:
+    """A rig that rolls under load, nobody answering for people."""
+    made = make_bench(automatic=False)
+    made.run(roll(0.8, 200.0))
+    return made
+
+
+def asked(bench: Bench, ask: AskAtRest) -> Prompt:
+    """Step until the question is put."""
+    bench.until(ask, lambda: bench.ctx.prompts.waiting is not None)
+    waiting = bench.ctx.prompts.waiting
+    assert waiting is not None
+    return waiting
+
+
+def test_a_person_is_asked_with_everything_standing_lifted_and_off(bench: Bench) -> None:
+    bench.ctx.demand.surface_c = 85.0
+    asked(bench, AskAtRest("check wear"))
+    r, demand = bench.ctx.readings, bench.ctx.demand
+    assert r.drives_disabled and r.wheel_speed_m_s == r.belt_speed_m_s == 0.0
+    assert demand.press is Press.LIFT and not demand.enabled and isnan(demand.surface_c)
+
+
+def test_a_hot_wheel_turns_unloaded_until_it_may_be_touched(bench: Bench) -> None:
+    bench.surface_c = 80.0
+    ask = AskAtRest("check wear")
+    bench.hold(ask, 5.0)
+    demand = bench.ctx.demand
+    assert bench.ctx.prompts.waiting is None
+    assert demand.press is Press.LIFT and demand.wheel_speed_m_s == bench.ctx.rig.interlocks.cooldown_speed_m_s
+
+
+def test_a_wheel_that_has_cooled_is_asked_about(bench: Bench) -> None:
+    bench.surface_c = 80.0
+    ask = AskAtRest("check wear")
+    bench.hold(ask, 5.0)
+    bench.surface_c = 44.0
+    assert asked(bench, ask).text == "check wear"
+
+
+def test_a_hub_that_does_not_cool_is_told_with_the_question(bench: Bench) -> None:
+    bench.surface_c = 80.0
+    ask = AskAtRest("check wear")
+    bench.until(ask, lambda: bench.ctx.prompts.waiting is not None, at_most_s=4 * 3600.0, dt=1.0)
+    assert "do not touch: the hub is still at 80 degC" in asked(bench, ask).text
+
+
+def test_nothing_is_asked_while_the_contactor_is_closed(bench: Bench) -> None:
+    bench.ctx.readings.contactor_closed = True
+    bench.hold(AskAtRest("check wear"), 5.0)
+    assert bench.ctx.prompts.waiting is None
+
+
+def test_a_wheel_that_does_not_come_to_a_stand_fails_the_step(bench: Bench) -> None:
+    bench.ctx.readings.contactor_closed = True
+    ask = AskAtRest("check wear")
+    with pytest.raises(MoveFailedError, match="coming to a stand"):
+        bench.run(ask)
+
+
+def test_closing_the_guard_starts_nothing_the_question_is_put_again(bench: Bench) -> None:
+    ask = AskAtRest("check wear")
+    asked(bench, ask).answer = "yes"
+    bench.ctx.readings.guard_closed = False
+    bench.hold(ask, 5.0)
+    assert not bench.ctx.demand.enabled and "guard" in bench.ctx.progress.phase
+    bench.ctx.readings.guard_closed = True
+    bench.hold(ask, 5.0)
+    again = bench.ctx.prompts.waiting
+    assert again is not None and again.text == "check wear: the guard is closed now, go on?"
+    again.answer = "yes"
+    assert bench.scan(ask)
+
+
+def test_control_is_told_that_a_person_is_at_the_wheel_until_the_answer(bench: Bench) -> None:
+    ask = AskAtRest("check wear")
+    question = asked(bench, ask)
+    bench.scan(ask)
+    assert bench.ctx.demand.attended
+    question.answer = "yes"
+    assert bench.scan(ask)
+    assert not bench.ctx.demand.attended
+
+
+def test_a_wheel_that_was_left_on_the_belt_is_waited_for_and_then_fails_the_step(bench: Bench) -> None:
+    ask = AskAtRest("check wear")
+    asked(bench, ask).answer = "yes"
+    bench.zero_n = 60.0
+    with pytest.raises(MoveFailedError, match="free wheel"):
+        bench.hold(ask, 40.0)
+
+
+def test_a_tare_hides_no_load_from_the_look_after_a_person(bench: Bench) -> None:
+    ask = AskAtRest("check wear")
+    asked(bench, ask).answer = "yes"
+    bench.zero_n = 60.0
+    bench.cell.set_tare((0.0, 0.0, 60.0, 0.0))
+    bench.hold(ask, 5.0)
+    bench.zero_n = 0.0
+    bench.cell.set_tare((0.0, 0.0, 0.0, 0.0))
+    assert bench.scan(ask)
+
+
+def test_a_question_that_stands_is_not_put_again_after_a_hold(bench: Bench) -> None:
+    ask = AskAtRest("check wear")
+    asked(bench, ask)
+    ask.resume(bench.ctx)
+    bench.hold(ask, 1.0)
+    assert len(bench.ctx.prompts.asked) == 1
+
+
+def test_a_guard_opened_while_the_question_stands_trips_nothing() -> None:
+    simulation = Simulation()
+    simulation.ctx.prompts.automatic = False
+    simulation.until(lambda s: s.run.waiting)
+    guard = simulation.world.axes["press"]
+    guard.set_guard(False)
+    asked_s = simulation.now
+    simulation.until(lambda s: s.now > asked_s + 3.0)
+    waiting = simulation.ctx.prompts.waiting
+    assert waiting is not None and not simulation.ctx.readings.guard_closed
+    waiting.answer = "yes"
+    simulation.until(lambda s: s.now > asked_s + 6.0)
+    guard.set_guard(True)
+    simulation.until(lambda s: s.run.waiting)
+    simulation.until(lambda s: s.now > asked_s + 9.0)
+    again = simulation.ctx.prompts.waiting
+    assert again is not None and simulation.ctx.readings.drives_disabled
+    again.answer = "yes"
+    simulation.until(lambda s: s.ctx.readings.drives_enabled)
+    assert simulation.run.engine.control.state.trip is None

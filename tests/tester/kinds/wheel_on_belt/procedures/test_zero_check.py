@@ -1,0 +1,97 @@
+"""The zero of the load cell is checked after long contact, wherever a recipe stays in it."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from pathlib import Path
+
+import pytest
+
+from tester.kinds.wheel_on_belt.procedures.thermal_steps import roll
+from tester.kinds.wheel_on_belt.procedures.wheel_steps import PreGrindStep
+from tester.kinds.wheel_on_belt.procedures.zero_check import ZeroCheck, contact_s, is_due
+from tester.kinds.wheel_on_belt.process import Press
+from tester.kinds.wheel_on_belt.recipe.steps import PreGrind
+from tester.machine.activity import MoveFailedError
+from tester.machine.motions import Power, Sequence
+from tests.tester.kinds.wheel_on_belt.bench import SHORT, Bench, Simulation, make_bench
+
+EVERY_S = 600.0
+REFERENCE = [0.0, 0.0, 0.0, 0.0]
+
+
+@pytest.fixture
+def bench() -> Bench:
+    made = make_bench()
+    made.run(Sequence(Power(True), roll(0.8, 200.0)))
+    return made
+
+
+def lifts(bench: Bench) -> int:
+    """Return how often contact was given up."""
+    wanted = [demand.press for demand in bench.demands]
+    return sum(a is Press.LOAD and b is Press.LIFT for a, b in pairwise(wanted))
+
+
+def test_it_is_due_after_ten_minutes_of_contact_without_a_break(bench: Bench) -> None:
+    bench.ctx.gates.touched_s = bench.ctx.now - EVERY_S + 1.0
+    assert not is_due(bench.ctx)
+    bench.ctx.gates.touched_s -= 2.0
+    assert is_due(bench.ctx)
+
+
+def test_what_is_lifted_has_no_age_of_contact(bench: Bench) -> None:
+    bench.ctx.gates.touched_s = float("inf")
+    assert contact_s(bench.ctx) == 0.0
+
+
+def test_it_lifts_takes_the_zero_and_records_its_drift_with_the_limit(bench: Bench) -> None:
+    bench.zero_n = 3.0
+    bench.ctx.gates.touched_s = bench.ctx.now - 720.0
+    bench.run(ZeroCheck(0.8, list(REFERENCE)))
+    assert bench.ctx.demand.press is Press.LIFT and bench.cell.tare[2] == pytest.approx(3.0)
+    assert bench.notes.texts("tare") == ["zero checked after 12 min of contact: 3.0 N off, at most 20 N"]
+
+
+def test_a_zero_beyond_its_limit_ends_the_run(bench: Bench) -> None:
+    bench.zero_n = -25.0
+    with pytest.raises(MoveFailedError, match=r"drifted by 25\.0 N"):
+        bench.run(ZeroCheck(0.8, list(REFERENCE)))
+
+
+def test_long_grinding_is_broken_off_every_ten_minutes_and_takes_its_whole_time(bench: Bench) -> None:
+    step = PreGrindStep(PreGrind(1, 0.8, 0.6, 200.0, 1500.0), list(REFERENCE))
+    bench.run(step, at_most_s=1600.0, dt=0.1)
+    assert len(bench.notes.texts("tare")) == 2 and lifts(bench) == 3
+    assert step.grind.done_s == pytest.approx(1500.0, abs=0.2)
+
+
+def test_pre_grinding_of_the_papers_four_minutes_is_not_broken_off(bench: Bench) -> None:
+    bench.run(PreGrindStep(PreGrind(1, 0.8, 0.6, 200.0, 240.0), list(REFERENCE)), at_most_s=300.0, dt=0.1)
+    assert bench.notes.texts("tare") == [] and lifts(bench) == 1
+
+
+def heated(*overrides: str) -> Simulation:
+    return Simulation(SHORT.replace("25 degC", "40 degC"), overrides, seed=5)
+
+
+def test_after_a_long_heating_up_the_zero_is_checked_before_the_soak() -> None:
+    run = heated("interlocks.zero_check_every=30 s").to_the_end(4000.0)
+    checks = [text for text in run.notes.texts("tare") if text.startswith("zero checked")]
+    assert len(checks) == 1 and run.notes.written("INSERT INTO trip") == []
+
+
+def longest_without_a_check_s(run: Simulation) -> float:
+    """Return the longest contact without a break in the first two hours of a run, s."""
+    longest = 0.0
+    while not run.run.finished and run.now < 7200.0:
+        run.tick()
+        longest = max(longest, contact_s(run.ctx))
+    return longest
+
+
+@pytest.mark.campaign
+@pytest.mark.parametrize("name", ["quickstart", "pre-grind", "table2-load"])
+def test_no_packaged_recipe_stays_in_contact_for_longer_than_the_limit(name: str) -> None:
+    text = (Path(__file__).parents[5] / "recipes" / f"{name}.yaml").read_text(encoding="utf-8")
+    assert longest_without_a_check_s(Simulation(text, seed=1)) < EVERY_S + 60.0

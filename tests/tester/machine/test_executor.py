@@ -1,0 +1,116 @@
+"""The walk through a plan, whatever serves its steps."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import pytest
+
+from tester.machine.activity import Activity, MoveFailedError
+from tester.machine.executor import Executor, Procedures, Unforeseen
+from tester.recipe.plan import Plan, PromptStep, Step
+from tests.tester.machine.toy import LampContext, make_context
+
+
+class Scans:
+    """An activity of two scans."""
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+        self.left = 2
+        self.resumed = 0
+
+    def resume(self, ctx: LampContext) -> None:
+        self.resumed += 1
+
+    def step(self, ctx: LampContext) -> bool:
+        self.left -= 1
+        if self.name == "fails":
+            raise MoveFailedError("not done after 3 s")
+        return self.left == 0
+
+
+class LampProcedures(Procedures[LampContext]):
+    """Serves prompts; says what is put before and after them."""
+
+    def __init__(self) -> None:
+        self.began: list[str] = []
+        self.first: dict[str, Unforeseen[LampContext]] = {}
+        self.then: dict[str, Unforeseen[LampContext]] = {}
+
+    def title(self, step: Step) -> str:
+        assert isinstance(step, PromptStep)
+        return step.text
+
+    def activity(self, step: Step, to_come: Sequence[Step], ctx: LampContext) -> Activity[LampContext]:
+        self.began.append(self.title(step))
+        return Scans(self.title(step))
+
+    def before(self, step: Step, ctx: LampContext) -> Unforeseen[LampContext] | None:
+        return self.first.pop(self.title(step), None)
+
+    def after(
+        self, activity: Activity[LampContext], to_come: Sequence[Step], ctx: LampContext
+    ) -> Unforeseen[LampContext] | None:
+        assert isinstance(activity, Scans)
+        return self.then.pop(activity.name, None)
+
+
+def walk(procedures: LampProcedures, *texts: str) -> tuple[Executor[LampContext], list[str]]:
+    """Walk prompts to the end; return the executor and the titles that were shown, scan by scan."""
+    steps = tuple(PromptStep(i, text) for i, text in enumerate(texts))
+    executor, ctx = Executor(Plan("toy", steps, (), (), 0.0, 1), procedures), make_context()
+    shown: list[str] = []
+    while not executor.finished:
+        executor.step(ctx)
+        shown.append(ctx.progress.title)
+    return executor, list(dict.fromkeys(shown))
+
+
+@pytest.fixture
+def procedures() -> LampProcedures:
+    return LampProcedures()
+
+
+def test_steps_are_served_in_their_order(procedures: LampProcedures) -> None:
+    executor, shown = walk(procedures, "a", "b")
+    assert procedures.began == shown == ["a", "b"] and not executor.failed and executor.activity is None
+
+
+def test_what_has_to_be_done_first_is_put_before_a_step(procedures: LampProcedures) -> None:
+    procedures.first["b"] = Unforeseen(steps=[PromptStep(9, "x"), PromptStep(9, "y")])
+    walk(procedures, "a", "b")
+    assert procedures.began == ["a", "x", "y", "b"]
+
+
+def test_an_activity_that_no_step_asks_for_has_a_title_of_its_own(procedures: LampProcedures) -> None:
+    procedures.first["b"] = Unforeseen(Scans("look"), "look at it")
+    _, shown = walk(procedures, "a", "b")
+    assert shown == ["a", "look at it", "b"] and procedures.began == ["a", "b"]
+
+
+def test_what_a_step_leads_to_comes_before_the_plan_goes_on(procedures: LampProcedures) -> None:
+    procedures.then["a"] = Unforeseen(Scans("still a"), steps=[PromptStep(9, "x")])
+    _, shown = walk(procedures, "a", "b")
+    assert shown == procedures.began == ["a", "x", "b"]
+
+
+def test_a_step_that_fails_ends_the_run(procedures: LampProcedures) -> None:
+    procedures.then["a"] = Unforeseen(failed="the lamp is broken")
+    executor, _ = walk(procedures, "a", "b")
+    assert executor.failed == "the lamp is broken" and procedures.began == ["a"]
+
+
+def test_a_move_that_is_not_done_in_its_time_ends_the_run(procedures: LampProcedures) -> None:
+    executor, _ = walk(procedures, "fails", "b")
+    assert executor.failed == "fails: not done after 3 s"
+
+
+def test_after_a_hold_the_activity_in_progress_is_resumed(procedures: LampProcedures) -> None:
+    executor, ctx = Executor(Plan("toy", (PromptStep(1, "a"),), (), (), 0.0, 1), procedures), make_context()
+    executor.step(ctx)
+    ctx.repeat_key = ctx.burst = 3
+    executor.hold(ctx)
+    executor.resume(ctx)
+    assert isinstance(executor.activity, Scans) and executor.activity.resumed == 1
+    assert (ctx.repeat_key, ctx.burst) == (0, 0)

@@ -1,0 +1,96 @@
+"""The engine of an interlock table, whatever the rows look at."""
+
+from __future__ import annotations
+
+import copy
+from dataclasses import replace
+from math import inf
+from typing import Any
+
+import pytest
+
+from tester.machine.inputs import ScanInputs
+from tester.machine.interlock_table import Group, InterlockTable, parameters_of
+from tester.machine.row import ENDING, FAST, LOADED, WARN, Interlock, always
+from tester.rig.parameter import Parameter
+
+DELAY = Parameter("toy_delay_s", "s", "30 ms", "for this long")
+LEVEL = Parameter("toy_level_n", "N", "3 N", "more than this")
+OPERATION = Parameter("toy_hold_s", "s", "3 s", "no row's")
+
+
+def never(_: Any) -> bool:
+    return False
+
+
+ROW = Interlock("always", "a toy", "always", always, FAST, "by itself", parameters=(LEVEL,), delay=DELAY)
+TABLE = InterlockTable(
+    [
+        ROW,
+        replace(ROW, name="loaded", when=LOADED, unseen=always),
+        replace(ROW, name="ending", when=ENDING, at_rest=always),
+        replace(ROW, name="never", condition=never, unseen=never),
+        replace(ROW, name="warning", reaction=WARN),
+    ],
+    [OPERATION],
+)
+
+
+def scan(**what: object) -> ScanInputs:
+    """Return a scan of a run in contact, in which nothing ends."""
+    inputs = ScanInputs(resting=False)
+    for name, value in what.items():
+        setattr(inputs, name, value)
+    return inputs
+
+
+@pytest.mark.parametrize(
+    ("inputs", "names"),
+    [
+        (scan(), ["always", "loaded", "warning"]),
+        (scan(loaded=False), ["always", "warning"]),
+        (scan(unpowered=True), ["always", "ending", "warning"]),
+        (scan(loaded=False, lifting_s=0.0), ["always", "ending", "warning"]),
+        (scan(loaded=False, resting=True), ["always", "ending", "warning"]),
+    ],
+    ids=["in contact", "lifted", "without power", "lifting", "at rest"],
+)
+def test_a_row_is_evaluated_in_the_scans_in_which_it_can_apply(inputs: ScanInputs, names: list[str]) -> None:
+    assert TABLE.names_of(TABLE.held(inputs)) == names
+
+
+def test_a_cause_that_is_only_watched_while_something_is_wanted_is_asked_for_by_itself() -> None:
+    assert TABLE.names_of(TABLE.still_there(scan(loaded=False))) == ["loaded"]
+
+
+def test_masks_go_by_what_rows_say_of_themselves() -> None:
+    assert TABLE.names_of(TABLE.at_rest) == ["ending"] and TABLE.names_of(TABLE.warnings) == ["warning"]
+
+
+def test_a_bit_is_a_rows_place() -> None:
+    assert [TABLE.bit(row.name) for row in TABLE.rows] == [1, 2, 4, 8, 16]
+    with pytest.raises(KeyError):
+        TABLE.bit("no such row")
+
+
+def test_parameters_stand_once_and_those_of_no_row_come_last() -> None:
+    assert parameters_of(TABLE.rows) == (LEVEL, DELAY) and TABLE.parameters == (LEVEL, DELAY, OPERATION)
+
+
+def test_a_row_is_timed_by_its_delay() -> None:
+    assert ROW.delay_s({DELAY: 0.5}) == 0.5 and ROW.declared() == (LEVEL, DELAY)
+    assert TABLE.delays_s({DELAY: 0.5}) == (0.5,) * 5 and TABLE.nothing_pending() == [inf] * 5
+
+
+def test_a_group_tells_every_condition_that_holds() -> None:
+    group = Group([(1, never), (2, always), (4, never), (8, always)])
+    assert group.held(scan()) == 10
+
+
+def test_every_row_is_in_exactly_one_group() -> None:
+    bits = [one for group in (TABLE.always, TABLE.while_loaded, TABLE.while_ending) for one in group.bits]
+    assert sorted(bits) == [1 << i for i in range(len(TABLE.rows))]
+
+
+def test_copies_of_a_machine_share_its_table() -> None:
+    assert copy.deepcopy([TABLE])[0] is TABLE

@@ -1,0 +1,35 @@
+"""Who answers a question: with --yes nobody is asked, unless a person has to come near a real machine."""
+
+from __future__ import annotations
+
+import pytest
+
+from tester.kinds.wheel_on_belt.procedures.operator_access import AskAtRest
+from tester.machine.prompts import Prompts
+from tests.tester.kinds.wheel_on_belt.bench import make_bench
+
+
+@pytest.mark.parametrize(
+    ("automatic", "real", "near", "asked"),
+    [
+        (True, False, True, False),
+        (True, True, True, True),
+        (True, True, False, False),
+        (False, False, True, True),
+        (False, True, False, True),
+    ],
+)
+def test_only_a_person_answers_what_brings_a_person_near_a_real_rig(
+    automatic: bool, real: bool, near: bool, asked: bool
+) -> None:
+    prompts = Prompts(automatic=automatic, real=real)
+    prompt = prompts.ask(1.0, "install wheel 1", near=near)
+    assert (prompt.answer is None) is asked
+    assert (prompts.waiting is not None) is asked
+
+
+def test_with_yes_a_wheel_at_a_real_rig_waits_for_a_person_with_the_guard_free_to_open() -> None:
+    bench = make_bench()
+    bench.ctx.prompts.real = True
+    bench.until(AskAtRest("install wheel 1"), lambda: bench.ctx.prompts.waiting is not None)
+    assert bench.ctx.demand.attended

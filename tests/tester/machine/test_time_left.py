@@ -1,0 +1,122 @@
+"""How far a run is and how long it still takes, with the clock and the steps played."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from tester.kinds import load_rig
+from tester.kinds.wheel_on_belt.recipe.expand import expand
+from tester.kinds.wheel_on_belt.recipe.part import PART
+from tester.machine.context import Progress
+from tester.machine.time_left import PRIOR_S, Doing, TimeLeft, share_of_repeats
+from tester.recipe.loader import load_recipe
+from tester.recipe.plan import Plan
+from tests.tester.recipe.texts import PREPARED
+
+WORKING, WAITING, GIVEN_UP = Doing.WORKING, Doing.WAITING, Doing.GIVEN_UP
+
+
+class Played:
+    """A plan whose every step is estimated at 100 s, and a run that is where the test says."""
+
+    def __init__(self) -> None:
+        rig = load_rig("sim")
+        self.plan: Plan = expand(load_recipe(PREPARED, PART).recipe, rig)
+        found = PART.estimate(self.plan, rig)
+        steps = tuple(one._replace(seconds=100.0) for one in found.steps)
+        self.left = TimeLeft(self.plan, replace(found, steps=steps, rig_seconds=100.0 * len(steps)))
+        self.left.begin_part(self.plan)
+        self.progress = Progress()
+
+    @property
+    def steps(self) -> int:
+        return len(self.plan.steps)
+
+    @property
+    def first_condition(self) -> int:
+        return next(place for place, step in enumerate(self.plan.steps) if step.kind == "condition")
+
+    def at(self, now: float, place: int, state: Doing = WORKING, *, measuring: bool = False) -> float | None:
+        """Be at a step, by its index in the plan, at a rig time; return the time left."""
+        self.progress.step = place + 1
+        self.left.update(now, self.progress, self.plan.steps[place + 1 :], state, measuring=measuring)
+        return self.left.left_s()
+
+
+@pytest.fixture
+def played() -> Played:
+    return Played()
+
+
+def test_a_run_that_goes_as_estimated_has_what_is_estimated_left(played: Played) -> None:
+    total = 100.0 * played.steps
+    for place in range(played.steps):
+        assert played.at(100.0 * place, place) == pytest.approx(total - 100.0 * place)
+        assert played.left.share() == pytest.approx(place / played.steps)
+
+
+def test_a_hold_moves_neither_the_share_nor_the_time_left(played: Played) -> None:
+    played.at(0.0, 0)
+    before = played.at(50.0, 0), played.left.share()
+    assert (played.at(5000.0, 0, WAITING), played.left.share()) == before
+    assert played.at(5025.0, 0) == pytest.approx((before[0] or 0.0) - 25.0)
+
+
+def test_a_run_that_is_given_up_has_no_time_left_and_keeps_its_share(played: Played) -> None:
+    played.at(0.0, 0)
+    played.at(90.0, 0)
+    share = played.left.share()
+    assert played.at(4000.0, 0, GIVEN_UP) is None
+    assert played.left.share() == pytest.approx(share, abs=1e-9) and share < 0.2
+
+
+def test_conditions_that_take_thrice_as_long_are_expected_to_go_on_so(played: Played) -> None:
+    first = played.first_condition
+    for place in range(first + 1):
+        played.at(100.0 * place, place)
+    planned = 100.0 * (played.steps - first - 1)
+    conditions = [step.kind for step in played.plan.steps[first + 1 :]].count("condition")
+    left = played.at(100.0 * first + 300.0, first + 1) or 0.0
+    assert left == pytest.approx(planned + 100.0 * conditions * 200.0 / (100.0 + PRIOR_S), rel=0.1) and left > planned
+
+
+def test_what_other_kinds_of_steps_took_says_nothing_of_conditions() -> None:
+    quick, slow = Played(), Played()
+    for one, each in ((quick, 100.0), (slow, 1000.0)):
+        for place in range(one.first_condition + 1):
+            one.at(each * place, place)
+    assert [step.kind for step in quick.plan.steps[quick.first_condition :]].count("heat") == 1
+    # Only the heating that is still to come is expected to take longer.
+    longer = 100.0 * ((1000.0 + PRIOR_S) / (100.0 + PRIOR_S) - 1.0)
+    assert (slow.left.left_s() or 0.0) - (quick.left.left_s() or 0.0) == pytest.approx(longer)
+
+
+def test_a_condition_s_repeats_tell_its_duration_once_one_is_done(played: Played) -> None:
+    first = played.first_condition
+    for place in range(first + 1):
+        played.at(100.0 * place, place)
+    began = 100.0 * first
+    p = played.progress
+    p.repeats, p.repeat, p.burst, p.revolutions_wanted, p.revolutions = 4, 1, 1, 30.0, 0.0
+    played.at(began + 50.0, first, measuring=True)
+    p.repeat = 2
+    left = played.at(began + 250.0, first, measuring=True) or 0.0  # one of four took 200 s: 600 s to go
+    behind = played.steps - first - 1
+    assert left > 600.0 + 100.0 * behind
+
+
+def test_a_step_that_overruns_is_never_said_to_be_over(played: Played) -> None:
+    played.at(0.0, played.steps - 1)
+    assert (played.at(1000.0, played.steps - 1) or 0.0) >= 100.0
+
+
+@pytest.mark.parametrize(
+    ("repeats", "repeat", "burst", "revolutions", "share"),
+    [(0, 0, 0, 0.0, 0.0), (3, 0, 0, 30.0, 0.0), (3, 1, 0, 30.0, 0.0), (3, 1, 1, 15.0, 1 / 6), (3, 3, 2, 45.0, 1.0),
+     (3, 4, 1, 30.0, 1.0)],
+)  # fmt: skip
+def test_the_share_of_the_repeats(repeats: int, repeat: int, burst: int, revolutions: float, share: float) -> None:
+    progress = Progress(repeats=repeats, repeat=repeat, burst=burst, revolutions=revolutions, revolutions_wanted=30.0)
+    assert share_of_repeats(progress) == pytest.approx(share)

@@ -1,0 +1,104 @@
+"""Numbers, times, bars, plots: what is drawn from what."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from tester.tui.bar import bar, beyond
+from tester.tui.filters import ascii_text
+from tester.tui.formatting import clean, count, fit, hours, minutes, number, reflow
+from tester.tui.plot import Canvas, PlotRange, Point, round_step, scatter
+from tester.tui.scene import ScreenScene
+from tests.tester.service.views import HOSTILE, value
+
+
+def test_what_cannot_be_seen_is_replaced_one_for_one() -> None:
+    assert clean(HOSTILE) == "[/x] [bold]�[31m�$(rm) ' \" <b> �"
+    assert len(clean("a\x1b\u202eb\tc")) == 6
+
+
+@pytest.mark.parametrize(("seconds", "text"), [(22440.0, "6:14"), (0.0, "0:00"), (29.0, "0:00"), (31.0, "0:01")])
+def test_hours(seconds: float, text: str) -> None:
+    assert hours(seconds) == text
+
+
+@pytest.mark.parametrize(("seconds", "text"), [(190.0, "3:10"), (3599.6, "1:00:00"), (None, "?")])
+def test_minutes(seconds: float | None, text: str) -> None:
+    assert minutes(seconds) == text
+
+
+def test_a_help_text_fills_its_lines_and_hangs_what_a_key_does_beside_it() -> None:
+    text = "One line of a\nparagraph.\n\nspace  HOLD: lift and wait\nq      leave\n"
+    assert reflow(text, 18) == "One line of a\nparagraph.\n\nspace  HOLD: lift\n       and wait\nq      leave"
+
+
+def test_no_number_is_minus_nought() -> None:
+    assert [number(x, 1) for x in (-0.04, -0.06, None)] == ["0.0", "-0.1", "—"]
+
+
+def test_one_thing_is_not_several() -> None:
+    assert [count(n, "wheel") for n in (0, 1, 2)] == ["0 wheels", "1 wheel", "2 wheels"]
+
+
+def test_fit_marks_what_is_missing() -> None:
+    assert (fit("abcdef", 6), fit("abcdef", 4), fit("abcdef", 0)) == ("abcdef", "abc…", "")
+
+
+def test_a_bar_has_limit_setpoint_band_and_value() -> None:
+    one = replace(value("load", "Load", "N", 30.0, 50.0, 100.0), low=10.0, band_low=45.0, band_high=55.0)
+    assert bar(one, 21) == "──├───●──═┼═──────┤──"
+
+
+def test_a_value_outside_the_bar_points_there() -> None:
+    one = value("load", "Load", "N", 300.0, None, 100.0)
+    assert bar(one, 11) == "─────────┤▶"
+    assert beyond(one) == "HIGH" and beyond(replace(one, value=-1.0, low=0.0)) == "LOW"
+    assert beyond(replace(one, value=None)) == ""
+
+
+def test_a_range_grows_at_once_and_shrinks_late() -> None:
+    scale = PlotRange(least=1.0)
+    scale.cover(10.0, 20.0)
+    first = (scale.low, scale.high)
+    scale.cover(12.0, 17.0)
+    assert (scale.low, scale.high) == first
+    scale.cover(12.0, 31.0)
+    assert scale.high >= 31.0
+    scale.cover(15.0, 15.5)
+    assert scale.high - scale.low < 4.0
+
+
+def test_round_steps() -> None:
+    assert [round_step(x) for x in (0.3, 1.0, 1.1, 6.0)] == [0.5, 1.0, 2.0, 10.0]
+
+
+def test_dots_stand_where_the_values_are() -> None:
+    canvas = Canvas(2, 1)
+    scale = PlotRange(0.0, 3.0)
+    canvas.bins([(0.0, 0.0), (3.0, 3.0), (0.0, 3.0)], scale)
+    assert canvas.lines() == ["\N{BRAILLE PATTERN DOTS-8}\N{BRAILLE PATTERN DOTS-14568}"]
+
+
+def test_a_setpoint_is_drawn_where_there_is_no_data() -> None:
+    canvas = Canvas(3, 3, plain=True)
+    scale = PlotRange(0.0, 2.0)
+    canvas.level(1.0, "-", scale)
+    canvas.bins([(1.0, 1.0)], scale)
+    assert canvas.lines() == ["   ", "--*", "   "]
+
+
+def test_a_scatter_says_its_ends_and_marks_several_points_as_one() -> None:
+    lines = scatter([Point(100.0, 0.8, "1"), Point(200.0, 0.7, "1"), Point(200.0, 0.7, "2")], 30, 6)
+    assert "100" in lines[-1] and "200" in lines[-1]
+    assert sum(line.count("+") for line in lines) == 1
+
+
+def test_ascii_keeps_the_width() -> None:
+    assert ascii_text("├──●──┤ 40.4 °C µ 温") == "+--o--+ 40.4 'C u ??"
+
+
+def test_a_scene_without_a_service_has_nothing_to_believe() -> None:
+    scene = ScreenScene(now=lambda: 5.0)
+    assert not scene.linked and scene.top_alarm() is None and scene.value("load") is None
