@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from math import isfinite
 from pathlib import Path
 
+from tester.analysis.repeats import ConditionResult
 from tester.analysis.trust import mark_of
 from tester.axes import Axes, Axis, ListWords, Setpoint, condition_words, plain
 from tester.export.results import Measured, RunResults, results_of
@@ -30,6 +31,8 @@ class Row:
     condition: int
     mark: str = ""
     """Of mu (tester.analysis.trust): "" where it is trusted."""
+    uncertainty: str = ""
+    """Of mu, in two lines: both expanded ones, and mu at the temperature that was asked for; "" where there is none."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,7 +91,7 @@ def stored_of(folder: Path, results: RunResults) -> Stored:
         words = ListWords(held)
         shown, common = words.axes, words.common
     header = ("Formula", *(one.title for one in shown), *FIGURES)
-    rows = tuple(_row(measured, shown) for measured in conditions)
+    rows = tuple(_row(measured, shown, results.worn) for measured in conditions)
     run = results.run
     if run.info.risk:
         common = f"RISK ACCEPTED: {run.info.risk}{'; ' + common if common else ''}"
@@ -96,14 +99,24 @@ def stored_of(folder: Path, results: RunResults) -> Stored:
     return Stored(folder.name, folder, run.info.recipe_name, status, header, common, rows, results.axes, head)
 
 
-def _row(measured: Measured, shown: Sequence[Axis]) -> Row:
+def _row(measured: Measured, shown: Sequence[Axis], worn: str) -> Row:
     i, r = measured.info, measured.result
     setpoints = [plain(one.of(i.setpoint)) for one in shown]
     mark = mark_of(r.status, r.flags) if isfinite(r.mu_resultant) else ""
     found = (_number(r.mu_resultant, 3) + mark, _number(r.s, 4), f"{r.n_valid}/{r.n}")
     status = f"{r.status.value}{': ' + r.reason if r.reason else ''} {r.flags}".strip()
     mu = r.mu_resultant if isfinite(r.mu_resultant) else None
-    return Row((i.compound, *setpoints, *found, status), i.setpoint, i.compound, mu, i.condition, mark)
+    cells = (i.compound, *setpoints, *found, status)
+    return Row(cells, i.setpoint, i.compound, mu, i.condition, mark, _uncertainty(r, worn))
+
+
+def _uncertainty(result: ConditionResult, worn: str) -> str:
+    """Return the coefficient's two expanded uncertainties in words, and the coefficient at its own temperature."""
+    this, compound = result.budget.expanded, result.compound_budget.expanded
+    if not isfinite(this):
+        return ""
+    told = f"U (95 %) {this:.4f} of this {worn}, {_number(compound, 4)} of the compound"
+    return f"{told}\nmu at the temperature asked for: {_number(result.mu_corrected, 4)}"
 
 
 def _number(value: float, decimals: int) -> str:
@@ -113,8 +126,9 @@ def _number(value: float, decimals: int) -> str:
 def condition(folder: Path, number: int, columns: int) -> tuple[Row, tuple[RepeatRow, ...]]:
     """Read a condition and its repeats with traces of ``columns`` columns; raises StoreError, sqlite3.Error."""
     with RunReader(folder) as reader:
-        measured = next(one for one in results_of(reader).conditions() if one.info.condition == number)
-        return _row(measured, ()), tuple(
+        results = results_of(reader)
+        measured = next(one for one in results.conditions() if one.info.condition == number)
+        return _row(measured, (), results.worn), tuple(
             RepeatRow(
                 one.repeat,
                 one.result.mu_resultant if isfinite(one.result.mu_resultant) else None,

@@ -50,7 +50,8 @@ class RepeatsDialog(Dialog):
 
     def _heading(self) -> Parts:
         mu, s, n, status = self.row.cells[-len(FIGURES) :]
-        return [(clean(f"{row_words(self.row)}  mu {mu}  s {s}  n {n}  {status}"), "bold")]
+        heading: Parts = [(clean(f"{row_words(self.row)}  mu {mu}  s {s}  n {n}  {status}"), "bold")]
+        return [*heading, *(f"\n{clean(told)}" for told in self.row.uncertainty.splitlines())]
 
     def on_mount(self) -> None:
         """Have them read."""

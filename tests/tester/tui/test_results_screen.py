@@ -9,6 +9,7 @@ import pytest
 from textual.widgets import Input
 
 from tester import export
+from tester.export.results import results_of
 from tester.kinds.wheel_on_belt.axes import AXES
 from tester.service.commands import Stop
 from tester.service.state import ProgressView
@@ -126,6 +127,21 @@ def test_a_repeat_is_left_out_with_a_reason_and_the_table_follows(tmp_path: Path
     with RunReader(run) as reader:
         (word,) = reader.exclusions()
     assert (word.target, word.reason, bool(word.operator)) == ((2, 1, 1), "[/x]", True)
+
+
+def test_both_uncertainties_stand_above_the_repeats(tmp_path: Path) -> None:
+    run = a_run(tmp_path)
+    with RunReader(run) as reader:
+        result = list(results_of(reader).conditions())[1].result
+
+    async def act(on: Stage) -> None:
+        await at_repeats(on, run)
+        this, compound = result.budget.expanded, result.compound_budget.expanded
+        told = f"U (95 %) {this:.4f} of this wheel, {compound:.4f} of the compound"
+        await on.until(lambda: told in on.text(), "both are told, by name")
+        assert f"mu at the temperature asked for: {result.mu_corrected:.4f}" in on.text()
+
+    play(act, tmp_path)
 
 
 def test_the_head_of_the_record_stands_below_the_runs(tmp_path: Path) -> None:
