@@ -19,6 +19,7 @@ from tester.cli.main import COMMANDS, invoke
 
 DOCS = Path(__file__).parents[1] / "docs"
 TUTORIAL = DOCS / "tutorial" / "your-first-recipe.md"
+TO_REPORT = DOCS / "tutorial" / "from-run-to-report.md"
 READING = DOCS / "explanation" / "how-a-reading-travels.md"
 KIND = DOCS / "how-to" / "add-a-kind-of-rig.md"
 PAPER = DOCS / "paper.md"
@@ -96,6 +97,31 @@ def test_links_of_a_page_lead_somewhere(page: Path) -> None:
     links = re.findall(r"\]\(([^)#\s]+)(?:#[^)]*)?\)", page.read_text(encoding="utf-8"))
 
     assert [link for link in links if "://" not in link and not (page.parent / link).exists()] == []
+
+
+def to_report() -> str:
+    """Return the page from a run to its report, but for the report: its command may not be there."""
+    return TO_REPORT.read_text(encoding="utf-8").partition("<!-- The report:")[0]
+
+
+def test_the_way_to_a_report_begins_as_its_page_says(tmp_path: Path) -> None:
+    reader = Reader(tmp_path)
+    steps = STEP.findall(to_report())
+    assert len(steps) == 3
+
+    for notes, _, text in steps:
+        reader.follow(NOTE.findall(notes), text)
+
+
+@pytest.mark.parametrize("line", re.findall(r"^tester .*", to_report(), re.MULTILINE))
+def test_the_way_to_a_report_goes_by_commands_and_options_that_exist(
+    line: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    command, *words = shlex.split(line)[1:]
+
+    assert invoke([command, "--help"]) == 0
+    told = capsys.readouterr().out.split()
+    assert [word for word in words if word.startswith("--") and word not in told] == []
 
 
 @pytest.mark.parametrize("page", [TUTORIAL, SCRIPTING, PAPER], ids=lambda page: page.stem)
