@@ -15,15 +15,19 @@ from drivers.modbus import ModbusLink
 from drivers.profiles import load_profile
 from drivers.sensor import Sensor
 from tester.analysis.blocks import resultant
-from tester.cli.main import COMMANDS
+from tester.cli.main import COMMANDS, invoke
 
 DOCS = Path(__file__).parents[1] / "docs"
 TUTORIAL = DOCS / "tutorial" / "your-first-recipe.md"
+TO_REPORT = DOCS / "tutorial" / "from-run-to-report.md"
 READING = DOCS / "explanation" / "how-a-reading-travels.md"
 KIND = DOCS / "how-to" / "add-a-kind-of-rig.md"
+PAPER = DOCS / "paper.md"
 SCRIPTING = DOCS / "how-to" / "script-against-the-service.md"
 STEP = re.compile(r"((?:<!-- .*? -->\n)+)```(\w+)\n(.*?)```", re.DOTALL)
 NOTE = re.compile(r"<!-- (.*?) -->")
+PRINTED = re.compile(r"^    (\S.*\d.*)$", re.MULTILINE)
+"""A line that a command has printed, with a figure in it."""
 LOOKS = 100
 """A service is there after so many looks at the latest, each of some tenths of a second."""
 TESTER = "from tester.cli.main import main; main()"
@@ -95,7 +99,32 @@ def test_links_of_a_page_lead_somewhere(page: Path) -> None:
     assert [link for link in links if "://" not in link and not (page.parent / link).exists()] == []
 
 
-@pytest.mark.parametrize("page", [TUTORIAL, SCRIPTING], ids=lambda page: page.stem)
+def to_report() -> str:
+    """Return the page from a run to its report, but for the report: its command may not be there."""
+    return TO_REPORT.read_text(encoding="utf-8").partition("<!-- The report:")[0]
+
+
+def test_the_way_to_a_report_begins_as_its_page_says(tmp_path: Path) -> None:
+    reader = Reader(tmp_path)
+    steps = STEP.findall(to_report())
+    assert len(steps) == 3
+
+    for notes, _, text in steps:
+        reader.follow(NOTE.findall(notes), text)
+
+
+@pytest.mark.parametrize("line", re.findall(r"^tester .*", to_report(), re.MULTILINE))
+def test_the_way_to_a_report_goes_by_commands_and_options_that_exist(
+    line: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    command, *words = shlex.split(line)[1:]
+
+    assert invoke([command, "--help"]) == 0
+    told = capsys.readouterr().out.split()
+    assert [word for word in words if word.startswith("--") and word not in told] == []
+
+
+@pytest.mark.parametrize("page", [TUTORIAL, SCRIPTING, PAPER], ids=lambda page: page.stem)
 def test_commands_of_a_page_exist(page: Path) -> None:
     named = re.findall(r"(?:^|`)tester ([a-z-]+)", page.read_text(encoding="utf-8"), re.MULTILINE)
 
@@ -152,3 +181,39 @@ def test_every_page_is_linked_from_the_first() -> None:
     pages = {str(page.relative_to(DOCS).as_posix()) for page in DOCS.rglob("*.md")}
 
     assert {page for page in pages if not page.startswith("decisions/") and f"]({page})" not in first} == {"README.md"}
+
+
+@pytest.mark.parametrize(
+    ("command", "said"),
+    [
+        (["paper"], PRINTED.findall(PAPER.read_text(encoding="utf-8").partition("## Errors")[2])),
+        (["paper"], ["36 of 79 rows within 5 %, 54 within 10 %, largest 50%",
+                     "3.4%, 0.5%, 5.1% by Eqs 7 to 9; 0.8%, 2.0%, 2.5% by the value measured at 25 degC times f(T)",
+                     "21.2% by Eqs 7 to 9; 2.1% by the value measured at 25 degC times f(T)"]),
+        (["fit", "appendix-a", "appendix-b"],
+         ["-0.342 (-0.373 to -0.291)", "-0.420 (-0.469 to -0.363)", "-0.567 (-0.622 to -0.531)",
+          "+0.529 (+0.419 to +0.624)", "+0.567 (+0.476 to +0.631)", "+0.635 (+0.487 to +0.779)"]),
+    ],
+    ids=["table", "claims", "trends"],
+)  # fmt: skip
+def test_the_page_on_the_paper_quotes_what_its_commands_print(
+    command: list[str], said: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    pytest.importorskip("scipy")
+    page = PAPER.read_text(encoding="utf-8")
+
+    assert invoke(command) == 0
+    printed = capsys.readouterr().out
+    assert len(said) >= 3
+    assert [text for text in said if text not in printed or text not in page] == []
+
+
+@pytest.mark.parametrize("compound", ["1#", "2#", "3#"])
+@pytest.mark.parametrize("angle", [0, 10, 20, 30])
+def test_the_page_on_the_paper_quotes_what_is_predicted(
+    compound: str, angle: int, capsys: pytest.CaptureFixture[str]
+) -> None:
+    held = ["--slip", "300 mm/s", "--load", "200 N", "--temperature", "25 degC", "--sideslip", f"{angle} deg"]
+
+    assert invoke(["predict", "--compound", compound, *held]) == 0
+    assert capsys.readouterr().out.strip() in PAPER.read_text(encoding="utf-8")

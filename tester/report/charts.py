@@ -186,7 +186,7 @@ def repeats_chart(measured: Measured) -> Chart:
     result = measured.result
     title = f"repeats of {condition_words(measured.info.setpoint)}"
     if isfinite(result.mu_resultant):
-        title += f": {result.mu_resultant:.3f}\u00a0±\u00a0{result.expanded:.3f}"
+        title += f": {result.mu_resultant:.3f} ± {result.expanded:.3f}"
     note = "along: from begin to end of each repeat; bars: standard deviation of its batch means"
     return Chart(f"repeats-{measured.info.condition}", title, "rig time (min)", Y_LABEL,
                  (ChartPanel("", tuple(series)),), note, from_zero=False)  # fmt: skip
