@@ -265,12 +265,12 @@ class MeasureRepeat:
         self.phase = Phase.RUN_IN
         ctx.demand.belt_speed_m_s = self.belt_m_s
         self._aim(ctx)
-        self.run_in.begin(ctx.wheel.sliding_m)
+        self.run_in.pulses += 1
 
     def _run_in(self, ctx: Context) -> None:
         ctx.moving = True
         run_in = self.run_in
-        done = run_in.slide(ctx.wheel.sliding_m)
+        done = run_in.slide(ctx.readings.slip_m_s * ctx.dt)
         if not done and ctx.gates.surface_now_c() < self.target_c + self.band_k:
             return
         if not done and run_in.pulses >= self.condition.max_bursts:

@@ -16,17 +16,10 @@ class RunIn:
         """Begin with all of it."""
         self.left_m = distance_m
         self.pulses = 0
-        self._at_m = 0.0
 
-    def begin(self, sliding_m: float) -> None:
-        """Begin a pulse; ``sliding_m``: the distance that the wheel has slid so far."""
-        self.pulses += 1
-        self._at_m = sliding_m
-
-    def slide(self, sliding_m: float) -> bool:
-        """Take in how far the wheel has slid by now; return whether the run-in is over."""
-        self.left_m -= sliding_m - self._at_m
-        self._at_m = sliding_m
+    def slide(self, distance_m: float) -> bool:
+        """Take in what has been slid in a scan; return whether the run-in is over."""
+        self.left_m -= distance_m
         return self.left_m <= 0.0
 
 

@@ -52,9 +52,8 @@ def test_nothing_counts_before_the_run_in_has_been_slid(bench: Bench) -> None:
     made = measure(bench, 2)
     first = made.counter.blocks[0].started_s
     slid = [row for row in bench.notes.rows if row[0] < first and row[COLUMN["force_z_n"]] > 100.0]
-    slid_m = sum(0.01 * row[COLUMN["slip_m_s"]] for row in slid)
-    assert 2.0 <= slid_m < 3.0
-    assert all(row[COLUMN["burst"]] == 0.0 for row in slid if row[COLUMN["slip_m_s"]] < 0.01)
+    slid_m = sum(0.01 * row[COLUMN["slip_m_s"]] for row in slid if row[COLUMN["burst"]] == 0.0)
+    assert 2.0 <= slid_m < 2.5
 
 
 def test_the_samples_give_the_blocks_that_were_counted_without_the_run_in(bench: Bench) -> None:
