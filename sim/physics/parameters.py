@@ -203,6 +203,7 @@ class SensorParameters:
     range_z: Annotated[float, "N"] = 600.0
     force_rms: Annotated[float, "N"] = 0.25
     linearity: Annotated[float, "1"] = 0.001  # greatest deviation, share of the range
+    cell_sensitivity: Annotated[float, "1"] = 0.0  # greatest error of a channel's; 0: calibrated; 0.005 without [A]
     zero_drift: Annotated[float, "N/K"] = 0.1  # of the cell's temperature, sign drawn per channel
     crosstalk: Annotated[float, "1"] = 0.005  # greatest share of one channel seen by another
     misalignment_least: Annotated[float, "deg"] = 0.2  # of the cell about x and about y

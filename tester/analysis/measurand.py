@@ -49,7 +49,7 @@ def pooled(results: Sequence[ConditionResult]) -> Pool:
     pool = NOTHING_POOLED
     for one in results:
         if one.ok and one.mu_resultant > 0.0 and isfinite(one.s):
-            pool = pool.with_spread(one.s / one.mu_resultant, one.n_valid)
+            pool = pool.with_spread(one.s / one.mu_resultant, one.n_valid, one.repeats_each)
     return pool
 
 
@@ -58,14 +58,14 @@ def repeatability(result: ConditionResult, pool: Pool) -> Contribution:
     mu, n = result.mu_resultant, result.n_valid
     share = result.type_a / result.s if result.s > 0.0 else 1.0 / sqrt(n)  # more where not all are in the mean
     own = result.s / mu if mu > 0.0 else 0.0
-    df = float(max(n - 1, 1))
+    df, each = float(max(n - 1, 1)), "repeats" if result.both_ways is None else "pairs of repeats"
     if not pool.df or mu <= 0.0:
-        return contribution(REPEATABILITY, result.s, share, unit="", df=df, source=f"s of {n} repeats")
-    s = 0.01 * pool.s_percent
+        return contribution(REPEATABILITY, result.s, share, unit="", df=df, source=f"s of {n} {each}")
+    s = 0.01 * pool.s_percent / sqrt(result.repeats_each)
     if n >= 2 and pool.df > n - 1 and own > s * sqrt(f_quantile(1.0 - OWN_LEVEL, n - 1.0, float(pool.df))):
-        source = f"own s of {n} repeats, more than the run's"
+        source = f"own s of {n} {each}, more than the run's"
         return contribution(REPEATABILITY, own, mu * share, df=df, source=source)
-    source = f"s pooled over the run, {n} repeats"
+    source = f"s pooled over the run, {n} {each}"
     return contribution(REPEATABILITY, s, mu * share, df=float(pool.df), source=source)
 
 
@@ -83,7 +83,9 @@ def _unsteady(mu: float, unsteady: Unsteadiness) -> list[Contribution]:
 def _machine(result: ConditionResult, by: Surroundings) -> tuple[list[Contribution], list[Contribution]]:
     """Return what the machine's chain contributes, and what differs from piece to piece."""
     means, mu = result.measured, result.mu_resultant
-    at = BudgetPoint(mu, means.normal, means.sliding, means, by.warmth.slope.per_kelvin, by.warmth.rate_k_s, by.size)
+    turning = result.both_ways.turning if result.both_ways is not None else None
+    slope, rate_k_s = by.warmth.slope.per_kelvin, by.warmth.rate_k_s
+    at = BudgetPoint(mu, means.normal, means.sliding, means, slope, rate_k_s, by.size, turning)
     chain = [one for one in by.terms if one.acts is not Acts.PIECE]
     found = contributions_of(chain, at)
     if any(one.acts is Acts.TEMPERATURE for one in chain):

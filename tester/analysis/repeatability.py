@@ -22,17 +22,23 @@ class Pool:
     squares: float = 0.0
     df: int = 0
 
-    def with_condition(self, values: Sequence[float]) -> Pool:
-        """Return the pool with the coefficients of one more condition; fewer than two say nothing."""
+    def with_condition(self, values: Sequence[float], repeats_each: int = 1) -> Pool:
+        """Return the pool with the coefficients of one more condition; fewer than two say nothing.
+
+        ``repeats_each``: of how many repeats each value is the mean; the pool is that of single ones.
+        """
         n = len(values)
         mean = sum(values) / n if n else 0.0
         if n < 2 or mean <= 0.0:
             return self
-        return Pool(self.squares + sum((value / mean - 1.0) ** 2 for value in values), self.df + n - 1)
+        squares = sum((value / mean - 1.0) ** 2 for value in values)
+        return Pool(self.squares + repeats_each * squares, self.df + n - 1)
 
-    def with_spread(self, spread: float, n: int) -> Pool:
+    def with_spread(self, spread: float, n: int, repeats_each: int = 1) -> Pool:
         """Return the pool with one more condition of ``n`` values with this relative standard deviation."""
-        return Pool(self.squares + (n - 1) * spread * spread, self.df + n - 1) if n >= 2 and spread >= 0.0 else self
+        if n < 2 or not spread >= 0.0:
+            return self
+        return Pool(self.squares + repeats_each * ((n - 1) * spread * spread), self.df + n - 1)
 
     @property
     def s_percent(self) -> float:

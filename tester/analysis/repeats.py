@@ -17,6 +17,7 @@ from types import MappingProxyType
 
 from tester.analysis import closest
 from tester.analysis.closest import Combining, taken
+from tester.analysis.directions import BothWays, mean_of_both_ways
 from tester.analysis.quantiles import f_quantile, t_quantile
 from tester.analysis.reduce import standard_deviation
 from tester.analysis.results import (
@@ -101,6 +102,13 @@ class ConditionResult:
     mu_corrected: float = NAN
     budget: Budget = NO_BUDGET
     compound_budget: Budget = NO_BUDGET
+    both_ways: BothWays | None = None
+    """What each direction of sliding shows, where it was measured in both; values are then those of pairs."""
+
+    @property
+    def repeats_each(self) -> int:
+        """Return how many repeats make one of its values."""
+        return 1 if self.both_ways is None else 2
 
     @property
     def standard(self) -> float:
@@ -270,8 +278,14 @@ def combine_replicates(results: Sequence[ConditionResult]) -> ConditionResult:
         measured=mean_of(result.measured for result in kept),
         # Wheels run in alike: what drifts on one drifts on the others, the same way.
         unsteady=Unsteadiness(*(_mean(values) for values in zip(*(astuple(r.unsteady) for r in kept), strict=True))),
+        both_ways=_both_ways(kept),
     )
     return _with_statistics(shell, [result.mu_resultant for result in kept], [])
+
+
+def _both_ways(kept: Sequence[ConditionResult]) -> BothWays | None:
+    found = [one.both_ways for one in kept if one.both_ways is not None]
+    return mean_of_both_ways(found) if found and len(found) == len(kept) else None
 
 
 def _mean(values: Sequence[float]) -> float:

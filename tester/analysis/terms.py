@@ -3,6 +3,11 @@
 A kind of rig says its terms (``tester.machine.run_parts``), a run's record keeps them, and here they become
 contributions to the uncertainty of one coefficient. How an error reaches mu is one of a few ways (``Acts``), each a
 formula of the coefficient and of what was measured with it.
+
+Of a coefficient from both directions of sliding (``tester.analysis.directions``) what does not turn round with the
+sliding drops out. Left of a rotation theta is its square: mu (1 + mu^2) theta^2; of crosstalk the same. A speed that
+adds to the sliding one way takes from it the other way: what counts of its channel is half the difference of the
+directions. What differs each time is halved in square. The rest acts the same both ways, and stays.
 """
 
 from __future__ import annotations
@@ -10,7 +15,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
-from math import hypot, inf, isfinite, pi, sqrt
+from math import hypot, inf, isfinite, pi, radians, sqrt
 from types import MappingProxyType
 from typing import Final
 
@@ -128,6 +133,12 @@ class BudgetPoint:
     per_kelvin: float = 0.0
     rate_k_s: float = 0.0
     size: Size = NO_SIZE
+    turning: Mapping[str, float] | None = None
+    """Of a coefficient from both directions: half the difference of the channels' means between them."""
+
+    def speed(self, channel: str) -> float:
+        """Return how much of a speed's mean goes into the sliding speed, m/s."""
+        return abs((self.means if self.turning is None else self.turning).get(channel, NAN))
 
 
 def with_settings(terms: Iterable[Term], settings: Mapping[str, str] = _NO_SETTINGS) -> tuple[Term, ...]:
@@ -166,6 +177,8 @@ def _contribution(one: Term, at: BudgetPoint) -> Contribution:
         standard *= abs(at.size.loss_mm)
         if at.size.checked:
             standard, source, distribution = at.size.checked_u_mm, "check of the diameter", "normal"
+    elif one.acts is Acts.SLIDING:
+        standard *= at.speed(one.channel) if one.channel else 1.0
     elif one.channel and one.acts is not Acts.SIZE:
         standard *= abs(at.means.get(one.channel, NAN))
     found = sensitivity(one, at)
@@ -196,7 +209,17 @@ def sensitivity(one: Term, at: BudgetPoint) -> float:
         case Acts.SLIDING:
             plain = mu / sliding
         case Acts.SIZE | Acts.LOSS:
-            plain = mu * abs(at.means.get(one.channel, NAN)) / (at.size.size_mm * sliding)
+            plain = mu * at.speed(one.channel) / (at.size.size_mm * sliding)
         case Acts.COEFFICIENT | Acts.PIECE:
             plain = mu
-    return one.factor * plain
+    return one.factor * plain * (_left(one, mu) if at.turning is not None else 1.0)
+
+
+def _left(one: Term, mu: float) -> float:
+    """Return the share of a sensitivity that is left by both directions of sliding."""
+    if one.acts is Acts.ROTATION:
+        return mu * radians(one.bound)
+    if one.acts is Acts.CROSSTALK:
+        return mu * one.bound
+    own = one.acts in (Acts.FRICTION, Acts.NORMAL) and not one.common
+    return sqrt(0.5) if own else 1.0

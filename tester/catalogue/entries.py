@@ -184,7 +184,7 @@ def read_entries(folder: Path, origin: str, print_: str) -> tuple[RunEntry, list
         software_version=run.info.software_version,
         conditions=len(conditions),
         repeats=sum(len(measured.repeats) for measured in conditions),
-        repeats_planned=sum(measured.info.repeats for measured in conditions),
+        repeats_planned=sum(measured.info.repeats_planned for measured in conditions),
         trusted=sum(measured.result.ok for measured in conditions),
         kind=run.info.kind,
         axes=json.dumps(results.axes.as_data(), ensure_ascii=False),

@@ -15,6 +15,7 @@ from typing import BinaryIO
 from tester.base.plugins import PluginError, plugins
 from tester.export.budget import budget_rows
 from tester.export.cells import Cell, encode
+from tester.export.directions import direction_rows
 from tester.export.parquet import write_parquet
 from tester.export.results import RunResults, results_of
 from tester.export.tables import (
@@ -102,6 +103,8 @@ FORMATS: dict[str, Format] = {
                _csv(lambda record: condition_rows(record.results), risk=False), _always),
         Format("budget", "budget.csv", "what each uncertainty is made of",
                _csv(lambda record: budget_rows(record.results)), _always),
+        Format("directions", "directions.csv", "what each direction of sliding shows, and the cell's angle",
+               _csv(lambda record: direction_rows(record.results)), lambda results: results.both_directions),
         Format("repeats", "repeats.csv", "every repeat", _csv(lambda record: repeat_rows(record.results)), _always),
         Format(PIECE, f"{PIECE}.csv", f"{PIECE}s and their wear", _csv(lambda record: piece_rows(record.results)),
                lambda results: results.worn == PIECE),

@@ -9,7 +9,8 @@ from math import isfinite
 
 from tester.analysis.closest import Combining, combining_of
 from tester.analysis.measurand import pooled, with_budget, with_budget_of_replicates
-from tester.analysis.repeats import ConditionResult, combine_repeats, combine_replicates
+from tester.analysis.misalignment import Misalignment, misalignment
+from tester.analysis.repeats import ConditionResult, combine_replicates
 from tester.analysis.results import CARRY_OVER, IMPRECISE, NOT_SHOWN, SHORT, ConditionStatus
 from tester.analysis.wear import ConditionWear, WearRate, condition_wear, wear_rate
 from tester.analysis.wear_check import WearCheck
@@ -132,6 +133,15 @@ class RunResults:
         """Return what people call what is mounted: the part of the machine that wears."""
         return self.run.info.worn
 
+    @property
+    def both_directions(self) -> bool:
+        """Return whether any condition is measured in both directions of sliding."""
+        return any(measured.info.both_directions for measured in self.conditions())
+
+    def misalignment(self) -> Misalignment:
+        """Return by what angle the cell's axes seem to be off, over all conditions measured in both directions."""
+        return misalignment(measured.result for measured in self.conditions())
+
     def wear_of(self, piece: int) -> WearRate:
         """Return the wear rate over the life of what was mounted under a number."""
         return wear_rate([one for one in self.checks if one.piece == piece])
@@ -209,7 +219,7 @@ def _measured(
 ) -> Measured:
     info = stored.info
     by_hand = {i: left_out[one.target] for i, one in enumerate(repeats) if one.target in left_out}
-    result = combine_repeats(
+    result = info.scheme.combine(
         [repeat.result for repeat in repeats],
         planned=info.repeats,
         min_valid=info.min_valid,

@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from dataclasses import fields
 from math import isnan
 
+from tester.analysis.directions import is_reversed
 from tester.analysis.repeats import ConditionResult
 from tester.analysis.wear import ConditionWear
 from tester.analysis.wear_check import WearCheck
@@ -74,6 +75,8 @@ _WEAR = ("diameter_before_mm", "diameter_after_mm", "u_worn_mm", "wear_mm3_n_m",
 _CHECK = tuple(field.name for field in fields(WearCheck) if field.name != "piece")
 
 HEAD_COLUMN = "record_head"
+AS_ASKED, REVERSED = "as asked", "reversed"
+"""Directions of sliding."""
 RISK_COLUMN = "accepted_risk"
 """Last column of every table of a run for which a risk was accepted; ``conditions.csv`` has it among the metadata."""
 
@@ -136,7 +139,9 @@ def condition_rows(results: RunResults) -> Iterator[tuple[Cell, ...]]:
 def repeat_rows(results: RunResults) -> Iterator[tuple[Cell, ...]]:
     """Yield one row for each committed repeat: its last attempt."""
     held = setpoint_header(results)
-    yield ("condition", "repeat", "attempt", results.worn, *held, *_REPEAT, *_measured_header(results.quantities))
+    both = results.both_directions
+    way = ("direction",) if both else ()
+    yield ("condition", "repeat", "attempt", results.worn, *held, *_REPEAT, *_measured_header(results.quantities), *way)
     for measured in results.conditions():
         for repeat in measured.repeats:
             yield (
@@ -146,7 +151,13 @@ def repeat_rows(results: RunResults) -> Iterator[tuple[Cell, ...]]:
                 repeat.piece,
                 *setpoints(measured.info, measured.info.replicate),
                 *_repeat(measured, repeat, results.quantities),
+                *((_direction(measured, repeat),) if both else ()),
             )
+
+
+def _direction(measured: Measured, repeat: StoredRepeat) -> str:
+    turned = measured.info.both_directions and is_reversed(repeat.repeat)
+    return REVERSED if turned else AS_ASKED
 
 
 def piece_rows(results: RunResults) -> Iterator[tuple[Cell, ...]]:

@@ -9,10 +9,10 @@ from typing import Generic, Protocol, TypeVar
 
 from tester.analysis.blocks import Block
 from tester.analysis.closest import Combining
-from tester.analysis.judge import ALONE, judge
+from tester.analysis.judge import ALONE
 from tester.analysis.reduce import bursts_of, counted, reduce_repeat, without_value
 from tester.analysis.repeatability import Pool
-from tester.analysis.repeats import ConditionResult, combine_repeats, counting
+from tester.analysis.repeats import ConditionResult
 from tester.analysis.results import (
     IMPRECISE,
     NOT_JUDGED,
@@ -133,10 +133,11 @@ class StoredResults(Generic[ContextT]):
 
     def another(self, step: ConditionStep) -> bool:
         """Tell whether a further repeat is to be made: one is missing or undecided, and there may be one more."""
-        made = len(self.repeats)
-        if made < step.repeats or made >= step.at_most:
-            return made < step.repeats
-        counted = len(counting(self.repeats))
+        scheme = step.scheme
+        made, half = divmod(len(self.repeats), scheme.repeats_each)
+        if half or made < step.repeats or made >= step.at_most:
+            return half > 0 or made < step.repeats
+        counted = len(scheme.values(self.repeats))
         if not counted and not any(result.drifts for result in self.repeats):
             return False  # none gave a value for reasons that one more would meet, too
         if counted < step.repeats or (step.repeats > ALONE and NOT_SHOWN in flags_in(self.judgement.flags)):
@@ -202,9 +203,9 @@ class StoredResults(Generic[ContextT]):
         if not self.repeats:
             found = ConditionResult(status or ConditionStatus.INSUFFICIENT, reason)
         else:
-            found = combine_repeats(self.repeats, step.repeats, step.min_valid, status or ConditionStatus.OK, reason,
-                                    judged=self.judgement, combining=self.combining)  # fmt: skip
-        self.pool = self._pooled()
+            found = step.scheme.combine(self.repeats, step.repeats, step.min_valid, status or ConditionStatus.OK,
+                                        reason, judged=self.judgement, combining=self.combining)  # fmt: skip
+        self.pool = self._pooled(step)
         left = ConditionStatus.OK if found.ok else found.status
         self.recorder.end_condition(
             step.condition,
@@ -241,13 +242,15 @@ class StoredResults(Generic[ContextT]):
             self._judge(step)
 
     def _enough_to_judge(self, step: ConditionStep) -> bool:
-        return sum(result.valid for result in self.repeats) >= step.repeats
+        return not len(self.repeats) % step.scheme.repeats_each and step.scheme.valid(self.repeats) >= step.repeats
 
     def _judge(self, step: ConditionStep) -> list[int]:
         """Judge the condition by what there is; return the positions of the repeats that are refused now."""
         window = step.window
         before = self.repeats
-        self.repeats, self.judgement = judge(before, self.blocks, step.repeats, window.revolutions, window.seconds)
+        self.repeats, self.judgement = step.scheme.judge(
+            before, self.blocks, step.repeats, window.revolutions, window.seconds
+        )
         self.judged = len(before)
         return [i for i, result in enumerate(self.repeats) if before[i].valid and not result.valid]
 
@@ -256,15 +259,15 @@ class StoredResults(Generic[ContextT]):
             return None
         return Judged(self.condition, self.judgement, dict(zip(self.keys, self.repeats, strict=True)))
 
-    def _pooled(self) -> Pool:
-        return self.pool.with_condition([self.repeats[i].mu_resultant for i in counting(self.repeats)])
+    def _pooled(self, step: ConditionStep) -> Pool:
+        return self.pool.with_condition(step.scheme.values(self.repeats), step.scheme.repeats_each)
 
     def _precise(self, step: ConditionStep) -> bool:
         """Tell whether the condition's expanded repeatability is what the recipe asks for, if it asks."""
         if step.until_percent is None:
             return True
-        n = len(counting(self.repeats))
-        return n >= LEAST_REPEATS and self._pooled().expanded_percent(n) <= step.until_percent
+        n, each = len(step.scheme.values(self.repeats)), step.scheme.repeats_each
+        return n >= LEAST_REPEATS and self._pooled(step).expanded_percent(n * each) <= step.until_percent
 
     # -- what a kind says ---------------------------------------------------------------------------------------
 
@@ -295,6 +298,7 @@ def condition_records(plan: Plan) -> Iterator[ConditionInfo]:
             window_s=step.window.seconds,
             at_most=step.at_most,
             until_percent=step.until_percent,
+            both_directions=step.both_directions,
         )
 
 

@@ -37,7 +37,7 @@ def lines(plan: Plan, estimate: Estimate, part: RecipePart) -> Iterator[str]:
 def totals(plan: Plan, estimate: Estimate, part: RecipePart) -> Iterator[str]:
     """Yield what the plan comes to, one figure a line."""
     conditions = list(plan.conditions())
-    repeats = sum(step.repeats for step in conditions)
+    repeats = sum(step.repeats * step.scheme.repeats_each for step in conditions)
     yield f"conditions        {len(conditions)}, {repeats} repeats"
     least, most = duration(estimate.rig_seconds_low), duration(estimate.rig_seconds_high)
     yield f"rig time          {duration(estimate.rig_seconds)} ({least} to {most} in 95 % of runs)"
@@ -46,8 +46,12 @@ def totals(plan: Plan, estimate: Estimate, part: RecipePart) -> Iterator[str]:
 
 
 def repeats_words(step: ConditionStep) -> str:
-    """Return how many repeats are to count, and until what precision where the recipe says so: 4 (until 2 %)."""
-    return f"{step.repeats}" + (f" (until {step.until_percent:.3g} %)" if step.until_percent is not None else "")
+    """Return how many repeats are to count, and until what precision where the recipe says so: 4 (until 2 %).
+
+    In both directions they are pairs: 4 pairs.
+    """
+    pairs = " pairs" if step.both_directions else ""
+    return f"{step.repeats}{pairs}" + (f" (until {step.until_percent:.3g} %)" if step.until_percent is not None else "")
 
 
 def window_words(window: Window) -> str:

@@ -13,6 +13,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import ClassVar
 
+from tester.analysis.schemes import Scheme, scheme_of
 from tester.axes import Axes, Setpoint
 
 
@@ -90,6 +91,14 @@ class ConditionStep(Step):
     soak: Soak
     at_most: int
     until_percent: float | None
+    both_directions: bool = field(default=False, kw_only=True)
+    """Repeats alternate between sliding as asked for and reversed; ``repeats``, ``at_most`` and ``min_valid`` count
+    pairs."""
+
+    @property
+    def scheme(self) -> Scheme:
+        """Return how its repeats make values."""
+        return scheme_of(both_directions=self.both_directions)
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,7 +15,7 @@ from tester.analysis.repeatability import Pool
 from tester.axes import condition_words
 from tester.recipe.estimate import Estimate, Estimator
 from tester.recipe.plan import ConditionStep, Plan
-from tester.recipe.repeats import HISTORIC_PERCENT, needed, reached_percent
+from tester.recipe.repeats import HISTORIC_PERCENT, needed, reached_percent, s_of_values
 from tester.recipe.schema import MAX_REPEATS, Recipe, RepeatsModel
 
 AnyRecipe = TypeVar("AnyRecipe", bound=Recipe)
@@ -123,7 +123,8 @@ def precision_lines(plan: Plan, estimate: Estimate, estimator: Estimator, pools:
 
 
 def _short(step: ConditionStep, estimator: Estimator) -> bool:
-    return needed(step.until_percent or inf, estimator.s_percent(step.setpoint.compound)) > step.at_most
+    s_percent = s_of_values(step, estimator.s_percent(step.setpoint.compound))
+    return needed(step.until_percent or inf, s_percent) > step.at_most
 
 
 def s_percents(pools: Mapping[str, Pool]) -> dict[str, float]:

@@ -9,6 +9,7 @@ from typing import Final, Protocol
 from tester.analysis.judge import ALONE
 from tester.analysis.quantiles import t_quantile
 from tester.analysis.repeats import REPEATABILITY
+from tester.analysis.schemes import scheme_of
 from tester.analysis.uncertainty import CONFIDENCE
 from tester.recipe.schema import MAX_REPEATS
 from tester.recipe.settings import LEAST_REPEATS
@@ -42,6 +43,21 @@ class Counted(Protocol):
         """Expanded repeatability to be reached, per cent; None where the number of repeats is what counts."""
         ...
 
+    @property
+    def both_directions(self) -> bool:
+        """Two repeats, in opposite directions, make a value: what is counted are pairs."""
+        ...
+
+
+def repeats_each(how: Counted) -> int:
+    """Return how many repeats make a value."""
+    return scheme_of(both_directions=how.both_directions).repeats_each
+
+
+def s_of_values(how: Counted, s_percent: float) -> float:
+    """Return the standard deviation between values from that between repeats, per cent."""
+    return s_percent / sqrt(repeats_each(how))
+
 
 @lru_cache(maxsize=1024)
 def needed(until_percent: float, s_percent: float, df: int = POOLED_DF) -> int:
@@ -57,10 +73,13 @@ def needed(until_percent: float, s_percent: float, df: int = POOLED_DF) -> int:
 
 
 def expected(how: Counted, s_percent: float, df: int = POOLED_DF) -> float:
-    """Return the repeats that are expected to be made, up to ``at_most``."""
+    """Return the values that are expected to be measured, up to ``at_most``: repeats, or pairs of them.
+
+    ``s_percent``: standard deviation between repeats, per cent.
+    """
     n = float(how.repeats)
     if how.until_percent is not None:
-        n = max(n, float(needed(how.until_percent, s_percent, df)))
+        n = max(n, float(needed(how.until_percent, s_of_values(how, s_percent), df)))
     if how.repeats > ALONE:
         n *= 1.0 + MADE_UP
     return min(n, float(how.at_most))
@@ -69,4 +88,4 @@ def expected(how: Counted, s_percent: float, df: int = POOLED_DF) -> float:
 def reached_percent(how: Counted, s_percent: float) -> float:
     """Return the expanded repeatability (95 %) expected of ``at_most`` repeats, per cent; inf for a single one."""
     n = how.at_most
-    return t_quantile(0.5 + 0.5 * CONFIDENCE, float(POOLED_DF)) * s_percent / sqrt(n) if n > 1 else inf
+    return t_quantile(0.5 + 0.5 * CONFIDENCE, float(POOLED_DF)) * s_of_values(how, s_percent) / sqrt(n) if n > 1 else inf

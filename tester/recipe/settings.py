@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from tester.axes import Axis, AxisValue
 from tester.recipe.plan import Soak, Window
@@ -33,6 +33,8 @@ class Settings:
     window: Window
     temperature_band_k: float
     soak: Soak
+    both_directions: bool = field(default=False, kw_only=True)
+    """Repeats alternate between the directions of sliding; numbers of repeats are of pairs."""
 
 
 def settings_of(measure: MeasureModel, grid: GridModel) -> Settings:

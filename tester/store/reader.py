@@ -264,7 +264,9 @@ class RunReader:
         for row in self._rows("SELECT * FROM condition ORDER BY row, replicate, condition"):
             status = ConditionStatus(_text(row, "status"))
             left = status if row["ended_s"] is not None or status is not ConditionStatus.PENDING else None
-            info, judged = _record(ConditionInfo, row, setpoint=setpoint_of(row, axes)), _record(Judgement, row)
+            both = bool(row.get("both_directions"))
+            info = _record(ConditionInfo, row, setpoint=setpoint_of(row, axes), both_directions=both)
+            judged = _record(Judgement, row)
             found.append(_record(StoredCondition, row, info=info, status=left, judged=judged))
         return found
 

@@ -43,7 +43,8 @@ URGENT_SEVERITIES = frozenset({"alarm", "trip"})
 
 _RESULT_FIELDS = tuple(field.name for field in fields(RepeatResult) if field.name != "means")
 _BURST_FIELDS = tuple(field.name for field in fields(Burst))
-_CONDITION_FIELDS = tuple(field.name for field in fields(ConditionInfo) if field.name != "setpoint")
+_CONDITION_FIELDS = tuple(field.name for field in fields(ConditionInfo)
+                          if field.name not in ("setpoint", "both_directions"))  # fmt: skip
 _PIECE_FIELDS = tuple(field.name for field in fields(PieceInfo) if field.name != "piece")
 _CHECK_FIELDS = tuple(field.name for field in fields(WearCheck) if field.name != "piece")
 _SESSION_FIELDS = tuple(field.name for field in fields(SessionInfo))
@@ -349,6 +350,8 @@ class Recorder:
 def _to_come(condition: ConditionInfo) -> Statement:
     """Return the INSERT of a condition that nothing is measured of yet."""
     columns = columns_in(condition, _CONDITION_FIELDS) | setpoint_columns(condition.setpoint)
+    if condition.both_directions:
+        columns["both_directions"] = 1
     return insert("condition", columns | {"status": ConditionStatus.PENDING.value})
 
 

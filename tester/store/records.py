@@ -8,6 +8,7 @@ from math import isnan
 
 from tester.analysis.kelvin import KnownSlope
 from tester.analysis.results import NOT_JUDGED, ConditionStatus, Judgement, RepeatResult
+from tester.analysis.schemes import Scheme, scheme_of
 from tester.analysis.terms import Term
 from tester.axes import Axes, Setpoint
 
@@ -253,6 +254,18 @@ class ConditionInfo:
     window_s: float | None = None
     at_most: int = 0
     until_percent: float | None = None
+    both_directions: bool = False
+    """Repeats alternate between sliding as asked for and reversed; counts above are of pairs."""
+
+    @property
+    def scheme(self) -> Scheme:
+        """Return how its repeats make values."""
+        return scheme_of(both_directions=self.both_directions)
+
+    @property
+    def repeats_planned(self) -> int:
+        """Return how many repeats are to be made, if none is made up for."""
+        return self.repeats * self.scheme.repeats_each
 
     @property
     def compound(self) -> str:

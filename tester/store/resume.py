@@ -8,8 +8,8 @@ from math import isfinite
 
 from tester.analysis.blocks import Block, blocks_from_samples
 from tester.analysis.repeatability import NOTHING_POOLED, Pool
-from tester.analysis.repeats import counting
 from tester.analysis.results import NOT_JUDGED, ConditionStatus, Judgement, RepeatResult, RepeatStatus
+from tester.analysis.schemes import Scheme
 from tester.recipe.stand import Mounted, Stand
 from tester.store.reader import RunReader
 from tester.store.records import NAN, PieceInfo, StoredCondition, StoredRepeat
@@ -76,9 +76,11 @@ def resume_point(reader: RunReader) -> ResumePoint:
     for repeat in reader.repeats(attempts=True):
         repeats.setdefault(repeat.condition, []).append(repeat)
     ended: set[int] = set()
+    schemes: dict[int, Scheme] = {}
     open_: dict[int, ConditionSoFar] = {}
     for stored in reader.conditions():
         number = stored.info.condition
+        schemes[number] = stored.info.scheme
         if stored.status not in (None, ConditionStatus.PENDING):
             ended.add(number)
         elif number in repeats:
@@ -91,7 +93,7 @@ def resume_point(reader: RunReader) -> ResumePoint:
         conditions=open_,
         reference_tare=_reference(reader),
         session=max((s.session for s in sessions), default=1) + 1,
-        pool=_pooled(repeats, ended),
+        pool=_pooled(repeats, ended, schemes),
     )
 
 
@@ -118,13 +120,13 @@ def _blocks(reader: RunReader, r: StoredRepeat) -> list[Block]:
     return blocks_from_samples(reader.samples(r.condition, r.repeat, r.attempt), reader.quantities())
 
 
-def _pooled(repeats: Mapping[int, list[StoredRepeat]], ended: set[int]) -> Pool:
+def _pooled(repeats: Mapping[int, list[StoredRepeat]], ended: set[int], schemes: Mapping[int, Scheme]) -> Pool:
     """Return the repeatability of the conditions that are over, in their order."""
     pool = Pool()
     for number in sorted(ended & repeats.keys()):
         last = {r.repeat: r.result for r in repeats[number] if r.result.status is not RepeatStatus.VOID}
-        results = list(last.values())
-        pool = pool.with_condition([results[i].mu_resultant for i in counting(results)])
+        scheme = schemes[number]
+        pool = pool.with_condition(scheme.values(list(last.values())), scheme.repeats_each)
     return pool
 
 

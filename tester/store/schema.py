@@ -426,6 +426,10 @@ CREATE {temporary}TABLE truth (
 """What a simulated rig knows of each repeat beside what was measured, where that was asked for (tester.run.truth). For
 tests that judge results: no reader gives it."""
 
+_BOTH_DIRECTIONS = "ALTER TABLE condition ADD COLUMN both_directions INTEGER;"
+"""1 where a condition's repeats alternate between the directions of sliding; NULL, as in every record begun before,
+where they do not."""
+
 _CONDITION = """
 DROP TABLE condition;
 CREATE TABLE condition (
@@ -464,6 +468,7 @@ MIGRATIONS: tuple[str, ...] = (
     _VERSION_8,
     _BUDGET_TERM.format(temporary=""),
     _TRUTH.format(temporary=""),
+    _BOTH_DIRECTIONS,
 )
 """Migration n leads from schema n to n + 1."""
 
@@ -485,6 +490,7 @@ _ADDED: dict[int, str] = {
     8: _AS_VERSION_7,
     9: _BUDGET_TERM,
     10: _TRUTH,
+    11: "",  # its readers take a column that is not there for NULL
 }
 """What versions have added, by version: what a connection to an older record can have for itself."""
 

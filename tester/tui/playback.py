@@ -115,7 +115,7 @@ class Playback:
             title=condition_words(condition.info.setpoint) if condition is not None else "between conditions",
             condition=len(begun), conditions=len(self.conditions),
             repeat=last.repeat if last is not None else 0,
-            repeats=condition.info.repeats if condition is not None else 0,
+            repeats=condition.info.repeats_planned if condition is not None else 0,
             revolutions=sum(_done(one, at_s) for one in bursts), revolutions_wanted=wanted or 0.0,
             burst=bursts[-1].number if bursts else 0,
             share=at_s / length_s, elapsed_s=at_s, left_s=max(length_s - at_s, 0.0),

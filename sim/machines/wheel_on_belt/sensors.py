@@ -1,7 +1,7 @@
 """The load cell under the belt, and what it makes of the truth.
 
 ``noise`` scales every imperfection; at 0 the cell gives the true value within its range. What is constant for a session
-(linearity, drift, crosstalk, misalignment) is drawn from the seed alone. Sizes: ``SensorParameters``.
+(sensitivity, linearity, drift, crosstalk, misalignment) is drawn from the seed alone. Sizes: ``SensorParameters``.
 """
 
 from __future__ import annotations
@@ -41,6 +41,8 @@ class LoadCellSensor:
         self._drift_n_k = tuple(math.copysign(noise * sensors.zero_drift, u) for u in draws[3:6])
         self._offsets_n = (0.0, 0.0, 0.0)
         self._matrix = _coupling(sensors, noise, draws[6:16])
+        if sensors.cell_sensitivity > 0.0:
+            self._matrix = _scaled(self._matrix, sensors.cell_sensitivity * noise, seed)
         self._reference_c = ambient_c
         self._time_s = sensors.cell_time
         self._warming = sensors.cell_warming
@@ -77,6 +79,12 @@ class LoadCellSensor:
         if -rx < x < rx and -ry < y < ry and -rz < z < rz:
             return x, y, z, mz
         return min(max(x, -rx), rx), min(max(y, -ry), ry), min(max(z, -rz), rz), mz
+
+
+def _scaled(matrix: tuple[float, ...], most: float, seed: int) -> tuple[float, ...]:
+    """Return what the channels see with the errors of their sensitivities, which a stream of its own draws."""
+    gains = [1.0 + most * u for u in uniforms(3, seed, "session cell sensitivity")]
+    return tuple(gains[place // 3] * entry for place, entry in enumerate(matrix))
 
 
 def _coupling(sensors: SensorParameters, noise: float, draws: list[float]) -> tuple[float, ...]:

@@ -99,6 +99,10 @@ class Held(NamedTuple):
         # Rounded to 1 nm/s: 0.8 - 0.3 is to be 0.5 in every output, not 0.5000000000000001.
         return round(self.wheel_speed_m_s - self.slip_velocity_m_s, 9)
 
+    def reversed(self) -> Held:
+        """Return the same with the slip the other way: the belt is faster by as much as it was slower."""
+        return self._replace(slip_velocity_m_s=-self.slip_velocity_m_s)
+
     @property
     def sideslip_deg(self) -> float:
         """Return the angle of the wheel's plane to the belt's travel, degrees."""

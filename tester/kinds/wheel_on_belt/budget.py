@@ -51,11 +51,15 @@ def known_slopes(plan: Plan) -> Iterator[KnownSlope]:
             yield found
 
 
-def instruments_budget(held: Held, mu: float, sliding_m_s: float, diameter_mm: float) -> Budget:
+def instruments_budget(
+    held: Held, mu: float, sliding_m_s: float, diameter_mm: float, *, both_directions: bool = False
+) -> Budget:
     """Return what the measuring chain adds to the uncertainty of a coefficient that is expected, on a new wheel."""
     found = known_slope(held.compound, held.temperature_c)
     slope = found.slope if found is not None else UNKNOWN
     means = {"wheel_speed_m_s": held.wheel_speed_m_s, "belt_speed_m_s": held.belt_speed_m_s}
-    at = BudgetPoint(mu, held.load_n, sliding_m_s, means, slope.per_kelvin, size=Size(diameter_mm))
+    turning = {"wheel_speed_m_s": 0.0, "belt_speed_m_s": -held.slip_velocity_m_s} if both_directions else None
+    size = Size(diameter_mm)
+    at = BudgetPoint(mu, held.load_n, sliding_m_s, means, slope.per_kelvin, size=size, turning=turning)
     chain = [one for one in TERMS if one.acts is not Acts.PIECE]
     return budget([*contributions_of(chain, at), SurfaceWarmth(slope=slope).contribution(mu, chain)])

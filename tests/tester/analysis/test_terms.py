@@ -55,6 +55,32 @@ def test_every_term_of_the_machine_is_looked_at_here() -> None:
     assert found().keys() == EXPECTED.keys()
 
 
+BOTH = replace(AT, turning={"wheel_speed_m_s": 0.0, "belt_speed_m_s": -0.3})
+"""Both directions: the belt at 0.5 and at 1.1 m/s."""
+LEFT = {
+    "cell crosstalk": MU * 0.005,
+    "cell zero, friction": sqrt(0.5),
+    "cell zero, load": sqrt(0.5),
+    "axis misalignment": MU * radians(0.5),
+    "wheel speed": 0.0,
+    "belt speed": 0.6,
+    "diameter as installed": 0.0,
+    "diameter worn off": 0.0,
+}
+"""Share that both directions leave of a term; of the others all."""
+
+
+@pytest.mark.parametrize("name", EXPECTED)
+def test_both_directions_leave_of_a_term_what_turns_round_with_the_sliding(name: str) -> None:
+    assert found(BOTH)[name] == pytest.approx(LEFT.get(name, 1.0) * EXPECTED[name], rel=1e-9, abs=1e-15)
+
+
+def test_both_directions_leave_a_hundredth_of_a_percent_of_misalignment_and_crosstalk() -> None:
+    left = found(BOTH)
+    assert 100.0 * left["axis misalignment"] / MU == pytest.approx(0.01, abs=0.003)
+    assert 100.0 * left["cell crosstalk"] / MU < 0.003
+
+
 def test_misalignment_is_1_27_percent_of_a_coefficient_of_three_quarters() -> None:
     assert 100.0 * found()["axis misalignment"] / MU == pytest.approx(1.27, abs=0.04)
 

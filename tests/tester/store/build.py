@@ -200,4 +200,5 @@ def without_channels(database: sqlite3.Connection) -> None:
     database.execute("DROP TABLE truth")
     for column in ("kind", "worn"):
         database.execute(f"ALTER TABLE run DROP COLUMN {column}")
+    database.execute("ALTER TABLE condition DROP COLUMN both_directions")
     database.execute("PRAGMA user_version = 7")

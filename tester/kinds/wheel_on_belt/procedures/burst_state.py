@@ -14,6 +14,7 @@ class Phase(Enum):
     READY = "wait for temperature"
     COOL = "cool lifted"
     MOVE_IN = "bring slip in"
+    RUN_IN = "run in reversed"
     COUNT = "measure"
     MOVE_OUT = "take slip out"
     LIFT = "lift"

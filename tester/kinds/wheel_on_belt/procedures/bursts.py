@@ -21,6 +21,7 @@ from tester.kinds.wheel_on_belt.axes import held_by
 from tester.kinds.wheel_on_belt.context import Context
 from tester.kinds.wheel_on_belt.procedures.burst_state import BurstNotes, Phase
 from tester.kinds.wheel_on_belt.procedures.motions import Lift, Load, TakeTare, Turn, Yaw
+from tester.kinds.wheel_on_belt.procedures.run_in import RunIn
 from tester.kinds.wheel_on_belt.procedures.thermal_steps import roll
 from tester.kinds.wheel_on_belt.quantities import QUANTITIES
 from tester.kinds.wheel_on_belt.recipe.steps import WheelCondition
@@ -77,6 +78,7 @@ _ROLL: Final = Phase.ROLL
 _READY: Final = Phase.READY
 _COOL: Final = Phase.COOL
 _MOVE_IN: Final = Phase.MOVE_IN
+_RUN_IN: Final = Phase.RUN_IN
 _COUNT: Final = Phase.COUNT
 _MOVE_OUT: Final = Phase.MOVE_OUT
 
@@ -85,12 +87,22 @@ class MeasureRepeat:
     """State object of one repeat."""
 
     def __init__(
-        self, step: WheelCondition, reference_tare: list[float], offset_k: float, quantities: Quantities = QUANTITIES
+        self,
+        step: WheelCondition,
+        reference_tare: list[float],
+        offset_k: float,
+        quantities: Quantities = QUANTITIES,
+        *,
+        reversed_slip: bool = False,
+        run_in_m: float = 0.0,
     ) -> None:
         """``offset_k``: how far below the setpoint its bursts start, from the repeat before; ``quantities``: the run's
-        table of channels."""
+        table of channels. ``reversed_slip``: slide the other way than is asked for; ``run_in_m``: slide so far before
+        anything counts."""
         self.condition = step
-        self.setpoint = held_by(step.setpoint)
+        held = held_by(step.setpoint)
+        self.setpoint = held.reversed() if reversed_slip else held
+        self.run_in = RunIn(run_in_m)
         self.offset_k = offset_k
         self.reference = reference_tare
         self.phase = Phase.TARE
@@ -150,7 +162,12 @@ class MeasureRepeat:
         elif phase is _MOVE_IN:
             ctx.demand.freeze_heat = True
             if self.moves.step(ctx):
-                self._begin_burst(ctx)
+                if self.run_in.left_m > 0.0:
+                    self._begin_run_in(ctx)
+                else:
+                    self._begin_burst(ctx)
+        elif phase is _RUN_IN:
+            self._run_in(ctx)
         elif phase is _MOVE_OUT:
             if self.moves.step(ctx):
                 self._to_ready(ctx)
@@ -243,6 +260,24 @@ class MeasureRepeat:
             # The belt's ramp is part of the burst: the gates say when samples count.
             self.moves = Sequence()
 
+    def _begin_run_in(self, ctx: Context) -> None:
+        """Bring the slip in for a pulse of which nothing counts: its samples belong to no burst."""
+        self.phase = Phase.RUN_IN
+        ctx.demand.belt_speed_m_s = self.belt_m_s
+        self._aim(ctx)
+        self.run_in.pulses += 1
+
+    def _run_in(self, ctx: Context) -> None:
+        ctx.moving = True
+        run_in = self.run_in
+        done = run_in.slide(ctx.readings.slip_m_s * ctx.dt)
+        if not done and ctx.gates.surface_now_c() < self.target_c + self.band_k:
+            return
+        if not done and run_in.pulses >= self.condition.max_bursts:
+            self._end(ctx, Ending.CANNOT_HOLD, f"{run_in.left_m:.1f} m of run-in left after {run_in.pulses} pulses")
+            return
+        self._move_out()
+
     def _begin_burst(self, ctx: Context) -> None:
         self.phase = Phase.COUNT
         self.bursts += 1
@@ -324,6 +359,9 @@ class MeasureRepeat:
                 f"{self.revolutions} revolutions in {self.bursts} bursts; {self._band_needed(ctx)}",
             )
             return
+        self._move_out()
+
+    def _move_out(self) -> None:
         self.phase = Phase.MOVE_OUT
         wheel = self.setpoint.wheel_speed_m_s
         if self.yawed:

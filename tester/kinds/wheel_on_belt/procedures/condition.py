@@ -9,6 +9,7 @@ from tester.analysis.stability import REPEAT_WINDOWS
 from tester.kinds.wheel_on_belt.axes import held_by
 from tester.kinds.wheel_on_belt.context import Context
 from tester.kinds.wheel_on_belt.procedures.bursts import MeasureRepeat
+from tester.kinds.wheel_on_belt.procedures.run_in import run_in_m, slides_reversed
 from tester.kinds.wheel_on_belt.procedures.thermal_steps import SoakTo, roll, soak_within_k
 from tester.kinds.wheel_on_belt.procedures.wear_check import CheckByRolling
 from tester.kinds.wheel_on_belt.procedures.zero_check import ZeroCheck, is_due
@@ -98,7 +99,7 @@ class MeasureCondition:
         """Advance by one scan; done when the condition is committed."""
         progress = ctx.progress
         progress.condition, progress.repeat = self.condition.condition, self.repeat
-        progress.repeats = max(self.condition.repeats, self.repeat)
+        progress.repeats = max(self.condition.repeats * self.condition.scheme.repeats_each, self.repeat)
         if not self.soaked:
             return self._soak(ctx)
         if self.outcome is not None:
@@ -151,7 +152,14 @@ class MeasureCondition:
         ctx.attendant.begin_repeat(self.condition.row, self.repeat, attempt)
         self.key = self.results.begin_repeat(ctx, self.condition, self.repeat, attempt)
         ctx.repeat_key = self.key
-        self.measuring = MeasureRepeat(self.condition, self.reference_tare, self.offset_k, ctx.quantities)
+        self.measuring = MeasureRepeat(
+            self.condition,
+            self.reference_tare,
+            self.offset_k,
+            ctx.quantities,
+            reversed_slip=slides_reversed(self.condition, self.repeat),
+            run_in_m=run_in_m(self.condition, self.repeat),
+        )
         ctx.progress.revolutions_wanted = REPEAT_WINDOWS * (self.condition.window.revolutions or 0.0)
 
     def _finish(self, ctx: Context, measured: MeasureRepeat) -> None:

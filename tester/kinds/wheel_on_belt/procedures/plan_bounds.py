@@ -24,6 +24,8 @@ def plan_bounds(plan: Plan, rig: RigConfig) -> Bounds:
             sp = held_by(step.setpoint)
             load, wheel = max(load, sp.load_n), max(wheel, sp.wheel_speed_m_s)
             belt, surface = max(belt, sp.belt_speed_m_s), max(surface, sp.temperature_c)
+            if step.both_directions:
+                belt = max(belt, sp.reversed().belt_speed_m_s)
             positions = {name: max(most, abs(sp.positions[name])) for name, most in positions.items()}
         elif isinstance(step, PreGrind):
             load, wheel = max(load, step.load_n), max(wheel, step.wheel_speed_m_s)

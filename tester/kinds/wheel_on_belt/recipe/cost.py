@@ -20,7 +20,7 @@ from tester.kinds.wheel_on_belt.axes import AXES, Held, held_by
 from tester.kinds.wheel_on_belt.recipe.body import Body
 from tester.recipe.estimate import StepEstimate
 from tester.recipe.plan import Soak, Window
-from tester.recipe.repeats import HISTORIC_PERCENT, Counted, expected
+from tester.recipe.repeats import HISTORIC_PERCENT, Counted, expected, repeats_each
 
 if TYPE_CHECKING:
     from tester.kinds.wheel_on_belt.recipe.constants import EstimateConstants
@@ -53,6 +53,11 @@ class Procedure(Counted, Protocol):
         """Most pulses a repeat."""
         ...
 
+    @property
+    def run_in_m(self) -> float:
+        """Sliding after a reversal that does not count, m."""
+        ...
+
 
 class ConditionMotion(NamedTuple):
     """What is settled before load and temperature are: a grid has few of them beside its conditions."""
@@ -75,8 +80,17 @@ class ConditionMotion(NamedTuple):
     """Moves around a pulse, beyond those around a repeat."""
     repeats: float
     """Expected, with those made up for."""
+    run_in_s: float
+    """Sliding after reversals, of a repeat in the mean."""
     swing_k: float
     """Rise during a pulse that starts below the setpoint and ends as far above it."""
+
+
+def _run_in_s(how: Procedure, repeats: float, slip_m_s: float) -> float:
+    """Return the sliding, s a repeat, that goes before a repeat after each reversal: once a pair, and once more."""
+    if not how.run_in_m or slip_m_s < ROLLING_M_S:
+        return 0.0
+    return how.run_in_m / slip_m_s * (0.5 * repeats + 1.0) / repeats
 
 
 class ConditionCosts:
@@ -137,7 +151,8 @@ class ConditionCosts:
     def of(self, setpoint: Setpoint, how: Procedure) -> StepEstimate:
         """Return what holding a setpoint takes when it is measured like this."""
         key = (
-            how.repeats, how.at_most, how.until_percent, how.window, how.temperature_band_k, how.soak, how.max_bursts
+            how.repeats, how.at_most, how.until_percent, how.window, how.temperature_band_k, how.soak, how.max_bursts,
+            how.both_directions, how.run_in_m,
         )  # fmt: skip
         if key != self._procedure:
             self._procedure = key
@@ -157,7 +172,7 @@ class ConditionCosts:
         motion = self._motions.get(key)
         if motion is None:
             motion = self._motions[key] = self._motion(held_by(sp), how)
-        model, cornering, slip_m_s, _, soak_s, window_s, edge_s, repeat_s, moves_s, repeats, _ = motion
+        model, cornering, slip_m_s, _, soak_s, window_s, edge_s, repeat_s, moves_s, repeats, run_in_s, _ = motion
         c = self.constants
         if slip_m_s < ROLLING_M_S:
             seconds = soak_s + repeats * (repeat_s + window_s)
@@ -168,7 +183,7 @@ class ConditionCosts:
         bursts, counted_s, held = self._bursts(motion, how, rise_k)
         if not held:
             repeats = 1.0
-        slide_s = counted_s + bursts * edge_s
+        slide_s = counted_s + bursts * edge_s + run_in_s
         sliding_m = repeats * slip_m_s * slide_s
         heat_w = self.rubber_share * power_w
         waiting_s = repeats * slide_s * self._cooling(temperature_c, heat_w)
@@ -195,18 +210,21 @@ class ConditionCosts:
         turn_s = self.turn_m / sp.wheel_speed_m_s
         yawed = sp.yawed
         model = self.models.get(sp.compound)
+        slip_m_s = slip_velocity(sp.wheel_speed_m_s, sp.belt_speed_m_s, sp.sideslip_deg)[2]
+        repeats = repeats_each(how) * expected(how, self.s_percent(sp.compound))
         collected = REPEAT_WINDOWS * c.surplus if how.repeats > ALONE else c.alone
         return ConditionMotion(
             model=model,
             cornering=1.0 if model is None else cornering_factor(sp.compound, sp.sideslip_deg),
-            slip_m_s=slip_velocity(sp.wheel_speed_m_s, sp.belt_speed_m_s, sp.sideslip_deg)[2],
+            slip_m_s=slip_m_s,
             turn_s=turn_s,
             soak_s=how.soak.for_s + c.next_condition_s,
             window_s=collected * how.window.duration_s(1.0 / turn_s),
             edge_s=(c.yawed_slide_s if yawed else c.burst_edge_s) + c.split_turns * turn_s,
             repeat_s=0.0 if yawed else c.repeat_moves_s,
             moves_s=c.yawed_moves_s + 2.0 * abs(sp.sideslip_deg) / c.yaw_deg_s if yawed else 0.0,
-            repeats=expected(how, self.s_percent(sp.compound)),
+            repeats=repeats,
+            run_in_s=_run_in_s(how, repeats, slip_m_s),
             swing_k=self.offset_k + min(how.temperature_band_k, self.offset_k),
         )
 
@@ -228,7 +246,7 @@ class ConditionCosts:
 
         ``rise_k`` is the surface's rise in K per square root of a second.
         """
-        _, _, _, turn_s, _, window_s, edge_s, _, _, _, swing_k = motion
+        _, _, _, turn_s, _, window_s, edge_s, _, _, _, _, swing_k = motion
         if rise_k <= 0.0:
             return 1, window_s, True
         c = self.constants

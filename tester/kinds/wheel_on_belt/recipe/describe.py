@@ -41,7 +41,8 @@ def words(step: Step, one: StepEstimate) -> str:
         case WheelCondition():
             held = condition_words(step.setpoint, compound=False)
             bursts = f", {one.bursts} bursts" if one.bursts > 1 else ""
-            return f"{step.condition:>4}  {held}  {repeats_words(step)} x {window_words(step.window)}{bursts}"
+            run_in = f", run-in {step.run_in_m:g} m" if step.both_directions and step.run_in_m else ""
+            return f"{step.condition:>4}  {held}  {repeats_words(step)} x {window_words(step.window)}{bursts}{run_in}"
         case Cool():
             return f"cool the hub below {step.hub_below_c:g} degC"
         case PromptStep():
@@ -74,6 +75,7 @@ def totals(plan: WheelPlan, estimate: Estimate) -> Iterator[str]:
     if math.isfinite(estimate.peak_c):
         yield f"peak temperature  {estimate.peak_c:.0f} degC on the rubber"
     yield from _telling(plan)
+    yield from _both_directions(plan)
     if estimate.not_held:
         listed = ", ".join(str(number) for number in estimate.not_held[:20])
         more = f" and {len(estimate.not_held) - 20} more" if len(estimate.not_held) > 20 else ""
@@ -89,11 +91,20 @@ def _telling(plan: WheelPlan) -> Iterator[str]:
     fewest = min((step.repeats for step in plan.conditions()), default=0)
     if not fewest:
         return
-    repeats = HISTORIC_PERCENT / math.sqrt(fewest)
+    each = min(step.scheme.repeats_each for step in plan.conditions())
+    repeats = HISTORIC_PERCENT / math.sqrt(fewest * each)
     needed = [(percent, pieces_needed(percent, BETWEEN_PERCENT, repeats)) for percent in TOLD_APART_PERCENT]
     words = ", ".join(f"{percent:g} % takes {count}" for percent, count in needed)
     have = max(step.replicate for step in plan.conditions())
     yield f"two compounds     to tell {words} wheels each (replicates; here {have})"
+
+
+def _both_directions(plan: WheelPlan) -> Iterator[str]:
+    """Yield how many conditions slide both ways, and how fast the belt runs for it."""
+    both = [step for step in plan.conditions() if step.both_directions]
+    if both:
+        fastest = max(held_by(step.setpoint).reversed().belt_speed_m_s for step in both)
+        yield f"both directions   {len(both)} conditions: repeats alternate + - - +, the belt at up to {fastest:g} m/s"
 
 
 def plan_fields(plan: WheelPlan, estimate: Estimate) -> dict[str, object]:
@@ -174,6 +185,7 @@ class WheelConditionJson(ConditionJson):
             "min_valid",
             "window",
             "temperature_band_k",
+            "both_directions",
             "bursts",
             "held",
             "sliding_m",
@@ -205,6 +217,7 @@ class WheelConditionJson(ConditionJson):
             step.min_valid,
             self.window(step.window),
             number[step.temperature_band_k],
+            "true" if step.both_directions else "false",
             one.bursts,
             "true" if one.held else "false",
             round(one.sliding_m, 3),

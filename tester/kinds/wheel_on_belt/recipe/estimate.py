@@ -28,7 +28,7 @@ from tester.kinds.wheel_on_belt.recipe.steps import (
 from tester.kinds.wheel_on_belt.recipe.wheel_change import TOUCH
 from tester.recipe.estimate import StepEstimate
 from tester.recipe.plan import ConditionStep, Plan, PromptStep, Step
-from tester.recipe.repeats import MADE_UP, POOLED_DF, SURE, expected
+from tester.recipe.repeats import MADE_UP, POOLED_DF, SURE, expected, repeats_each
 
 if TYPE_CHECKING:
     from tester.kinds.wheel_on_belt.rig import RigConfig
@@ -46,8 +46,9 @@ def _precision_range_s(plan: Plan, steps: Sequence[StepEstimate]) -> tuple[float
     for step, one in zip(plan.steps, steps, strict=True):
         if isinstance(step, WheelCondition) and step.until_percent is not None and one.repeats:
             moves_s = one.seconds - one.waiting_s
-            sooner_s += (1.0 - min(max(least * least, step.repeats / one.repeats), 1.0)) * moves_s
-            later_s += (max(min(most * most, step.at_most / one.repeats), 1.0) - 1.0) * moves_s
+            values = one.repeats / repeats_each(step)
+            sooner_s += (1.0 - min(max(least * least, step.repeats / values), 1.0)) * moves_s
+            later_s += (max(min(most * most, step.at_most / values), 1.0) - 1.0) * moves_s
     return sooner_s, later_s
 
 
@@ -129,10 +130,10 @@ class WheelEstimator:
 
     def _until(self, before: Before, step: WheelCondition, one: StepEstimate) -> StepEstimate:
         """Return an estimate with the repeats that a precision takes so early in a run: little is pooled yet."""
-        repeats = one.repeats
+        repeats, each = one.repeats, repeats_each(step)
         if one.held and before.pooled < POOLED_DF:
-            repeats = expected(step, self.costs.s_percent(step.setpoint.compound), before.pooled)
-        before.pooled += int(repeats) - 1
+            repeats = each * expected(step, self.costs.s_percent(step.setpoint.compound), before.pooled)
+        before.pooled += int(repeats) // each - 1
         if repeats == one.repeats:
             return one
         share = repeats / one.repeats
@@ -175,7 +176,8 @@ class WheelEstimator:
         if slip_m_s < ROLLING_M_S:
             return None
         mu = self.costs.mu(sp.compound, sp.temperature_c, sp.load_n, slip_m_s, sp.sideslip_deg)
-        return mu, instruments_budget(sp, mu, slip_m_s, self.diameter_mm)
+        both = step.both_directions
+        return mu, instruments_budget(sp, mu, slip_m_s, self.diameter_mm, both_directions=both)
 
     def shut_down_s(self, plan: Plan) -> float:
         """Return the seconds from the last step to standstill: a hot jacket is cooled turning."""

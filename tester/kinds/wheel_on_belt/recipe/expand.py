@@ -10,7 +10,7 @@ from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import accumulate, count
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from tester.axes import Setpoint
 from tester.kinds.wheel_on_belt.recipe.estimate import WheelEstimator
@@ -33,6 +33,9 @@ from tester.recipe.plan import PromptStep, Specimen
 
 if TYPE_CHECKING:
     from tester.kinds.wheel_on_belt.rig import RigConfig
+
+_ONE: Final[dict[str, bool]] = {}
+_BOTH: Final = {"both_directions": True}
 
 
 def expand(recipe: WheelRecipe, rig: RigConfig, estimator: WheelEstimator | None = None) -> WheelPlan:
@@ -203,6 +206,8 @@ class _Expansion:
                 wheel.number,
                 how.max_bursts,
                 how.wear_check,
+                how.run_in_m,
+                **(_BOTH if how.both_directions else _ONE),
             )
         )
 

@@ -255,9 +255,12 @@ class _Limits:
 
     def _slips(self, at: Location) -> Iterator[Problem]:
         belt_limit, most = self.rig.limits.belt_speed_m_s, self.rig.interlocks.max_slip_m_s
-        for slip, wheel in product(self._given((*at, "slip_velocity"), "m/s"), self._speeds(at)):
-            belt = round(wheel - slip.value, 9)
-            asked = f"slip_velocity: {show(slip.value, 'm/s')} at a wheel speed of {show(wheel, 'm/s')}"
+        for slip, wheel, sign in product(
+            self._given((*at, "slip_velocity"), "m/s"), self._speeds(at), (1.0, -1.0) if self._both(at) else (1.0,)
+        ):
+            belt = round(wheel - sign * slip.value, 9)
+            turned = ", reversed by both_directions," if sign < 0.0 else ""
+            asked = f"slip_velocity: {show(slip.value, 'm/s')}{turned} at a wheel speed of {show(wheel, 'm/s')}"
             if belt > belt_limit:
                 source = self._limit("limits.belt_speed", belt_limit, "m/s")
                 yield self.tree.problem(slip.at, f"{asked} needs {show(belt, 'm/s')} of the belt {source}")
@@ -270,6 +273,11 @@ class _Limits:
                 source = self._limit("interlocks.max_slip", most, "m/s")
                 nearer = f"leaves less than {show(off, 'm/s')}, by which the speeds may be off (gates.speed)"
                 yield self.tree.problem(slip.at, f"{asked} {nearer}, to what is ever loaded {source}")
+
+    def _both(self, at: Location) -> bool:
+        """Tell whether a grid is measured in both directions of slip."""
+        own = self._node((*at, "both_directions"))
+        return (self._node(("measure", "both_directions")) if own is None else own) is True
 
     def _speeds(self, at: Location) -> list[float]:
         own = self._given((*at, "wheel_speed"), "m/s") or self._given(("measure", "wheel_speed"), "m/s")

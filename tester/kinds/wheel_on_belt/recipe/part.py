@@ -14,6 +14,7 @@ from tester.kinds.wheel_on_belt.recipe.estimate import WheelEstimator
 from tester.kinds.wheel_on_belt.recipe.expand import expand
 from tester.kinds.wheel_on_belt.recipe.limits import limit_problems
 from tester.kinds.wheel_on_belt.recipe.remaining import remaining
+from tester.kinds.wheel_on_belt.recipe.reversal import reversal_problems
 from tester.kinds.wheel_on_belt.recipe.schema import WheelGrid, WheelMeasure, WheelRecipe, for_wheels
 from tester.kinds.wheel_on_belt.recipe.settings import WheelSettings, wheel_settings
 from tester.kinds.wheel_on_belt.recipe.steps import Install, WheelPlan
@@ -49,7 +50,8 @@ class WheelPart(RecipePart):
             yield tree.problem((), "there is nothing to do: neither grids nor pre_grind")
 
     def sense(self, measure: MeasureModel, grid: GridModel, at: Location, tree: Tree) -> Iterator[Problem]:
-        """Yield each slip at which the belt would stand or run backwards."""
+        """Yield each slip at which the belt would stand or run backwards, and what cannot be reversed."""
+        yield from reversal_problems(measure, grid, at, tree)
         slips, speeds = grid.axes["slip_velocity"], grid.axes["wheel_speed"]
         for index, slip in enumerate(numbers(listed(grid, slips))):
             for wheel in numbers(values_of(speeds, measure, grid)):

@@ -13,6 +13,7 @@ from tester.recipe.schema import Band, GridModel, Load, MeasureModel, Recipe, Se
 
 Speed: TypeAlias = Annotated[float, Quantity("m/s", ge=LEAST_SPEED_M_S)]
 MaxBursts: TypeAlias = Annotated[int, Field(ge=1, le=10_000)]
+RunIn: TypeAlias = Annotated[float, Quantity("m", ge=0, le=1000)]
 WearCheckName: TypeAlias = Literal["never", "each_condition", "prompt"]
 
 
@@ -64,6 +65,10 @@ class WheelMeasure(MeasureModel, frozen=True):
     max_bursts: MaxBursts = 40
     """slip pulses in which a repeat may collect its window"""
     wear_check: WearCheckName = "never"
+    both_directions: bool = False
+    """repeats alternate between the slip asked for and its reverse (+ - - +); repeats, at_most and min_valid count pairs"""
+    run_in_after_reversal: RunIn = 0.0
+    """sliding that does not count after the slip has turned round, such as 5 m (default none)"""
 
 
 class WheelGrid(GridModel, frozen=True):
@@ -71,6 +76,8 @@ class WheelGrid(GridModel, frozen=True):
 
     max_bursts: MaxBursts | None = None
     wear_check: WearCheckName | None = None
+    both_directions: bool | None = None
+    run_in_after_reversal: RunIn | None = None
 
 
 class WheelRecipe(Recipe, frozen=True):

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TypeVar
 
 from tester.kinds.wheel_on_belt.recipe.schema import WheelGrid, WheelMeasure
 from tester.kinds.wheel_on_belt.recipe.steps import WearCheck
 from tester.recipe.schema import GridModel, MeasureModel
 from tester.recipe.settings import Settings, settings_of
+
+Said = TypeVar("Said", bool, float)
 
 
 @dataclass(frozen=True, slots=True)
@@ -16,6 +19,9 @@ class WheelSettings(Settings):
 
     max_bursts: int
     wear_check: WearCheck
+    run_in_m: float = 0.0
+    """Sliding after a reversal of the slip that does not count, m [A]: how far rubber takes to turn its abrasion pattern
+    round is not published for these compounds."""
 
 
 def wheel_settings(measure: MeasureModel, grid: GridModel) -> WheelSettings:
@@ -33,4 +39,10 @@ def wheel_settings(measure: MeasureModel, grid: GridModel) -> WheelSettings:
         common.soak,
         grid.max_bursts or measure.max_bursts,
         grid.wear_check or measure.wear_check,
+        _said(grid.run_in_after_reversal, measure.run_in_after_reversal),
+        both_directions=_said(grid.both_directions, measure.both_directions),
     )
+
+
+def _said(own: Said | None, common: Said) -> Said:
+    return common if own is None else own

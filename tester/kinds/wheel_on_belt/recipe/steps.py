@@ -82,6 +82,8 @@ class WheelCondition(ConditionStep):
     wheel: int
     max_bursts: int
     wear_check: WearCheck
+    run_in_m: float = 0.0
+    """Sliding after a reversal of the slip that does not count, m."""
 
 
 @dataclass(frozen=True, slots=True)

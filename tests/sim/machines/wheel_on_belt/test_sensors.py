@@ -90,6 +90,23 @@ def test_misalignment_turns_load_into_friction_by_its_angle() -> None:
     assert min(angles) < 0.0 < max(angles)
 
 
+def test_each_channel_shows_more_or_less_by_the_error_of_its_sensitivity() -> None:
+    shares: list[float] = []
+    for seed in range(60):
+        shown = cell(replace(PERFECT, cell_sensitivity=0.005), seed=seed).measure(*FORCES)
+        shares += [seen / true - 1.0 for seen, true in zip(shown[:3], FORCES, strict=False)]
+        back = cell(replace(PERFECT, cell_sensitivity=0.005), seed=seed).measure(*(-force for force in FORCES))
+        assert back[:3] == pytest.approx([-force for force in shown[:3]])
+    assert min(shares) < -0.0045 and 0.0045 < max(shares) <= 0.005
+
+
+def test_an_error_of_sensitivity_shifts_no_other_draw_of_a_session() -> None:
+    still = replace(SensorParameters(), force_rms=0.0, moment_rms=0.0, linearity=0.0)
+    without = cell(still, seed=5).measure(*FORCES)
+    nearly = cell(replace(still, cell_sensitivity=1e-12), seed=5).measure(*FORCES)
+    assert nearly == pytest.approx(without, rel=1e-11)
+
+
 def test_imperfections_of_a_session_come_from_the_seed_alone() -> None:
     still = replace(SensorParameters(), force_rms=0.0, moment_rms=0.0)
     assert cell(still, seed=5).measure(*FORCES) == cell(still, seed=5).measure(*FORCES)

@@ -1,0 +1,55 @@
+"""By what angle the load cell's axes seem to be off, from conditions that were measured in both directions.
+
+Half the sum of a pair's signed coefficients is theta (1 + mu^2) (``tester.analysis.directions``). One condition of
+three pairs knows it to some 0.2 degrees, because repeats differ by 2 %; so it is pooled over the session, which has one
+cell as it stands. Each condition weighs by its uncertainty, for which the relative scatter between pairs is pooled:
+
+    u_i = s mu_i / ((1 + mu_i^2) sqrt(n_i)),      theta = sum(theta_i / u_i^2) / sum(1 / u_i^2),      u^-2 = sum u_i^-2
+
+Crosstalk between load and friction looks the same, and is in it: the angle is what the budget calls misalignment and
+crosstalk together. It corrects nothing; the coefficients from both directions are free of it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from math import degrees, isfinite, sqrt
+
+from tester.analysis.quantiles import t_quantile
+from tester.analysis.repeats import ConditionResult
+from tester.analysis.results import NAN
+from tester.analysis.uncertainty import CONFIDENCE
+
+
+@dataclass(frozen=True, slots=True)
+class Misalignment:
+    """An apparent angle and its standard uncertainty, degrees, the degrees of freedom, and how many pairs it is of."""
+
+    deg: float = NAN
+    standard_deg: float = NAN
+    df: int = 0
+    pairs: int = 0
+
+    @property
+    def expanded_deg(self) -> float:
+        """Return the expanded uncertainty (95 %), degrees; NaN where no scatter is known."""
+        return t_quantile(0.5 + 0.5 * CONFIDENCE, float(self.df)) * self.standard_deg if self.df else NAN
+
+
+NOT_KNOWN = Misalignment()
+
+
+def misalignment(results: Iterable[ConditionResult]) -> Misalignment:
+    """Return the angle pooled over conditions; those without a value, or of one direction, say nothing."""
+    found = [(one.mu_resultant, one.both_ways) for one in results if one.ok and one.both_ways is not None]
+    found = [(mu, ways) for mu, ways in found if mu > 0.0]
+    if not found:
+        return NOT_KNOWN
+    df = sum(ways.pairs - 1 for _, ways in found)
+    squares = sum((ways.pairs - 1) * (ways.half_sum_s / mu) ** 2 for mu, ways in found if isfinite(ways.half_sum_s))
+    weights = [ways.pairs * ((1.0 + mu * mu) / mu) ** 2 for mu, ways in found]
+    angles = [ways.half_sum / (1.0 + mu * mu) for mu, ways in found]
+    angle = sum(w * a for w, a in zip(weights, angles, strict=True)) / sum(weights)
+    standard = sqrt(squares / df / sum(weights)) if df else NAN
+    return Misalignment(degrees(angle), degrees(standard), df, sum(ways.pairs for _, ways in found))

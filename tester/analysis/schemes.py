@@ -1,0 +1,192 @@
+"""How a condition's repeats make its values: each repeat one, or each pair of repeats that slide opposite ways.
+
+What measures, stores and shows a condition asks here and need not know which.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from math import hypot
+from typing import Final, Protocol
+
+from tester.analysis.blocks import Block
+from tester.analysis.closest import Combining
+from tester.analysis.directions import as_pairs, both_ways, halves, is_reversed
+from tester.analysis.judge import judge
+from tester.analysis.repeats import BY_HAND, ConditionResult, Exclusion, combine_repeats, counting
+from tester.analysis.results import NOT_JUDGED, ConditionStatus, Judgement, RepeatResult, flags_in, joined
+
+_NOTHING: Final[Mapping[int, str]] = {}
+OTHER_HALF: Final = "the other repeat of its pair does not count"
+
+
+class Scheme(Protocol):
+    """From a condition's repeats, in order, to its values."""
+
+    repeats_each: int
+    """Repeats that make one value."""
+
+    def valid(self, results: Sequence[RepeatResult]) -> int:
+        """Return how many values there are of valid repeats."""
+        ...
+
+    def values(self, results: Sequence[RepeatResult]) -> list[float]:
+        """Return the coefficients that count."""
+        ...
+
+    def judge(
+        self,
+        results: Sequence[RepeatResult],
+        blocks: Sequence[Sequence[Block]],
+        planned: int,
+        revolutions: float | None,
+        seconds: float | None,
+    ) -> tuple[list[RepeatResult], Judgement]:
+        """Return repeats as judged, and what they say together (``tester.analysis.judge``)."""
+        ...
+
+    def combine(
+        self,
+        results: Sequence[RepeatResult],
+        planned: int,
+        min_valid: int = 3,
+        ended: ConditionStatus | None = None,
+        reason: str = "",
+        *,
+        judged: Judgement = NOT_JUDGED,
+        by_hand: Mapping[int, str] = _NOTHING,
+        combining: Combining = "mean",
+    ) -> ConditionResult:
+        """Return the condition's result (``tester.analysis.repeats``)."""
+        ...
+
+
+class EachRepeat:
+    """A value is a repeat."""
+
+    repeats_each = 1
+
+    judge = staticmethod(judge)
+    combine = staticmethod(combine_repeats)
+
+    def valid(self, results: Sequence[RepeatResult]) -> int:
+        """Return how many repeats are valid."""
+        return sum(result.valid for result in results)
+
+    def values(self, results: Sequence[RepeatResult]) -> list[float]:
+        """Return the coefficients of the repeats that count."""
+        return [results[i].mu_resultant for i in counting(results)]
+
+
+class OppositePairs:
+    """A value is half the difference of a repeat as asked for and a reversed one; planned and least are pairs.
+
+    A pair of which one repeat does not count does not: another pair makes up for it, so that as many repeats slide
+    either way. Each direction has a drift of its own.
+    """
+
+    repeats_each = 2
+
+    def valid(self, results: Sequence[RepeatResult]) -> int:
+        """Return how many whole pairs are valid."""
+        return sum(pair.valid for pair in as_pairs(results, whole=True))
+
+    def values(self, results: Sequence[RepeatResult]) -> list[float]:
+        """Return the coefficients of the pairs that count."""
+        pairs = as_pairs(results, whole=True)
+        return [pairs[i].mu_resultant for i in counting(pairs)]
+
+    def judge(
+        self,
+        results: Sequence[RepeatResult],
+        blocks: Sequence[Sequence[Block]],
+        planned: int,
+        revolutions: float | None,
+        seconds: float | None,
+    ) -> tuple[list[RepeatResult], Judgement]:
+        """Judge each direction by its own repeats; return all of them, and what both say together."""
+        judged, said = list(results), list[Judgement]()
+        for backward in (False, True):
+            places = [i for i in range(len(results)) if is_reversed(i + 1) == backward]
+            if not places:
+                continue
+            own, judgement = judge([results[i] for i in places], [blocks[i] for i in places], planned, revolutions,
+                                   seconds)  # fmt: skip
+            said.append(judgement)
+            for place, one in zip(places, own, strict=True):
+                judged[place] = one
+        return judged, _together(said)
+
+    def combine(
+        self,
+        results: Sequence[RepeatResult],
+        planned: int,
+        min_valid: int = 3,
+        ended: ConditionStatus | None = None,
+        reason: str = "",
+        *,
+        judged: Judgement = NOT_JUDGED,
+        by_hand: Mapping[int, str] = _NOTHING,
+        combining: Combining = "mean",
+    ) -> ConditionResult:
+        """Return the result of a condition from its pairs; ``by_hand`` and what is excluded are places of repeats."""
+        pairs = as_pairs(results, whole=ended is None)
+        hands = {place // 2: why for place, why in by_hand.items() if place // 2 < len(pairs)}
+        found = combine_repeats(pairs, planned, min_valid, ended, reason, judged=judged, by_hand=hands,
+                                combining=combining)  # fmt: skip
+        out = {one.position: one.reason for one in found.excluded}
+        kept = [halves(results, pair) for pair in range(len(pairs)) if pair not in out]
+        kept = [(a, b) for a, b in kept if max(a, b) < len(results)]
+        excluded = [
+            Exclusion(place, _why(results, place, out[pair], by_hand))
+            for pair in sorted(out)
+            for place in sorted(halves(results, pair))
+            if place < len(results)
+        ]
+        return replace(
+            found,
+            excluded=tuple(excluded),
+            flagged=tuple(place for pair in found.flagged for place in sorted(halves(results, pair))),
+            both_ways=both_ways([(results[a], results[b]) for a, b in kept]) if kept else None,
+        )
+
+
+def _why(results: Sequence[RepeatResult], place: int, of_pair: str, by_hand: Mapping[int, str]) -> str:
+    """Return why a repeat of a pair that does not count is not in the mean."""
+    if place in by_hand:
+        return f"{BY_HAND}: {by_hand[place]}"
+    one = results[place]
+    if not one.valid:
+        return f"{one.status.value}{': ' + one.reason if one.reason else ''}"
+    other = place ^ 1
+    if other in by_hand or other >= len(results) or not results[other].valid:
+        return OTHER_HALF
+    return of_pair
+
+
+def _together(said: Sequence[Judgement]) -> Judgement:
+    """Return what both directions say: of their mean the drift, of the less steady one the bound."""
+    made = [one for one in said if one.made]
+    flags = joined(flag for one in said for flag in flags_in(one.flags))
+    if len(made) < 2:
+        return replace(made[0] if made else NOT_JUDGED, flags=flags)
+    one, other = made
+    return Judgement(
+        drift_percent=0.5 * (one.drift_percent + other.drift_percent),
+        drift_error_percent=0.5 * hypot(one.drift_error_percent, other.drift_error_percent),
+        drift_bound_percent=max(one.drift_bound_percent, other.drift_bound_percent),
+        per_kelvin_percent=0.5 * (one.per_kelvin_percent + other.per_kelvin_percent),
+        repeat_windows=0.5 * (one.repeat_windows + other.repeat_windows),
+        trend_percent=0.5 * (one.trend_percent + other.trend_percent),
+        flags=flags,
+    )
+
+
+EACH: Final[Scheme] = EachRepeat()
+PAIRS: Final[Scheme] = OppositePairs()
+
+
+def scheme_of(*, both_directions: bool) -> Scheme:
+    """Return how repeats make values."""
+    return PAIRS if both_directions else EACH
