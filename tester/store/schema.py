@@ -426,6 +426,19 @@ CREATE {temporary}TABLE truth (
 """What a simulated rig knows of each repeat beside what was measured, where that was asked for (tester.run.truth). For
 tests that judge results: no reader gives it."""
 
+_TRAVEL = """
+CREATE {temporary}TABLE travel (
+    id INTEGER PRIMARY KEY,
+    wheel INTEGER NOT NULL,
+    repeat_id INTEGER NOT NULL,
+    counterface_m REAL,
+    piece_m REAL,
+    UNIQUE (wheel, repeat_id)
+);
+"""
+"""How far the counterface had travelled under load since the run began, and how far what was mounted had slid, as each
+repeat began. With ``repeat_id`` 0: as the state of what is mounted was recorded last."""
+
 _CONDITION = """
 DROP TABLE condition;
 CREATE TABLE condition (
@@ -464,6 +477,7 @@ MIGRATIONS: tuple[str, ...] = (
     _VERSION_8,
     _BUDGET_TERM.format(temporary=""),
     _TRUTH.format(temporary=""),
+    _TRAVEL.format(temporary=""),
 )
 """Migration n leads from schema n to n + 1."""
 
@@ -485,6 +499,7 @@ _ADDED: dict[int, str] = {
     8: _AS_VERSION_7,
     9: _BUDGET_TERM,
     10: _TRUTH,
+    11: _TRAVEL,
 }
 """What versions have added, by version: what a connection to an older record can have for itself."""
 
