@@ -10,6 +10,7 @@ from math import isfinite
 from tester.analysis.closest import Combining, combining_of
 from tester.analysis.measurand import pooled, with_budget, with_budget_of_replicates
 from tester.analysis.reference import (
+    NAME,
     RESERVED,
     ControlChart,
     CounterfaceDrift,
@@ -207,12 +208,16 @@ class RunResults:
         for row in self.all_rows():
             yield from row.replicates
 
+    def valued(self) -> int:
+        """Return how many of the recipe's own rows have a value that can be trusted."""
+        return sum(row.result.ok for row in self.rows)
+
     def doubtful(self) -> list[TableRow]:
         """Return the rows whose value is to be taken with care."""
         return [row for row in self.rows if row.result.ok and row.result.doubts]
 
     def missing(self) -> list[TableRow]:
-        """Return the rows without a value that can be trusted."""
+        """Return the rows without a value that can be trusted, references among them."""
         return [row for row in self.all_rows() if not row.result.ok]
 
 
@@ -239,7 +244,11 @@ def results_of(reader: RunReader) -> RunResults:
         surroundings.watched(watch.drift)
         own = [one.info.condition for one, watches in zip(found, watching, strict=True) if not watches]
         doubts = doubted(watch.charts, own)
-        found = [_flagged(one) if one.info.condition in doubts else one for one in found]
+        found = [
+            _flagged(one, NAME if watches else OUT_OF_LIMITS)
+            if watches or one.info.condition in doubts else one
+            for one, watches in zip(found, watching, strict=True)
+        ]
     rows: list[TableRow] = []
     for _, group in groupby(found, key=lambda one: one.info.row):
         replicates = tuple(
@@ -276,9 +285,9 @@ def watch_of(references: Sequence[Measured], surroundings: SurroundingsOf, run: 
     return Watch(tuple(found), counterface_drift(found, known), control_charts(found, known))
 
 
-def _flagged(one: Measured) -> Measured:
-    """Return a condition with the flag that the reference after it was out of its limits."""
-    flags = joined([*flags_in(one.result.flags), OUT_OF_LIMITS])
+def _flagged(one: Measured, flag: str) -> Measured:
+    """Return a condition with one more flag."""
+    flags = joined([*flags_in(one.result.flags), flag])
     return replace(one, result=replace(one.result, flags=flags))
 
 
