@@ -174,6 +174,26 @@ class AbrasionParameters:
 
 
 @dataclass(frozen=True, slots=True)
+class CounterfaceParameters:
+    """What its travel under load does to the belt's grip, all [A]: its grains go blunt, hot rubber clogs them.
+
+    Blunting takes the same share of the grip in every metre. Above ``clogs_above`` a metre counts for more, by
+    ``clogging`` a kelvin of the rubber's surface; nothing wipes the belt clean again.
+    """
+
+    loss: Annotated[float, "1"] = 0.0  # share of the grip lost ...
+    loss_travel: Annotated[float, "m"] = 2000.0  # ... over this travel under load
+    clogging: Annotated[float, "1/K"] = 0.02  # at 85 degC a metre counts for 1.5
+    clogs_above: Annotated[float, "degC"] = 60.0  # surface from which rubber smears
+
+    def __post_init__(self) -> None:
+        """Raise ValueError for values out of range."""
+        _refuse_below_zero(self, frozenset({"loss", "clogging", "clogs_above"}))
+        if self.loss >= 1.0:
+            raise ValueError("CounterfaceParameters.loss is a share of the grip, below 1")
+
+
+@dataclass(frozen=True, slots=True)
 class VariabilityParameters:
     """Relative standard deviations of the friction coefficient; ``SimParameters.scatter`` scales them all."""
 
@@ -251,6 +271,7 @@ class SimParameters:
     contact: ContactParameters = field(default_factory=ContactParameters)
     drives: DriveParameters = field(default_factory=DriveParameters)
     abrasion: AbrasionParameters = field(default_factory=AbrasionParameters)
+    counterface: CounterfaceParameters = field(default_factory=CounterfaceParameters)
     variability: VariabilityParameters = field(default_factory=VariabilityParameters)
     sensors: SensorParameters = field(default_factory=SensorParameters)
 

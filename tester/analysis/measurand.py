@@ -2,7 +2,8 @@
 
 **This piece in this condition** is the coefficient of what was mounted. It comes with the repeatability, with what
 moved meanwhile and with what the machine's chain is off by. **The compound** is what any piece of it would show: it
-comes with the difference from piece to piece as well, by the standard deviation between replicates, or as stated.
+comes with the difference from piece to piece as well, by the standard deviation between replicates, or as stated, and
+with what reference conditions say the counterface has changed.
 
 The repeatability is pooled over the conditions of the run (ISO 5725-2, 7.4.4): a standard deviation from three values
 has a coverage factor of 4.3, and is half or twice the true one by luck. A condition that scatters by more than the pool
@@ -18,8 +19,10 @@ from typing import Final
 
 from tester.analysis.kelvin import NO_WARMTH, SurfaceWarmth
 from tester.analysis.quantiles import f_quantile
+from tester.analysis.reference import CounterfaceDrift
 from tester.analysis.repeatability import NOTHING_POOLED, Pool
 from tester.analysis.repeats import ConditionResult
+from tester.analysis.results import NAN
 from tester.analysis.terms import NO_SIZE, Acts, BudgetPoint, Size, Term, contributions_of
 from tester.analysis.uncertainty import NO_BUDGET, Contribution, Unsteadiness, budget, contribution
 
@@ -42,6 +45,15 @@ class Surroundings:
     """Repeatability over the conditions of the run, this one among them."""
     warmth: SurfaceWarmth = NO_WARMTH
     size: Size = NO_SIZE
+    drift: CounterfaceDrift | None = None
+    """Of the counterface, where the run has reference conditions."""
+    travel_m: float = NAN
+    """Of the counterface, when this was measured."""
+
+    def counterface(self, mu: float) -> list[Contribution]:
+        """Return what the counterface's change contributes to the compound's coefficient."""
+        known = self.drift is not None and isfinite(self.travel_m)
+        return [self.drift.contribution(mu, self.travel_m)] if self.drift is not None and known else []
 
 
 def pooled(results: Sequence[ConditionResult]) -> Pool:
@@ -104,7 +116,7 @@ def with_budget(result: ConditionResult, by: Surroundings) -> ConditionResult:
         result,
         mu_corrected=by.warmth.corrected(mu, by.terms),
         budget=budget(this),
-        compound_budget=budget([*this, *between]),
+        compound_budget=budget([*this, *between, *by.counterface(mu)]),
     )
 
 
@@ -138,5 +150,5 @@ def with_budget_of_replicates(
         result,
         mu_corrected=sum(one.mu_corrected for one in kept) / n,
         budget=budget([*found, own]),
-        compound_budget=budget([*found, *between]),
+        compound_budget=budget([*found, *between, *by.counterface(mu)]),
     )

@@ -30,7 +30,11 @@ means, tell of a run-in."""
 IMPRECISE: Final = "precision not reached"
 """Flag of a condition that was to be repeated until its repeatability, and was not within its most repeats."""
 
-DOUBTS: Final = (NOT_SHOWN, SHORT, CARRY_OVER, IMPRECISE)
+OUT_OF_LIMITS: Final = "reference out of limits"
+"""Flag of a condition that was measured between a reference condition outside the limits of its control chart and the
+last good one before it."""
+
+DOUBTS: Final = (NOT_SHOWN, SHORT, CARRY_OVER, IMPRECISE, OUT_OF_LIMITS)
 """Flags that say that a value is to be taken with care."""
 
 _OLD_WORDS = frozenset({"rolling", "extended", "truncated"})

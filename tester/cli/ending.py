@@ -14,6 +14,7 @@ from rich.cells import cell_len
 from tester.analysis.trust import mark_of
 from tester.axes import Axis, plain
 from tester.cli.formatting import shown
+from tester.cli.watch import watch_lines
 from tester.export.results import RunResults, TableRow, results_of
 from tester.store.reader import RunReader
 from tester.store.schema import StoreError
@@ -62,6 +63,7 @@ def table_lines(results: RunResults, folder: Path) -> Iterator[str]:
         for cells, remarks in lines:
             yield from _line(cells, widths, remarks)
         yield shown(f"U: of this {results.worn} in this condition; conditions.csv has the compound's, too")
+    yield from (shown(line) for line in watch_lines(results))
     if len(tried) > ROWS_AT_MOST:
         yield f"and {len(tried) - ROWS_AT_MOST} more conditions: {folder / 'conditions.csv'}"
     if len(tried) < len(results.rows):

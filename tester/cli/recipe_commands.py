@@ -53,6 +53,7 @@ def check(recipe: str, rig_name: str, overrides: tuple[str, ...], accept_risk: s
     from tester.base.source import InvalidSource
     from tester.recipe.check import load_checked
     from tester.recipe.conditions import conditions_of
+    from tester.recipe.reference import REFERENCE, ReferenceSection
     from tester.run.kinds import recipe_part
     from tester.run.rigs import load_rig
 
@@ -71,7 +72,9 @@ def check(recipe: str, rig_name: str, overrides: tuple[str, ...], accept_risk: s
     if as_json:
         print_json({"valid": True, "problems": [], "conditions": count})
     else:
-        click.echo(f'{name}: valid on rig "{rig.name}", {count} conditions')
+        watched = isinstance(section := getattr(valid, REFERENCE, None), ReferenceSection)
+        every = f", a reference condition after every {section.every}" if watched else ""
+        click.echo(f'{name}: valid on rig "{rig.name}", {count} conditions{every}')
     say_packaged_keys(rig_name, overrides)
     return 0
 

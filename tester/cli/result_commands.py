@@ -106,6 +106,8 @@ def _trip(trip: StoredTrip) -> Json:
 
 
 def _summary(name: str, results: RunResults) -> dict[str, Json]:
+    from tester.cli.watch import watch_json
+
     run = results.run
     return {
         "run": name,
@@ -126,11 +128,11 @@ def _summary(name: str, results: RunResults) -> dict[str, Json]:
         "rig_seconds": number(run.rig_seconds),
         "overruns": run.overruns,
         "metadata": dict(run.info.metadata),
-        "rows": len(results.rows) - len(results.missing()),
+        "rows": results.valued(),
         "missing": [row.describe() for row in results.missing()],
         "conditions": [_condition(measured, results) for measured in results.conditions()],
         "wheels": [_wheel(wheel, results) for wheel in results.pieces],
-    }
+    } | watch_json(results)
 
 
 def _rate(found: WearRate) -> dict[str, Json]:
@@ -210,6 +212,7 @@ def _term(one: Contribution, r: ConditionResult) -> Json:
 
 def _lines(name: str, results: RunResults) -> Iterator[str]:
     from tester.cli.ending import risk_lines
+    from tester.cli.watch import watch_lines
 
     run = results.run
     yield f"{name}: {shown(run.info.recipe_name)}"
@@ -221,7 +224,7 @@ def _lines(name: str, results: RunResults) -> Iterator[str]:
         yield f"loaded   {shown(name)}: {shown(described)}"
     if run.overruns:
         yield f"overruns {run.overruns} samples dropped"
-    yield f"values   {len(results.rows) - len(results.missing())} of {len(results.rows)} conditions"
+    yield f"values   {results.valued()} of {len(results.rows)} conditions"
     for row in results.rows:
         if row.tried:
             yield shown(_row(row, results.worn))
@@ -229,6 +232,11 @@ def _lines(name: str, results: RunResults) -> Iterator[str]:
     left = sum(not row.tried for row in results.rows)
     if left:
         yield f"  {left} of {len(results.rows)} conditions not measured"
+    for row in results.references:
+        if row.tried:
+            yield shown(_row(row, results.worn))
+    for line in watch_lines(results):
+        yield shown(line)
     for line in results.wear_lines():
         yield shown(line)
 

@@ -34,7 +34,7 @@ def budget_rows(results: RunResults) -> Iterator[tuple[Cell, ...]]:
     """
     held = setpoint_header(results)
     yield (*_BUDGET[:2], *held, *_BUDGET[2:], f"share_this_{results.worn}", "share_compound")
-    for row in results.rows:
+    for row in results.all_rows():
         for measured in row.replicates:
             own = ("condition", measured.info.condition, *setpoints(measured.info, measured.info.replicate))
             yield from _budget(own, measured.result)

@@ -24,6 +24,7 @@ from tester.export.tables import (
     condition_rows,
     marked,
     piece_rows,
+    reference_rows,
     repeat_rows,
     sample_rows,
 )
@@ -112,6 +113,8 @@ FORMATS: dict[str, Format] = {
                _csv(lambda record: piece_rows(record.results)), lambda results: results.worn != PIECE),
         Format("wear", "wear.csv", "checks of diameters", _csv(lambda record: check_rows(record.results)),
                lambda results: bool(results.checks)),
+        Format("reference", "reference.csv", "reference conditions, with limits and drift",
+               _csv(lambda record: reference_rows(record.results)), lambda results: results.watch is not None),
         Format("samples", "samples.csv", "every sample", _csv(lambda record: sample_rows(record.reader))),
         Format("parquet", "samples.parquet", "every sample, for programs",
                lambda record, file: write_parquet(record.reader, file), is_text=False),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import groupby
 from math import isfinite
@@ -10,12 +10,32 @@ from math import isfinite
 from tester.analysis.closest import Combining, combining_of
 from tester.analysis.measurand import pooled, with_budget, with_budget_of_replicates
 from tester.analysis.misalignment import Misalignment, misalignment
+from tester.analysis.reference import (
+    NAME,
+    RESERVED,
+    ControlChart,
+    CounterfaceDrift,
+    Reference,
+    control_charts,
+    counterface_drift,
+    doubted,
+    is_reference,
+)
 from tester.analysis.repeats import ConditionResult, combine_replicates
-from tester.analysis.results import CARRY_OVER, IMPRECISE, NOT_SHOWN, SHORT, ConditionStatus
+from tester.analysis.results import (
+    CARRY_OVER,
+    IMPRECISE,
+    NOT_SHOWN,
+    OUT_OF_LIMITS,
+    SHORT,
+    ConditionStatus,
+    flags_in,
+    joined,
+)
 from tester.analysis.wear import ConditionWear, WearRate, condition_wear, wear_rate
 from tester.analysis.wear_check import WearCheck
 from tester.axes import Axes, condition_words
-from tester.export.surroundings import SurroundingsOf
+from tester.export.surroundings import Reduced, SurroundingsOf
 from tester.quantities import Quantities
 from tester.store import older
 from tester.store.catalogue import under_way
@@ -85,6 +105,26 @@ class TableRow:
         return f"{told}: {advice}" if advice else told
 
 
+@dataclass(frozen=True, slots=True)
+class Watch:
+    """What a run's reference conditions say: themselves, the counterface's drift, a control chart for each compound."""
+
+    references: tuple[Reference, ...]
+    drift: CounterfaceDrift | None
+    charts: tuple[ControlChart, ...]
+
+    def lines(self, worn: str) -> Iterator[str]:
+        """Yield what was found, for people; ``worn``: what they call a piece."""
+        if self.drift is not None:
+            yield self.drift.sentence(worn)
+        else:
+            yield "counterface: fewer than two references have a value, nothing is known of it"
+        for chart in self.charts:
+            outside = [f"{one.number}" for one in chart.points if isfinite(one.mu) and not one.within]
+            told = f"references of {chart.compound}: limits {chart.low:.4f} to {chart.high:.4f}"
+            yield f"{told}; outside: {', '.join(outside)}" if outside else f"{told}; all inside"
+
+
 _WHAT_TO_DO: Mapping[ConditionStatus, str] = {
     ConditionStatus.CANNOT_HOLD: "a wider temperature_band, a lower load or a lower speed would help",
     ConditionStatus.NOT_REACHED: "check heating and cooling, or allow more time (soak.at_most)",
@@ -95,6 +135,7 @@ _WHAT_OF_FLAGS: Mapping[str, str] = {
     CARRY_OVER: "the rubber was still running in: grind it longer before (pre_grind), then measure the condition again",
     NOT_SHOWN: "allow more repeats (repeats: at_most), or look for what drifts",
     SHORT: "allow more repeats (repeats: at_most)",
+    OUT_OF_LIMITS: "change or clean the counterface, then measure the condition again",
     IMPRECISE: "allow more repeats (repeats: at_most), or ask for less (until)",
 }
 
@@ -120,6 +161,10 @@ class RunResults:
     """What was mounted to be measured."""
     checks: tuple[WearCheck, ...] = ()
     """Of their diameters, in the order in which they were made."""
+    references: tuple[TableRow, ...] = ()
+    """Reference conditions, in the order in which they were planned: none of the recipe's own conditions."""
+    watch: Watch | None = None
+    """What they say; None without any."""
     record_head: str = ""
     """The last head of the record's chain, hexadecimal; "" where an older version recorded without one."""
 
@@ -163,18 +208,27 @@ class RunResults:
                 text += "" if found.resolved else ", not resolved from 0"
             yield text
 
+    def all_rows(self) -> Iterator[TableRow]:
+        """Yield the rows in recipe order, then the references."""
+        yield from self.rows
+        yield from self.references
+
     def conditions(self) -> Iterator[Measured]:
-        """Yield the conditions, in recipe order, replicates one after the other."""
-        for row in self.rows:
+        """Yield the conditions, in recipe order, replicates one after the other, then the references."""
+        for row in self.all_rows():
             yield from row.replicates
+
+    def valued(self) -> int:
+        """Return how many of the recipe's own rows have a value that can be trusted."""
+        return sum(row.result.ok for row in self.rows)
 
     def doubtful(self) -> list[TableRow]:
         """Return the rows whose value is to be taken with care."""
         return [row for row in self.rows if row.result.ok and row.result.doubts]
 
     def missing(self) -> list[TableRow]:
-        """Return the rows without a value that can be trusted."""
-        return [row for row in self.rows if not row.result.ok]
+        """Return the rows without a value that can be trusted, references among them."""
+        return [row for row in self.all_rows() if not row.result.ok]
 
 
 def results_of(reader: RunReader) -> RunResults:
@@ -189,8 +243,22 @@ def results_of(reader: RunReader) -> RunResults:
     found = [_measured(one, repeats.get(one.info.condition, []), left_out, combining) for one in stored]
     pieces, checks = tuple(reader.pieces()), tuple(reader.wear_checks())
     surroundings = SurroundingsOf(reader, run, pieces, checks, pooled([one.result for one in found]))
-    for one in found:
-        surroundings.add(one.info.setpoint, one.result)
+    watching = [is_reference(one.info.grid, run.info.metadata) for one in found]
+    for one, watches in zip(found, watching, strict=True):
+        if not watches:
+            surroundings.add(one.info.setpoint, one.result)
+    watch = None
+    if any(watching):
+        references = [one for one, watches in zip(found, watching, strict=True) if watches]
+        watch = watch_of(references, surroundings, run)
+        surroundings.watched(watch.drift)
+        own = [one.info.condition for one, watches in zip(found, watching, strict=True) if not watches]
+        doubts = doubted(watch.charts, own)
+        found = [
+            _flagged(one, NAME if watches else OUT_OF_LIMITS)
+            if watches or one.info.condition in doubts else one
+            for one, watches in zip(found, watching, strict=True)
+        ]
     rows: list[TableRow] = []
     for _, group in groupby(found, key=lambda one: one.info.row):
         replicates = tuple(
@@ -206,9 +274,31 @@ def results_of(reader: RunReader) -> RunResults:
         by = surroundings.of(replicates[0].info, measured, combined)
         rows.append(TableRow(replicates, with_budget_of_replicates(combined, results, by)))
     missing = any(not row.result.ok for row in rows)
+    ours = [row for row in rows if not is_reference(row.info.grid, run.info.metadata)]
+    references = [row for row in rows if is_reference(row.info.grid, run.info.metadata)]
     held = under_way(reader.path.parent) is not None
     status = run_status(run.status, held=held, missing=missing)
-    return RunResults(run, tuple(rows), status, reader.quantities(), pieces, checks, reader.record_head())
+    return RunResults(
+        run, tuple(ours), status, reader.quantities(), pieces, checks, tuple(references), watch, reader.record_head()
+    )
+
+
+def watch_of(references: Sequence[Measured], surroundings: SurroundingsOf, run: StoredRun) -> Watch:
+    """Return what the reference conditions of a run say; each with its coefficient at the temperature asked for."""
+    in_order = sorted(references, key=lambda one: one.info.condition)
+    found: list[Reference] = []
+    for number, one in enumerate(in_order, start=1):
+        result = with_budget(one.result, surroundings.of(one.info, one.repeats, one.result))
+        at = Reduced(one.condition.started_s, result)
+        found.append(surroundings.reference(number, one.info, one.repeats, at))
+    known = surroundings.known(RESERVED in run.info.metadata)
+    return Watch(tuple(found), counterface_drift(found, known), control_charts(found, known))
+
+
+def _flagged(one: Measured, flag: str) -> Measured:
+    """Return a condition with one more flag."""
+    flags = joined([*flags_in(one.result.flags), flag])
+    return replace(one, result=replace(one.result, flags=flags))
 
 
 def _measured(

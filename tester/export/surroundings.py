@@ -3,24 +3,33 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import isfinite
+from math import inf, isfinite, sqrt
+from typing import NamedTuple
 
 from tester.analysis.kelvin import UNKNOWN, Slope, SurfaceWarmth, slope_of_pairs
 from tester.analysis.measurand import Surroundings
+from tester.analysis.reference import CounterfaceDrift, Known, Reference
 from tester.analysis.repeatability import Pool
-from tester.analysis.repeats import ConditionResult
+from tester.analysis.repeats import REPEATABILITY, ConditionResult
 from tester.analysis.results import NAN
-from tester.analysis.terms import NO_SIZE, Size, with_settings
+from tester.analysis.terms import NO_SIZE, Acts, Size, with_settings
 from tester.analysis.wear_check import WearCheck
 from tester.axes import AxisValue, Setpoint
 from tester.store.reader import RunReader
-from tester.store.records import ConditionInfo, PieceInfo, StoredRepeat, StoredRun
+from tester.store.records import ConditionInfo, PieceInfo, StoredRepeat, StoredRun, Travel
 from tester.store.schema import StoreError
 
 _Held = tuple[str, tuple[AxisValue, ...]]
 """What conditions of a pair have in common: the compound, and every axis but temperature."""
 _SAME_K = 0.5
 """What is known of a compound holds this near to its temperature."""
+
+
+class Reduced(NamedTuple):
+    """A condition's result, and the rig time at which it began."""
+
+    started_s: float
+    result: ConditionResult
 
 
 class SurroundingsOf:
@@ -45,6 +54,8 @@ class SurroundingsOf:
         self._checks = [one for one in checks if one.used]
         self._pool = pool
         self._warming = reader.warming()
+        self._travels = reader.travels()
+        self._drift: CounterfaceDrift | None = None
         quantities = reader.quantities()
         role = quantities.roles.temperature
         screen = quantities[role].screen if role else None
@@ -59,7 +70,45 @@ class SurroundingsOf:
     def of(self, info: ConditionInfo, repeats: Sequence[StoredRepeat], result: ConditionResult) -> Surroundings:
         """Return what the uncertainty of a condition, or of replicates of one, comes from."""
         warmth = self._warmth(info.setpoint, repeats, result.measured.temperature)
-        return Surroundings(self.terms, self._pool, warmth, self._size(repeats))
+        travel_m = self._travel(repeats).counterface_m
+        return Surroundings(self.terms, self._pool, warmth, self._size(repeats), self._drift, travel_m)
+
+    def reference(self, number: int, info: ConditionInfo, repeats: Sequence[StoredRepeat], at: Reduced) -> Reference:
+        """Return a reference condition as the analysis wants it; ``at``: when it began, and its result."""
+        result, travel = at.result, self._travel(repeats)
+        n = max(result.n_valid, 1)
+        kept = [one.piece for one in repeats if one.result.valid]
+        return Reference(
+            number,
+            info.condition,
+            at.started_s,
+            info.compound,
+            kept[-1] if kept else 0,
+            result.mu_corrected if result.ok else NAN,
+            self._share() / sqrt(n),
+            travel.counterface_m,
+            travel.piece_m,
+        )
+
+    def known(self, reserved: bool) -> Known:
+        """Return what is known of scatter beside references."""
+        between = sum(one.standard for one in self.terms if one.acts is Acts.PIECE)
+        return Known(float(self._pool.df) if self._pool.df else inf, between, reserved)
+
+    def watched(self, drift: CounterfaceDrift | None) -> None:
+        """Take in what reference conditions say of the counterface."""
+        self._drift = drift
+
+    def _share(self) -> float:
+        return 0.01 * self._pool.s_percent if self._pool.df else REPEATABILITY
+
+    def _travel(self, repeats: Sequence[StoredRepeat]) -> Travel:
+        """Return how far counterface and piece had come at the mean of the repeats that count."""
+        found = [self._travels[one.key] for one in repeats if one.result.valid and one.key in self._travels]
+        if not found:
+            return Travel(NAN, NAN)
+        n = len(found)
+        return Travel(sum(one.counterface_m for one in found) / n, sum(one.piece_m for one in found) / n)
 
     def _held(self, held: Setpoint) -> _Held:
         return held.compound, tuple(axis.of(held) for axis in held.axes if axis.name != self._axis)

@@ -69,6 +69,21 @@ _REPEAT = (
     "ended_s",
 )
 
+_REFERENCE = (
+    "status",
+    "started_s",
+    "counterface_travel_m",
+    "piece_sliding_m",
+    "mu_corrected",
+    "u_expanded",
+    "centre",
+    "limit_low",
+    "limit_high",
+    "within",
+)
+
+_DRIFT = ("change_percent", "change_low_percent", "change_high_percent", "change_over_m", "told_apart")
+
 _WEAR = ("diameter_before_mm", "diameter_after_mm", "u_worn_mm", "wear_mm3_n_m", "wear_u_expanded")
 """Of a condition that lies between two checks of a diameter. ``u_worn_mm``: standard, of the difference."""
 
@@ -97,6 +112,9 @@ def marked(rows: Iterator[tuple[Cell, ...]], run: RunInfo) -> Iterator[tuple[Cel
 def appendix_rows(results: RunResults, decimals: int = 2) -> Iterator[tuple[Cell, ...]]:
     """Yield the paper's table: nominal setpoints, one row for each condition that has a value to be trusted.
 
+    Reference conditions are not in it: one setpoint many times over is no further condition of a compound, and who
+    plots or fits the table would count it as often.
+
     The paper's six columns, and one more for every axis that is off its default in any condition of the recipe.
     """
     axes = results.axes.columns(row.info.setpoint for row in results.rows)
@@ -122,7 +140,7 @@ def condition_rows(results: RunResults) -> Iterator[tuple[Cell, ...]]:
     means = _measured_header(results.quantities)
     own = ("level", "condition", *setpoint_header(results), *_CONDITION, *_measurands(results), *rate, *means, *_WEAR)
     yield (*own, *(key if key not in (*own, HEAD_COLUMN) else f"recipe_{key}" for key in metadata), HEAD_COLUMN)
-    for row in results.rows:
+    for row in results.all_rows():
         for measured in row.replicates:
             held = (measured.condition.warming_k_s, measured.condition.holdable_band_k)
             held_at = setpoints(measured.info, measured.info.replicate)
@@ -158,6 +176,36 @@ def repeat_rows(results: RunResults) -> Iterator[tuple[Cell, ...]]:
 def _direction(measured: Measured, repeat: StoredRepeat) -> str:
     turned = measured.info.both_directions and is_reversed(repeat.repeat)
     return REVERSED if turned else AS_ASKED
+
+
+def reference_rows(results: RunResults) -> Iterator[tuple[Cell, ...]]:
+    """Yield one row for each reference condition, in the order of measurement: the points of its control chart.
+
+    ``mu_corrected`` is at the temperature asked for, ``u_expanded`` its expanded repeatability (95 %); ``within`` is
+    empty where it has no value. What is found of the counterface is the same in every row: change over the travel
+    between the first and the last of them, per cent, with its interval (95 %), and whether it is told apart.
+    """
+    watch = results.watch
+    own = ("reference", "condition", results.worn, "compound", *(axis.column for axis in results.axes), *_REFERENCE)
+    yield (*own, *_DRIFT)
+    if watch is None:
+        return
+    points = {point.condition: (chart, point) for chart in watch.charts for point in chart.points}
+    drift = watch.drift
+    found: tuple[Cell, ...] = (None,) * len(_DRIFT)
+    if drift is not None:
+        found = (*drift.changed_percent(drift.over_m), drift.over_m, int(drift.apart))
+    rows = {row.info.condition: row for row in results.references}
+    for one in watch.references:
+        info = rows[one.condition].info
+        result = rows[one.condition].result
+        chart, point = points.get(one.condition, (None, None))
+        limits = (None, None, None) if chart is None else (chart.centre, chart.low, chart.high)
+        within = int(point.within) if point is not None and not isnan(point.mu) else None
+        expanded = None if point is None else point.expanded
+        held = (nominal(axis.of(info.setpoint)) for axis in info.setpoint.axes)
+        said = (result.status.value, one.t_s, one.counterface_m, one.piece_m, one.mu, expanded, *limits, within)
+        yield (one.number, one.condition, one.piece or None, one.compound, *held, *said, *found)
 
 
 def piece_rows(results: RunResults) -> Iterator[tuple[Cell, ...]]:

@@ -29,3 +29,5 @@ class Stand:
     begun: frozenset[int] = frozenset()
     """Conditions of which a repeat was begun, ended ones included."""
     mounted: tuple[Mounted, ...] = ()
+    travel_m: float = 0.0
+    """How far the counterface has travelled under load."""

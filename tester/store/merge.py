@@ -53,6 +53,7 @@ TABLES: dict[str, Merged] = {
     "bus_statistic": Merged(times=("t_s",), key="id"),
     "device_parameter": Merged(times=("t_s",), key="id"),
     "truth": Merged(key="id"),
+    "travel": Merged(key="id", repeat="repeat_id"),
 }
 """Tables that are filled while a run goes on, in the order in which they refer to each other."""
 

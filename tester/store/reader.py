@@ -43,6 +43,7 @@ from tester.store.records import (
     StoredRun,
     StoredTare,
     StoredTrip,
+    Travel,
 )
 from tester.store.sample_blocks import unpack, unpack_array
 from tester.store.schema import CHAINED, PIECE, NotBegunError, StoreError, migrate, reads_as_present, version_of
@@ -242,6 +243,16 @@ class RunReader:
             " WHERE revolutions > 1 GROUP BY repeat_id"
         )
         return {_whole(row, "repeat_id"): _number(row, "rate") for row in self._rows(sql)}
+
+    def travels(self) -> dict[int, Travel]:
+        """Return how far counterface and piece had come as each repeat began, by the repeat's key."""
+        rows = self._rows("SELECT * FROM travel WHERE repeat_id > 0")
+        return {_whole(row, "repeat_id"): _record(Travel, row) for row in rows}
+
+    def counterface_m(self) -> float:
+        """Return how far the counterface has travelled under load since the run began, m; 0 where nothing says."""
+        rows = self._rows("SELECT coalesce(max(counterface_m), 0.0) AS travel_m FROM travel")
+        return next(_number(row, "travel_m") for row in rows)
 
     def specimens(self) -> list[SpecimenInfo]:
         """Return the recipe's specimens."""

@@ -22,6 +22,7 @@ from tester.store.records import (
     RunInfo,
     SessionInfo,
     SpecimenInfo,
+    Travel,
 )
 from tester.store.schema import PIECE
 from tester.store.statements import (
@@ -204,6 +205,13 @@ class Recorder:
         at_s = t_s + self.origin_s
         sql = f"UPDATE {PIECE} SET diameter_mm = ?, sliding_m = ?, updated_s = ?, ground_s = ? WHERE {PIECE} = ?"
         self._write((sql, (diameter_mm, sliding_m, at_s, at_s, piece)), urgent=True)
+
+    def travelled(self, piece: int, travel: Travel, repeat_key: int = 0) -> None:
+        """Record how far counterface and piece have come: as a repeat begins, or (0) for a resumed run."""
+        first = {PIECE: piece, "repeat_id": repeat_key}
+        values = (travel.counterface_m, travel.piece_m, piece, repeat_key)
+        sql = f"UPDATE travel SET counterface_m = ?, piece_m = ? WHERE {PIECE} = ? AND repeat_id = ?"
+        self._write(insert("travel", first, "INSERT OR IGNORE"), (sql, values))
 
     def wear_check(self, check: WearCheck) -> None:
         """Record a check of a diameter."""

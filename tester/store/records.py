@@ -309,6 +309,14 @@ class StoredRepeat:
 
 
 @dataclass(frozen=True, slots=True)
+class Travel:
+    """How far the counterface had travelled under load since the run began, and a piece had slid, in m."""
+
+    counterface_m: float
+    piece_m: float
+
+
+@dataclass(frozen=True, slots=True)
 class StoredExclusion:
     """A person's word on a repeat: out of the mean (``excluded`` 1), or in again (0); ``id`` counts from 1.
 

@@ -89,7 +89,9 @@ def resume_point(reader: RunReader) -> ResumePoint:
     return ResumePoint(
         finished=run.status == WENT_THROUGH,
         origin_s=run.rig_seconds if isfinite(run.rig_seconds) else 0.0,
-        stand=Stand(frozenset(ended), frozenset(repeats), tuple(_pieces(reader.pieces(), repeats))),
+        stand=Stand(
+            frozenset(ended), frozenset(repeats), tuple(_pieces(reader.pieces(), repeats)), reader.counterface_m()
+        ),
         conditions=open_,
         reference_tare=_reference(reader),
         session=max((s.session for s in sessions), default=1) + 1,

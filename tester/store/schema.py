@@ -430,6 +430,19 @@ _BOTH_DIRECTIONS = "ALTER TABLE condition ADD COLUMN both_directions INTEGER;"
 """1 where a condition's repeats alternate between the directions of sliding; NULL, as in every record begun before,
 where they do not."""
 
+_TRAVEL = """
+CREATE {temporary}TABLE travel (
+    id INTEGER PRIMARY KEY,
+    wheel INTEGER NOT NULL,
+    repeat_id INTEGER NOT NULL,
+    counterface_m REAL,
+    piece_m REAL,
+    UNIQUE (wheel, repeat_id)
+);
+"""
+"""How far the counterface had travelled under load since the run began, and how far what was mounted had slid, as each
+repeat began. With ``repeat_id`` 0: as the state of what is mounted was recorded last."""
+
 _CONDITION = """
 DROP TABLE condition;
 CREATE TABLE condition (
@@ -469,6 +482,7 @@ MIGRATIONS: tuple[str, ...] = (
     _BUDGET_TERM.format(temporary=""),
     _TRUTH.format(temporary=""),
     _BOTH_DIRECTIONS,
+    _TRAVEL.format(temporary=""),
 )
 """Migration n leads from schema n to n + 1."""
 
@@ -491,6 +505,7 @@ _ADDED: dict[int, str] = {
     9: _BUDGET_TERM,
     10: _TRUTH,
     11: "",  # its readers take a column that is not there for NULL
+    12: _TRAVEL,
 }
 """What versions have added, by version: what a connection to an older record can have for itself."""
 

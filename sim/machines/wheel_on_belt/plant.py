@@ -22,6 +22,7 @@ from sim.physics.contact import ContactModel, Relaxation, Warmth
 from sim.physics.parameters import SimParameters
 from sim.physics.slip import cornering_factor, traction_direction
 from sim.physics.thermal import ThermalModel, ThermalState
+from sim.physics.wear import grip_kept
 from sim.sensors import SpeedSensor, TemperatureSensor
 
 _TURN: Final = 2.0 * pi
@@ -38,7 +39,8 @@ class Plant:
         "_arm_m", "_cold_factor", "_compound", "_cornering", "_cos", "_deficit", "_deficit_keep", "_dt", "_excess",
         "_flow", "_friction", "_grip", "_law", "_noise", "_place", "_relaxation", "_rotating_above", "_run_in_m",
         "_run_in_scale_m", "_scatter", "_seed", "_sideslip_deg", "_sin", "_stiffness", "_swing_mm", "_touch_mm",
-        "_warm_c", "_warmth", "_wear_per_width", "_within", "belt_speed", "cold_mm", "condition_factor",
+        "_blunts", "_warm_c", "_warmth", "_wear_per_width", "_within", "belt_grip", "belt_speed", "cold_mm",
+        "condition_factor",
         "diameter_mm", "drive_torque_nm", "force_x_n", "force_y_n", "force_z_n", "hub_sensor", "ir", "load_cell",
         "mu", "parameters", "run_factor", "size", "sliding_m", "slip_m_s", "surface_c", "wheel_angle_rev",
         "wheel_factor", "wheel_speed",
@@ -61,6 +63,9 @@ class Plant:
         self._rotating_above = p.thermal.rotating_above
         self._within = Autoregressive(p.scatter * p.variability.within, p.variability.within_time)
         self._grip = 1.0
+        self._blunts = p.counterface.loss > 0.0
+        self.belt_grip = 1.0
+        """What the belt has left of the grip that it began with; wheels come and go on it."""
         self._dt, self._deficit_keep = 0.0, 1.0
         self.set_relaxation(p.relaxation * p.contact.relaxation)
         self._sideslip_deg, self._cos, self._sin, self._cornering = 0.0, 1.0, 0.0, 1.0
@@ -161,16 +166,17 @@ class Plant:
         self._place = (specimen, wheel)
         self._key_streams()
 
-    def begin_repeat(self, condition: int, repeat: int, attempt: int) -> None:
+    def begin_repeat(self, condition: int, repeat: int, attempt: int, same_as: int = 0) -> None:
         """Draw the scatter of a repeat and start its streams of noise; all numbers 0 and up.
 
+        ``same_as``: the condition that this one is once more, and whose scatter it has; 0: it is one of its own.
         Raises RuntimeError when no wheel is installed.
         """
         if not self._compound:
             raise RuntimeError("a repeat needs a wheel: install one first")
         specimen, wheel = self._place[:2]
         place = (specimen, wheel, condition, repeat, attempt)
-        self.condition_factor = condition_factor(self.parameters, self._seed, self._compound, condition)
+        self.condition_factor = condition_factor(self.parameters, self._seed, self._compound, same_as or condition)
         self.run_factor = run_factor(self.parameters, self._seed, *place)
         self._scatter = self.wheel_factor * self.condition_factor * self.run_factor * self._grip
         self._place = place
@@ -180,7 +186,8 @@ class Plant:
         """Return what makes the coefficient of the repeat that has begun, and the state that it begins in.
 
         ``model``: of the compound at these setpoints; times ``condition`` and ``wheel`` it is this wheel's coefficient
-        in this condition, times ``run`` this repeat's, before noise, running-in and wear.
+        in this condition on the belt as it was at first, times ``belt`` on the belt as it is, times ``run`` this
+        repeat's, before noise, running-in and wear.
         """
         model = self._law.mu(temperature_c, load_n, slip_m_s) * cornering_factor(self._compound, sideslip_deg)
         return {
@@ -188,6 +195,7 @@ class Plant:
             "condition": self.condition_factor,
             "wheel": self.wheel_factor,
             "run": self.run_factor,
+            "belt": self.belt_grip,
             "surface_c": self.surface_c,
             "diameter_mm": self.diameter_mm,
         }
@@ -196,6 +204,10 @@ class Plant:
         """Let the belt transmit this share of the friction from now on: 1 in one piece, 0 torn."""
         self._grip = share
         self._scatter = self.wheel_factor * self.condition_factor * self.run_factor * share
+
+    def travel(self, travel_m: float, surface_c: float) -> None:
+        """Let the belt travel under load, m, below rubber of a surface temperature, degC: it goes blunt and clogs."""
+        self.belt_grip *= grip_kept(self.parameters.counterface, travel_m, surface_c)
 
     def set_runout(self, runout_mm: float) -> None:
         """Let the tread swing by this much, peak to peak in mm, once a turn."""
@@ -268,6 +280,8 @@ class Plant:
         elif relaxation is not None:
             relaxation.rest(dt)
         if load_n > 0.0:
+            if self._blunts:
+                self.travel(abs(belt_m_s * dt), self.surface_c)
             power_w = self._rub(dt, load_n, vx, vy)
         elif self.force_z_n > 0.0:
             self._release()
@@ -307,6 +321,8 @@ class Plant:
         sliding_m = self.sliding_m
         if sliding_m < self._run_in_m:
             mu *= 1.0 + self._excess * exp(-sliding_m / self._run_in_scale_m)
+        if self._blunts:
+            mu *= self.belt_grip
         mu *= 1.0 - self._deficit
         self._deficit *= self._deficit_keep
 

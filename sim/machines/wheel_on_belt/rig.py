@@ -215,15 +215,24 @@ class WheelRig:
         """Put a worn wheel on: diameter in mm, sliding distance in m; the rig is at ambient temperature."""
         self.plant.install(specimen, wheel, compound, True, diameter_mm, sliding_m)
 
+    def mount_again(self, specimen: int, wheel: int, compound: str, diameter_mm: float, sliding_m: float) -> None:
+        """Put a wheel back on that was on before: diameter in mm, sliding distance in m; the rig is as warm as it is."""
+        self._plant_s = self.world.now_s
+        self.plant.install(specimen, wheel, compound, False, diameter_mm, sliding_m)
+
+    def belt_travelled(self, travel_m: float) -> None:
+        """Have the belt on that an interrupted run has used, as far as its travel under load tells, m."""
+        self.plant.travel(travel_m, self.ambient_c)
+
     def truth(self, held: Mapping[str, float]) -> dict[str, float]:
         """Return what the plant knows of the repeat that has begun, at setpoints by axis (speeds m/s, N, deg, degC)."""
         belt_m_s = held["wheel_speed"] - held["slip_velocity"]
         slip_m_s = slip_velocity(held["wheel_speed"], belt_m_s, held["sideslip"])[2]
         return self.plant.truth(held["temperature"], held["load"], slip_m_s, held["sideslip"])
 
-    def begin_repeat(self, condition: int, repeat: int, attempt: int) -> None:
+    def begin_repeat(self, condition: int, repeat: int, attempt: int, same_as: int = 0) -> None:
         """Begin a repeat: the random streams, and the sensors' dither, start anew with it."""
-        self.plant.begin_repeat(condition, repeat, attempt)
+        self.plant.begin_repeat(condition, repeat, attempt, same_as)
         self.cell.dither = self.ir.dither = 0
         for sensor in self.sensors.values():
             sensor.dither = 0

@@ -23,10 +23,11 @@ from tester.kinds.wheel_on_belt.procedures.connection import WheelArming
 from tester.kinds.wheel_on_belt.procedures.gates import Gates
 from tester.kinds.wheel_on_belt.procedures.plan_bounds import plan_bounds
 from tester.kinds.wheel_on_belt.procedures.results import WheelResults
-from tester.kinds.wheel_on_belt.procedures.resume import take_up
+from tester.kinds.wheel_on_belt.procedures.resume import take_up, take_up_wheels
 from tester.kinds.wheel_on_belt.procedures.steps import WheelProcedures
 from tester.kinds.wheel_on_belt.procedures.wheel_life import WheelLife
 from tester.kinds.wheel_on_belt.process import Demand, Readings, Setpoints
+from tester.kinds.wheel_on_belt.recipe.steps import WheelPlan
 from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.kinds.wheel_on_belt.rig.sections import VELOCITY_AXES
 from tester.machine.connect import Connector
@@ -152,5 +153,6 @@ def build_run(
     serving = procedures(plan, results, hardware=not rig.simulated)
     if point is not None:
         take_up(serving, results, point)
+        take_up_wheels(ctx, WheelPlan.of(plan), point.stand)
     engine = Engine(devices, control, Executor(plan, serving), ctx, Sampler(recorder, quantities))
     return Run(Connector(devices, rig, WheelArming(devices, rig), rig.arming.listen_s), engine)

@@ -36,8 +36,19 @@ class Attendant(Protocol):
         """Put the wheel of an interrupted run back, as worn as it was (mm, m)."""
         ...
 
-    def begin_repeat(self, condition: int, repeat: int, attempt: int) -> None:
-        """Mark the start of a repeat (keys of the simulator's random streams)."""
+    def mount_again(self, specimen: int, wheel: int, compound: str, diameter_mm: float, sliding_m: float) -> None:
+        """Put a wheel back on that was on before in this run, as worn as it was (mm, m)."""
+        ...
+
+    def belt_travelled(self, travel_m: float) -> None:
+        """Have the belt on that an interrupted run has used, m of travel under load."""
+        ...
+
+    def begin_repeat(self, condition: int, repeat: int, attempt: int, same_as: int = 0) -> None:
+        """Mark the start of a repeat (keys of the simulator's random streams).
+
+        ``same_as``: the condition that this one is once more; 0: none.
+        """
         ...
 
 
@@ -50,7 +61,13 @@ class Nobody:
     def remount(self, specimen: int, wheel: int, compound: str, diameter_mm: float, sliding_m: float) -> None:
         """Do nothing: the wheel is still on."""
 
-    def begin_repeat(self, condition: int, repeat: int, attempt: int) -> None:
+    def mount_again(self, specimen: int, wheel: int, compound: str, diameter_mm: float, sliding_m: float) -> None:
+        """Do nothing: the prompt has been answered."""
+
+    def belt_travelled(self, travel_m: float) -> None:
+        """Do nothing: the belt is still on."""
+
+    def begin_repeat(self, condition: int, repeat: int, attempt: int, same_as: int = 0) -> None:
         """Do nothing."""
 
 
@@ -112,6 +129,10 @@ class Context(BaseContext[RigConfig, Readings, Demand]):
         self.heat = heat
         self.heat_known = heat_known
         self.quantities = quantities
+        self.shelf: dict[tuple[int, int], WheelLife] = {}
+        """The wheels that were taken off: the last of each specimen and replicate."""
+        self.belt_travel_m = 0.0
+        """How far the belt has travelled under load since the run began."""
         self._was_in_contact = contact.in_contact
         self._wear_mm3_per_n_m = rig.wear.rate_mm3_per_n_m
 
@@ -120,8 +141,12 @@ class Context(BaseContext[RigConfig, Readings, Demand]):
         self.wheel.show(self.readings, self.rig.wear)
 
     def after_reading(self) -> None:
-        """Account for what this scan's sliding takes off the wheel."""
+        """Account for what this scan's sliding takes off the wheel, and for the belt that passes below it."""
         r = self.readings
+        if r.force_z_n > CONTACT_N:
+            travelled_m = r.belt_speed_m_s * self.dt
+            if travelled_m > 0.0:  # also: it is a number
+                self.belt_travel_m += travelled_m
         if r.force_z_n > CONTACT_N and r.slip_m_s > SLIDING_M_S:
             self.wheel.slide(r.force_z_n, r.slip_m_s, self.dt, self._wear_mm3_per_n_m)
 

@@ -14,6 +14,7 @@ from tester.kinds.wheel_on_belt.context import Attendant, Nobody
 from tester.kinds.wheel_on_belt.heatings import known_heat
 from tester.kinds.wheel_on_belt.interlocks.heat_ratio import NO_HISTORY
 from tester.kinds.wheel_on_belt.left_on_rig import HeatHistory
+from tester.kinds.wheel_on_belt.procedures.results import record_state
 from tester.kinds.wheel_on_belt.procedures.steps import WheelProcedures
 from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.kinds.wheel_on_belt.split import split
@@ -82,10 +83,10 @@ class WheelRuns:
         return known_slopes(plan)
 
     def store_state(self, run: Run, recorder: Recorder, now_s: float) -> None:
-        """Store how worn the wheel is."""
-        wheel = run.engine.ctx.wheel
-        if wheel.wheel:
-            recorder.piece_state(wheel.wheel, wheel.cold_mm, wheel.sliding_m, now_s)
+        """Store how worn the wheel is, and how far belt and wheel have come."""
+        ctx = run.engine.ctx
+        if ctx.wheel.wheel:
+            record_state(recorder, ctx, now_s)
 
 
 RUNS: Final[KindRun] = WheelRuns()

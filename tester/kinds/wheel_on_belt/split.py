@@ -1,7 +1,7 @@
 """A plan as parts that do not depend on each other (docs/decisions/0015).
 
 On a simulated rig every specimen, and every replicate of it, is a part with a rig of its own that starts at time 0 and
-at ambient temperature.
+at ambient temperature. A plan with references is one part: they watch one belt from its first wheel to its last.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ def split(plan: Plan) -> tuple[Part, ...]:
     """Return the parts of a plan in its order; at least one."""
     starts = _starts(plan.steps)
     last_wheel = max((step.wheel for step in plan.steps if isinstance(step, Install)), default=0)
-    if len(starts) == 1:
+    if len(starts) == 1 or WheelPlan.of(plan).references:
         return (Part(1, plan, last_wheel),)
     parts: list[Part] = []
     for number, (begin, end) in enumerate(zip(starts, [*starts[1:], len(plan.steps)], strict=True), start=1):

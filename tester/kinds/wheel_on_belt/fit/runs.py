@@ -7,7 +7,8 @@ from pathlib import Path
 from statistics import median
 
 from tester.analysis.measurand import REPEATABILITY
-from tester.analysis.results import DOUBTS
+from tester.analysis.reference import NAME
+from tester.analysis.results import DOUBTS, flags_in
 from tester.analysis.terms import Acts, with_settings
 from tester.axes import condition_words
 from tester.export.results import Measured, results_of
@@ -58,6 +59,8 @@ def _reason(one: Measured) -> str:
     result, held = one.result, one.info.setpoint
     if not result.ok:
         return result.status.value
+    if NAME in flags_in(result.flags):
+        return "a reference condition: one setpoint many times over"
     if result.doubts:
         return ", ".join(flag for flag in result.doubts if flag in DOUBTS)
     unknown = [axis.name for axis in held.axes if axis.name not in _KNOWN and not axis.at_default(held)]

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from tester.kinds.wheel_on_belt.context import Context
 from tester.kinds.wheel_on_belt.procedures.results import WheelResults
 from tester.kinds.wheel_on_belt.procedures.steps import WheelProcedures
+from tester.kinds.wheel_on_belt.procedures.wheel_life import WheelLife
 from tester.kinds.wheel_on_belt.process import CELL
+from tester.kinds.wheel_on_belt.recipe.steps import WheelPlan
+from tester.recipe.stand import Stand
 from tester.store.resume import ResumePoint
 
 
@@ -21,3 +25,23 @@ def take_up(procedures: WheelProcedures, results: WheelResults, point: ResumePoi
     # that is half measured stays on its wheel, as in a run without an interruption.
     if wheels and wheels[-1].last_condition and point.next_repeat is None:
         procedures.measured_wheel = wheels[-1].number
+
+
+def take_up_wheels(ctx: Context, plan: WheelPlan, stand: Stand) -> None:
+    """Know the belt that is on, and the wheels that were: a plan with references puts them on again."""
+    ctx.belt_travel_m = stand.travel_m
+    if stand.travel_m > 0.0:
+        ctx.attendant.belt_travelled(stand.travel_m)
+    installed_mm, width_mm = ctx.wheel.installed_mm, ctx.wheel.width_mm
+    for one in stand.mounted:
+        ctx.shelf[(one.specimen, one.replicate)] = WheelLife(
+            specimen=one.specimen,
+            replicate=one.replicate,
+            wheel=one.number,
+            compound=plan.specimen(one.specimen).compound,
+            installed_mm=installed_mm,
+            width_mm=width_mm,
+            loss_mm=installed_mm - one.diameter_mm,
+            sliding_m=one.sliding_m,
+            condition=one.last_condition,
+        )

@@ -185,7 +185,7 @@ def title(step: Step) -> str:
     """Return a line that says what a step does."""
     match step:
         case Install():
-            return f"install wheel {step.wheel} ({step.compound})"
+            return f"{'mount again' if step.again else 'install'} wheel {step.wheel} ({step.compound})"
         case PreGrind():
             return f"pre-grind {step.duration_s / 60:g} min at {step.load_n:g} N"
         case Rest():

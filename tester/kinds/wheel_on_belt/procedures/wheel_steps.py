@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Final
 
 from tester.kinds.wheel_on_belt.context import Context
@@ -56,6 +57,8 @@ class InstallWheel:
         self.reference = reference_tare
         note = f" ({step.note})" if step.note else ""
         text = f"install wheel {step.wheel}: {step.compound}{note}"
+        if step.again:
+            text = f"mount wheel {step.wheel} again: {step.compound}{note}"
         if step.worn is not None:
             text = f"the run goes on with wheel {step.wheel}: {step.compound}{note}, mounted as it was"
         self.ask = AskAtRest(text)
@@ -95,7 +98,11 @@ class InstallWheel:
         if step.worn is not None:
             self._remount(ctx, step.worn)
             return
-        new_specimen = (old.specimen, old.replicate) != (step.specimen, step.replicate)
+        if old.wheel:
+            ctx.shelf[(old.specimen, old.replicate)] = old
+        if step.again and self._back_on(ctx):
+            return
+        new_specimen = old.wheel == 0
         ctx.attendant.install(step.specimen, step.wheel, step.compound, new_specimen=new_specimen)
         geometry = ctx.rig.geometry
         ctx.wheel = WheelLife(
@@ -121,6 +128,20 @@ class InstallWheel:
             updated_s=ctx.now,
         )
         ctx.journal.piece_mounted(record)
+
+    def _back_on(self, ctx: Context) -> bool:
+        """Go on with a wheel that was taken off: the last of its specimen. False where none was."""
+        step = self.install
+        wheel = ctx.shelf.pop((step.specimen, step.replicate), None)
+        if wheel is None:
+            return False
+        ctx.attendant.mount_again(wheel.specimen, wheel.wheel, wheel.compound, wheel.cold_mm, wheel.sliding_m)
+        # Where the press stood at its first check says nothing once it was off.
+        ctx.wheel = replace(wheel, reference=None, last_check=None)
+        ctx.contact.forget_contact()
+        ctx.wheel_changed(ctx.now)
+        ctx.readings.wheel_angle_rev = 0.0
+        return True
 
     def _remount(self, ctx: Context, worn: WornState) -> None:
         """Go on with a wheel as the store knows it: its record, its first tare and its number stay."""

@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator
 
 from tester.analysis.difference import pieces_needed
+from tester.analysis.reference import EVERY, RESERVED
 from tester.axes import Axes, condition_words
 from tester.kinds.wheel_on_belt.axes import held_by
 from tester.kinds.wheel_on_belt.budget import BETWEEN_PERCENT
@@ -29,7 +30,7 @@ def words(step: Step, one: StepEstimate) -> str:
     """Return one line that says what a step does."""
     match step:
         case Install():
-            return f"install wheel {step.wheel}"
+            return f"mount wheel {step.wheel} again" if step.again else f"install wheel {step.wheel}"
         case PreGrind():
             speeds = f"{step.wheel_speed_m_s:g} / {step.belt_speed_m_s:g} m/s"
             return f"pre-grind {duration(step.duration_s)}, {step.load_n:g} N, wheel / belt {speeds}"
@@ -42,7 +43,9 @@ def words(step: Step, one: StepEstimate) -> str:
             held = condition_words(step.setpoint, compound=False)
             bursts = f", {one.bursts} bursts" if one.bursts > 1 else ""
             run_in = f", run-in {step.run_in_m:g} m" if step.both_directions and step.run_in_m else ""
-            return f"{step.condition:>4}  {held}  {repeats_words(step)} x {window_words(step.window)}{bursts}{run_in}"
+            mark = "  reference" if step.same_as else ""
+            told = f"{repeats_words(step)} x {window_words(step.window)}{bursts}{run_in}{mark}"
+            return f"{step.condition:>4}  {held}  {told}"
         case Cool():
             return f"cool the hub below {step.hub_below_c:g} degC"
         case PromptStep():
@@ -52,18 +55,20 @@ def words(step: Step, one: StepEstimate) -> str:
 
 
 def heading(plan: WheelPlan, step: Install) -> str:
-    """Return what is on a wheel: compound, note, replicate, and what it is predicted to lose."""
+    """Return what is on a wheel: compound, note, replicate, and what it is predicted to lose in all."""
     replicated = any(one.replicate > 1 for one in plan.wear)
     note = f" ({step.note})" if step.note else ""
     replicate = f", replicate {step.replicate}" if replicated else ""
     worn = plan.wear[step.wheel - 1]
+    if step.again:
+        return f"wheel {step.wheel} again: {step.compound}{note}{replicate}"
     conditions = "1 condition" if worn.conditions == 1 else f"{worn.conditions} conditions"
     loss = f"{worn.loss_mm:.2f} mm of diameter"
     return f"wheel {step.wheel}: {step.compound}{note}{replicate}, {conditions}, {loss}"
 
 
 def _wheels(plan: WheelPlan) -> int:
-    return sum(isinstance(step, Install) for step in plan.steps)
+    return sum(isinstance(step, Install) and not step.again for step in plan.steps)
 
 
 def totals(plan: WheelPlan, estimate: Estimate) -> Iterator[str]:
@@ -76,6 +81,7 @@ def totals(plan: WheelPlan, estimate: Estimate) -> Iterator[str]:
         yield f"peak temperature  {estimate.peak_c:.0f} degC on the rubber"
     yield from _telling(plan)
     yield from _both_directions(plan)
+    yield from _references(plan)
     if estimate.not_held:
         listed = ", ".join(str(number) for number in estimate.not_held[:20])
         more = f" and {len(estimate.not_held) - 20} more" if len(estimate.not_held) > 20 else ""
@@ -107,6 +113,18 @@ def _both_directions(plan: WheelPlan) -> Iterator[str]:
         yield f"both directions   {len(both)} conditions: repeats alternate + - - +, the belt at up to {fastest:g} m/s"
 
 
+def _references(plan: WheelPlan) -> Iterator[str]:
+    """Yield how often the reference condition is measured, and at what: its axes may be defaults."""
+    first = next((step for step in plan.conditions() if step.same_as), None)
+    if first is not None:
+        held = condition_words(first.setpoint, compound=False)
+        reserved = plan.metadata.get(RESERVED)
+        on = f"on a wheel reserved for it ({reserved})" if reserved else "on whichever wheel is on"
+        every = f"after every {plan.metadata[EVERY]} conditions"
+        yield f"references        {plan.references} of {held},"
+        yield f"                  {every}, {on}"
+
+
 def plan_fields(plan: WheelPlan, estimate: Estimate) -> dict[str, object]:
     """Return what a plan's JSON says of wear and heat."""
     return {
@@ -115,6 +133,7 @@ def plan_fields(plan: WheelPlan, estimate: Estimate) -> dict[str, object]:
         "peak_c": round(estimate.peak_c, 2) if math.isfinite(estimate.peak_c) else None,
         "wheels": _wheels(plan),
         "replace_after_mm": plan.replace_after_mm,
+        **({"references": plan.references} if plan.references else {}),
     }
 
 
@@ -128,6 +147,7 @@ def step_fields(step: Step, one: StepEstimate) -> dict[str, object]:
                 "wheel": step.wheel,
                 "compound": step.compound,
                 "note": step.note,
+                **({"again": True} if step.again else {}),
             }
         case PreGrind():
             return {

@@ -24,6 +24,7 @@ from tester.kinds.wheel_on_belt.recipe.steps import (
     PreGrind,
     Rest,
     WheelCondition,
+    WheelPlan,
 )
 from tester.kinds.wheel_on_belt.recipe.wheel_change import TOUCH
 from tester.recipe.estimate import StepEstimate
@@ -121,12 +122,15 @@ class WheelEstimator:
 
         ``part``: specimen and replicate before, zeros for none. A rig of its own is at ambient, with nothing to cool.
         """
-        if not self.parts or part == (0, 0):
+        if not self._in_parts(plan) or part == (0, 0):
             return False
         step = plan.steps[place]
         if isinstance(step, Cool) and place + 1 < len(plan.steps):
             step = plan.steps[place + 1]
         return isinstance(step, Install) and (step.specimen, step.replicate) != part
+
+    def _in_parts(self, plan: Plan) -> bool:
+        return self.parts and not WheelPlan.of(plan).references
 
     def _until(self, before: Before, step: WheelCondition, one: StepEstimate) -> StepEstimate:
         """Return an estimate with the repeats that a precision takes so early in a run: little is pooled yet."""
@@ -182,9 +186,10 @@ class WheelEstimator:
     def shut_down_s(self, plan: Plan) -> float:
         """Return the seconds from the last step to standstill: a hot jacket is cooled turning."""
         last: dict[tuple[int, int], WheelCondition] = {}
+        parts = self._in_parts(plan)
         for step in plan.steps:
             if isinstance(step, WheelCondition):
-                last[(step.specimen, step.replicate) if self.parts else (0, 0)] = step
+                last[(step.specimen, step.replicate) if parts else (0, 0)] = step
         cool_c = self.body.mean_at_hub_c(self.cool_c)
         return math.fsum(
             min(

@@ -14,10 +14,10 @@ from typing import TYPE_CHECKING, Final
 
 from tester.axes import Setpoint
 from tester.kinds.wheel_on_belt.recipe.estimate import WheelEstimator
+from tester.kinds.wheel_on_belt.recipe.rounds import ReferenceRounds, ReservedWheel
 from tester.kinds.wheel_on_belt.recipe.schema import WheelRecipe
 from tester.kinds.wheel_on_belt.recipe.settings import WheelSettings, wheel_settings
 from tester.kinds.wheel_on_belt.recipe.steps import (
-    Heat,
     PreGrind,
     PreparePolicy,
     Rest,
@@ -26,7 +26,7 @@ from tester.kinds.wheel_on_belt.recipe.steps import (
     WheelStep,
     WheelWear,
 )
-from tester.kinds.wheel_on_belt.recipe.wheel_change import INSERTED, prepare_wheel
+from tester.kinds.wheel_on_belt.recipe.wheel_change import INSERTED, mount_again, prepare_wheel
 from tester.recipe.conditions import BlockValue, Condition, conditions_of, metadata_of, ordered
 from tester.recipe.estimate import StepEstimate
 from tester.recipe.plan import PromptStep, Specimen
@@ -111,9 +111,12 @@ class _Expansion:
         self.estimator = estimator
         self.prepare = _prepare(recipe, rig)
         self.conditions = conditions_of(recipe, wheel_settings)
+        self.references = ReferenceRounds(recipe, rig.ambient_c, len(self.conditions))
         self.steps: list[WheelStep] = []
         self.wheels: list[_Wheel] = []
         self.count = 0
+        self.at_c: float | None = None
+        """Surface of the wheel that is on, as the last steps left it; None of a new one."""
         self.every_condition = [one.prompt for one in recipe.steps if one.every == "condition"]
         self.every_temperature = [one.prompt for one in recipe.steps if one.every == "temperature"]
 
@@ -130,17 +133,20 @@ class _Expansion:
             costs = [cost(setpoint, one.settings) for setpoint, one in zip(setpoints, self.conditions, strict=True)]
             for replicate in range(1, recipe.replicates + 1):
                 self._replicate(specimen, replicate, setpoints, costs)
+        if self.references.reserved is not None and self.count:
+            self._on_reserved(self.references.reserved)
         return WheelPlan(
             name=recipe.recipe,
             kind=recipe.kind,
             axes=recipe.axes,
             steps=tuple(self.steps),
-            specimens=specimens,
+            specimens=(*specimens, *self.references.specimens),
             wear=tuple(wheel.wear() for wheel in self.wheels),
             replace_after_mm=recipe.wheel.replace_after,
             min_valid=min((one.settings.min_valid for one in self.conditions), default=1),
             prepare=self.prepare,
-            metadata=metadata_of(recipe),
+            metadata=metadata_of(recipe) | self.references.metadata,
+            references=self.references.made,
         )
 
     def _replicate(
@@ -148,24 +154,44 @@ class _Expansion:
     ) -> None:
         """Add all conditions of one replicate, on as many wheels as they wear; both lists go by row."""
         blocks = ordered(self.conditions, self.held, self.recipe.order, specimen.index, replicate)
+        watch = self.references.on_wheels
+        if watch is not None:
+            blocks = self.references.inserted(blocks, specimen.index, replicate)
+            setpoint = Setpoint(specimen.compound, watch.values, self.recipe.axes)
+            # Row 0, where the lists wrap round: the reference is the last of both.
+            setpoints, costs = [*setpoints, setpoint], [*costs, self.estimator.costs.of(setpoint, watch.settings)]
         losses = [[costs[one.row - 1].loss_mm for one in block] for block in blocks]
-        self._new_wheel(specimen, replicate, None)
-        changes = change_points(losses, self.wheels[-1].loss_mm, self.recipe.wheel.replace_after)
+        wheel = self._new_wheel(specimen, replicate, None)
+        changes = change_points(losses, wheel.loss_mm, self.recipe.wheel.replace_after)
         for block, points in zip(blocks, changes, strict=True):
             if 0 in points:
-                self._new_wheel(specimen, replicate, None)
-            temperature = self.held(block[0].values)
+                wheel = self._new_wheel(specimen, replicate, None)
             self._prompts(self.every_temperature)
-            self.steps.append(Heat(len(self.steps), temperature))
+            warm = False
             for position, one in enumerate(block):
+                held_c = self.held(one.values)
                 if position and position in points:
-                    self._new_wheel(specimen, replicate, temperature)
+                    wheel = self._new_wheel(specimen, replicate, held_c)
+                elif self.references.due_on_reserved():
+                    self._exchanged(wheel, specimen, held_c)
+                elif not warm or held_c != self.at_c:
+                    self.steps += self.references.heating(len(self.steps), self.at_c, held_c)
+                warm, self.at_c = True, held_c
+                if not one.row:
+                    self._measure(wheel, one, setpoints[-1], costs[-1], reference=True)
+                    continue
                 if self.every_condition:
                     self._prompts(self.every_condition)
-                self._measure(one, setpoints[one.row - 1], costs[one.row - 1])
+                self._measure(wheel, one, setpoints[one.row - 1], costs[one.row - 1])
 
-    def _new_wheel(self, specimen: Specimen, replicate: int, heat_c: float | None) -> None:
+    def _new_wheel(self, specimen: Specimen, replicate: int, heat_c: float | None) -> _Wheel:
+        if self.references.reserved is not None and self.conditions:
+            self._on_reserved(self.references.reserved)
+        return self._mount(specimen, replicate, heat_c)
+
+    def _mount(self, specimen: Specimen, replicate: int, heat_c: float | None) -> _Wheel:
         number = len(self.wheels) + 1
+        self.at_c = heat_c
         self.steps += prepare_wheel(
             self.prepare,
             specimen,
@@ -177,21 +203,62 @@ class _Expansion:
         )
         grind = self.prepare.pre_grind
         ground = self.estimator.pre_grind(grind, specimen.compound) if grind else StepEstimate(0.0)
-        self.wheels.append(_Wheel(number, specimen.index, replicate, ground.loss_mm, ground.sliding_m))
+        wheel = _Wheel(number, specimen.index, replicate, ground.loss_mm, ground.sliding_m)
+        self.wheels.append(wheel)
+        return wheel
 
-    def _measure(self, one: Condition[WheelSettings], setpoint: Setpoint, cost: StepEstimate) -> None:
+    def _on_reserved(self, reserved: ReservedWheel) -> None:
+        """Measure the reference condition on the wheel that is reserved for it."""
+        one, specimen = self.references.condition, self.references.specimens[0]
+        assert one is not None
+        held_c = self.held(one.values)
+        if not reserved.number:
+            wheel = self._mount(specimen, 1, held_c)
+            reserved.number = wheel.number
+        else:
+            wheel = self.wheels[reserved.number - 1]
+            self._remount(wheel, specimen, held_c)
+        setpoint = Setpoint(specimen.compound, one.values, self.recipe.axes)
+        self._measure(wheel, one, setpoint, self.estimator.costs.of(setpoint, one.settings), reference=True)
+
+    def _exchanged(self, wheel: _Wheel, specimen: Specimen, held_c: float) -> None:
+        """Put the reserved wheel on for a reference, then the present one again."""
+        assert self.references.reserved is not None
+        self._on_reserved(self.references.reserved)
+        self._remount(wheel, specimen, held_c)
+
+    def _remount(self, wheel: _Wheel, specimen: Specimen, held_c: float) -> None:
+        cool_c = self.references.hub_below_c(held_c)
+        numbers = count(len(self.steps))
+        self.steps += mount_again(specimen, wheel.replicate, wheel.number, held_c, cool_c, numbers=numbers)
+
+    def _measure(
+        self,
+        wheel: _Wheel,
+        one: Condition[WheelSettings],
+        setpoint: Setpoint,
+        cost: StepEstimate,
+        *,
+        reference: bool = False,
+    ) -> None:
         _, row, grid, how = one
-        wheel, steps = self.wheels[-1], self.steps
+        steps = self.steps
         wheel.conditions += 1
         wheel.loss_mm += cost.loss_mm
         wheel.sliding_m += cost.sliding_m
         self.count += 1
+        same_as = 0
+        if reference:
+            row, same_as = self.references.next_row()
+        else:
+            row += (wheel.specimen - 1) * len(self.conditions)
+            self.references.since += 1
         # By position: with names the call costs twice as much, and there may be 250,000 of them.
         steps.append(
             WheelCondition(
                 len(steps),
                 self.count,
-                (wheel.specimen - 1) * len(self.conditions) + row,
+                row,
                 wheel.specimen,
                 wheel.replicate,
                 grid,
@@ -207,6 +274,7 @@ class _Expansion:
                 how.max_bursts,
                 how.wear_check,
                 how.run_in_m,
+                same_as,
                 **(_BOTH if how.both_directions else _ONE),
             )
         )

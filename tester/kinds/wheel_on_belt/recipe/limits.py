@@ -19,6 +19,8 @@ from tester.axes import Axis
 from tester.base.source import Location, Problem, Tree, Value
 from tester.base.units import Quantity, UnitError, show, shown
 from tester.kinds.wheel_on_belt.axes import POSITIONED
+from tester.kinds.wheel_on_belt.recipe.reference import AT
+from tester.kinds.wheel_on_belt.recipe.schema import REFERENCE_HELD
 from tester.kinds.wheel_on_belt.rig.press import RIPPLE_N
 
 if TYPE_CHECKING:
@@ -86,7 +88,8 @@ class _Limits:
         said = self._given(("ambient",), "degC")
         self.ambient_c = said[0].value if said else rig.ambient_c
         self.ambient_from = "ambient of this recipe" if said else f'ambient of rig "{rig.name}"'
-        names = [self._node(("specimens", index, "compound")) for index in self._indices(("specimens",))]
+        places: list[Location] = [("specimens", index, "compound") for index in self._indices(("specimens",))]
+        names = [self._node(at) for at in (*places, (*AT, "compound"))]
         self.compounds = list(dict.fromkeys(name for name in names if isinstance(name, str)))
         self.models = {name: laws.make(rig.sim.friction_model, name) for name in self.compounds if name in KNOWN}
 
@@ -98,6 +101,9 @@ class _Limits:
         yield from self._wheel_speeds(("measure",))
         for index in self._indices(("grids",)):
             yield from self._grid(("grids", index))
+        if isinstance(self._node(AT), dict):
+            yield from self._grid(AT)
+            yield from self._compound((*AT, "compound"))
 
     # -- reading the tree -------------------------------------------------------------------------------------
 
@@ -120,7 +126,8 @@ class _Limits:
         """Return the readable quantities of an axis or a single value; an empty list where there is none."""
         node = self._node(at)
         if node is None:
-            return []
+            # A reference condition has defaults, which a rig may not be able to hold either.
+            return [Given(REFERENCE_HELD[at[1]], at)] if at[:1] == AT and at[1] in REFERENCE_HELD else []
         quantity = Quantity(unit)
         places = [((*at, index), one) for index, one in enumerate(node)] if isinstance(node, list) else [(at, node)]
         found: list[Given] = []
@@ -171,13 +178,15 @@ class _Limits:
 
     def _specimens(self) -> Iterator[Problem]:
         for index in self._indices(("specimens",)):
-            at = ("specimens", index, "compound")
-            name = self._node(at)
-            if self.rig.simulated and isinstance(name, str) and name not in KNOWN:
-                near = get_close_matches(name, KNOWN, 1)
-                meant = f", did you mean {near[0]}?" if near else ""
-                message = f"compound: the simulated rig has no friction model for {shown(name)}{meant}"
-                yield self.tree.problem(at, f"{message} (expected one of {', '.join(KNOWN)})")
+            yield from self._compound(("specimens", index, "compound"))
+
+    def _compound(self, at: Location) -> Iterator[Problem]:
+        name = self._node(at)
+        if self.rig.simulated and isinstance(name, str) and name not in KNOWN:
+            near = get_close_matches(name, KNOWN, 1)
+            meant = f", did you mean {near[0]}?" if near else ""
+            message = f"compound: the simulated rig has no friction model for {shown(name)}{meant}"
+            yield self.tree.problem(at, f"{message} (expected one of {', '.join(KNOWN)})")
 
     def _wheel_speeds(self, at: Location) -> Iterator[Problem]:
         for wheel in self._given((*at, "wheel_speed"), "m/s"):

@@ -13,6 +13,7 @@ from tester.kinds.wheel_on_belt.recipe import describe
 from tester.kinds.wheel_on_belt.recipe.estimate import WheelEstimator
 from tester.kinds.wheel_on_belt.recipe.expand import expand
 from tester.kinds.wheel_on_belt.recipe.limits import limit_problems
+from tester.kinds.wheel_on_belt.recipe.reference import reference_problems
 from tester.kinds.wheel_on_belt.recipe.remaining import remaining
 from tester.kinds.wheel_on_belt.recipe.reversal import reversal_problems
 from tester.kinds.wheel_on_belt.recipe.schema import WheelGrid, WheelMeasure, WheelRecipe, for_wheels
@@ -44,10 +45,12 @@ class WheelPart(RecipePart):
         return wheel_settings(measure, grid)
 
     def whole(self, recipe: Recipe | None, tree: Tree) -> Iterator[Problem]:
-        """Yield that there is nothing to do: grinding a wheel alone is something."""
+        """Yield that there is nothing to do: grinding a wheel alone is something; what a reference makes no sense in."""
         top = tree.data if isinstance(tree.data, dict) else {}
         if not top.get("grids") and top.get("pre_grind") is None:
             yield tree.problem((), "there is nothing to do: neither grids nor pre_grind")
+        if recipe is not None:
+            yield from reference_problems(for_wheels(recipe), tree)
 
     def sense(self, measure: MeasureModel, grid: GridModel, at: Location, tree: Tree) -> Iterator[Problem]:
         """Yield each slip at which the belt would stand or run backwards, and what cannot be reversed."""

@@ -3,7 +3,7 @@
 Goes on at the first condition that is not over, with the wheel that is on the rig if that is the one it is to be
 measured with: it is mounted as it is (worn), ground in only where that was not complete, rested where nothing had been
 measured on it, then heated again. Every specimen is looked at by itself, because a simulated run may measure them at
-the same time.
+the same time; but not with references, where all that comes after what is left first is left, too.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ def remaining(plan: WheelPlan, stand: Stand) -> WheelPlan:
     """Return the plan of what is left to do; without steps where nothing is."""
     steps: list[WheelStep] = []
     for segment in _segments(plan):
-        steps += _rest_of(plan, segment, stand)
+        steps += segment if steps and plan.references else _rest_of(plan, segment, stand)
     return replace(plan, steps=tuple(steps))
 
 

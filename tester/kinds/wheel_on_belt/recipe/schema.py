@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Annotated, Literal, TypeAlias
+from typing import Annotated, Final, Literal, TypeAlias
 
 from pydantic import Field, model_validator
 
 from tester.base.units import Quantity
-from tester.kinds.wheel_on_belt.axes import LEAST_SPEED_M_S
+from tester.kinds.wheel_on_belt.axes import AXES, LEAST_SPEED_M_S
+from tester.recipe.reference import ReferenceSection
 from tester.recipe.schema import Band, GridModel, Load, MeasureModel, Recipe, Seconds, Section, Temperature, Text
 
 Speed: TypeAlias = Annotated[float, Quantity("m/s", ge=LEAST_SPEED_M_S)]
@@ -80,6 +81,28 @@ class WheelGrid(GridModel, frozen=True):
     run_in_after_reversal: RunIn | None = None
 
 
+REFERENCE_HELD: Final = {"slip_velocity": 0.3, "load": 200.0, "temperature": 40.0}
+"""What a reference condition is held at unless the recipe says otherwise, m/s, N, degC: slip and load of the paper's
+middle condition, and a temperature that a hot wheel falls to within the hour and a cold one rises to within minutes
+[A]."""
+_WARMTH = AXES["temperature"]
+
+
+class ReferenceModel(ReferenceSection, frozen=True):
+    """A reference condition: without angles, and what is not said here is as in ``measure``."""
+
+    wheel: Text | None = None
+    """name of a wheel that is reserved for it; without one it is measured on whichever wheel is on"""
+    slip_velocity: Annotated[float, Quantity("m/s")] = REFERENCE_HELD["slip_velocity"]
+    """default 300 mm/s"""
+    load: Load = REFERENCE_HELD["load"]
+    """default 200 N"""
+    temperature: Annotated[float, Quantity("degC", ge=_WARMTH.ge, le=_WARMTH.le)] = REFERENCE_HELD["temperature"]
+    """default 40 degC"""
+    wheel_speed: Speed | None = None
+    """default: that of ``measure``"""
+
+
 class WheelRecipe(Recipe, frozen=True):
     """A recipe for this machine."""
 
@@ -89,6 +112,8 @@ class WheelRecipe(Recipe, frozen=True):
     grids: Sequence[WheelGrid] = ()
     steps: Annotated[Sequence[PersonStepModel], Field(max_length=100)] = ()
     wheel: WheelModel = WheelModel()
+    reference: ReferenceModel | None = None
+    """a condition measured again and again, to see what the belt does meanwhile"""
 
 
 def for_wheels(recipe: Recipe) -> WheelRecipe:

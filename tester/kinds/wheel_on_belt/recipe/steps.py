@@ -27,7 +27,8 @@ class WornState:
 class Install(Step):
     """A person mounts a wheel. ``wheel`` counts from 1 in the plan, ``replicate`` from 1 in a specimen.
 
-    ``worn``: the wheel is still on, as an interruption left it; None for a new one.
+    ``worn``: the wheel is still on, as an interruption left it; None for a new one. ``again``: it was on before, and
+    comes back as it was taken off.
     """
 
     kind: ClassVar[str] = "install"
@@ -37,6 +38,7 @@ class Install(Step):
     note: str = ""
     replicate: int = 1
     worn: WornState | None = None
+    again: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,13 +79,17 @@ class Heat(Step):
 
 @dataclass(frozen=True, slots=True)
 class WheelCondition(ConditionStep):
-    """A condition on a wheel: each repeat is collected in up to ``max_bursts`` contacts."""
+    """A condition on a wheel: each repeat is collected in up to ``max_bursts`` contacts.
+
+    ``same_as``: of a reference condition the row of the first, for all are the same condition; 0 of any other.
+    """
 
     wheel: int
     max_bursts: int
     wear_check: WearCheck
     run_in_m: float = 0.0
     """Sliding after a reversal of the slip that does not count, m."""
+    same_as: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -126,12 +132,16 @@ class PreparePolicy:
 
 @dataclass(frozen=True, slots=True)
 class WheelPlan(Plan):
-    """A whole recipe for wheels. ``replace_after_mm``: loss of diameter after which a wheel is replaced."""
+    """A whole recipe for wheels. ``replace_after_mm``: loss of diameter after which a wheel is replaced.
+
+    ``references``: how many of its conditions are references; they watch one belt through all of them.
+    """
 
     steps: tuple[WheelStep, ...]
     wear: tuple[WheelWear, ...] = ()
     replace_after_mm: float = 2.0
     prepare: PreparePolicy = field(default_factory=PreparePolicy)
+    references: int = 0
 
     @classmethod
     def of(cls, plan: Plan) -> WheelPlan:

@@ -10,6 +10,8 @@ from tester.base.units import show, shown
 from tester.kinds.wheel_on_belt.axes import AXES
 from tester.kinds.wheel_on_belt.recipe.cost import ConditionCosts
 from tester.kinds.wheel_on_belt.recipe.estimate import WheelEstimator
+from tester.kinds.wheel_on_belt.recipe.expand import expand
+from tester.kinds.wheel_on_belt.recipe.reference import AT
 from tester.kinds.wheel_on_belt.recipe.schema import WheelGrid, WheelRecipe
 from tester.kinds.wheel_on_belt.recipe.settings import wheel_settings
 from tester.kinds.wheel_on_belt.rig import RigConfig
@@ -42,7 +44,21 @@ def wear_problems(recipe: WheelRecipe, tree: Tree, rig: RigConfig) -> list[Probl
             wear = f"{worst:.2f} mm of diameter with {shown(compound)}, after {ground:.2f} mm of pre-grinding"
             message = f"a condition of this grid wears {wear}: more than replace_after, {show(allowed, 'mm')}"
             problems.append(tree.problem(("grids", index), message))
-    return problems
+    return problems + _watched(recipe, tree, rig)
+
+
+def _watched(recipe: WheelRecipe, tree: Tree, rig: RigConfig) -> list[Problem]:
+    """Return that all references together wear the wheel that is reserved for them out."""
+    if recipe.reference is None or recipe.reference.wheel is None:
+        return []
+    plan, allowed = expand(recipe, rig), recipe.wheel.replace_after
+    reserved = plan.wear[0]
+    if reserved.loss_mm <= allowed:
+        return []
+    wear = f"{reserved.loss_mm:.2f} mm of diameter in {reserved.conditions} references"
+    message = f"the reserved wheel wears {wear}: more than replace_after, {show(allowed, 'mm')}"
+    expected = "(expected fewer references, repeats or revolutions, or a lower load)"
+    return [tree.problem(AT, f"reference: {message} {expected}")]
 
 
 def _worst_loss_mm(recipe: WheelRecipe, grid: WheelGrid, compound: str, costs: ConditionCosts) -> float:

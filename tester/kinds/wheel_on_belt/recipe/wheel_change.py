@@ -73,3 +73,16 @@ def prepare_wheel(
     if heat_c is not None:
         steps.append(Heat(next(numbers), heat_c))
     return tuple(steps)
+
+
+def mount_again(
+    specimen: Specimen, replicate: int, wheel: int, heat_c: float, hub_below_c: float, *, numbers: Iterator[int]
+) -> tuple[WheelStep, ...]:
+    """Return the steps that put a wheel back on that was taken off before, and warm it: it has been ground in.
+
+    ``hub_below_c``: what the hub has to come down to so that the wheel can be held at ``heat_c``, degC.
+    """
+    cool = Cool(next(numbers), min(TOUCH.hub_below_c, hub_below_c))
+    place = next(numbers)
+    install = Install(place, specimen.index, wheel, specimen.compound, specimen.note, replicate, again=True)
+    return cool, install, Heat(next(numbers), heat_c)

@@ -1,0 +1,47 @@
+"""What a run's reference conditions say, on a terminal and as JSON."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import asdict
+
+from tester.analysis.reference import ControlChart, CounterfaceDrift
+from tester.cli.formatting import Json, number
+from tester.export.results import RunResults
+
+
+def watch_lines(results: RunResults) -> Iterator[str]:
+    """Yield a sentence on the counterface, and a line for each control chart; nothing without references."""
+    if results.watch is not None:
+        yield from results.watch.lines(results.worn)
+
+
+def watch_json(results: RunResults) -> dict[str, Json]:
+    """Return the same under ``reference``; no key without references."""
+    if results.watch is None:
+        return {}
+    drift = results.watch.drift
+    charts: list[Json] = [_chart(chart) for chart in results.watch.charts]
+    return {"reference": {"drift": None if drift is None else _drift(drift), "charts": charts}}
+
+
+def _drift(drift: CounterfaceDrift) -> Json:
+    change, low, high = drift.changed_percent(drift.over_m)
+    return {
+        "told_apart": drift.apart,
+        "over_m": number(drift.over_m),
+        "change_percent": number(change),
+        "change_low_percent": number(low),
+        "change_high_percent": number(high),
+        "references": drift.references,
+        "pieces": drift.pieces,
+    }
+
+
+def _chart(chart: ControlChart) -> Json:
+    points: list[Json] = [
+        {key: number(value) if isinstance(value, float) else value for key, value in asdict(one).items()}
+        for one in chart.points
+    ]
+    limits: dict[str, Json] = {"centre": number(chart.centre), "low": number(chart.low), "high": number(chart.high)}
+    return {"compound": chart.compound, **limits, "points": points}

@@ -1,0 +1,1 @@
+"""Is what a belt loses found, apart from what wheels do?"""
