@@ -229,7 +229,7 @@ def _lines(name: str, results: RunResults) -> Iterator[str]:
     left = sum(not row.tried for row in results.rows)
     if left:
         yield f"  {left} of {len(results.rows)} conditions not measured"
-    for line in results.wear_lines():
+    for line in (*results.angle_lines(), *results.wear_lines()):
         yield shown(line)
 
 
