@@ -263,6 +263,7 @@ class SimParameters:
     belt_conductance: Annotated[float, "W/K"] = 0.06  # rubber to belt in contact; 0.3 = hot rig
     ambient: Annotated[float, "degC"] = 23.0
     press_on_power_loss: PowerLoss = "retract"
+    mirrored: bool = False  # errors of a session's sensors with the other sign: two runs of a seed are off both ways
     record_truth: bool = False  # keep what the plant knows beside what was measured
     faults: tuple[str, ...] = ()  # a fault script (sim.faults.language)
     wheel: WheelParameters = field(default_factory=WheelParameters)

@@ -81,11 +81,12 @@ def _way(repeats: Sequence[RepeatResult]) -> SlidingWay:
 
 def mean_of_both_ways(given: Sequence[BothWays]) -> BothWays:
     """Return what stands for replicates, each of equal weight; deviations between pairs are pooled."""
-    ways = (_mean_way([getattr(one, side) for one in given]) for side in ("forward", "backward"))
+    forward, backward = _mean_way([one.forward for one in given]), _mean_way([one.backward for one in given])
     df = [one.pairs - 1 for one in given]
     squares = sum(n * one.half_sum_s**2 for n, one in zip(df, given, strict=True) if n)
     spread = (squares / sum(df)) ** 0.5 if sum(df) else float("nan")
-    return BothWays(*ways, sum(one.pairs for one in given), sum(one.half_sum for one in given) / len(given), spread)
+    half_sum = sum(one.half_sum for one in given) / len(given)
+    return BothWays(forward, backward, sum(one.pairs for one in given), half_sum, spread)
 
 
 def _mean_way(given: Sequence[SlidingWay]) -> SlidingWay:

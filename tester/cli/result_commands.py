@@ -235,9 +235,7 @@ def _lines(name: str, results: RunResults) -> Iterator[str]:
     for row in results.references:
         if row.tried:
             yield shown(_row(row, results.worn))
-    for line in watch_lines(results):
-        yield shown(line)
-    for line in results.wear_lines():
+    for line in (*watch_lines(results), *results.angle_lines(), *results.wear_lines()):
         yield shown(line)
 
 

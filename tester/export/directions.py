@@ -19,8 +19,8 @@ def direction_rows(results: RunResults) -> Iterator[tuple[Cell, ...]]:
     """Yield one row for each condition that was measured in both directions, and last one for the whole run.
 
     ``mu_difference_percent``: by how much the direction that was asked for shows more. The angle is that of the cell's
-    axes with crosstalk of load and friction in it (``tester.analysis.misalignment``); the row ``run`` has it pooled over
-    all conditions.
+    axes with crosstalk of load and friction in it (``tester.analysis.misalignment``); the row ``run`` has it pooled
+    over all conditions.
     """
     sides = (f"{name}_{side}" for side in _SIDES for name in _WAY)
     yield ("level", "condition", *setpoint_header(results), "pairs", *sides, "mu_difference_percent", *_ANGLE)

@@ -187,6 +187,14 @@ class RunResults:
         """Return by what angle the cell's axes seem to be off, over all conditions measured in both directions."""
         return misalignment(measured.result for measured in self.conditions())
 
+    def angle_lines(self) -> Iterator[str]:
+        """Yield by what angle the cell's axes seem to be off, in a line for people, where both directions tell it."""
+        found = self.misalignment()
+        if found.pairs:
+            known = f" ± {found.expanded_deg:.2f}" if isfinite(found.expanded_deg) else ""
+            told = f"the cell's axes seem to be off by {found.deg:+.2f}{known} deg (95 %, {found.pairs} pairs)"
+            yield f"both directions: {told}, crosstalk in it; the coefficients are free of it"
+
     def wear_of(self, piece: int) -> WearRate:
         """Return the wear rate over the life of what was mounted under a number."""
         return wear_rate([one for one in self.checks if one.piece == piece])

@@ -88,4 +88,5 @@ def expected(how: Counted, s_percent: float, df: int = POOLED_DF) -> float:
 def reached_percent(how: Counted, s_percent: float) -> float:
     """Return the expanded repeatability (95 %) expected of ``at_most`` repeats, per cent; inf for a single one."""
     n = how.at_most
-    return t_quantile(0.5 + 0.5 * CONFIDENCE, float(POOLED_DF)) * s_of_values(how, s_percent) / sqrt(n) if n > 1 else inf
+    t = t_quantile(0.5 + 0.5 * CONFIDENCE, float(POOLED_DF))
+    return t * s_of_values(how, s_percent) / sqrt(n) if n > 1 else inf

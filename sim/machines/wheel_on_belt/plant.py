@@ -93,9 +93,10 @@ class Plant:
     def _build_sensors(self) -> None:
         """Make the sensors with the imperfections of this session."""
         s, noise, seed = self.parameters.sensors, self.parameters.noise, self._seed
-        bias, wheel, belt = uniforms(3, seed, "session")
+        sign = -1.0 if self.parameters.mirrored else 1.0
+        bias, wheel, belt = (sign * u for u in uniforms(3, seed, "session"))
         unused = NormalStream(seed, "unused")  # _key_streams gives each its own
-        self.load_cell = LoadCellSensor(s, noise, seed, self.parameters.ambient)
+        self.load_cell = LoadCellSensor(s, noise, seed, self.parameters.ambient, sign)
         self.ir = TemperatureSensor(s.ir_time, noise * s.ir_rms, noise * s.ir_bias * bias, unused)
         self.hub_sensor = TemperatureSensor(s.hub_time, noise * s.hub_rms, 0.0, unused)
         self.wheel_speed = SpeedSensor(1.0 + noise * s.speed_scale * wheel, noise * s.speed_rms, unused)

@@ -29,9 +29,11 @@ class LoadCellSensor:
         "noise",
     )
 
-    def __init__(self, sensors: SensorParameters, noise: float, seed: int, ambient_c: float) -> None:
-        """Draw the session's imperfections; the zero is that at ambient temperature."""
-        draws = uniforms(16, seed, "session cell")
+    def __init__(
+        self, sensors: SensorParameters, noise: float, seed: int, ambient_c: float, sign: float = 1.0
+    ) -> None:
+        """Draw the session's imperfections; the zero is that at ambient temperature. ``sign``: -1 turns them round."""
+        draws = [sign * u for u in uniforms(16, seed, "session cell")]
         self._noisy = noise > 0.0
         self._ranges_n = (sensors.range_x, sensors.range_y, sensors.range_z)
         # A parabola through zero and the range's end, farthest off at half range, is a slope that falls with force.
@@ -42,7 +44,7 @@ class LoadCellSensor:
         self._offsets_n = (0.0, 0.0, 0.0)
         self._matrix = _coupling(sensors, noise, draws[6:16])
         if sensors.cell_sensitivity > 0.0:
-            self._matrix = _scaled(self._matrix, sensors.cell_sensitivity * noise, seed)
+            self._matrix = _scaled(self._matrix, sign * noise * sensors.cell_sensitivity, seed)
         self._reference_c = ambient_c
         self._time_s = sensors.cell_time
         self._warming = sensors.cell_warming

@@ -67,7 +67,7 @@ class WheelMeasure(MeasureModel, frozen=True):
     """slip pulses in which a repeat may collect its window"""
     wear_check: WearCheckName = "never"
     both_directions: bool = False
-    """repeats alternate between the slip asked for and its reverse (+ - - +); repeats, at_most and min_valid count pairs"""
+    """repeats alternate between the slip and its reverse (+ - - +); repeats, at_most and min_valid count pairs"""
     run_in_after_reversal: RunIn = 0.0
     """sliding that does not count after the slip has turned round, such as 5 m (default none)"""
 

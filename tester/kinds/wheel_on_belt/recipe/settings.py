@@ -20,8 +20,8 @@ class WheelSettings(Settings):
     max_bursts: int
     wear_check: WearCheck
     run_in_m: float = 0.0
-    """Sliding after a reversal of the slip that does not count, m [A]: how far rubber takes to turn its abrasion pattern
-    round is not published for these compounds."""
+    """Sliding after a reversal of the slip that does not count, m [A]: how far rubber takes to turn its abrasion
+    pattern round is not published for these compounds."""
 
 
 def wheel_settings(measure: MeasureModel, grid: GridModel) -> WheelSettings:

@@ -100,6 +100,13 @@ def test_each_channel_shows_more_or_less_by_the_error_of_its_sensitivity() -> No
     assert min(shares) < -0.0045 and 0.0045 < max(shares) <= 0.005
 
 
+def test_a_mirrored_session_is_off_by_as_much_the_other_way() -> None:
+    still = replace(SensorParameters(), force_rms=0.0, moment_rms=0.0, cell_sensitivity=0.005)
+    both = (LoadCellSensor(still, 1.0, 5, 23.0, sign).measure(*FORCES) for sign in (1.0, -1.0))
+    for true, one, other in zip(FORCES, *both, strict=True):
+        assert one + other == pytest.approx(2.0 * true, rel=3e-4) and (one != other or true == one)
+
+
 def test_an_error_of_sensitivity_shifts_no_other_draw_of_a_session() -> None:
     still = replace(SensorParameters(), force_rms=0.0, moment_rms=0.0, linearity=0.0)
     without = cell(still, seed=5).measure(*FORCES)

@@ -14,8 +14,8 @@ from tester.kinds.wheel_on_belt.recipe.steps import WheelCondition
 from tester.recipe.check import check
 from tester.recipe.describe import lines
 from tester.recipe.estimate import estimate
-from tester.recipe.loader import load_recipe
 from tester.recipe.plan_json import json_chunks
+from tests.tester.recipe.texts import recipe as read
 from tests.tester.recipe.texts import rig
 
 TEXT = """\
@@ -37,7 +37,7 @@ def problems(recipe: str) -> list[str]:
 
 
 def condition(recipe: str) -> WheelCondition:
-    return next(expand(load_recipe(recipe, PART, "r.yaml").recipe, rig()).conditions())
+    return next(expand(read(recipe), rig()).conditions())
 
 
 def test_a_recipe_in_both_directions_is_valid() -> None:
@@ -98,20 +98,20 @@ def test_a_precision_takes_as_many_repeats_in_both_directions() -> None:
 
 
 def test_the_plan_says_pairs_and_how_fast_the_belt_runs() -> None:
-    plan = expand(load_recipe(text(grid=", run_in_after_reversal: 5 m"), PART, "r.yaml").recipe, rig())
+    plan = expand(read(text(grid=", run_in_after_reversal: 5 m")), rig())
     said = "\n".join(lines(plan, estimate(plan, WheelEstimator(rig())), PART))
     assert "3 pairs x 30 rev" in said and "run-in 5 m" in said and "1, 6 repeats" in said
     assert "both directions   1 conditions: repeats alternate + - - +, the belt at up to 1.1 m/s" in said
 
 
 def test_a_plan_s_json_says_it() -> None:
-    plan = expand(load_recipe(text(), PART, "r.yaml").recipe, rig())
+    plan = expand(read(text()), rig())
     found = json.loads("".join(json_chunks(plan, estimate(plan, WheelEstimator(rig())), PART)))
     assert [one["both_directions"] for one in found["steps"] if one["kind"] == "condition"] == [True]
 
 
 def test_commands_may_go_as_far_as_the_reversed_belt_and_no_further() -> None:
-    one, both = (expand(load_recipe(text(measure=m), PART, "r.yaml").recipe, rig()) for m in ("", BOTH))
+    one, both = (expand(read(text(measure=m)), rig()) for m in ("", BOTH))
     assert plan_bounds(one, rig()).belt_speed_m_s == 0.8
     assert plan_bounds(both, rig()).belt_speed_m_s == 1.1
 
