@@ -14,7 +14,7 @@ from tester.analysis.reference import (
     COUNTERFACE,
     PIECE_PER_M,
     CounterfaceDrift,
-    Known,
+    KnownScatter,
     Reference,
     control_charts,
     counterface_drift,
@@ -23,7 +23,7 @@ from tester.analysis.reference import (
 )
 
 U = 0.01
-KNOWN = Known(60.0, 0.03)
+KNOWN = KnownScatter(60.0, 0.03)
 RESERVED = replace(KNOWN, reserved=True)
 PER_M = log(0.9) / 2000.0
 
@@ -47,7 +47,7 @@ def on_wheels(
     return found
 
 
-def drift_of(references: Sequence[Reference], known: Known = KNOWN) -> CounterfaceDrift:
+def drift_of(references: Sequence[Reference], known: KnownScatter = KNOWN) -> CounterfaceDrift:
     found = counterface_drift(references, known)
     assert found is not None
     return found
