@@ -21,14 +21,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import exp, expm1, hypot, inf, isfinite, log, sqrt
 from statistics import median
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from tester.analysis.quantiles import t_quantile
 from tester.analysis.uncertainty import CONFIDENCE, Contribution, contribution, effective_df
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
 
 NAME: Final = "reference"
 """Grid of reference conditions, in a run whose record says that it has some."""
@@ -138,7 +134,7 @@ class CounterfaceDrift:
         change, low, high = self.changed_percent(self.over_m)
         over = f"over {self.over_m:.0f} m of travel under load"
         if not self.apart:
-            need = f"{CHANGES} changes of the {worn} or a reserved {worn}"
+            need = f"{LEAST} references" if self.reserved else f"{CHANGES} changes of the {worn} or a reserved {worn}"
             told = f"coefficient {change:+.1f} % {over}"
             return f"{told}, but counterface and {worn} cannot be told apart: that takes {need}"
         by = f"a reserved {worn}" if self.reserved else f"{self.pieces} {worn}s"
@@ -221,7 +217,7 @@ def _solve(
         values = np.append(values, 0.0)
         covariance = np.pad(covariance, (0, 1))
         covariance[-1, -1] = (PIECE_PER_M * scale) ** 2
-    weights = _inverse(covariance)
+    weights = np.linalg.pinv(covariance, hermitian=True)
     taken = (np.linalg.pinv(design.T @ weights @ design) @ design.T @ weights)[len(compounds)]
     seen = taken[:count]
     parts = [
@@ -231,12 +227,6 @@ def _solve(
     if slides:
         parts.append((abs(float(taken[-1])) * PIECE_PER_M, inf))
     return float(taken @ values) / scale, parts
-
-
-def _inverse(covariance: NDArray[np.float64]) -> NDArray[np.float64]:
-    import numpy as np
-
-    return np.linalg.pinv(covariance, hermitian=True)
 
 
 @dataclass(frozen=True, slots=True)

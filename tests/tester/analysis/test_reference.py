@@ -77,7 +77,8 @@ def test_on_a_reserved_piece_it_is_told_apart() -> None:
     found = drift_of(on_wheels(1, 7), RESERVED)
     assert found.apart and found.changed_percent(2000.0)[0] == pytest.approx(-10.0, abs=1.0)
     assert "by a reserved wheel" in found.sentence("wheel")
-    assert not drift_of(on_wheels(1, 2), RESERVED).apart
+    few = drift_of(on_wheels(1, 2), RESERVED)
+    assert not few.apart and few.sentence("wheel").endswith("that takes 3 references")
 
 
 def test_what_the_piece_loses_is_not_taken_for_the_counterface_s() -> None:

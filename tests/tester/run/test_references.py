@@ -15,6 +15,7 @@ from tester.run.session import Session, SessionOptions
 from tester.store.reader import DATABASE, RunReader
 from tester.store.resume import resume_point
 from tester.store.writer import RunWriter
+from tester.tui.playback import load
 from tests.tester.kinds.wheel_on_belt.bench import QUIET, SHORT
 from tests.tester.run.test_resume import StoppedError
 from tests.tester.run.test_session import Screen
@@ -83,7 +84,7 @@ def test_references_are_measured_on_the_reserved_wheel(whole: Path) -> None:
     assert pieces(whole) == [(1, 1), (2, 2), (3, 2), (4, 1)]
     with RunReader(whole) as reader:
         assert [one.specimen for one in reader.pieces()] == [2, 1]
-        assert results_of(reader).status.value == "finished"
+        assert results_of(reader).status.value == "done"
 
 
 def test_a_wheel_that_comes_on_again_is_as_worn_as_it_was(whole: Path) -> None:
@@ -122,3 +123,9 @@ def test_what_went_on_leaves_and_holds(resumed: tuple[Path, float]) -> None:
     assert [(one["condition"], one["wheel"]) for one in rows] == [("1", "1"), ("4", "1")]
     assert len((folder / "appendix.csv").read_text(encoding="utf-8-sig").splitlines()) == 3
     assert invoke(["verify", str(folder)]) == 0
+
+
+def test_a_stored_run_with_references_can_be_watched_again(whole: Path) -> None:
+    found = load(whole)
+    assert [one.info.condition for one in found.conditions] == [2, 3, 1, 4]  # references behind the recipe's own rows
+    assert any("mount again wheel 1" in event.text for event in found.events)
