@@ -24,7 +24,7 @@ def running_in_factor(excess: float, distance_m: float, sliding_m: float) -> flo
 
 
 def grip_kept(counterface: CounterfaceParameters, travel_m: float, surface_c: float) -> float:
-    """Return the share of its grip that a belt keeps when it travels ``travel_m`` under load, rubber at ``surface_c``."""
+    """Return the share of its grip that a belt keeps over a travel under load (m), below rubber at ``surface_c``."""
     hotter_k = max(surface_c - counterface.clogs_above, 0.0)
     counted_m = travel_m * (1.0 + counterface.clogging * hotter_k)
     return (1.0 - counterface.loss) ** (counted_m / counterface.loss_travel)

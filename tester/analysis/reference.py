@@ -9,10 +9,10 @@ with the standard deviation from piece to piece. b is what the counterface loses
 piece x and z grow together, and b and w cannot be told apart. They are where the piece was changed CHANGES times or
 more, for z begins anew with each, or where a piece was reserved for it, which hardly slides meanwhile.
 
-Solved by generalised least squares (W. T. Eadie et al., Statistical Methods in Experimental Physics, 2nd ed., 8.4). Of
-w it is known beforehand that it is small (``PIECE_PER_M``); the deviation from piece to piece is the stated one and that
-of the residuals between pieces, weighed by their degrees of freedom, as it is between replicates
-(``tester.analysis.measurand``). The interval is Student's t with the degrees of freedom of Welch and Satterthwaite.
+Solved by generalised least squares (Aitken's estimator). Of w it is known beforehand that it is small
+(``PIECE_PER_M``); the deviation from piece to piece is the stated one and that of the residuals between pieces, weighed
+by their degrees of freedom, as it is between replicates (``tester.analysis.measurand``). The interval is Student's t
+with the degrees of freedom of Welch and Satterthwaite.
 """
 
 from __future__ import annotations
@@ -21,14 +21,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import exp, expm1, hypot, inf, isfinite, log, sqrt
 from statistics import median
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from tester.analysis.quantiles import t_quantile
 from tester.analysis.uncertainty import CONFIDENCE, Contribution, contribution, effective_df
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
 
 NAME: Final = "reference"
 """Grid of reference conditions, in a run whose record says that it has some."""
@@ -43,7 +39,8 @@ worn counterface loses [A]."""
 LEAST: Final = 3
 """References on a reserved piece before anything is said."""
 PIECE_PER_M: Final = 2e-4
-"""Standard deviation, before anything is measured, of what a metre of sliding changes a piece's coefficient by, 1/m [A].
+"""Standard deviation, before anything is measured, of what a metre of sliding changes a piece's coefficient by, 1/m
+[A].
 A wheel of 90 mm that wears at 0.24 mm3/(N m) and is believed to at 0.08 slides at 200 N and 300 mm/s 0.5 % slower in
 each 30 m than it is reckoned to: twice this is what an exponent of 0.8 makes of that."""
 STATED_DF: Final = 8
@@ -83,7 +80,7 @@ class Reference:
 
 
 @dataclass(frozen=True, slots=True)
-class Known:
+class KnownScatter:
     """What is known of scatter, relative standard deviations: between repeats, pooled over the run, with its degrees of
     freedom (inf: taken as known); from piece to piece, as stated; whether a piece was reserved."""
 
@@ -137,7 +134,7 @@ class CounterfaceDrift:
         change, low, high = self.changed_percent(self.over_m)
         over = f"over {self.over_m:.0f} m of travel under load"
         if not self.apart:
-            need = f"{CHANGES} changes of the {worn} or a reserved {worn}"
+            need = f"{LEAST} references" if self.reserved else f"{CHANGES} changes of the {worn} or a reserved {worn}"
             told = f"coefficient {change:+.1f} % {over}"
             return f"{told}, but counterface and {worn} cannot be told apart: that takes {need}"
         by = f"a reserved {worn}" if self.reserved else f"{self.pieces} {worn}s"
@@ -145,7 +142,7 @@ class CounterfaceDrift:
         return f"counterface {change:+.1f} % ({low:+.1f} to {high:+.1f} %, 95 %) {over}, by {by}{moves}"
 
 
-def counterface_drift(references: Sequence[Reference], known: Known) -> CounterfaceDrift | None:
+def counterface_drift(references: Sequence[Reference], known: KnownScatter) -> CounterfaceDrift | None:
     """Return what references say of the counterface; None with fewer than two of them, or without travel between."""
     used = [one for one in references if one.usable]
     travelled = [one.counterface_m for one in used]
@@ -166,7 +163,7 @@ def counterface_drift(references: Sequence[Reference], known: Known) -> Counterf
 
 
 def _between(
-    used: Sequence[Reference], pieces: Sequence[int], compounds: Sequence[str], known: Known
+    used: Sequence[Reference], pieces: Sequence[int], compounds: Sequence[str], known: KnownScatter
 ) -> tuple[float, float]:
     """Return the deviation from piece to piece and its degrees of freedom: the stated one, and that of what is left of
     the pieces' means about a line in the travel."""
@@ -220,7 +217,7 @@ def _solve(
         values = np.append(values, 0.0)
         covariance = np.pad(covariance, (0, 1))
         covariance[-1, -1] = (PIECE_PER_M * scale) ** 2
-    weights = _inverse(covariance)
+    weights = np.linalg.pinv(covariance, hermitian=True)
     taken = (np.linalg.pinv(design.T @ weights @ design) @ design.T @ weights)[len(compounds)]
     seen = taken[:count]
     parts = [
@@ -232,16 +229,12 @@ def _solve(
     return float(taken @ values) / scale, parts
 
 
-def _inverse(covariance: NDArray[np.float64]) -> NDArray[np.float64]:
-    import numpy as np
-
-    return np.linalg.pinv(covariance, hermitian=True)
-
-
 @dataclass(frozen=True, slots=True)
 class ControlPoint:
-    """One reference on a control chart: coefficient at the temperature asked for with its expanded repeatability (95 %),
-    NaN without a value; ``within``: it lies inside the limits."""
+    """One reference on a control chart; ``within``: it lies inside the limits.
+
+    The coefficient is at the temperature asked for, with its expanded repeatability (95 %); NaN without a value.
+    """
 
     number: int
     condition: int
@@ -267,9 +260,11 @@ class ControlChart:
         return all(one.within for one in self.points if isfinite(one.mu))
 
 
-def control_charts(references: Sequence[Reference], known: Known) -> tuple[ControlChart, ...]:
-    """Return a chart for each compound that a reference has a value of, with what repeats, and where pieces were changed
-    pieces, differ by as the known deviation."""
+def control_charts(references: Sequence[Reference], known: KnownScatter) -> tuple[ControlChart, ...]:
+    """Return a chart for each compound that a reference has a value of.
+
+    The deviation that is known is that of the repeats, and where pieces were changed, that from piece to piece.
+    """
     coverage = t_quantile(0.5 + 0.5 * CONFIDENCE, known.repeats_df)
     charts: list[ControlChart] = []
     for compound in dict.fromkeys(one.compound for one in references):

@@ -106,7 +106,7 @@ class TableRow:
 
 
 @dataclass(frozen=True, slots=True)
-class Watch:
+class ReferenceWatch:
     """What a run's reference conditions say: themselves, the counterface's drift, a control chart for each compound."""
 
     references: tuple[Reference, ...]
@@ -163,7 +163,7 @@ class RunResults:
     """Of their diameters, in the order in which they were made."""
     references: tuple[TableRow, ...] = ()
     """Reference conditions, in the order in which they were planned: none of the recipe's own conditions."""
-    watch: Watch | None = None
+    watch: ReferenceWatch | None = None
     """What they say; None without any."""
     record_head: str = ""
     """The last head of the record's chain, hexadecimal; "" where an older version recorded without one."""
@@ -291,7 +291,7 @@ def results_of(reader: RunReader) -> RunResults:
     )
 
 
-def watch_of(references: Sequence[Measured], surroundings: SurroundingsOf, run: StoredRun) -> Watch:
+def watch_of(references: Sequence[Measured], surroundings: SurroundingsOf, run: StoredRun) -> ReferenceWatch:
     """Return what the reference conditions of a run say; each with its coefficient at the temperature asked for."""
     in_order = sorted(references, key=lambda one: one.info.condition)
     found: list[Reference] = []
@@ -300,7 +300,7 @@ def watch_of(references: Sequence[Measured], surroundings: SurroundingsOf, run: 
         at = Reduced(one.condition.started_s, result)
         found.append(surroundings.reference(number, one.info, one.repeats, at))
     known = surroundings.known(RESERVED in run.info.metadata)
-    return Watch(tuple(found), counterface_drift(found, known), control_charts(found, known))
+    return ReferenceWatch(tuple(found), counterface_drift(found, known), control_charts(found, known))
 
 
 def _flagged(one: Measured, flag: str) -> Measured:

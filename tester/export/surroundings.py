@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from tester.analysis.kelvin import UNKNOWN, Slope, SurfaceWarmth, slope_of_pairs
 from tester.analysis.measurand import Surroundings
-from tester.analysis.reference import CounterfaceDrift, Known, Reference
+from tester.analysis.reference import CounterfaceDrift, KnownScatter, Reference
 from tester.analysis.repeatability import Pool
 from tester.analysis.repeats import REPEATABILITY, ConditionResult
 from tester.analysis.results import NAN
@@ -90,10 +90,10 @@ class SurroundingsOf:
             travel.piece_m,
         )
 
-    def known(self, reserved: bool) -> Known:
+    def known(self, reserved: bool) -> KnownScatter:
         """Return what is known of scatter beside references."""
         between = sum(one.standard for one in self.terms if one.acts is Acts.PIECE)
-        return Known(float(self._pool.df) if self._pool.df else inf, between, reserved)
+        return KnownScatter(float(self._pool.df) if self._pool.df else inf, between, reserved)
 
     def watched(self, drift: CounterfaceDrift | None) -> None:
         """Take in what reference conditions say of the counterface."""

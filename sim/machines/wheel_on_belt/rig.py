@@ -216,7 +216,7 @@ class WheelRig:
         self.plant.install(specimen, wheel, compound, True, diameter_mm, sliding_m)
 
     def mount_again(self, specimen: int, wheel: int, compound: str, diameter_mm: float, sliding_m: float) -> None:
-        """Put a wheel back on that was on before: diameter in mm, sliding distance in m; the rig is as warm as it is."""
+        """Put a wheel back on that was on before: diameter in mm, sliding distance in m; the rig stays warm."""
         self._plant_s = self.world.now_s
         self.plant.install(specimen, wheel, compound, False, diameter_mm, sliding_m)
 

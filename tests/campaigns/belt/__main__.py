@@ -1,4 +1,4 @@
-"""`python -m tests.campaigns.belt [--sample] [--seeds N] [--jobs N]`: is what a belt loses found, apart from the wheels?
+"""`python -m tests.campaigns.belt [--sample] [--seeds N] [--jobs N]`: is what a belt loses found, apart from wheels?
 
 A belt loses 10 % of its grip over 2 km of travel under load. In made-up sets, and in runs on the simulated rig with
 wheels that wear three times as fast as believed: with six wheel changes, or a reserved wheel, the stated interval has

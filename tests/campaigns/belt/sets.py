@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from math import exp, log, sqrt
 from random import Random
 
-from tester.analysis.reference import PIECE_PER_M, CounterfaceDrift, Known, Reference, counterface_drift
+from tester.analysis.reference import PIECE_PER_M, CounterfaceDrift, KnownScatter, Reference, counterface_drift
 
 LOSS, OVER_M = 0.10, 2000.0
 BETWEEN, REPEATS = 0.03, 0.02
@@ -56,6 +56,6 @@ def made(way: Way, random: Random, repeats: int = 3) -> list[Reference]:
 def drifts(way: Way, sets: int) -> Iterator[CounterfaceDrift]:
     """Yield what is found of so many sets."""
     for number in range(sets):
-        found = counterface_drift(made(way, Random(f"{way.name} {number}")), Known(60.0, BETWEEN, way.reserved))
+        found = counterface_drift(made(way, Random(f"{way.name} {number}")), KnownScatter(60.0, BETWEEN, way.reserved))
         assert found is not None
         yield found

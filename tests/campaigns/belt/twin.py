@@ -66,7 +66,8 @@ def carry_out(case: TwinCase) -> TwinFound:
         recipe = Path(name) / "recipe.yaml"
         recipe.write_text(RECIPE.format(**WAYS[case.way]), encoding="utf-8")
         screen = Silent()
-        options = SessionOptions(str(recipe), "sim", WRONG_BELIEFS, Path(name) / "runs", seed=case.seed, samples=False)
+        runs = Path(name) / "runs"
+        options = SessionOptions(str(recipe), overrides=WRONG_BELIEFS, out=runs, seed=case.seed, samples=False)
         session = Session(options, screen)
         session.run()
         if session.folder is None:

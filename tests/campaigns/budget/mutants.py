@@ -21,9 +21,10 @@ from tester.kinds.wheel_on_belt.budget import TERMS
 ROOT = Path(__file__).resolve().parents[3]
 COPIED = ("tester", "drivers", "sim", "recipes", "tests", "pyproject.toml")
 TESTS = tuple(f"tests/tester/analysis/test_{name}.py"
-              for name in ("terms", "kelvin", "measurand", "uncertainty", "difference"))  # fmt: skip
+              for name in ("terms", "kelvin", "measurand", "reference", "uncertainty", "difference"))  # fmt: skip
 _TERMS = "tester/store/older.py"
 _MEASURAND, _KELVIN = "tester/analysis/measurand.py", "tester/analysis/kelvin.py"
+_REFERENCE = "tester/analysis/reference.py"
 _SIZES = (("removed", "0.0"), ("halved", "0.5"), ("doubled", "2.0"))
 
 
@@ -61,6 +62,12 @@ _BY_HAND = (
      "own = Contribution(REPEATABILITY, {} * repeats.standard / n"),
     ("temperature sensitivity", _KELVIN, "self.slope.u_per_kelvin, mu * over_k",
      "{} * self.slope.u_per_kelvin, mu * over_k"),
+    ("counterface", _REFERENCE, "rate = hypot(self.per_m, self.standard)",
+     "rate = {} * hypot(self.per_m, self.standard)"),
+    ("piece to piece in the counterface's drift", _REFERENCE, "(between * float(np.linalg.norm(",
+     "({} * between * float(np.linalg.norm("),
+    ("sliding of the piece in the counterface's drift", _REFERENCE, "abs(float(taken[-1])) * PIECE_PER_M",
+     "{} * abs(float(taken[-1])) * PIECE_PER_M"),
     ("correction of temperature", _KELVIN, "exp(-self.slope.per_kelvin", "exp(-{} * self.slope.per_kelvin"),
 )  # fmt: skip
 
@@ -72,7 +79,12 @@ OTHERS = (
     Mutant("degrees of freedom are forgotten", "tester/analysis/uncertainty.py",
            "return standard**4 / limited if limited > 0.0 else inf", "return inf"),
     Mutant("the wheel is in both measurands", _MEASURAND, "budget=budget(this)", "budget=budget([*this, *between])"),
-    Mutant("the wheel is in neither", _MEASURAND, "budget([*this, *between])", "budget(this)"),
+    Mutant("the wheel is in neither", _MEASURAND, "budget([*this, *between, *by.counterface(mu)])",
+           "budget(this)"),
+    Mutant("the counterface is in no measurand", _MEASURAND,
+           "budget([*this, *between, *by.counterface(mu)])", "budget([*this, *between])"),
+    Mutant("the counterface is not in replicates", _MEASURAND,
+           "budget([*found, *between, *by.counterface(mu)])", "budget([*found, *between])"),
     Mutant("the lag is not corrected", _KELVIN, "self.shown_c + lag_s * self.rate_k_s", "self.shown_c"),
 )  # fmt: skip
 

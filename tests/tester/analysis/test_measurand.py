@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from math import hypot, isnan, sqrt
+from math import hypot, isnan, nan, sqrt
 
 import pytest
 
@@ -17,6 +17,7 @@ from tester.analysis.measurand import (
     with_budget,
     with_budget_of_replicates,
 )
+from tester.analysis.reference import COUNTERFACE, CounterfaceDrift
 from tester.analysis.repeatability import Pool
 from tester.analysis.repeats import ConditionResult, combine_repeats, combine_replicates
 from tester.analysis.results import CARRY_OVER, Judgement, RepeatResult, RepeatStatus
@@ -110,6 +111,28 @@ def test_drift_and_carry_over_enter_the_uncertainty() -> None:
     carried = replace(drift, flags=CARRY_OVER)
     found = with_budget(condition(0.69, 0.70, 0.71, judged=carried), BY).budget
     assert standard(found, "carry-over") == pytest.approx(0.70 * 0.06 / sqrt(12.0))
+
+
+DRIFT = CounterfaceDrift(-5e-5, 2e-5, 9.0, 100.0, 2100.0, 7, 7, apart=True)
+WATCHED = replace(BY, drift=DRIFT, travel_m=1100.0)
+
+
+def test_the_counterface_s_change_is_in_the_compound_s_uncertainty_and_not_in_this_piece_s() -> None:
+    plain, found = with_budget(THREE, BY), with_budget(THREE, WATCHED)
+    assert found.budget == plain.budget
+    more = sqrt(found.compound_budget.standard**2 - plain.compound_budget.standard**2)
+    assert more == pytest.approx(0.70 * 1000.0 * hypot(5e-5, 2e-5))
+
+
+def test_a_condition_whose_travel_is_not_known_has_no_such_term() -> None:
+    assert with_budget(THREE, replace(WATCHED, travel_m=nan)) == with_budget(THREE, BY)
+
+
+def test_the_counterface_s_change_is_in_the_compound_s_uncertainty_of_replicates() -> None:
+    each = [with_budget(condition(mu - 0.01, mu, mu + 0.01), WATCHED) for mu in (0.68, 0.70, 0.72)]
+    found = with_budget_of_replicates(combine_replicates(each), each, WATCHED)
+    assert standard(found.compound_budget, COUNTERFACE) == pytest.approx(0.70 * 1000.0 * hypot(5e-5, 2e-5))
+    assert COUNTERFACE not in {one.name for one in found.budget.contributions}
 
 
 def replicates(*values: float) -> ConditionResult:

@@ -14,7 +14,7 @@ from tester.analysis.reference import (
     COUNTERFACE,
     PIECE_PER_M,
     CounterfaceDrift,
-    Known,
+    KnownScatter,
     Reference,
     control_charts,
     counterface_drift,
@@ -23,7 +23,7 @@ from tester.analysis.reference import (
 )
 
 U = 0.01
-KNOWN = Known(60.0, 0.03)
+KNOWN = KnownScatter(60.0, 0.03)
 RESERVED = replace(KNOWN, reserved=True)
 PER_M = log(0.9) / 2000.0
 
@@ -47,7 +47,7 @@ def on_wheels(
     return found
 
 
-def drift_of(references: Sequence[Reference], known: Known = KNOWN) -> CounterfaceDrift:
+def drift_of(references: Sequence[Reference], known: KnownScatter = KNOWN) -> CounterfaceDrift:
     found = counterface_drift(references, known)
     assert found is not None
     return found
@@ -77,7 +77,8 @@ def test_on_a_reserved_piece_it_is_told_apart() -> None:
     found = drift_of(on_wheels(1, 7), RESERVED)
     assert found.apart and found.changed_percent(2000.0)[0] == pytest.approx(-10.0, abs=1.0)
     assert "by a reserved wheel" in found.sentence("wheel")
-    assert not drift_of(on_wheels(1, 2), RESERVED).apart
+    few = drift_of(on_wheels(1, 2), RESERVED)
+    assert not few.apart and few.sentence("wheel").endswith("that takes 3 references")
 
 
 def test_what_the_piece_loses_is_not_taken_for_the_counterface_s() -> None:

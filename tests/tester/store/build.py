@@ -198,6 +198,7 @@ def without_channels(database: sqlite3.Connection) -> None:
     database.execute("DROP TABLE budget_term")
     database.execute("DROP TABLE known_slope")
     database.execute("DROP TABLE truth")
+    database.execute("DROP TABLE travel")
     for column in ("kind", "worn"):
         database.execute(f"ALTER TABLE run DROP COLUMN {column}")
     database.execute("ALTER TABLE condition DROP COLUMN both_directions")

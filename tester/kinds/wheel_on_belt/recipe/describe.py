@@ -94,7 +94,7 @@ TOLD_APART_PERCENT = (10.0, 5.0)
 
 def _telling(plan: WheelPlan) -> Iterator[str]:
     """Yield how many wheels of each compound tell a difference; repeats and wheels scatter as they are assumed to."""
-    fewest = min((step.repeats for step in plan.conditions()), default=0)
+    fewest = min((step.repeats for step in plan.conditions() if not step.same_as), default=0)
     if not fewest:
         return
     each = min(step.scheme.repeats_each for step in plan.conditions())

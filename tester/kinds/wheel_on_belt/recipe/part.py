@@ -45,7 +45,7 @@ class WheelPart(RecipePart):
         return wheel_settings(measure, grid)
 
     def whole(self, recipe: Recipe | None, tree: Tree) -> Iterator[Problem]:
-        """Yield that there is nothing to do: grinding a wheel alone is something; what a reference makes no sense in."""
+        """Yield that there is nothing to do (grinding a wheel alone is something), and what a reference has wrong."""
         top = tree.data if isinstance(tree.data, dict) else {}
         if not top.get("grids") and top.get("pre_grind") is None:
             yield tree.problem((), "there is nothing to do: neither grids nor pre_grind")

@@ -87,6 +87,14 @@ def test_the_plan_says_what_it_is_held_at_and_where() -> None:
     assert "after every 2 conditions, on whichever wheel is on" in told
 
 
+def test_fewer_repeats_of_a_reference_do_not_change_what_tells_compounds_apart() -> None:
+    def told(extra: str) -> str:
+        plan = plan_of(extra)
+        return next(one for one in lines(plan, PART.estimate(plan, rig()), PART) if one.startswith("two compounds"))
+
+    assert told("reference: {every: 2, repeats: 1}\n") == told("")
+
+
 def test_its_key_is_in_the_schema_for_editors() -> None:
     assert "reference" in recipe_schema(PART)["properties"]  # type: ignore[operator]
 
