@@ -31,6 +31,8 @@ class Kind:
     """As the key ``kind`` of a rig file says it."""
     title: str
     """What people call it, in a few words."""
+    measurand: str = ""
+    """What its coefficient is, for people, in words that follow "measured was"; "" where nothing is to be said."""
     rigs: Mapping[str, str]
     """Rig files that ship with it, by the names that ``--rig`` takes: ``package:file``, the first for a start."""
     rig: Callable[[], type[Rig]]

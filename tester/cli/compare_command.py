@@ -7,16 +7,13 @@ from typing import TYPE_CHECKING
 
 import click
 
-from tester.axes import AxisValue, ListWords
+from tester.axes import ListWords
 from tester.cli.formatting import Json, dump, number, shown
 from tester.cli.run_lookup import run_folder
 
 if TYPE_CHECKING:
+    from tester.export.compared import Pair
     from tester.export.results import RunResults, TableRow
-    from tester.store.records import StoredRun
-
-Held = tuple[str, tuple[AxisValue, ...]]
-"""What is compared: compound, values of the axes as people read them."""
 
 
 @click.command()
@@ -33,29 +30,25 @@ def compare(run1: str, run2: str, compounds: tuple[str, str] | None, as_json: bo
     Replicates are compared by their mean. Behind a coefficient ! says that it is not to be trusted, ? that it carries a
     doubt (`tester show` says which).
     """
+    from tester.export.compared import pairs, same_rig
+
     results = [_results(name) for name in (run1, run2)]
     kinds = [one.run.info.kind for one in results]
     if kinds[0] != kinds[1]:
         told = f"{run1} is of kind {kinds[0]}, {run2} of {kinds[1]}"
         raise click.ClickException(f"{told}: their conditions have no axes in common")
-    first, second = (
-        {_held(row, compounds): row for row in one.rows if compounds is None or row.info.compound == compounds[i]}
-        for i, one in enumerate(results)
-    )
-    for name, rows, wanted in zip((run1, run2), (first, second), compounds or (), strict=False):
-        if not rows:
-            raise click.ClickException(f"{name} has no compound {wanted}")
-    same_rig = _same_rig(results[0].run, results[1].run)
-    keys = list(dict.fromkeys([*first, *second]))
-    rows = [_row(first.get(key), second.get(key), same_rig=same_rig) for key in keys]
+    for i, name in enumerate((run1, run2) if compounds else ()):
+        if compounds and all(row.info.compound != compounds[i] for row in results[i].rows):
+            raise click.ClickException(f"{name} has no compound {compounds[i]}")
+    found = [*pairs(*results, compounds)]
+    rows = [*map(_row, found)]
     if as_json:
         dump([*rows])
         return
-    either = [first.get(key) or second[key] for key in keys]
-    words = ListWords(one.info.setpoint for one in either)
+    words = ListWords(one.either.info.setpoint for one in found)
     if words.common:
         click.echo(f"all at {shown(words.common)}")
-    told = [shown(words.of(one.info.setpoint)) for one in either]
+    told = [shown(words.of(one.either.info.setpoint)) for one in found]
     if compounds:
         click.echo(f"1: {shown(compounds[0])}, 2: {shown(compounds[1])}")
     width = max(map(len, [*told, "condition"]))
@@ -64,7 +57,8 @@ def compare(run1: str, run2: str, compounds: tuple[str, str] | None, as_json: bo
         figures = (f"{_cell(row[name], digits)}{row.get(f'mark_{name[-1]}') or ''}" for name, digits in _FIGURES)
         verdict = "  differs" if row["differs"] else ""
         click.echo(f"{text:<{width}}  {'  '.join(figures)}{verdict}")
-    shared = "one rig and calibration: common errors drop out" if same_rig else "different rigs or calibrations"
+    one_rig = same_rig(results[0].run, results[1].run)
+    shared = "one rig and calibration: common errors drop out" if one_rig else "different rigs or calibrations"
     click.echo(f"u: of the compounds' difference; {shared}")
 
 
@@ -83,19 +77,6 @@ def _results(name: str) -> RunResults:
         raise click.ClickException(str(error)) from error
 
 
-def _same_rig(one: StoredRun, other: StoredRun) -> bool:
-    """Tell whether two runs have the errors of the measuring chain in common.
-
-    One calibration of one rig; a simulated one has other imperfections for every seed.
-    """
-    first, second = one.info, other.info
-    return (one.calibration_sha256, first.simulated, first.seed) == (
-        other.calibration_sha256,
-        second.simulated,
-        second.seed,
-    )
-
-
 def _cell(value: Json, digits: int) -> str:
     return f"{value:+.{digits}f}" if isinstance(value, float) else "-"
 
@@ -108,26 +89,15 @@ def _mark(row: TableRow | None) -> str:
     return mark_of(row.result.status, row.result.flags)
 
 
-def _held(row: TableRow, compounds: tuple[str, str] | None) -> Held:
-    held = row.info.setpoint
-    return "" if compounds else held.compound, tuple(axis.of(held) for axis in held.axes)
-
-
 def _mu(row: TableRow | None) -> float | None:
     from tester.analysis.difference import at_nominal
 
     return number(at_nominal(row.result)) if row is not None else None
 
 
-def _row(first: TableRow | None, second: TableRow | None, *, same_rig: bool) -> dict[str, Json]:
-    from tester.analysis.difference import Difference, difference
-
-    one = first or second
-    assert one is not None
-    found = Difference()
-    if first is not None and second is not None:
-        found = difference(first.result, second.result, same_rig=same_rig)
-    held = one.info.setpoint
+def _row(pair: Pair) -> dict[str, Json]:
+    first, second, found = pair
+    held = pair.either.info.setpoint
     return {
         "compound": held.compound,
         "pieces_1": first.result.n_valid if first is not None and len(first.replicates) > 1 else 1,

@@ -12,9 +12,7 @@ from tester.cli.formatting import shown
 from tester.cli.run_lookup import run_folder
 
 if TYPE_CHECKING:
-    from tester.export.results import RunResults
     from tester.report.chart import Figure
-    from tester.report.charts import Material
 
 
 @click.command()
@@ -66,6 +64,7 @@ def figure(
 
 def _figures(folder: Path, law: str, published: bool) -> list[Figure]:
     """Return a run's figures; raises ClickException where it cannot be read."""
+    from tester.cli.kind_words import material_of
     from tester.export.results import results_of
     from tester.report.charts import charts_of, repeats_chart
     from tester.store.reader import RunReader
@@ -76,29 +75,6 @@ def _figures(folder: Path, law: str, published: bool) -> list[Figure]:
             results = results_of(reader)
     except StoreError as error:
         raise click.ClickException(str(error)) from error
-    found: list[Figure] = [*charts_of(_material(results, law, published))]
+    found: list[Figure] = [*charts_of(material_of(results, law, published))]
     measured = [one for one in results.conditions() if any(r.result.mu_resultant > 0.0 for r in one.repeats)]
     return [*found, *map(repeats_chart, measured)]
-
-
-def _material(results: RunResults, law: str, published: bool) -> Material:
-    from tester.kinds import UnknownKindError, find
-    from tester.report.charts import ChartValue, Material, values_of
-
-    measured = values_of(results)
-    try:
-        fits = find(results.run.info.kind).fits
-    except UnknownKindError:
-        fits = None
-    if fits is None:
-        if law:
-            raise click.UsageError(f"--law: no law is known of the kind {results.run.info.kind}")
-        return Material(measured)
-    part = fits()
-    beside = [ChartValue(held, mu) for held, mu in part.published_values()] if published else []
-    if not law:
-        return Material(measured, beside)
-    try:
-        return Material(measured, beside, part.law_at(law), f"law {law}")
-    except KeyError as error:
-        raise click.UsageError(f"--law: no law {law!r} (expected {', '.join(part.laws)})") from error

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-Look = Literal["measured", "published", "law", "left out"]
-"""How a series is drawn: filled marks with bars; hollow marks; a line alone; crosses."""
+Look = Literal["measured", "published", "law", "left out", "limit"]
+"""How a series is drawn: filled marks with bars; hollow marks; a line alone; crosses; a grey line alone."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,6 +22,8 @@ class Series:
     """Half the length of the bar at each point, NaN for none."""
     widths: tuple[float, ...] = ()
     """Half the extent of each point along x, such as of the time that it took."""
+    names: tuple[str, ...] = ()
+    """Of each point, in words, where a drawing can name what a pointer is on; none: by its place on the axes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,6 +32,8 @@ class ChartPanel:
 
     title: str
     series: tuple[Series, ...]
+    y_label: str = ""
+    """Of its upright axis, where it is not the chart's."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,6 +48,8 @@ class Chart:
     note: str = ""
     from_zero: bool = True
     """Whether the upright axis begins at 0."""
+    stacked: bool = False
+    """Whether panels stand one above the other, with the axis along in common and each with its own upright."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,12 +11,15 @@ from math import isfinite
 from tester.axes import Axis, AxisValue, Setpoint, condition_words, plain
 from tester.export.results import Measured, RunResults
 from tester.report.chart import Chart, ChartPanel, Figure, Series, Surface
+from tester.report.words import labelled, name_of, unit_of
 
 NAN = float("nan")
 Y_LABEL = "friction coefficient"
 BARS = "bars: expanded uncertainty U (95 %)"
 HOLLOW = "hollow: as published"
 CURVE_POINTS = 61
+OVERLAID = 6
+"""Panels of a chart of several runs."""
 
 Law = Callable[[Setpoint], float]
 
@@ -28,6 +31,15 @@ class ChartValue:
     held: Setpoint
     mu: float
     u: float = NAN
+    run: str = ""
+    """Of which run it is, where several are shown together."""
+
+    @property
+    def named(self) -> str:
+        """Return the value with what it was held at, and its run, in words."""
+        spread = f"\u00a0±\u00a0{self.u:.3f}" if isfinite(self.u) else ""
+        of = f"{self.run}: " if self.run else ""
+        return f"{of}{condition_words(self.held)}: {self.mu:.3f}{spread}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,10 +52,10 @@ class Material:
     law_name: str = ""
 
 
-def values_of(results: RunResults) -> list[ChartValue]:
-    """Return the rows of a run that have a value."""
+def values_of(results: RunResults, run: str = "") -> list[ChartValue]:
+    """Return the rows of a run that have a value; ``run``: what it is called among others."""
     return [
-        ChartValue(row.info.setpoint, row.result.mu_resultant, row.result.expanded)
+        ChartValue(row.info.setpoint, row.result.mu_resultant, row.result.expanded, run)
         for row in results.rows
         if row.result.ok
     ]
@@ -66,6 +78,38 @@ def charts_of(material: Material) -> Iterator[Figure]:
         yield from _surfaces(material.measured, varied[0], varied[1])
 
 
+def overlay_charts(values: Sequence[ChartValue]) -> Iterator[Chart]:
+    """Yield a chart for each axis that was varied, a series for each run, where two runs or more have it.
+
+    A panel for each compound and setting of the other axes, those with the most values first.
+    """
+    runs = list(dict.fromkeys(one.run for one in values))
+    for along in _varied(values):
+        alike: dict[tuple[object, ...], list[ChartValue]] = {}
+        for one in values:
+            rest = (axis.of(one.held) for axis in one.held.axes if axis.name != along.name)
+            alike.setdefault((one.held.compound, *rest), []).append(one)
+        panels = [
+            panel
+            for own in sorted(alike.values(), key=len, reverse=True)[:OVERLAID]
+            if (panel := _overlaid(own, along, runs))
+        ]
+        if panels:
+            title = f"{Y_LABEL} over {name_of(along)}, of each run"
+            yield Chart(f"{along.name}-of-runs", title, labelled(along), Y_LABEL, tuple(panels), BARS)
+
+
+def _overlaid(own: Sequence[ChartValue], along: Axis, runs: Sequence[str]) -> ChartPanel | None:
+    """Return the panel of values that differ in nothing but ``along`` and the run."""
+    series: list[Series] = []
+    for style, run in enumerate(runs):
+        points = [one for one in own if one.run == run]
+        if len({along.number(one.held) for one in points}) > 1:
+            series.append(_points(run, points, along, "measured", style))
+    said = [axis for axis in own[0].held.axes if axis.name != along.name and not axis.at_default(own[0].held)]
+    return ChartPanel(condition_words(own[0].held, said), tuple(series)) if len(series) > 1 else None
+
+
 def _varied(values: Sequence[ChartValue]) -> list[Axis]:
     """Return the axes of numbers that differ between values, by their turn to be plotted against."""
     if not values:
@@ -84,8 +128,8 @@ def _chart(material: Material, along: Axis, across: Axis | None) -> Chart | None
     notes += [HOLLOW] if "published" in looks else []
     notes += [f"lines: {material.law_name}"] if "law" in looks else []
     by = f"-by-{across.name}" if across is not None else ""
-    title = f"{Y_LABEL} over {_words(along)}" + (f" at each {_words(across)}" if across is not None else "")
-    return Chart(f"{along.name}{by}", title, _label(along), Y_LABEL, tuple(panels), "; ".join(notes))
+    title = f"{Y_LABEL} over {name_of(along)}" + (f" at each {name_of(across)}" if across is not None else "")
+    return Chart(f"{along.name}{by}", title, labelled(along), Y_LABEL, tuple(panels), "; ".join(notes))
 
 
 def _styles(panel: ChartPanel) -> int:
@@ -109,7 +153,7 @@ def _panel(material: Material, compound: str, along: Axis, across: Axis | None) 
         here = [one for one in own if across is None or across.number(one.held) == level]
         if len({along.number(one.held) for one in here}) < 2:
             continue
-        label = f"{plain(level)} {_unit(across)}" if across is not None else "measured"
+        label = f"{plain(level)} {unit_of(across)}" if across is not None else "measured"
         series.append(_points(label, here, along, "measured", style))
         shown = [one for one in published if across is None or across.number(one.held) == level]
         if shown:
@@ -139,7 +183,8 @@ def _points(label: str, values: Sequence[ChartValue], along: Axis, look: str, st
     ordered = sorted(values, key=lambda one: along.number(one.held))
     x, y = tuple(along.number(one.held) for one in ordered), tuple(one.mu for one in ordered)
     bars = tuple(one.u for one in ordered) if look == "measured" else ()
-    return Series(label, x, y, "measured" if look == "measured" else "published", style, bars)
+    names = tuple(one.named if look == "measured" else f"as published: {one.named}" for one in ordered)
+    return Series(label, x, y, "measured" if look == "measured" else "published", style, bars, names=names)
 
 
 def _curve(law: Law, values: Sequence[ChartValue], along: Axis, style: int) -> Series:
@@ -164,8 +209,9 @@ def _surfaces(values: Sequence[ChartValue], along: Axis, upward: Axis) -> Iterat
         grid = tuple(tuple(at.get((one, other), NAN) for one in x) for other in y)
         panels.append((condition_words(own[0].held, said), x, y, grid))
     if panels:
-        title = f"{Y_LABEL} over {_words(along)} and {_words(upward)}"
-        yield Surface("surface", title, _label(along), _label(upward), Y_LABEL, tuple(panels), "empty: not measured")
+        title = f"{Y_LABEL} over {name_of(along)} and {name_of(upward)}"
+        note = "empty: not measured"
+        yield Surface("surface", title, labelled(along), labelled(upward), Y_LABEL, tuple(panels), note)
 
 
 def repeats_chart(measured: Measured) -> Chart:
@@ -206,16 +252,3 @@ def _windows(label: str, results: Sequence[object], look: str, style: int) -> Se
         tuple(0.01 * one.fluctuation_percent * one.mu_resultant for one in own),
         tuple(0.5 * (b - a) for a, b in zip(begin, end, strict=True)),
     )
-
-
-def _label(axis: Axis) -> str:
-    unit = f" ({_unit(axis)})" if axis.unit else ""
-    return f"{_words(axis)}{unit}"
-
-
-def _unit(axis: Axis) -> str:
-    return {"degC": "°C", "deg": "°"}.get(axis.unit, axis.unit)
-
-
-def _words(axis: Axis) -> str:
-    return axis.name.replace("_", " ")

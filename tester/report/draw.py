@@ -6,12 +6,15 @@ colours differ in lightness. Without a screen, a clock or anything random: the s
 
 from __future__ import annotations
 
+import warnings
+from io import BytesIO
 from math import ceil
 from pathlib import Path
 from textwrap import fill
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, BinaryIO, Final
 
 from tester.base.extras import MissingExtraError, needs
+from tester.base.plain import harmless
 from tester.report.chart import Chart, ChartPanel, Figure, Series, Surface
 
 if TYPE_CHECKING:
@@ -24,6 +27,8 @@ MARKS: Final = ("o", "s", "^", "D", "v", "P", "X", "<")
 DASHES: Final = ("-", "--", "-.", ":", (0, (5, 1)), (0, (3, 1, 1, 1)), (0, (1, 1)), (0, (8, 2)))
 FORMATS: Final = ("png", "svg", "pdf")
 PANEL_INCH: Final = (3.6, 3.2)
+STRIP_INCH: Final = (7.2, 1.5)
+"""Of a panel of a stacked chart."""
 COLUMNS: Final = 3
 """Panels side by side."""
 TITLE_WIDTH, NOTE_WIDTH = 52, 64
@@ -41,8 +46,15 @@ RC: Final[dict[str, object]] = {
     "legend.framealpha": 0.8,
     "svg.hashsalt": "friction-tester",
     "svg.fonttype": "path",
+    "text.parse_math": False,
 }
-"""matplotlib's own font, so that a figure looks the same everywhere."""
+"""matplotlib's own font, so that a figure looks the same everywhere; a $ in a name is no formula."""
+IN_A_PAGE: Final[dict[str, object]] = {"svg.fonttype": "none"}
+"""Text of a figure within a page is text: it can be searched and read out, and takes a tenth of the room."""
+MARKED: Final = "points"
+"""Begins the id of what is drawn of a series' points: ``points-PANEL-SERIES``, each counted from 0."""
+LONGEST, LONGEST_LABEL = 200, 32
+"""Characters that are drawn of a title or a note, and of a label in a legend."""
 NO_DATES: Final = {"png": {"Software": None}, "svg": {"Date": None}, "pdf": {"CreationDate": None}}
 
 
@@ -51,17 +63,37 @@ def draw(figure: Figure, path: Path, dpi: float = 150.0) -> None:
     ending = path.suffix.removeprefix(".").lower()
     if ending not in FORMATS:
         raise ValueError(f"{path.name}: a figure is one of {', '.join(FORMATS)}")
+    made = BytesIO()
+    _draw(figure, made, ending, dpi, {})
+    path.write_bytes(made.getvalue())
+
+
+def svg_for_a_page(figure: Figure) -> bytes:
+    """Return a figure as SVG whose text is text and whose points can be found (``MARKED``).
+
+    Raises MissingExtraError.
+    """
+    made = BytesIO()
+    _draw(figure, made, "svg", 72.0, IN_A_PAGE)
+    return made.getvalue()
+
+
+def _draw(figure: Figure, target: BinaryIO, ending: str, dpi: float, further: dict[str, object]) -> None:
     try:
         import matplotlib  # pyright: ignore
         from matplotlib.figure import Figure as Canvas  # pyright: ignore
     except ImportError as error:
         raise MissingExtraError(needs("a figure", "matplotlib", "report")) from error
     library: Any = matplotlib
-    with library.rc_context(RC):
-        across = min(COLUMNS, len(figure.panels))
+    with library.rc_context({**RC, **further}), warnings.catch_warnings():
+        # A name in letters that the font has not is drawn as boxes; a page shows it in a font that has them.
+        warnings.filterwarnings("ignore", message="Glyph .* missing from", category=UserWarning)
+        stacked = isinstance(figure, Chart) and figure.stacked
+        across = 1 if stacked else min(COLUMNS, len(figure.panels))
         down = ceil(len(figure.panels) / across)
-        canvas: Any = Canvas(figsize=(PANEL_INCH[0] * across, PANEL_INCH[1] * down + 0.5), layout="constrained")
-        places: Any = canvas.subplots(down, across, squeeze=False, sharex=True, sharey=True)
+        wide, high = STRIP_INCH if stacked else PANEL_INCH
+        canvas: Any = Canvas(figsize=(wide * across, high * down + 0.5), layout="constrained")
+        places: Any = canvas.subplots(down, across, squeeze=False, sharex=True, sharey=not stacked)
         flat: list[Any] = [place for row in places for place in row]
         if isinstance(figure, Chart):
             _draw_chart(figure, flat)
@@ -69,46 +101,59 @@ def draw(figure: Figure, path: Path, dpi: float = 150.0) -> None:
             _draw_surface(figure, canvas, flat)
         for place in flat[len(figure.panels) :]:
             place.set_axis_off()
-        canvas.suptitle(fill(figure.title, TITLE_WIDTH * across), fontsize=9.0)
+        columns = 2 if stacked else across
+        canvas.suptitle(fill(_told(figure.title), TITLE_WIDTH * columns), fontsize=9.0)
         if figure.note:
-            canvas.supxlabel(fill(figure.note, NOTE_WIDTH * across), fontsize=7.0, color="#404040")
-        canvas.savefig(path, dpi=dpi, metadata=NO_DATES[ending])
+            canvas.supxlabel(fill(_told(figure.note), NOTE_WIDTH * columns), fontsize=7.0, color="#404040")
+        canvas.savefig(target, format=ending, dpi=dpi, metadata=NO_DATES[ending])
+
+
+def _told(text: str, longest: int = LONGEST) -> str:
+    """Return text as it is drawn: what people wrote may be long, and hold what is no character of a picture."""
+    plain = harmless(text).replace("\n", " ").replace("\t", " ")
+    return plain if len(plain) <= longest else f"{plain[: longest - 1]}…"
 
 
 def _draw_chart(chart: Chart, places: Sequence[Any]) -> None:
-    for panel, place in zip(chart.panels, places, strict=False):
-        _draw_panel(panel, place)
-        place.set_xlabel(chart.x_label)
-        place.set_ylabel(chart.y_label)
+    for number, (panel, place) in enumerate(zip(chart.panels, places, strict=False)):
+        _draw_panel(panel, place, number)
+        if not chart.stacked or number == len(chart.panels) - 1:
+            place.set_xlabel(chart.x_label)
+        place.set_ylabel(panel.y_label or chart.y_label)
         if chart.from_zero:
             place.set_ylim(bottom=0.0)
 
 
-def _draw_panel(panel: ChartPanel, place: Any) -> None:
+def _draw_panel(panel: ChartPanel, place: Any, number: int) -> None:
     lined = {series.style for series in panel.series if series.look == "law"}
-    for series in panel.series:
-        _draw_series(series, place, joined=not series.widths and series.style not in lined)
-    place.set_title(panel.title, fontsize=8.0)
+    for turn, series in enumerate(panel.series):
+        drawn = _draw_series(series, place, joined=not series.widths and series.style not in lined)
+        drawn.set_gid(f"{MARKED}-{number}-{turn}")
+    if panel.title:
+        place.set_title(fill(_told(panel.title), TITLE_WIDTH), fontsize=8.0)
     if any(series.label for series in panel.series):
         place.legend()
 
 
-def _draw_series(series: Series, place: Any, joined: bool) -> None:
+def _draw_series(series: Series, place: Any, joined: bool) -> Any:
     """Draw measured points filled, published ones hollow, a law as a line, what was left out as crosses.
 
-    ``joined``: measured points by a line, where no law is drawn through them.
+    ``joined``: measured points by a line, where no law is drawn through them. Returns the line of the points.
     """
     i = series.style % len(COLOURS)
     colour = COLOURS[i]
-    label = series.label or None
+    label = _told(series.label, LONGEST_LABEL) or None
     if series.look == "law":
-        place.plot(series.x, series.y, color=colour, linestyle=DASHES[i], linewidth=1.0)
-        return
+        return place.plot(series.x, series.y, color=colour, linestyle=DASHES[i], linewidth=1.0)[0]
+    if series.look == "limit":
+        return place.plot(series.x, series.y, color="#606060", linestyle=DASHES[i], linewidth=0.9, label=label)[0]
     if series.look == "published":
-        place.plot(series.x, series.y, color=colour, marker=MARKS[i], linestyle="none", markerfacecolor="none")
-        return
+        hollow: Any = place.plot(
+            series.x, series.y, color=colour, marker=MARKS[i], linestyle="none", markerfacecolor="none", label=label
+        )
+        return hollow[0]
     mark = "x" if series.look == "left out" else MARKS[i]
-    place.errorbar(
+    drawn: Any = place.errorbar(
         series.x,
         series.y,
         yerr=series.bars or None,
@@ -120,6 +165,7 @@ def _draw_series(series: Series, place: Any, joined: bool) -> None:
         capsize=2.0,
         label=label,
     )
+    return drawn.lines[0]
 
 
 def _draw_surface(surface: Surface, canvas: Any, places: Sequence[Any]) -> None:

@@ -49,6 +49,8 @@ def _served() -> ServedKind:
 KIND: Final = Kind(
     name="specimen_on_track",
     title="rubber specimen on a moving track",
+    measurand="the friction coefficient of a rubber specimen that is pressed on a moving track: force along the track "
+    "over the load, mean of the repeats of each condition",
     rigs={
         "grosch": "tester.kinds.specimen_on_track:grosch.yaml",
         "pin-on-disc": "tester.kinds.specimen_on_track:pin-on-disc.yaml",

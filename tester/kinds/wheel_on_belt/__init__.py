@@ -56,6 +56,8 @@ def _fits() -> FitPart:
 KIND: Final = Kind(
     name="wheel_on_belt",
     title="rubber wheel on a belt",
+    measurand="the friction coefficient of a rubber wheel that turns against an abrasive belt and slips on it: "
+    "horizontal force at the contact over the load, mean of the repeats of each condition",
     rigs={"sim": "sim:rig.yaml"},
     rig=_rig,
     interlocks=_interlocks,

@@ -1,0 +1,66 @@
+"""`tester report`: a run's results as one page that can be sent, read offline and printed."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from tester.cli.run_lookup import run_folder
+
+if TYPE_CHECKING:
+    from tester.report.charts import Material
+    from tester.report.record import RunRecord
+
+
+@click.command()
+@click.argument("runs", metavar="RUN...", nargs=-1, required=True)
+@click.option(
+    "--out", type=click.Path(dir_okay=False, path_type=Path), default=None,
+    help="File to write.  [default: reports/RUN.html, of several runs that of the first]",
+)  # fmt: skip
+@click.option("--law", default="", metavar="LAW", help="Draw a published law too: paper or v2.")
+@click.option("--published/--no-published", default=True, show_default=True, help="Points of the paper beside.")
+def report(runs: Sequence[str], out: Path | None, law: str, published: bool) -> None:
+    """Write a report of each RUN into one HTML file: results with their uncertainty, figures, budgets, what was on
+    record, and whether it is as it was left.
+
+    The file holds everything, fetches nothing and has no script. A browser prints it, on paper or as PDF. Several runs
+    are held against each other. The file's name is printed.
+    """
+    from tester.base.extras import MissingExtraError
+    from tester.cli.kind_words import material_of
+    from tester.export import write_file
+    from tester.report.build import report_of
+    from tester.report.page import page_of
+
+    records = [_record(run_folder(name)) for name in dict.fromkeys(runs)]
+
+    def showing(record: RunRecord) -> Material:
+        return material_of(record.results, law, published)
+
+    try:
+        page = page_of(report_of(records, showing))
+    except MissingExtraError as error:
+        raise click.UsageError(str(error)) from error
+    path = out if out is not None else Path("reports") / f"{records[0].name}.html"
+    path.parent.mkdir(parents=True, exist_ok=True)
+    write_file(path, [page.encode()])
+    click.echo(path)
+
+
+def _record(folder: Path) -> RunRecord:
+    """Return what is told of a run; raises ClickException where it cannot be read."""
+    from tester.cli.kind_words import words_of
+    from tester.report.record import read_record
+    from tester.store.reader import RunReader
+    from tester.store.schema import StoreError
+
+    try:
+        with RunReader(folder) as reader:
+            info = reader.run().info
+        return read_record(folder, words_of(info))
+    except StoreError as error:
+        raise click.ClickException(str(error)) from error

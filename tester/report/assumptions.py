@@ -1,0 +1,72 @@
+"""Which engineering assumptions entered a run: terms of its budget, and numbers of its rig file, marked [A]."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import cast
+
+from tester.base.source import InvalidSource, load_tree
+from tester.export.results import RunResults
+
+MARK = "[A]"
+
+
+@dataclass(frozen=True, slots=True)
+class AssumedKey:
+    """A key of a rig file whose packaged value is an assumption, and what the file says of it."""
+
+    key: str
+    value: str
+    remark: str
+
+
+def assumed_terms(results: RunResults) -> Iterator[tuple[str, str, str]]:
+    """Yield name, bound and source of the terms of the budget that rest on an assumption."""
+    for one in results.run.info.terms:
+        if MARK in one.source:
+            unit = "" if one.unit in ("", "1") else f"\u00a0{one.unit}"
+            yield one.name, f"{one.bound:g}{unit}, {one.distribution}", one.source
+
+
+def assumed_keys(commented: str, packaged: str, stored: str) -> list[AssumedKey]:
+    """Return the keys that a packaged rig file marks and that a run's rig has as they are packaged.
+
+    ``commented`` is the packaged file with its remarks, ``packaged`` the same as a run stores it, ``stored`` the text
+    that the run was made with. A key with another value is the laboratory's own number, and is left out. None where
+    one of them cannot be read.
+    """
+    try:
+        before, now = (_flat(load_tree(text, "rig.yaml").data) for text in (packaged, stored))
+    except InvalidSource:
+        return []
+    return [
+        AssumedKey(key, now[key], remark)
+        for key, remark in _marked(commented)
+        if key in before and now.get(key) == before[key]
+    ]
+
+
+def _flat(tree: object, place: str = "") -> dict[str, str]:
+    """Return the values of a tree by their keys, as ``limits.load``."""
+    if isinstance(tree, Mapping):
+        found: dict[str, str] = {}
+        for key, value in cast("Mapping[object, object]", tree).items():
+            found |= _flat(value, f"{place}.{key}" if place else str(key))
+        return found
+    return {place: str(tree)}
+
+
+def _marked(text: str) -> Iterator[tuple[str, str]]:
+    """Yield key and remark of every line of a rig file whose comment has the mark."""
+    path: list[tuple[int, str]] = []
+    for line in text.splitlines():
+        key, colon, rest = line.partition(":")
+        name = key.strip()
+        if not colon or not name or name.startswith(("#", "-")):
+            continue
+        depth = len(key) - len(key.lstrip())
+        path = [one for one in path if one[0] < depth] + [(depth, name)]
+        _, hash_mark, remark = rest.partition("#")
+        if hash_mark and MARK in remark:
+            yield ".".join(one for _, one in path), remark.strip()

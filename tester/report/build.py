@@ -1,0 +1,134 @@
+"""Makes a report of what is on record of one run or several: the first page, then a chapter a run."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from math import isfinite
+
+from tester import __version__
+from tester.export.results import Measured
+from tester.report.budgets import budget_section
+from tester.report.charts import Material, charts_of, repeats_chart
+from tester.report.conditions import conditions_section, drift_section, short_table, verdict
+from tester.report.inline import inline_svg
+from tester.report.layout import Chapter, FactSheet, Paragraph, Part, Picture, Report, ReportSection
+from tester.report.overview import overview_chart
+from tester.report.record import RunRecord
+from tester.report.runs import runs_chapter
+from tester.report.sections import (
+    assumption_section,
+    calibration_section,
+    control_section,
+    provenance_section,
+    ran_section,
+    tare_section,
+    trips_section,
+)
+from tester.report.words import counted, day
+
+Showing = Callable[[RunRecord], Material]
+"""What the figures of a run may show: its values, and published ones and a law beside them."""
+REPEATS_AT_MOST = 6
+"""Conditions whose repeats are drawn: those with a doubt or a repeat left out, as they come."""
+
+
+def report_of(records: Sequence[RunRecord], showing: Showing) -> Report:
+    """Return the report of at least one run; raises MissingExtraError."""
+    first = records[0]
+    names = list(dict.fromkeys(one.results.run.info.recipe_name for one in records))
+    measurand = first.machine.measurand or "the friction coefficient"
+    chapters = [runs_chapter(records)] if len(records) > 1 else []
+    chapters += [_chapter(one, f"r{i}", showing) for i, one in enumerate(records, start=1)]
+    cover: list[Part] = []
+    for one in records:
+        cover += _cover(one, several=len(records) > 1)
+    return Report(
+        title=", ".join(names),
+        lead=f"Measured was {measurand}.",
+        cover=cover,
+        chapters=chapters,
+        made=f"Made by friction-tester {__version__} from the records of {', '.join(one.name for one in records)}.",
+    )
+
+
+def _cover(record: RunRecord, *, several: bool) -> list[Part]:
+    results = record.results
+    run, info = results.run, results.run.info
+    compounds = list(dict.fromkeys(row.info.compound for row in results.rows))
+    simulated = (
+        Paragraph(
+            "Simulated: no rubber and no machine were involved. The values come from a computer model of the rig "
+            f"(seed {info.seed}); they show what the method does, not what a compound does.",
+            "care",
+        )
+        if info.simulated
+        else Paragraph("Measured on a machine.")
+    )
+    facts = [
+        *([("run", record.name)] if several else []),
+        ("compounds" if len(compounds) > 1 else "compound", ", ".join(compounds) or "none"),
+        ("conditions", str(len(results.rows))),
+        ("rig", record.machine.title or info.kind),
+        ("date", day(info.started_utc)),
+        ("operator", info.operator or "not named"),
+        ("status", f"{results.status.value}{f': {run.reason}' if run.reason else ''}"),
+        ("record", f"head {record.verification.head[:16]}…" if record.verification.head else "without a chain"),
+    ]
+    found = record.verification.problems
+    checked = (
+        Paragraph(f"The record is not as it was left: {counted(len(found), 'finding')}, see below.", "bad")
+        if found
+        else Paragraph("The record was verified: it is as it was left.", "good")
+    )
+    risk: list[Part] = [Paragraph(f"Risk accepted: {info.risk}", "bad")] if info.risk else []
+    told = (
+        f"± U is the expanded uncertainty: 95 of 100 such intervals hold the value. That of “this {results.worn}” is "
+        f"for the {results.worn} that was mounted; that of the compound is for any {results.worn} of it."
+    )
+    table = short_table(results)
+    return [FactSheet(facts), simulated, *risk, *verdict(results), checked, table, Paragraph(told, "small")]
+
+
+def _chapter(record: RunRecord, key: str, showing: Showing) -> Chapter:
+    sections = [
+        ran_section(record, f"{key}-ran"),
+        conditions_section(record, f"{key}-conditions"),
+        _figures(record, f"{key}-figures", showing),
+        budget_section(record, f"{key}-budgets"),
+        drift_section(record, f"{key}-drift"),
+        tare_section(record, f"{key}-tares"),
+        calibration_section(record, f"{key}-calibration"),
+        trips_section(record, f"{key}-trips"),
+        control_section(record, f"{key}-control"),
+        assumption_section(record, f"{key}-assumptions"),
+        provenance_section(record, f"{key}-provenance"),
+    ]
+    return Chapter(key, f"Run {record.name}", sections)
+
+
+def _figures(record: RunRecord, key: str, showing: Showing) -> ReportSection:
+    figures = [*charts_of(showing(record))]
+    parts: list[Part] = [
+        Picture(one.title, inline_svg(one, f"{key}-{i}"), wide=len(one.panels) > 1)
+        for i, one in enumerate(figures, start=1)
+    ]
+    drawn = overview_chart([(record.name, record.results)])
+    if drawn is not None:
+        parts.append(Picture(drawn.title, inline_svg(drawn, f"{key}-overview"), wide=True))
+    doubted = [one for one in record.results.conditions() if _worth_drawing(one)]
+    for one in doubted[:REPEATS_AT_MOST]:
+        chart = repeats_chart(one)
+        parts.append(Picture(chart.title, inline_svg(chart, f"{key}-{chart.name}")))
+    if len(doubted) > REPEATS_AT_MOST:
+        left = counted(len(doubted) - REPEATS_AT_MOST, "more condition")
+        told = f"{left} with a doubt or a repeat left out: tester figure {record.name} draws each."
+        parts.append(Paragraph(told, "small"))
+    if not parts:
+        parts.append(Paragraph("No condition has a value, and there is nothing to draw.", "care"))
+    return ReportSection(key, "Figures", parts)
+
+
+def _worth_drawing(one: Measured) -> bool:
+    left_out = any(one.exclusion(repeat) for repeat in one.repeats)
+    drawable = any(isfinite(repeat.result.mu_resultant) for repeat in one.repeats)
+    return drawable and bool(one.result.doubts or left_out)

@@ -1,0 +1,149 @@
+"""A figure as SVG within a page: names of its own, every point named where a pointer is on it, nothing from elsewhere.
+
+A browser shows the ``title`` of what a pointer is on; no script is needed. Identifiers get the figure's key in front,
+because those of all figures of a page are in one namespace.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from math import isfinite
+from typing import Final
+from xml.etree import ElementTree
+
+from tester.base.plain import harmless
+from tester.report.chart import Chart, Figure, Series
+from tester.report.draw import LONGEST, MARKED, svg_for_a_page
+
+SVG: Final = "http://www.w3.org/2000/svg"
+XLINK: Final = "http://www.w3.org/1999/xlink"
+HREF: Final = f"{{{XLINK}}}href"
+REACH: Final = 6.0
+"""Radius about a point, in points of the drawing, within which a pointer is on it."""
+_DECIMALS = re.compile(r"(\.\d\d)\d+")
+"""A hundredth of a point is finer than any screen or printer."""
+_LONG: Final = ("d", "x", "y", "cx", "cy")
+"""Attributes with coordinates, in which decimals may be cut."""
+_FONT, _FONTS = "'DejaVu Sans'", "'DejaVu Sans', Verdana, sans-serif"
+"""The font that is drawn with, and what stands in for it where a reader has it not: one as wide, or any."""
+
+ElementTree.register_namespace("", SVG)
+ElementTree.register_namespace("xlink", XLINK)
+
+
+def inline_svg(figure: Figure, key: str) -> str:
+    """Return a figure as an SVG element; ``key``, letters, digits and -, is unique in the page.
+
+    Raises MissingExtraError.
+    """
+    root = ElementTree.fromstring(svg_for_a_page(figure))
+    for parent in list(root.iter()):
+        for child in list(parent):
+            if child.tag in (f"{{{SVG}}}metadata", f"{{{SVG}}}style"):
+                parent.remove(child)
+    if isinstance(figure, Chart):
+        _name_points(root, figure)
+    _shorten(root)
+    _own_names(root, key)
+    width, height = (root.attrib.pop(name).removesuffix("pt") for name in ("width", "height"))
+    root.set("viewBox", f"0 0 {width} {height}")
+    root.set("style", f"max-width: {float(width):.0f}pt")
+    root.set("role", "img")
+    root.set("aria-label", alt_text(figure))
+    return ElementTree.tostring(root, encoding="unicode")
+
+
+def alt_text(figure: Figure) -> str:
+    """Return what a figure shows, in words: its title, and of each panel what its points span."""
+    told = [figure.title]
+    if isinstance(figure, Chart):
+        for panel in figure.panels:
+            points = [one for one in panel.series if one.look in ("measured", "left out")]
+            x, y = _spans((v for one in points for v in one.x), (v for one in points for v in one.y))
+            if x and y:
+                title = f"{panel.title}: " if panel.title else ""
+                upright = panel.y_label or figure.y_label
+                told.append(f"{title}{sum(len(one.x) for one in points)} points, {figure.x_label} {x}, {upright} {y}")
+    else:
+        for title, along, upward, grid in figure.panels:
+            (z,) = _spans(value for row in grid for value in row)
+            told.append(f"{title}: {len(along)} by {len(upward)} values, {figure.z_label} {z}")
+    return _plain("; ".join(told), 4 * LONGEST)
+
+
+def _spans(*given: Iterator[float]) -> list[str]:
+    found: list[str] = []
+    for values in given:
+        known = [value for value in values if isfinite(value)]
+        found.append(f"{min(known):.4g} to {max(known):.4g}" if known else "")
+    return found
+
+
+def _plain(text: str, longest: int = LONGEST) -> str:
+    text = " ".join(harmless(text).split("\n"))
+    return text if len(text) <= longest else f"{text[: longest - 1]}…"
+
+
+def _name_points(root: ElementTree.Element, chart: Chart) -> None:
+    groups = {one.get("id", ""): one for one in root.iter(f"{{{SVG}}}g")}
+    for i, panel in enumerate(chart.panels):
+        upright = panel.y_label or chart.y_label
+        for j, series in enumerate(panel.series):
+            group = groups.get(f"{MARKED}-{i}-{j}")
+            if group is not None and series.look not in ("law", "limit"):
+                _name(group, _names(series, chart.x_label, upright))
+
+
+def _names(series: Series, x_label: str, y_label: str) -> Sequence[str]:
+    """Return a name for each point that is drawn: one whose place is known."""
+    names = series.names or [
+        f"{f'{series.label}: ' if series.label else ''}{x_label} {x:.4g}, {y_label} {y:.4g}"
+        for x, y in zip(series.x, series.y, strict=True)
+    ]
+    places = zip(names, series.x, series.y, strict=True)
+    return [name for name, x, y in places if isfinite(x) and isfinite(y)]
+
+
+def _name(group: ElementTree.Element, names: Sequence[str]) -> None:
+    """Put round every mark of a group a group with a title, and a disc on which a pointer finds it more easily."""
+    holders = [(parent, one) for parent in group.iter() for one in parent if one.tag == f"{{{SVG}}}use"]
+    if len(holders) != len(names):  # a mark outside the drawing is not drawn: better no name than a wrong one
+        return
+    for (parent, mark), name in zip(holders, names, strict=True):
+        named = ElementTree.Element(f"{{{SVG}}}g")
+        ElementTree.SubElement(named, f"{{{SVG}}}title").text = _plain(name)
+        place = {"cx": mark.get("x", "0"), "cy": mark.get("y", "0"), "r": f"{REACH:g}"}
+        ElementTree.SubElement(named, f"{{{SVG}}}circle", {**place, "fill": "none", "pointer-events": "all"})
+        parent[list(parent).index(mark)] = named
+        named.append(mark)
+
+
+def _shorten(root: ElementTree.Element) -> None:
+    for one in root.iter():
+        for name in _LONG:
+            value = one.get(name)
+            if value is not None:
+                one.set(name, _DECIMALS.sub(r"\1", value).replace("  ", " "))
+        one.tail = None
+        if one.tag == f"{{{SVG}}}text":
+            one.set("style", one.get("style", "").replace(_FONT, _FONTS))
+        elif one.text is not None and not one.text.strip():
+            one.text = None
+
+
+def _own_names(root: ElementTree.Element, key: str) -> None:
+    """Put the key in front of every identifier that something refers to, and take the others away."""
+    used: set[str] = set()
+    for one in root.iter():
+        for name, value in one.attrib.items():
+            if name == HREF and value.startswith("#"):
+                used.add(value[1:])
+                one.set(name, f"#{key}-{value[1:]}")
+            elif "url(#" in value:
+                used.update(re.findall(r"url\(#([^)]+)\)", value))
+                one.set(name, value.replace("url(#", f"url(#{key}-"))
+    for one in root.iter():
+        own = one.attrib.pop("id", None)
+        if own in used:
+            one.set("id", f"{key}-{own}")

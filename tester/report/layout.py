@@ -1,0 +1,117 @@
+"""A report as data, before it is a page: sections of paragraphs, facts, lists, tables and pictures.
+
+All text is as people and devices wrote it; what makes it harmless is the page (tester.report.page).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal, TypeAlias
+
+Tone = Literal["", "good", "care", "bad", "small"]
+"""What a paragraph or a row is: a plain one, a good word, one to be taken with care, a bad one, a remark."""
+
+
+@dataclass(frozen=True, slots=True)
+class Paragraph:
+    """Text, and in what tone."""
+
+    text: str
+    tone: Tone = ""
+    kind: Literal["paragraph"] = "paragraph"
+
+
+@dataclass(frozen=True, slots=True)
+class Listing:
+    """Lines of text."""
+
+    lines: Sequence[str]
+    tone: Tone = ""
+    kind: Literal["listing"] = "listing"
+
+
+@dataclass(frozen=True, slots=True)
+class FactSheet:
+    """Names with what is to be said of each."""
+
+    facts: Sequence[tuple[str, str]]
+    kind: Literal["facts"] = "facts"
+
+
+@dataclass(frozen=True, slots=True)
+class ReportHead:
+    """Head of a column; ``number``: its cells are set to the right."""
+
+    text: str
+    number: bool = True
+
+
+@dataclass(frozen=True, slots=True)
+class ReportRow:
+    """Cells of a row, the first of which names it."""
+
+    cells: Sequence[str]
+    tone: Tone = ""
+    key: str = ""
+    """By which other places of the page refer to it; "" nothing does."""
+
+
+@dataclass(frozen=True, slots=True)
+class ReportTable:
+    """A table; ``narrow``: of which two fit side by side on paper."""
+
+    caption: str
+    heads: Sequence[ReportHead]
+    rows: Sequence[ReportRow]
+    note: str = ""
+    narrow: bool = False
+    kind: Literal["table"] = "table"
+
+
+@dataclass(frozen=True, slots=True)
+class Picture:
+    """A drawn figure; ``svg`` is markup of this program's making."""
+
+    caption: str
+    svg: str
+    wide: bool = False
+    kind: Literal["picture"] = "picture"
+
+
+Part: TypeAlias = Paragraph | Listing | FactSheet | ReportTable | Picture
+
+
+@dataclass(frozen=True, slots=True)
+class ReportSection:
+    """A section; ``key`` is unique in the report."""
+
+    key: str
+    title: str
+    parts: Sequence[Part]
+
+
+@dataclass(frozen=True, slots=True)
+class Chapter:
+    """What is told of one run, or of several together."""
+
+    key: str
+    title: str
+    sections: Sequence[ReportSection]
+
+
+@dataclass(frozen=True, slots=True)
+class Report:
+    """A whole report: what a customer reads first, then chapters."""
+
+    title: str
+    lead: str
+    cover: Sequence[Part]
+    chapters: Sequence[Chapter]
+    made: str
+    """By which version it was made, of which records."""
+
+
+def heads(*texts: str, text: Sequence[int] = (0,)) -> tuple[ReportHead, ...]:
+    """Return heads of columns; those at the places ``text`` hold words, the others numbers."""
+    return tuple(ReportHead(one, number=i not in text) for i, one in enumerate(texts))

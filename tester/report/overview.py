@@ -1,0 +1,123 @@
+"""A campaign at a glance: what was measured in order of time, one strip the coefficient, one each thing that varied."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from math import isfinite
+
+from tester.axes import condition_words
+from tester.export.results import Measured, RunResults
+from tester.report.chart import Chart, ChartPanel, Series
+from tester.report.words import labelled
+from tester.store.records import StoredRepeat
+
+MINUTES = 1.0 / 60.0
+
+
+@dataclass(frozen=True, slots=True)
+class _Placed:
+    """A condition of a run, with the minute in which it began and how long it took; minutes of all runs in a row."""
+
+    at: float
+    half: float
+    origin: float
+    run: str
+    measured: Measured
+
+
+def overview_chart(runs: Sequence[tuple[str, RunResults]]) -> Chart | None:
+    """Return the conditions of runs (name and results), one run after the other by rig time; None where none began.
+
+    The coefficient has U of what was mounted as its bar; repeats that were refused, left out by hand or made up stand
+    beside it. Below it a strip for each axis of numbers that varied.
+    """
+    placed = [*_placed(runs)]
+    if not placed:
+        return None
+    several = len(runs) > 1
+    axes = placed[0].measured.info.setpoint.axes
+    varied = axes.differing(one.measured.info.setpoint for one in placed)
+    strips = [ChartPanel("", tuple(_coefficients(placed, several)), "coefficient")]
+    for axis in (one for one in varied if one.plotted and not one.choices):
+        series = Series(
+            "",
+            tuple(one.at for one in placed),
+            tuple(axis.number(one.measured.info.setpoint) for one in placed),
+            "measured",
+            0,
+            widths=tuple(one.half for one in placed),
+            names=tuple(_words(one, several) for one in placed),
+        )
+        strips.append(ChartPanel("", (series,), labelled(axis)))
+    title = f"{'runs, one after the other' if several else 'the run'}: {len(placed)} conditions in order of time"
+    note = "bars: U (95 %) of what was mounted; along: from begin to end of a condition"
+    return Chart("overview", title, "rig time (min)", "coefficient", tuple(strips), note, from_zero=False, stacked=True)
+
+
+def _placed(runs: Sequence[tuple[str, RunResults]]) -> Iterator[_Placed]:
+    origin = 0.0
+    for name, results in runs:
+        for one in sorted(results.conditions(), key=lambda found: found.condition.started_s):
+            begin, end = one.condition.started_s, one.condition.ended_s
+            if isfinite(begin):
+                end = end if isfinite(end) else begin
+                yield _Placed(origin + 0.5 * (begin + end) * MINUTES, 0.5 * (end - begin) * MINUTES, origin, name, one)
+        origin += results.run.rig_seconds * MINUTES
+
+
+def _words(one: _Placed, several: bool) -> str:
+    result = one.measured.result
+    of = f"{one.run}: " if several else ""
+    told = f"{of}condition {one.measured.info.condition}, {condition_words(one.measured.info.setpoint)}"
+    return f"{told}: {result.mu_resultant:.3f}\u00a0±\u00a0{result.expanded:.3f}" if result.ok else told
+
+
+def _coefficients(placed: Sequence[_Placed], several: bool) -> Iterator[Series]:
+    """Yield the coefficients, a series a compound, then single repeats that are out of the ordinary."""
+    compounds = sorted({one.measured.info.compound for one in placed})
+    for style, compound in enumerate(compounds):
+        own = [one for one in placed if one.measured.info.compound == compound and one.measured.result.ok]
+        if own:
+            yield Series(
+                compound,
+                tuple(one.at for one in own),
+                tuple(one.measured.result.mu_resultant for one in own),
+                "measured",
+                style,
+                tuple(one.measured.result.expanded for one in own),
+                tuple(one.half for one in own),
+                tuple(_words(one, several) for one in own),
+            )
+    style = len(compounds)
+    out = [(one, repeat) for one in placed for repeat in one.measured.repeats if one.measured.exclusion(repeat)]
+    made_up = [
+        (one, repeat)
+        for one in placed
+        for repeat in made_up_of(one.measured)
+        if not one.measured.exclusion(repeat)
+    ]  # fmt: skip
+    for label, listed, look in (("make-up repeat", made_up, "published"), ("repeat left out", out, "left out")):
+        points = [(one, repeat) for one, repeat in listed if isfinite(repeat.result.mu_resultant)]
+        if points:
+            yield Series(
+                label,
+                tuple(one.origin + repeat.result.ended_s * MINUTES for one, repeat in points),
+                tuple(repeat.result.mu_resultant for _, repeat in points),
+                "published" if look == "published" else "left out",
+                style,
+                names=tuple(_of_repeat(one.measured, repeat) for one, repeat in points),
+            )
+            style += 1
+
+
+def made_up_of(measured: Measured) -> list[StoredRepeat]:
+    """Return the repeats of a condition beyond those that were asked for at first: made in place of others, or to
+    reach a precision."""
+    return [one for one in measured.repeats if one.repeat > measured.info.repeats]
+
+
+def _of_repeat(measured: Measured, repeat: StoredRepeat) -> str:
+    reason = measured.exclusion(repeat)
+    told = f"repeat {repeat.condition}/{repeat.repeat}: {repeat.result.mu_resultant:.3f}"
+    return f"{told}, {reason}" if reason else f"{told}, a make-up"

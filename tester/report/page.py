@@ -1,0 +1,60 @@
+"""A report as one HTML file: everything is in it, nothing is fetched, nothing runs.
+
+What people, devices and files say is text wherever it stands: Jinja2 escapes all of it, and before that every character
+that could steer a reader (control, bidirectional, invisible) becomes a question mark and what is very long is cut. Only
+drawings are markup of this program's making. The page forbids itself everything but its own style and its own pictures.
+The markup is well-formed XML as well, which a test can hold strictly.
+"""
+
+from __future__ import annotations
+
+from importlib.resources import files
+from typing import Any, Final
+
+from tester.base.extras import MissingExtraError, needs
+from tester.base.plain import harmless
+from tester.report.layout import Report
+
+POLICY: Final = "default-src 'none'; style-src 'unsafe-inline'; img-src data:; base-uri 'none'; form-action 'none'"
+"""What the page may do (Content-Security-Policy): show its own style and pictures that are in it; no script at all."""
+LONGEST: Final = 4000
+"""Characters of one text; the rest is counted."""
+
+
+def page_of(report: Report) -> str:
+    """Return the HTML of a report; raises MissingExtraError."""
+    try:
+        from jinja2 import Environment, FunctionLoader, StrictUndefined
+        from markupsafe import Markup
+    except ImportError as error:
+        raise MissingExtraError(needs("a report", "jinja2", "report")) from error
+
+    def finalize(value: object) -> object:
+        return value if isinstance(value, Markup) or not isinstance(value, str) else told(value)
+
+    environment = Environment(
+        loader=FunctionLoader(_packaged),
+        autoescape=True,
+        undefined=StrictUndefined,
+        finalize=finalize,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        auto_reload=False,
+    )
+    mark: Any = Markup  # a drawing is this program's own markup
+    environment.filters["drawing"] = mark
+    return environment.get_template("page.html").render(
+        report=report, policy=POLICY, style=Markup(_packaged("page.css"))
+    )
+
+
+def told(text: str) -> str:
+    """Return text as a page may show it: harmless, and of at most ``LONGEST`` characters."""
+    plain = harmless(text)
+    if len(plain) <= LONGEST:
+        return plain
+    return f"{plain[:LONGEST]}… ({len(plain) - LONGEST} more characters)"
+
+
+def _packaged(name: str) -> str:
+    return files("tester.report").joinpath(name).read_text(encoding="utf-8")

@@ -1,0 +1,85 @@
+"""Several runs held against each other: their coefficients over each axis, and whether their compounds differ."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from tester.analysis.difference import at_nominal
+from tester.export.compared import Pair, pairs, same_rig
+from tester.report.charts import ChartValue, overlay_charts, values_of
+from tester.report.conditions import axis_cells, axis_heads
+from tester.report.inline import inline_svg
+from tester.report.layout import (
+    Chapter,
+    Paragraph,
+    Part,
+    Picture,
+    ReportRow,
+    ReportSection,
+    ReportTable,
+    heads,
+)
+from tester.report.overview import overview_chart
+from tester.report.record import RunRecord
+from tester.report.words import NONE, counted, number
+
+
+def runs_chapter(records: Sequence[RunRecord]) -> Chapter:
+    """Return what is told of several runs together; those of another kind than the first are compared with none."""
+    first = records[0]
+    alike = [one for one in records[1:] if one.results.axes == first.results.axes]
+    sections = [ReportSection("all-figures", "Runs in one picture", _pictures([first, *alike]))] if alike else []
+    sections += [_compared(first, one, f"all-compared-{i}") for i, one in enumerate(alike, start=2)]
+    strange = [one.name for one in records[1:] if one not in alike]
+    if strange:
+        told = f"Of another kind of rig than {first.name}, and not compared: {', '.join(strange)}."
+        sections.append(ReportSection("all-strange", "Not compared", [Paragraph(told, "care")]))
+    return Chapter("all", "Runs held against each other", sections)
+
+
+def _pictures(records: Sequence[RunRecord]) -> list[Part]:
+    values: list[ChartValue] = []
+    for one in records:
+        values += values_of(one.results, one.name)
+    drawn = overview_chart([(one.name, one.results) for one in records])
+    parts: list[Part] = [
+        Picture(chart.title, inline_svg(chart, f"all-{chart.name}"), wide=True) for chart in overlay_charts(values)
+    ]
+    if not parts:
+        parts.append(Paragraph("No two runs have values over one axis with all else alike."))
+    if drawn is not None:
+        parts.append(Picture(drawn.title, inline_svg(drawn, "all-overview"), wide=True))
+    return parts
+
+
+def _compared(first: RunRecord, other: RunRecord, key: str) -> ReportSection:
+    found = [*pairs(first.results, other.results)]
+    both = [one for one in found if one.first is not None and one.second is not None]
+    differing = sum(one.found.told_apart for one in both)
+    shared = (
+        "The runs have one rig and one calibration: errors in common drop out of the difference."
+        if same_rig(first.results.run, other.results.run)
+        else "The runs have different rigs or calibrations: nothing drops out of the difference."
+    )
+    told = (
+        f"{counted(len(both), 'condition')} in both runs; in {differing} the compounds differ by more than chance "
+        f"explains (95 %). {shared} Coefficients are at the temperatures asked for; u is the standard uncertainty of "
+        "the difference of the compounds, z the difference over u, k what chance explains."
+    )
+    axes = first.results.axes.columns(one.either.info.setpoint for one in found)
+    titles = (*axis_heads(axes), *heads("μ 1", "μ 2", "difference", "u", "z", "k", "verdict", text=(6,)))
+    rows = [ReportRow((*axis_cells(one.either, axes), *_cells(one))) for one in found]
+    note = f"1: {first.name}, 2: {other.name}"
+    table = ReportTable(f"{first.name} and {other.name}", titles, rows, note)
+    return ReportSection(key, f"{first.name} and {other.name}", [Paragraph(told), table])
+
+
+def _cells(pair: Pair) -> tuple[str, ...]:
+    first, second, found = pair
+    if first is None or second is None:
+        verdict = f"only in {'1' if second is None else '2'}"
+    else:
+        verdict = "differ" if found.told_apart else "not told apart" if found.standard > 0.0 else NONE
+    mus = (number(at_nominal(one.result)) if one is not None else NONE for one in (first, second))
+    z = number(found.value / found.standard, 2) if found.standard > 0.0 else NONE
+    return (*mus, number(found.value), number(found.standard), z, number(found.coverage, 2), verdict)

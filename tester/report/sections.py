@@ -1,0 +1,248 @@
+"""Sections of what is on record beside the results: what ran, zeros, calibration, trips, assumptions, provenance."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator
+from itertools import pairwise
+
+from tester.report.assumptions import assumed_keys, assumed_terms
+from tester.report.control import control_chart
+from tester.report.inline import inline_svg
+from tester.report.layout import (
+    FactSheet,
+    Listing,
+    Paragraph,
+    Part,
+    Picture,
+    ReportRow,
+    ReportSection,
+    ReportTable,
+    heads,
+)
+from tester.report.record import ALARMING, RunRecord
+from tester.report.words import NONE, counted, day, hours, number
+
+EVENTS_AT_MOST = 200
+"""Alarms of a run that are listed; of more, the first."""
+
+
+def ran_section(record: RunRecord, key: str) -> ReportSection:
+    """Return which recipe ran on which rig, on what, by whom, with which version."""
+    results = record.results
+    run, info = results.run, results.run.info
+    ended = f", ended {day(run.ended_utc)}" if run.ended_utc else ""
+    facts = [
+        ("run", record.name),
+        ("status", f"{results.status.value}{f': {run.reason}' if run.reason else ''}"),
+        ("recipe", f"{info.recipe_name}{_from(info.recipe_source)}"),
+        ("rig", f"{record.machine.title or info.kind}{_from(info.rig_source)}, {_simulated(record)}"),
+        ("operator", info.operator or "not named"),
+        ("time", f"started {day(info.started_utc)}{ended}, rig time {hours(run.rig_seconds)}"),
+        ("software", f"friction-tester {info.software_version}{_revision(info.git_revision)}"),
+        *((name.replace("_", " "), value) for name, value in info.metadata.items()),
+    ]
+    parts: list[Part] = [FactSheet(facts)]
+    if info.risk:
+        parts.insert(0, Paragraph(f"Risk accepted: {info.risk}", "bad"))
+    if results.pieces:
+        rows = [
+            ReportRow(
+                (
+                    str(one.piece),
+                    one.compound,
+                    str(one.replicate),
+                    number(one.installed_diameter_mm, 2),
+                    number(one.diameter_mm, 3),
+                    number(one.sliding_m, 0),
+                    hours(one.installed_s),
+                )
+            )
+            for one in results.pieces
+        ]
+        titles = heads(
+            results.worn, "compound", "replicate", "diameter installed (mm)", "diameter at the end (mm)", "slid (m)",
+            "mounted at", text=(0, 1),
+        )  # fmt: skip
+        parts.append(ReportTable(f"What was mounted ({results.worn})", titles, rows))
+    asked = [one for one in record.prompts if one.answer]
+    if asked:
+        lines = [f"{hours(one.asked_s)}: {one.text}: {one.answer} ({one.answered_by or 'unnamed'})" for one in asked]
+        parts += [Paragraph("What people were asked, and answered:"), Listing(lines)]
+    return ReportSection(key, "What ran on what", parts)
+
+
+def _from(source: str) -> str:
+    return f" (from {source})" if source else ""
+
+
+def _revision(revision: str) -> str:
+    return f", revision {revision}" if revision else ""
+
+
+def _simulated(record: RunRecord) -> str:
+    info = record.results.run.info
+    return f"simulated (seed {info.seed})" if info.simulated else "a machine"
+
+
+def tare_section(record: RunRecord, key: str) -> ReportSection:
+    """Return how the zeros of the load cell went."""
+    if not record.tares:
+        return ReportSection(key, "Zeros of the load cell", [Paragraph("No zero of a cell is on record.")])
+    names = list(dict.fromkeys(name for one in record.tares for name in one.zeros))
+    rows: list[ReportRow] = []
+    for kind in dict.fromkeys(one.kind for one in record.tares):
+        own = [one for one in record.tares if one.kind == kind]
+        for name in names:
+            values = [value for one in own if (value := one.zeros.get(name)) is not None and value == value]
+            if values:
+                steps = [abs(b - a) for a, b in pairwise(values)]
+                cells = (len(values), values[0], values[-1], min(values), max(values), max(steps, default=0.0))
+                rows.append(ReportRow((kind, name, str(cells[0]), *(number(value, 3) for value in cells[1:]))))
+    titles = heads("kind", "channel", "zeros", "first", "last", "least", "most", "largest step", text=(0, 1))
+    first, last = record.tares[0], record.tares[-1]
+    note = f"{counted(len(record.tares), 'zero')} from {hours(first.t_s)} to {hours(last.t_s)} of rig time, in the "
+    table = ReportTable("Zeros (tares) by channel", titles, rows, f"{note}unit that the channel's name ends with")
+    return ReportSection(key, "Zeros of the load cell", [table])
+
+
+def calibration_section(record: RunRecord, key: str) -> ReportSection:
+    """Return the calibration that was in use."""
+    info = record.results.run.info
+    if not info.calibration:
+        told = "No calibration is on record" + (": a simulated rig has none." if info.simulated else ".")
+        return ReportSection(key, "Calibration", [Paragraph(told, "" if info.simulated else "care")])
+    rows = [ReportRow((one.device, one.quantity, one.value, one.unit or NONE)) for one in info.calibration]
+    titles = heads("device", "quantity", "value", "unit", text=(0, 1, 3))
+    return ReportSection(key, "Calibration", [ReportTable("Calibration in use at the end", titles, rows)])
+
+
+def trips_section(record: RunRecord, key: str) -> ReportSection:
+    """Return trips, alarms and how many warnings there were of which kind."""
+    parts: list[Part] = []
+    if record.trips:
+        rows = [
+            ReportRow(
+                (hours(one.t_s), day(one.utc), one.interlock, one.text, one.compared or NONE, one.acknowledged), "bad"
+            )
+            for one in record.trips
+        ]
+        titles = heads("rig time", "time", "interlock", "text", "value and limit", "acknowledged", text=range(6))
+        parts.append(ReportTable("Trips", titles, rows))
+    else:
+        parts.append(Paragraph("No interlock tripped.", "good"))
+    alarms = [one for one in record.events if one.severity in ALARMING]
+    if alarms:
+        rows = [
+            ReportRow((hours(one.t_s), day(one.utc), one.kind, one.severity, one.text))
+            for one in alarms[:EVENTS_AT_MOST]
+        ]
+        titles = heads("rig time", "time", "kind", "severity", "text", text=range(5))
+        note = f"and {len(alarms) - len(rows)} more" if len(alarms) > len(rows) else ""
+        parts.append(ReportTable("Alarms", titles, rows, note))
+    else:
+        parts.append(Paragraph("No alarm was raised.", "good"))
+    warned = Counter(one.kind for one in record.events if one.severity not in ALARMING)
+    if warned:
+        told = ", ".join(f"{kind} {n}" for kind, n in sorted(warned.items()))
+        parts.append(Paragraph(f"Warnings by kind: {told}."))
+    if record.results.run.overruns:
+        parts.append(Paragraph(f"{record.results.run.overruns} samples were dropped while recording.", "care"))
+    return ReportSection(key, "Alarms and trips", parts)
+
+
+def control_section(record: RunRecord, key: str) -> ReportSection:
+    """Return the control chart of the reference condition, where there was one."""
+    title = "Control chart"
+    if not record.control:
+        return ReportSection(key, title, [Paragraph("No reference condition was in this recipe.")])
+    outside = [one for one in record.control if not one.inside]
+    told = (
+        Paragraph(f"{counted(len(outside), 'value')} of {len(record.control)} not in control.", "bad")
+        if outside
+        else Paragraph(f"All {len(record.control)} values are in control.", "good")
+    )
+    rows = [
+        ReportRow(
+            (str(one.order), number(one.mu), number(one.u), number(one.low), number(one.high),
+             "in control" if one.inside else "out of control"),
+            "" if one.inside else "bad",
+        )
+        for one in record.control
+    ]  # fmt: skip
+    titles = heads("turn", "μ", "U", "lower limit", "upper limit", "verdict", text=(0, 5))
+    chart = control_chart(record.control)
+    return ReportSection(
+        key,
+        title,
+        [
+            told,
+            Picture(chart.title, inline_svg(chart, key), wide=True),
+            ReportTable("Reference condition", titles, rows),
+        ],
+    )
+
+
+def assumption_section(record: RunRecord, key: str) -> ReportSection:
+    """Return what is assumed and not measured, as far as it entered these results."""
+    results = record.results
+    terms = [ReportRow(cells) for cells in assumed_terms(results)]
+    keys = assumed_keys(record.machine.commented, record.machine.packaged, results.run.info.rig_text)
+    parts: list[Part] = [
+        Paragraph(
+            "[A] marks an engineering assumption: plausible, and not measured on this machine. Those of the program "
+            "itself are listed in docs/assumptions.md of its version."
+        )
+    ]
+    if terms:
+        parts.append(ReportTable("In the uncertainty", heads("term", "limit", "source", text=(0, 1, 2)), terms))
+    if keys:
+        rows = [ReportRow((one.key, one.value, one.remark)) for one in keys]
+        titles = heads("key", "value", "what the file says", text=(0, 1, 2))
+        note = "keys that are as the packaged rig file has them; a value of the laboratory's own is not listed"
+        parts.append(ReportTable("In the rig file", titles, rows, note))
+    if not terms and not keys:
+        parts.append(Paragraph("None is known to have entered."))
+    return ReportSection(key, "Assumptions", parts)
+
+
+def provenance_section(record: RunRecord, key: str) -> ReportSection:
+    """Return versions, hashes, the record's head, and whether the run is as it was left."""
+    run, found = record.results.run, record.verification
+    info = run.info
+    read = f"{found.samples} samples in {found.blocks} blocks read, {found.coefficients} coefficients recomputed"
+    parts: list[Part] = [
+        Paragraph(f"Verified as it was left: {read}; every hash, table and coefficient agrees.", "good")
+        if not found.problems
+        else Paragraph(f"Not as it was left: {counted(len(found.problems), 'finding')}.", "bad"),
+        *([Listing(found.problems, "bad")] if found.problems else []),
+        *([Listing(found.notes, "small")] if found.notes else []),
+        FactSheet([(name, value or NONE) for name, value in _hashes(record)]),
+    ]
+    rows = [ReportRow((name, sha)) for name, sha in sorted(record.files.items())]
+    if rows:
+        parts.append(
+            ReportTable("Files of the run's folder, by its manifest", heads("file", "SHA-256", text=(0, 1)), rows)
+        )
+    versions = ", ".join(f"{name} {one}" for name, one in info.versions.items())
+    parts.append(Paragraph(f"Versions: {versions or NONE}.", "small"))
+    went_on = [*_went_on(record)]
+    parts += [Paragraph("The run went on, or was changed:"), Listing(went_on)] if went_on else []
+    return ReportSection(key, "Where it is from", parts)
+
+
+def _hashes(record: RunRecord) -> Iterator[tuple[str, str]]:
+    run = record.results.run
+    yield "head of the record", record.verification.head
+    yield "SHA-256 of the recipe", run.recipe_sha256
+    yield "SHA-256 of the rig file", run.rig_sha256
+    yield "SHA-256 of the calibration", run.calibration_sha256
+    yield "software", f"friction-tester {run.info.software_version}"
+    yield "revision", run.info.git_revision
+
+
+def _went_on(record: RunRecord) -> Iterator[str]:
+    for one in record.sessions[1:]:
+        yield f"{hours(one.origin_s)} of rig time, {day(one.started_utc)}, version {one.software_version or NONE}"
+    for change in record.changes:
+        yield f"{change.subject} changed before stretch {change.session}: {change.reason}"
