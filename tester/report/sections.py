@@ -177,7 +177,7 @@ def control_section(record: RunRecord, key: str) -> ReportSection:
         title,
         [
             told,
-            Picture(chart.title, inline_svg(chart, key), wide=True),
+            Picture(inline_svg(chart, key), wide=True),
             ReportTable("Reference condition", titles, rows),
         ],
     )
