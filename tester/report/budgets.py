@@ -13,7 +13,7 @@ from tester.analysis.uncertainty import Contribution
 from tester.axes import condition_words
 from tester.export.budget import share_of, terms_of
 from tester.export.results import RunResults, TableRow
-from tester.report.layout import Paragraph, Part, ReportRow, ReportSection, ReportTable, heads
+from tester.report.layout import Columns, Paragraph, Part, ReportRow, ReportSection, ReportTable, heads
 from tester.report.record import RunRecord
 from tester.report.words import NONE, number, percent, relative, short
 
@@ -43,7 +43,7 @@ def budget_section(record: RunRecord, key: str) -> ReportSection:
         ),
         ReportTable("Terms", titles, legend),
     ]
-    parts += [_budget(row, numbers, results) for row in valued]
+    parts.append(Columns([_budget(row, numbers, results) for row in valued]))
     return ReportSection(key, "Uncertainty budgets", parts)
 
 
@@ -71,7 +71,7 @@ def _budget(row: TableRow, numbers: dict[_Told, int], results: RunResults) -> Re
         for name, one in ((f"this {results.worn}", r.budget), ("compound", r.compound_budget))
     )
     titles = heads("no.", "term", "u", "df", "c", "u(μ)", "this", "compound", text=(0, 1))
-    return ReportTable(caption, titles, rows, note, narrow=True)
+    return ReportTable(caption, titles, rows, note)
 
 
 def _cells(one: Contribution, r: ConditionResult, number_of: int) -> tuple[str, ...]:

@@ -109,16 +109,16 @@ def _chapter(record: RunRecord, key: str, showing: Showing) -> Chapter:
 def _figures(record: RunRecord, key: str, showing: Showing) -> ReportSection:
     figures = [*charts_of(showing(record))]
     parts: list[Part] = [
-        Picture(one.title, inline_svg(one, f"{key}-{i}"), wide=len(one.panels) > 1)
+        Picture(inline_svg(one, f"{key}-{i}"), wide=len(one.panels) > 1)
         for i, one in enumerate(figures, start=1)
     ]
     drawn = overview_chart([(record.name, record.results)])
     if drawn is not None:
-        parts.append(Picture(drawn.title, inline_svg(drawn, f"{key}-overview"), wide=True))
+        parts.append(Picture(inline_svg(drawn, f"{key}-overview"), wide=True))
     doubted = [one for one in record.results.conditions() if _worth_drawing(one)]
     for one in doubted[:REPEATS_AT_MOST]:
         chart = repeats_chart(one)
-        parts.append(Picture(chart.title, inline_svg(chart, f"{key}-{chart.name}")))
+        parts.append(Picture(inline_svg(chart, f"{key}-{chart.name}")))
     if len(doubted) > REPEATS_AT_MOST:
         left = counted(len(doubted) - REPEATS_AT_MOST, "more condition")
         told = f"{left} with a doubt or a repeat left out: tester figure {record.name} draws each."

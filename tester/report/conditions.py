@@ -147,7 +147,7 @@ def _by_compound(results: RunResults) -> ReportTable:
         "typical U compound", "with care", text=(0, 2, 3),
     )  # fmt: skip
     note = "typical: the median over the conditions, of μ; every condition stands in the table of conditions"
-    return ReportTable("What was found, by compound", titles, rows, note)
+    return ReportTable("What was found, by compound", titles, rows, note, cards=True)
 
 
 def drift_section(record: RunRecord, key: str) -> ReportSection:

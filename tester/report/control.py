@@ -3,75 +3,48 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from math import isfinite
 
-from tester.analysis.results import NAN
+from tester.analysis.reference import ControlChart, ControlPoint
 from tester.report.chart import Chart, ChartPanel, Series
 
 LABEL = "friction coefficient"
 
 
-@dataclass(frozen=True, slots=True)
-class ControlPoint:
-    """A coefficient of the reference condition.
-
-    ``order``: its turn in the run, counted from 1; ``u`` expanded (95 %), NaN where it is not known; ``low`` and
-    ``high``: the limits between which it is in control, NaN where there are none.
-    """
-
-    order: int
-    mu: float
-    u: float = NAN
-    low: float = NAN
-    high: float = NAN
-
-    @property
-    def limited(self) -> bool:
-        """Return whether there are limits."""
-        return isfinite(self.low) and isfinite(self.high)
-
-    @property
-    def inside(self) -> bool:
-        """Return whether it is known to be in control: within its limits, or without any."""
-        return isfinite(self.mu) and (not self.limited or self.low <= self.mu <= self.high)
-
-
-def control_chart(points: Sequence[ControlPoint]) -> Chart:
-    """Return the chart of a reference condition over its turn; those out of control are drawn as crosses."""
-    inside = [one for one in points if one.inside]
-    outside = [one for one in points if not one.inside and isfinite(one.mu)]
-    series = [
-        _series(label, listed, look, style)
-        for label, listed, look, style in (
-            ("in control", inside, "measured", 0),
-            ("out of control", outside, "left out", 1),
-        )
-        if listed
-    ]
-    limited = [one for one in points if one.limited]
-    along = tuple(float(one.order) for one in limited)
-    if limited:
-        series.append(Series("limits", along, tuple(one.low for one in limited), "limit", 1))
-        series.append(Series("", along, tuple(one.high for one in limited), "limit", 1))
+def control_chart(charts: Sequence[ControlChart]) -> Chart:
+    """Return the charts of the references, one a compound, over their turn; those out of limits are crosses."""
+    panels = tuple(ChartPanel(one.compound if len(charts) > 1 else "", _series(one)) for one in charts)
     return Chart(
         "control",
         "reference condition in the order in which it was measured",
         "turn of the reference condition",
         LABEL,
-        (ChartPanel("", tuple(series)),),
-        "bars: expanded uncertainty U (95 %); dashed: limits",
+        panels,
+        "bars: expanded repeatability (95 %); dashed: limits about the first",
         from_zero=False,
     )
 
 
-def _series(label: str, points: Sequence[ControlPoint], look: str, style: int) -> Series:
+def _series(chart: ControlChart) -> tuple[Series, ...]:
+    valued = [one for one in chart.points if isfinite(one.mu)]
+    inside = [one for one in valued if one.within]
+    outside = [one for one in valued if not one.within]
+    along = tuple(float(one.number) for one in chart.points)
+    return (
+        *([_points("in control", inside, 0)] if inside else []),
+        *([_points("out of control", outside, 1)] if outside else []),
+        Series("limits", along, (chart.low,) * len(along), "limit", 1),
+        Series("", along, (chart.high,) * len(along), "limit", 1),
+    )
+
+
+def _points(label: str, points: Sequence[ControlPoint], style: int) -> Series:
     return Series(
         label,
-        tuple(float(one.order) for one in points),
+        tuple(float(one.number) for one in points),
         tuple(one.mu for one in points),
-        "measured" if look == "measured" else "left out",
+        "left out" if style else "measured",
         style,
-        tuple(one.u for one in points),
-        names=tuple(f"turn {one.order}: {one.mu:.3f}\u00a0±\u00a0{one.u:.3f}" for one in points),
+        tuple(one.expanded for one in points),
+        names=tuple(f"turn {one.number}: {one.mu:.3f}\u00a0±\u00a0{one.expanded:.3f}" for one in points),
     )

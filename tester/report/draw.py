@@ -120,8 +120,8 @@ def _draw_chart(chart: Chart, places: Sequence[Any]) -> None:
         if not chart.stacked or number == len(chart.panels) - 1:
             place.set_xlabel(chart.x_label)
         place.set_ylabel(panel.y_label or chart.y_label)
-        if chart.from_zero:
-            place.set_ylim(bottom=0.0)
+    if chart.from_zero:  # last: an axis that is set follows no further points, of no panel that shares it
+        places[0].set_ylim(bottom=0.0)
 
 
 def _draw_panel(panel: ChartPanel, place: Any, number: int) -> None:

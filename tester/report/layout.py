@@ -59,27 +59,35 @@ class ReportRow:
 
 @dataclass(frozen=True, slots=True)
 class ReportTable:
-    """A table; ``narrow``: of which two fit side by side on paper."""
+    """A table."""
 
     caption: str
     heads: Sequence[ReportHead]
     rows: Sequence[ReportRow]
     note: str = ""
-    narrow: bool = False
+    cards: bool = False
+    """Whether its rows are cards, with the heads beside the cells, where a screen is as narrow as a phone's."""
     kind: Literal["table"] = "table"
 
 
 @dataclass(frozen=True, slots=True)
-class Picture:
-    """A drawn figure; ``svg`` is markup of this program's making."""
+class Columns:
+    """Narrow tables, in two columns where there is room."""
 
-    caption: str
+    tables: Sequence[ReportTable]
+    kind: Literal["columns"] = "columns"
+
+
+@dataclass(frozen=True, slots=True)
+class Picture:
+    """A drawn figure, which has its title in it; ``svg`` is markup of this program's making."""
+
     svg: str
     wide: bool = False
     kind: Literal["picture"] = "picture"
 
 
-Part: TypeAlias = Paragraph | Listing | FactSheet | ReportTable | Picture
+Part: TypeAlias = Paragraph | Listing | FactSheet | ReportTable | Columns | Picture
 
 
 @dataclass(frozen=True, slots=True)

@@ -52,7 +52,8 @@ def overview_chart(runs: Sequence[tuple[str, RunResults]]) -> Chart | None:
         strips.append(ChartPanel("", (series,), labelled(axis)))
     title = f"{'runs, one after the other' if several else 'the run'}: {len(placed)} conditions in order of time"
     note = "bars: U (95 %) of what was mounted; along: from begin to end of a condition"
-    return Chart("overview", title, "rig time (min)", "coefficient", tuple(strips), note, from_zero=False, stacked=True)
+    name = "overview-of-runs" if several else "overview"
+    return Chart(name, title, "rig time (min)", "coefficient", tuple(strips), note, from_zero=False, stacked=True)
 
 
 def _placed(runs: Sequence[tuple[str, RunResults]]) -> Iterator[_Placed]:

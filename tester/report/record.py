@@ -11,7 +11,6 @@ from tester.analysis.results import RepeatStatus
 from tester.export.manifest import MANIFEST
 from tester.export.results import Measured, RunResults, results_of
 from tester.export.verify import Verification, verify
-from tester.report.control import ControlPoint
 from tester.store.reader import RunReader
 from tester.store.records import (
     Change,
@@ -63,8 +62,6 @@ class RunRecord:
     verification: Verification
     files: Mapping[str, str]
     """SHA-256 of the folder's files, as its manifest says."""
-    control: Sequence[ControlPoint] = ()
-    """The reference condition, each time that it was measured."""
 
     def left_out(self) -> list[tuple[Measured, StoredRepeat, str]]:
         """Return the repeats that are in no mean, each with its condition and the reason."""
@@ -76,7 +73,7 @@ class RunRecord:
         ]
 
 
-def read_record(folder: Path, machine: MachineWords, control: Sequence[ControlPoint] = ()) -> RunRecord:
+def read_record(folder: Path, machine: MachineWords) -> RunRecord:
     """Return what a report tells of the run in ``folder``; raises StoreError where it cannot be read.
 
     Its coefficients are recomputed from their samples, and its record held against its hashes (``tester verify``).
@@ -100,7 +97,6 @@ def read_record(folder: Path, machine: MachineWords, control: Sequence[ControlPo
             void=void,
             verification=verify(folder),
             files=_files(folder),
-            control=control,
         )
 
 

@@ -43,12 +43,12 @@ def _pictures(records: Sequence[RunRecord]) -> list[Part]:
         values += values_of(one.results, one.name)
     drawn = overview_chart([(one.name, one.results) for one in records])
     parts: list[Part] = [
-        Picture(chart.title, inline_svg(chart, f"all-{chart.name}"), wide=True) for chart in overlay_charts(values)
+        Picture(inline_svg(chart, f"all-{chart.name}"), wide=True) for chart in overlay_charts(values)
     ]
     if not parts:
         parts.append(Paragraph("No two runs have values over one axis with all else alike."))
     if drawn is not None:
-        parts.append(Picture(drawn.title, inline_svg(drawn, "all-overview"), wide=True))
+        parts.append(Picture(inline_svg(drawn, "all-overview"), wide=True))
     return parts
 
 

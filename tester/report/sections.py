@@ -152,35 +152,34 @@ def trips_section(record: RunRecord, key: str) -> ReportSection:
 
 
 def control_section(record: RunRecord, key: str) -> ReportSection:
-    """Return the control chart of the reference condition, where there was one."""
-    title = "Control chart"
-    if not record.control:
-        return ReportSection(key, title, [Paragraph("No reference condition was in this recipe.")])
-    outside = [one for one in record.control if not one.inside]
-    told = (
-        Paragraph(f"{counted(len(outside), 'value')} of {len(record.control)} not in control.", "bad")
-        if outside
-        else Paragraph(f"All {len(record.control)} values are in control.", "good")
-    )
+    """Return what the reference conditions say, with their control chart, where there were any."""
+    title, watch = "Control chart", record.results.watch
+    if watch is None or not watch.charts:
+        return ReportSection(key, title, [Paragraph("No reference condition was measured.")])
+    points = [(chart, point) for chart in watch.charts for point in chart.points]
+    outside = sum(not point.within for _, point in points)
     rows = [
         ReportRow(
-            (str(one.order), number(one.mu), number(one.u), number(one.low), number(one.high),
-             "in control" if one.inside else "out of control"),
-            "" if one.inside else "bad",
+            (str(point.number), chart.compound, number(point.mu), number(point.expanded), number(chart.low),
+             number(chart.high), "in control" if point.within else "out of control"),
+            "" if point.within else "bad",
         )
-        for one in record.control
+        for chart, point in points
     ]  # fmt: skip
-    titles = heads("turn", "μ", "U", "lower limit", "upper limit", "verdict", text=(0, 5))
-    chart = control_chart(record.control)
+    titles = heads("turn", "compound", "μ", "repeatability", "lower limit", "upper limit", "verdict", text=(0, 1, 6))
     return ReportSection(
         key,
         title,
         [
-            told,
-            Picture(chart.title, inline_svg(chart, key), wide=True),
+            Paragraph(f"{counted(outside, 'value')} of {len(points)} not in control.", "bad")
+            if outside
+            else Paragraph(f"All {len(points)} values are in control.", "good"),
+            *(Paragraph(f"{line}.") for line in watch.lines(record.results.worn)),
+            Picture(inline_svg(control_chart(watch.charts), key), wide=True),
             ReportTable("Reference condition", titles, rows),
         ],
     )
+
 
 
 def assumption_section(record: RunRecord, key: str) -> ReportSection:

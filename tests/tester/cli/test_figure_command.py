@@ -28,6 +28,7 @@ def out(capsys: pytest.CaptureFixture[str], *arguments: str, code: int = 0) -> s
 def test_the_figures_of_a_run_are_named(home: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert [line.partition(":")[0] for line in out(capsys, "one", "--list").splitlines()] == [
         "load",
+        "overview",
         "repeats-1",
         "repeats-2",
     ]
@@ -48,7 +49,7 @@ def test_a_figure_is_written_in_each_format(
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (("one", "--name", "slip"), "no figure slip of one (there are load, repeats-1, repeats-2)"),
+        (("one", "--name", "slip"), "no figure slip of one (there are load, overview, repeats-1, repeats-2)"),
         (("one", "--law", "v3"), "no law 'v3' (expected v2, paper)"),
         (("two",), "no run two"),
     ],
@@ -57,6 +58,18 @@ def test_what_is_not_there_is_refused(
     home: Path, capsys: pytest.CaptureFixture[str], arguments: tuple[str, ...], message: str
 ) -> None:
     assert message in out(capsys, *arguments, code=2)
+
+
+def test_several_runs_are_drawn_together_too(home: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    pytest.importorskip("matplotlib", reason="needs the extra `report`")
+    made_run(home / "runs" / "two", [(25.0, 100.0, 0.3), (25.0, 200.0, 0.3)])
+    told = [Path(line) for line in out(capsys, "one", "two").splitlines()]
+    together = {path.name for path in told if path.parent.name == "several-runs"}
+    assert together == {"load-of-runs.png", "overview-of-runs.png"}
+    named = out(capsys, "one", "two", "--name", "load", "--out", "named").splitlines()
+    assert named == [str(Path("named") / run / "load.png") for run in ("one", "two")]
+    assert all(path.is_file() for path in told)
+    assert {path.parent.name for path in told} == {"one", "two", "several-runs"}
 
 
 def test_a_run_without_values_has_nothing_to_draw(home: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -12,6 +12,7 @@ import pytest
 
 from tester.base.extras import MissingExtraError
 from tester.report.draw import COLOURS, DASHES, FORMATS, MARKS, draw
+from tester.report.inline import inline_svg
 from tests.tester.report.samples import CHART, FIGURES
 
 to_rgb = pytest.importorskip("matplotlib.colors", reason="needs the extra `report`").to_rgb
@@ -65,6 +66,17 @@ def test_styles_differ_in_mark_dash_and_colour() -> None:
 def test_neighbouring_colours_differ_in_lightness() -> None:
     assert all(abs(lightness(a) - lightness(b)) > 0.05 for a, b in pairwise(COLOURS))
     assert all(lightness(one) < 0.7 for one in COLOURS)
+
+
+def test_no_panel_is_cut_where_a_later_one_goes_higher() -> None:
+    first, second = CHART.panels
+    (points,) = second.series
+    high = replace(second, series=(replace(points, y=tuple(2.0 * y for y in points.y)),))
+    drawn = inline_svg(replace(CHART, panels=(first, high)), "a")
+    assert drawn.count("2#") and drawn.count("</title>") == sum(
+        len(one.x) for panel in (first, high) for one in panel.series if one.look != "law"
+    )
+    assert ">1.75<" in drawn  # the common axis reaches the highest of 1.88
 
 
 def test_another_format_is_refused(tmp_path: Path) -> None:

@@ -12,11 +12,12 @@ from xml.etree import ElementTree
 
 import pytest
 
+from tester.analysis.reference import ControlChart, ControlPoint
 from tester.base.extras import MissingExtraError
 from tester.base.plain import FORBIDDEN
+from tester.export.results import ReferenceWatch
 from tester.report.build import report_of
 from tester.report.charts import Material, values_of
-from tester.report.control import ControlPoint
 from tester.report.layout import Paragraph, Report, ReportSection
 from tester.report.page import LONGEST, POLICY, page_of, told
 from tester.report.record import MachineWords, RunRecord, read_record
@@ -181,10 +182,12 @@ def test_a_run_that_is_not_as_it_was_left_is_said_to_be_so_on_the_first_page(pla
 
 
 def test_a_control_chart_appears_where_there_are_reference_conditions(plain: RunRecord) -> None:
-    points = [ControlPoint(1, 0.7, 0.02, 0.66, 0.74), ControlPoint(2, 0.8, 0.02, 0.66, 0.74)]
-    text = page(replace(plain, control=points))
+    points = (ControlPoint(1, 1, 0.0, 0.7, 0.02, True), ControlPoint(2, 3, 60.0, 0.8, 0.02, False))
+    watch = ReferenceWatch((), None, (ControlChart("1#", 0.7, 0.66, 0.74, points),))
+    text = page(replace(plain, results=replace(plain.results, watch=watch)))
     assert "No reference condition" not in text and "1 value of 2 not in control." in text
     assert "reference condition in the order in which it was measured" in text
+    assert "references of 1#: limits 0.6600 to 0.7400; outside: 2." in text
 
 
 def test_two_runs_are_overlaid_and_compared(plain: RunRecord, tmp_path: Path) -> None:

@@ -143,6 +143,9 @@ class Acting:
     def begin_repeat(self, condition: int, repeat: int, attempt: int) -> None:
         self.hands.begin_repeat(condition, repeat, attempt)
 
+    def belt_travelled(self, travel_m: float) -> None:
+        self.hands.belt_travelled(travel_m)
+
 
 @pytest.fixture
 def when_mounted(monkeypatch: pytest.MonkeyPatch) -> Callable[[int, Callable[[TickedWorld], object]], None]:

@@ -130,7 +130,7 @@ class WheelEstimator:
         return isinstance(step, Install) and (step.specimen, step.replicate) != part
 
     def _in_parts(self, plan: Plan) -> bool:
-        return self.parts and not WheelPlan.of(plan).references
+        return self.parts and not (isinstance(plan, WheelPlan) and plan.references)  # that of manual mode is plain
 
     def _until(self, before: Before, step: WheelCondition, one: StepEstimate) -> StepEstimate:
         """Return an estimate with the repeats that a precision takes so early in a run: little is pooled yet."""
