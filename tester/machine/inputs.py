@@ -45,6 +45,9 @@ class ScanInputs:
     unpowered: bool = False
     """A run that wants no drives has seen them without power: until all are in operation again, nothing may move. The
     kind writes it in every scan."""
+    confirmed: bool = False
+    """Every drive has been in operation since they were last wanted to be, and something commands them. The kind writes
+    it in every scan."""
     attended: bool = False
     """A person was asked to come near; what hands do to sensors is nobody's fault."""
 

@@ -12,11 +12,12 @@ from tester.kinds.specimen_on_track.interlocks.chamber import CHAMBER_OFF_S
 from tester.kinds.specimen_on_track.interlocks.force import STALE_CELL_DELAY_S, STALE_CELL_S
 from tester.kinds.specimen_on_track.interlocks.inputs import TrackInputs, TrackLimits, WayMonitor
 from tester.kinds.specimen_on_track.interlocks.known import standing
-from tester.kinds.specimen_on_track.interlocks.operation import ACK_WAIT_S, HOLD_AT_MOST_S
+from tester.kinds.specimen_on_track.interlocks.operation import HOLD_AT_MOST_S
 from tester.kinds.specimen_on_track.interlocks.stops import STOP_TIMEOUT_S
 from tester.kinds.specimen_on_track.process import TrackDemand, TrackReadings, TrackSetpoints
 from tester.kinds.specimen_on_track.rig import TrackConfig
 from tester.machine.control import Control, bounded, may_move
+from tester.machine.drive_rows import ACK_WAIT_S
 from tester.machine.state import ControlState, Mode
 from tester.rig.config import values_of
 

@@ -5,20 +5,20 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any, Final, Generic, TypeVar
 
+from tester.machine.drive_rows import (
+    ACK_WAIT_S,
+    drive_data_stale,
+    drive_dropped_out,
+    not_stopping,
+    quick_stop_failed,
+    stop_not_ended,
+)
 from tester.machine.inputs import ScanInputs
 from tester.machine.interlock_table import InterlockTable
 from tester.machine.plain.image import PlainDemand, PlainReadings
 from tester.machine.row import ACK, ENDING, FAST, LOADED, POWER_OFF, REPAIR, Compared, Interlock
 from tester.machine.state import ControlState, Mode
-from tester.machine.wires import (
-    DEVICE_REFUSED,
-    INPUTS_STALE,
-    LINE_NOISY,
-    STALE_CAN_S,
-    STALE_CAN_SCANS,
-    WARNINGS,
-    drive_data_allowed_s,
-)
+from tester.machine.wires import DEVICE_REFUSED, INPUTS_STALE, LINE_NOISY, WARNINGS
 from tester.machine.wires import ROWS as WIRE_ROWS
 from tester.rig.parameter import NOT_NEGATIVE, Direction, Parameter
 from tester.rig.plain import PlainRig
@@ -46,8 +46,6 @@ class PlainInputs(ScanInputs, Generic[ReadingsT]):
     readings: ReadingsT = field(kw_only=True)
     demand: PlainDemand = field(default_factory=PlainDemand)
     limits: PlainLimits = field(init=False)
-    confirmed: bool = False
-    """Every drive has been in operation since they were last wanted to be."""
 
     def __post_init__(self) -> None:
         """Take over what conditions compare with."""
@@ -78,21 +76,7 @@ class PlainInputs(ScanInputs, Generic[ReadingsT]):
 AnyInputs = PlainInputs[PlainReadings]
 
 
-def _drive_data_old(v: AnyInputs) -> bool:
-    r = v.readings
-    return v.demand.enabled and r.drives_enabled and not (r.now_s - r.drives_at_s <= drive_data_allowed_s(v))
-
-
-DRIVE_DATA_STALE: Final = Interlock(
-    name="drive data stale",
-    cause="no fresh drive data",
-    level="age > stale_can_scans periods, or > stale_can",
-    condition=_drive_data_old,
-    compared=lambda v: Compared(v.readings.now_s - v.readings.drives_at_s, drive_data_allowed_s(v), "s"),
-    parameters=(STALE_CAN_SCANS, STALE_CAN_S),
-    reaction=FAST,
-    reset=ACK,
-)
+DRIVE_DATA_STALE: Final = drive_data_stale(lambda r: (r.drives_at_s,))
 
 DROPPED_DELAY_S: Final = Parameter(
     "dropped_delay_s", "s", "50 ms", "a drive leaves operation by itself, or has power at rest [A]", NOT_NEGATIVE,
@@ -101,19 +85,7 @@ DROPPED_DELAY_S: Final = Parameter(
 )  # fmt: skip
 
 
-def _dropped_out(v: AnyInputs) -> bool:
-    return v.confirmed and v.demand.enabled and not v.readings.drives_enabled
-
-
-DRIVE_DROPPED_OUT: Final = Interlock(
-    name="drive dropped out",
-    cause="a drive left operation by itself (local control, torque off)",
-    level="not OPERATION_ENABLED although wanted",
-    condition=_dropped_out,
-    delay=DROPPED_DELAY_S,
-    reaction=FAST,
-    reset=ACK,
-)
+DRIVE_DROPPED_OUT: Final = drive_dropped_out(DROPPED_DELAY_S)
 
 OVERSPEED_SHARE: Final = Parameter(
     "overspeed_share", "1", "5 %", "above its greatest speed by this share [A]", NOT_NEGATIVE,
@@ -184,34 +156,23 @@ STOP_MARGIN_S: Final = Parameter(
 )  # fmt: skip
 
 
-def _turns_after(v: AnyInputs, since_s: float, ramp_s: float) -> bool:
-    late = v.stopped_s >= 0.0 and not (v.readings.now_s - since_s <= ramp_s + v.parameters[STOP_MARGIN_S])
-    return late and not v.readings.standing
+def _standing(v: AnyInputs) -> bool:
+    return v.readings.standing
 
 
-NOT_STOPPING: Final = Interlock(
-    name="not stopping",
+NOT_STOPPING: Final = not_stopping(
+    lambda v: v.limits.ramp_s + v.parameters[STOP_MARGIN_S],
+    _standing,
     cause="a drive turns longer than its ramp allows",
     level="turning at max_speed / deceleration + stop_margin after the stop",
-    condition=lambda v: _turns_after(v, v.stop.began_s, v.limits.ramp_s),
-    compared=lambda v: Compared(v.stopped_s, v.limits.ramp_s + v.parameters[STOP_MARGIN_S], "s"),
     parameters=(STOP_MARGIN_S,),
-    when=ENDING,
-    reaction=FAST,
-    reset=REPAIR,
 )
-QUICK_STOP_FAILED: Final = Interlock(
-    name="quick stop failed",
+QUICK_STOP_FAILED: Final = quick_stop_failed(
+    lambda v: v.limits.quick_stop_s + v.parameters[STOP_MARGIN_S],
+    _standing,
     cause="a drive turns longer than its quick stop allows",
     level="turning at max_speed / quick-stop deceleration + stop_margin after it began",
-    condition=lambda v: _turns_after(v, v.stop.fast_s, v.limits.quick_stop_s),
-    compared=lambda v: Compared(
-        v.readings.now_s - v.stop.fast_s, v.limits.quick_stop_s + v.parameters[STOP_MARGIN_S], "s"
-    ),
-    parameters=(STOP_MARGIN_S,),
-    when=ENDING,
-    reaction=POWER_OFF,
-    reset=REPAIR,
+    margin=STOP_MARGIN_S,
 )
 
 STOP_TIMEOUT_S: Final = Parameter(
@@ -221,20 +182,8 @@ STOP_TIMEOUT_S: Final = Parameter(
 )  # fmt: skip
 
 
-def _endless(v: AnyInputs) -> bool:
-    return v.stopped_s >= 0.0 and not (v.readings.now_s - v.mode_since_s <= v.parameters[STOP_TIMEOUT_S])
-
-
-STOP_NOT_ENDED: Final = Interlock(
-    name="stop not ended",
-    cause="a stop has not come to standstill",
-    level="stop_timeout after it began",
-    condition=_endless,
-    compared=lambda v: Compared(v.readings.now_s - v.mode_since_s, v.parameters[STOP_TIMEOUT_S], "s"),
-    parameters=(STOP_TIMEOUT_S,),
-    when=ENDING,
-    reaction=POWER_OFF,
-    reset=REPAIR,
+STOP_NOT_ENDED: Final = stop_not_ended(
+    "a stop has not come to standstill", "stop_timeout after it began", STOP_TIMEOUT_S
 )
 
 REST_AFTER_S: Final = Parameter(
@@ -269,9 +218,6 @@ HOLD_AT_MOST_S: Final = Parameter(
     "hold_at_most_s", "s", "60 min", "a hold ends in a controlled stop after this [A]",
     direction=Direction.LOWER, hardest="120 min",
     because="nobody is expected to attend to a powered machine for longer than that",
-)  # fmt: skip
-ACK_WAIT_S: Final = Parameter(
-    "ack_wait_s", "s", "1 s", "an acknowledged drive has reset its fault by then, or it is refused [A]",
 )  # fmt: skip
 OPERATION: Final = (HOLD_AT_MOST_S, ACK_WAIT_S)
 ABOUT: Final = "holds and acknowledgements"

@@ -102,8 +102,6 @@ class TrackInputs(ScanInputs):
     """What the scan before has commanded."""
     track: WayMonitor = field(init=False)
     stop_start: TrackStopStart = field(default_factory=TrackStopStart)
-    confirmed: bool = False
-    """Every drive has been in operation since they were last wanted to be, and something commands them."""
     arm_since_s: float = inf
     """Since when the arm has not been where it is told to be."""
     arrived_c: float = inf

@@ -6,31 +6,12 @@ from typing import Final
 
 from tester.kinds.specimen_on_track.interlocks.inputs import TrackInputs
 from tester.kinds.specimen_on_track.interlocks.known import STANDING_SHARE, standing_m_s
+from tester.machine.drive_rows import drive_data_stale, drive_dropped_out
 from tester.machine.row import ACK, CONTROLLED, FAST, REPAIR, Compared, Interlock
-from tester.machine.wires import INPUTS_STALE, STALE_CAN_S, STALE_CAN_SCANS, drive_data_allowed_s
+from tester.machine.wires import INPUTS_STALE
 from tester.rig.parameter import NOT_NEGATIVE, SHARE, Direction, Parameter
 
-
-def _drive_data_old(v: TrackInputs) -> bool:
-    r = v.readings
-    if not (v.demand.enabled and r.drives_enabled):
-        return False
-    since = r.now_s - drive_data_allowed_s(v)
-    return not (r.track_at_s >= since and r.lift_at_s >= since)
-
-
-DRIVE_DATA_STALE: Final = Interlock(
-    name="drive data stale",
-    cause="no fresh drive data",
-    level="age > stale_can_scans periods, or > stale_can",
-    condition=_drive_data_old,
-    compared=lambda v: Compared(
-        v.readings.now_s - min(v.readings.track_at_s, v.readings.lift_at_s), drive_data_allowed_s(v), "s"
-    ),
-    parameters=(STALE_CAN_SCANS, STALE_CAN_S),
-    reaction=FAST,
-    reset=ACK,
-)
+DRIVE_DATA_STALE: Final = drive_data_stale(lambda r: (r.track_at_s, r.lift_at_s))
 
 DROPPED_DELAY_S: Final = Parameter(
     "dropped_delay_s", "s", "50 ms", "a drive leaves operation by itself [A]", NOT_NEGATIVE,
@@ -39,19 +20,7 @@ DROPPED_DELAY_S: Final = Parameter(
 )  # fmt: skip
 
 
-def _dropped_out(v: TrackInputs) -> bool:
-    return v.confirmed and v.demand.enabled and not v.readings.drives_enabled
-
-
-DRIVE_DROPPED_OUT: Final = Interlock(
-    name="drive dropped out",
-    cause="a drive left operation by itself (local control, torque off)",
-    level="not OPERATION_ENABLED although wanted",
-    condition=_dropped_out,
-    delay=DROPPED_DELAY_S,
-    reaction=FAST,
-    reset=ACK,
-)
+DRIVE_DROPPED_OUT: Final = drive_dropped_out(DROPPED_DELAY_S)
 
 OVERSPEED_SHARE: Final = Parameter(
     "overspeed_share", "1", "5 %", "the track above limits.track_speed by this share [A]", NOT_NEGATIVE,

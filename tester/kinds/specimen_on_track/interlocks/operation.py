@@ -4,15 +4,13 @@ from __future__ import annotations
 
 from typing import Final
 
+from tester.machine.drive_rows import ACK_WAIT_S
 from tester.rig.parameter import Direction, Parameter
 
 HOLD_AT_MOST_S: Final = Parameter(
     "hold_at_most_s", "s", "60 min", "a hold ends in a controlled stop after this [A]",
     direction=Direction.LOWER, hardest="120 min",
     because="nobody is expected to attend to a rig with its drives on for longer than that",
-)  # fmt: skip
-ACK_WAIT_S: Final = Parameter(
-    "ack_wait_s", "s", "1 s", "an acknowledged drive has reset its fault by then, or it is refused [A]",
 )  # fmt: skip
 ZERO_STOP_N: Final = Parameter(
     "zero_stop_n", "N", "10 N", "a zero of the cell further off than this is not taken: the run ends [A]",

@@ -7,7 +7,8 @@ from typing import Final
 from tester.kinds.specimen_on_track.interlocks.inputs import TrackInputs
 from tester.kinds.specimen_on_track.interlocks.known import SPEEDS_OLD_S, STANDING_SHARE, standing
 from tester.kinds.specimen_on_track.interlocks.motion import DROPPED_DELAY_S
-from tester.machine.row import ENDING, FAST, POWER_OFF, REPAIR, Compared, Interlock
+from tester.machine.drive_rows import not_stopping, quick_stop_failed, stop_not_ended
+from tester.machine.row import ENDING, FAST, POWER_OFF, REPAIR, Interlock
 from tester.rig.parameter import NOT_NEGATIVE, Direction, Parameter
 
 STOP_MARGIN_S: Final = Parameter(
@@ -21,20 +22,12 @@ def _ramp_s(v: TrackInputs) -> float:
     return v.stop_start.speed_m_s / v.limits.deceleration_m_s2 + v.parameters[STOP_MARGIN_S]
 
 
-def _ramp_over(v: TrackInputs) -> bool:
-    return v.stopped_s >= 0.0 and not (v.stopped_s <= _ramp_s(v)) and not standing(v)
-
-
-NOT_STOPPING: Final = Interlock(
-    name="not stopping",
+NOT_STOPPING: Final = not_stopping(
+    _ramp_s,
+    standing,
     cause="the track goes on longer than its ramp allows",
     level="speed >= standing_share at v / deceleration + stop_margin",
-    condition=_ramp_over,
-    compared=lambda v: Compared(v.stopped_s, _ramp_s(v), "s"),
     parameters=(STOP_MARGIN_S, STANDING_SHARE, SPEEDS_OLD_S),
-    when=ENDING,
-    reaction=FAST,
-    reset=REPAIR,
 )
 
 
@@ -42,22 +35,12 @@ def _quick_s(v: TrackInputs) -> float:
     return v.stop_start.fast_speed_m_s / v.limits.quick_stop_m_s2 + v.parameters[STOP_MARGIN_S]
 
 
-def _quick_over(v: TrackInputs) -> bool:
-    if not v.stopped_s >= 0.0 or standing(v):
-        return False
-    return not (v.readings.now_s - v.stop.fast_s <= _quick_s(v))
-
-
-QUICK_STOP_FAILED: Final = Interlock(
-    name="quick stop failed",
+QUICK_STOP_FAILED: Final = quick_stop_failed(
+    _quick_s,
+    standing,
     cause="the track goes on longer than its quick stop allows",
     level="speed >= standing_share at v / quick-stop deceleration + stop_margin",
-    condition=_quick_over,
-    compared=lambda v: Compared(v.readings.now_s - v.stop.fast_s, _quick_s(v), "s"),
-    parameters=(STOP_MARGIN_S,),
-    when=ENDING,
-    reaction=POWER_OFF,
-    reset=REPAIR,
+    margin=STOP_MARGIN_S,
 )
 
 OFF_DELAY_S: Final = Parameter(
@@ -91,20 +74,10 @@ STOP_TIMEOUT_S: Final = Parameter(
 )  # fmt: skip
 
 
-def _endless(v: TrackInputs) -> bool:
-    return v.stopped_s >= 0.0 and not (v.readings.now_s - v.mode_since_s <= v.parameters[STOP_TIMEOUT_S])
-
-
-STOP_NOT_ENDED: Final = Interlock(
-    name="stop not ended",
-    cause="a stop has not come to its end: nobody sees that the track stands, or that the chamber is off",
-    level="stop_timeout after it began, and once more after the power was taken",
-    condition=_endless,
-    compared=lambda v: Compared(v.readings.now_s - v.mode_since_s, v.parameters[STOP_TIMEOUT_S], "s"),
-    parameters=(STOP_TIMEOUT_S,),
-    when=ENDING,
-    reaction=POWER_OFF,
-    reset=REPAIR,
+STOP_NOT_ENDED: Final = stop_not_ended(
+    "a stop has not come to its end: nobody sees that the track stands, or that the chamber is off",
+    "stop_timeout after it began, and once more after the power was taken",
+    STOP_TIMEOUT_S,
 )
 
 

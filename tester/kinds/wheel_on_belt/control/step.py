@@ -19,10 +19,11 @@ from tester.kinds.wheel_on_belt.control.stops import (
 )
 from tester.kinds.wheel_on_belt.interlocks.contact import UNLOADED_N
 from tester.kinds.wheel_on_belt.interlocks.hub import RUNAWAY_WINDOW_S
-from tester.kinds.wheel_on_belt.interlocks.operation import ACK_WAIT_S, COLD_K, HOLD_AT_MOST_S, START_K
+from tester.kinds.wheel_on_belt.interlocks.operation import COLD_K, HOLD_AT_MOST_S, START_K
 from tester.kinds.wheel_on_belt.process import Demand, Press, Readings
 from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.machine.control import Control, bounded, may_move
+from tester.machine.drive_rows import ACK_WAIT_S
 
 CEILING_STEP_S: Final = 1.0
 """How exactly it knows when a setpoint was left, s."""

@@ -103,8 +103,6 @@ class Inputs(ScanInputs):
     """Contact is wanted."""
     turning: bool = False
     """The wheel is confirmed turning."""
-    confirmed: bool = False
-    """Every drive has been in operation since they were last wanted to be, and something commands them."""
     least_n: float = inf
     """The least force since contact was last wanted: what is lifting does not get firmer."""
     contact_mm: float = inf

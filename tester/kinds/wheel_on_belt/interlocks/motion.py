@@ -8,36 +8,12 @@ from tester.kinds.wheel_on_belt.interlocks.contact import UNLOADED_N
 from tester.kinds.wheel_on_belt.interlocks.inputs import Inputs
 from tester.kinds.wheel_on_belt.interlocks.known import STANDING_M_S
 from tester.kinds.wheel_on_belt.interlocks.monitors import SpeedTracker
+from tester.machine.drive_rows import drive_data_stale, drive_dropped_out
 from tester.machine.row import ACK, FAST, LOADED, REPAIR, Compared, Interlock
-from tester.machine.wires import INPUTS_STALE, STALE_CAN_S, STALE_CAN_SCANS, drive_data_allowed_s
+from tester.machine.wires import INPUTS_STALE
 from tester.rig.parameter import NOT_NEGATIVE, SHARE, Direction, Parameter
 
-
-def _drive_data_old(v: Inputs) -> bool:
-    r = v.readings
-    if not (v.demand.enabled and r.drives_enabled):
-        return False
-    since = r.now_s - drive_data_allowed_s(v)
-    return not (r.wheel_at_s >= since and r.belt_at_s >= since and r.press_at_s >= since and r.positions_at_s >= since)
-
-
-def _oldest_drive_data(v: Inputs) -> Compared:
-    r = v.readings
-    oldest_s = min(r.wheel_at_s, r.belt_at_s, r.press_at_s, r.positions_at_s)
-    return Compared(r.now_s - oldest_s, drive_data_allowed_s(v), "s")
-
-
-DRIVE_DATA_STALE: Final = Interlock(
-    name="drive data stale",
-    cause="no fresh drive data",
-    level="age > stale_can_scans periods, or > stale_can",
-    condition=_drive_data_old,
-    compared=_oldest_drive_data,
-    parameters=(STALE_CAN_SCANS, STALE_CAN_S),
-    reaction=FAST,
-    reset=ACK,
-)
-
+DRIVE_DATA_STALE: Final = drive_data_stale(lambda r: (r.wheel_at_s, r.belt_at_s, r.press_at_s, r.positions_at_s))
 
 DROPPED_DELAY_S: Final = Parameter(
     "dropped_delay_s", "s", "50 ms", "a drive leaves operation by itself [A]", NOT_NEGATIVE,
@@ -46,19 +22,7 @@ DROPPED_DELAY_S: Final = Parameter(
 )  # fmt: skip
 
 
-def _dropped_out(v: Inputs) -> bool:
-    return v.confirmed and v.demand.enabled and not v.readings.drives_enabled
-
-
-DRIVE_DROPPED_OUT: Final = Interlock(
-    name="drive dropped out",
-    cause="a drive left operation by itself (local control, torque off)",
-    level="not OPERATION_ENABLED although wanted",
-    condition=_dropped_out,
-    delay=DROPPED_DELAY_S,
-    reaction=FAST,
-    reset=ACK,
-)
+DRIVE_DROPPED_OUT: Final = drive_dropped_out(DROPPED_DELAY_S)
 
 OVERSPEED_SHARE: Final = Parameter(
     "overspeed_share", "1", "5 %", "above a speed limit by this share [A]", NOT_NEGATIVE,

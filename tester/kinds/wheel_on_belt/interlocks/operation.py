@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
+from tester.machine.drive_rows import ACK_WAIT_S
 from tester.rig.parameter import ANY, NOT_NEGATIVE, SHARE, Direction, Parameter
 
 MAX_SLIP_M_S: Final = Parameter(
@@ -28,9 +29,6 @@ HOLD_AT_MOST_S: Final = Parameter(
     "hold_at_most_s", "s", "60 min", "a hold ends in a controlled stop after this [A]",
     direction=Direction.LOWER, hardest="120 min",
     because="nobody is expected to attend to a hot, turning wheel for longer than that",
-)  # fmt: skip
-ACK_WAIT_S: Final = Parameter(
-    "ack_wait_s", "s", "1 s", "an acknowledged drive has reset its fault by then, or it is refused [A]",
 )  # fmt: skip
 ZERO_WARN_N: Final = Parameter(
     "zero_warn_n", "N", "5 N", "the unloaded cell is off its reference zero by this: a warning",

@@ -6,6 +6,7 @@ from typing import Final
 
 from tester.kinds.wheel_on_belt.interlocks.inputs import Inputs
 from tester.kinds.wheel_on_belt.interlocks.known import CLEAR_MM, SPEEDS_OLD_S, contactor_open, standing, unloaded
+from tester.machine.drive_rows import not_stopping, quick_stop_failed, stop_not_ended
 from tester.machine.row import CONTROLLED, ENDING, FAST, POWER_OFF, REPAIR, Compared, Interlock, always
 from tester.rig.parameter import POSITIVE, Direction, Parameter
 
@@ -93,22 +94,12 @@ def _ramp_s(v: Inputs) -> float:
     return p[SLIP_OUT_S] + v.stop_start.speed_m_s / v.limits.deceleration_m_s2 + p[STOP_MARGIN_S]
 
 
-def _ramp_over(v: Inputs) -> bool:
-    if v.stop.creeps or not v.stopped_s >= 0.0 or standing(v):
-        return False
-    return not (v.stopped_s <= _ramp_s(v))
-
-
-NOT_STOPPING: Final = Interlock(
-    name="not stopping",
+NOT_STOPPING: Final = not_stopping(
+    _ramp_s,
+    standing,
     cause="a drive turns longer than its ramp allows",
     level="turning at slip_out + v / deceleration + stop_margin",
-    condition=_ramp_over,
-    compared=lambda v: Compared(v.stopped_s, _ramp_s(v), "s"),
     parameters=(SLIP_OUT_S, STOP_MARGIN_S),
-    when=ENDING,
-    reaction=FAST,
-    reset=REPAIR,
 )
 
 
@@ -116,22 +107,12 @@ def _quick_stop_s(v: Inputs) -> float:
     return v.stop_start.fast_speed_m_s / v.limits.quick_stop_m_s2 + v.parameters[STOP_MARGIN_S]
 
 
-def _quick_stop_over(v: Inputs) -> bool:
-    if v.stop.creeps or not v.stopped_s >= 0.0 or standing(v):
-        return False
-    return not (v.readings.now_s - v.stop.fast_s <= _quick_stop_s(v))
-
-
-QUICK_STOP_FAILED: Final = Interlock(
-    name="quick stop failed",
+QUICK_STOP_FAILED: Final = quick_stop_failed(
+    _quick_stop_s,
+    standing,
     cause="a drive turns longer than its quick stop allows",
     level="turning at v / quick-stop deceleration + stop_margin",
-    condition=_quick_stop_over,
-    compared=lambda v: Compared(v.readings.now_s - v.stop.fast_s, _quick_stop_s(v), "s"),
-    parameters=(STOP_MARGIN_S,),
-    when=ENDING,
-    reaction=POWER_OFF,
-    reset=REPAIR,
+    margin=STOP_MARGIN_S,
 )
 
 HEAT_OFF_S: Final = Parameter(
@@ -198,22 +179,11 @@ LIFTED_MM: Final = Parameter(
 )  # fmt: skip
 
 
-def _endless(v: Inputs) -> bool:
-    if v.stop.creeps or not v.stopped_s >= 0.0:
-        return False
-    return not (v.readings.now_s - v.mode_since_s <= v.parameters[STOP_TIMEOUT_S])
-
-
-STOP_NOT_ENDED: Final = Interlock(
-    name="stop not ended",
-    cause="a stop has not come to its end: standing, lifted, unloaded, without heat",
-    level="stop_timeout after it began, and once more after the power was taken",
-    condition=_endless,
-    compared=lambda v: Compared(v.readings.now_s - v.mode_since_s, v.parameters[STOP_TIMEOUT_S], "s"),
-    parameters=(STOP_TIMEOUT_S, LIFTED_MM),
-    when=ENDING,
-    reaction=POWER_OFF,
-    reset=REPAIR,
+STOP_NOT_ENDED: Final = stop_not_ended(
+    "a stop has not come to its end: standing, lifted, unloaded, without heat",
+    "stop_timeout after it began, and once more after the power was taken",
+    STOP_TIMEOUT_S,
+    LIFTED_MM,
 )
 
 CONTACTOR_DELAY_S: Final = Parameter(

@@ -17,7 +17,7 @@ from tester.kinds.wheel_on_belt.rig import interlock_values
 from tester.machine.row import Interlock
 from tester.rig.parameter import Direction, Parameter
 
-OURS = ("tester.kinds.wheel_on_belt.interlocks", "tester.machine.wires")
+OURS = ("tester.kinds.wheel_on_belt.interlocks", "tester.machine.wires", "tester.machine.drive_rows")
 
 
 def compared(condition: Callable[[Inputs], bool], known: set[FunctionType] | None = None) -> set[Parameter]:
@@ -28,6 +28,7 @@ def compared(condition: Callable[[Inputs], bool], known: set[FunctionType] | Non
         return set()
     known.add(condition)
     names = [condition.__globals__.get(name) for name in condition.__code__.co_names]
+    names += [cell.cell_contents for cell in condition.__closure__ or ()]
     found = {one for one in names if isinstance(one, Parameter)}
     for one in names:
         if isinstance(one, FunctionType) and one.__module__.startswith(OURS):
