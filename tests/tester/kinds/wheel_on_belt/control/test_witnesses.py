@@ -161,3 +161,44 @@ def test_rolling_the_load_cell_says_at_once_what_the_belt_drive_should_do_only_w
     bench.readings.belt_torque_nm, bench.readings.drive_torque_nm = 44.0, 6.6
     assert bench.until_trip(0.5, scan_s) == pytest.approx(0.05)
     assert bench.state.trip is not None and bench.state.trip.name == row
+
+
+def _reverse(bench: Bench) -> None:
+    """Let the belt be faster than the wheel by 0.3 m/s, and friction turn round with it."""
+    bench.demand.belt_speed_m_s = bench.readings.belt_speed_m_s = bench.state.setpoints.belt_m_s = 1.1
+    bench.control.view.belt.begin(1.1)
+    bench.readings.force_x_n = -146.0
+
+
+def test_a_reversed_slip_trips_nothing_while_all_agree(bench: Bench) -> None:
+    _reverse(bench)
+    assert first(bench) == ""
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+@pytest.mark.parametrize(("beyond_w", "row"), [(-2.0, ""), (2.0, "shaft power")])
+def test_shafts_that_take_another_power_than_friction_reversed(
+    bench: Bench, sign: float, beyond_w: float, row: str
+) -> None:
+    """146 N go round the other way: 160.6 W in at the belt, 116.8 W back at the wheel, 43.8 W of friction between."""
+    _reverse(bench)
+    bench.scan()
+    bench.shafts = False
+    share = 0.05
+    off_w = sign * (30.0 + share * (116.8 + 160.6) + beyond_w) / (1.0 + sign * share)
+    bench.readings.drive_torque_nm += off_w / bench.readings.wheel_rad_s
+    assert first(bench) == row
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+@pytest.mark.parametrize(("beyond_nm", "row"), [(-0.05, ""), (0.05, "belt torque")])
+def test_a_belt_drive_that_takes_another_torque_than_friction_reversed(
+    bench: Bench, sign: float, beyond_nm: float, row: str
+) -> None:
+    """The belt pulls the wheel on with 7.3 N m. At 1.1 m/s 3.4 N m more are 74 W: after 200 ms "shaft power" trips."""
+    _reverse(bench)
+    bench.scan()
+    bench.shafts = False
+    bench.readings.belt_torque_nm = 7.3 + sign * (3.0 + 0.05 * 7.3 + beyond_nm)
+    bench.until_trip(0.15)
+    assert (bench.state.trip.name if bench.state.trip is not None else "") == row
