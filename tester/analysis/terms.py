@@ -32,7 +32,8 @@ SPREADS: Final[Mapping[str, float]] = MappingProxyType(
 either sign, GUM H.1.3.4 for its case); of a normal one the bound is the standard uncertainty itself."""
 
 _NO_SETTINGS: Mapping[str, str] = MappingProxyType({})
-_PREFIX = "uncertainty."
+PREFIX: Final = "uncertainty."
+"""Of a recipe's free fields that replace a bound or a factor."""
 
 
 class Acts(StrEnum):
@@ -157,12 +158,18 @@ def with_settings(terms: Iterable[Term], settings: Mapping[str, str] = _NO_SETTI
 
 
 def _set(name: str, given: float, settings: Mapping[str, str]) -> float:
-    text = settings.get(f"{_PREFIX}{name}") if name else None
-    if text is None:
-        return given
-    value = float(text)
+    text = settings.get(f"{PREFIX}{name}") if name else None
+    return given if text is None else setting_of(f"{PREFIX}{name}", text)
+
+
+def setting_of(name: str, text: str) -> float:
+    """Return the number that replaces a bound or a factor; raises ValueError unless it is finite and >= 0."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = NAN
     if not (isfinite(value) and value >= 0.0):
-        raise ValueError(f"{_PREFIX}{name}: {text} is not a number >= 0")
+        raise ValueError(f"{name}: {text} is not a number >= 0")
     return value
 
 

@@ -11,7 +11,7 @@ from collections.abc import Callable, Sequence
 from itertools import product
 from typing import Generic, NamedTuple, TypeAlias, TypeVar
 
-from tester.analysis import closest
+from tester.analysis import closest, terms
 from tester.axes import AxisValue
 from tester.recipe.schema import GridModel, MeasureModel, OrderModel, Recipe
 from tester.recipe.semantics import axis_values
@@ -85,5 +85,7 @@ def metadata_of(recipe: Recipe) -> dict[str, str]:
         result["ambient_c"] = f"{recipe.ambient:g}"
     if recipe.measure is not None and recipe.measure.combine != "mean":
         result[closest.KEY] = recipe.measure.combine
-    result.update({f"experiment.{key}": value for key, value in recipe.experiment.items()})
+    for key, value in recipe.experiment.items():
+        # What replaces a bound of the budget keeps its name: the analysis looks for it.
+        result[key if key.startswith(terms.PREFIX) else f"experiment.{key}"] = value
     return result

@@ -306,7 +306,7 @@ class Recipe(Section, frozen=True):
     humidity: Annotated[float, Quantity("%", ge=0, le=100)] | None = None
     ambient: Temperature | None = None
     experiment: dict[Annotated[str, Field(min_length=1, max_length=60)], FreeField] = {}
-    """free fields, stored with the run and in conditions.csv"""
+    """free fields, stored with the run and in conditions.csv; `uncertainty.SETTING` replaces a bound of the budget"""
     measure: MeasureModel | None = None
     grids: Sequence[GridModel] = ()
     order: OrderModel = OrderModel()

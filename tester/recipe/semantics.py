@@ -9,7 +9,7 @@ from typing import NamedTuple, TypeVar
 
 from pydantic import BaseModel, ValidationError
 
-from tester.analysis import closest
+from tester.analysis import closest, terms
 from tester.axes import Axis, AxisValue, plain
 from tester.base.source import Location, Problem, Tree, Value
 from tester.base.units import show, shown
@@ -40,6 +40,7 @@ def semantic_problems(recipe: Recipe | None, tree: Tree, part: RecipePart) -> li
     """
     parts = _salvaged(tree, part) if recipe is None else Parts(recipe.measure, list(enumerate(recipe.grids)))
     problems = [*_whole(recipe, tree, part), *part.whole(recipe, tree), *_names(parts.grids, tree)]
+    problems += _bounds(recipe, tree)
     if parts.measure is not None:
         problems += _measure(parts.measure, None, ("measure",), tree)
         for index, grid in parts.grids:
@@ -88,6 +89,16 @@ def _whole(recipe: Recipe | None, tree: Tree, part: RecipePart) -> Iterator[Prob
     count = sum(sizes) * len(recipe.specimens) * recipe.replicates
     if count > MAX_CONDITIONS:
         yield tree.problem(("grids",), f"{count} conditions are too many for one recipe (at most {MAX_CONDITIONS})")
+
+
+def _bounds(recipe: Recipe | None, tree: Tree) -> Iterator[Problem]:
+    """Refuse what is to replace a bound of the budget and is no number for it."""
+    for key, value in (recipe.experiment if recipe is not None else {}).items():
+        if key.startswith(terms.PREFIX):
+            try:
+                terms.setting_of(key, value)
+            except ValueError as error:
+                yield tree.problem(("experiment", key), str(error))
 
 
 def _due(part: RecipePart) -> str:

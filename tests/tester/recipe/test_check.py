@@ -336,3 +336,10 @@ def test_a_recipe_for_a_rig_of_another_kind_is_refused_for_that_alone() -> None:
 
 def test_a_recipe_may_say_the_kind_of_its_rig() -> None:
     assert check("kind: wheel_on_belt\n" + SMALL, rig(), PART) == []
+
+
+@pytest.mark.parametrize("value", ["much", "-0.1"])
+def test_what_replaces_a_bound_of_the_budget_is_a_number(value: str) -> None:
+    said = f"experiment: {{uncertainty.misalignment_deg: {value}}}\n"
+    with pytest.raises(InvalidSource, match="misalignment_deg: .* is not a number >= 0"):
+        load_checked(SMALL + said, rig(), PART, "r.yaml")

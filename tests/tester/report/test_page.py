@@ -114,7 +114,7 @@ def test_a_page_has_every_section_and_what_was_measured(text: str) -> None:
     ]
     assert "Measured was the friction coefficient of a wheel." in text
     assert "Simulated: no rubber and no machine were involved." in text
-    assert "No reference condition was in this recipe." in text
+    assert "No reference condition was measured." in text
     assert "3 of 4 conditions have a value; 1 have none. 1 value to be taken with care." in text
 
 

@@ -253,7 +253,8 @@ def test_a_recipe_without_grids_only_prepares_the_wheel() -> None:
 
 
 def test_metadata_are_texts_with_units_in_their_names() -> None:
-    said = "abrasive: {name: belt, mesh: 80, id: B7}\nhumidity: 45 %\nambient: 22.5 degC\nexperiment: {operator: Li}\n"
+    said = "abrasive: {name: belt, mesh: 80, id: B7}\nhumidity: 45 %\nambient: 22.5 degC\n"
+    said += "experiment: {operator: Li, uncertainty.misalignment_deg: 0.1}\n"
     assert plan_of(SMALL + said).metadata == {
         "abrasive": "belt",
         "abrasive_mesh": "80",
@@ -261,6 +262,7 @@ def test_metadata_are_texts_with_units_in_their_names() -> None:
         "humidity_percent": "45",
         "ambient_c": "22.5",
         "experiment.operator": "Li",
+        "uncertainty.misalignment_deg": "0.1",
     }
 
 
