@@ -113,7 +113,8 @@ def test_it_goes_on_with_the_reserved_wheel_and_the_belt_as_it_was(resumed: tupl
         last = max(one.counterface_m for one in reader.travels().values())
     assert last > before_m > 0.0
     grip = belt(folder)
-    assert grip == sorted(grip, reverse=True) and grip[-1] == pytest.approx(0.9 ** (last / 100.0), rel=0.01)
+    # As far as the record tells: what came after the last state that was stored, a second of wall time, is lost.
+    assert grip[-1] < grip[0] and grip[-1] == pytest.approx(0.9 ** (last / 100.0), rel=0.01)
 
 
 def test_what_went_on_leaves_and_holds(resumed: tuple[Path, float]) -> None:

@@ -28,7 +28,9 @@ def take_up(procedures: WheelProcedures, results: WheelResults, point: ResumePoi
 
 
 def take_up_wheels(ctx: Context, plan: WheelPlan, stand: Stand) -> None:
-    """Know the belt that is on, and the wheels that were: a plan with references puts them on again."""
+    """Know the belt that is on, and the wheels that were, for a plan with references; others have a belt a part."""
+    if not plan.references:
+        return
     ctx.belt_travel_m = stand.travel_m
     if stand.travel_m > 0.0:
         ctx.attendant.belt_travelled(stand.travel_m)
