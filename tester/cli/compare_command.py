@@ -40,7 +40,7 @@ def compare(run1: str, run2: str, compounds: tuple[str, str] | None, as_json: bo
     for i, name in enumerate((run1, run2) if compounds else ()):
         if compounds and all(row.info.compound != compounds[i] for row in results[i].rows):
             raise click.ClickException(f"{name} has no compound {compounds[i]}")
-    found = [*pairs(*results, compounds)]
+    found = [*pairs(results[0], results[1], compounds)]
     rows = [*map(_row, found)]
     if as_json:
         dump([*rows])

@@ -41,8 +41,8 @@ def page_of(report: Report) -> str:
         lstrip_blocks=True,
         auto_reload=False,
     )
-    mark: Any = Markup  # a drawing is this program's own markup
-    environment.filters["drawing"] = mark
+    filters: dict[str, Any] = environment.filters  # pyright: ignore
+    filters["drawing"] = Markup  # a drawing is this program's own markup
     return environment.get_template("page.html").render(
         report=report, policy=POLICY, style=Markup(_packaged("page.css"))
     )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Final
 
 from tester.report.chart import Chart, ChartPanel, Figure, Series, Surface
+from tester.report.control import ControlPoint, control_chart
 
 NAN = float("nan")
 LOADS = (100.0, 200.0, 300.0, 400.0)
@@ -54,4 +55,32 @@ REPEATS: Final = Chart(
     "along: from begin to end of each repeat",
     from_zero=False,
 )
-FIGURES: Final[dict[str, Figure]] = {one.name: one for one in (CHART, SURFACE, REPEATS)}
+CONTROL: Final = control_chart(
+    [ControlPoint(i, mu, 0.02, 0.66, 0.74) for i, mu in enumerate((0.70, 0.71, 0.69, 0.77, 0.70), start=1)]
+)
+OVERVIEW: Final = Chart(
+    "overview",
+    "the run: 3 conditions in order of time",
+    "rig time (min)",
+    "coefficient",
+    (
+        ChartPanel(
+            "",
+            (
+                Series("1#", (5.0, 15.0, 27.0), (0.9, 0.73, 0.6), "measured", 0, (0.04, 0.03, 0.05), (4.0, 5.0, 6.0)),
+                Series("make-up repeat", (19.0,), (0.74,), "published", 1),
+                Series("repeat left out", (12.0,), (0.82,), "left out", 2),
+            ),
+            "coefficient",
+        ),
+        ChartPanel(
+            "",
+            (Series("", (5.0, 15.0, 27.0), (100.0, 200.0, 400.0), "measured", 0, widths=(4.0, 5.0, 6.0)),),
+            "load (N)",
+        ),
+    ),
+    "bars: U (95 %) of what was mounted",
+    from_zero=False,
+    stacked=True,
+)
+FIGURES: Final[dict[str, Figure]] = {one.name: one for one in (CHART, SURFACE, REPEATS, CONTROL, OVERVIEW)}
