@@ -71,7 +71,7 @@ def carry_out(case: Case) -> Found:
     with TemporaryDirectory(prefix="wear-") as name:
         screen = Silent()
         session = Session(
-            SessionOptions("wear", "sim", overrides, Path(name), seed=case.seed, samples=False), screen
+            SessionOptions("wear", "sim", overrides, out=Path(name), seed=case.seed, samples=False), screen
         )
         code = session.run()
         if session.folder is None:

@@ -341,5 +341,5 @@ def test_a_recipe_may_say_the_kind_of_its_rig() -> None:
 @pytest.mark.parametrize("value", ["much", "-0.1"])
 def test_what_replaces_a_bound_of_the_budget_is_a_number(value: str) -> None:
     said = f"experiment: {{uncertainty.misalignment_deg: {value}}}\n"
-    with pytest.raises(InvalidSource, match="misalignment_deg: .* is not a number >= 0"):
+    with pytest.raises(InvalidSource, match=r"misalignment_deg: .* is not a number >= 0"):
         load_checked(SMALL + said, rig(), PART, "r.yaml")

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import Final
 
+from tester.analysis.reference import ControlChart, ControlPoint
 from tester.report.chart import Chart, ChartPanel, Figure, Series, Surface
-from tester.report.control import ControlPoint, control_chart
+from tester.report.control import control_chart
 
 NAN = float("nan")
 LOADS = (100.0, 200.0, 300.0, 400.0)
@@ -55,9 +56,10 @@ REPEATS: Final = Chart(
     "along: from begin to end of each repeat",
     from_zero=False,
 )
-CONTROL: Final = control_chart(
-    [ControlPoint(i, mu, 0.02, 0.66, 0.74) for i, mu in enumerate((0.70, 0.71, 0.69, 0.77, 0.70), start=1)]
+REFERENCES: Final = tuple(
+    ControlPoint(i, 4 * i, 600.0 * i, mu, 0.02, mu < 0.74) for i, mu in enumerate((0.70, 0.71, 0.69, 0.77, 0.70), 1)
 )
+CONTROL: Final = control_chart([ControlChart("1#", 0.70, 0.66, 0.74, REFERENCES)])
 OVERVIEW: Final = Chart(
     "overview",
     "the run: 3 conditions in order of time",
