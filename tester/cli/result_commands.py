@@ -132,7 +132,8 @@ def _summary(name: str, results: RunResults) -> dict[str, Json]:
         "missing": [row.describe() for row in results.missing()],
         "conditions": [_condition(measured, results) for measured in results.conditions()],
         "wheels": [_wheel(wheel, results) for wheel in results.pieces],
-    } | watch_json(results)
+        **watch_json(results),
+    }
 
 
 def _rate(found: WearRate) -> dict[str, Json]:

@@ -183,6 +183,12 @@ def test_a_run_that_is_not_as_it_was_left_is_said_to_be_so_on_the_first_page(pla
     assert "run.db: repeat 1: changed" in text
 
 
+@pytest.mark.parametrize("made", ["text", "hostile"])
+def test_a_page_is_html_to_a_strict_parser(made: str, request: pytest.FixtureRequest) -> None:
+    html5lib = pytest.importorskip("html5lib", reason="needs html5lib, which .ci/run installs")
+    html5lib.HTMLParser(strict=True).parse(request.getfixturevalue(made))
+
+
 def test_a_control_chart_appears_where_there_are_reference_conditions(plain: RunRecord) -> None:
     points = (ControlPoint(1, 1, 0.0, 0.7, 0.02, True), ControlPoint(2, 3, 60.0, 0.8, 0.02, False))
     watch = ReferenceWatch((), None, (ControlChart("1#", 0.7, 0.66, 0.74, points),))
