@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator
 from itertools import pairwise
+from math import isfinite
 
+from tester.analysis.reference import ControlPoint
 from tester.report.assumptions import assumed_keys, assumed_terms
 from tester.report.control import control_chart
 from tester.report.inline import inline_svg
@@ -151,18 +153,26 @@ def trips_section(record: RunRecord, key: str) -> ReportSection:
     return ReportSection(key, "Alarms and trips", parts)
 
 
+def _verdict(point: ControlPoint) -> str:
+    """Return what a reference says in a word; one without a value says nothing of the machine."""
+    if not isfinite(point.mu):
+        return "no value"
+    return "in control" if point.within else "out of control"
+
+
 def control_section(record: RunRecord, key: str) -> ReportSection:
     """Return what the reference conditions say, with their control chart, where there were any."""
     title, watch = "Control chart", record.results.watch
     if watch is None or not watch.charts:
         return ReportSection(key, title, [Paragraph("No reference condition was measured.")])
     points = [(chart, point) for chart in watch.charts for point in chart.points]
-    outside = sum(not point.within for _, point in points)
+    valued = [point for _, point in points if isfinite(point.mu)]
+    outside = sum(not point.within for point in valued)
     rows = [
         ReportRow(
             (str(point.number), chart.compound, number(point.mu), number(point.expanded), number(chart.low),
-             number(chart.high), "in control" if point.within else "out of control"),
-            "" if point.within else "bad",
+             number(chart.high), _verdict(point)),
+            "bad" if isfinite(point.mu) and not point.within else "",
         )
         for chart, point in points
     ]  # fmt: skip
@@ -171,9 +181,9 @@ def control_section(record: RunRecord, key: str) -> ReportSection:
         key,
         title,
         [
-            Paragraph(f"{counted(outside, 'value')} of {len(points)} not in control.", "bad")
+            Paragraph(f"{counted(outside, 'value')} of {len(valued)} not in control.", "bad")
             if outside
-            else Paragraph(f"All {len(points)} values are in control.", "good"),
+            else Paragraph(f"All {len(valued)} values are in control.", "good"),
             *(Paragraph(f"{line}.") for line in watch.lines(record.results.worn)),
             Picture(inline_svg(control_chart(watch.charts), key), wide=True),
             ReportTable("Reference condition", titles, rows),

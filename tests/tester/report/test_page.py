@@ -190,12 +190,14 @@ def test_a_page_is_html_to_a_strict_parser(made: str, request: pytest.FixtureReq
 
 
 def test_a_control_chart_appears_where_there_are_reference_conditions(plain: RunRecord) -> None:
-    points = (ControlPoint(1, 1, 0.0, 0.7, 0.02, True), ControlPoint(2, 3, 60.0, 0.8, 0.02, False))
+    nothing = ControlPoint(3, 5, 90.0, float("nan"), float("nan"), False)
+    points = (ControlPoint(1, 1, 0.0, 0.7, 0.02, True), ControlPoint(2, 3, 60.0, 0.8, 0.02, False), nothing)
     watch = ReferenceWatch((), None, (ControlChart("1#", 0.7, 0.66, 0.74, points),))
     text = page(replace(plain, results=replace(plain.results, watch=watch)))
     assert "No reference condition" not in text and "1 value of 2 not in control." in text
     assert "reference condition in the order in which it was measured" in text
     assert "references of 1#: limits 0.6600 to 0.7400; outside: 2." in text
+    assert text.count("out of control</td>") == 1 and text.count("no value</td>") == 1
 
 
 def test_two_runs_are_overlaid_and_compared(plain: RunRecord, tmp_path: Path) -> None:
