@@ -109,7 +109,8 @@ def _both_directions(plan: WheelPlan) -> Iterator[str]:
     """Yield how many conditions slide both ways, and how fast the belt runs for it."""
     both = [step for step in plan.conditions() if step.both_directions]
     if both:
-        fastest = max(held_by(step.setpoint).reversed().belt_speed_m_s for step in both)
+        held = [held_by(step.setpoint) for step in both]
+        fastest = max(belt for one in held for belt in (one.belt_speed_m_s, one.reversed().belt_speed_m_s))
         yield f"both directions   {len(both)} conditions: repeats alternate + - - +, the belt at up to {fastest:g} m/s"
 
 

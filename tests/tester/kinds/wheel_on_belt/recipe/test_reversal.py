@@ -97,8 +97,9 @@ def test_a_precision_takes_as_many_repeats_in_both_directions() -> None:
     assert both == pytest.approx(one, rel=0.15)
 
 
-def test_the_plan_says_pairs_and_how_fast_the_belt_runs() -> None:
-    plan = expand(read(text(grid=", run_in_after_reversal: 5 m")), rig())
+@pytest.mark.parametrize("slip", ["300 mm/s", "-300 mm/s"])
+def test_the_plan_says_pairs_and_how_fast_the_belt_runs(slip: str) -> None:
+    plan = expand(read(text(slip, grid=", run_in_after_reversal: 5 m")), rig())
     said = "\n".join(lines(plan, estimate(plan, WheelEstimator(rig())), PART))
     assert "3 pairs x 30 rev" in said and "run-in 5 m" in said and "1, 6 repeats" in said
     assert "both directions   1 conditions: repeats alternate + - - +, the belt at up to 1.1 m/s" in said
@@ -111,9 +112,9 @@ def test_a_plan_s_json_says_it() -> None:
 
 
 def test_commands_may_go_as_far_as_the_reversed_belt_and_no_further() -> None:
-    one, both = (expand(read(text(measure=m)), rig()) for m in ("", BOTH))
+    one, both, turned = (expand(read(text(*given)), rig()) for given in (("300 mm/s", ""), (), ("-300 mm/s",)))
     assert plan_bounds(one, rig()).belt_speed_m_s == 0.8
-    assert plan_bounds(both, rig()).belt_speed_m_s == 1.1
+    assert plan_bounds(both, rig()).belt_speed_m_s == plan_bounds(turned, rig()).belt_speed_m_s == 1.1
 
 
 def test_the_instruments_add_less_in_both_directions_and_another_term_is_the_largest() -> None:
