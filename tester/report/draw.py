@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import warnings
 from io import BytesIO
+from itertools import pairwise
 from math import ceil
 from pathlib import Path
 from textwrap import fill
@@ -169,22 +170,29 @@ def _draw_series(series: Series, place: Any, joined: bool) -> Any:
 
 
 def _draw_surface(surface: Surface, canvas: Any, places: Sequence[Any]) -> None:
-    """Draw a field for each pair of values, its number in it; lightness alone tells the colours apart."""
+    """Draw a field for each pair of values, at its place on both axes, its number in it; lightness alone tells the
+    colours apart."""
     every = [v for _, _, _, grid in surface.panels for row in grid for v in row if v == v]
     low, high = min(every), max(every)
     drawn: Any = None
     for (title, x, y, grid), place in zip(surface.panels, places, strict=False):
-        drawn = place.imshow(grid, origin="lower", aspect="auto", cmap="cividis", vmin=low, vmax=high)
-        place.set_xticks(range(len(x)), [f"{value:g}" for value in x])
-        place.set_yticks(range(len(y)), [f"{value:g}" for value in y])
+        drawn = place.pcolormesh(_edges(x), _edges(y), grid, cmap="cividis", vmin=low, vmax=high)
+        place.set_xticks(x, [f"{value:g}" for value in x])
+        place.set_yticks(y, [f"{value:g}" for value in y])
         place.grid(False)
-        for j, row in enumerate(grid):
-            for i, value in enumerate(row):
+        for height, row in zip(y, grid, strict=True):
+            for along, value in zip(x, row, strict=True):
                 if value == value:
-                    dark = value < 0.5 * (low + high)
-                    place.text(i, j, f"{value:.2f}", ha="center", va="center", color="white" if dark else "black")
+                    color = "white" if value < 0.5 * (low + high) else "black"
+                    place.text(along, height, f"{value:.2f}", ha="center", va="center", color=color)
         place.set_title(title, fontsize=8.0)
         place.set_xlabel(surface.x_label)
         place.set_ylabel(surface.y_label)
     if drawn is not None:
         canvas.colorbar(drawn, ax=[*places[: len(surface.panels)]], label=surface.z_label)
+
+
+def _edges(values: Sequence[float]) -> list[float]:
+    """Return where the fields of at least two ascending values end: half way between them, as far outside."""
+    between = [0.5 * (one + other) for one, other in pairwise(values)]
+    return [2.0 * values[0] - between[0], *between, 2.0 * values[-1] - between[-1]]
