@@ -1,4 +1,4 @@
-"""The campaign: every fault at begin, middle and end of every step of three recipes; samples and pairs of it."""
+"""The campaign: every fault at begin, middle and end of every step of four recipes; samples and pairs of it."""
 
 from __future__ import annotations
 

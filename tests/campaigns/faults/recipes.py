@@ -66,10 +66,29 @@ grids:
 """
 """Heating to 40 degC, soak, slip pulses in the band, cool-down at the end."""
 
-GRID = ("quick", "sideslip", "heated")
-"""The three recipes of the campaign."""
+REVERSED = """\
+recipe: campaign, reversed
+specimens:
+  - compound: "1#"
+measure:
+  wheel_speed: 0.8 m/s
+  repeats: 1
+  min_valid: 1
+  window: 14 rev
+  soak: {within: 2 degC, for: 2 s}
+grids:
+  - name: both
+    slip_velocity: 300 mm/s
+    load: 200 N
+    temperature: 25 degC
+    both_directions: true
+"""
+"""Both directions of slip: the belt slower than the wheel, then faster, near the greatest speed it is let through."""
 
-RECIPES = {"quick": QUICK, "sideslip": SIDESLIP, "heated": HEATED, "short": SHORT}
+GRID = ("quick", "sideslip", "heated", "reversed")
+"""The recipes of the campaign."""
+
+RECIPES = {"quick": QUICK, "sideslip": SIDESLIP, "heated": HEATED, "reversed": REVERSED, "short": SHORT}
 """``short`` is the recipe that is stopped and killed at its every scan."""
 
 
