@@ -19,7 +19,7 @@ from tester.analysis.difference import difference
 from tests.campaigns.acceptance.figure import Figure, at_least, holds
 from tests.campaigns.budget.cells import BETWEEN, CELLS, Cell, measured, replicates, rig
 from tests.campaigns.budget.mutants import mutants, survivors
-from tests.campaigns.budget.twin import Held, held
+from tests.campaigns.budget.twin import Held, held, rigs_differ
 
 DRAWS, SAMPLE_DRAWS = 10_000, 1_000
 PAIRS, SAMPLE_PAIRS = 1_000, 300
@@ -27,6 +27,8 @@ COVERED = (94.0, 99.0)
 """Share of intervals that hold the value, per cent: 95 is meant, bounded distributions make it a bit more."""
 ON_THE_TWIN, TWIN_SEEDS = (89.0, 99.0), 100
 """The same on the simulated rig: of 100 seeds the count itself scatters by two."""
+CALLED_ON_THE_TWIN = (1.0, 11.0)
+"""Share of pairs of wheels of one compound, on the simulated rig, that are called different, per cent."""
 SURE = 2.5
 """A figure of a sample may miss by so many of its own standard deviations."""
 EVERY = 5
@@ -87,10 +89,10 @@ def pairs(count: int) -> Iterator[Figure]:
                   exact=exact)  # fmt: skip
 
 
-def twin(seeds: int) -> Iterator[Figure]:
+def twin(seeds: int, jobs: int) -> Iterator[Figure]:
     """Yield how many intervals of runs on the simulated rig hold its truth."""
     found: list[Held] = []
-    for one in held(seeds):
+    for one in held(seeds, jobs):
         found.append(one)
         told = f"off by {one.off_percent:+.2f} %, U {one.u_percent:.2f} %"
         print(f"     seed {one.seed} {one.condition}: {told}", flush=True)
@@ -101,6 +103,12 @@ def twin(seeds: int) -> Iterator[Figure]:
         this, compound = sum(one.this for one in found), sum(one.compound for one in found)
         yield _within("on the twin: this wheel covered", this, count, *ON_THE_TWIN, exact=exact)
         yield _within("on the twin: the compound covered", compound, count, *ON_THE_TWIN, exact=exact)
+        both, called = sum(one.both for one in found), sum(one.wheels_differ for one in found)
+        yield _within("on the twin: the compound covered by two wheels", both, count, *ON_THE_TWIN, exact=exact)
+        yield _within("two wheels of a run called different", called, count, *CALLED_ON_THE_TWIN, exact=exact)
+        apart = rigs_differ(found)
+        name = "wheels of two rigs called different"
+        yield _within(name, sum(apart), len(apart), *CALLED_ON_THE_TWIN, exact=False)
 
 
 def killed(every: int) -> Iterator[Figure]:
@@ -118,11 +126,12 @@ def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser("python -m tests.campaigns.budget", description=__doc__)
     parser.add_argument("--sample", action="store_true", help="the short form, for every change")
     parser.add_argument("--twin", type=int, metavar="SEEDS", help="coverage on the simulated rig; 100: half an hour")
+    parser.add_argument("--jobs", type=int, default=1, metavar="N", help="of --twin: runs side by side (default 1)")
     given = parser.parse_args(arguments)
     sample: bool = given.sample
     draws, count, every = (SAMPLE_DRAWS, SAMPLE_PAIRS, EVERY) if sample else (DRAWS, PAIRS, 1)
     missed = 0
-    made = chain(coverage(draws), pairs(count), killed(every)) if given.twin is None else twin(given.twin)
+    made = chain(coverage(draws), pairs(count), killed(every)) if given.twin is None else twin(given.twin, given.jobs)
     for figure in made:
         print(figure, flush=True)
         missed += not figure.ok

@@ -1,20 +1,27 @@
 """Do the intervals of runs on the simulated rig hold what the rig knows to be true, with beliefs that are wrong?
 
-One condition a seed: wheel and session are shared by the conditions of a run, so that seeds are counted, not rows. The
-wheel wears three times as fast as believed, heat and belt differ by 30 % from what control reckons with, and a session
+One condition a seed, on two wheels: the session is shared by all of a run, so that seeds are counted, not rows. Wheels
+wear three times as fast as believed, heat and belt differ by 30 % from what control reckons with, and a session
 draws the imperfections of its sensors. True of this wheel is model x condition x wheel, of the compound in this
 condition model x condition, as the rig itself tells (``sim.record_truth``), without what one repeat differs by.
+
+How often are two wheels of one compound called different, which they are not: those of one run, which have its rig in
+common, and the first of two runs with different sessions, which are two rigs.
 """
 
 from __future__ import annotations
 
 import sqlite3
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor
 from contextlib import closing
 from dataclasses import dataclass
+from multiprocessing import get_context
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from tester.analysis.difference import difference
+from tester.analysis.repeats import ConditionResult
 from tester.export.results import results_of
 from tester.run.session import Session, SessionOptions
 from tester.store.reader import RunReader
@@ -30,6 +37,7 @@ CONDITIONS = (("1#", 200, 300, 40), ("3#", 200, 300, 55), ("2#", 100, 300, 25), 
 """Compound, load N, slip mm/s, temperature degC, in turns."""
 RECIPE = """recipe: true or not
 specimens: [{{compound: "{0}"}}]
+replicates: 2
 pre_grind: {{wheel_speed: 0.8 m/s, belt_speed: 0.6 m/s, load: 200 N, duration: 4 min}}
 rest: {{at_least: 20 min, until: 25 degC, within: 2 degC}}
 measure: {{wheel_speed: 0.8 m/s, repeats: 3, window: 30 rev, temperature_band: 2 degC}}
@@ -40,7 +48,7 @@ grids:
 
 @dataclass(frozen=True, slots=True)
 class Held:
-    """What became of one seed: per cent by which the value is off this wheel's truth, and whether U holds each."""
+    """What became of one seed: per cent by which the first wheel's value is off its truth, and whether U holds each."""
 
     seed: int
     condition: tuple[str, int, int, int]
@@ -48,40 +56,61 @@ class Held:
     u_percent: float
     this: bool
     compound: bool
+    both: bool
+    """The compound is held by U of the mean of both wheels."""
+    wheels_differ: bool
+    """The two wheels are called different."""
+    first: ConditionResult
 
 
-def held(seeds: int) -> Iterator[Held]:
-    """Yield what became of each seed that has a value."""
-    for seed in range(seeds):
-        condition = CONDITIONS[seed % len(CONDITIONS)]
-        with TemporaryDirectory() as name:
-            found = _run(Path(name), seed, condition)
-        if found is not None:
-            yield found
+def held(seeds: int, jobs: int = 1) -> Iterator[Held]:
+    """Yield what became of each seed that has values."""
+    with ProcessPoolExecutor(jobs, mp_context=get_context("spawn")) as pool:
+        yield from (one for one in pool.map(_of_seed, range(seeds)) if one is not None)
+
+
+def rigs_differ(found: Sequence[Held]) -> list[bool]:
+    """Return of runs with different sessions, each seed in one pair, whether their wheels are called different."""
+    called: list[bool] = []
+    for condition in CONDITIONS:
+        ours = [one.first for one in found if one.condition == condition]
+        pairs = zip(ours[::2], ours[1::2], strict=False)
+        called += [difference(one, other, same_rig=False).told_apart for one, other in pairs]
+    return called
+
+
+def _of_seed(seed: int) -> Held | None:
+    with TemporaryDirectory() as name:
+        return _run(Path(name), seed, CONDITIONS[seed % len(CONDITIONS)])
 
 
 def _run(folder: Path, seed: int, condition: tuple[str, int, int, int]) -> Held | None:
     recipe = folder / "recipe.yaml"
     recipe.write_text(RECIPE.format(*condition), encoding="utf-8")
     screen = Unseen()
-    options = SessionOptions(str(recipe), "sim", out=folder / "runs", seed=seed, overrides=WRONG_BELIEFS)
+    options = SessionOptions(str(recipe), "sim", out=folder / "runs", seed=seed, overrides=WRONG_BELIEFS, samples=False)
     session = screen.session = Session(options, screen)
     session.run()
     if session.folder is None:
         raise RuntimeError(f"the run did not begin: {' '.join(screen.said)}")
     with RunReader(session.folder) as reader:
         (row,) = results_of(reader).rows
-    if not row.result.ok:
+    first, second = (measured.result for measured in row.replicates)
+    if not (first.ok and second.ok):
         return None
     with closing(sqlite3.connect(session.folder / "run.db")) as database:
-        true = dict(database.execute("SELECT name, value FROM truth"))
+        number = row.replicates[0].info.condition
+        true = dict(database.execute("SELECT name, value FROM truth WHERE condition = ?", [number]))
     compound = true["model"] * true["condition"]
-    this, r = compound * true["wheel"], row.result
+    this = compound * true["wheel"]
     return Held(
         seed,
         condition,
-        100.0 * (r.mu_corrected / this - 1.0),
-        100.0 * r.expanded / this,
-        abs(r.mu_corrected - this) <= r.expanded,
-        abs(r.mu_corrected - compound) <= r.compound_budget.expanded,
+        100.0 * (first.mu_corrected / this - 1.0),
+        100.0 * first.expanded / this,
+        abs(first.mu_corrected - this) <= first.expanded,
+        abs(first.mu_corrected - compound) <= first.compound_budget.expanded,
+        abs(row.result.mu_corrected - compound) <= row.result.compound_budget.expanded,
+        difference(first, second, same_rig=True).told_apart,
+        first,
     )
