@@ -115,7 +115,7 @@ ESTIMATED = {
 
 
 def _estimate(sweeps: Sweeps) -> Iterator[Figure]:
-    seeds = 20 if sweeps.full else 3
+    seeds = 20 if sweeps.full else 1
     within = total = 0
     for name, text in ESTIMATED.items():
         spec = SweepSpec(text, 100 if sweeps.full and name == "quickstart" else seeds)
