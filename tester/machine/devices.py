@@ -173,6 +173,8 @@ class DeviceList:
                 self._lose_can(error)
             else:
                 deadline = self.master.deadline
+        if scan and next_scan_s > now:
+            self._prompt.scan_s = next_scan_s - now
         self.transmit_lines(now, scan=scan)
         # Only one line may ask for a tick of its own (a retry there has to fit into a scan); the next request of any
         # other can wait for the next scan. A simulated line knows that the reply will be in time.
