@@ -220,7 +220,8 @@ class _Planner:
                     self.made.refused.append(
                         f"{name}: the drive takes {limits.entries} objects, {len(one.mapped.fields)} are needed")
                 if one.kind == pdo.SYNCHRONOUS and not limits.synchronous:
-                    self.made.refused.append(f"{describe(one.communication, 2)}: the drive has no type 1, with every SYNC")
+                    kind = describe(one.communication, 2)
+                    self.made.refused.append(f"{kind}: the drive has no type 1, with every SYNC")
                 for index, sub, _ in one.mapped.fields:
                     if self.lacks(index, sub):
                         self._refuse((index, sub), "it is needed in a PDO")

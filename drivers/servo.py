@@ -45,9 +45,10 @@ class ServoDrive(AxisCommand):
     (nothing, once rebooted). ``refused`` says why connect or home failed. ``emergency`` is the last EMCY that
     was neither reset by the device nor acknowledged. ``parameters`` holds what was read back of the device,
     by (index, sub-index). ``plan`` says since connect what the drive is done without, and what is lost by that
-    (``without``). ``inputs`` and ``outputs`` have the program's bits (drivers.digital_io). ``inputs_stamp_s`` is the arrival of the last TPDO2, -inf before the first. Whoever sees
-    that outputs have not done what they are for sets ``outputs_unanswered``: they are then sent again. ``stands``: it
-    has said between two SYNCs that it stands now; whoever has looked takes it back.
+    (``without``). ``inputs`` and ``outputs`` have the program's bits (drivers.digital_io). ``inputs_stamp_s`` is the
+    arrival of the last TPDO2, -inf before the first. Whoever sees that outputs have not done what they are for sets
+    ``outputs_unanswered``: they are then sent again. ``stands``: it has said between two SYNCs that it stands now;
+    whoever has looked takes it back.
 
     The methods ``on_...``, ``emit...``, ``check_heartbeat`` and ``holds`` are the master's.
     """

@@ -1,8 +1,8 @@
 """What is said to a drive once, outside the scan: bring-up, homing, fault diagnosis (CiA 402-2, CiA 301).
 
 Each function is a conversation for ``CanMaster.start``. Everything written is read back and kept in
-``drive.parameters``. What a drive refuses while it is configured is collected, so that ``drive.refused`` tells all of it
-at once; what is done without stands in ``drive.plan``. An answer that does not come ends the conversation.
+``drive.parameters``. What a drive refuses while it is configured is collected, so that ``drive.refused`` tells all of
+it at once; what is done without stands in ``drive.plan``. An answer that does not come ends the conversation.
 """
 
 from __future__ import annotations

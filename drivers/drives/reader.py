@@ -191,5 +191,6 @@ class _Table:
 
 
 _WORDS: dict[object, str] = {
-    str: "a text", int: "a whole number", bool: "true or false", list: "a list", dict: "a table", int | float: "a number",
+    str: "a text", int: "a whole number", bool: "true or false", list: "a list", dict: "a table",
+    int | float: "a number",
 }  # fmt: skip
