@@ -40,8 +40,8 @@ class AxisCommand(CanNode):
 
     __slots__ = ("_at_rest", "_goal", "_halt", "_high", "_homing", "_homing_start", "_low",
                  "_new_set_point", "_outputs", "_per_unit", "_position_mode", "_raw", "_remote_bit", "_resetting",
-                 "_rpdo", "_set_point", "_target", "_target_counts", "aimed", "config", "homing_scans", "inhibited", "news",
-                 "state", "statusword")
+                 "_rpdo", "_set_point", "_target", "_target_counts", "aimed", "config", "homing_scans", "inhibited",
+                 "news", "state", "statusword")
 
     def __init__(self, config: AxisConfig) -> None:
         super().__init__(config.name, config.node_id, config.heartbeat_s, config.digital_io)

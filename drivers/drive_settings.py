@@ -54,6 +54,10 @@ LOST: Final[Mapping[Key, str]] = {
 those that ``_Plan`` knows something to take the place of."""
 
 
+USED: Final = frozenset({*LOST, _DEADLINE, (o.MAX_TORQUE, 0)})
+"""Objects that would be used if they were there, and without which some axis can be."""
+
+
 @dataclass(frozen=True, slots=True)
 class Setting:
     """One write; ``mask``: the bits that have to read back. ``per_mille_of``: see drivers.drives.model.Substitute."""
@@ -174,7 +178,10 @@ class _Planner:
             self.made.without.append(f"no {describe(*key)}: {lost}")
 
     def _refuse(self, key: Key, why: str) -> None:
-        self.made.refused.append(f"{describe(*key)}: the drive does not have it; {why}")
+        """Say it once of an object, with the first reason."""
+        said = f"{describe(*key)}: the drive does not have it"
+        if not any(one.startswith(said) for one in self.made.refused):
+            self.made.refused.append(f"{said}; {why}")
 
     def _watches(self) -> None:
         """Without the PC the drive has to stop: its heartbeat is watched, or else its setpoints are."""

@@ -107,6 +107,14 @@ class ServoDrive(AxisCommand):
         """Return the conversation that reads the fault objects into ``diagnosis``; it changes nothing."""
         return servo_setup.diagnose(self)
 
+    def ask(self) -> Conversation:
+        """Return the conversation that reads the statusword of a drive that sends no process data."""
+        return servo_setup.ask(self)
+
+    def start_again(self) -> Conversation:
+        """Return the conversation that brings back a drive that has left OPERATIONAL; set another goal first."""
+        return servo_setup.start_again(self)
+
     def release(self) -> Conversation:
         """Return the conversation that leaves the drive disabled, unwatched and PRE-OPERATIONAL."""
         return servo_setup.release(self)

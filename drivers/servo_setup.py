@@ -354,6 +354,20 @@ def diagnose(drive: ServoDrive) -> Conversation:
     drive.diagnosis = Diagnosis(error_code, register, tuple(history), failed)
 
 
+def ask(drive: ServoDrive) -> Conversation:
+    """Take the statusword of a drive that is connected, but sends no process data at present."""
+    try:
+        drive.take_statusword((yield from read_number(o.STATUSWORD)))
+    except RequestError as error:
+        drive.refused = _refusal(drive, error)
+
+
+def start_again(drive: ServoDrive) -> Conversation:
+    """Bring a connected drive back to OPERATIONAL; it is still configured, and its goal decides what it does there."""
+    yield SendNmt(NmtCommand.START)
+    yield Until(AwaitedCondition.OPERATIONAL, START_TIMEOUT_S)
+
+
 def release(drive: ServoDrive) -> Conversation:
     """Leave a drive: power off, its watch on our heartbeat ended, PRE-OPERATIONAL, nothing commanded.
 
