@@ -87,7 +87,7 @@ class PdoSetting:
 
 
 @dataclass(slots=True)
-class Plan:
+class DrivePlan:
     """What connecting an axis writes, does without, and refuses."""
 
     settings: list[Setting] = field(default_factory=list[Setting])
@@ -107,7 +107,7 @@ def mode_of(config: AxisConfig) -> OperationMode:
     return OperationMode.PROFILE_POSITION if config.mode == "position" else OperationMode.PROFILE_VELOCITY
 
 
-def plan(config: AxisConfig, absent: Collection[Key] = ()) -> Plan:
+def plan(config: AxisConfig, absent: Collection[Key] = ()) -> DrivePlan:
     """Return the plan for an axis; ``absent``: objects that the drive lacks beside those its profile says."""
     return _Planner(config, frozenset(absent)).plan()
 
@@ -125,14 +125,14 @@ class _Planner:
         self.config = config
         self.profile = config.drive
         self.absent = absent
-        self.made = Plan()
+        self.made = DrivePlan()
 
     def lacks(self, *key: int) -> bool:
         """Tell whether the drive has no such object."""
         index, sub = key
         return (index, sub) in self.absent or self.profile.lacks((index, sub))
 
-    def plan(self) -> Plan:
+    def plan(self) -> DrivePlan:
         """Make it."""
         made, config = self.made, self.config
         for parameter in self._parameters():

@@ -16,7 +16,7 @@ from drivers.canopen.conversation import AwaitedCondition, Conversation
 from drivers.canopen.emcy import Emergency
 from drivers.canopen.heartbeat import HeartbeatMonitor
 from drivers.cia402 import Goal, State
-from drivers.drive_settings import Plan
+from drivers.drive_settings import DrivePlan
 
 # All axes share this layout (drivers.canopen.pdo): statusword, velocity or position, torque.
 _TPDO1: Final = struct.Struct("<Hih").unpack
@@ -88,7 +88,7 @@ class ServoDrive(AxisCommand):
         self.identity: DeviceIdentity | None = None
         self.refused = None
         self.parameters: dict[tuple[int, int], int] = {}
-        self.plan = Plan()
+        self.plan = DrivePlan()
         self._outputs_sent = 0
         self._outputs_again_s = math.inf
         self.outputs_unanswered = False

@@ -30,7 +30,16 @@ from drivers.canopen.dictionary import describe
 from drivers.canopen.objects import DataType, NmtCommand, OperationMode
 from drivers.canopen.sdo import NO_OBJECT, NO_SUB_INDEX, TIMED_OUT
 from drivers.cia402 import Goal, State
-from drivers.drive_settings import NO_STATE_CHANGE, RATED_TORQUE_SHARE, PdoSetting, Plan, Setting, mode_of, plan, tried
+from drivers.drive_settings import (
+    NO_STATE_CHANGE,
+    RATED_TORQUE_SHARE,
+    DrivePlan,
+    PdoSetting,
+    Setting,
+    mode_of,
+    plan,
+    tried,
+)
 from drivers.drives.model import Key
 
 if TYPE_CHECKING:
@@ -173,7 +182,7 @@ def _configure(drive: ServoDrive, pc_node_id: int) -> Step:
         yield from _write(drive, o.CONSUMER_HEARTBEAT, 1, watched)
 
 
-def _plan(drive: ServoDrive) -> Generator[Request, Reply, Plan]:
+def _plan(drive: ServoDrive) -> Generator[Request, Reply, DrivePlan]:
     """Return what is to be written, once it is known which objects this drive has."""
     absent: list[Key] = []
     for index, sub in tried(drive.config):

@@ -11,7 +11,7 @@ from drivers.canopen import objects as o
 from drivers.canopen.data_sheet import DataSheet, SheetEntry
 from drivers.canopen.dictionary import DICTIONARY, describe
 from drivers.canopen.objects import BITS, DataType
-from drivers.drive_settings import USED, PdoSetting, Plan, Setting, mode_of, plan, tried
+from drivers.drive_settings import USED, DrivePlan, PdoSetting, Setting, mode_of, plan, tried
 from drivers.drives.model import Key
 
 _READ: Final = ((o.DEVICE_TYPE, 0), (o.IDENTITY, 1), (o.SUPPORTED_MODES, 0), (o.STATUSWORD, 0), (o.MODE_DISPLAY, 0),
@@ -52,7 +52,7 @@ def _identity(config: AxisConfig, sheet: DataSheet) -> Iterator[str]:
         yield f"{describe(o.SUPPORTED_MODES, 0)}: 0x{modes.default:08X}, without {mode_of(config).name}"
 
 
-def _objects(config: AxisConfig, sheet: DataSheet, made: Plan) -> Iterator[str]:
+def _objects(config: AxisConfig, sheet: DataSheet, made: DrivePlan) -> Iterator[str]:
     position = config.mode == "position"
     actual = o.POSITION_ACTUAL if config.feedback == "position" else o.VELOCITY_ACTUAL
     read = [*_READ, (actual, 0), *([(o.RATED_TORQUE, 0)] if made.rated_torque else [])]

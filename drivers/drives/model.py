@@ -44,7 +44,7 @@ class Substitute:
 
 
 @dataclass(frozen=True, slots=True)
-class Parameter:
+class FurtherObject:
     """A further object that is written and read back at every connect; without ``value`` the rig file states it."""
 
     key: Key
@@ -100,7 +100,7 @@ class DriveProfile:
     substitutes: Mapping[Key, Substitute] = field(default_factory=dict[Key, Substitute])
     options: Mapping[Key, int] = field(default_factory=dict[Key, int])
     """Values of option objects in the place of the usual ones."""
-    parameters: Mapping[str, Parameter] = field(default_factory=dict[str, Parameter])
+    parameters: Mapping[str, FurtherObject] = field(default_factory=dict[str, FurtherObject])
     units: Units = field(default_factory=Units)
     pdo: PdoLimits = field(default_factory=PdoLimits)
     remote: bool = True

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any, TypeVar, cast
 
 from drivers.canopen.objects import DataType
-from drivers.drives.model import DriveProfile, Key, Parameter, PdoLimits, Substitute, Units
+from drivers.drives.model import DriveProfile, FurtherObject, Key, PdoLimits, Substitute, Units
 from drivers.profiles.model import ProfileError
 
 GENERIC = "cia402"
@@ -49,7 +49,7 @@ def read_drive_profile(name: str, text: str) -> DriveProfile:
         data = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         raise ProfileError(f"{name}.toml: {error}") from error
-    table = _Table(f"{name}.toml", data)
+    table = _ProfileTable(f"{name}.toml", data)
     objects = table.table("objects")
     status = table.table("statusword")
     profile = DriveProfile(
@@ -75,7 +75,7 @@ def read_drive_profile(name: str, text: str) -> DriveProfile:
     return profile
 
 
-def _substitute(table: _Table) -> Substitute:
+def _substitute(table: _ProfileTable) -> Substitute:
     reference = table.take("per_mille_of", str, "")
     found = Substitute(
         key=table.key(table.take("object", str)),
@@ -90,9 +90,9 @@ def _substitute(table: _Table) -> Substitute:
     return found
 
 
-def _parameter(table: _Table) -> Parameter:
+def _parameter(table: _ProfileTable) -> FurtherObject:
     has_value = "value" in table
-    found = Parameter(
+    found = FurtherObject(
         key=table.key(table.take("object", str)),
         type=table.type(),
         value=table.take("value", int, 0) if has_value else None,
@@ -102,7 +102,7 @@ def _parameter(table: _Table) -> Parameter:
     return found
 
 
-def _pdo_limits(table: _Table) -> PdoLimits:
+def _pdo_limits(table: _ProfileTable) -> PdoLimits:
     limits = table.section("pdo", PdoLimits)
     for name, words in (("cob_ids", ("set", "fixed")), ("mapping", ("free", "fixed"))):
         if getattr(limits, name) not in words:
@@ -110,7 +110,7 @@ def _pdo_limits(table: _Table) -> PdoLimits:
     return limits
 
 
-class _Table:
+class _ProfileTable:
     """A table of the file: every key is taken once, with its type, and none may be left."""
 
     def __init__(self, where: str, data: Mapping[str, Any]) -> None:
@@ -153,10 +153,10 @@ class _Table:
         """Take a list of addresses."""
         return frozenset(self.key(str(one)) for one in self.take(key, list, []))
 
-    def table(self, key: str) -> _Table:
-        return _Table(f"{self.where}: {key}", self.take(key, dict, {}))
+    def table(self, key: str) -> _ProfileTable:
+        return _ProfileTable(f"{self.where}: {key}", self.take(key, dict, {}))
 
-    def tables(self, key: str) -> list[tuple[str, _Table]]:
+    def tables(self, key: str) -> list[tuple[str, _ProfileTable]]:
         """Take a table of tables."""
         outer = self.table(key)
         return [(name, outer.table(name)) for name in list(outer._data)]

@@ -101,7 +101,7 @@ def _with(config: AxisConfig, profile: str) -> AxisConfig:
 
 
 def _usual_axes(profile: str) -> dict[str, AxisConfig]:
-    """Return an axis of each sort, of no machine: identities are not compared, numbers are of usual size [A]."""
+    """Return an axis of each sort, of no machine: identities are not compared, numbers are of usual size."""
     from drivers.axis import AxisConfig
     from drivers.screw import Screw
 
