@@ -16,8 +16,6 @@ DAY_S = 8 * 3600.0
 """A working day of contact is to fit on the disk, s [A]."""
 LATENCY_MS = 2
 """From here on an adapter's latency timer costs readings, ms: 1 is the least that FTDI's driver takes."""
-QUEUE = 10
-"""Frames that a SocketCAN interface queues unless told otherwise (linux/drivers/net/can/dev); six drives fit."""
 OFTEN = 0.999
 """Share of the scans that the second figure of the punctuality is for."""
 
@@ -145,12 +143,12 @@ def _details(e: Examination, channel: str) -> dict[str, Any]:
 
 def _queue(e: Examination, folder: str) -> Iterator[Finding]:
     text = e.computer.text(f"{folder}/tx_queue_len") or ""
-    needed = 2 * len(e.rig.drives()) + 2
+    needed = 2 * (len(e.rig.drives()) + 3)  # a command each, outputs, SYNC, heartbeat; and the scan that comes late
     if not text.isdecimal():
         return
-    if int(text) < max(needed, QUEUE):
+    if int(text) < needed:
         yield warning(
-            "CAN adapter", f"txqueuelen {text}: a scan sends {needed} frames at once, and the rest would be lost",
+            "CAN adapter", f"txqueuelen {text}: two scans send {needed} frames, and one that finds no room ends a run",
             f"sudo ip link set {e.rig.can.channel} txqueuelen 100",
         )  # fmt: skip
     else:

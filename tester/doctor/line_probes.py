@@ -38,6 +38,14 @@ def lines(e: Examination) -> Iterator[Finding]:
             yield fault(subject, line.lost, "the adapter, its name in the rig file, whether another program uses it")
         elif line.answers_at is not None:
             found = line.answers_at
+            other = _exchanged_with(e, name)
+            if other:
+                yield fault(
+                    subject,
+                    f"answers at the settings of line {other}, and that at those of this one: exchanged adapters",
+                    f"exchange the plugs, or lines.{name}.port and lines.{other}.port",
+                )
+                continue
             what = "baud rate" if found.baud != config.baud else "parity"
             yield fault(
                 subject,
@@ -53,6 +61,18 @@ def lines(e: Examination) -> Iterator[Finding]:
             )  # fmt: skip
         else:
             yield ok(subject, settings)
+
+
+def _exchanged_with(e: Examination, name: str) -> str:
+    """Return the line whose devices seem to be on this one, and this one's on that; "" where there is none."""
+    mine, here = e.rig.lines[name], e.lines[name].answers_at
+    for other, line in e.lines.items():
+        config, there = e.rig.lines[other], line.answers_at
+        if other == name or here is None or there is None:
+            continue
+        if (here.baud, here.parity, there.baud, there.parity) == (config.baud, config.parity, mine.baud, mine.parity):
+            return other
+    return ""
 
 
 def devices(e: Examination) -> Iterator[Finding]:
@@ -218,6 +238,8 @@ def ages(e: Examination) -> Iterator[Finding]:
     surveyed = {key: unit for line in e.lines.values() for key, unit in line.units.items()}
     for key, watch in e.watch.units.items():
         name, unit = title_of(e.rig, key), surveyed[key]
+        if not watch.readings and watch.exceptions:
+            continue  # it refuses: said already
         if not watch.readings:
             yield fault(name, f"no reading in {e.watch.seconds:.0f} s", "its supply, its plug")
             continue

@@ -15,6 +15,9 @@ from tester.rig import Rig
 PATIENCE_S = 0.15
 """A reading is waited for so long, s: a slow profile's 60 ms, an adapter's latency, and a computer that is busy [A]."""
 
+STEP_S = 0.001
+"""How often the lines are looked at, s."""
+
 
 @dataclass(slots=True)
 class UnitWatch:
@@ -121,7 +124,7 @@ def watched(rig: Rig, wires: Wires, lines: dict[str, LineSurvey], seconds: float
     bus = _bus(rig, wires, found) if can else None
     period_s = 1.0 / rig.scan.sliding_hz
     begun_s = wires.now()
-    scan_due_s, step_s = begun_s + period_s, min(0.001, period_s) if wires.real else period_s / 4.0
+    scan_due_s = begun_s + period_s
     while (now := wires.now()) < begun_s + seconds:
         if now >= scan_due_s - 1e-9:
             if wires.real:
@@ -135,9 +138,9 @@ def watched(rig: Rig, wires: Wires, lines: dict[str, LineSurvey], seconds: float
             except BusLost as lost:
                 found.lines_lost[line.name] = str(lost)
                 opened.remove(line)
-        wires.wait_until(min(now + step_s, max(scan_due_s, now)))
+        wires.wait_until(min(now + STEP_S, max(scan_due_s, now)))
         if wires.now() <= now:
-            wires.wait_until(now + step_s)
+            wires.wait_until(now + STEP_S)
     found.seconds = wires.now() - begun_s
     found.can.seconds = found.seconds
     return found
