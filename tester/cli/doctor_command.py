@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from tester.base.exits import EXIT_DONE, EXIT_FAILED
 from tester.cli.options import json_option, print_json, rig_option, seed_option, set_option
+
+if TYPE_CHECKING:
+    from tester.doctor.table import TableEntry
 
 
 @click.command("doctor", short_help="Look at a rig: what is connected, what is wrong, what to do.")
@@ -37,37 +41,27 @@ def doctor(
     It moves nothing, enables no drive and writes nothing to a device: objects and registers are read, the CAN bus is
     listened to. While a run or the service uses the rig it is refused.
     """
-    from tester.base.lock import ExclusiveUse
+    from tester.cli.device_commands import rig_alone
     from tester.doctor.bundle import written_bundle
     from tester.doctor.examination import Examination
     from tester.doctor.finding import Severity, worst
     from tester.doctor.system import ThisComputer
-    from tester.doctor.table import TableEntry, examined
-    from tester.doctor.wires import wires_of
+    from tester.doctor.table import examined
     from tester.kinds import load_rig, packaged_keys
-    from tester.run.endings import CannotStartError
-    from tester.run.preconditions import hold_rig
 
     rig = load_rig(rig_name, overrides, "a look at the rig, not a run")
     found: list[TableEntry] = []
-    with ExclusiveUse() as use:
-        try:
-            hold_rig(use, rig, "tester doctor")
-        except CannotStartError as error:
-            click.echo(str(error), err=True)
-            return error.code
-        wires = wires_of(rig, seed)
+    with rig_alone(rig, "tester doctor", seed) as wires:
         examination = Examination(
             rig, ThisComputer(), wires, Path(out), seconds, packaged_keys(rig_name, overrides), everybody=not quick,
             say=lambda text: click.echo(f"... {text}", err=True),
         )  # fmt: skip
-        try:
-            for entry in examined(examination):
-                found.append(entry)
-                if not as_json:
-                    _show(entry)
-        finally:
-            wires.close()
+        for entry in examined(examination):
+            found.append(entry)
+            if not as_json:
+                _show(entry)
+        if bundle is not None:
+            written_bundle(Path(bundle), examination, found)
     findings = [entry.finding for entry in found]
     if as_json:
         print_json({"rig": rig.name, "findings": [{"heading": one.heading, **one.finding.as_data} for one in found]})
@@ -75,15 +69,11 @@ def doctor(
         counts = {severity: sum(one.severity is severity for one in findings) for severity in reversed(Severity)}
         click.echo(", ".join(f"{count} {severity.word}" for severity, count in counts.items()), err=True)
     if bundle is not None:
-        written_bundle(Path(bundle), examination, found)
         click.echo(bundle, err=True)
     return EXIT_FAILED if worst(findings) is Severity.FAULT else EXIT_DONE
 
 
-def _show(entry: object) -> None:
-    from tester.doctor.table import TableEntry
-
-    assert isinstance(entry, TableEntry)
+def _show(entry: TableEntry) -> None:
     click.echo(str(entry.finding))
     if entry.finding.todo:
         click.echo(f"        {entry.finding.todo}")

@@ -9,9 +9,10 @@ from dataclasses import dataclass, field
 from drivers.canopen import objects as o
 from drivers.canopen.scan import Key, ObjectAnswer, SdoScan
 from drivers.ports import BusLost, CanFrame, CanPort
-from tester.doctor.wanted import IDENTITY, objects_of
+from tester.doctor.wanted import objects_of
 from tester.doctor.wires import Wires
 from tester.rig import Rig
+from tester.run.kept import IDENTITY
 
 LISTEN_S = 1.0
 """So long the bus is only listened to, s: twenty heartbeats of 50 ms."""

@@ -8,14 +8,19 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import cast
 
-from drivers.canopen.dictionary import DICTIONARY
-from drivers.canopen.scan import Key
+from drivers.axis import AxisConfig
 from tester.base import clock
+from tester.base.source import load_tree
 from tester.doctor import wanted
 from tester.doctor.examination import Examination
 from tester.rig import Rig
 from tester.rig.sensors import title_of
+from tester.run.kept import IDENTITY, KEPT, object_key, object_name
+from tester.store.catalogue import run_folders
+from tester.store.reader import RunReader
 from tester.store.records import StoredParameter
+from tester.store.schema import StoreError
+from tester.store.status import WENT_THROUGH
 
 FORMAT = 1
 """Version of the file; another one is refused."""
@@ -93,10 +98,10 @@ def dumped(e: Examination) -> ParameterDump:
         if answers is None:
             silent.append(name)
             continue
-        written = {**wanted.written(config), **wanted.mapped(config)}
-        kept = (*wanted.IDENTITY, *wanted.KEPT, *written)
+        written = _written(config)
+        kept = (*IDENTITY, *KEPT, *wanted.written(config), *wanted.mapped(config))
         devices[name] = {
-            object_key(key): DeviceParameter(answers[key].text, _words(key), key in written)
+            object_key(key): DeviceParameter(answers[key].text, object_name(key), object_key(key) in written)
             for key in kept if key in answers and answers[key].ok
         }  # fmt: skip
     for line in e.lines.values():
@@ -112,16 +117,6 @@ def dumped(e: Examination) -> ParameterDump:
                     found[f"0x{answer.question.address:04X}"] = DeviceParameter(value, name, name != "device type")
             devices[device] = found
     return ParameterDump(e.rig.name, clock.utc_now(), devices, tuple(silent))
-
-
-def _words(key: Key) -> str:
-    """Return what an object is called, "" where the dictionary does not have it."""
-    return DICTIONARY[key].name if key in DICTIONARY else ""
-
-
-def object_key(key: Key) -> str:
-    """Return how an object is called in dumps and records."""
-    return f"0x{key[0]:04X}:{key[1]:02X}"
 
 
 def read_dump(path: Path) -> ParameterDump:
@@ -148,16 +143,46 @@ def read_dump(path: Path) -> ParameterDump:
 
 
 def stored(rig: Rig, rows: Iterable[StoredParameter]) -> Parameters:
-    """Return what a run has stored of its devices, as a dump has it; the last value of each counts."""
-    written: dict[str, set[str]] = {
-        name: {object_key(key) for key in (*wanted.written(config), *wanted.mapped(config))}
-        for name, config in rig.drives().items()
-    }
+    """Return what a run has stored of its devices, as far as a dump has it; the last value of each counts.
+
+    Commands that a connect reads back are no set-up, and are left out.
+    """
+    written = {name: _written(config) for name, config in rig.drives().items()}
+    kept = {object_key(key) for key in (*IDENTITY, *KEPT)}
     found: dict[str, dict[str, DeviceParameter]] = {}
     for row in rows:
-        by_connect = row.parameter in written.get(row.device, ())
-        found.setdefault(row.device, {})[row.parameter] = DeviceParameter(row.value, row.name, by_connect)
+        by_connect = row.device in written and row.parameter in written[row.device]
+        if row.device not in written or by_connect or row.parameter in kept:
+            found.setdefault(row.device, {})[row.parameter] = DeviceParameter(row.value, row.name, by_connect)
     return found
+
+
+def _written(config: AxisConfig) -> set[str]:
+    return {object_key(key) for key in (*wanted.written(config), *wanted.mapped(config))}
+
+
+def stored_in(rig: Rig, folder: Path) -> Parameters:
+    """Return what a run has stored; raises StoreError, DumpError where it has stored nothing."""
+    with RunReader(folder) as reader:
+        found = stored(rig, reader.parameters())
+    if not found:
+        raise DumpError(f"{folder.name} has no parameters on record: it was never connected")
+    return found
+
+
+def last_good(rig: Rig, runs: Path) -> Path | None:
+    """Return the folder of the newest run on a rig of this name that went through its plan; None: there is none."""
+    for folder in sorted(run_folders(runs), key=lambda path: path.name, reverse=True):
+        try:
+            with RunReader(folder) as reader:
+                run = reader.run()
+        except StoreError:
+            continue
+        tree = load_tree(run.info.rig_text).data
+        name = cast("dict[str, object]", tree).get("rig") if isinstance(tree, dict) else None
+        if run.status == WENT_THROUGH and name == rig.name:
+            return folder
+    return None
 
 
 def differences(before: Parameters, now: Parameters) -> list[ParameterDifference]:

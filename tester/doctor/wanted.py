@@ -1,4 +1,4 @@
-"""Which objects and registers of a device are read: what a set-up writes, and what only maker or person set."""
+"""Which objects and registers of a device are read: what a set-up writes, and what it is told by."""
 
 from __future__ import annotations
 
@@ -10,18 +10,7 @@ from drivers.canopen.scan import Key
 from drivers.modbus.scan import Question
 from drivers.profiles.model import DeviceProfile
 from drivers.servo_setup import pdo_settings, settings
-
-IDENTITY: tuple[Key, ...] = (
-    (o.DEVICE_TYPE, 0),
-    (o.IDENTITY, 1),
-    (o.IDENTITY, 2),
-    (o.IDENTITY, 3),
-    (o.IDENTITY, 4),
-    (o.DEVICE_NAME, 0),
-    (o.HARDWARE_VERSION, 0),
-    (o.SOFTWARE_VERSION, 0),
-)
-"""Who a node is; its texts are optional (CiA 301, 7.5.2)."""
+from tester.run.kept import IDENTITY, KEPT
 
 STATE: tuple[Key, ...] = (
     (o.ERROR_REGISTER, 0),
@@ -32,25 +21,6 @@ STATE: tuple[Key, ...] = (
     (o.VELOCITY_ACTUAL, 0),
 )
 """How a drive is now."""
-
-KEPT: tuple[Key, ...] = (
-    (o.SUPPORTED_MODES, 0),
-    (o.RATED_CURRENT, 0),
-    (o.RATED_TORQUE, 0),
-    (0x607E, 0),
-    (0x608F, 1),
-    (0x608F, 2),
-    (0x6091, 1),
-    (0x6091, 2),
-    (0x6092, 1),
-    (0x6092, 2),
-    (0x60A8, 0),
-    (0x60A9, 0),
-    (0x6073, 0),
-    (0x6410, 1),
-)
-"""What a drive was set up with, and this program does not write: ratings, polarity, encoder, gear, feed, units,
-greatest current, motor (CiA 402-2, 6.3 and 6.4). Most are optional."""
 
 
 def written(config: AxisConfig) -> dict[Key, int]:
