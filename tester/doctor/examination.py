@@ -54,7 +54,8 @@ class Examination:
         """What is on the Modbus lines, by their names."""
         found: dict[str, LineSurvey] = {}
         for name in self.rig.lines:
-            self.say(f"Modbus line {name}: asking every unit number")
+            whom = "every unit number" if self.everybody else "its devices"
+            self.say(f"Modbus line {name}: asking {whom}")
             found[name] = survey_line(self.rig, name, self.wires, everybody=self.everybody)
         return found
 
