@@ -22,6 +22,7 @@ from tester.rig.sensors import quantities_on
 from tester.run.bus_log import BusLog
 from tester.run.endings import PartEnd
 from tester.run.folder import Begin, Job, Work
+from tester.run.kept import record_kept
 from tester.run.kinds import recipe_part, run_parts
 from tester.run.provenance import record_parameters, record_statistics
 from tester.run.truth import Witnessed, truth_of
@@ -171,6 +172,8 @@ def _execute(
                 seconds = _tick(run, ticked, lives, ports.pace, job.lapse, left, writer, watch)
         watch.rested()
         record_statistics(run.engine.devices, writer, seconds)
+        if run.outcome is Outcome.DONE:
+            record_kept(rig, ports, world, seconds, writer)
         return run.outcome, run.reason, seconds
     except BusLost as lost:
         return Outcome.UNREACHABLE, str(lost), 0.0

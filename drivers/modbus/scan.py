@@ -1,0 +1,148 @@
+"""Ask devices of a Modbus line for registers, one question at a time: what a look at a line is made of.
+
+Nothing is written. Beside the answer it tells how long the device took, and what came instead of an answer; a driver's
+link would have given a late one up.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import inf
+from typing import Final
+
+from drivers.modbus import codec
+from drivers.modbus.line import Parity, silent_gap_s
+from drivers.ports import LinePort
+
+SETTLE_S: Final = 0.005
+"""Silence kept after an answer that was none, s: the rest of it may still come [A]."""
+
+
+@dataclass(frozen=True, slots=True)
+class Question:
+    """Registers to be read."""
+
+    unit_id: int
+    function: int
+    address: int
+    count: int
+
+
+@dataclass(frozen=True, slots=True)
+class LineAnswer:
+    """What became of a question: registers (``data``), an exception code, noise, or nothing."""
+
+    question: Question
+    data: bytes = b""
+    exception: int = 0
+    noise: bytes = b""
+    """What came and was no answer to it."""
+    at_s: float = inf
+    """When its last byte had arrived, s."""
+    delay_s: float = inf
+    """Time from the end of the request to the answer, less what the answer takes on the wire, s."""
+
+    @property
+    def ok(self) -> bool:
+        """Whether registers came."""
+        return bool(self.data)
+
+    @property
+    def there(self) -> bool:
+        """Whether a device answered, with registers or an exception."""
+        return bool(self.data) or self.exception != 0
+
+    def describe(self) -> str:
+        """Say what came."""
+        if self.data:
+            return "an answer"
+        if self.exception:
+            text = codec.EXCEPTION_TEXTS.get(self.exception, "unknown")
+            return f"exception {self.exception} ({text})"
+        if self.noise:
+            return f"{len(self.noise)} bytes that are no answer ({self.noise[:8].hex(' ')})"
+        return "nothing"
+
+
+class LineScan:
+    """Asks one question after the other: ``ask``, then ``feed`` and ``service`` until ``answer`` is there."""
+
+    def __init__(self, framing: codec.Framing, baud: int, parity: Parity) -> None:
+        """Take the line; ``baud`` in bit/s and ``parity`` matter on RTU only."""
+        self.framing: codec.Framing = framing
+        bits = 10 if parity == "N" else 11
+        rtu = framing == "rtu"
+        self._character_s = bits / baud if rtu else 0.0
+        self._gap_s = silent_gap_s(bits, baud) if rtu else 0.0
+        self._question: Question | None = None
+        self._timeout_s = 0.0
+        self._sent_s: float | None = None
+        self._request_s = 0.0
+        self._quiet_s = -inf
+        self._buffer = b""
+        self._transaction = 0
+        self.answer: LineAnswer | None = None
+
+    def ask(self, question: Question, timeout_s: float) -> None:
+        """Begin a question; it is sent by ``service``. The answer may begin ``timeout_s`` after the request."""
+        self._question, self._timeout_s = question, timeout_s
+        self._sent_s, self._buffer, self.answer = None, b"", None
+
+    def feed(self, chunks: list[tuple[float, bytes]], now: float) -> None:
+        """Take what arrived up to ``now`` s."""
+        question = self._question
+        for t, chunk in chunks:
+            if question is None or self._sent_s is None or self.answer is not None:
+                self._quiet_s = max(self._quiet_s, t + SETTLE_S)  # of an earlier question: nobody waits for it
+                continue
+            self._buffer += chunk
+            self._examine(question, t)
+
+    def service(self, port: LinePort, now: float) -> None:
+        """Send the question when the line is free, or give it up when it is overdue at ``now`` s; raises BusLost."""
+        question = self._question
+        if question is None or self.answer is not None:
+            return
+        if self._sent_s is None:
+            if now >= self._quiet_s:
+                self._send(question, port, now)
+        elif now >= self._sent_s + self._request_s + self._timeout_s + self._reply_s(question):
+            self.answer = LineAnswer(question, noise=self._buffer)
+            self._quiet_s = now + SETTLE_S
+
+    def _send(self, question: Question, port: LinePort, now: float) -> None:
+        frame = codec.read_request(self.framing, question.unit_id, question.function, question.address, question.count)
+        if self.framing == "socket":
+            self._transaction = self._transaction % 0xFFFF + 1
+            frame = self._transaction.to_bytes(2, "big") + frame[2:]
+        port.write(frame, now)
+        self._sent_s = now
+        self._request_s = len(frame) * self._character_s
+
+    def _reply_s(self, question: Question) -> float:
+        return codec.reply_length(self.framing, question.function, question.count) * self._character_s
+
+    def _examine(self, question: Question, t: float) -> None:
+        """Find the answer in what has arrived; what is none stays, and is told when the time is over."""
+        at, data = 0, self._buffer
+        while at < len(data):
+            used, unit_id, transaction, pdu = codec.next_frame(self.framing, data[at:])
+            if not used:
+                return
+            at += used
+            if not pdu or unit_id != question.unit_id:
+                continue
+            if self.framing == "socket" and transaction != self._transaction:
+                continue
+            found = codec.classify(pdu, question.function, question.address, (), question.count)
+            if found is codec.DecodedAnswer.OTHER:
+                continue
+            sent_s = self._sent_s or 0.0
+            wire_s = self._request_s + self._gap_s + len(pdu) * self._character_s + 3 * self._character_s
+            delay_s = max(t - sent_s - wire_s, 0.0)
+            if found is codec.DecodedAnswer.EXCEPTION:
+                self.answer = LineAnswer(question, exception=codec.exception_code(pdu), at_s=t, delay_s=delay_s)
+            else:
+                self.answer = LineAnswer(question, data=pdu[2:], at_s=t, delay_s=delay_s)
+            self._quiet_s = t + self._gap_s
+            return

@@ -1,0 +1,274 @@
+"""Probes of the CAN bus and of its nodes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from itertools import pairwise
+
+from drivers import cia402
+from drivers.axis import AxisConfig
+from drivers.canopen import nmt
+from drivers.canopen import objects as o
+from drivers.canopen.dictionary import describe
+from drivers.cia402 import State
+from sim.wires.can_traffic import frame_bits
+from tester.doctor import wanted
+from tester.doctor.examination import Examination
+from tester.doctor.finding import Finding, fault, note, ok, warning
+from tester.machine.devices import INPUT_GUARD, INPUT_SAFETY_CHAIN
+
+LOAD_MOST = 0.6
+"""A bus that is busy for a greater share delays frames beyond their scan [A]."""
+TORQUE_OFF = 0.01
+"""By what share 0x6076 may differ from the rig file: rounding of makers' data sheets [A]."""
+BEAT_OFF = 0.2
+"""By what share a heartbeat's period may differ from its object [A]."""
+MISSED = 3
+_BUS = "CAN bus"
+_WIRING = "drives' supply, the plug, CAN high and low, 120 ohm terminators at both ends, can.bitrate"
+
+
+def bus(e: Examination) -> Iterator[Finding]:
+    """Say whether the bus can be used at all, and at which bit rate its nodes answer."""
+    can, told = e.can, e.rig.can.bitrate
+    if can.answers_at:
+        yield fault(
+            _BUS, f"nodes answer at a bit rate of {can.answers_at} bit/s, the rig file says {told}",
+            f"set can.bitrate to {can.answers_at}, or the drives to {told}",
+        )  # fmt: skip
+        return
+    if can.lost:
+        yield fault(_BUS, can.lost, f"another bit rate on the bus, or nobody acknowledges: look at {_WIRING}")
+    elif not can.present and not can.heard.frames:
+        yield fault(_BUS, f"silent at {told} bit/s: no frame was heard, and no node answers", f"look at {_WIRING}")
+    elif not can.present:
+        yield fault(_BUS, "frames are heard, but no node answers an SDO request", "switch the drives off and on")
+    else:
+        yield ok(_BUS, f"{told} bit/s, nodes {', '.join(map(str, can.present))}")
+
+
+def masters(e: Examination) -> Iterator[Finding]:
+    """Look for frames that only a master sends, while we sent none."""
+    heard = [*e.can.heard.masters, *e.watch.can.masters]
+    if heard:
+        yield fault(
+            _BUS, f"another master is sending: {', '.join(dict.fromkeys(heard))}",
+            "two masters command one machine: end the other program, or unplug the maker's set-up tool",
+        )  # fmt: skip
+
+
+def load(e: Examination) -> Iterator[Finding]:
+    """Measure the load of the bus as it stands, and add what a run's scans will bring."""
+    watch = e.watch.can
+    if e.watch.can_lost and not e.can.lost:
+        yield fault(_BUS, f"lost while it was watched: {e.watch.can_lost}", f"look at {_WIRING}")
+    if not watch.seconds or e.can.lost:
+        return
+    bits = sum(frame_bits(length) * count for length, count in watch.lengths.items())
+    now = bits / watch.seconds / e.rig.can.bitrate
+    per_scan = frame_bits(0) + sum(frame_bits(6) + frame_bits(8) for _ in e.rig.drives())
+    run = now + per_scan * e.rig.scan.sliding_hz / e.rig.can.bitrate
+    found = f"load {100 * now:.1f} % now, up to {100 * run:.0f} % while a run is sliding"
+    if run > LOAD_MOST:
+        yield warning(_BUS, found, "a higher bit rate, a lower scan.sliding, or nodes taken off the bus")
+    else:
+        yield ok(_BUS, found)
+
+
+def axes(e: Examination) -> Iterator[Finding]:
+    """Compare every drive with its axis in the rig file."""
+    if not e.can.present:
+        return
+    configs = e.rig.drives()
+    serials = {config.serial_number: name for name, config in configs.items() if config.serial_number}
+    for name, config in configs.items():
+        if config.node_id not in e.can.present:
+            yield _not_there(e, name, config)
+            continue
+        yield from _identity(e, name, config, serials)
+        yield from _twice(e, name, config)
+        yield from _drive_state(e, name, config)
+        yield from _objects(e, name, config)
+
+
+def _not_there(e: Examination, name: str, config: AxisConfig) -> Finding:
+    known = {other.node_id for other in e.rig.drives().values()} | {n.node_id for n in e.rig.can.nodes.values()}
+    for node in e.can.present:
+        if node in known:
+            continue
+        serial = e.can.number(node, (o.IDENTITY, 4))
+        same = serial == config.serial_number if config.serial_number else _same_type(e, node, config)
+        if same:
+            return fault(
+                name, f"nothing answers at node {config.node_id}; node {node}, not in the rig file, is such a drive",
+                f"set the drive's node number to {config.node_id}, or axes.{name}.node_id to {node}",
+            )  # fmt: skip
+    state = e.can.heard.states.get(config.node_id)
+    if state is not None:
+        return fault(
+            name, f"node {config.node_id} sends heartbeats ({nmt.state_name(state)}) and answers no SDO request",
+            "switch the drive off and on",
+        )  # fmt: skip
+    return fault(
+        name, f"nothing answers at node {config.node_id}", "its supply, its plug, its node number, its bit rate"
+    )
+
+
+def _same_type(e: Examination, node: int, config: AxisConfig) -> bool:
+    """Tell whether a node is a drive of the axis' maker and product, as far as the rig file states them."""
+    if (e.can.number(node, (o.DEVICE_TYPE, 0)) or 0) & 0xFFFF != o.DEVICE_PROFILE:
+        return False
+    told = ((1, config.vendor_id), (2, config.product_code))
+    return all(not expected or e.can.number(node, (o.IDENTITY, sub)) == expected for sub, expected in told)
+
+
+def _identity(e: Examination, name: str, config: AxisConfig, serials: Mapping[int, str]) -> Iterator[Finding]:
+    node, can = config.node_id, e.can
+    vendor, product, revision, serial = (can.number(node, (o.IDENTITY, sub)) or 0 for sub in (1, 2, 3, 4))
+    who = " ".join(
+        text for text in (can.text(node, (o.DEVICE_NAME, 0)), can.text(node, (o.HARDWARE_VERSION, 0)),
+                          can.text(node, (o.SOFTWARE_VERSION, 0))) if text
+    )  # fmt: skip
+    told = f"node {node}: {who or 'no name'}, vendor 0x{vendor:08X}, product 0x{product:08X}, revision 0x{revision:08X}"
+    device_type = can.number(node, (o.DEVICE_TYPE, 0)) or 0
+    if device_type & 0xFFFF != o.DEVICE_PROFILE:
+        yield fault(name, f"{told}: device type 0x{device_type:08X} is no CiA 402 drive", "look at axes' node numbers")
+        return
+    other = serials.get(serial)
+    if other is not None and other != name:
+        yield fault(
+            name, f"node {node} has the serial number {serial}, which the rig file gives to {other}: swapped drives",
+            f"exchange the node numbers of the drives of {name} and {other}, or their places in the rig file",
+        )  # fmt: skip
+        return
+    wrong = [
+        f"{describe(o.IDENTITY, sub)} is 0x{found:08X}, the rig file says 0x{expected:08X}"
+        for sub, found, expected in ((1, vendor, config.vendor_id), (2, product, config.product_code),
+                                     (4, serial, config.serial_number)) if expected and found != expected
+    ]  # fmt: skip
+    if wrong:
+        yield fault(
+            name, f"{told}: {'; '.join(wrong)}: another drive than the rig file's",
+            "the right drive at this node number, or its own identity and profile in the rig file",
+        )  # fmt: skip
+    else:
+        yield ok(name, f"{told}, serial number {serial}")
+
+
+def _twice(e: Examination, name: str, config: AxisConfig) -> Iterator[Finding]:
+    times = e.can.surplus.get(config.node_id, 0)
+    if times:
+        yield fault(
+            name, f"node {config.node_id} answered {times} question more than once: two nodes have one node number",
+            "unplug one drive after the other and look which go on answering; give one another number",
+        )  # fmt: skip
+
+
+def _drive_state(e: Examination, name: str, config: AxisConfig) -> Iterator[Finding]:
+    can, node = e.can, config.node_id
+    statusword = can.number(node, (o.STATUSWORD, 0))
+    if statusword is not None:
+        state = cia402.decode(statusword)
+        code = can.number(node, (o.ERROR_CODE, 0)) or 0
+        if state in (State.FAULT, State.FAULT_REACTION):
+            yield fault(name, f"the drive is in fault: {o.emergency_text(code)}", "what its manual says to this code")
+        elif state is State.OPERATION_ENABLED:
+            yield fault(name, "the drive is enabled, and no run is under way", "end whatever enabled it")
+    inputs = can.number(node, (o.DIGITAL_INPUTS, 0)) if config.digital_io else None
+    if inputs is not None:
+        word = f"0x60FD = 0x{inputs & 0xFFFFFFFF:08X}"
+        yield from _input(name, inputs & INPUT_SAFETY_CHAIN != 0, "safety chain", "healthy", "open", 16, word)
+        yield from _input(name, inputs & INPUT_GUARD != 0, "guard", "closed", "open", 17, word)
+
+
+def _input(name: str, good: bool, what: str, yes: str, no: str, bit: int, word: str) -> Iterator[Finding]:
+    if good:
+        yield ok(name, f"{what} {yes} (bit {bit}, {word}): look whether it is")
+    else:
+        yield warning(
+            name, f"{what} {no} (bit {bit} = 0, {word})",
+            f"if the {what} is {yes} as you read this, the input's polarity or its wire is wrong: 1 is {yes}",
+        )  # fmt: skip
+
+
+def _objects(e: Examination, name: str, config: AxisConfig) -> Iterator[Finding]:
+    """Look for every object that the set-up needs, and hold ratings and process data against the rig file."""
+    answers = e.can.objects.get(config.node_id, {})
+    needed = {**wanted.written(config), **wanted.mapped(config)}
+    missing = [describe(*key) for key in needed if key in answers and answers[key].missing]
+    if missing:
+        yield warning(
+            name, f"the drive does not have {len(missing)} of the objects that a set-up writes: {'; '.join(missing)}",
+            "its profile has to name them as missing or optional; compare with the maker's EDS",
+        )  # fmt: skip
+    rated = answers[o.RATED_TORQUE, 0].number if (o.RATED_TORQUE, 0) in answers else None
+    expected = config.rated_torque_nm * 1000.0
+    if rated and abs(rated - expected) > TORQUE_OFF * expected:
+        yield fault(
+            name, f"0x6076 rated torque is {rated / 1000:g} N m, the rig file says {config.rated_torque_nm:g} N m",
+            f"every torque would be shown and limited by a factor of {rated / expected:.3g} wrong: correct"
+            f" axes.{name}.rated_torque, or the drive's motor data",
+        )  # fmt: skip
+    other = [key for key, value in wanted.mapped(config).items() if key in answers and answers[key].number != value]
+    if other:
+        yield note(name, f"{len(other)} objects of process data differ from the rig file; every connect writes them")
+
+
+def heartbeats(e: Examination) -> Iterator[Finding]:
+    """Hold every node's heartbeat against its own object 0x1017, and against the rig file."""
+    seconds = e.watch.can.seconds
+    periods = {name: (config.node_id, config.heartbeat_s) for name, config in e.rig.drives().items()}
+    for name, (node, expected_s) in periods.items():
+        told_ms = e.can.number(node, (o.PRODUCER_HEARTBEAT, 0))
+        if told_ms is None:
+            continue
+        if told_ms == 0:
+            yield note(name, f"sends no heartbeat yet (0x1017 = 0); every connect writes {1e3 * expected_s:g} ms")
+            continue
+        beats, period_s = e.watch.can.beats.get(node, []), told_ms / 1000.0
+        if len(beats) < 2 and seconds > MISSED * period_s:
+            yield fault(
+                name, f"no heartbeat is heard, though 0x1017 asks for one every {told_ms} ms",
+                "the drive's firmware or its CAN set-up: a run would take this drive for lost",
+            )  # fmt: skip
+            continue
+        if len(beats) < 2:
+            continue
+        measured_s = (beats[-1] - beats[0]) / (len(beats) - 1)
+        longest_s = max(b - a for a, b in pairwise(beats))
+        if abs(measured_s - period_s) > BEAT_OFF * period_s or longest_s > MISSED * period_s:
+            yield warning(
+                name, f"heartbeat every {1e3 * measured_s:.0f} ms, at most {1e3 * longest_s:.0f} ms apart;"
+                f" 0x1017 says {told_ms} ms", "the bus load, and the drive's CAN set-up",
+            )  # fmt: skip
+        else:
+            yield ok(name, f"heartbeat every {1e3 * measured_s:.0f} ms")
+
+
+def strangers(e: Examination) -> Iterator[Finding]:
+    """Name nodes that answer and are not in the rig file, and further nodes of it that do not."""
+    known = {config.node_id for config in e.rig.drives().values()}
+    further = {config.node_id: name for name, config in e.rig.can.nodes.items()}
+    for node, name in further.items():
+        if not e.can.lost and node not in e.can.present:
+            yield fault(name, f"nothing answers at node {node}", "its supply, its plug, its node number, its bit rate")
+        elif node in e.can.present:
+            yield ok(name, f"node {node}: {e.can.text(node, (o.DEVICE_NAME, 0)) or 'no name'}")
+    for node in e.can.present:
+        if node in known or node in further:
+            continue
+        name = e.can.text(node, (o.DEVICE_NAME, 0)) or "no name"
+        serial = e.can.number(node, (o.IDENTITY, 4))
+        yield warning(
+            _BUS, f"node {node} is not in the rig file: {name}, serial number {serial}",
+            "a device that nobody watches: add it to the rig file, or take it off the bus",
+        )  # fmt: skip
+
+
+def emergencies(e: Examination) -> Iterator[Finding]:
+    """Tell emergencies that were sent while the bus was listened to."""
+    names = {config.node_id: name for name, config in e.rig.drives().items()}
+    for node, data in {**e.can.heard.emergencies, **e.watch.can.emergencies}.items():
+        code = int.from_bytes(data[:2], "little")
+        if code:
+            yield warning(names.get(node, f"node {node}"), f"emergency: {o.emergency_text(code)}", "the drive's manual")

@@ -1,0 +1,156 @@
+"""What is on the CAN bus: listened to, then asked node by node."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+
+from drivers.canopen import objects as o
+from drivers.canopen.scan import Key, ObjectAnswer, SdoScan
+from drivers.ports import BusLost, CanFrame, CanPort
+from tester.doctor.wanted import objects_of
+from tester.doctor.wires import Wires
+from tester.rig import Rig
+from tester.run.kept import IDENTITY
+
+LISTEN_S = 1.0
+"""So long the bus is only listened to, s: twenty heartbeats of 50 ms."""
+STEP_S = 0.002
+"""How often the wires are looked at while an answer is awaited, s."""
+MOST_S = 30.0
+"""No scan of a bus takes longer, s: 126 silent nodes, four at a time, take 3.2 s."""
+PRESENCE: Key = (o.DEVICE_TYPE, 0)
+"""The object that every CANopen node has."""
+
+_FUNCTION, _NODE = 0x780, 0x07F
+_OF_A_MASTER = {o.NMT_ID: "NMT", o.SYNC_ID: "SYNC"}
+_FUNCTIONS_OF_A_MASTER = {
+    o.RPDO1_BASE: "RPDO1", o.RPDO2_BASE: "RPDO2", o.RPDO3_BASE: "RPDO3", o.RPDO4_BASE: "RPDO4",
+    o.SDO_REQUEST_BASE: "SDO request",
+}  # fmt: skip
+
+
+@dataclass(slots=True)
+class Heard:
+    """Frames of a stretch in which the computer was silent on the bus."""
+
+    seconds: float = 0.0
+    frames: Counter[int] = field(default_factory=Counter[int])
+    """How many of each identifier."""
+    lengths: Counter[int] = field(default_factory=Counter[int])
+    """How many of each number of data bytes."""
+    beats: dict[int, list[float]] = field(default_factory=dict[int, list[float]])
+    """Arrivals of the heartbeats of each node, s."""
+    states: dict[int, int] = field(default_factory=dict[int, int])
+    """The NMT state that each node's last heartbeat told."""
+    emergencies: dict[int, bytes] = field(default_factory=dict[int, bytes])
+    masters: list[str] = field(default_factory=list[str])
+    """What only a master sends, first of each kind, for people."""
+
+    def take(self, frames: Iterable[CanFrame], own_node: int) -> None:
+        """Take frames that arrived; ``own_node``: the computer's number."""
+        for t, can_id, data in frames:
+            self.frames[can_id] += 1
+            self.lengths[len(data)] += 1
+            function, node = can_id & _FUNCTION, can_id & _NODE
+            if function == o.HEARTBEAT_BASE and len(data) == 1:
+                self.beats.setdefault(node, []).append(t)
+                self.states[node] = data[0] & 0x7F
+            elif function == o.EMERGENCY_BASE and node:
+                self.emergencies[node] = data
+            what = _of_a_master(can_id, own_node)
+            if what and self.frames[can_id] == 1:
+                self.masters.append(f"{what} {can_id:03X}#{data.hex().upper()}")
+
+
+def _of_a_master(can_id: int, own_node: int) -> str:
+    """Return what a frame is that only a master sends, "" for any other."""
+    if can_id in _OF_A_MASTER:
+        return _OF_A_MASTER[can_id]
+    if can_id == o.HEARTBEAT_BASE + own_node:
+        return f"heartbeat of node {own_node}, our own number"
+    return _FUNCTIONS_OF_A_MASTER.get(can_id & _FUNCTION, "")
+
+
+@dataclass(slots=True)
+class CanSurvey:
+    """What was found on the CAN bus."""
+
+    lost: str = ""
+    """Why the bus cannot be used, "" where it can."""
+    heard: Heard = field(default_factory=Heard)
+    present: tuple[int, ...] = ()
+    """Nodes that answered."""
+    surplus: Mapping[int, int] = field(default_factory=dict[int, int])
+    """Answers too many, by node."""
+    objects: Mapping[int, Mapping[Key, ObjectAnswer]] = field(default_factory=dict[int, Mapping[Key, ObjectAnswer]])
+    answers_at: int = 0
+    """The bit rate at which the nodes answer, where it is not the rig file's, bit/s; 0 = none was found."""
+
+    def number(self, node: int, key: Key) -> int | None:
+        """Return an object of a node as a number, None where it did not give it."""
+        answer = self.objects.get(node, {}).get(key)
+        return None if answer is None else answer.number
+
+    def text(self, node: int, key: Key) -> str:
+        """Return an object of a node as a text, "" where it did not give it."""
+        answer = self.objects.get(node, {}).get(key)
+        return answer.text if answer is not None and answer.ok else ""
+
+
+def survey_can(rig: Rig, wires: Wires) -> CanSurvey:
+    """Listen to the bus, ask every node number, and read the objects of those that answer."""
+    found = CanSurvey()
+    try:
+        port = wires.can(rig.can.bitrate)
+        found.heard = listen(port, wires, LISTEN_S, rig.can.node)
+        everybody = [node for node in range(1, 128) if node != rig.can.node]
+        scan = _scanned(port, wires, {node: [PRESENCE] for node in everybody})
+        found.present, found.surplus = tuple(sorted(scan.answers)), scan.surplus
+        configs = {config.node_id: config for config in rig.drives().values()}
+        wanted = {node: objects_of(configs[node]) if node in configs else list(IDENTITY) for node in found.present}
+        found.objects = _scanned(port, wires, wanted).answers
+    except BusLost as lost:
+        found.lost = str(lost)
+    if not found.present and not found.heard.frames:
+        found.answers_at = _other_bitrate(rig, wires)
+    return found
+
+
+def listen(port: CanPort, wires: Wires, seconds: float, own_node: int) -> Heard:
+    """Listen without a word; raises BusLost."""
+    heard, begun_s = Heard(), wires.now()
+    port.receive(begun_s)  # what came before
+    due_s = begun_s
+    while due_s < begun_s + seconds:
+        due_s += 0.01
+        wires.wait_until(due_s)
+        heard.take(port.receive(wires.now()), own_node)
+    heard.seconds = wires.now() - begun_s
+    return heard
+
+
+def _scanned(port: CanPort, wires: Wires, wanted: Mapping[int, Sequence[Key]]) -> SdoScan:
+    scan, until_s = SdoScan(wanted), wires.now() + MOST_S
+    while not scan.done and wires.now() < until_s:
+        scan.feed(port.receive(wires.now()), port, wires.now())
+        scan.service(port, wires.now())
+        wires.wait_until(wires.now() + STEP_S)
+    scan.feed(port.receive(wires.now()), port, wires.now())  # a second answer comes behind the first
+    return scan
+
+
+def _other_bitrate(rig: Rig, wires: Wires) -> int:
+    """Return the bit rate at which a node of the rig file answers, 0 where there is none."""
+    nodes = [config.node_id for config in rig.drives().values()]
+    for bitrate in wires.bitrates:
+        if bitrate == rig.can.bitrate:
+            continue
+        try:
+            port = wires.can(bitrate)
+            if _scanned(port, wires, {node: [PRESENCE] for node in nodes}).answers:
+                return bitrate
+        except BusLost:
+            continue
+    return 0

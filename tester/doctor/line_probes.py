@@ -1,0 +1,290 @@
+"""Probes of the Modbus lines and of their devices."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import isfinite, nan
+from statistics import median
+
+from drivers.profiles.model import RegisterBlock, Signal, WordOrder
+from tester.doctor.examination import Examination
+from tester.doctor.finding import Finding, fault, note, ok, warning
+from tester.doctor.line_survey import LineSurvey, UnitSurvey
+from tester.doctor.watch import UnitWatch
+from tester.rig.sensors import title_of
+
+READINGS_S = 40.0
+"""What a device that is read with every scan should give at least, readings a second."""
+LATE_S = 0.008
+"""An answer that comes later than the profile's longest time by so much is the adapter's, s [A]."""
+FAILED_MOST = 0.01
+"""Share of failed questions from which a line is worth looking at [A]."""
+STALE_LIMITS = {
+    "load_cell": ("stale_cell_s",),
+    "ir_thermometer": ("stale_ir_s",),
+    "jacket": ("stale_jacket_s",),
+    "chamber": ("stale_chamber_s",),
+}
+"""Interlock parameters that limit the age of a device's readings, by the kind of its profile."""
+
+
+def lines(e: Examination) -> Iterator[Finding]:
+    """Say whether each line can be used, and at which settings its devices answer."""
+    for name, line in e.lines.items():
+        config = e.rig.lines[name]
+        settings = f"{config.baud} baud, parity {config.parity}" if config.framing == "rtu" else config.port
+        subject = f"line {name}"
+        if line.lost:
+            yield fault(subject, line.lost, "the adapter, its name in the rig file, whether another program uses it")
+        elif line.answers_at is not None:
+            found = line.answers_at
+            other = _exchanged_with(e, name)
+            if other:
+                yield fault(
+                    subject,
+                    f"answers at the settings of line {other}, and that at those of this one: exchanged adapters",
+                    f"exchange the plugs, or lines.{name}.port and lines.{other}.port",
+                )
+                continue
+            what = "baud rate" if found.baud != config.baud else "parity"
+            yield fault(
+                subject,
+                f"wrong {what}: devices answer at {found.baud} baud, parity {found.parity}, not at {settings}",
+                f"set lines.{name} to baud: {found.baud} and parity: {found.parity}, or the devices",
+            )
+        elif line.units and not any(unit.there for unit in line.units.values()) and not line.others:
+            noise = b"".join(unit.noise for unit in line.units.values())
+            heard = f"{len(noise)} bytes came that are no answer" if noise else "silent"
+            yield fault(
+                subject, f"{heard} at {settings}",
+                "supply of the devices, wires A and B exchanged, terminators, baud rate, parity",
+            )  # fmt: skip
+        else:
+            yield ok(subject, settings)
+
+
+def _exchanged_with(e: Examination, name: str) -> str:
+    """Return the line whose devices seem to be on this one, and this one's on that; "" where there is none."""
+    mine, here = e.rig.lines[name], e.lines[name].answers_at
+    for other, line in e.lines.items():
+        config, there = e.rig.lines[other], line.answers_at
+        if other == name or here is None or there is None:
+            continue
+        if (here.baud, here.parity, there.baud, there.parity) == (config.baud, config.parity, mine.baud, mine.parity):
+            return other
+    return ""
+
+
+def devices(e: Examination) -> Iterator[Finding]:
+    """Compare every device with its profile."""
+    for line_name, line in e.lines.items():
+        if line.lost or line.answers_at is not None:
+            continue
+        for key, unit in line.units.items():
+            name = title_of(e.rig, key)
+            if not unit.there:
+                yield _silent(e, line_name, line, key, name, unit)
+                continue
+            refusals = list(_refusals(name, unit))
+            yield from refusals
+            if not refusals:
+                yield from _values(name, unit)
+                yield from _settings(name, unit)
+
+
+def _silent(e: Examination, line_name: str, line: LineSurvey, key: str, name: str, unit: UnitSurvey) -> Finding:
+    number = unit.config.unit_id
+    alike = [other for other, found in line.looks_like.items() if found == key]
+    if alike:
+        return fault(
+            name, f"nothing answers at unit id {number} of line {line_name}; unit {alike[0]} has its registers",
+            f"set devices.{key}.unit_id to {alike[0]}, or the device to {number}",
+        )  # fmt: skip
+    if unit.noise:
+        return fault(
+            name, f"unit id {number} of line {line_name} answers with noise: {unit.blocks[0].describe()}",
+            "two devices of one unit id, parity, terminators, shielding",
+        )  # fmt: skip
+    others = [
+        other for other, survey in e.lines.items()
+        if other != line_name and any(found.config.unit_id != number for found in survey.units.values())
+        and number in survey.others
+    ]  # fmt: skip
+    if others:
+        return fault(
+            name, f"nothing answers at unit id {number} of line {line_name}; line {others[0]} has a unit {number}",
+            f"the device is on another line than the rig file says: change devices.{key}.line, or the plugs",
+        )  # fmt: skip
+    return fault(name, f"nothing answers at unit id {number} of line {line_name}", "its supply, its plug, its unit id")
+
+
+def _refusals(name: str, unit: UnitSurvey) -> Iterator[Finding]:
+    """Tell registers of the profile that the device does not have, and a device of another type."""
+    profile = unit.profile
+    wrong = f"is it a {profile.title}? Correct the profile of the device in the rig file, or the device"
+    identity = unit.configuration.get("device type")
+    if identity is not None and identity.ok and profile.identity is not None:
+        value = int.from_bytes(identity.data[:2], "big")
+        if value != profile.identity.value:
+            yield fault(
+                name, f"wrong device or profile: its type register holds {value}, {profile.name} has"
+                f" {profile.identity.value}", wrong,
+            )  # fmt: skip
+            return
+    asked = [(f"registers {answer.question.address} to {answer.question.address + answer.question.count - 1}", answer)
+             for answer in unit.blocks] + list(unit.configuration.items())  # fmt: skip
+    refused = [f"{what}: {answer.describe()}" for what, answer in asked if answer.exception]
+    if refused:
+        yield fault(name, f"wrong profile: it refuses what {profile.name} names ({'; '.join(refused)})", wrong)
+    for what, answer in asked:
+        if not answer.there:
+            yield warning(name, f"{what}: {answer.describe()}", "supply, terminators, shielding, baud rate")
+
+
+def _values(name: str, unit: UnitSurvey) -> Iterator[Finding]:
+    """Tell what a device measures, whether that is plausible, and what its status says."""
+    for block, answer in zip(unit.profile.blocks, unit.blocks, strict=False):
+        if not answer.ok:
+            continue
+        wrong: list[str] = []
+        shown: list[str] = []
+        for signal, value in _decoded(block, answer.data):
+            if signal.name == "status":
+                yield from _status(name, unit, int(value))
+            else:
+                said = f"{signal.name} {value:.4g} {signal.unit}".rstrip()
+                shown.append(said)
+                if not signal.least <= value <= signal.greatest:
+                    wrong.append(f"{said} is outside {signal.least:g} to {signal.greatest:g}")
+        if wrong:
+            yield from _implausible(name, unit, block, answer.data, wrong)
+        elif shown:
+            yield ok(name, f"unit {unit.config.unit_id}: {', '.join(shown)}: look whether that can be")
+
+
+def _decoded(block: RegisterBlock, data: bytes) -> list[tuple[Signal, float]]:
+    values = list(zip(block.signals, block.unpack(data), strict=True))
+    status = next((int(value) for signal, value in values if signal.name == "status"), 0)
+    found: list[tuple[Signal, float]] = []
+    for signal, counts in values:
+        value = float(counts) * signal.scale
+        if signal.sign_bit is not None and status >> signal.sign_bit & 1:
+            value = -value
+        found.append((signal, value if isfinite(value) else nan))
+    return found
+
+
+def _implausible(name: str, unit: UnitSurvey, block: RegisterBlock, data: bytes, wrong: list[str]) -> Iterator[Finding]:
+    other: WordOrder = "low_first" if block.word_order == "high_first" else "high_first"
+    turned = RegisterBlock(block.function, block.address, block.count, block.period_s, block.signals, other)
+    fits = any(signal.size > 1 for signal in block.signals) and all(
+        signal.name == "status" or signal.least <= value <= signal.greatest for signal, value in _decoded(turned, data)
+    )
+    if fits:
+        values = ", ".join(
+            f"{signal.name} {value:.4g} {signal.unit}" for signal, value in _decoded(turned, data)
+            if signal.name != "status"
+        )  # fmt: skip
+        yield fault(
+            name, f"wrong word order: {'; '.join(wrong)}; the other way round they are plausible ({values})",
+            f'a profile with word_order = "{other}", or the device\'s own setting',
+        )  # fmt: skip
+    else:
+        yield fault(name, f"implausible: {'; '.join(wrong)}", "the sensor, its cable; scale and type in its profile")
+
+
+def _status(name: str, unit: UnitSurvey, status: int) -> Iterator[Finding]:
+    bits = [meaning for meaning, bit in unit.profile.status_bits.items() if status >> bit & 1]
+    if status & unit.profile.invalid_bits:
+        why = ", ".join(bits) or hex(status)
+        yield fault(name, f"says that its reading is not valid: {why}", "the sensor, its cable")
+    elif bits:
+        yield note(name, f"status: {', '.join(bits)}")
+
+
+def _settings(name: str, unit: UnitSurvey) -> Iterator[Finding]:
+    """Compare the registers that every connect writes with the rig file and the profile."""
+    profile = unit.profile
+    told: dict[str, float] = {write.name: write.value for write in profile.setup}
+    for key, signal in profile.writes.items():
+        value = unit.config.parameters.get(key, signal.default)
+        if value is not None:
+            told[key] = signal.counts(value)
+    differ = [
+        f"{key} {int.from_bytes(unit.configuration[key].data, 'big')} instead of {value:g}"
+        for key, value in told.items()
+        if key in unit.configuration and unit.configuration[key].ok
+        and int.from_bytes(unit.configuration[key].data, "big") != value
+    ]  # fmt: skip
+    if differ:
+        yield note(name, f"registers that differ from the rig file, every connect writes them: {'; '.join(differ)}")
+
+
+def units(e: Examination) -> Iterator[Finding]:
+    """Name units that answer and are not in the rig file."""
+    for name, line in e.lines.items():
+        for number, answer in line.others.items():
+            if number not in line.looks_like:
+                yield warning(
+                    f"line {name}", f"unit {number} answers ({answer.describe()}) and is not in the rig file",
+                    "a device that nobody reads: add it to the rig file, or take it off the line",
+                )  # fmt: skip
+
+
+def ages(e: Examination) -> Iterator[Finding]:
+    """Say how fast, how reliably and how old each device's readings came, and hold that against the limits."""
+    for name, why in e.watch.lines_lost.items():
+        yield fault(f"line {name}", f"lost while it was watched: {why}", "the adapter and its cable")
+    surveyed = {key: unit for line in e.lines.values() for key, unit in line.units.items()}
+    for key, watch in e.watch.units.items():
+        name, unit = title_of(e.rig, key), surveyed[key]
+        if not watch.readings and watch.exceptions:
+            continue  # it refuses: said already
+        if not watch.readings:
+            yield fault(name, f"no reading in {e.watch.seconds:.0f} s", "its supply, its plug")
+            continue
+        yield from _errors(name, watch)
+        yield from _reply_time(e, name, unit, watch)
+        yield from _age(e, name, unit, watch)
+
+
+def _errors(name: str, watch: UnitWatch) -> Iterator[Finding]:
+    share = watch.failed / watch.questions
+    if watch.failed > 1 and share > FAILED_MOST:
+        yield warning(
+            name,
+            f"{100 * share:.1f} % of {watch.questions} questions failed: {watch.silences} without an answer,"
+            f" {watch.noises} with noise, {watch.exceptions} exceptions",
+            "terminators, shielding, a common ground, wires A and B, another program on the line",
+        )
+
+
+def _reply_time(e: Examination, name: str, unit: UnitSurvey, watch: UnitWatch) -> Iterator[Finding]:
+    usual_s, timing = median(watch.delays_s), unit.profile.timing
+    rate = watch.readings / e.watch.seconds
+    found = f"answers after {1e3 * usual_s:.1f} ms, {rate:.0f} readings/s"
+    if usual_s > timing.reply_max_s + LATE_S:
+        yield warning(
+            name, f"{found}; {unit.profile.name} takes at most {1e3 * timing.reply_max_s:g} ms: late by"
+            f" {1e3 * (usual_s - timing.turnaround_s):.0f} ms, as by the latency timer of a USB adapter (16 ms)",
+            "set the adapter's latency timer to 1 ms, or its low-latency flag; or take an adapter without a timer",
+        )  # fmt: skip
+    slow = unit.profile.blocks[0].period_s == 0.0 and rate < READINGS_S
+    if slow:
+        yield warning(
+            name, f"{found}: less than {READINGS_S:g} readings/s",
+            "a higher baud rate, a line of its own, the adapter's latency timer at 1 ms",
+        )  # fmt: skip
+
+
+def _age(e: Examination, name: str, unit: UnitSurvey, watch: UnitWatch) -> Iterator[Finding]:
+    limit_s = e.limit(*STALE_LIMITS.get(unit.profile.kind, ()))
+    found = f"{watch.readings} readings, at most {1e3 * watch.oldest_s:.0f} ms old when the next came"
+    if limit_s is not None and watch.oldest_s > limit_s:
+        yield warning(
+            name, f"{found}: the rig file allows {1e3 * limit_s:g} ms",
+            "what delays answers or loses them, as above; the limit stays the rig file's",
+        )  # fmt: skip
+    else:
+        allowed = f" (the rig file allows {1e3 * limit_s:g} ms)" if limit_s is not None else ""
+        yield ok(name, f"{found}{allowed}")

@@ -1,0 +1,169 @@
+"""What is on a Modbus line: every device of the rig file asked, then every other unit number."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+
+from drivers.modbus.line import Parity
+from drivers.modbus.scan import LineAnswer, LineScan, Question
+from drivers.ports import BusLost, LinePort
+from drivers.profiles.model import DeviceProfile
+from tester.doctor.wanted import configuration
+from tester.doctor.wires import Wires
+from tester.rig import DeviceConfig, LineConfig, Rig
+from tester.rig.profiles import profile_of
+
+PATIENCE_S = 0.25
+"""A device of the rig file is waited for so long, s: beyond every profile's reply time, and adapters that are late."""
+SCAN_S = 0.06
+"""Any other unit number, s: the slowest profile's turnaround is 20 ms, an adapter's usual latency 16 ms [A]."""
+UNITS = range(1, 248)
+"""Addresses of devices (Modbus over serial line V1.02, 2.2)."""
+STEP_S = 0.002
+BAUDS = (115_200, 57_600, 38_400, 19_200, 9_600)
+PARITIES: tuple[Parity, ...] = ("N", "E", "O")
+TRIES = 3
+"""A question that was not answered well is asked so often."""
+
+
+@dataclass(slots=True)
+class UnitSurvey:
+    """What a device of the rig file answered."""
+
+    config: DeviceConfig
+    profile: DeviceProfile
+    blocks: list[LineAnswer] = field(default_factory=list[LineAnswer])
+    """One for each block of registers of the profile."""
+    configuration: dict[str, LineAnswer] = field(default_factory=dict[str, LineAnswer])
+    """Registers of its identity, set-up and parameters, by name."""
+
+    @property
+    def there(self) -> bool:
+        """Whether it answered anything."""
+        return any(answer.there for answer in (*self.blocks, *self.configuration.values()))
+
+    @property
+    def noise(self) -> bytes:
+        """What came that is no answer."""
+        return b"".join(answer.noise for answer in (*self.blocks, *self.configuration.values()))
+
+
+@dataclass(slots=True)
+class LineSurvey:
+    """What was found on a line."""
+
+    lost: str = ""
+    units: dict[str, UnitSurvey] = field(default_factory=dict[str, UnitSurvey])
+    """By the devices' names in the rig file."""
+    others: dict[int, LineAnswer] = field(default_factory=dict[int, LineAnswer])
+    """Unit numbers that answer and are not in the rig file."""
+    looks_like: dict[int, str] = field(default_factory=dict[int, str])
+    """Of those, the device of the rig file whose registers they have."""
+    answers_at: LineConfig | None = None
+    """The settings at which a device answers, where they are not the rig file's."""
+
+
+def survey_line(rig: Rig, name: str, wires: Wires, *, everybody: bool = True) -> LineSurvey:
+    """Ask the devices of a line; ``everybody``: and every other unit number."""
+    found = LineSurvey()
+    config = rig.lines[name]
+    for key, device in rig.devices.items():
+        if device.line == name:
+            found.units[key] = UnitSurvey(device, profile_of(device.profile))
+    try:
+        port = wires.line(name, config)
+        scan = LineScan(config.framing, config.baud, config.parity)
+        for unit in found.units.values():
+            _ask_unit(scan, port, wires, unit)
+        if everybody:
+            known = {unit.config.unit_id for unit in found.units.values()}
+            for other in UNITS:
+                answer = None if other in known else asked(scan, port, wires, Question(other, 3, 0, 1), SCAN_S)
+                if answer is not None and answer.there:
+                    found.others[other] = answer
+            _compare(scan, port, wires, found)
+    except BusLost as lost:
+        found.lost = str(lost)
+        return found
+    if found.units and not found.others and not any(unit.there for unit in found.units.values()):
+        found.answers_at = _other_settings(config, name, wires, found)
+    return found
+
+
+def asked(scan: LineScan, port: LinePort, wires: Wires, question: Question, timeout_s: float) -> LineAnswer:
+    """Ask a question and return what became of it; raises BusLost."""
+    scan.ask(question, timeout_s)
+    while True:
+        now = wires.now()
+        scan.feed(port.read(now), now)
+        scan.service(port, now)
+        if scan.answer is not None:
+            return scan.answer
+        wires.wait_until(now + STEP_S)
+
+
+def _ask_unit(scan: LineScan, port: LinePort, wires: Wires, unit: UnitSurvey) -> None:
+    """Read everything that the profile of a device names; one that is silent at first is not asked for the rest."""
+    number = unit.config.unit_id
+    for block in unit.profile.blocks:
+        answer = _patiently(scan, port, wires, Question(number, block.function, block.address, block.count))
+        unit.blocks.append(answer)
+        if not answer.there and len(unit.blocks) == 1:
+            return
+    for name, question in configuration(unit.profile, number):
+        unit.configuration[name] = _patiently(scan, port, wires, question)
+
+
+def _patiently(scan: LineScan, port: LinePort, wires: Wires, question: Question) -> LineAnswer:
+    answer = asked(scan, port, wires, question, PATIENCE_S)
+    for _ in range(TRIES - 1):
+        if answer.there:
+            break
+        answer = asked(scan, port, wires, question, PATIENCE_S)
+    return answer
+
+
+def _marks(unit: UnitSurvey, number: int) -> Iterator[tuple[Question, int | None]]:
+    """Yield questions whose answers tell a type of device, at another unit number, with the value it must give."""
+    identity = unit.profile.identity
+    if identity is not None:
+        yield Question(number, identity.function, identity.address, 1), identity.value
+    block = unit.profile.blocks[0]
+    yield Question(number, block.function, block.address, block.count), None
+
+
+def _compare(scan: LineScan, port: LinePort, wires: Wires, found: LineSurvey) -> None:
+    """Find out whether a unit that nobody knows is a device that does not answer at its own number."""
+    for number in found.others:
+        for key, unit in found.units.items():
+            if unit.there:
+                continue
+            fits = True
+            for question, value in _marks(unit, number):
+                answer = asked(scan, port, wires, question, PATIENCE_S)
+                fits = fits and answer.ok and (value is None or int.from_bytes(answer.data[:2], "big") == value)
+            if fits:
+                found.looks_like[number] = key
+
+
+def _other_settings(config: LineConfig, name: str, wires: Wires, found: LineSurvey) -> LineConfig | None:
+    """Return the settings at which a device of the line answers, None where there are none, or none to be tried."""
+    if config.framing == "socket":
+        return None
+    for baud in BAUDS:
+        for parity in PARITIES:
+            tried = replace(config, baud=baud, parity=parity)
+            if tried == config:
+                continue
+            try:
+                port = wires.line(name, tried)
+            except BusLost:
+                continue  # an adapter need not have every setting
+            scan = LineScan(tried.framing, baud, parity)
+            for unit in found.units.values():
+                block = unit.profile.blocks[0]
+                question = Question(unit.config.unit_id, block.function, block.address, block.count)
+                if asked(scan, port, wires, question, PATIENCE_S).there:
+                    return tried
+    return None

@@ -1,0 +1,190 @@
+"""The computer, behind one door: its files, its programs, its serial ports, its disks. Tests hand in another.
+
+Linux is what the doctor knows: sysfs, ``ip``, ``timedatectl``. Where a system has none of them the door says so, and
+the probes say that they could not look. Of Windows the latency timer is read from the registry, as FTDI's driver keeps
+it; that was not tried on a machine.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Protocol
+
+COMMAND_AT_MOST_S = 3.0
+"""A program that tells something about the computer has answered by then [A]."""
+
+
+@dataclass(frozen=True, slots=True)
+class SerialPortInfo:
+    """A serial port of the computer."""
+
+    device: str
+    """As it is opened: ``/dev/ttyUSB0``, ``COM3``."""
+    description: str
+    serial_number: str = ""
+
+
+class ComputerDoor(Protocol):
+    """What the doctor asks the computer for."""
+
+    @property
+    def platform(self) -> str:
+        """``sys.platform``."""
+        ...
+
+    def text(self, path: str) -> str | None:
+        """Return the text of a small file without its last line end; None where it cannot be read."""
+        ...
+
+    def names(self, folder: str) -> list[str]:
+        """Return the names in a folder; none where it cannot be read."""
+        ...
+
+    def exists(self, path: str) -> bool:
+        """Tell whether there is a file of this name."""
+        ...
+
+    def real(self, path: str) -> str:
+        """Return a path without links: of a name in ``/dev/serial/by-id`` the port."""
+        ...
+
+    def may_use(self, path: str) -> bool:
+        """Tell whether this user may read and write a file, or make files in a folder."""
+        ...
+
+    def group_of(self, path: str) -> str:
+        """Return the group that a file belongs to; "" where the system has none, or it is not known."""
+        ...
+
+    def free_bytes(self, folder: str) -> int | None:
+        """Return the room on the disk of a folder, or of what is to hold it; None where it cannot be told."""
+        ...
+
+    def output(self, *command: str) -> str | None:
+        """Return what a program writes; None where there is none of that name, or it fails."""
+        ...
+
+    def serial_ports(self) -> list[SerialPortInfo]:
+        """Return the serial ports of the computer."""
+        ...
+
+    def latency_ms(self, port: str) -> int | None:
+        """Return the latency timer of a USB serial adapter, ms; None where it has none, or it cannot be told."""
+        ...
+
+
+class ThisComputer:
+    """This computer."""
+
+    @property
+    def platform(self) -> str:
+        """``sys.platform``."""
+        return sys.platform
+
+    def text(self, path: str) -> str | None:
+        """Return the text of a small file; None where it cannot be read."""
+        try:
+            return Path(path).read_text(encoding="utf-8", errors="replace").rstrip("\n")
+        except OSError:
+            return None
+
+    def names(self, folder: str) -> list[str]:
+        """Return the names in a folder."""
+        try:
+            return sorted(path.name for path in Path(folder).iterdir())
+        except OSError:
+            return []
+
+    def exists(self, path: str) -> bool:
+        """Tell whether there is a file of this name."""
+        return Path(path).exists()
+
+    def real(self, path: str) -> str:
+        """Return a path without links."""
+        return os.path.realpath(path)
+
+    def may_use(self, path: str) -> bool:
+        """Tell whether this user may read and write it; of what is not there yet, the nearest folder above."""
+        return os.access(_nearest(path), os.R_OK | os.W_OK)
+
+    def group_of(self, path: str) -> str:
+        """Return the group that a file belongs to."""
+        try:
+            return Path(path).group()
+        except (OSError, KeyError, NotImplementedError):
+            return ""
+
+    def free_bytes(self, folder: str) -> int | None:
+        """Return the room on the disk of a folder."""
+        try:
+            return shutil.disk_usage(_nearest(folder)).free
+        except OSError:
+            return None
+
+    def output(self, *command: str) -> str | None:
+        """Return what a program writes."""
+        try:
+            done = subprocess.run(
+                command, capture_output=True, text=True, timeout=COMMAND_AT_MOST_S, check=True, stdin=subprocess.DEVNULL
+            )
+        except (OSError, subprocess.SubprocessError):
+            return None
+        return done.stdout
+
+    def serial_ports(self) -> list[SerialPortInfo]:
+        """Return the serial ports of the computer."""
+        from serial.tools import list_ports
+
+        found = sorted(list_ports.comports(), key=lambda port: port.device)
+        return [SerialPortInfo(port.device, port.description or "", port.serial_number or "") for port in found]
+
+    def latency_ms(self, port: str) -> int | None:
+        """Return the latency timer of a USB serial adapter, ms."""
+        if sys.platform == "win32":
+            return _latency_on_windows(port)
+        name = Path(self.real(port)).name
+        text = self.text(f"/sys/bus/usb-serial/devices/{name}/latency_timer")
+        return int(text) if text is not None and text.isdecimal() else None
+
+
+def _nearest(path: str) -> Path:
+    """Return a path, or the nearest folder above it that is there."""
+    here = Path(path).absolute()
+    while not here.exists() and here != here.parent:
+        here = here.parent
+    return here
+
+
+if sys.platform == "win32":
+
+    def _latency_on_windows(port: str) -> int | None:
+        """Return the latency timer that FTDI's driver keeps for a port: a value beside its ``PortName``. Not tried."""
+        import winreg
+
+        root = r"SYSTEM\CurrentControlSet\Enum\FTDIBUS"
+
+        def under(key: winreg.HKEYType) -> list[str]:
+            return [winreg.EnumKey(key, number) for number in range(winreg.QueryInfoKey(key)[0])]
+
+        try:
+            with winreg.OpenKey(winreg.HKEY_LOCAL_MACHINE, root) as adapters:
+                for adapter in under(adapters):
+                    with winreg.OpenKey(adapters, adapter) as instances:
+                        for instance in under(instances):
+                            with winreg.OpenKey(instances, rf"{instance}\Device Parameters") as values:
+                                if winreg.QueryValueEx(values, "PortName")[0] == port:
+                                    return int(winreg.QueryValueEx(values, "LatencyTimer")[0])
+        except (OSError, ValueError):
+            return None
+        return None
+
+else:
+
+    def _latency_on_windows(port: str) -> int | None:
+        """Return None: this is no Windows."""
+        return None

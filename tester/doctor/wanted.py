@@ -1,0 +1,65 @@
+"""Which objects and registers of a device are read: what a set-up writes, and what it is told by."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from drivers.axis import AxisConfig
+from drivers.canopen import objects as o
+from drivers.canopen.scan import Key
+from drivers.modbus.scan import Question
+from drivers.profiles.model import DeviceProfile
+from drivers.servo_setup import pdo_settings, settings
+from tester.run.kept import IDENTITY, KEPT
+
+STATE: tuple[Key, ...] = (
+    (o.ERROR_REGISTER, 0),
+    (o.STATUSWORD, 0),
+    (o.ERROR_CODE, 0),
+    (o.DIGITAL_INPUTS, 0),
+    (o.POSITION_ACTUAL, 0),
+    (o.VELOCITY_ACTUAL, 0),
+)
+"""How a drive is now."""
+
+
+def written(config: AxisConfig) -> dict[Key, int]:
+    """Return what every connect writes into an axis' drive but for its process data, by object."""
+    return {(index, sub): value for index, sub, value in settings(config)} | {
+        (o.PRODUCER_HEARTBEAT, 0): round(config.heartbeat_s * 1000),
+    }
+
+
+def mapped(config: AxisConfig) -> dict[Key, int]:
+    """Return what every connect writes into the objects of an axis' process data, by object."""
+    found: dict[Key, int] = {}
+    for communication, mapping, cob_id, kind, fields in pdo_settings(config):
+        if fields is None:
+            continue
+        found[communication, 1] = cob_id
+        found[communication, 2] = kind
+        entries = fields.parameters()
+        found[mapping, 0] = len(entries)
+        found |= {(mapping, sub): entry for sub, entry in enumerate(entries, start=1)}
+    return found
+
+
+def objects_of(config: AxisConfig) -> list[Key]:
+    """Return every object of an axis' drive that is looked at, each once."""
+    return list(dict.fromkeys((*IDENTITY, *STATE, *KEPT, *written(config), *mapped(config))))
+
+
+def configuration(profile: DeviceProfile, unit_id: int) -> Iterator[tuple[str, Question]]:
+    """Yield name and question of every register of a device that is configuration: identity, set-up, parameters.
+
+    A setpoint and a lease are commands, and are left out.
+    """
+    reads = 3 if 3 in profile.functions else 4
+    identity = profile.identity
+    if identity is not None:
+        yield "device type", Question(unit_id, identity.function, identity.address, 1)
+    for write in profile.setup:
+        yield write.name, Question(unit_id, reads, write.address, 1)
+    for name, signal in profile.writes.items():
+        if name not in ("setpoint", "lease"):
+            yield name, Question(unit_id, reads, signal.address, signal.size)

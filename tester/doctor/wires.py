@@ -1,0 +1,150 @@
+"""The wires to a rig as the doctor opens them: one at a time, with other settings too, real or simulated."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+from drivers.ports import CanPort, LinePort
+from drivers.transports.can_bus import PythonCanPort, open_can
+from drivers.transports.serial_line import SerialLine, open_serial_line
+from drivers.transports.tcp_line import TcpLine, open_tcp_line
+from sim.rig import SimRig
+from sim.wires.mistuned import MistunedCan, MistunedLine
+from tester.base.pace import Pace
+from tester.rig import LineConfig, Rig
+from tester.run.simulated import simulated_ports
+
+BITRATES = (1_000_000, 800_000, 500_000, 250_000, 125_000)
+"""Bit rates of CANopen that a rig file can state, bit/s (CiA 301, 5.1)."""
+OUTSIDE = ("socketcan", "socketcand")
+"""Interfaces whose bit rate the system sets, and no program that opens them."""
+
+
+class Wires(Protocol):
+    """Wires, and the time that passes on them."""
+
+    @property
+    def bitrates(self) -> tuple[int, ...]:
+        """Bit rates that ``can`` can open beside the rig file's; none where the system sets it."""
+        ...
+
+    @property
+    def real(self) -> bool:
+        """Whether time passes by itself: how late the computer is can then be measured."""
+        ...
+
+    def now(self) -> float:
+        """Return the seconds since the look began."""
+        ...
+
+    def wait_until(self, due_s: float) -> None:
+        """Return at ``due_s`` (s)."""
+        ...
+
+    def can(self, bitrate: int) -> CanPort:
+        """Open the CAN bus at a bit rate (bit/s), anew where it is open; raises BusLost."""
+        ...
+
+    def line(self, name: str, config: LineConfig) -> LinePort:
+        """Open a Modbus line, anew where it is open; raises BusLost."""
+        ...
+
+    def close(self) -> None:
+        """Give every wire back."""
+        ...
+
+
+class HardwareWires:
+    """The wires of a rig file, over the computer's adapters."""
+
+    real = True
+
+    def __init__(self, rig: Rig) -> None:
+        """Open nothing yet."""
+        self._rig = rig
+        self._pace = Pace()
+        self._can: PythonCanPort | None = None
+        self._lines: dict[str, SerialLine | TcpLine] = {}
+        self.bitrates = () if rig.can.interface in OUTSIDE else BITRATES
+
+    def now(self) -> float:
+        """Return the seconds since the look began."""
+        return self._pace.now()
+
+    def wait_until(self, due_s: float) -> None:
+        """Return at ``due_s`` (s)."""
+        self._pace.wait_until(due_s)
+
+    def can(self, bitrate: int) -> CanPort:
+        """Open the CAN bus; raises BusLost."""
+        if self._can is not None:
+            self._can.close()
+            self._can = None
+        self._can = open_can(self._rig.can.interface, self._rig.can.channel, bitrate, self._pace.now)
+        return self._can
+
+    def line(self, name: str, config: LineConfig) -> LinePort:
+        """Open a Modbus line; raises BusLost."""
+        before = self._lines.pop(name, None)
+        if before is not None:
+            before.close()
+        if config.framing == "socket":
+            host, _, port = config.port.rpartition(":")
+            line: SerialLine | TcpLine = open_tcp_line(host, int(port))
+        else:
+            line = open_serial_line(config.port, config.baud, config.parity)
+        self._lines[name] = line
+        return line
+
+    def close(self) -> None:
+        """Give every wire back."""
+        if self._can is not None:
+            self._can.close()
+        for line in self._lines.values():
+            line.close()
+
+
+class SimulatedWires:
+    """The wires of a simulated rig in this process, whose time passes as it is waited for.
+
+    ``built``: the rig as it stands there, which need not be what the rig file says.
+    """
+
+    real = False
+    bitrates = BITRATES
+
+    def __init__(self, built: Rig, seed: int = 0) -> None:
+        """Switch the simulated rig on at time 0. Raises InvalidSource as ``simulated_ports``."""
+        self._built = built
+        ports, world, _ = simulated_ports(built, seed, None)
+        self._ports = ports
+        self.world: SimRig = world
+        self._now_s = 0.0
+
+    def now(self) -> float:
+        """Return the rig's time, s."""
+        return self._now_s
+
+    def wait_until(self, due_s: float) -> None:
+        """Let the rig live until ``due_s`` (s)."""
+        if due_s > self._now_s:
+            self._now_s = due_s
+            self.world.advance(due_s)
+
+    def can(self, bitrate: int) -> CanPort:
+        """Return the bus, or what an adapter at another bit rate than the bus's meets."""
+        return self._ports.can if bitrate == self._built.can.bitrate else MistunedCan()
+
+    def line(self, name: str, config: LineConfig) -> LinePort:
+        """Return the line, or what a port at other settings than the line's meets."""
+        built = self._built.lines[name]
+        same = (config.baud, config.parity) == (built.baud, built.parity)
+        return self._ports.lines[name] if same else MistunedLine()
+
+    def close(self) -> None:
+        """Nothing: the rig goes with its last reference."""
+
+
+def wires_of(rig: Rig, seed: int = 0) -> Wires:
+    """Return the wires of a rig, simulated in this process or real; nothing of a real one is open yet."""
+    return SimulatedWires(rig, seed) if rig.can.interface == "sim" else HardwareWires(rig)

@@ -1,0 +1,92 @@
+"""What a drive was set up with and this program does not write: read at a run's good end, and kept with the run.
+
+It is what a later look compares with (``tester params compare``). Read once everything stands and the drives are
+released: it takes no time from the scan, and nothing that was measured depends on it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from drivers.canopen import objects as o
+from drivers.canopen.dictionary import DICTIONARY
+from drivers.canopen.scan import Key, SdoScan
+from drivers.ports import BusLost
+from tester.machine.ports import Ports
+from tester.machine.tickers import TickedWorld
+from tester.rig import Rig
+from tester.store.recorder import Recorder
+
+IDENTITY: tuple[Key, ...] = (
+    (o.DEVICE_TYPE, 0),
+    (o.IDENTITY, 1),
+    (o.IDENTITY, 2),
+    (o.IDENTITY, 3),
+    (o.IDENTITY, 4),
+    (o.DEVICE_NAME, 0),
+    (o.HARDWARE_VERSION, 0),
+    (o.SOFTWARE_VERSION, 0),
+)
+"""Who a node is; its texts are optional (CiA 301, 7.5.2)."""
+
+KEPT: tuple[Key, ...] = (
+    (o.SUPPORTED_MODES, 0),
+    (o.RATED_CURRENT, 0),
+    (o.RATED_TORQUE, 0),
+    (0x607E, 0),
+    (0x608F, 1),
+    (0x608F, 2),
+    (0x6091, 1),
+    (0x6091, 2),
+    (0x6092, 1),
+    (0x6092, 2),
+    (0x60A8, 0),
+    (0x60A9, 0),
+    (0x6073, 0),
+    (0x6410, 1),
+)
+"""What a drive was set up with, and this program does not write: ratings, polarity, encoder, gear, feed, units,
+greatest current, motor (CiA 402-2, 6.3 and 6.4). Most are optional."""
+
+STEP_S = 0.002
+"""How often the bus is looked at while answers are awaited, s."""
+MOST_S = 3.0
+"""A run's end waits no longer for this, s: some twenty objects a drive, four drives at a time, take a tenth of it."""
+
+
+def object_key(key: Key) -> str:
+    """Return how an object is called in records and dumps."""
+    return f"0x{key[0]:04X}:{key[1]:02X}"
+
+
+def object_name(key: Key) -> str:
+    """Return what an object is called, "" where the dictionary does not have it."""
+    return DICTIONARY[key].name if key in DICTIONARY else ""
+
+
+def record_kept(rig: Rig, ports: Ports, world: TickedWorld | None, now_s: float, recorder: Recorder) -> None:
+    """Store identity and set-up of every drive, as far as it has them; nothing where the bus is gone.
+
+    ``now_s``: the run's time. Drives are asked by SDO alone, and nothing is written to them.
+    """
+    names = {config.node_id: name for name, config in rig.drives().items()}
+    scan, clock_s, wait = SdoScan({node: [*IDENTITY, *KEPT] for node in names}), now_s, _waiting(ports, world)
+    try:
+        while not scan.done and clock_s < now_s + MOST_S:
+            scan.feed(ports.can.receive(clock_s), ports.can, clock_s)
+            scan.service(ports.can, clock_s)
+            clock_s += STEP_S
+            wait(clock_s)
+    except BusLost:
+        return
+    for node, answers in scan.answers.items():
+        for key, answer in answers.items():
+            if answer.ok:
+                recorder.device_parameter(now_s, names[node], object_key(key), answer.text, object_name(key))
+
+
+def _waiting(ports: Ports, world: TickedWorld | None) -> Callable[[float], object]:
+    if world is not None:
+        return world.advance
+    assert ports.pace is not None
+    return ports.pace.wait_until

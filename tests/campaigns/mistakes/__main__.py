@@ -1,0 +1,88 @@
+"""Twenty and more mistakes of wiring and scaling on the twin: each has to be named, and nothing on a clean rig.
+
+    python -m tests.campaigns.mistakes [--sample] [--seeds N] [NAME...]
+
+In virtual time. A mistake is named where what the doctor, or the commissioning, says of the rig matches what has to be
+said of it. ``--sample``: one seed a mistake and three clean rigs, without those that have to be driven. Exit code 1 on
+a miss.
+"""
+
+from __future__ import annotations
+
+import argparse
+import re
+import sys
+from collections.abc import Callable, Iterator
+from importlib import import_module
+from importlib.util import find_spec
+from types import ModuleType
+
+from tester.base import clock
+from tests.campaigns.acceptance.figure import Figure, at_least, equal
+from tests.campaigns.mistakes.mistake import Mistake
+
+LEAST = 20
+"""So many kinds of mistakes are to be named."""
+SOURCES = ("by_doctor", "by_commissioning")
+"""Modules of this package that bring ``MISTAKES`` and ``clean``, quick ones first."""
+CLEAN_SEEDS = 10
+
+
+def sources(names: tuple[str, ...] = SOURCES) -> list[ModuleType]:
+    """Return the modules that are there."""
+    package = "tests.campaigns.mistakes"
+    return [import_module(f"{package}.{name}") for name in names if find_spec(f"{package}.{name}") is not None]
+
+
+def named(mistake: Mistake, seeds: range) -> Figure:
+    """Return in how many seeds a mistake was named; a miss shows what was said instead."""
+    missed: list[str] = []
+    for seed in seeds:
+        found = mistake.find(seed)
+        if not any(re.search(mistake.named_by, line) for line in found):
+            missed.append(f"seed {seed}: {'; '.join(found) or 'nothing'}")
+    value = f"{len(seeds) - len(missed)} of {len(seeds)}"
+    return Figure(f"named: {mistake.name}", "; ".join([value, *missed]), f"{len(seeds)} of {len(seeds)}", not missed)
+
+
+def unfounded(name: str, clean: Callable[[int], list[str]], seeds: range) -> Figure:
+    """Return how many clean rigs something was said of."""
+    said = {seed: found for seed in seeds if (found := clean(seed))}
+    value = [f"seed {seed}: {'; '.join(found)}" for seed, found in said.items()]
+    return equal(f"{len(seeds)} clean rigs: named by {name}", value, [])
+
+
+def figures(modules: list[ModuleType], seeds: int, clean_seeds: int, wanted: list[str]) -> Iterator[Figure]:
+    """Measure."""
+    mistakes: list[Mistake] = [mistake for module in modules for mistake in module.MISTAKES]
+    chosen = [mistake for mistake in mistakes if not wanted or any(word in mistake.name for word in wanted)]
+    caught = 0
+    for mistake in chosen:
+        figure = named(mistake, range(seeds))
+        caught += figure.ok
+        yield figure
+    if not wanted:
+        yield at_least("kinds of mistakes that were named", caught, LEAST)
+        for module in modules:
+            yield unfounded(module.__name__.rpartition(".")[2], module.clean, range(clean_seeds))
+
+
+def main() -> int:
+    """Measure, print a figure a line, and return the exit code."""
+    parser = argparse.ArgumentParser(prog="python -m tests.campaigns.mistakes", description=__doc__)
+    parser.add_argument("--sample", action="store_true", help="one seed a mistake, what can be seen without motion")
+    parser.add_argument("--seeds", type=int, default=3, help="seeds of each mistake (default 3)")
+    parser.add_argument("names", nargs="*", help="only mistakes whose names hold one of these words")
+    given = parser.parse_args()
+    modules = sources(SOURCES[:1]) if given.sample else sources()
+    seeds, clean_seeds = (1, 3) if given.sample else (given.seeds, CLEAN_SEEDS)
+    missed, total = 0, 0
+    for figure in figures(modules, seeds, clean_seeds, given.names):
+        print(figure, flush=True)
+        missed, total = missed + (not figure.ok), total + 1
+    print(f"{total - missed} of {total} figures kept, {clock.cpu_seconds():.0f} s of CPU")
+    return 1 if missed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

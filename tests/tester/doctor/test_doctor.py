@@ -1,0 +1,104 @@
+"""The whole look, on the simulated rig in virtual time."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from drivers.canopen import objects as o
+from sim.machines.wheel_on_belt.rig import WheelRig
+from tester.doctor.examination import Examination
+from tester.doctor.finding import Severity
+from tester.doctor.table import PROBES, examined
+from tester.doctor.wires import SimulatedWires
+from tester.kinds import load_rig
+from tests.campaigns.mistakes.by_doctor import MISTAKES, Mistake, clean, looked_at
+from tests.tester.doctor.fake_computer import FakeComputer
+
+WATCHED_S = 1.0
+
+
+def look(wires: SimulatedWires, rig_name: str = "sim", *, everybody: bool = False) -> list[str]:
+    examination = Examination(
+        load_rig(rig_name), FakeComputer(), wires, Path("runs"), WATCHED_S, everybody=everybody
+    )  # fmt: skip
+    return [str(entry.finding) for entry in examined(examination)]
+
+
+@pytest.mark.parametrize("seed", [0, 1])
+def test_nothing_is_wrong_with_a_rig_that_is_as_its_file_says(seed: int) -> None:
+    assert clean(seed) == []
+
+
+@pytest.mark.parametrize("mistake", MISTAKES[::3], ids=lambda mistake: mistake.name)
+def test_a_mistake_is_named(mistake: Mistake) -> None:
+    assert any(re.search(mistake.named_by, line) for line in mistake.find(3))
+
+
+def test_every_finding_that_is_bad_says_what_to_do() -> None:
+    found = looked_at(
+        0, built=("lines.heat.baud=9600", "axes.belt.node_id=12"), computer=FakeComputer(free=0, ports={})
+    )
+    bad = [finding for finding in found if finding.severity >= Severity.WARNING]
+    assert len(bad) >= 4
+    assert all(finding.todo for finding in bad)
+
+
+def test_the_look_writes_nothing_to_any_device_and_sends_no_command() -> None:
+    wires = SimulatedWires(load_rig("sim"))
+    sent: list[tuple[int, bytes]] = []
+    asked: list[bytes] = []
+    wires.world.can.watch(lambda _t, can_id, data, from_pc: sent.append((can_id, data)) if from_pc else None)
+    for line in wires.world.lines.values():
+        line.watch(lambda _t, data, from_pc: asked.append(data) if from_pc else None)
+    look(wires, everybody=True)
+    uploads = {0x40, 0x60, 0x70, 0x80}  # initiate, segments, abort of a transfer that was not answered
+    assert {can_id & 0x780 for can_id, _ in sent} == {o.SDO_REQUEST_BASE}
+    assert {data[0] for _, data in sent} <= uploads
+    assert {data[1] for data in asked} <= {3, 4}
+
+
+def test_the_look_moves_nothing_and_enables_no_drive() -> None:
+    wires = SimulatedWires(load_rig("sim"))
+    look(wires)
+    assert isinstance(wires.world, WheelRig)
+    assert all(drive.axis.still and not drive.energised for drive in wires.world.axes.values())
+
+
+def test_another_kind_of_rig_is_looked_at_too() -> None:
+    rig = load_rig("grosch")
+    wires = SimulatedWires(rig)
+    lines = look(wires, "grosch")
+    assert not [line for line in lines if line.startswith("fault")]
+    assert any("CAN bus" in line for line in lines)
+
+
+def test_what_costs_time_is_done_once() -> None:
+    wires = SimulatedWires(load_rig("sim"))
+    told: list[str] = []
+    examination = Examination(
+        load_rig("sim"), FakeComputer(), wires, seconds=WATCHED_S, everybody=False, say=told.append
+    )  # fmt: skip
+    list(examined(examination))
+    list(examined(examination))
+    assert len(told) == 2 + len(examination.rig.lines)
+
+
+def test_a_profile_that_lacks_an_object_of_the_set_up_is_told_all_at_once() -> None:
+    wires = SimulatedWires(load_rig("sim"))
+    examination = Examination(load_rig("sim"), FakeComputer(), wires, seconds=WATCHED_S, everybody=False)
+    objects = {node: dict(answers) for node, answers in examination.can.objects.items()}
+    for key in ((o.HALT_OPTION, 0), (o.MAX_TORQUE, 0)):
+        objects[1][key] = replace(objects[1][key], data=b"", error="no such object", code=0x0602_0000)
+    examination.can.objects = objects
+    (line,) = [str(one.finding) for one in examined(examination) if "does not have" in one.finding.found]
+    assert "0x605D" in line
+    assert "0x6072" in line
+
+
+def test_the_probes_stand_in_the_table_once() -> None:
+    probes = [entry.probe for entry in PROBES]
+    assert len(set(probes)) == len(probes)
