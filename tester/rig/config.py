@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, TypeVar
 
 from drivers.axis import AxisConfig
 from drivers.canopen.node_config import NodeConfig
-from tester.base.config_reader import FURTHER_KEYS, Range, as_text, as_tree
+from tester.base.config_reader import FURTHER_KEYS, LEFT_OUT, Range, as_text, as_tree
 from tester.base.source import Location
 from tester.quantities import Quantities
 from tester.rig.ceilings import Ceiling
@@ -79,6 +79,8 @@ class DeviceConfig:
     """Other names for channels of the profile, where two sensors of a kind are on the rig."""
     simulated: Mapping[str, str | float] = field(default_factory=dict[str, str | float])
     """What channels show on a simulated rig: a quantity of its plant by name, or a number in the channel's unit."""
+    part_of: str = field(default="", metadata=LEFT_OUT)
+    """The machine's own device of which it measures a part: a load cell of several transmitters."""
     parameters: Annotated[Mapping[str, float], FURTHER_KEYS] = field(default_factory=dict[str, float])
     """What is written to a sensor at every connect, by the profile's names (``emissivity``), in its units."""
 
@@ -90,6 +92,10 @@ class OwnDevice:
     title: str
     profile: str
     optional: bool = False
+    channels: tuple[str, ...] = ()
+    """What it must measure, by the names of its profile's channels."""
+    joined: bool = False
+    """It may be several transmitters, which measure that together (``DeviceConfig.part_of``)."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,9 +10,6 @@ import pytest
 from drivers.profiles import ProfileError, load_profile, profile_names
 from drivers.profiles.model import RegisterBlock, Signal
 
-INCOMPLETE = {"dat_400"}
-"""Profiles whose registers we do not know."""
-
 SMALL = """
 kind = "load_cell"
 title = "a cell"
@@ -42,15 +39,9 @@ def write(folder: Path, text: str) -> str:
     return str(path)
 
 
-@pytest.mark.parametrize("name", sorted(set(profile_names()) - INCOMPLETE))
+@pytest.mark.parametrize("name", profile_names())
 def test_every_profile_that_comes_with_the_program_is_complete(name: str) -> None:
     assert load_profile(name).name == name
-
-
-@pytest.mark.parametrize("name", sorted(INCOMPLETE))
-def test_a_profile_with_unknown_registers_is_refused_and_says_so(name: str) -> None:
-    with pytest.raises(ProfileError, match="is not known to us"):
-        load_profile(name)
 
 
 def test_a_profile_of_ones_own_is_loaded_from_its_path(tmp_path: Path) -> None:

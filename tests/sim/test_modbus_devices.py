@@ -128,7 +128,7 @@ def test_a_one_channel_transmitter_puts_the_sign_into_the_status() -> None:
     profile = load_profile("laumas_tlb")
     source = Quantities()
     source.forces = (0.0, 0.0, -98.07, 0.0)
-    status, magnitude = profile.blocks[0].unpack(read(CellSlave(profile, 1, source), 6, 3))
+    status, magnitude = profile.blocks[0].unpack(read(CellSlave(profile, 1, source, {"force": "fz"}), 6, 3))
     assert (status, magnitude) == (1 << 7, pytest.approx(1000, abs=1))
 
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from tester.base.source import Location
 from tester.kinds.wheel_on_belt.axes import POSITIONED
 from tester.kinds.wheel_on_belt.rig.press import torque_problem
+from tester.rig.cells import skew_problem
 
 if TYPE_CHECKING:
     from tester.kinds.wheel_on_belt.rig.config import RigConfig
@@ -20,7 +21,7 @@ _Found = Iterator[tuple[Location, str]]
 
 def problems_between(rig: RigConfig) -> _Found:
     """Yield what does not fit together, with its place in the file."""
-    for check in (_speeds, _decelerations, _units, _press, _temperatures):
+    for check in (_speeds, _decelerations, _units, _press, _temperatures, _skew):
         yield from check(rig)
 
 
@@ -63,6 +64,11 @@ def _press(rig: RigConfig) -> _Found:
     problem = torque_problem(rig)
     if problem:
         yield ("axes", "press", "screw"), problem
+
+
+def _skew(rig: RigConfig) -> _Found:
+    needed = rig.own["load_cell"].channels
+    yield from skew_problem(rig, needed, rig.interlocks.cell_skew_s)
 
 
 def _temperatures(rig: RigConfig) -> _Found:

@@ -60,7 +60,7 @@ class RigConfig(Rig):
     stated: ClassVar[tuple[str, ...]] = ("observer.wheel",)
     manual: ClassVar[tuple[str, ...]] = tuple(axis.name for axis in POSITIONED)
     own: ClassVar[Mapping[str, OwnDevice]] = {
-        "load_cell": OwnDevice("load cell", "load_cell"),
+        "load_cell": OwnDevice("load cell", "load_cell", channels=("fx", "fy", "fz"), joined=True),
         "jacket": OwnDevice("jacket", "jacket"),
         "ir_thermometer": OwnDevice("infrared thermometer", "ir_thermometer"),
     }
