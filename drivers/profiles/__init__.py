@@ -219,6 +219,7 @@ def _profile(name: str, top: _Table) -> DeviceProfile:
         switches=_switches(top.table("switches")),
         tare=top.flag("tare", cell),
         saturated=top.share("saturated", SATURATED_SHARE if cell else None),
+        falls_back_s=top.number("falls_back_s") if "falls_back_s" in top else None,
     )
     top.end()
     return profile

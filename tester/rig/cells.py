@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from drivers.joined_cell import JoinedCell, Transmitter
-from drivers.modbus import ModbusLink
 from drivers.profiles import ProfileError
 from tester.base.source import Location
 from tester.rig.config import DeviceConfig, OwnDevice, Rig
@@ -70,6 +68,9 @@ def skew_problem(rig: Rig, channels: tuple[str, ...], most_skew_s: float) -> _Fo
     parts = parts_of(rig, "load_cell")
     if not parts or any(line.baud <= 0 for line in rig.lines.values()):
         return
+    from drivers.joined_cell import JoinedCell, Transmitter  # only such a rig pays for the wire's library
+    from drivers.modbus import ModbusLink
+
     links = {name: ModbusLink(line.framing, line.baud, line.parity) for name, line in rig.lines.items()}
     try:
         made = [

@@ -120,7 +120,7 @@ def _parameters(name: str, device: DeviceConfig, profile: DeviceProfile, *, own:
         elif register is not None and not register.least <= value <= register.greatest:
             yield place, f"{value:g} is beyond {profile.title} (expected {register.least:g} to {register.greatest:g})"
         elif register is None and not (optical and key == "emissivity"):
-            keys = ("profile", "line", "unit_id", "part_of", "channels", "simulated", *registers)
+            keys = ("profile", "line", "unit_id", "part_of", "heat_off", "channels", "simulated", *registers)
             near = difflib.get_close_matches(key, keys, n=1)
             meant = f", did you mean {near[0]}?" if near else ""
             yield place, f'unknown key "{key}"{meant}'

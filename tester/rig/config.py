@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, fields, make_dataclass
 from datetime import date
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, TypeVar
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Final, Literal, TypeVar
 
 from drivers.axis import AxisConfig
 from drivers.canopen.node_config import NodeConfig
@@ -68,6 +68,13 @@ class LineConfig:
     framing: Literal["rtu", "socket"]
 
 
+HEAT_OFF: Final = {
+    "fallback": "the controller goes on with a setpoint of its own that asks for no heat (falls_back_s of its profile)",
+    "relay": "a watchdog relay, hard-wired, takes the heater's supply",
+}
+"""What may stand as ``heat_off``, and what it says of the machine."""
+
+
 @dataclass(frozen=True, slots=True)
 class DeviceConfig:
     """One Modbus device: its profile in drivers/profiles, its line and its address there."""
@@ -81,6 +88,8 @@ class DeviceConfig:
     """What channels show on a simulated rig: a quantity of its plant by name, or a number in the channel's unit."""
     part_of: str = field(default="", metadata=LEFT_OUT)
     """The machine's own device of which it measures a part: a load cell of several transmitters."""
+    heat_off: str = field(default="", metadata=LEFT_OUT)
+    """Of a controller that heats and has no lease: what takes the heat when the PC is silent (``HEAT_OFF``)."""
     parameters: Annotated[Mapping[str, float], FURTHER_KEYS] = field(default_factory=dict[str, float])
     """What is written to a sensor at every connect, by the profile's names (``emissivity``), in its units."""
 

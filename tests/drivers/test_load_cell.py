@@ -183,7 +183,7 @@ def test_a_channel_that_the_sensor_does_not_have_is_unknown() -> None:
 
 def test_a_profile_without_forces_is_refused() -> None:
     with pytest.raises(ProfileError, match="describes a jacket"):
-        Sensor(load_profile("eurotherm_3200"), 1, Bench().link)
+        Sensor(load_profile("simulated_jacket"), 1, Bench().link)
 
 
 @pytest.mark.parametrize("delay_s", [0.011, 0.014, 0.017])

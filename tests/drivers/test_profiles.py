@@ -83,17 +83,17 @@ def test_a_mistake_is_refused_with_its_place(tmp_path: Path, old: str, new: str,
 
 
 def test_an_unknown_name_lists_the_known_ones() -> None:
-    with pytest.raises(ProfileError, match=r"no device profile 'nonsense' .*eurotherm_3200"):
+    with pytest.raises(ProfileError, match=r"no device profile 'nonsense' .*simulated_jacket"):
         load_profile("nonsense")
 
 
 def test_a_profile_of_another_kind_is_refused() -> None:
     with pytest.raises(ProfileError, match="describes a jacket, not a load_cell"):
-        load_profile("eurotherm_3200").expect("load_cell")
+        load_profile("simulated_jacket").expect("load_cell")
 
 
 def test_a_profile_is_shared_by_copies() -> None:
-    profile = load_profile("eurotherm_3200")
+    profile = load_profile("simulated_jacket")
     assert copy.deepcopy(profile) is profile
 
 

@@ -18,7 +18,7 @@ from tests.drivers.modbus_rig import Quantities
 
 CELL = load_profile("four_axis_transmitter")
 INFRARED = load_profile("calex_pyrominibus")
-JACKET = load_profile("eurotherm_3200")
+JACKET = load_profile("simulated_jacket")
 
 
 def read(slave: ModbusSlave, address: int, count: int, t: float = 0.0) -> bytes:

@@ -73,6 +73,9 @@ class RigConfig(Rig):
         ("the estimates and the thermal interlocks believe of the wheel. The simulated wheel behaves by `sim`\n",
          "the estimates and the thermal interlocks believe of the wheel. All [A].\n"),
         ("# below, so a wrong belief can be tried out: --set observer.friction_heat_fraction=0.2. All [A].\n", ""),
+        ("    profile: simulated_jacket       #",
+         "    heat_off: fallback              # [A] it has no lease; try it out: hub warm, cable off. Else: relay\n"
+         "    profile: eurotherm_3200         #"),
         ("# air around a real rig; the simulated rig's is sim.ambient", "# air around the rig"),
     )  # fmt: skip
 
