@@ -26,7 +26,7 @@ from tester.machine.tickers import collector_at_rest
 
 TURNING_RAD_S = 0.8 / 0.045
 HEATER_W = 50.0
-CELL, THERMOMETER, JACKET = "four_axis_transmitter", "calex_pyrominibus", "eurotherm_3200"
+CELL, THERMOMETER, JACKET = "four_axis_transmitter", "calex_pyrominibus", "simulated_jacket"
 
 PLANT_TICKS: dict[str, tuple[float, float, float, float]] = {
     "plant, sliding at 100 Hz": (0.01, 200.0, 0.5, TURNING_RAD_S),

@@ -31,7 +31,8 @@ class HeatingJacket(Device):
     def __init__(self, profile: DeviceProfile, unit_id: int, link: ModbusLink, lease_s: float = LEASE_S) -> None:
         """Put the controller on ``link``; ``lease_s`` goes to its off-line time, where the profile has one.
 
-        ``has_lease`` tells whether it does: if not, the hardware must switch the heat off when the PC is silent.
+        ``has_lease`` tells whether it does. ``ends_s`` is when it heats no more by itself without a setpoint, s: by its
+        lease, or by a setpoint of its own; None: the hardware must switch the heat off when the PC is silent.
         Raises ProfileError for a profile without pv, output, setpoint, status, or a way to write setpoint and run.
         """
         profile.expect("jacket")
@@ -57,6 +58,7 @@ class HeatingJacket(Device):
         self._unconfirmed = False
         switch = self._switch = profile.switches["run"]
         self.has_lease = "lease" in profile.writes
+        self.ends_s: float | None = lease_s if self.has_lease else profile.falls_back_s
         self.counts = 0
         self.status = 0
         self._status_s = -inf

@@ -44,6 +44,10 @@ class DeviceSpec:
     unit_id: int
     shows: Mapping[str, str | float] = field(default_factory=dict[str, str | float])
     """Of a further sensor, by channel: a quantity of the plant, or a number in the channel's unit."""
+    part_of: str = ""
+    """Of a load cell of several transmitters: the machine's device that it is a part of."""
+    channels: Mapping[str, str] = field(default_factory=dict[str, str])
+    """Of such a part: the machine's names of the profile's channels, where they differ."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -157,7 +161,7 @@ def further_sensors(spec: RigSpec, own: Container[str], plant: object) -> dict[s
     """
     found: dict[str, ProfileSlave] = {}
     for name, device in spec.devices.items():
-        if name not in own:
+        if name not in own and not device.part_of:
             quantities: dict[str, Quantity | float] = {}
             for channel, shown in device.shows.items():
                 quantities[channel] = PlantQuantity(plant, shown) if isinstance(shown, str) else shown

@@ -42,8 +42,9 @@ _MOST_REGISTERS = 125
 """Registers in one read (Modbus application protocol V1.1b3, 6.3)."""
 SATURATED_SHARE = 0.98
 """Share of a load cell's range from which a channel counts as saturated, unless its profile says otherwise [A]."""
-_FORCES = ("fx", "fy", "fz", "mz")
-"""Longitudinal, lateral and normal force (N), moment about the vertical (N m), in the wheel's frame."""
+_FORCES = ("fx", "fy", "fz", "mz", "force")
+"""Longitudinal, lateral and normal force (N), moment about the vertical (N m), in the wheel's frame; ``force`` (N) is
+that of a transmitter with one channel: which of them it measures the rig file says."""
 _FIRST_READ: dict[Kind, tuple[str, ...]] = {"load_cell": _FORCES, "ir_thermometer": ("surface",)}
 """Of these channels the first read of a kind must hold one at least, and the status."""
 UNKNOWN = "unknown"
@@ -218,6 +219,7 @@ def _profile(name: str, top: _Table) -> DeviceProfile:
         switches=_switches(top.table("switches")),
         tare=top.flag("tare", cell),
         saturated=top.share("saturated", SATURATED_SHARE if cell else None),
+        falls_back_s=top.number("falls_back_s") if "falls_back_s" in top else None,
     )
     top.end()
     return profile

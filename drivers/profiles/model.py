@@ -216,6 +216,10 @@ class DeviceProfile:
     """Share of its range, to either side, from which a channel counts as saturated and the reading as invalid; None =
     a value is plausible from ``least`` to ``greatest``."""
 
+    falls_back_s: float | None = None
+    """Of a controller: without a setpoint for so long, s, it goes on with one of its own, which its set-up makes one
+    of no heat; None = it does not."""
+
     def __deepcopy__(self, memo: dict[int, object]) -> DeviceProfile:
         """Return itself: nothing in it changes."""
         return self

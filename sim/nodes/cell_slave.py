@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from math import floor, inf
-from typing import Protocol
+from typing import Final, Protocol
 
 from drivers.profiles.model import LIMITS, DeviceProfile
 from sim.nodes.dither import PATTERN
 from sim.nodes.modbus_slave import ILLEGAL_ADDRESS, ModbusSlave
+
+_AS_NAMED: Final[Mapping[str, str]] = {}
 
 
 class ForceSource(Protocol):
@@ -19,14 +22,21 @@ class ForceSource(Protocol):
 
 
 class CellSlave(ModbusSlave):
-    """A transmitter with any of the channels fx, fy, fz, mz, sampled whenever its registers are read.
+    """A transmitter with any of the channels fx, fy, fz, mz, by whatever names its profile has them.
+
+    They are sampled whenever its registers are read.
 
     ``dither`` is the phase of the last bit: set it to 0 where a run must not depend on what was before.
     ``status_bits`` are set in the status whatever is measured (a broken bridge); ``frozen`` stops the sampling.
     """
 
-    def __init__(self, profile: DeviceProfile, unit_id: int, source: ForceSource) -> None:
-        """Put the registers where ``profile`` has them; ``source`` is asked at each read."""
+    def __init__(
+        self, profile: DeviceProfile, unit_id: int, source: ForceSource, forces: Mapping[str, str] = _AS_NAMED
+    ) -> None:
+        """Put the registers where ``profile`` has them; ``source`` is asked at each read.
+
+        ``forces``: which of them a channel of the profile is, where its name does not say it.
+        """
         profile.expect("load_cell")
         block = profile.blocks[0]
         registers = [(block.address, block.count)]
@@ -42,6 +52,8 @@ class CellSlave(ModbusSlave):
         names = [signal.name for signal in block.signals]
         self._plain = names == ["fx", "fy", "fz", "mz", "status"]
         self._signals = block.signals
+        self.forces: tuple[str, ...] = tuple(forces.get(name, name) for name in names)
+        """What its channels show, in the order of the block; its status among them."""
         self._scales = tuple(signal.scale for signal in block.signals)
         self._limits = tuple(_most_counts(signal.greatest, signal.scale) for signal in block.signals)
         self._overload = profile.bit("overload")
@@ -89,8 +101,8 @@ class CellSlave(ModbusSlave):
         values: dict[str, float] = {"fx": x, "fy": y, "fz": z, "mz": m}
         status = self.status_bits
         counts: list[int] = []
-        for signal, scale, limit in zip(self._signals, self._scales, self._limits, strict=True):
-            found = floor(values.get(signal.name, 0.0) / scale + PATTERN[phase])
+        for force, signal, scale, limit in zip(self.forces, self._signals, self._scales, self._limits, strict=True):
+            found = floor(values.get(force, 0.0) / scale + PATTERN[phase])
             if not -limit < found < limit:
                 status |= self._overload
                 found = _bound(found, limit)

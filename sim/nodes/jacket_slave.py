@@ -75,6 +75,7 @@ class JacketSlave(ModbusSlave):
         self._remote_bits = profile.bit("remote_fail")
         self._setpoint = profile.writes["setpoint"]
         self._lease = profile.writes.get("lease")
+        self._falls_back_s = profile.falls_back_s
         self._switch = profile.switches["run"]
         self._setup = frozenset((write.address, write.value) for write in profile.setup)
         kept = {self._switch.address, *(write.address for write in profile.setup)}
@@ -133,6 +134,10 @@ class JacketSlave(ModbusSlave):
         if self.lease_s > 0.0 and self.running and t > self._renewed_s + self.lease_s:
             self.lease_expired = True
             self._stand_by()
+        if self._falls_back_s is not None and self.running and t > self._renewed_s + self._falls_back_s:
+            # Its own setpoint, which the set-up has made one of no heat, until the next comes.
+            self.lease_expired = True
+            self.setpoint_c = 0.0
         if not broken:
             self.pv_c = pv_c
             if pv_c >= self.limit_c:

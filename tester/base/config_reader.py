@@ -31,6 +31,9 @@ FURTHER_KEYS: Final = "further keys"
 """Marks the one field of a dataclass that takes the keys that no other field has:
 ``Annotated[Mapping[str, float], FURTHER_KEYS]``. Each is a bare number; in the file they stand beside the others."""
 
+LEFT_OUT: Final = {"left out": True}
+"""Metadata of a field that is written only where it differs from its default."""
+
 SUFFIXES: dict[str, str] = {
     "m/s": "_m_s", "mm/s": "_mm_s", "rad/s": "_rad_s", "m/s2": "_m_s2", "mm/s2": "_mm_s2",
     "mm": "_mm", "m": "_m", "um": "_um", "deg": "_deg", "s": "_s", "ms": "_ms", "Hz": "_hz", "rev": "_rev",
@@ -98,8 +101,8 @@ def _takes_rest(hint: object) -> bool:
 
 
 def _may_be_empty(field: Field[Any]) -> bool:
-    """Tell whether a field is a mapping that is left out where it is empty."""
-    return get_origin(field.default_factory) is dict
+    """Tell whether a field is left out where it is empty: a mapping, or one that says so."""
+    return get_origin(field.default_factory) is dict or "left out" in field.metadata
 
 
 def _unit(hint: object) -> str | None:

@@ -63,9 +63,9 @@ class DeviceList:
         modbus: Sequence[FieldDevice],
         sensors: Sequence[Sensor],
         nodes: Sequence[SensorNode],
-        prompt: ModbusLink,
+        prompts: Sequence[ModbusLink],
     ) -> None:
-        """Take the parts; ``prompt``: the link that may ask for a tick of its own between two scans."""
+        """Take the parts; ``prompts``: the links that may ask for ticks of their own between two scans."""
         self.can = can
         self.master = master
         self.drives = tuple(drives)
@@ -76,18 +76,18 @@ class DeviceList:
         self.news = True
         self.lost = ""
         self.inspector = Inspector([(device.title, device.driver) for device in self.modbus])
-        self._prompt = prompt
+        self._prompts = tuple(prompts)
         self._can_alive = True
         self._can_heard_s = NEVER
         self._lines: tuple[tuple[LinePort, ModbusLink, ForeseeingPort | None], ...] = ()
-        self._foreseeing: ForeseeingPort | None = None
+        self._watched: tuple[tuple[ModbusLink, ForeseeingPort | None], ...] = ()
         self._foresee()
 
     def _foresee(self) -> None:
         self._lines = tuple(
             (port, link, port if isinstance(port, ForeseeingPort) else None) for port, link in self.lines
         )
-        self._foreseeing = next((port for _, link, port in self._lines if link is self._prompt), None)
+        self._watched = tuple((link, port) for _, link, port in self._lines if link in self._prompts)
 
     def rewire(self, can: CanPort, lines: Sequence[LinePort]) -> None:
         """Speak through other ports from now on; ``lines`` in the order of the ones in use."""
@@ -154,8 +154,7 @@ class DeviceList:
         """Go on without a line: what it carried is not valid any more."""
         self.lost = self.lost or f"line lost: {error}"
         self._lines = tuple(entry for entry in self._lines if entry[1] is not link)
-        if link is self._prompt:
-            self._foreseeing = None
+        self._watched = tuple((one, None if one is link else port) for one, port in self._watched)
         for station in link.stations:
             station.owner.lost(now)
         link.deadline = inf  # nobody serves it any more, and it must not ask for that either
@@ -176,14 +175,15 @@ class DeviceList:
         if scan and next_scan_s > now:
             self._prompt.scan_s = next_scan_s - now
         self.transmit_lines(now, scan=scan)
-        # Only one line may ask for a tick of its own (a retry there has to fit into a scan); the next request of any
-        # other can wait for the next scan. A simulated line knows that the reply will be in time.
-        watch = self._prompt
-        wish = watch.deadline
-        if wish >= deadline or wish >= next_scan_s > now:
-            return deadline
-        wire = self._foreseeing
-        return deadline if wire is not None and watch.only_watches and wire.arrives_s <= wish else wish
+        # Only the load cell's lines may ask for a tick of their own (a retry there has to fit into a scan); the next
+        # request of any other can wait for the next scan. A simulated line knows that the reply will be in time.
+        for watch, wire in self._watched:
+            wish = watch.deadline
+            if wish >= deadline or wish >= next_scan_s > now:
+                continue
+            if wire is None or not watch.only_watches or wire.arrives_s > wish:
+                deadline = wish
+        return deadline
 
     def transmit_lines(self, now: float, *, scan: bool = True) -> None:
         """Send what is due on the Modbus lines alone."""

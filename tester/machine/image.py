@@ -38,6 +38,8 @@ class BaseReadings:
     """First Modbus device that refuses what it is asked or says that our commands do not come; empty = none."""
     line_errors: float = 0.0
     """Largest share of failed requests among the Modbus devices, of the last few seconds, 0..1."""
+    line_fault: str = ""
+    """The device of which that is, and how many of its requests failed, in words; empty while few do."""
     safety_chain: bool = False
     guard_closed: bool = False
     inputs_at_s: float = NEVER
@@ -47,7 +49,7 @@ class BaseReadings:
 
     def faults(self) -> list[str]:
         """Return what drives, wires and devices say is wrong with them, in words."""
-        said = (self.drive_fault, self.bus_fault, self.foreign_master, self.device_fault)
+        said = (self.drive_fault, self.bus_fault, self.foreign_master, self.device_fault, self.line_fault)
         return [one for one in said if one]
 
 

@@ -13,6 +13,8 @@ PERIOD_S: Final = 0.5
 """Between two looks, s [A]. Silence and age are watched in every scan; this is for what lasts."""
 WINDOW: Final = 4
 """Looks that a share of failed requests is taken over: 2 s [A]."""
+NAMED: Final = 0.1
+"""From this share of failed requests on a device is named beside whatever trips [A]."""
 LEAST_REQUESTS: Final = 8
 """Fewer requests in the window than this say nothing about a line [A]."""
 
@@ -47,6 +49,7 @@ class Inspector:
     """Looks at the Modbus devices of a rig; ``due_s`` is when to look again.
 
     ``fault``: the first device that refuses what it is asked or says that our commands do not come; "" = none.
+    ``noisy`` names the device with the largest share, where that is one in ten or more; "" = none.
     ``line_errors``: the largest share of failed requests among the devices, of the last few seconds, 0..1.
     """
 
@@ -56,19 +59,21 @@ class Inspector:
         self.due_s = -inf
         self.fault = ""
         self.line_errors = 0.0
+        self.noisy = ""
 
     def inspect(self, now: float) -> None:
         """Take a look at ``now`` s."""
         self.due_s = now + PERIOD_S
         fault = complaint = ""
-        worst = 0.0
+        worst, title = 0.0, ""
         for record in self.records:
             share = record.look()
             if share > worst:
-                worst = share
+                worst, title = share, record.title
             device = record.device
             if not fault and device.refused is not None:
                 fault = f"{record.title}: {device.refused}"
             if not complaint and device.complaint:
                 complaint = f"{record.title}: {device.complaint}"
         self.fault, self.line_errors = fault or complaint, worst
+        self.noisy = f"{title}: {100.0 * worst:.0f} % of its requests failed" if worst >= NAMED else ""

@@ -9,9 +9,10 @@ from collections.abc import Iterator
 from drivers.profiles import ProfileError
 from drivers.profiles.model import DeviceProfile
 from tester.base.source import Location, Problem, Tree
+from tester.rig.cells import problems_of_cells
 from tester.rig.config import DeviceConfig, Rig
 from tester.rig.profiles import profile_of
-from tester.rig.sensors import channels_of, further_sensors
+from tester.rig.sensors import channels_of, further_sensors, parts_of
 
 MAX_BUS_LOAD = 0.5
 """Above this share of the bus the scan rate is refused: bursts of SDO and EMCY need the rest (fieldbus, wire sums)."""
@@ -28,7 +29,7 @@ _Found = Iterator[tuple[Location, str]]
 def problems_of(rig: Rig, tree: Tree) -> list[Problem]:
     """Return what does not fit together, the kind's own included, with positions."""
     found = [*_packaged(rig), *_nodes(rig), *_bus_load(rig), *_lines(rig), *_profiles(rig), *_channels(rig)]
-    found += [*_simulation(rig), *rig.problems()]
+    found += [*problems_of_cells(rig), *_simulation(rig), *rig.problems()]
     return [tree.problem(location, message) for location, message in found]
 
 
@@ -87,7 +88,7 @@ def _lines(rig: Rig) -> _Found:
 
 def _profiles(rig: Rig) -> _Found:
     for name, own in rig.own.items():
-        if name not in rig.devices and not own.optional:
+        if name not in rig.devices and not own.optional and not (own.joined and parts_of(rig, name)):
             yield ("devices",), f"{name} is missing"
     for name, device in rig.devices.items():
         try:
@@ -95,12 +96,15 @@ def _profiles(rig: Rig) -> _Found:
         except ProfileError as error:
             yield ("devices", name, "profile"), str(error)
             continue
-        expected = rig.own[name].profile if name in rig.own else "sensor"
-        if profile.kind != expected and (name in rig.own or profile.kind in COMMANDED):
+        whole = device.part_of or name
+        expected = rig.own[whole].profile if whole in rig.own else "sensor"
+        if profile.kind != expected and (whole in rig.own or profile.kind in COMMANDED):
             message = f"{device.profile} is a profile of kind {profile.kind} (expected {expected})"
             yield ("devices", name, "profile"), message
         if name in rig.own and (device.channels or device.simulated):
             yield ("devices", name), "channels and simulated are for further sensors"
+        if device.part_of and device.simulated:
+            yield ("devices", name, "simulated"), "a part of the load cell shows the plant's forces: leave it out"
         yield from _parameters(name, device, profile, own=name in rig.own)
 
 
@@ -116,7 +120,7 @@ def _parameters(name: str, device: DeviceConfig, profile: DeviceProfile, *, own:
         elif register is not None and not register.least <= value <= register.greatest:
             yield place, f"{value:g} is beyond {profile.title} (expected {register.least:g} to {register.greatest:g})"
         elif register is None and not (optical and key == "emissivity"):
-            keys = ("profile", "line", "unit_id", "channels", "simulated", *registers)
+            keys = ("profile", "line", "unit_id", "part_of", "heat_off", "channels", "simulated", *registers)
             near = difflib.get_close_matches(key, keys, n=1)
             meant = f", did you mean {near[0]}?" if near else ""
             yield place, f'unknown key "{key}"{meant}'

@@ -10,11 +10,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, fields, make_dataclass
 from datetime import date
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, TypeVar
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Final, Literal, TypeVar
 
 from drivers.axis import AxisConfig
 from drivers.canopen.node_config import NodeConfig
-from tester.base.config_reader import FURTHER_KEYS, Range, as_text, as_tree
+from tester.base.config_reader import FURTHER_KEYS, LEFT_OUT, Range, as_text, as_tree
 from tester.base.source import Location
 from tester.quantities import Quantities
 from tester.rig.ceilings import Ceiling
@@ -68,6 +68,13 @@ class LineConfig:
     framing: Literal["rtu", "socket"]
 
 
+HEAT_OFF: Final = {
+    "fallback": "the controller goes on with a setpoint of its own that asks for no heat (falls_back_s of its profile)",
+    "relay": "a watchdog relay, hard-wired, takes the heater's supply",
+}
+"""What may stand as ``heat_off``, and what it says of the machine."""
+
+
 @dataclass(frozen=True, slots=True)
 class DeviceConfig:
     """One Modbus device: its profile in drivers/profiles, its line and its address there."""
@@ -79,6 +86,10 @@ class DeviceConfig:
     """Other names for channels of the profile, where two sensors of a kind are on the rig."""
     simulated: Mapping[str, str | float] = field(default_factory=dict[str, str | float])
     """What channels show on a simulated rig: a quantity of its plant by name, or a number in the channel's unit."""
+    part_of: str = field(default="", metadata=LEFT_OUT)
+    """The machine's own device of which it measures a part: a load cell of several transmitters."""
+    heat_off: str = field(default="", metadata=LEFT_OUT)
+    """Of a controller that heats and has no lease: what takes the heat when the PC is silent (``HEAT_OFF``)."""
     parameters: Annotated[Mapping[str, float], FURTHER_KEYS] = field(default_factory=dict[str, float])
     """What is written to a sensor at every connect, by the profile's names (``emissivity``), in its units."""
 
@@ -90,6 +101,10 @@ class OwnDevice:
     title: str
     profile: str
     optional: bool = False
+    channels: tuple[str, ...] = ()
+    """What it must measure, by the names of its profile's channels."""
+    joined: bool = False
+    """It may be several transmitters, which measure that together (``DeviceConfig.part_of``)."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -59,8 +59,13 @@ def title_of(rig: Rig, device: str) -> str:
 
 
 def further_sensors(rig: Rig) -> dict[str, DeviceConfig]:
-    """Return the sensors besides the machine's own, in the order of the rig file."""
-    return {name: device for name, device in rig.devices.items() if name not in rig.own}
+    """Return the sensors besides the machine's own and their parts, in the order of the rig file."""
+    return {name: device for name, device in rig.devices.items() if name not in rig.own and not device.part_of}
+
+
+def parts_of(rig: Rig, own: str) -> dict[str, DeviceConfig]:
+    """Return the transmitters that a device of the machine is made of, in the order of the rig file; none = itself."""
+    return {name: device for name, device in rig.devices.items() if device.part_of == own}
 
 
 def further_channels(rig: Rig) -> tuple[FurtherChannel, ...]:

@@ -45,4 +45,6 @@ def spec_of(rig: Rig) -> RigSpec:
 
 
 def _device(config: DeviceConfig) -> DeviceSpec:
-    return DeviceSpec(profile_of(config.profile), config.line, config.unit_id, config.simulated)
+    return DeviceSpec(
+        profile_of(config.profile), config.line, config.unit_id, config.simulated, config.part_of, config.channels
+    )

@@ -129,4 +129,4 @@ def test_a_chamber_without_supply_is_not_valid_and_starts_in_standby() -> None:
 
 def test_a_profile_of_another_kind_is_refused() -> None:
     with pytest.raises(ProfileError, match="describes a jacket, not a chamber"):
-        ClimateChamber(load_profile("eurotherm_3200"), 1, rig()[0].link)
+        ClimateChamber(load_profile("simulated_jacket"), 1, rig()[0].link)

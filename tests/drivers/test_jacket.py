@@ -16,7 +16,7 @@ from sim.wires.modbus_wire import Impairment
 from tests.drivers.modbus_bench import Bench, refusal, reply
 from tests.drivers.modbus_rig import Quantities, Rig
 
-PROFILE = load_profile("eurotherm_3200")
+PROFILE = load_profile("simulated_jacket")
 
 
 def answer(bench: Bench, registers: dict[int, tuple[int, ...]], now: float) -> None:
@@ -295,3 +295,53 @@ def test_an_echo_of_the_wrong_register_does_not_end_the_set_up() -> None:
     bench.serve(0.03, (0.02, with_crc(bytes.fromhex("010600C80001"))))
     assert not jacket.ready
     assert len(bench.frames) == 1
+
+
+# the real controller, which has no lease -----------------------------------------------------------------------------
+
+REAL = load_profile("eurotherm_3200")
+
+
+def test_without_a_lease_the_setpoint_that_it_falls_back_to_is_set_and_read_back() -> None:
+    bench = Bench(baud=38400)
+    jacket = HeatingJacket(REAL, 1, bench.link)
+    bench.serve(0.0)
+    at = 0.0
+    while not jacket.ready:
+        at += 0.03
+        answer(bench, {24: (0,), 15: (0,), 276: (1,)}, at)
+    assert [frame[:6].hex() for frame in bench.frames[:7]] == [
+        "010600c70001",  # 199: standby
+        "010600180000",  # 24: SP1 0 degC
+        "010300180001",
+        "0106000f0000",  # 15: SP1 selected
+        "0103000f0001",
+        "010601140001",  # 276: remote setpoint
+        "010301140001",
+    ]
+    assert (jacket.has_lease, jacket.ends_s) == (False, 5.0)
+
+
+def test_one_that_keeps_another_setpoint_to_fall_back_to_is_refused() -> None:
+    bench = Bench(baud=38400)
+    jacket = HeatingJacket(REAL, 1, bench.link)
+    bench.serve(0.0)
+    for number in range(1, 4):
+        answer(bench, {24: (800,)}, 0.03 * number)
+    assert jacket.refused == "setpoint 1, to which it falls back: register holds 800, expected 0"
+
+
+def test_without_setpoints_the_real_controller_heats_no_more_after_5_s_and_says_so() -> None:
+    source = Quantities()
+    slave = JacketSlave(REAL, 1, source)
+    made = Rig(38400, slave)
+    jacket = HeatingJacket(REAL, 1, made.link)
+    made.run(3.0, Command(jacket, 80.0))
+    assert slave.heater_w > 0.0
+    made.run(4.0)
+    assert slave.heater_w > 0.0
+    made.run(3.0)
+    assert (slave.heater_w, slave.setpoint_c, jacket.remote_failed) == (0.0, 0.0, True)
+    made.run(2.0, Command(jacket, 80.0))
+    assert slave.heater_w > 0.0
+    assert not jacket.remote_failed

@@ -6,6 +6,7 @@ from math import inf, isnan
 
 import pytest
 
+from drivers.crc16 import with_crc
 from drivers.profiles import ProfileError, load_profile
 from drivers.sensor import Sensor
 from sim.nodes.cell_slave import CellSlave
@@ -148,21 +149,41 @@ def test_a_lost_cell_is_invalid_and_is_identified_anew_when_it_is_back() -> None
     assert len([1 for _, data in made.log.requests("010300640001") if data]) > 1
 
 
-def test_a_transmitter_with_one_channel_gives_that_and_the_others_unknown() -> None:
-    profile = load_profile("laumas_tlb")
+def test_a_transmitter_with_one_channel_gives_its_force_with_the_sign_of_the_status() -> None:
     bench = Bench()
-    cell = Sensor(profile, 1, bench.link, CHANNELS)
+    cell = Sensor(load_profile("laumas_tlb"), 1, bench.link)
     bench.serve(0.0)
     # Laumas: the magnitude, its sign in bit 7 of the status; 1000 counts of 0.01 kg.
     bench.serve(0.01, (0.005, reply(0x0880, 0, 1000)))
-    assert cell.values[2] == pytest.approx(-98.0665)
-    assert isnan(cell.values[0])
+    assert cell.values == [pytest.approx(-98.0665)]
     assert cell.valid
+
+
+def test_a_dat_400_gives_a_signed_force_behind_its_status() -> None:
+    bench = Bench()
+    cell = Sensor(load_profile("dat_400"), 4, bench.link)
+    bench.serve(0.0)
+    assert bench.frames == [with_crc(bytes.fromhex("040300000003"))]  # 40001 to 40003
+    bench.serve(0.01, (0.005, reply(0x0002, 0xFFFF, 0xFC18, unit_id=4)))
+    assert cell.values == [pytest.approx(-98.0665)]
+    assert cell.valid
+    bench.serve(0.02)
+    bench.serve(0.03, (0.025, reply(1 << 5, 0, 1000, unit_id=4)))
+    assert not cell.valid  # overload
+
+
+def test_a_channel_that_the_sensor_does_not_have_is_unknown() -> None:
+    bench = Bench()
+    cell = Sensor(load_profile("one_axis_transmitter"), 1, bench.link, CHANNELS)
+    bench.serve(0.0)
+    bench.serve(0.01, (0.005, reply(0, 2500, 0)))
+    assert cell.values[0] == pytest.approx(2.5)
+    assert isnan(cell.values[2])
 
 
 def test_a_profile_without_forces_is_refused() -> None:
     with pytest.raises(ProfileError, match="describes a jacket"):
-        Sensor(load_profile("eurotherm_3200"), 1, Bench().link)
+        Sensor(load_profile("simulated_jacket"), 1, Bench().link)
 
 
 @pytest.mark.parametrize("delay_s", [0.011, 0.014, 0.017])

@@ -348,7 +348,7 @@ IMPAIRMENTS = (None, "late", "silence", "split", "corrupt", "noise", "lost", "wr
 
 def three_devices_in_trouble(sparing: bool, period_s: float) -> Rig:
     """Return a line after 20 s with three devices, changing setpoints and every kind of impairment."""
-    source, profiles = Quantities(), [load_profile(n) for n in ("eurotherm_3200", "calex_pyrominibus")]
+    source, profiles = Quantities(), [load_profile(n) for n in ("simulated_jacket", "calex_pyrominibus")]
     cell = load_profile("four_axis_transmitter")
     slaves = (JacketSlave(profiles[0], 1, source), IrSlave(profiles[1], 2, source), CellSlave(cell, 3, source))
     rig = Rig(38400, *slaves, period_s=period_s, sparing=sparing)

@@ -78,7 +78,7 @@ def test_the_thermometer_sets_its_emissivity_and_reads(server: ModbusServer, exc
 
 def test_the_jacket_is_set_up_commanded_and_read(server: ModbusServer, exchange: Exchange) -> None:
     server.data_bank.set_holding_registers(1, [853, 0, 0, 425, 900])
-    jacket = HeatingJacket(load_profile("eurotherm_3200"), 1, exchange.link)
+    jacket = HeatingJacket(load_profile("simulated_jacket"), 1, exchange.link)
     jacket.enable(True)
     jacket.set_setpoint(90.0)
     exchange.until(lambda: jacket.valid and server.data_bank.get_holding_registers(199) == [0])

@@ -18,7 +18,7 @@ from tests.drivers.modbus_rig import Quantities
 
 CELL = load_profile("four_axis_transmitter")
 INFRARED = load_profile("calex_pyrominibus")
-JACKET = load_profile("eurotherm_3200")
+JACKET = load_profile("simulated_jacket")
 
 
 def read(slave: ModbusSlave, address: int, count: int, t: float = 0.0) -> bytes:
@@ -128,7 +128,7 @@ def test_a_one_channel_transmitter_puts_the_sign_into_the_status() -> None:
     profile = load_profile("laumas_tlb")
     source = Quantities()
     source.forces = (0.0, 0.0, -98.07, 0.0)
-    status, magnitude = profile.blocks[0].unpack(read(CellSlave(profile, 1, source), 6, 3))
+    status, magnitude = profile.blocks[0].unpack(read(CellSlave(profile, 1, source, {"force": "fz"}), 6, 3))
     assert (status, magnitude) == (1 << 7, pytest.approx(1000, abs=1))
 
 

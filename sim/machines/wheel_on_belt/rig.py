@@ -31,8 +31,15 @@ PRESS_TRAVEL_MM: Final = 30.0
 """Travel of the press from fully lifted, mm [A]: beyond a wheel worn to its hub."""
 PRESS_SPRING_MM_S: Final = -20.0
 """Speed at which the spring retracts an unpowered press, mm/s [A]."""
+FORCES: Final = ("fx", "fy", "fz")
+"""What the load cell has to measure, each by a transmitter; one may measure all."""
 _NEAR_LIMIT: Final = 0.5
 """Below this share of the force that the press can bring about no single step brings it there."""
+
+
+def _measuring(cells: Mapping[str, CellSlave], force: str) -> CellSlave:
+    """Return the transmitter that measures a force; the first where none does."""
+    return next((cell for cell in cells.values() if force in cell.forces), next(iter(cells.values())))
 
 
 class WheelRig:
@@ -52,14 +59,22 @@ class WheelRig:
         self.can = can_wire(spec.bitrate)
         self._spring_mm_s = PRESS_SPRING_MM_S if parameters.press_on_power_loss == "retract" else 0.0
         self.axes = {name: self._drive(name, config) for name, config in spec.axes.items()}
-        cell, ir, jacket = (spec.devices[name] for name in ("load_cell", "ir_thermometer", "jacket"))
-        self.cell = CellSlave(cell.profile, cell.unit_id, self.plant)
+        ir, jacket = (spec.devices[name] for name in ("ir_thermometer", "jacket"))
+        self.cells = {
+            name: CellSlave(one.profile, one.unit_id, self.plant, one.channels)
+            for name, one in spec.devices.items()
+            if "load_cell" in (name, one.part_of)
+        }
+        """The load cell's transmitters: one, or several."""
+        self.cell = _measuring(self.cells, "fz")
+        """The transmitter of the normal force."""
         self.ir = IrSlave(ir.profile, ir.unit_id, self.plant, sensor_c=parameters.ambient)
         self.jacket = JacketSlave(jacket.profile, jacket.unit_id, self.plant)
         self.devices: dict[str, ModbusSlave] = {
             "load cell": self.cell, "thermometer": self.ir, "jacket": self.jacket
         }  # fmt: skip
-        own: dict[str, ModbusSlave] = {"load_cell": self.cell, "ir_thermometer": self.ir, "jacket": self.jacket}
+        self.devices |= {f"load cell {force}": _measuring(self.cells, force) for force in FORCES}
+        own: dict[str, ModbusSlave] = {**self.cells, "ir_thermometer": self.ir, "jacket": self.jacket}
         self.sensors = further_sensors(spec, own, self.plant)
         self.nodes = [SimulatedSensorNode(config, self.can) for config in spec.nodes]
         self.lines = lines_of(spec, {**own, **self.sensors})
@@ -233,6 +248,8 @@ class WheelRig:
     def begin_repeat(self, condition: int, repeat: int, attempt: int, same_as: int = 0) -> None:
         """Begin a repeat: the random streams, and the sensors' dither, start anew with it."""
         self.plant.begin_repeat(condition, repeat, attempt, same_as)
-        self.cell.dither = self.ir.dither = 0
+        self.ir.dither = 0
+        for cell in self.cells.values():
+            cell.dither = 0
         for sensor in self.sensors.values():
             sensor.dither = 0

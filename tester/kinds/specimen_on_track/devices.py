@@ -61,7 +61,7 @@ class TrackDevices(DeviceList):
     ) -> None:
         """Take the drivers; ``modbus``: every device on the lines, ``sensors`` and ``nodes``: further ones."""
         drives = (track,) if lift is None else (track, lift)
-        super().__init__(can, master, drives, lines, modbus, sensors, nodes, cell.link)
+        super().__init__(can, master, drives, lines, modbus, sensors, nodes, (cell.link,))
         self.track, self.lift = track, lift
         self.cell = cell
         self.chamber, self.thermometer, self.pyrometer = chamber, thermometer, pyrometer
@@ -113,7 +113,7 @@ class TrackDevices(DeviceList):
         inspector = self.inspector
         if now >= inspector.due_s:
             inspector.inspect(now)
-            r.device_fault, r.line_errors = inspector.fault, inspector.line_errors
+            r.device_fault, r.line_errors, r.line_fault = inspector.fault, inspector.line_errors, inspector.noisy
 
     def _follow_track(self, stamp_s: float, actual: float) -> None:
         """Take in a reading of the track: its place (m), or its speed (m/s)."""

@@ -135,7 +135,7 @@ class TrackConfig(Rig):
     )  # fmt: skip
     manual: ClassVar[tuple[str, ...]] = ("lift",)
     own: ClassVar[Mapping[str, OwnDevice]] = {
-        "load_cell": OwnDevice("load cell", "load_cell"),
+        "load_cell": OwnDevice("load cell", "load_cell", channels=("fx",)),
         "chamber": OwnDevice("chamber", "chamber", optional=True),
         "pyrometer": OwnDevice("pyrometer", "ir_thermometer", optional=True),
         "thermometer": OwnDevice("thermometer", "ir_thermometer", optional=True),

@@ -27,6 +27,12 @@ def _drives(rig: RigConfig) -> str:
 
 
 def _heating(rig: RigConfig) -> str:
-    if "lease" in profile_of(rig.devices["jacket"].profile).writes:
+    jacket = rig.devices["jacket"]
+    profile = profile_of(jacket.profile)
+    if "lease" in profile.writes:
         return f"The jacket stops heating by itself ({LEASE_S:g} s without a command)."
+    if jacket.heat_off == "fallback" and profile.falls_back_s is not None:
+        return f"The jacket falls back to a setpoint of no heat ({profile.falls_back_s:g} s without a command)."
+    if jacket.heat_off == "relay":
+        return "The jacket has no watchdog of its own: a relay, the rig file says, takes its supply. See to it."
     return "The jacket has no watchdog of its own: switch its supply off."

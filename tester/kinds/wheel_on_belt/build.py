@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from math import log, nan, pi
 
 from drivers.canopen.master import CanMaster
 from drivers.canopen.sensor_node import SensorNode
 from drivers.jacket import HeatingJacket
-from drivers.modbus import Device, ModbusLink
-from drivers.sensor import Sensor
+from drivers.modbus import Device
 from drivers.servo import ServoDrive
 from tester.analysis.closest import combining_of
 from tester.kinds.wheel_on_belt.context import Attendant, Context
@@ -30,6 +28,7 @@ from tester.kinds.wheel_on_belt.process import Demand, Readings, Setpoints
 from tester.kinds.wheel_on_belt.recipe.steps import WheelPlan
 from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.kinds.wheel_on_belt.rig.sections import VELOCITY_AXES
+from tester.machine.cells import link_of, load_cell_of, sensor_of
 from tester.machine.connect import Connector
 from tester.machine.devices import FieldDevice
 from tester.machine.engine import Engine
@@ -39,7 +38,6 @@ from tester.machine.prompts import Prompts
 from tester.machine.run import Run
 from tester.machine.sampler import Sampler
 from tester.recipe.plan import Plan
-from tester.rig import DeviceConfig, LineConfig
 from tester.rig.profiles import profile_of
 from tester.rig.sensors import further_sensors, quantities_on, title_of
 from tester.store.recorder import Recorder
@@ -61,13 +59,13 @@ def build_devices(rig: RigConfig, ports: Ports) -> Devices:
     nodes = [SensorNode(config) for config in rig.can.nodes.values()]
     for node in nodes:
         master.add(node)
-    links = {name: _link(config) for name, config in rig.lines.items()}
-    cell = _sensor(rig.devices["load_cell"], links, CELL_CHANNELS)
-    thermometer = _sensor(rig.devices["ir_thermometer"], links, SURFACE_CHANNELS)
+    links = {name: link_of(config) for name, config in rig.lines.items()}
+    cell, transmitters = load_cell_of(rig, links, CELL_CHANNELS, rig.interlocks.cell_skew_s)
+    thermometer = sensor_of(rig.devices["ir_thermometer"], links, SURFACE_CHANNELS)
     heating = rig.devices["jacket"]
     jacket = HeatingJacket(profile_of(heating.profile), heating.unit_id, links[heating.line])
-    further = {name: _sensor(config, links) for name, config in further_sensors(rig).items()}
-    drivers: dict[str, Device] = {"load_cell": cell, "ir_thermometer": thermometer, "jacket": jacket, **further}
+    further = {name: sensor_of(config, links) for name, config in further_sensors(rig).items()}
+    drivers: dict[str, Device] = {**transmitters, "ir_thermometer": thermometer, "jacket": jacket, **further}
     return Devices(
         can=ports.can,
         master=master,
@@ -82,16 +80,8 @@ def build_devices(rig: RigConfig, ports: Ports) -> Devices:
         ],
         sensors=list(further.values()),
         nodes=nodes,
+        cell_old_s=rig.interlocks.stale_cell_s,
     )
-
-
-def _sensor(config: DeviceConfig, links: Mapping[str, ModbusLink], channels: tuple[str, ...] = ()) -> Sensor:
-    profile, link = profile_of(config.profile), links[config.line]
-    return Sensor(profile, config.unit_id, link, channels, config.parameters)
-
-
-def _link(config: LineConfig) -> ModbusLink:
-    return ModbusLink(config.framing, config.baud, config.parity)
 
 
 def loss_ratios(rig: RigConfig) -> tuple[float, float]:

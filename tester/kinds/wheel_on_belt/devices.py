@@ -14,6 +14,7 @@ from drivers.canopen.master import CanMaster
 from drivers.canopen.sensor_node import SensorNode
 from drivers.cia402 import Goal
 from drivers.jacket import HeatingJacket
+from drivers.joined_cell import LoadCell, blame, links_of
 from drivers.modbus import ModbusLink
 from drivers.ports import CanPort, LinePort
 from drivers.sensor import Sensor
@@ -66,18 +67,20 @@ class Devices(DeviceList):
         master: CanMaster,
         axes: WheelDrives,
         lines: Sequence[tuple[LinePort, ModbusLink]],
-        cell: Sensor,
+        cell: LoadCell,
         thermometer: Sensor,
         jacket: HeatingJacket,
         modbus: Sequence[FieldDevice],
         sensors: Sequence[Sensor] = (),
         nodes: Sequence[SensorNode] = (),
+        cell_old_s: float = 0.05,
     ) -> None:
         """Take the drivers; ``modbus``: every device on the lines, ``sensors`` and ``nodes``: those besides the
-        three and the drives."""
-        super().__init__(can, master, axes.present(), lines, modbus, sensors, nodes, cell.link)
+        three and the drives; ``cell_old_s``: a transmitter of the cell without a reading for so long is named."""
+        super().__init__(can, master, axes.present(), lines, modbus, sensors, nodes, links_of(cell))
         self.axes = axes
-        self.cell = cell
+        self.cell: LoadCell = cell
+        self._cell_old_s = cell_old_s
         self.thermometer = thermometer
         self.jacket = jacket
         self._positioned = tuple(axes.positioned.items())
@@ -108,6 +111,7 @@ class Devices(DeviceList):
         r.force_x_n, r.force_y_n, r.force_z_n, r.moment_z_nm = cell.values
         r.cell_valid, r.cell_at_s, r.cell_changed_s = cell.valid, cell.stamp_s, cell.changed_s
         r.cell_silent = not cell.ready
+        r.cell_fault = blame(cell, now, self._cell_old_s)
         thermometer = self.thermometer
         r.surface_c = thermometer.values[0]
         r.surface_valid, r.surface_at_s = thermometer.valid, thermometer.stamp_s
@@ -121,7 +125,7 @@ class Devices(DeviceList):
         inspector = self.inspector
         if now >= inspector.due_s:
             inspector.inspect(now)
-            r.device_fault, r.line_errors = inspector.fault, inspector.line_errors
+            r.device_fault, r.line_errors, r.line_fault = inspector.fault, inspector.line_errors, inspector.noisy
 
     def _fill_motion(self, r: Readings, axes: WheelDrives) -> None:
         wheel, belt, press = axes.wheel, axes.belt, axes.press
@@ -181,8 +185,3 @@ class Devices(DeviceList):
         jacket.enable(out.heat)
         if not out.jacket_silent:
             jacket.set_setpoint(out.hub_c)
-
-    def poll_cell_every(self, seconds: float) -> None:
-        """Poll the load cell at this period, s; 0 = with every scan."""
-        if self.cell.period_s != seconds:
-            self.cell.period_s = seconds

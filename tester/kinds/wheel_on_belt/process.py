@@ -75,6 +75,8 @@ class Readings(BaseReadings):
     cell_valid: bool = False
     cell_silent: bool = False
     """The load cell has not answered several requests in a row, and is not set up again yet."""
+    cell_fault: str = ""
+    """Which of the load cell's transmitters keeps it from being read, and why; empty with one, and while none does."""
     cell_at_s: float = NEVER
     cell_changed_s: float = NEVER
     """When a reading of the cell last differed from the one before."""
@@ -100,6 +102,11 @@ class Readings(BaseReadings):
 
     diameter_mm: float = NAN
     """Wheel diameter as it runs: the cold one and what heat has added (``procedures.wheel_life``)."""
+
+    def faults(self) -> list[str]:
+        """Return what drives, wires and devices say is wrong with them, in words; the cell's transmitter first."""
+        said = BaseReadings.faults(self)
+        return [self.cell_fault, *said] if self.cell_fault else said
 
     @property
     def cell(self) -> tuple[float, float, float, float]:

@@ -50,7 +50,7 @@ class PlainDevices(DeviceList):
             ],
             [driver for name, driver in drivers.items() if name not in rig.own],
             nodes,
-            next(iter(self.own.values())).link,
+            (next(iter(self.own.values())).link,),
         )  # fmt: skip
         self.io = next(drive for drive in self.drives if drive.config.digital_io)
         """The drive with the safety inputs."""
@@ -89,6 +89,7 @@ class PlainDevices(DeviceList):
         if now >= self.inspector.due_s:
             self.inspector.inspect(now)
             r.device_fault, r.line_errors = self.inspector.fault, self.inspector.line_errors
+            r.line_fault = self.inspector.noisy
         r.update(dt if dt <= 1.0 else 0.0)
 
     def apply(self, out: PlainSetpoints) -> None:

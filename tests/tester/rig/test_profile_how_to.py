@@ -133,7 +133,7 @@ def problems(*overrides: str) -> str:
         ("devices.torque.filter_hz=60", "60 is beyond Torque transducer TQ-50 (expected 0.5 to 50)"),
         ("devices.torque.fitler_hz=20", 'unknown key "fitler_hz", did you mean filter_hz?'),
         ("devices.torque.unit_id=2", "2 on line heat is"),
-        ("devices.torque.profile=eurotherm_3200", "a profile of kind jacket (expected sensor)"),
+        ("devices.torque.profile=simulated_jacket", "a profile of kind jacket (expected sensor)"),
         ("devices.torque.channels={nm: x}", "no such channel (the profile has torque_nm)"),
         ("devices.torque.channels={torque_nm: Torque}", "expected small letters"),
         ("devices.second={profile: torque.toml, line: heat, unit_id: 8}", "channel torque_nm is one of torque already"),

@@ -48,7 +48,7 @@ def test_a_packaged_profile_cannot_be_replaced() -> None:
 
 
 def test_an_unknown_profile_names_those_there_are() -> None:
-    with pytest.raises(ProfileError, match=r"no device profile 'nonsense' .*eurotherm_3200.*declared: acme_cell"):
+    with pytest.raises(ProfileError, match=r"no device profile 'nonsense' .*simulated_jacket.*declared: acme_cell"):
         profile_of("nonsense")
 
 

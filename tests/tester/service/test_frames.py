@@ -73,7 +73,7 @@ def lines() -> Iterator[dict[str, FarEnd]]:
     source = Quantities()
     cell = FarEnd(CellSlave(load_profile("four_axis_transmitter"), 1, source))
     heat = FarEnd(
-        JacketSlave(load_profile("eurotherm_3200"), 1, source), IrSlave(load_profile("calex_pyrominibus"), 2, source)
+        JacketSlave(load_profile("simulated_jacket"), 1, source), IrSlave(load_profile("calex_pyrominibus"), 2, source)
     )
     yield {"load_cell": cell, "heat": heat}
     cell.close()

@@ -24,6 +24,7 @@ from sim.machines.wheel_on_belt.faults import jacket as j
 from sim.machines.wheel_on_belt.faults import mechanics as k
 from sim.machines.wheel_on_belt.faults import sensors as s
 from sim.machines.wheel_on_belt.faults.exposure import Exposure
+from sim.machines.wheel_on_belt.rig import FORCES
 
 AXES = ("wheel", "belt", "press", "sideslip", "camber")
 VELOCITY_AXES = ("wheel", "belt", "press")
@@ -159,8 +160,12 @@ def _modbus_rows() -> Iterator[FaultKind]:
         yield FaultKind(f"{device} CRC error once", partial(m.Impaired, device, "corrupt", count=1), ALWAYS, RIDE, 0.0)
         yield FaultKind(f"{device} exception", partial(_exception, device), when, TRIP, budget_s, "", 4.0)
         yield FaultKind(f"{device} line unplugged", partial(m.LineGone, device), DRIVES, TRIP, 0.2 + SCAN_S)
-
-
+    for force in FORCES:
+        device, when, budget_s = f"load cell {force}", _WATCHED["load cell"], _SILENT_S["load cell"]
+        note = "of the transmitter that measures it, which may measure all"
+        yield FaultKind(f"{device} silent", partial(m.Impaired, device, "silence"), when, TRIP, budget_s, note=note)
+        yield FaultKind(f"{device} without supply", partial(m.DeviceOff, device), when, TRIP, budget_s, note=note)
+        yield FaultKind(f"{device} CRC errors", partial(m.Impaired, device, "corrupt"), when, TRIP, budget_s, note=note)
     yield FaultKind("load cell words swapped", partial(m.Impaired, "load cell", "swapped"), LOADED, TRIP, 0.1 + SCAN_S,
                     note="the order of the words of its 32-bit values was changed at the device")
     yield FaultKind("load cell half updated", partial(m.Impaired, "load cell", "torn"), LOADED, MAY, 0.0,

@@ -22,6 +22,12 @@ STALE_CELL_DELAY_S: Final = Parameter(
     because="loading at 2 mm/s brings 34 N in 0.1 s (172 N/mm at 400 N)",
 )  # fmt: skip
 
+CELL_SKEW_S: Final = Parameter(
+    "cell_skew_s", "s", "30 ms", "a cell of several transmitters: its parts are read this far apart at most [A]",
+    direction=Direction.LOWER, hardest="50 ms",
+    because="a part that is older than another by stale_cell is stale itself",
+)  # fmt: skip
+
 
 def _cell_answered_s(v: Inputs) -> float:
     r = v.readings
@@ -40,11 +46,12 @@ def _cell_still_old(v: Inputs) -> bool:
 CELL_SILENT: Final = Interlock(
     name="load cell silent",
     cause="cable, supply or address; the load is not known",
-    level="age > stale_cell, or several requests without an answer",
+    level="age > stale_cell (of a transmitter, or its parts more than cell_skew apart), or several requests"
+    " without an answer",
     condition=_cell_old,
     compared=lambda v: Compared(_cell_answered_s(v), v.parameters[STALE_CELL_S], "s"),
     unseen=_cell_still_old,
-    parameters=(STALE_CELL_S,),
+    parameters=(STALE_CELL_S, CELL_SKEW_S),
     delay=STALE_CELL_DELAY_S,
     when=LOADED,
     reaction=FAST,

@@ -39,6 +39,7 @@ class Proof(WatchdogProof):
         super().__init__(devices, follow=arming.bump_test, watchdog=arming.watchdog_proof, withhold_s=arming.withhold_s)
         self.axes = devices.axes
         self.lease = devices.jacket.has_lease
+        self.heat_off = rig.devices["jacket"].heat_off
         self.creep_m_s = arming.creep_m_s
         self.bump = Bump.WHEEL
         self.pressed_from_mm = 0.0
@@ -50,7 +51,11 @@ class Proof(WatchdogProof):
         shown = ["lifted and unloaded", "decelerations equal"]
         left_out: list[str] = []
         self.watchdogs(shown, left_out)
-        (shown if self.lease else left_out).append("jacket's lease set and read back")
+        if self.lease or self.heat_off != "fallback":
+            (shown if self.lease else left_out).append("jacket's lease set and read back")
+        else:
+            shown.append("the setpoint that the jacket falls back to set and read back")
+            left_out.append("that it falls back")
         text = "shown: " + ", ".join(shown)
         return f"{text}; NOT shown: {', '.join(left_out)}" if left_out else text
 

@@ -5,9 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from drivers.profiles import ProfileError
 from tester.base.source import Location
 from tester.kinds.wheel_on_belt.axes import POSITIONED
 from tester.kinds.wheel_on_belt.rig.press import torque_problem
+from tester.rig.cells import skew_problem
+from tester.rig.config import HEAT_OFF
+from tester.rig.profiles import profile_of
 
 if TYPE_CHECKING:
     from tester.kinds.wheel_on_belt.rig.config import RigConfig
@@ -20,7 +24,7 @@ _Found = Iterator[tuple[Location, str]]
 
 def problems_between(rig: RigConfig) -> _Found:
     """Yield what does not fit together, with its place in the file."""
-    for check in (_speeds, _decelerations, _units, _press, _temperatures):
+    for check in (_speeds, _decelerations, _units, _press, _temperatures, _skew, _heat_off):
         yield from check(rig)
 
 
@@ -63,6 +67,33 @@ def _press(rig: RigConfig) -> _Found:
     problem = torque_problem(rig)
     if problem:
         yield ("axes", "press", "screw"), problem
+
+
+def _skew(rig: RigConfig) -> _Found:
+    needed = rig.own["load_cell"].channels
+    yield from skew_problem(rig, needed, rig.interlocks.cell_skew_s)
+
+
+def _heat_off(rig: RigConfig) -> _Found:
+    """The heat ends without this program: by a lease, or by what the file says that the machine has instead."""
+    for name, device in rig.devices.items():
+        if device.heat_off and (name != "jacket" or device.heat_off not in HEAT_OFF):
+            expected = "it is the jacket's" if name != "jacket" else f"expected {' or '.join(HEAT_OFF)}"
+            yield ("devices", name, "heat_off"), f"{device.heat_off} ({expected})"
+    jacket = rig.devices.get("jacket")
+    try:
+        profile = profile_of(jacket.profile) if jacket is not None else None
+    except ProfileError:
+        return  # said elsewhere
+    if jacket is None or profile is None or rig.simulated or "lease" in profile.writes:
+        return
+    if jacket.heat_off == "fallback" and profile.falls_back_s is None:
+        message = f"{profile.title} has no setpoint of its own that it falls back to (falls_back_s): expected relay"
+        yield ("devices", "jacket", "heat_off"), message
+    elif not jacket.heat_off:
+        ways = "; ".join(f"{key}: {words}" for key, words in HEAT_OFF.items())
+        message = f"{profile.title} has no lease: it heats on when the PC is silent. Say by heat_off what ends that"
+        yield ("devices", "jacket"), f"{message} ({ways})"
 
 
 def _temperatures(rig: RigConfig) -> _Found:

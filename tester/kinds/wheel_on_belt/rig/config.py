@@ -60,7 +60,7 @@ class RigConfig(Rig):
     stated: ClassVar[tuple[str, ...]] = ("observer.wheel",)
     manual: ClassVar[tuple[str, ...]] = tuple(axis.name for axis in POSITIONED)
     own: ClassVar[Mapping[str, OwnDevice]] = {
-        "load_cell": OwnDevice("load cell", "load_cell"),
+        "load_cell": OwnDevice("load cell", "load_cell", channels=("fx", "fy", "fz"), joined=True),
         "jacket": OwnDevice("jacket", "jacket"),
         "ir_thermometer": OwnDevice("infrared thermometer", "ir_thermometer"),
     }
@@ -73,6 +73,9 @@ class RigConfig(Rig):
         ("the estimates and the thermal interlocks believe of the wheel. The simulated wheel behaves by `sim`\n",
          "the estimates and the thermal interlocks believe of the wheel. All [A].\n"),
         ("# below, so a wrong belief can be tried out: --set observer.friction_heat_fraction=0.2. All [A].\n", ""),
+        ("    profile: simulated_jacket       #",
+         "    heat_off: fallback              # [A] it has no lease; try it out: hub warm, cable off. Else: relay\n"
+         "    profile: eurotherm_3200         #"),
         ("# air around a real rig; the simulated rig's is sim.ambient", "# air around the rig"),
     )  # fmt: skip
 
