@@ -90,7 +90,7 @@ class Pty:
         os.close(self._near)
         if self._link is not None:
             with suppress(OSError):
-                if os.readlink(self._link) == self.device:
+                if str(self._link.readlink()) == self.device:
                     self._link.unlink()
 
     def _set_baud(self, baud: int) -> None:

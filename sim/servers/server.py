@@ -67,7 +67,7 @@ class RigServer:
         self.latest_s = 0.0
         self.speed = 1.0
         self.life: Life | None = None
-        self._observer = observer
+        self.observer = observer
         with ExitStack() as opened:
             self.can, self.lines = _open(rig, doors or Doors(host=host, port=port), opened)
             opened.pop_all()
@@ -117,8 +117,8 @@ class RigServer:
         for door in self._doors:
             door.deliver(t)
         if t >= self._step_due_s:
-            if self._observer is not None:
-                self._observer.observe(self.rig, self.can.taken)
+            if self.observer is not None:
+                self.observer.observe(self.rig, self.can.taken)
             while self._step_due_s <= t:
                 self._step_due_s += STEP_S
 

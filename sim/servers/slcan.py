@@ -104,7 +104,8 @@ class SlcanSession:
             rate = _rate_of(int(rest[:2], 16), int(rest[2:], 16))
         else:
             rate = None
-            valid &= (command == b"Z" and rest in (b"0", b"1")) or (command in (b"M", b"m") and len(rest) == 8 and _hex(rest))
+            accepts = command in (b"M", b"m") and len(rest) == 8 and _hex(rest)
+            valid &= accepts or (command == b"Z" and rest in (b"0", b"1"))
         if not valid:
             self._refuse()
             return

@@ -17,6 +17,8 @@ from sim.wires.modbus_wire import ModbusWire
 
 MOST_CLIENTS = 8
 """Connections of one Modbus line [A]."""
+SOCKETCAND: Final = "socketcand"
+GATEWAY: Final = "Modbus TCP"
 BUS: Final = "vcan0"
 """Name of the bus that a client is told to open; the door takes any."""
 
@@ -34,7 +36,7 @@ class SocketcandDoor:
     @property
     def place(self) -> Place:
         """Where it is: bus@host:port."""
-        return Place("socketcand", f"{BUS}@{address_of(self.listener)}")
+        return Place(SOCKETCAND, f"{BUS}@{address_of(self.listener)}")
 
     @property
     def taken(self) -> bool:
@@ -124,7 +126,7 @@ class GatewayDoor:
     @property
     def place(self) -> Place:
         """Where it is: host:port."""
-        return Place("Modbus TCP", address_of(self.listener))
+        return Place(GATEWAY, address_of(self.listener))
 
     @property
     def taken(self) -> bool:

@@ -97,8 +97,11 @@ class CommandDoor:
 
 
 class StandardInput:
-    """Commands typed at this process. A terminal is read only while this process is in its foreground: a read from the
-    background would stop it. Windows cannot wait for a console: there ``sources`` is empty, and commands go over TCP."""
+    """Commands typed at this process.
+
+    A terminal is read only while this process is in its foreground: a read from the background would stop it. Windows
+    cannot wait for a console: there ``sources`` is empty, and commands go over TCP.
+    """
 
     due_s = inf
     taken = False
