@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from drivers.canopen import objects as o
 from drivers.ports import BusLost, CanFrame, FrameByFrame
-from drivers.transports import socketcand
+from drivers.transports import slcan, socketcand
 
 if TYPE_CHECKING:
     import can
@@ -130,7 +130,7 @@ class PythonCanPort(FrameByFrame):
         if message.is_error_frame:
             self.ignored += 1
             return not message.arbitration_id & _BUS_OFF
-        if message.is_extended_id or message.is_remote_frame or message.is_fd or not message.is_rx:
+        if message.is_extended_id or message.is_remote_frame or message.is_fd:
             self.ignored += 1
             return True
         t = self._clock() if self._clock is not None else 0.0
@@ -168,8 +168,11 @@ def open_can(interface: str, channel: str, bitrate: int, clock: Callable[[], flo
     try:
         if interface == socketcand.INTERFACE:
             settings |= socketcand.settings_of(channel)
+        elif interface == slcan.INTERFACE:
+            settings |= slcan.settings()
         bus = can.Bus(interface=interface, ignore_config=True, **settings)
     except (can.CanError, OSError, ValueError, ImportError, NotImplementedError) as error:
         raise BusLost(f"cannot open {interface} {channel}: {error}") from error
     socketcand.tune(bus)
+    slcan.tune(bus)
     return PythonCanPort(bus, clock, on_urgent)

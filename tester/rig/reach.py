@@ -12,7 +12,7 @@ BUS = "vcan0"
 
 
 def reached(rig: OneRig, can: tuple[str, str], lines: Mapping[str, tuple[str, bool]], how: str) -> OneRig:
-    """Return ``rig`` as a machine: its bus at ``can`` (python-can's interface and channel), its Modbus lines at ``lines``.
+    """Return ``rig`` as a machine, its bus at ``can`` (python-can's interface and channel), its lines at ``lines``.
 
     Those are port, and whether it is one of Modbus TCP. ``how`` goes into its name. What it is to believe of the air
     around it is what the simulated rig's air is.
