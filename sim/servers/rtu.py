@@ -34,7 +34,7 @@ class RtuEar:
         """When ``serve`` has something to do next, s: a request ends, or bytes arrive."""
         # A line that is unplugged has "now" as its time: there is nothing to come for.
         arrives_s = self.wire.arrives_s if self.wire.connected else inf
-        return min(self._over_s + self.wire.gap_s, arrives_s) if self._frame else arrives_s
+        return self._over_s + self.wire.gap_s if self._frame else arrives_s
 
     def hear(self, data: bytes, now: float, *, understood: bool = True) -> None:
         """Take bytes that came at ``now`` s; ``understood``: sent with the line's own baud rate."""
@@ -66,6 +66,8 @@ class RtuEar:
     def serve(self, now: float) -> bytes:
         """Hand on a request that is complete, and return the bytes that have arrived for the computer."""
         self.serve_request(now)
+        if self._frame and self._began_s < self.wire.arrives_s:
+            return b""  # the computer speaks while a slave does: the line will say what is left of it
         try:
             return b"".join(data for _, data in self.wire.read(now))
         except BusLost:

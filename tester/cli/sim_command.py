@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import click
 
-from tester.cli.options import rig_option, seed_option, set_option
+from tester.cli.options import rig_option, risk_option, seed_option, set_option
 
 
 @click.command("sim", short_help="A simulated rig in real time, on CAN and Modbus.")
 @rig_option
 @set_option
+@risk_option
 @seed_option
 @click.option("--compound", default="", metavar="NAME", help="Rubber of the specimen on the rig (the kind's first).")
 @click.option(
@@ -57,6 +58,7 @@ from tester.cli.options import rig_option, seed_option, set_option
 def sim(
     rig_name: str,
     overrides: tuple[str, ...],
+    accept_risk: str,
     seed: int,
     compound: str,
     listen: str,
@@ -93,6 +95,7 @@ def sim(
     options = SimOptions(
         rig=rig_name,
         overrides=overrides,
+        accept_risk=accept_risk,
         seed=seed,
         compound=compound,
         doors=Doors(

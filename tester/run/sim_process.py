@@ -42,6 +42,7 @@ class SimOptions:
 
     rig: str = "sim"
     overrides: tuple[str, ...] = ()
+    accept_risk: str = ""
     seed: int = 0
     compound: str = ""
     doors: Doors = field(default_factory=Doors)
@@ -86,7 +87,7 @@ def run_sim(options: SimOptions, say: Callable[[str], None], show: Callable[[str
     Raises InvalidSource for an invalid rig file, ValueError for a door that there is not, and OSError where a port, a
     device, an interface or a file cannot be had.
     """
-    config = _on_doors(load_rig(options.rig, options.overrides), options.doors)
+    config = _on_doors(load_rig(options.rig, options.overrides, options.accept_risk), options.doors)
     kind = run_parts(config)
     machine = machines.find(kind.plant)
     with ExitStack() as stack:
