@@ -60,8 +60,10 @@ class FaultScript:
         while self.due_s <= now:
             planned = min(self.planned, key=_at)
             self.planned.remove(planned)
-            self._do(planned, scene, now)
-            self.due_s = min((one.at_s for one in self.planned), default=inf)
+            try:
+                self._do(planned, scene, now)
+            finally:  # a rig need not have the device that a fault is of
+                self.due_s = min((one.at_s for one in self.planned), default=inf)
 
     def renew(self, scene: Scene, now: float) -> None:
         """Renew what has to be renewed before each step of the rig."""

@@ -103,7 +103,10 @@ class SpoiledLife:
         while script.due_s <= now:
             due_s = max(script.due_s, self._rig.now_s)
             self._live(due_s)
-            script.act(self.scene, due_s)
+            try:
+                script.act(self.scene, due_s)
+            except (LookupError, TypeError, AttributeError) as error:  # what a fault is of, this rig does not have
+                script.happened.append((due_s, f"a fault did not begin: this rig has no {error}"))
         self._live(now)
 
     def _live(self, until_s: float) -> None:
@@ -159,7 +162,8 @@ class Console:
                 return (f"{count} ended; nothing is to come",)
             case ["catalogue", *word]:
                 known = sorted(self._known().catalogue)
-                return [phrase for phrase in known if all(one in phrase for one in word)] or ("none of that name",)
+                found = tuple(phrase for phrase in known if all(one in phrase for one in word))
+                return found or ("none of that name",)
             case ["speed", *factor]:
                 return self._speed(factor, idle=False)
             case ["idle", "speed", *factor]:
