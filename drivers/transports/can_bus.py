@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 from drivers.canopen import objects as o
 from drivers.ports import BusLost, CanFrame, FrameByFrame
-from drivers.transports import socketcand
+from drivers.transports import slcan, socketcand
 from drivers.transports.own_frames import OwnFrames
 
 if TYPE_CHECKING:
@@ -188,8 +188,11 @@ def open_can(interface: str, channel: str, bitrate: int, clock: Callable[[], flo
     try:
         if interface == socketcand.INTERFACE:
             settings |= socketcand.settings_of(channel)
+        elif interface == slcan.INTERFACE:
+            settings |= slcan.settings()
         bus = can.Bus(interface=interface, ignore_config=True, **settings)
     except (can.CanError, OSError, ValueError, ImportError, NotImplementedError) as error:
         raise BusLost(f"cannot open {interface} {channel}: {error}") from error
     socketcand.tune(bus)
+    slcan.tune(bus)
     return PythonCanPort(bus, clock, on_urgent, f"{interface} {channel}")

@@ -32,6 +32,8 @@ class FaultScript:
     """Those that wait for a scan or a step."""
     planned: list[Planned] = field(default_factory=list[Planned])
     renewed: list[Effect] = field(default_factory=list[Effect])
+    active: list[Planned] = field(default_factory=list[Planned])
+    """What has begun and is not over."""
     happened: list[tuple[float, str]] = field(default_factory=list[tuple[float, str]])
     due_s: float = inf
 
@@ -58,13 +60,23 @@ class FaultScript:
         while self.due_s <= now:
             planned = min(self.planned, key=_at)
             self.planned.remove(planned)
-            self._do(planned, scene, now)
-            self.due_s = min((one.at_s for one in self.planned), default=inf)
+            try:
+                self._do(planned, scene, now)
+            finally:  # a rig need not have the device that a fault is of
+                self.due_s = min((one.at_s for one in self.planned), default=inf)
 
     def renew(self, scene: Scene, now: float) -> None:
         """Renew what has to be renewed before each step of the rig."""
         for effect in self.renewed:
             effect.renew(scene, now)
+
+    def clear(self, scene: Scene, now: float) -> None:
+        """End everything that has begun, the last first, and forget what was to come."""
+        self.waiting.clear()
+        self.planned.clear()
+        self.due_s = inf
+        for planned in self.active[::-1]:
+            self._do(Planned(now, planned.effect, False, planned.text), scene, now)
 
     def _plan(self, injection: Injection, at_s: float) -> None:
         effect = injection.kind.effect(injection.value)
@@ -76,11 +88,13 @@ class FaultScript:
         effect = planned.effect
         if planned.begins:
             effect.begin(scene, now)
+            self.active.append(planned)
             if effect.every_step:
                 self.renewed.append(effect)
             if planned.lasts_s < inf:
                 self.planned.append(Planned(planned.at_s + planned.lasts_s, effect, False, planned.text))
         else:
+            self.active = [one for one in self.active if one.effect is not effect]
             if effect.every_step:
                 self.renewed.remove(effect)
             effect.end(scene, now)

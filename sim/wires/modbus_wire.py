@@ -83,6 +83,7 @@ class ModbusWire:
         "_last_reply",
         "_slaves",
         "arrives_s",
+        "baud",
         "collisions",
         "connected",
         "impair",
@@ -95,6 +96,7 @@ class ModbusWire:
         self, baud: int = 115200, parity: Literal["N", "E", "O"] = "N", slaves: Iterable[ModbusSlave] = ()
     ) -> None:
         """Create a quiet line at ``baud`` bit/s with 8 data bits and 1 stop bit, and put ``slaves`` on it."""
+        self.baud = baud
         self._character_s = (10 if parity == "N" else 11) / baud
         # Silence that ends a frame: 3.5 characters up to 19200 bit/s, 1.75 ms above (Modbus over serial line V1.02).
         self._gap_s = 3.5 * self._character_s if baud <= 19200 else 0.00175
@@ -121,6 +123,16 @@ class ModbusWire:
     def has(self, slave: ModbusSlave) -> bool:
         """Tell whether a slave is on this line."""
         return self._slaves.get(slave.unit_id) is slave
+
+    @property
+    def character_s(self) -> float:
+        """Time of one character on the line, s."""
+        return self._character_s
+
+    @property
+    def gap_s(self) -> float:
+        """Silence that ends a frame, s."""
+        return self._gap_s
 
     # the computer's side ---------------------------------------------------------------------------------------
 

@@ -6,22 +6,31 @@ import os
 import signal
 from collections.abc import Callable
 from contextlib import ExitStack
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from types import FrameType, TracebackType
 
 from sim import machines
+from sim.faults.can import FaultyCanWire
 from sim.rig import SimRig
+from sim.servers.connection import listen
+from sim.servers.doors import Doors
 from sim.servers.server import RigServer
+from sim.servers.tcp_doors import GATEWAY, SOCKETCAND
+from sim.servers.text_doors import CommandDoor, StandardInput
 from tester.base import clock
 from tester.base.priority import RealTimePriority
 from tester.machine.tickers import collector_at_rest
-from tester.rig.reach import BUS, reached_over_tcp
+from tester.rig import Rig
+from tester.rig.reach import reached
 from tester.run.bus_log import BusLog
 from tester.run.kinds import run_parts
 from tester.run.rigs import load_rig
+from tester.run.sim_console import Console, RigClock, SpoiledLife
 from tester.run.simulated import simulated_ports
 
+SHOWN_EVERY_S = 1.0
+"""How often the status line is written, s of this computer's clock."""
 LOG_COLUMNS = ("time_s", "clock_s", "controlled")
 """What a state log begins with, a row every step of 10 ms: seconds of the rig and of this machine's monotonic clock, 1
 while a program is on the CAN bus. The plant's true values follow, those that its kind names."""
@@ -29,14 +38,20 @@ while a program is on the CAN bus. The plant's true values follow, those that it
 
 @dataclass(frozen=True, slots=True)
 class SimOptions:
-    """What the command line said; ``port`` 0 = any free ones."""
+    """What the command line said."""
 
     rig: str = "sim"
     overrides: tuple[str, ...] = ()
+    accept_risk: str = ""
     seed: int = 0
     compound: str = ""
-    host: str = "127.0.0.1"
-    port: int = 0
+    doors: Doors = field(default_factory=Doors)
+    speed: float = 1.0
+    idle_speed: float | None = None
+    control: int | None = None
+    """Port of the commands, 0 = any free one; None = no such door."""
+    typed: bool = False
+    """Take commands from standard input."""
     write_rig: Path | None = None
     log: Path | None = None
     bus_log: Path | None = None
@@ -45,11 +60,10 @@ class SimOptions:
 class StateLog:
     """Writes the rig's state as CSV; every row is handed to the operating system at once."""
 
-    def __init__(self, path: Path, origin_s: float, machine: machines.SimulatedMachine) -> None:
-        """Create the file; ``origin_s``: this computer's monotonic clock at the rig's second 0; ``machine``: the
-        kind that the rig is."""
+    def __init__(self, path: Path, rig_clock: RigClock, machine: machines.SimulatedMachine) -> None:
+        """Create the file; ``machine``: the kind that the rig is."""
         self._file = path.open("w", encoding="utf-8", newline="\n", buffering=1)
-        self._origin_s = origin_s
+        self._clock = rig_clock
         self._machine = machine
         self._form = "{:.6f},{:.6f},{:d}" + "".join(f",{{:.{digits}f}}" for digits in self._machine.log_decimals) + "\n"
         self._file.write(",".join((*LOG_COLUMNS, *self._machine.log_columns)) + "\n")
@@ -57,47 +71,107 @@ class StateLog:
     def observe(self, rig: SimRig, controlled: bool) -> None:
         """Write a row."""
         row = self._machine.log_row(rig)
-        self._file.write(self._form.format(rig.now_s, rig.now_s + self._origin_s, controlled, *row))
+        self._file.write(self._form.format(rig.now_s, self._clock.computer_s(rig.now_s), controlled, *row))
 
     def close(self) -> None:
         """Close the file."""
         self._file.close()
 
 
-def run_sim(options: SimOptions, ready: Callable[[str], None]) -> float:
-    """Run a simulated rig until this process is asked to end (TERM or INT); return how late it has been at most, s.
+def run_sim(options: SimOptions, say: Callable[[str], None], show: Callable[[str], None] | None = None) -> float:
+    """Run a simulated rig until this process is asked to end (TERM, INT, or a command); return how late it has been at
+    most, s of this computer's clock at the speed of then.
 
-    ``ready`` is called with a line that says where everything is, once clients can connect and the rig file is
-    written. Raises InvalidSource for an invalid rig file and OSError where a port or a file cannot be had.
+    ``say`` is called with a line that says where everything is, once clients can connect and the rig file is written,
+    and with the answers to commands; ``show``, where given, every second with the rig in one line.
+    Raises InvalidSource for an invalid rig file, ValueError for a door that there is not, and OSError where a port, a
+    device, an interface or a file cannot be had.
     """
-    config = load_rig(options.rig, options.overrides)
+    config = _on_doors(load_rig(options.rig, options.overrides, options.accept_risk), options.doors)
     kind = run_parts(config)
+    machine = machines.find(kind.plant)
     with ExitStack() as stack:
         bus_log = None
         if options.bus_log is not None:
             bus_log = BusLog(options.bus_log, config)
             stack.callback(bus_log.close)
-        _, rig, hands = simulated_ports(config, options.seed, bus_log)
+        _, rig, hands = simulated_ports(config, options.seed, bus_log, FaultyCanWire)
         kind.mount(hands, options.compound)
-        origin = clock.monotonic()
+        rig_clock = RigClock(options.speed, options.idle_speed)
         state_log = None
         if options.log is not None:
-            state_log = StateLog(options.log, origin, machines.find(kind.plant))
+            state_log = StateLog(options.log, rig_clock, machine)
             stack.callback(state_log.close)
-        server = RigServer(rig, options.host, options.port, state_log)
+        life = SpoiledLife(rig)
+        console = Console(life, machine, rig, rig_clock)
+        server = RigServer(rig, "", 0, doors=options.doors)
         stack.callback(server.close)
+        server.life = life
+        server.observer = _Observers(server, rig_clock, console, state_log, say, show)
+        places = [f"CAN {server.can.place}"] + [f"{name} {place}" for name, place in server.line_places.items()]
+        if options.control is not None:
+            door = CommandDoor(listen(options.doors.host, options.control), console.command)
+            server.add(door)
+            places.append(str(door.place))
+        if options.typed:
+            server.add(StandardInput(console.command, say))
         asked = stack.enter_context(EndAsked())
-        places = [f"CAN {BUS}@{_text(server.can_address)} (socketcand)"]
-        places += [f"{name} {_text(address)} (Modbus TCP)" for name, address in server.line_addresses.items()]
         if options.write_rig is not None:
-            reached = reached_over_tcp(config, server.can_address, server.line_addresses)
-            write_atomically(options.write_rig, reached.text)
+            write_atomically(options.write_rig, _reached(config, server).text)
             places.append(f"rig file {options.write_rig}")
-        ready("ready: " + ", ".join(places))
+        say("ready: " + ", ".join(places))
         stack.callback(RealTimePriority().close)
         with collector_at_rest():
-            server.serve(lambda: clock.monotonic() - origin, asked)
-        return server.latest_s
+            server.serve(rig_clock, lambda: asked() or console.ended)
+        return server.latest_s / rig_clock.speed
+
+
+class _Observers:
+    """Whoever looks at the rig every step: the log, the clock (is it idle?), and who reads what happens."""
+
+    def __init__(
+        self,
+        server: RigServer,
+        rig_clock: RigClock,
+        console: Console,
+        state_log: StateLog | None,
+        say: Callable[[str], None],
+        show: Callable[[str], None] | None,
+    ) -> None:
+        """Look from now on."""
+        self._server, self._clock, self._console = server, rig_clock, console
+        self._state_log, self._say, self._show = state_log, say, show
+        self._shown_s = -SHOWN_EVERY_S
+
+    def observe(self, rig: SimRig, controlled: bool) -> None:
+        """Take note."""
+        if self._state_log is not None:
+            self._state_log.observe(rig, controlled)
+        self._clock.controlled(controlled)
+        self._server.speed = self._clock.speed
+        for line in self._console.happened():
+            self._say(line)
+        if self._show is not None:
+            now = clock.monotonic()
+            if now - self._shown_s >= SHOWN_EVERY_S:
+                self._shown_s = now
+                self._show(f"{'CAN taken' if controlled else 'CAN free'}  {self._console.status()}")
+
+
+def _on_doors(config: Rig, doors: Doors) -> Rig:
+    """Return the rig as its doors can carry it: a pseudo-terminal has no parity bit, so its lines have none either."""
+    if doors.lines != "rtu":
+        return config
+    return replace(config, lines={name: replace(line, parity="N") for name, line in config.lines.items()})
+
+
+def _reached(config: Rig, server: RigServer) -> Rig:
+    """Return the rig as it is reached through a server's doors."""
+    can = server.can.place
+    lines = {name: (place.at, place.speaks == GATEWAY) for name, place in server.line_places.items()}
+    spoken = sorted({can.speaks, *(place.speaks for place in server.line_places.values())})
+    how = "TCP" if spoken == sorted((SOCKETCAND, GATEWAY)) else " and ".join(spoken)
+    return reached(config, (can.speaks, can.at), lines, how)
 
 
 class EndAsked:
@@ -136,6 +210,3 @@ def write_atomically(path: Path, text: str) -> None:
     finally:
         part.unlink(missing_ok=True)
 
-
-def _text(address: tuple[str, int]) -> str:
-    return f"{address[0]}:{address[1]}"

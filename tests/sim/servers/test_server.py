@@ -10,7 +10,8 @@ import pytest
 
 from sim.machines.wheel_on_belt.rig import WheelRig
 from sim.rig import SimRig
-from sim.servers.server import MOST_CLIENTS, RigServer
+from sim.servers.server import RigServer
+from sim.servers.tcp_doors import MOST_CLIENTS, GatewayDoor
 from tester.kinds import load_rig
 from tester.run.simulated import simulated_ports
 
@@ -184,7 +185,9 @@ def test_more_modbus_clients_than_a_line_has_places_for_are_shut_out(bench: Benc
     address = bench.server.line_addresses["heat"]
     clients = [connect(address) for _ in range(MOST_CLIENTS + 1)]
     bench.run(0.05)
-    assert len(bench.server.lines["heat"].clients) == MOST_CLIENTS
+    door = bench.server.lines["heat"]
+    assert isinstance(door, GatewayDoor)
+    assert len(door.clients) == MOST_CLIENTS
     assert clients[-1].recv(100) == b""
 
 

@@ -1,0 +1,81 @@
+"""What python-can's slcan client leaves to its user: to read more than one character at a time.
+
+Measured with python-can 4.6.1: it fetches every character with a ``select`` and a ``read`` of its own and wakes up each
+millisecond while there is nothing, so a scan's answers from five drives cost its thread 270 system calls, and as often
+the interpreter's lock, which the controlling thread holds meanwhile. The client's serial port is replaced by one that
+fetches all there is and gives it out by the character.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    import can
+    from serial import Serial
+
+INTERFACE = "slcan"
+WAIT_S = 0.05
+"""How long the client sleeps for a character before it looks at its own time-out, s."""
+_PORT = "serialPortOrig"
+
+
+def settings() -> dict[str, float]:
+    """Return what the client is opened with besides channel and bit rate."""
+    return {"timeout": WAIT_S}
+
+
+def tune(bus: can.BusABC) -> None:
+    """Let a client read in one piece; other buses, and a client that keeps its port elsewhere, stay as they are."""
+    port = getattr(bus, _PORT, None)
+    if port is not None:
+        setattr(bus, _PORT, _InPieces(port))
+
+
+class _InPieces:
+    """A serial port whose characters are fetched together; everything else is the port's own."""
+
+    def __init__(self, port: Serial) -> None:
+        self._port = port
+        self._fetched = b""
+        self._at = 0
+
+    @property
+    def in_waiting(self) -> int:
+        """Characters that ``read`` gives without waiting: those fetched already, else those at the port."""
+        return len(self._fetched) - self._at or self._port.in_waiting
+
+    def read(self, size: int = 1) -> bytes:
+        """Return up to ``size`` characters; waits, as the port does, only where none are there."""
+        if self._at >= len(self._fetched):
+            first = self._port.read(1)
+            self._fetched = first + self._port.read(self._port.in_waiting) if first else b""
+            self._at = 0
+        piece = self._fetched[self._at : self._at + size]
+        self._at += len(piece)
+        return piece
+
+    def reset_input_buffer(self) -> None:
+        """Drop what was fetched and what waits."""
+        self._fetched, self._at = b"", 0
+        self._port.reset_input_buffer()
+
+    def write(self, data: bytes) -> int | None:
+        """Send."""
+        return self._port.write(data)
+
+    def flush(self) -> None:
+        """Return at once: a port hands over by itself, and to wait until the last bit is out is to hold up a scan."""
+
+    @property
+    def write_timeout(self) -> float | None:
+        """The port's, s."""
+        return self._port.write_timeout
+
+    @write_timeout.setter
+    def write_timeout(self, seconds: float | None) -> None:
+        self._port.write_timeout = seconds
+
+    def __getattr__(self, name: str) -> Any:
+        """Give the port's own."""
+        return getattr(self._port, name)

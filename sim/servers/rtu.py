@@ -1,0 +1,74 @@
+"""The far end of a serial port on a simulated Modbus line; sans-IO.
+
+A pseudo-terminal hands a whole frame over at once; on the line its characters take their time. The end of a request is
+found as a slave finds it, by the silence after its last character, reckoned from the line's baud rate. Replies leave
+when their last character is over: ``ModbusWire`` knows when.
+"""
+
+from __future__ import annotations
+
+from math import inf
+
+from drivers.ports import BusLost
+from sim.wires.modbus_wire import ModbusWire
+
+LONGEST_FRAME = 256
+"""Bytes of the longest RTU frame (Modbus over serial line V1.02, 2.5.1): of more, slaves understand nothing."""
+
+
+class RtuEar:
+    """Hears what a computer sends on a line; ``garbled`` counts bytes that came with other settings than the line's."""
+
+    __slots__ = ("_began_s", "_frame", "_over_s", "garbled", "wire")
+
+    def __init__(self, wire: ModbusWire) -> None:
+        """Listen in front of the slaves on ``wire``."""
+        self.wire = wire
+        self.garbled = 0
+        self._frame = bytearray()
+        self._began_s = 0.0
+        self._over_s = 0.0
+
+    @property
+    def due_s(self) -> float:
+        """When ``serve`` has something to do next, s: a request ends, or bytes arrive."""
+        # A line that is unplugged has "now" as its time: there is nothing to come for.
+        arrives_s = self.wire.arrives_s if self.wire.connected else inf
+        return self._over_s + self.wire.gap_s if self._frame else arrives_s
+
+    def hear(self, data: bytes, now: float, *, understood: bool = True) -> None:
+        """Take bytes that came at ``now`` s; ``understood``: sent with the line's own baud rate."""
+        if not data:
+            return
+        if not understood:
+            self.garbled += len(data)
+            return
+        self.serve_request(now)
+        if not self._frame:
+            self._began_s = self._over_s = now
+        self._over_s = max(self._over_s, now) + len(data) * self.wire.character_s
+        self._frame += data
+
+    def serve_request(self, now: float) -> None:
+        """Hand a request on whose silence is over by ``now`` s."""
+        if not self._frame or now < self._over_s + self.wire.gap_s:
+            return
+        frame = bytes(self._frame)
+        self._frame.clear()
+        if len(frame) > LONGEST_FRAME:
+            self.garbled += len(frame)
+            return
+        try:
+            self.wire.write(frame, self._began_s)
+        except BusLost:
+            return  # an unplugged line is silent
+
+    def serve(self, now: float) -> bytes:
+        """Hand on a request that is complete, and return the bytes that have arrived for the computer."""
+        self.serve_request(now)
+        if self._frame and self._began_s < self.wire.arrives_s:
+            return b""  # the computer speaks while a slave does: the line will say what is left of it
+        try:
+            return b"".join(data for _, data in self.wire.read(now))
+        except BusLost:
+            return b""

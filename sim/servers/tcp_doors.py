@@ -1,0 +1,189 @@
+"""Doors behind sockets: socketcand for the CAN bus, Modbus TCP for a line."""
+
+from __future__ import annotations
+
+import socket
+from collections.abc import Collection, Sequence
+from math import inf
+from typing import Final
+
+from drivers.ports import BusLost
+from sim.servers.connection import Connection
+from sim.servers.doors import Place, Readable
+from sim.servers.modbus_tcp import ModbusGateway, ModbusSession
+from sim.servers.socketcand import BUSY, SocketcandSession
+from sim.wires.can_wire import CanWire
+from sim.wires.modbus_wire import ModbusWire
+
+MOST_CLIENTS = 8
+"""Connections of one Modbus line [A]."""
+SOCKETCAND: Final = "socketcand"
+GATEWAY: Final = "Modbus TCP"
+BUS: Final = "vcan0"
+"""Name of the bus that a client is told to open; the door takes any."""
+
+
+class SocketcandDoor:
+    """The CAN bus behind socketcand's protocol; one client at a time."""
+
+    def __init__(self, wire: CanWire, listener: socket.socket) -> None:
+        """Wait for a client."""
+        self.listener = listener
+        self.connection: Connection | None = None
+        self._wire = wire
+        self._session = SocketcandSession()
+
+    @property
+    def place(self) -> Place:
+        """Where it is: bus@host:port."""
+        return Place(SOCKETCAND, f"{BUS}@{address_of(self.listener)}")
+
+    @property
+    def taken(self) -> bool:
+        """A client is connected."""
+        return self.connection is not None
+
+    @property
+    def due_s(self) -> float:
+        """When the next frame for the client arrives, s."""
+        return inf if self.connection is None else self._wire.arrives_s
+
+    def sources(self) -> Sequence[Readable]:
+        """Return the listener and the client."""
+        return [self.listener] if self.connection is None else [self.connection.socket, self.listener]
+
+    def read(self, ready: Collection[Readable], now: float) -> None:
+        """Serve the client before those who want to become one."""
+        if self.connection is not None and self.connection.socket in ready:
+            self._take(now)
+        if self.listener in ready:
+            self._accept()
+
+    def _accept(self) -> None:
+        """Let a client in, or turn it away where another one is connected."""
+        try:
+            accepted, _ = self.listener.accept()
+        except OSError:
+            return  # it has thought better of it
+        connection = Connection(accepted)
+        if self.connection is None:
+            self.connection, self._session = connection, SocketcandSession()
+            connection.send(self._session.outgoing)
+        else:
+            connection.send(bytearray(BUSY))
+            connection.close()
+
+    def _take(self, now: float) -> None:
+        """Put what the client sent on the bus."""
+        connection, session = self.connection, self._session
+        if connection is None:
+            return
+        data = connection.receive()
+        try:
+            for can_id, payload in session.feed(data, now):
+                self._wire.send(can_id, payload, now)
+        except BusLost:
+            session.ended = "the adapter is disconnected"
+        if connection.gone or session.ended:
+            self._close_client()
+
+    def deliver(self, now: float) -> None:
+        """Send the client what has arrived; without one, frames pass unseen."""
+        connection, session = self.connection, self._session
+        try:
+            frames = self._wire.receive(now)
+        except BusLost:
+            self._close_client()
+            return
+        if connection is None:
+            return
+        if frames:
+            session.relay(frames, now)
+        connection.send(session.outgoing)
+        if connection.gone:
+            self._close_client()
+
+    def _close_client(self) -> None:
+        if self.connection is not None:
+            self.connection.close()
+            self.connection = None
+
+    def close(self) -> None:
+        """Shut it."""
+        self.listener.close()
+        self._close_client()
+
+
+class GatewayDoor:
+    """One Modbus line behind Modbus TCP."""
+
+    def __init__(self, wire: ModbusWire, listener: socket.socket) -> None:
+        """Wait for clients."""
+        self.listener = listener
+        self.gateway = ModbusGateway(wire)
+        self.clients: dict[socket.socket, tuple[Connection, ModbusSession]] = {}
+
+    @property
+    def place(self) -> Place:
+        """Where it is: host:port."""
+        return Place(GATEWAY, address_of(self.listener))
+
+    @property
+    def taken(self) -> bool:
+        """A client is connected."""
+        return bool(self.clients)
+
+    @property
+    def due_s(self) -> float:
+        """When the gateway has something to do next, s."""
+        return self.gateway.due_s
+
+    def sources(self) -> Sequence[Readable]:
+        """Return the listener and the clients."""
+        return [*self.clients, self.listener]
+
+    def read(self, ready: Collection[Readable], now: float) -> None:
+        """Take requests, then let clients in."""
+        for client in [one for one in self.clients if one in ready]:
+            connection, session = self.clients[client]
+            self.gateway.take(session, connection.receive(), now)
+            if session.ended:
+                connection.gone = True
+        if self.listener in ready:
+            self._accept()
+
+    def _accept(self) -> None:
+        """Let a client in; beyond the most it is closed at once."""
+        try:
+            accepted, _ = self.listener.accept()
+        except OSError:
+            return
+        connection = Connection(accepted)
+        if len(self.clients) >= MOST_CLIENTS:
+            connection.close()
+        else:
+            self.clients[accepted] = (connection, ModbusSession())
+
+    def deliver(self, now: float) -> None:
+        """Send replies that have arrived, and forget clients that are gone."""
+        self.gateway.serve(now)
+        for client, (connection, session) in tuple(self.clients.items()):
+            if session.outgoing:
+                connection.send(session.outgoing)
+            if connection.gone:
+                self.gateway.forget(session)
+                connection.close()
+                del self.clients[client]
+
+    def close(self) -> None:
+        """Shut it and let go of every client."""
+        self.listener.close()
+        for connection, _ in self.clients.values():
+            connection.close()
+        self.clients.clear()
+
+
+def address_of(listener: socket.socket) -> str:
+    """Return where a socket listens, as host:port."""
+    host, port = listener.getsockname()[:2]
+    return f"{host}:{port}"

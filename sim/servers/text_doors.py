@@ -1,0 +1,150 @@
+"""Doors for commands: lines of text in, lines of text out, over TCP or on this process's own terminal."""
+
+from __future__ import annotations
+
+import os
+import socket
+import sys
+from collections.abc import Callable, Collection, Sequence
+from math import inf
+
+from sim.servers.connection import Connection
+from sim.servers.doors import Place, Readable
+from sim.servers.tcp_doors import address_of
+
+LONGEST_LINE = 1024
+"""Characters of a command; who sends more without a line's end is no person."""
+MOST_CLIENTS = 4
+
+Command = Callable[[str, float], Sequence[str]]
+"""Does what a line says at a time (s of the rig), and returns the lines of its answer."""
+
+
+class TextLines:
+    """Splits what arrives into lines."""
+
+    __slots__ = ("_buffer",)
+
+    def __init__(self) -> None:
+        """Begin with an empty one."""
+        self._buffer = b""
+
+    def feed(self, data: bytes) -> list[str]:
+        """Return the lines that are complete."""
+        *lines, self._buffer = (self._buffer + data).split(b"\n")
+        self._buffer = self._buffer[-LONGEST_LINE:]
+        return [line[-LONGEST_LINE:].decode("utf-8", errors="replace").strip() for line in lines]
+
+
+class CommandDoor:
+    """Commands over TCP on loopback: one a line; the answer ends with an empty line."""
+
+    due_s = inf
+
+    def __init__(self, listener: socket.socket, command: Command) -> None:
+        """Wait for clients."""
+        self._listener = listener
+        self._command = command
+        self._clients: dict[socket.socket, tuple[Connection, TextLines]] = {}
+
+    @property
+    def place(self) -> Place:
+        """Where it is: host:port."""
+        return Place("commands", address_of(self._listener))
+
+    @property
+    def taken(self) -> bool:
+        """A client is connected."""
+        return bool(self._clients)
+
+    def sources(self) -> Sequence[Readable]:
+        """Return the listener and the clients."""
+        return [*self._clients, self._listener]
+
+    def read(self, ready: Collection[Readable], now: float) -> None:
+        """Do what clients say, then let others in."""
+        for client in [one for one in self._clients if one in ready]:
+            connection, lines = self._clients[client]
+            for line in lines.feed(connection.receive()):
+                answer = "".join(f"{said}\n" for said in self._command(line, now))
+                connection.send(bytearray(f"{answer}\n".encode()))
+        if self._listener in ready:
+            self._accept()
+
+    def _accept(self) -> None:
+        try:
+            accepted, _ = self._listener.accept()
+        except OSError:
+            return
+        if len(self._clients) >= MOST_CLIENTS:
+            accepted.close()
+        else:
+            self._clients[accepted] = (Connection(accepted), TextLines())
+
+    def deliver(self, now: float) -> None:
+        """Send what is left to send, and forget clients that are gone."""
+        for client, (connection, _) in tuple(self._clients.items()):
+            connection.send(bytearray())
+            if connection.gone:
+                connection.close()
+                del self._clients[client]
+
+    def close(self) -> None:
+        """Shut it."""
+        self._listener.close()
+        for connection, _ in self._clients.values():
+            connection.close()
+
+
+class StandardInput:
+    """Commands typed at this process.
+
+    A terminal is read only while this process is in its foreground: a read from the background would stop it. Windows
+    cannot wait for a console: there ``sources`` is empty, and commands go over TCP.
+    """
+
+    due_s = inf
+    taken = False
+    place = Place("commands", "standard input")
+
+    def __init__(self, command: Command, say: Callable[[str], None]) -> None:
+        """Read from the process's standard input; ``say`` prints an answer."""
+        self._command = command
+        self._say = say
+        self._lines = TextLines()
+        self._open = sys.platform != "win32" and sys.stdin is not None and not sys.stdin.closed
+
+    def sources(self) -> Sequence[Readable]:
+        """Return standard input while it may be read."""
+        return [sys.stdin] if self._open and _in_foreground(sys.stdin.fileno()) else []
+
+    def read(self, ready: Collection[Readable], now: float) -> None:
+        """Do what was typed."""
+        if not self._open or sys.stdin not in ready:
+            return
+        try:
+            data = os.read(sys.stdin.fileno(), LONGEST_LINE)
+        except OSError:
+            data = b""
+        self._open = bool(data)  # at its end the rig lives on, without commands
+        for line in self._lines.feed(data):
+            for said in self._command(line, now):
+                self._say(said)
+
+    def deliver(self, now: float) -> None:
+        """Pass nothing on."""
+
+    def close(self) -> None:
+        """Leave standard input as it is."""
+        self._open = False
+
+
+def _in_foreground(descriptor: int) -> bool:
+    if sys.platform == "win32":
+        return False
+    if not os.isatty(descriptor):
+        return True
+    try:
+        return os.tcgetpgrp(descriptor) == os.getpgrp()
+    except OSError:
+        return False

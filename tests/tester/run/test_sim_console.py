@@ -1,0 +1,172 @@
+"""What a simulated rig can be told while it lives."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from contextlib import suppress
+
+import pytest
+
+from drivers.ports import BusLost
+from sim import machines
+from sim.faults.can import FaultyCanWire
+from tester.kinds import load_rig
+from tester.run.sim_console import HELP, Console, RigClock, SpoiledLife
+from tester.run.simulated import simulated_ports
+
+
+class Computer:
+    """A computer's clock, set by hand."""
+
+    def __init__(self) -> None:
+        self.s = 1000.0
+
+    def __call__(self) -> float:
+        return self.s
+
+
+class Bench:
+    """A rig and its console."""
+
+    def __init__(self, name: str = "sim") -> None:
+        _, self.rig, _ = simulated_ports(load_rig(name, ("sim.noise=0",)), 1, None, FaultyCanWire)
+        self.life = SpoiledLife(self.rig)
+        self.computer = Computer()
+        self.clock = RigClock(now=self.computer)
+        machine = machines.find("wheel_on_belt" if name == "sim" else "specimen_on_track")
+        self.console = Console(self.life, machine, self.rig, self.clock)
+        self.heard: list[tuple[float, int]] = []
+
+    def live(self, until_s: float) -> None:
+        """Live in steps of 10 ms and note the frames that arrive."""
+        while self.rig.now_s < until_s - 1e-6:
+            self.life.advance(self.rig.now_s + 0.01)
+            with suppress(BusLost):  # which is one of the faults
+                self.heard += [(t, can_id) for t, can_id, _ in self.rig.can.receive(self.rig.now_s)]
+
+    def say(self, line: str) -> Sequence[str]:
+        return self.console.command(line, self.rig.now_s)
+
+    def unheard(self, can_id: int, from_s: float, to_s: float) -> bool:
+        return not [t for t, one in self.heard if one == can_id and from_s < t <= to_s]
+
+
+@pytest.fixture
+def bench() -> Bench:
+    return Bench()
+
+
+def test_a_fault_is_there_from_now_on_for_its_time(bench: Bench) -> None:
+    bench.live(0.5)  # heartbeats do not come before somebody asks for them
+    bench.rig.can.send(0x602, bytes.fromhex("2B17100032000000"), bench.rig.now_s)  # 0x1017: 50 ms
+    bench.live(1.0)
+    [answer] = bench.say("fault belt drive heartbeat lost for 1 s")
+    assert answer == "belt drive heartbeat lost: from 1.000 s, for 1 s"
+    bench.live(3.0)
+    assert not bench.unheard(0x702, 0.5, 1.0)
+    assert bench.unheard(0x702, 1.02, 1.98)
+    assert not bench.unheard(0x702, 2.0, 3.0)
+    assert [line.split("  ")[1] for line in bench.console.happened()] == [
+        "belt drive heartbeat lost for 1 s: begins",
+        "belt drive heartbeat lost for 1 s: is over",
+    ]
+    assert bench.console.happened() == []
+
+
+def test_a_fault_may_come_later(bench: Bench) -> None:
+    bench.live(0.1)
+    bench.say("fault t=0.5 s: load cell frozen")
+    assert bench.say("faults") == ["in 0.4 s: load cell frozen"]
+    bench.live(0.6)
+    assert bench.say("faults") == ["now: load cell frozen"]
+
+
+def test_clear_ends_what_is_wrong_and_what_is_to_come(bench: Bench) -> None:
+    before = bench.rig.devices["load cell"].powered
+    bench.say("fault load cell without supply")
+    bench.say("fault t=50 s: load cell frozen")
+    bench.live(0.1)
+    assert bench.rig.devices["load cell"].powered is not before
+    assert bench.say("clear") == ("1 ended; nothing is to come",)
+    assert bench.rig.devices["load cell"].powered is before
+    assert bench.say("faults") == ("nothing is wrong",)
+    assert bench.life.due_s == float("inf")
+
+
+@pytest.mark.parametrize(
+    ("line", "why"),
+    [
+        ("fault belt drive hartbeat lost", "nearest is"),
+        ("fault operator stop", "another process"),
+        ("fault process killed", "another process"),
+        ("fault step measure: load cell frozen", "those of the program"),
+        ("fault t=0 s: load cell frozen", "already"),
+        ("fault load cell gain 3 kg", "unit"),
+        ("speed 1000", "0.01 to 100"),
+        ("speed fast", "fast"),
+        ("speed nan", "0.01 to 100"),
+        ("dance", "help"),
+        ("fault", "help"),
+    ],
+)
+def test_what_cannot_be_done_is_said(bench: Bench, line: str, why: str) -> None:
+    bench.live(0.05)
+    assert why in " ".join(bench.say(line))
+    assert bench.say("faults") == ("nothing is wrong",)
+
+
+def test_every_fault_of_the_catalogue_is_taken_or_refused_in_words() -> None:
+    for name in ("sim", "grosch"):
+        bench = Bench(name)
+        phrases = bench.say("catalogue")
+        assert len(phrases) > 50
+        for phrase in phrases:
+            [answer] = bench.say(f"fault {phrase}")
+            assert answer.startswith((f"{phrase}: from", "no fault: ")), answer
+        bench.live(0.3)
+        bench.say("clear")
+        assert bench.say("faults") == ("nothing is wrong",)
+
+
+def test_the_catalogue_is_searched_by_words(bench: Bench) -> None:
+    assert bench.say("catalogue belt heartbeat") == ("belt drive heartbeat lost",)
+    assert bench.say("catalogue unicorn") == ("none of that name",)
+
+
+def test_state_help_and_end(bench: Bench) -> None:
+    assert "wheel_m_s 0.00000" in bench.say("state")
+    assert bench.say("help") == HELP
+    assert bench.say("") == ()
+    assert not bench.console.ended
+    bench.say("end")
+    assert bench.console.ended
+    assert "nothing wrong" in bench.console.status()
+
+
+def test_the_clock_of_the_rig_runs_at_its_speed_and_never_jumps() -> None:
+    computer = Computer()
+    clock = RigClock(2.0, now=computer)
+    computer.s += 10.0
+    assert clock() == pytest.approx(20.0)
+    clock.set(speed=0.5)
+    assert clock() == pytest.approx(20.0)
+    computer.s += 10.0
+    assert clock() == pytest.approx(25.0)
+    assert clock.computer_s(24.0) == pytest.approx(computer.s - 2.0)
+
+
+def test_an_idle_speed_counts_while_nobody_is_on_the_bus() -> None:
+    computer = Computer()
+    clock = RigClock(1.0, 20.0, computer)
+    computer.s += 1.0
+    clock.controlled(True)
+    computer.s += 1.0
+    assert clock() == pytest.approx(21.0)
+    clock.controlled(False)
+    computer.s += 1.0
+    assert clock() == pytest.approx(41.0)
+
+
+def test_a_speed_says_what_it_does_to_time_outs(bench: Bench) -> None:
+    assert bench.say("speed 4") == ("4 x: 100 ms of a device's time-out are over after 25 ms of a program's clock",)
+    assert bench.say("idle speed 10")[1] == "10 x while no program is on the CAN bus"
