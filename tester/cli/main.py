@@ -53,6 +53,9 @@ COMMANDS: dict[str, CommandEntry] = {
     "report": CommandEntry("tester.cli.report_command", "report", "Write a run's results as a page to send and print."),
     "predict": CommandEntry("tester.cli.predict_command", "predict", "The friction model's value for one condition."),
     "sim": CommandEntry("tester.cli.sim_command", "sim", "A simulated rig in real time, on CAN and Modbus over TCP."),
+    "commission": CommandEntry(
+        "tester.cli.commission_command", "commission", "Guide a new rig to its first trusted coefficient."
+    ),
     "rig": CommandEntry("tester.cli.rig_commands", "rig", "Write or show a rig file."),
     "schema": CommandEntry("tester.cli.recipe_commands", "schema", "Print the JSON Schema of recipes."),
 }
