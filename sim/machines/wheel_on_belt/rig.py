@@ -222,21 +222,20 @@ class WheelRig:
     # -- the person's side ----------------------------------------------------------------------------------------
 
     def ruler(self, axis: str) -> float:
-        """Return where an axis truly is: turns of the wheel's shaft in deg, belt and press in mm, the others in deg."""
+        """Return where an axis truly is: the wheel's shaft in deg, belt and press in mm, others in deg; "diameter": of
+        the cold wheel, mm."""
         if axis == "wheel":
             return math.degrees(self._turned_rad)
         if axis == "belt":
             return 1e3 * self._travelled_m
+        if axis == "diameter":
+            return self.plant.cold_mm
         place = self.axes[axis].axis.position if axis in self.axes else 0.0
         return -place if axis in self.turned else place
 
     def hang(self, fx: float, fy: float, fz: float) -> None:
         """Hang a weight on the load cell: forces in N beside those of the contact; zeros take it off."""
         self.plant.hung = (fx, fy, fz) if fx or fy or fz else None
-
-    def contact_thermometer_c(self) -> float:
-        """Return the surface temperature that a person measures on the tread, degC."""
-        return self.plant.surface_c
 
     def install(self, specimen: int, wheel: int, compound: str, *, new_specimen: bool) -> None:
         """Mount a new wheel."""

@@ -28,10 +28,6 @@ class TwinHands(Protocol):
         """Hang a weight on the load cell, N."""
         ...
 
-    def contact_thermometer_c(self) -> float:
-        """Return the temperature of the tread, degC."""
-        ...
-
 
 class TwinPerson:
     """Answers every question of the steps as somebody at the machine would who makes no mistake."""
@@ -106,8 +102,12 @@ class TwinPerson:
             return self._jogged(question, words[1])
         if words[0] == "hang":
             return repr(abs(sum(self.hung(question))))
-        if words[0] == "tread":
-            return f"{self.hands.contact_thermometer_c():.1f}"
+        if words[0] == "retype":
+            return words[2]
+        if words[0] == "angle":
+            return f"{self.hands.ruler(words[1]):.1f}"
+        if words[0] == "diameter":
+            return f"{self.hands.ruler('diameter'):.2f}"
         if question.asks is Asks.CHOICE:
             return question.choices[0]
         if question.asks is Asks.TEXT:
