@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from tester.commission.part import CommissionPart
     from tester.fit.part import FitPart
     from tester.machine.interlock_sheet import InterlockSheet
     from tester.machine.run_parts import KindRun
@@ -50,3 +51,5 @@ class Kind:
     """What it says about recipes; None: none can be read for it."""
     fits: Callable[[], FitPart] | None = None
     """Which laws can be fitted to its conditions; None: none."""
+    commissions: Callable[[], CommissionPart] | None = None
+    """How a rig of it is commissioned; None: nobody is guided."""

@@ -57,6 +57,9 @@ COMMANDS: dict[str, CommandEntry] = {
     "doctor": CommandEntry("tester.cli.doctor_command", "doctor", "Look at a rig: what is wrong, and what to do."),
     "sdo": CommandEntry("tester.cli.device_commands", "sdo", "Read an object of a CANopen node, or write one."),
     "params": CommandEntry("tester.cli.device_commands", "params", "What devices are set to: dump it, or compare it."),
+    "commission": CommandEntry(
+        "tester.cli.commission_command", "commission", "Guide a new rig to its first trusted coefficient."
+    ),
     "rig": CommandEntry("tester.cli.rig_commands", "rig", "Write or show a rig file."),
     "schema": CommandEntry("tester.cli.recipe_commands", "schema", "Print the JSON Schema of recipes."),
 }

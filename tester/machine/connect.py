@@ -122,6 +122,9 @@ class Arming(Protocol):
 class Connector:
     """Drives the connection, tick by tick."""
 
+    timeout_s: float = TIMEOUT_S
+    """Everything must be up by then; inf where a person takes the time."""
+
     def __init__(self, devices: DeviceList, rig: Rig, arming: Arming, listen_s: float) -> None:
         """Nothing is sent before the first ``tick``, and on the CAN bus not before the listening is over."""
         self.devices = devices
@@ -191,8 +194,8 @@ class Connector:
             self._fail(f"another CANopen master is sending on this bus: {devices.master.foreign_frame}")
         elif unfit:
             self._fail(f"not armed: {unfit}")
-        elif elapsed > TIMEOUT_S:
-            self._fail(f"not up after {TIMEOUT_S:g} s: {self._missing()}")
+        elif elapsed > self.timeout_s:
+            self._fail(f"not up after {self.timeout_s:g} s: {self._missing()}")
         elif self.stage is Stage.LISTEN:
             self._listen(elapsed)
         elif not devices.busy():

@@ -77,6 +77,7 @@ class Plant:
         "force_y_n",
         "force_z_n",
         "hub_sensor",
+        "hung",
         "ir",
         "load_cell",
         "mu",
@@ -115,6 +116,8 @@ class Plant:
         self.set_relaxation(p.relaxation * p.contact.relaxation)
         self._sideslip_deg, self._cos, self._sin, self._cornering = 0.0, 1.0, 0.0, 1.0
         self._build_sensors()
+        self.hung: tuple[float, float, float] | None = None
+        """What a person has hung on the load cell, N."""
         model = ThermalModel(p.wheel, p.thermal, p.friction_heat_fraction, p.belt_conductance)
         self._flow = HeatFlow(model, p.ambient, self.hub_sensor, self.load_cell)
         self._compound = ""
@@ -427,6 +430,9 @@ class Plant:
     def forces_measured(self, t: float) -> tuple[float, float, float, float]:
         """Return what the load cell reads now (Fx, Fy, Fz in N, moment in N m); ``t`` is the time of asking."""
         fy = self.force_y_n
+        if self.hung is not None:
+            x, y, z = self.hung
+            return self.load_cell.measure(self.force_x_n + x, fy + y, self.force_z_n + z, self._arm_m * fy)
         return self.load_cell.measure(self.force_x_n, fy, self.force_z_n, self._arm_m * fy)
 
     def surface_measured_c(self, t: float) -> float:

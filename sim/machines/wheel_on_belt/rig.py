@@ -6,6 +6,7 @@ for any friction.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from math import copysign
 from typing import Final
@@ -91,6 +92,10 @@ class WheelRig:
         self._stalled = False
         self.swapped = False
         """The drives of wheel and belt are connected the wrong way round: each moves what the other should."""
+        self.turned: set[str] = set()
+        """Press or positioned axes that move the wrong way round: the motor's direction was never set."""
+        self._turned_rad = self._travelled_m = self._seen_s = 0.0
+        """How far the wheel's shaft has turned and the belt's surface has come, and until when: what marks show."""
         self._plant_s = 0.0
         self._wheel, self._belt, self._press = self.axes["wheel"], self.axes["belt"], self.axes["press"]
         self._sideslip = self.axes.get("sideslip")
@@ -128,6 +133,11 @@ class WheelRig:
     def follow(self, t1: float, still: bool) -> None:
         """Let the plant follow its drives to ``t1`` s, and load them."""
         plant = self.plant
+        if not still:
+            dt = t1 - self._seen_s
+            self._turned_rad += self.wheel_rad_s * dt
+            self._travelled_m += self.belt_m_s * dt
+        self._seen_s = t1
         elapsed = t1 - self._plant_s
         if still and elapsed < LONGEST_STEP_S - 1e-6 and plant.force_z_n == 0.0:
             return  # nothing but temperatures changes, and they take their time
@@ -140,13 +150,18 @@ class WheelRig:
         wheel_rad_s, belt_m_s = wheel_axis.value, belt_axis.value
         if self.swapped:
             wheel_rad_s, belt_m_s = belt_m_s / self._roller_m, wheel_rad_s * self._roller_m
+        press_mm, press_mm_s = press.position, press.value
+        sideslip_deg = self._sideslip.axis.position if self._sideslip is not None else 0.0
+        if self.turned:
+            press_mm, press_mm_s = (-press_mm, -press_mm_s) if "press" in self.turned else (press_mm, press_mm_s)
+            sideslip_deg = -sideslip_deg if "sideslip" in self.turned else sideslip_deg
         plant.advance(
             elapsed,
             wheel_rad_s / plant.wheel_speed.factor,
             belt_m_s / plant.belt_speed.factor,
-            press.position,
-            press.value,
-            self._sideslip.axis.position if self._sideslip is not None else 0.0,
+            press_mm,
+            press_mm_s,
+            sideslip_deg,
             self.jacket.heater_w if io is not None and io.contactor_closed else 0.0,
         )
         self._show(wheel_axis.value, belt_axis.value)
@@ -220,6 +235,22 @@ class WheelRig:
             drive.unstall()
 
     # -- the person's side ----------------------------------------------------------------------------------------
+
+    def ruler(self, axis: str) -> float:
+        """Return where an axis truly is: the wheel's shaft in deg, belt and press in mm, others in deg; "diameter": of
+        the cold wheel, mm."""
+        if axis == "wheel":
+            return math.degrees(self._turned_rad)
+        if axis == "belt":
+            return 1e3 * self._travelled_m
+        if axis == "diameter":
+            return self.plant.cold_mm
+        place = self.axes[axis].axis.position if axis in self.axes else 0.0
+        return -place if axis in self.turned else place
+
+    def hang(self, fx: float, fy: float, fz: float) -> None:
+        """Hang a weight on the load cell: forces in N beside those of the contact; zeros take it off."""
+        self.plant.hung = (fx, fy, fz) if fx or fy or fz else None
 
     def install(self, specimen: int, wheel: int, compound: str, *, new_specimen: bool) -> None:
         """Mount a new wheel."""

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Final
 from tester.kind import Kind
 
 if TYPE_CHECKING:
+    from tester.commission.part import CommissionPart
     from tester.fit.part import FitPart
     from tester.machine.interlock_sheet import InterlockSheet
     from tester.machine.run_parts import KindRun
@@ -53,6 +54,12 @@ def _fits() -> FitPart:
     return FITS
 
 
+def _commissions() -> CommissionPart:
+    from tester.kinds.wheel_on_belt.commission.steps import COMMISSIONS
+
+    return COMMISSIONS
+
+
 KIND: Final = Kind(
     name="wheel_on_belt",
     title="rubber wheel on a belt",
@@ -66,4 +73,5 @@ KIND: Final = Kind(
     runs=_runs,
     served=_served,
     fits=_fits,
+    commissions=_commissions,
 )

@@ -1,0 +1,149 @@
+"""The record of a rig's commissioning: a file of JSON lines that is only appended to.
+
+Each entry says when, who, under which rig file (its SHA-256), which step, and what came of it; it holds the hash of the
+entry before, so that a line that was changed or taken out shows (as docs/decisions/0026 for runs). An entry is on the
+disk before the next thing happens: written, flushed and synced. A line that was cut off by a kill is passed over, and
+the next entry begins on a line of its own.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Final
+
+BEGUN, READING, DONE, REFUSED = "begun", "reading", "done", "refused"
+"""What an entry is of a step: its begin, something read in it, that it passed, that it did not."""
+FIRST: Final = "0" * 64
+
+
+class RecordError(Exception):
+    """The record cannot be read or does not hold together; the message says where."""
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """One line. ``values``: numbers and texts by name, units in the names."""
+
+    at: str
+    by: str
+    rig: str
+    rig_sha256: str
+    sections: str
+    """SHA-256 of what the step depends on in the rig file."""
+    step: str
+    what: str
+    text: str = ""
+    values: Mapping[str, Any] = field(default_factory=dict[str, Any])
+    previous: str = FIRST
+    sha256: str = ""
+
+    def body(self) -> str:
+        """Return the line without its own hash."""
+        return json.dumps(
+            {
+                "at": self.at, "by": self.by, "rig": self.rig, "rig_sha256": self.rig_sha256,
+                "sections": self.sections, "step": self.step, "what": self.what, "text": self.text,
+                "values": dict(self.values), "previous": self.previous,
+            },
+            ensure_ascii=False,
+            allow_nan=False,
+        )  # fmt: skip
+
+
+class Record:
+    """The entries of a rig, oldest first."""
+
+    def __init__(self, path: Path, utc: Callable[[], str], by: str) -> None:
+        """Read what is there; raises RecordError, OSError. ``by``: who adds to it from now on."""
+        self.path = path
+        self.by = by
+        self.entries: list[Entry] = []
+        self.torn = False
+        """The last line was cut off."""
+        self._utc = utc
+        self._read()
+
+    def _read(self) -> None:
+        if not self.path.exists():
+            return
+        data = self.path.read_bytes()
+        lines = data.split(b"\n")
+        self.torn = lines[-1] != b""
+        last = FIRST
+        for number, raw in enumerate(lines, 1):
+            if not raw.strip():
+                continue
+            entry = _entry(raw)
+            if entry is None:
+                continue  # cut off by a kill; of one that was changed the next line does not follow
+            if entry.previous != last:
+                raise RecordError(f"{self.path}: line {number} does not follow from the one before: one was changed")
+            last = entry.sha256
+            self.entries.append(entry)
+
+    def add(
+        self,
+        rig: str,
+        rig_sha256: str,
+        sections: str,
+        step: str,
+        what: str,
+        text: str = "",
+        values: Mapping[str, Any] | None = None,
+    ) -> Entry:
+        """Append an entry; it is on the disk when this returns. Raises OSError, ValueError for what is no number."""
+        previous = self.entries[-1].sha256 if self.entries else FIRST
+        made = Entry(self._utc(), self.by, rig, rig_sha256, sections, step, what, text, values or {}, previous)
+        body = made.body()
+        sha256 = hashlib.sha256(body.encode()).hexdigest()
+        entry = Entry(
+            made.at, made.by, rig, rig_sha256, sections, step, what, text, made.values, previous, sha256
+        )
+        written = f'{body[:-1]}, "sha256": "{sha256}"}}\n'
+        new = not self.path.exists()
+        self.path.parent.mkdir(parents=True, exist_ok=True)
+        with self.path.open("ab") as file:
+            file.write(b"\n" * self.torn + written.encode())
+            file.flush()
+            os.fsync(file.fileno())
+        self.torn = False
+        if new:
+            _sync_folder(self.path.parent)
+        self.entries.append(entry)
+        return entry
+
+    def last(self, step: str) -> Entry | None:
+        """Return the newest entry of a step that says how it stands: readings are passed over."""
+        return next((one for one in reversed(self.entries) if one.step == step and one.what != READING), None)
+
+    def standing(self, step: str, sections: str) -> Entry | None:
+        """Return the entry by which a step has passed with these sections of the rig file; None: it is to be done."""
+        found = self.last(step)
+        return found if found is not None and found.what == DONE and found.sections == sections else None
+
+
+def _entry(raw: bytes) -> Entry | None:
+    """Return a line's entry, None where it is none or its hash is not its own."""
+    try:
+        found: dict[str, Any] = json.loads(raw)
+        sha256 = str(found.pop("sha256"))
+        entry = Entry(**found, sha256=sha256)
+    except (ValueError, TypeError, KeyError, AttributeError):
+        return None
+    return entry if hashlib.sha256(entry.body().encode()).hexdigest() == sha256 else None
+
+
+def _sync_folder(folder: Path) -> None:
+    """Let a new file's name reach the disk, where the system can be asked to (POSIX)."""
+    if os.name != "posix":
+        return
+    descriptor = os.open(folder, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)

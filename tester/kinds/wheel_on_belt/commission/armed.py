@@ -1,0 +1,114 @@
+"""A rig that was armed as before every run, with a commissioning's moves in the place of a recipe.
+
+Control, interlocks, limits and stops are those of a run: here is only who says what is wanted.
+"""
+
+from __future__ import annotations
+
+from math import nan
+from typing import Any, Final
+
+from drivers.ports import BusLost
+from tester.commission.person import Dialogue
+from tester.kinds.wheel_on_belt.build import build_run
+from tester.kinds.wheel_on_belt.context import Context
+from tester.kinds.wheel_on_belt.control.permissives import rig_bounds
+from tester.kinds.wheel_on_belt.recipe.steps import WheelPlan
+from tester.kinds.wheel_on_belt.rig import RigConfig
+from tester.machine.activity import Activity, MoveFailedError
+from tester.machine.executor import Executor, Procedures
+from tester.machine.ports import Ports
+from tester.machine.prompts import Prompts
+from tester.machine.state import Mode
+from tester.store.recorder import NullRecorder
+
+NAME: Final = "commissioning"
+
+
+class MovesExecutor(Executor[Any]):
+    """Serves one activity after the other, as a procedure hands them in; between two the demand stays."""
+
+    def __init__(self) -> None:
+        """Nothing is wanted."""
+        super().__init__(WheelPlan(NAME, (), (), 1), Procedures())
+        self.watch: Activity[Context] | None = None
+
+    def step(self, ctx: Context) -> None:
+        """Advance the activity in progress."""
+        if self.activity is None:
+            return
+        try:
+            if self.activity.step(ctx):
+                self.activity = None
+        except MoveFailedError as failed:
+            self.failed = str(failed)
+            self.finished = True
+
+
+class ArmedSeat:
+    """The rig as the later steps see it (tester.commission.step.Seat)."""
+
+    def __init__(self, rig: RigConfig, ports: Ports, hands: Any) -> None:
+        """Nothing is sent; the simulated rig gets a new wheel."""
+        self.rig = rig
+        self.hands = hands
+        self.run = build_run(rig, WheelPlan(NAME, (), (), 1), ports, hands, NullRecorder(), Prompts())
+        self.executor = MovesExecutor()
+        engine = self.run.engine
+        engine.executor = self.executor
+        engine.control.bounds = rig_bounds(rig)
+        self.ctx: Context = engine.ctx
+        hands.install(1, 1, "1#", new_specimen=True)
+        self._told = False
+        self._lost = ""
+
+    @property
+    def ready(self) -> bool:
+        """Armed: it runs."""
+        return self.run.connected and self.run.engine.control.state.mode is Mode.RUN
+
+    @property
+    def finished(self) -> bool:
+        """At rest and released."""
+        return bool(self._lost) or self.run.finished
+
+    @property
+    def reason(self) -> str:
+        """Why it ended by itself: a refusal to arm, a trip, a move that failed."""
+        trip = self.run.engine.control.state.trip
+        if trip is not None:
+            return f"{trip.name}: {trip.text}"
+        return self._lost or self.executor.failed or ("" if self._told else self.run.reason)
+
+    @property
+    def shown(self) -> str:
+        """What arming has shown of the drives."""
+        return self.run.connector.shown
+
+    def tick(self, now: float) -> float:
+        """Do what is due."""
+        try:
+            return self.run.tick(now)
+        except BusLost as lost:
+            self._lost = str(lost)
+            return now
+
+    def stop(self, why: str, *, fast: bool = False) -> None:
+        """Stop as a run does; a wheel that is warm goes on turning until it may stand."""
+        self._told = True
+        self.executor.activity = None
+        self.run.request_stop(why, fast=fast)
+
+    def abandon(self) -> None:
+        """Send safe outputs once."""
+        self.run.abandon()
+
+    def do(self, activity: Activity[Any]) -> Dialogue:
+        """Yield until an activity is done."""
+        self.executor.activity = activity
+        executor = self.executor
+        yield lambda now_s: executor.activity is None and not executor.failed
+
+    def cold(self) -> None:
+        """Want no heat."""
+        self.ctx.demand.surface_c = nan

@@ -1,0 +1,150 @@
+"""Home, watchdogs, touch and tare, and the ratio of the speeds by rolling: what the armed rig is asked, cold."""
+
+from __future__ import annotations
+
+from collections.abc import Generator
+from typing import Any, Final
+
+from tester.commission.person import Dialogue, Refused, Waits, measure
+from tester.commission.step import Notes
+from tester.kinds.wheel_on_belt.commission.armed import ArmedSeat
+from tester.kinds.wheel_on_belt.procedures.first_contact import FirstContact, Friction
+from tester.kinds.wheel_on_belt.procedures.motions import Lift, Load, TakeTare, Turn
+from tester.machine.motions import Power, Sequence, Settle
+
+ANGLE_DEG: Final = 0.5
+"""A homed axis may stand this far off straight [A]: misalignment that the budget reckons with."""
+DIAMETER_MM: Final = 0.5
+"""A new wheel's diameter may be this far off the rig file's [A]: three times what a caliper on rubber tells apart."""
+TARE_S: Final = 2.0
+ROLLING_N: Final = 50.0
+"""Load of the rolling wheel [A]: the indentation shortens its radius by some hundredths of a mm only."""
+SPEEDS_M_S: Final = (0.2, 0.5, 0.8)
+HALVINGS: Final = 6
+"""The belt's speed at which friction turns round is found by halving this often: from +-(3 % and 10 mm/s) to 0.05 %."""
+SWEEP_SHARE: Final = 0.03
+CREEP_M_S: Final = 0.010
+RATIO_SHARE: Final = 0.005
+"""Of the speeds' ratio [A]: scales are known to 0.1 %, a diameter to 0.15 mm of 90, the rolling radius to 0.05 mm."""
+
+
+def home(seat: ArmedSeat, notes: Notes) -> Dialogue:
+    """Positioned axes were homed as before every run; a person says whether their zero is straight."""
+    found: dict[str, Any] = {}
+    for name in seat.run.engine.devices.axes.positioned:
+        text = f"{name}: it was homed and stands at {seat.ctx.readings.positions[name]:.2f} deg; what does an inclinometer say?"
+        read = yield from measure(f"angle {name}", text, "deg")
+        off = read - seat.ctx.readings.positions[name]
+        found[name] = {"shown_deg": seat.ctx.readings.positions[name], "read_deg": read}
+        if not abs(off) <= ANGLE_DEG:
+            config = seat.rig.axes.driven()[name]
+            raise Refused(
+                f"home of the {name} axis: straight is {off:+.2f} deg off. In the rig file:"
+                f" axes.{name}.home_offset: {config.home_offset + off:.2f} (now {config.home_offset:g})"
+            )
+    notes.values = found
+    notes.text = "homed; " + ", ".join(f"{name} {one['read_deg']:+.2f} deg" for name, one in found.items())
+
+
+def watchdogs(seat: ArmedSeat, notes: Notes) -> Dialogue:
+    """Every drive has just stopped by itself when the heartbeat was withheld; what was not shown is refused."""
+    yield lambda now_s: True
+    shown = seat.shown
+    left_out = shown.partition("NOT shown: ")[2]
+    if left_out:
+        raise Refused(f"watchdogs not shown: {left_out} (arming.watchdog_proof, axes.*.proves_watchdog, the jacket)")
+    deadlines = {drive.config.name: drive.config.rpdo_deadline_s for drive in seat.run.engine.devices.drives}
+    without = [name for name, limit in deadlines.items() if not limit and name in ("wheel", "belt", "press")]
+    if without:
+        raise Refused(f"no deadline for setpoints (axes.*.rpdo_deadline): {', '.join(without)}")
+    notes.values = {"shown": shown, "withheld_s": seat.rig.arming.withhold_s, "deadlines_s": deadlines}
+    notes.text = shown
+
+
+def touch(seat: ArmedSeat, notes: Notes) -> Dialogue:
+    """Measure the wheel, touch it at little load, see friction turn round, and take the cell's zero."""
+    believed = seat.rig.geometry.wheel_diameter_mm
+    read = yield from measure("diameter", f"what does a caliper say of the new wheel (believed {believed:g} mm)?", "mm")
+    if not abs(read - believed) <= DIAMETER_MM:
+        raise Refused(
+            f"wheel diameter: {read:g} mm measured, the rig file has {believed:g} mm."
+            f" In the rig file: geometry.wheel_diameter: {read:g} mm"
+        )
+    yield from seat.do(FirstContact())
+    reference: list[float] = []
+    tare = _tare(seat, reference)
+    yield from seat.do(Sequence(Power(True), Lift(), tare))
+    if tare.failed:
+        raise Refused(f"tare: {tare.failed}")
+    press_mm = seat.ctx.contact.contact_mm
+    yield from seat.do(Sequence(Turn(0.0, 0.0), Power(False)))
+    notes.values = {"diameter_mm": read, "touched_mm": press_mm, "zero": reference}
+    notes.text = f"wheel {read:g} mm, touched at {press_mm:.2f} mm; zero {', '.join(f'{z:.2f}' for z in reference[:3])} N"
+
+
+def _tare(seat: ArmedSeat, reference: list[float]) -> TakeTare:
+    limits = seat.rig.interlocks
+    return TakeTare(TARE_S, reference, limits.zero_warn_n, limits.zero_stop_n, ends_run=False)
+
+
+def roll(seat: ArmedSeat, notes: Notes) -> Dialogue:
+    """Find where friction turns round at three speeds; what grows with the speed is the ratio of the scales."""
+    first = SPEEDS_M_S[0]
+    yield from seat.do(
+        Sequence(Power(True), Lift(), Turn(first, first), Settle(0.5), _tare(seat, []), Load(ROLLING_N, percent=5.0))
+    )
+    found: list[tuple[float, float]] = []
+    for speed in SPEEDS_M_S:
+        yield from seat.do(Turn(speed, speed))
+        slip = yield from _turns_round(seat, speed)
+        found.append((speed, slip))
+        notes.read("friction turns round", {"wheel_m_s": speed, "slip_m_s": slip})
+    yield from seat.do(Sequence(Turn(first, first), Lift(), Turn(0.0, 0.0), Power(False)))
+    count = len(found)
+    mean_v, mean_s = sum(v for v, _ in found) / count, sum(s for _, s in found) / count
+    square = sum((v - mean_v) ** 2 for v, _ in found)
+    ratio = sum((v - mean_v) * (s - mean_s) for v, s in found) / square
+    creep = mean_s - ratio * mean_v
+    left = sum((s - creep - ratio * v) ** 2 for v, s in found)
+    resolved = 2.0 * (SWEEP_SHARE * SPEEDS_M_S[-1] + CREEP_M_S) / 2.0**HALVINGS
+    standard = ((left / (count - 2) + resolved * resolved / 12.0) / square) ** 0.5
+    if not abs(ratio) <= RATIO_SHARE + 2.0 * standard:
+        geometry = seat.rig.geometry
+        raise Refused(
+            f"speed ratio: rolling freely the belt is {100 * ratio:+.2f} % (+-{100 * standard:.2f} %) off the wheel's rim:"
+            f" either geometry.wheel_diameter is {geometry.wheel_diameter_mm * (1.0 - ratio):.2f} mm, or in the rig file"
+            f" axes.belt.velocity_increments: {seat.rig.axes.belt.velocity_increments * (1.0 - ratio):.7g}"
+        )
+    notes.values = {
+        "ratio_error": ratio, "standard_uncertainty": standard, "creep_m_s": creep,
+        "turns_round": [list(one) for one in found],
+    }  # fmt: skip
+    notes.text = f"speed ratio off by {100 * ratio:+.2f} % (standard uncertainty {100 * standard:.2f} %), creep {1e3 * creep:.1f} mm/s"
+
+
+def _turns_round(seat: ArmedSeat, speed: float) -> Generator[Waits, str, float]:
+    """Return the slip (wheel less belt, m/s, as shown) at which friction turns round."""
+    reach = SWEEP_SHARE * speed + CREEP_M_S
+    low, high = -reach, reach
+    ends = []
+    for slip in (low, high):
+        friction = yield from _friction(seat, speed, slip)
+        ends.append(friction)
+    if not (ends[0] < 0.0 < ends[1]):
+        raise Refused(
+            f"friction does not turn round between {low:.3f} and {high:.3f} m/s of slip at {speed:g} m/s"
+            f" ({ends[0]:.1f}, {ends[1]:.1f} N): direction, scale or diameter of wheel or belt"
+        )
+    for _ in range(HALVINGS):
+        middle = 0.5 * (low + high)
+        friction = yield from _friction(seat, speed, middle)
+        low, high = (low, middle) if friction > 0.0 else (middle, high)
+    return 0.5 * (low + high)
+
+
+def _friction(seat: ArmedSeat, speed: float, slip: float) -> Generator[Waits, str, float]:
+    one = Friction(speed, speed - slip)
+    yield from seat.do(one)
+    return one.friction_n / one.count
+
+

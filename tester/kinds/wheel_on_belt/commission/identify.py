@@ -1,0 +1,39 @@
+"""Who is on the wires: every drive and device that was heard, with what it says of itself; a person says yes."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from tester.commission.person import Dialogue, Refused, choose
+from tester.commission.step import Notes
+from tester.kinds.wheel_on_belt.commission.quiet import QuietSeat
+
+
+def identify(seat: QuietSeat, notes: Notes) -> Dialogue:
+    """List what is connected; raises Refused where a person does not know it again."""
+    found: dict[str, Any] = {}
+    for drive in seat.devices.drives:
+        name, identity = drive.config.name, drive.identity
+        said = f"node {drive.config.node_id}"
+        if identity is not None:
+            said += (
+                f", vendor 0x{identity.vendor_id:08X}, product 0x{identity.product_code:08X},"
+                f" revision 0x{identity.revision:08X}, serial number {identity.serial_number}"
+            )
+        found[f"{name} drive"] = said
+    for device in seat.devices.modbus:
+        config = seat.rig.devices[device.name]
+        found[device.title] = f"line {config.line}, unit {config.unit_id}, profile {config.profile}"
+    for name, said in found.items():
+        notes.tell(f"  {name}: {said}")
+    unnumbered = [drive.config.name for drive in seat.devices.drives if not drive.config.serial_number]
+    if unnumbered:
+        notes.tell(
+            f"  serial numbers that the rig file does not state (axes.*.serial_number): {', '.join(unnumbered)};"
+            " with them, two drives of one make that are swapped are found at every connect"
+        )
+    answer = yield from choose("identify", "are these the devices of this rig?", "yes", "no")
+    if answer != "yes":
+        raise Refused("the person at the rig does not know these devices again: check adapters, node ids and unit ids")
+    notes.values = found
+    notes.text = f"{len(found)} devices heard and known again"

@@ -1,0 +1,176 @@
+"""Jog an axis: first a little, for its direction and that it is this axis; then further, for its scale.
+
+A person reads a ruler, a protractor or a dial gauge and types the value. The scale is what was read over what the
+drive reports to have moved; beyond the tolerance the step is refused, and the increments that would be right are said.
+The first way is so short and slow that ten times as far and fast harms nobody.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import degrees, pi
+from typing import Final
+
+from tester.commission.person import Dialogue, Measured, Refused, choose, measure, press, wait
+from tester.commission.step import Notes
+from tester.kinds.wheel_on_belt.commission.quiet import JogSpeeds, QuietSeat
+
+FIRST_SHARE: Final = 0.3
+"""The first, little way may be read off by this share [A]: a ruler on some millimetres."""
+SPRING_S: Final = 1.5
+"""A spring has taken the press back by then, s [A]: 4 mm at 20 mm/s take 0.2 s."""
+RIGHT, REVERSED, OTHER, NOTHING = "yes", "reversed", "other", "nothing"
+
+
+@dataclass(frozen=True, slots=True)
+class Axis:
+    """How an axis is jogged and read. ``tolerance``: of its scale; ``reading``: standard uncertainty, in ``unit``."""
+
+    name: str
+    speeds: JogSpeeds
+    unit: str
+    instrument: str
+    positive: str
+    tolerance: float
+    reading: float
+    back: bool
+    """It is brought back afterwards; one that turns round and round is not."""
+    holds: bool = False
+    """It is read while its drive holds it: without power a spring takes it back."""
+
+    def shown(self, moved: float) -> float:
+        """Return a way in the unit that a person reads."""
+        return degrees(moved) if self.name == "wheel" else 1e3 * moved if self.name == "belt" else moved
+
+
+AXES: Final = (
+    Axis("wheel", JogSpeeds(0.4, 0.4, 1.0, 2.0 * pi), "deg", "a protractor, or a mark on the tread and one beside it",
+         "so that its lowest point goes the way of the arrow of the belt", 0.01, 0.5, False),
+    Axis("belt", JogSpeeds(0.02, 0.02, 0.05, 0.25), "mm", "a mark on the belt and a ruler beside it",
+         "so that its upper side goes the way of the arrow", 0.01, 0.5, False),
+    Axis("press", JogSpeeds(0.5, 0.25, 2.0, 4.0), "mm", "a dial gauge on the press", "towards the wheel's contact",
+         0.01, 0.01, True, True),
+    Axis("sideslip", JogSpeeds(1.0, 0.5, 2.0, 10.0), "deg", "the yaw axis's scale, or an inclinometer",
+         "to the side that the rig's papers call positive", 0.03, 0.1, True),
+    Axis("camber", JogSpeeds(1.0, 0.5, 2.0, 5.0), "deg", "an inclinometer on the wheel's carrier",
+         "to the side that the rig's papers call positive", 0.05, 0.1, True),
+)  # fmt: skip
+"""Ways and speeds in the axes' units (rad, m, mm, deg; a second) [A]; tolerances [A], readings: half of what the finest
+mark of such an instrument tells [A]."""
+
+SPEEDS: Final = {axis.name: axis.speeds for axis in AXES}
+
+
+def jog_axis(axis: Axis, seat: QuietSeat, notes: Notes) -> Dialogue:
+    """Jog an axis for direction and scale; raises Refused."""
+    if axis.name not in seat.believed.axes.driven():
+        notes.text = "set by hand: nothing to jog"
+        return
+    speeds = axis.speeds
+    began = seat.jogging.drive(axis.name).actual
+    first = yield from _move(axis, seat, "first", speeds.first_way, speeds.first)
+    seen = yield from choose(
+        f"jog {axis.name} direction",
+        f"did the {axis.name}, and only it, move {axis.positive}?"
+        f" ({REVERSED}: the other way; {OTHER}: another axis moved; {NOTHING}: nothing did)",
+        RIGHT, REVERSED, OTHER, NOTHING,
+    )  # fmt: skip
+    _direction(axis, seat, seen)
+    read = yield from _read(axis, "first")
+    notes.read("first way", {"reported": axis.shown(first), "read": read, "unit": axis.unit})
+    yield from _rest(axis, seat)
+    share = abs(read / axis.shown(first))
+    least = 2.0 * axis.reading / abs(axis.shown(first))
+    if not abs(share - 1.0) <= max(FIRST_SHARE, least):
+        raise Refused(_wrong_scale(axis, seat, share, "on the first, little way: measure it anew after the change"))
+    moved, whole = 0.0, speeds.way
+    yield from _mark(axis)
+    while abs(moved) < abs(whole) - 1e-3 * abs(whole):
+        moved += yield from _move(axis, seat, "further", whole - moved, speeds.speed)
+    read = yield from _read(axis, "whole")
+    yield from _rest(axis, seat)
+    shown = axis.shown(moved)
+    share = read / shown
+    notes.read("whole way", {"reported": shown, "read": read, "unit": axis.unit, "share": share})
+    if not abs(share - 1.0) <= axis.tolerance:
+        raise Refused(_wrong_scale(axis, seat, share, f"more than {100 * axis.tolerance:g} % off"))
+    drive = seat.jogging.drive(axis.name)
+    while axis.back and abs(left := began - drive.actual) > 0.02 * abs(speeds.way):
+        yield from _move(axis, seat, "back", left, speeds.speed)
+        yield from _rest(axis, seat)
+    notes.values = {
+        "reported": shown, "read": read, "unit": axis.unit, "scale_error": share - 1.0,
+        "standard_uncertainty": axis.reading / abs(shown),
+    }  # fmt: skip
+    notes.text = (
+        f"direction right; {shown:.2f} {axis.unit} reported, {read:.2f} read: scale off by {100 * (share - 1):+.2f} %"
+        f" (standard uncertainty {100 * axis.reading / abs(shown):.2f} %)"
+    )
+
+
+def _move(axis: Axis, seat: QuietSeat, which: str, way: float, speed: float) -> Measured:
+    """Wait for a key, a closed guard, and the axis; return how far the drive says it went."""
+    text = f"{axis.name}: hands off, guard closed; it moves by {axis.shown(way):.4g} {axis.unit} at most, and stops"
+    while True:
+        yield from press(f"jog {axis.name} {which}", text)
+        if seat.guarded():
+            break
+        text = f"{axis.name}: the guard or the safety chain is open: close it, and again"
+    jog = seat.jogging.begin(axis.name, way, speed, holds=axis.holds)
+
+    def over(_now_s: float) -> bool:
+        return jog.over
+
+    yield over
+    return jog.moved
+
+
+def _rest(axis: Axis, seat: QuietSeat) -> Dialogue:
+    """Take the power of an axis that was held to be read."""
+    jog = seat.jogging.rest() if axis.holds else None
+    if jog is not None:
+        yield lambda now_s: jog.over
+        yield from wait(SPRING_S)
+
+
+def _mark(axis: Axis) -> Dialogue:
+    yield from choose(f"jog {axis.name} mark", f"{axis.name}: set {axis.instrument} to zero now; done?", "yes")
+
+
+def _read(axis: Axis, which: str) -> Measured:
+    """Ask how far it has gone; the way that it should is positive."""
+    text = f"{axis.name}: how far has it moved, by {axis.instrument}?"
+    return (yield from measure(f"jog {axis.name} {which} read", text, axis.unit))
+
+
+def _direction(axis: Axis, seat: QuietSeat, seen: str) -> None:
+    name = axis.name
+    if seen == REVERSED:
+        raise Refused(
+            f"the {name} axis is reversed: it moves the wrong way round. Set its drive's polarity (0x607E) or swap two"
+            " of its motor's phases and its encoder's direction, as its manual says; the rig file has no sign for it"
+        )
+    if seen == OTHER:
+        raise Refused(
+            f"the {name} axis is not the one that moves at node {seat.drive_node(name)}: node ids or motors are swapped"
+            f" (axes.*.node_id)"
+        )
+    if seen == NOTHING:
+        raise Refused(
+            f"the {name} axis does not move although its drive at node {seat.drive_node(name)} says so: motor, encoder"
+            " or coupling"
+        )
+
+
+def _wrong_scale(axis: Axis, seat: QuietSeat, share: float, why: str) -> str:
+    """Return what is wrong with a scale, and the lines of the rig file that would be right."""
+    config = seat.believed.axes.driven()[axis.name]
+    if not abs(share) > 1e-6:
+        return f"the {axis.name} axis has not moved by what was read: nothing to reckon a scale from"
+    right = [f"axes.{axis.name}.velocity_increments: {config.velocity_increments / share:.7g}"]
+    if config.position_increments:
+        right.append(f"axes.{axis.name}.position_increments: {config.position_increments / share:.7g}")
+    return (
+        f"scale of the {axis.name} axis: it moved {share:.4g} times as far as its drive reports, {why}."
+        f" In the rig file: {'; '.join(right)} (now {config.velocity_increments:.7g})"
+    )

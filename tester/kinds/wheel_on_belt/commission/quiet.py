@@ -1,0 +1,329 @@
+"""A rig of which no scale is trusted yet: connected and heard, every drive off but the one that a person jogs.
+
+It comes before arming, and so before the interlock table, most rows of which reckon with scales. What is watched is
+what the connection watches before every run (tester.machine.connect): safety chain and guard, heartbeats, faults, age
+of the inputs, a second master; and here that the load cell does not change. Two bounds need no scale: a jog lasts
+``PRESS_S`` at most for each key press, and the drive has a share of its torque only.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Generator
+from dataclasses import dataclass, replace
+from math import hypot, inf, isfinite
+from typing import Any, Final
+
+from drivers.axis import AxisConfig
+from drivers.cia402 import Goal, State
+from drivers.ports import BusLost
+from drivers.servo import ServoDrive
+from tester.commission.person import Waits
+from tester.kinds.wheel_on_belt.build import build_devices
+from tester.kinds.wheel_on_belt.devices import Devices
+from tester.kinds.wheel_on_belt.procedures.connection import WheelArming
+from tester.kinds.wheel_on_belt.rig import RigConfig
+from tester.machine.connect import Connector, Stage
+from tester.machine.devices import INPUT_GUARD, INPUT_SAFETY_CHAIN
+from tester.machine.ports import Ports
+from tester.machine.proof import ENABLE_S
+
+PRESS_S: Final = 2.0
+"""A key press moves an axis for this long at most, s [A]: a terminal does not see a key being released."""
+STILL_S: Final = 1.0
+"""A jogged axis stands this long after it was told to, s [A]: the ramp from creep takes 25 ms."""
+TORQUE_SHARE: Final = 0.3
+"""Of the rated torque, for a jog [A]: bearings and inertia of this machine's axes take a tenth of it."""
+PRESS_LOAD_N: Final = 60.0
+"""The press gets the torque that surely brings this about, N [A]: its spring pulls back with 40 N."""
+
+
+@dataclass(frozen=True, slots=True)
+class JogSpeeds:
+    """Speeds of the first, little jog and of the measured one, and how far they go; in the axis's units.
+
+    The first is at most a tenth of 250 mm/s, the reduced speed near a person (ISO 10218-1): a scale ten times wrong
+    moves at no more than that.
+    """
+
+    first: float
+    first_way: float
+    speed: float
+    way: float
+
+
+def jog_rig(rig: RigConfig, speeds: dict[str, JogSpeeds]) -> RigConfig:
+    """Return a rig whose drives have little torque, and whose positioned axes are slow."""
+    axes: dict[str, AxisConfig | None] = {}
+    for name, axis in rig.axes.driven().items():
+        most = min(axis.max_torque_per_mille, round(1000 * TORQUE_SHARE))
+        if name == "press" and axis.screw is not None:
+            needed = 1000.0 * axis.screw.torque_nm(PRESS_LOAD_N) / axis.rated_torque_nm
+            most = min(axis.max_torque_per_mille, max(1, round(needed)))
+        slow = replace(axis, max_torque_per_mille=most)
+        if axis.mode == "position":
+            slow = replace(slow, max_speed=min(axis.max_speed, speeds[name].speed))
+        axes[name] = slow
+    return replace(rig, axes=replace(rig.axes, **axes))
+
+
+@dataclass(slots=True)
+class Jog:
+    """One key press: an axis moves ``way`` (signed, its unit) at ``speed``, or as far as it gets in ``PRESS_S``."""
+
+    axis: str
+    way: float
+    speed: float
+    holds: bool = False
+    """It keeps its power when it stands: what would not stay where it is without (a press with a spring)."""
+    moved: float = 0.0
+    """By what the drive itself reports."""
+    over: bool = False
+
+
+class Jogging:
+    """What stands where a run lifts the press (tester.machine.connect.Lifting): it moves one axis at a key press."""
+
+    def __init__(self, devices: Devices, rig: RigConfig) -> None:
+        """Nothing moves before a jog is asked for."""
+        self.devices = devices
+        self.rig = rig
+        self.done = False
+        self.failure = ""
+        self.jog: Jog | None = None
+        self.stepped_s = 0.0
+        self._drives: dict[str, ServoDrive] = {drive.config.name: drive for drive in devices.drives}
+        self._phase = ""
+        self._since_s = 0.0
+        self._last_s = 0.0
+        self._from = 0.0
+        self._rest: tuple[float, ...] = ()
+        """What the cell showed before the jog."""
+
+    @property
+    def powered(self) -> bool:
+        """A drive has power, or is about to."""
+        if self.jog is not None and not self.jog.over:
+            return True
+        return any(drive.state > State.READY_TO_SWITCH_ON for drive in self.devices.drives if drive.connected)
+
+    def begin(self, axis: str, way: float, speed: float, *, holds: bool = False) -> Jog:
+        """Begin a jog."""
+        self.jog = Jog(axis, way, speed, holds)
+        self._phase = "enable"
+        self._since_s = inf
+        self._rest = tuple(self.devices.cell.raw)
+        return self.jog
+
+    def drive(self, axis: str) -> ServoDrive:
+        """Return an axis's drive."""
+        return self._drives[axis]
+
+    def rest(self) -> Jog | None:
+        """Take the power of an axis that was held; return the jog that is over once it is off."""
+        jog = self.jog
+        if jog is not None and jog.over and jog.holds:
+            jog.holds = jog.over = False
+            self._phase, self._since_s = "still", -inf
+        return jog
+
+    def step(self, now: float) -> None:
+        """Advance by one tick at ``now`` s."""
+        self.stepped_s = now
+        jog = self.jog
+        if jog is None or jog.over or self.failure:
+            return
+        if self._since_s == inf:
+            self._since_s = self._last_s = now
+        drive, elapsed, dt = self._drives[jog.axis], now - self._since_s, now - self._last_s
+        self._last_s = now
+        by_position = drive.config.feedback == "position"
+        if self._phase == "enable":
+            drive.goal = Goal.ENABLED
+            if drive.state is State.OPERATION_ENABLED:
+                self._from = drive.actual
+                self._command(drive, jog, now)
+                self._enter("move", now)
+            elif elapsed > ENABLE_S:
+                self.failure = f"the {jog.axis} drive is not enabled after {ENABLE_S:g} s"
+            return
+        if drive.state is not State.OPERATION_ENABLED and self._phase != "off":
+            self.failure = f"the {jog.axis} drive left operation while it was jogged"
+            return
+        jog.moved = drive.actual - self._from if by_position else jog.moved + drive.actual * dt
+        if self._phase == "move":
+            if self._arrived(drive, jog) or elapsed >= PRESS_S:
+                self._halt(drive)
+                self._enter("still", now)
+        elif self._phase == "still":
+            if elapsed >= STILL_S and jog.holds:
+                jog.over = True
+            elif elapsed >= STILL_S:
+                drive.goal = Goal.DISABLED
+                self._enter("off", now)
+        elif drive.state <= State.READY_TO_SWITCH_ON or elapsed > ENABLE_S:
+            jog.over = True
+
+    def _enter(self, phase: str, now: float) -> None:
+        self._phase, self._since_s = phase, now
+
+    def _command(self, drive: ServoDrive, jog: Jog, now: float) -> None:
+        if drive.config.mode == "position":
+            most = jog.speed * PRESS_S
+            drive.target = drive.actual + max(-most, min(jog.way, most))
+        else:
+            drive.target = jog.speed if jog.way > 0.0 else -jog.speed
+
+    def _arrived(self, drive: ServoDrive, jog: Jog) -> bool:
+        if drive.config.mode == "position":
+            return drive.reached
+        ramp = 0.5 * jog.speed * jog.speed / drive.config.deceleration  # what it runs on after the word
+        return abs(jog.moved) + ramp >= abs(jog.way)
+
+    def _halt(self, drive: ServoDrive) -> None:
+        drive.target = drive.actual if drive.config.mode == "position" and not drive.reached else (
+            drive.target if drive.config.mode == "position" else 0.0
+        )
+
+    def trouble(self, now: float) -> str:
+        """Return why nothing may go on moving; "" where nothing has power."""
+        if not self.powered:
+            return ""
+        cell, bounds = self.devices.cell, self.rig.interlocks
+        if not (cell.valid and now - cell.stamp_s <= bounds.stale_cell_s + bounds.stale_cell_delay_s):
+            return "load cell silent: nobody sees whether the wheel touches"
+        if not self._rest:
+            return ""
+        x, y, z = (cell.raw[i] - self._rest[i] for i in range(3))
+        most = self.rig.arming.unloaded_n
+        if hypot(x, y) <= most and abs(z) <= most:
+            return ""
+        return (
+            f"the load cell has changed by Fz {z:.0f} N, friction {hypot(x, y):.0f} N while an axis was jogged"
+            f" (at most {most:g} N, arming.unloaded): the wheel touches, or something is in the way"
+        )
+
+    def stop(self) -> None:
+        """Stop what moves; power off."""
+        for drive in self.devices.drives:
+            if drive.connected:
+                if drive.config.mode == "velocity":
+                    drive.target = 0.0
+                drive.goal = Goal.DISABLED
+        if self.jog is not None:
+            self.jog.over = True
+
+
+class QuietArming(WheelArming):
+    """As before every run, but that a guard may be open while nothing has power: a person reads a ruler."""
+
+    def __init__(self, devices: Devices, rig: RigConfig) -> None:
+        """Nothing is sent."""
+        super().__init__(devices, rig)
+        self.jogging = Jogging(devices, rig)
+
+    def unfit(self, now: float, configured_s: float) -> str:
+        """Return why nothing may move, while anything has power."""
+        said = super().unfit(now, configured_s)
+        return said if self.jogging.powered or said not in ("safety chain", "guard open") else ""
+
+    def lift(self) -> Any:
+        """Return what moves one axis at a key press: nothing lifts by itself here."""
+        return self.jogging
+
+
+class QuietConnector(Connector):
+    """Connects, hears, and stays there: nothing is homed, nothing proven."""
+
+    timeout_s = inf
+
+    def _lift(self, lifting: Any, now: float) -> None:
+        """Go on jogging."""
+        lifting.step(now)
+        if lifting.failure:
+            self._fail(lifting.failure)
+
+
+class QuietSeat:
+    """The rig as the first steps see it (tester.commission.step.Seat)."""
+
+    def __init__(self, rig: RigConfig, ports: Ports, hands: Any, speeds: dict[str, JogSpeeds]) -> None:
+        """Connect with the drives bounded (``jog_rig``)."""
+        self.rig = jog_rig(rig, speeds)
+        self.believed = rig
+        self.hands = hands
+        self.devices = build_devices(self.rig, ports)
+        self._arming = QuietArming(self.devices, self.rig)
+        self.connector = QuietConnector(self.devices, self.rig, self._arming, rig.arming.listen_s)
+        self._told = False
+        self._lost = ""
+
+    @property
+    def jogging(self) -> Jogging:
+        """What moves an axis."""
+        return self._arming.jogging
+
+    @property
+    def ready(self) -> bool:
+        """Everything is connected and heard."""
+        return self.connector.stage is Stage.LIFT
+
+    @property
+    def finished(self) -> bool:
+        """Released."""
+        return bool(self._lost) or self.connector.finished
+
+    @property
+    def reason(self) -> str:
+        """Why it ended by itself."""
+        return self._lost or ("" if self._told else self.connector.failure)
+
+    def drive_node(self, axis: str) -> int:
+        """Return the node id that an axis is believed at."""
+        return self.rig.axes.driven()[axis].node_id
+
+    def guarded(self) -> bool:
+        """Tell whether guard and safety chain are closed."""
+        closed = INPUT_GUARD | INPUT_SAFETY_CHAIN
+        return self.devices.axes.press.inputs & closed == closed
+
+    def tick(self, now: float) -> float:
+        """Do what is due."""
+        try:
+            return self.connector.tick(now)
+        except BusLost as lost:
+            self._lost = str(lost)
+            return now
+
+    def stop(self, why: str, *, fast: bool = False) -> None:
+        """Stop, and release the drives."""
+        if not self.connector.finished and self.connector.stage is not Stage.RELEASE:
+            self._told = True
+            self.connector.abort(why)
+
+    def abandon(self) -> None:
+        """Send zero and power off once."""
+        self.jogging.stop()
+        self.devices.transmit(self.jogging.stepped_s, scan=True)
+
+
+def mean_cell(seat: QuietSeat, seconds: float) -> Generator[Waits, str, tuple[list[float], list[float]]]:
+    """Yield until the cell was read for a while; return the mean and the standard deviation of Fx, Fy, Fz, raw, N."""
+    sums, squares, count = [0.0] * 3, [0.0] * 3, 0
+    last_s, began_s = -inf, inf
+
+    def enough(now_s: float) -> bool:
+        nonlocal count, last_s, began_s
+        began_s = min(began_s, now_s)
+        cell = seat.devices.cell
+        if cell.valid and cell.stamp_s > last_s and all(isfinite(value) for value in cell.raw[:3]):
+            last_s = cell.stamp_s
+            count += 1
+            for i in range(3):
+                sums[i] += cell.raw[i]
+                squares[i] += cell.raw[i] * cell.raw[i]
+        return now_s - began_s >= seconds and count > 1
+
+    yield enough
+    mean = [one / count for one in sums]
+    spread = [max(0.0, (two - count * m * m) / (count - 1)) ** 0.5 for two, m in zip(squares, mean, strict=True)]
+    return mean, spread

@@ -1,0 +1,104 @@
+"""The thermometer against the hub: cold, where both are as warm as the air, and at a soak of at most 45 degC.
+
+Cold it is the offset. Warm, lifted and turning, the tread follows the hub: its excess over the air is the hub's over
+1 + ratio (``build.loss_ratios``). What the thermometer shows of that excess is its gain, which to first order is the
+set emissivity over the true one, for a tread that is not much warmer than what it reflects.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Generator
+from math import isfinite
+from typing import Final
+
+from tester.commission.person import Dialogue, Refused, Waits
+from tester.commission.step import Notes
+from tester.kinds.wheel_on_belt.build import loss_ratios
+from tester.kinds.wheel_on_belt.commission.armed import ArmedSeat
+from tester.kinds.wheel_on_belt.procedures.motions import Lift, Turn
+from tester.machine.motions import Power, Sequence
+
+MOST_C: Final = 45.0
+"""The hub's temperature in the soak, at most."""
+SURFACE_C: Final = 38.0
+"""What is asked of the surface [A]: the hub is a few kelvin warmer."""
+TURNS_M_S: Final = 0.3
+COLD_K: Final = 2.0
+"""Offset, cold [A]: 1 K of bias, and the hub's sensor."""
+GAIN_SHARE: Final = 0.10
+"""Of the excess at the soak [A]: the ratio of the losses is known to a third of itself, 5 % of the excess."""
+AVERAGE_S: Final = 10.0
+STEADY_S: Final = 120.0
+STEADY_K: Final = 0.3
+"""Soaked: the hub's and the surface's means of two minutes in a row differ by this at most [A] ..."""
+AT_MOST_S: Final = 900.0
+"""... within this, s."""
+
+
+def soak(seat: ArmedSeat, notes: Notes) -> Dialogue:
+    """Compare cold and soaked; raises Refused."""
+    air = seat.rig.ambient_c
+    surface, hub = yield from _means(seat, AVERAGE_S)
+    offset = surface - hub
+    notes.read("cold", {"surface_c": surface, "hub_c": hub, "air_c": air})
+    if abs(hub - air) > COLD_K:
+        raise Refused(f"the hub is at {hub:.1f} degC, the air at {air:g} degC: let the wheel get cold first")
+    if not abs(offset) <= COLD_K:
+        raise Refused(
+            f"thermometer offset: cold it shows {offset:+.1f} K against the hub (at most {COLD_K:g} K): lens, housing's"
+            " temperature, or a reflection; the device has an offset to set"
+        )
+    yield from seat.do(Sequence(Power(True), Lift(), Turn(TURNS_M_S, TURNS_M_S)))
+    seat.ctx.demand.surface_c = min(SURFACE_C, MOST_C - 5.0)
+    warm, warm_hub = yield from _steady(seat)
+    notes.read("soaked", {"surface_c": warm, "hub_c": warm_hub})
+    seat.cold()
+    lifted, _ = loss_ratios(seat.rig)
+    expected = (warm_hub - hub) / (1.0 + lifted)
+    gain = (warm - surface) / expected if expected > 0.0 else 0.0
+    if warm_hub > MOST_C + 1.0:
+        raise Refused(f"the hub came to {warm_hub:.1f} degC, more than {MOST_C:g} degC: the thermometer shows too little")
+    emissivity = seat.rig.devices["ir_thermometer"].parameters.get("emissivity")
+    if not abs(gain - 1.0) <= GAIN_SHARE:
+        right = (
+            f" In the rig file: devices.ir_thermometer.emissivity: {emissivity * gain:.2f} (now {emissivity:g})"
+            if emissivity is not None
+            else ""
+        )
+        raise Refused(
+            f"emissivity: soaked the thermometer shows {warm - surface:.1f} K above the cold tread, the hub at"
+            f" {warm_hub:.1f} degC means {expected:.1f} K: gain {gain:.2f}.{right}"
+        )
+    notes.values = {"offset_k": offset, "gain": gain, "hub_c": warm_hub, "surface_c": warm, "expected_k": expected}
+    notes.text = f"offset {offset:+.2f} K cold, gain {gain:.3f} at {warm_hub:.1f} degC of the hub"
+
+
+def _steady(seat: ArmedSeat) -> Generator[Waits, str, tuple[float, float]]:
+    """Wait for the soak; return surface and hub, degC."""
+    before: tuple[float, float] | None = None
+    began_s = seat.ctx.now
+    while True:
+        now = yield from _means(seat, STEADY_S)
+        if before is not None and max(abs(a - b) for a, b in zip(now, before, strict=True)) <= STEADY_K:
+            return now
+        if seat.ctx.now - began_s > AT_MOST_S:
+            raise Refused(f"not soaked after {AT_MOST_S / 60:g} min: hub {now[1]:.1f} degC, surface {now[0]:.1f} degC")
+        before = now
+
+
+def _means(seat: ArmedSeat, seconds: float) -> Generator[Waits, str, tuple[float, float]]:
+    """Return the means of surface and hub over a time, degC."""
+    sums = [0.0, 0.0, 0.0]
+    began: list[float] = []
+
+    def enough(now_s: float) -> bool:
+        r = seat.ctx.readings
+        began.append(now_s) if not began else None
+        if isfinite(r.surface_c) and isfinite(r.hub_c) and r.surface_valid and r.jacket_valid:
+            sums[0] += r.surface_c
+            sums[1] += r.hub_c
+            sums[2] += 1.0
+        return now_s - began[0] >= seconds and sums[2] > 0.0
+
+    yield enough
+    return sums[0] / sums[2], sums[1] / sums[2]

@@ -1,0 +1,126 @@
+"""A person who commissions the simulated rig: reads the plant's truth as a ruler, a weight and a thermometer show it.
+
+For ``--yes`` on the simulated rig, for tests and campaigns. Each answer takes rig time, as a person's does.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import inf
+from typing import Any, Final, Protocol
+
+from tester.commission.person import GO, Asks, Question
+
+THINKS_S: Final = 15.0
+"""Rig time of an answer for which something is read or hung, s [A]."""
+KEY_S: Final = 2.0
+"""Rig time from a question to a key, s [A]."""
+
+
+class TwinHands(Protocol):
+    """What a person finds at the simulated rig (sim.machines.wheel_on_belt.rig.WheelRig)."""
+
+    def ruler(self, axis: str) -> float:
+        """Return where an axis is."""
+        ...
+
+    def hang(self, fx: float, fy: float, fz: float) -> None:
+        """Hang a weight on the load cell, N."""
+        ...
+
+
+class TwinPerson:
+    """Answers every question of the steps as somebody at the machine would who makes no mistake."""
+
+    time_stands: bool = False
+
+    def __init__(self, say: Callable[[str], None] = lambda text: None) -> None:
+        """``say``: is told what a person is."""
+        self.hands: Any = None
+        self.asked: list[Question] = []
+        self._say = say
+        self._question: Question | None = None
+        self._put_s = inf
+        self._from: dict[str, float] = {}
+        """Where each axis was when its instrument was set to zero."""
+
+    def at(self, hands: TwinHands) -> None:
+        """Stand at a rig: wires were opened anew."""
+        self.hands = hands
+        self._from.clear()
+
+    def tell(self, text: str) -> None:
+        """Listen."""
+        self._say(text)
+
+    def put(self, question: Question) -> None:
+        """Take a question."""
+        self._question = question
+        self._put_s = inf
+        self.asked.append(question)
+
+    def poll(self) -> list[str]:
+        """Give no command."""
+        return []
+
+    def taken(self, now_s: float) -> str | None:
+        """Answer once the time for it is over."""
+        question = self._question
+        if question is None:
+            return None
+        if self._put_s == inf:
+            self._put_s = now_s if now_s < inf else -inf
+            self.prepare(question)
+        takes_s = THINKS_S if question.asks is Asks.QUANTITY else KEY_S
+        if now_s - self._put_s < takes_s:
+            return None
+        self._question = None
+        return self.answer(question)
+
+    def prepare(self, question: Question) -> None:
+        """Do what the question asks for, if it asks for anything: the answer follows."""
+        words = question.key.split()
+        if words[0] == "jog" and (words[2] == "first" or words[2] == "mark"):
+            self._from.setdefault(words[1], self.hands.ruler(words[1]))
+            if words[2] == "mark":
+                self._from[words[1]] = self.hands.ruler(words[1])
+        if words[0] == "hang":
+            self.hands.hang(*self.hung(question))
+
+    def hung(self, question: Question) -> tuple[float, float, float]:
+        """Return the forces of the weight that a question names, N: key ``hang CHANNEL NEWTONS``."""
+        _, channel, newtons = question.key.split()
+        force = float(newtons)
+        return (force, 0.0, 0.0) if channel == "x" else (0.0, force, 0.0) if channel == "y" else (0.0, 0.0, force)
+
+    def answer(self, question: Question) -> str:
+        """Return the answer."""
+        words = question.key.split()
+        if question.asks is Asks.KEY:
+            return GO
+        if words[0] == "jog":
+            return self._jogged(question, words[1])
+        if words[0] == "hang":
+            return repr(abs(sum(self.hung(question))))
+        if words[0] == "retype":
+            return words[2]
+        if words[0] == "angle":
+            return f"{self.hands.ruler(words[1]):.1f}"
+        if words[0] == "diameter":
+            return f"{self.hands.ruler('diameter'):.2f}"
+        if question.asks is Asks.CHOICE:
+            return question.choices[0]
+        if question.asks is Asks.TEXT:
+            return "weights of class M1, certificate 4711" if "certificate" in question.key else "2027-11-23"
+        raise LookupError(f"nobody has taught this person: {question.key}")
+
+    def _jogged(self, question: Question, axis: str) -> str:
+        moved = self.hands.ruler(axis) - self._from.get(axis, 0.0)
+        if question.asks is Asks.QUANTITY:
+            return f"{moved:.2f}"
+        if "direction" in question.key:
+            if abs(moved) < 1e-6:
+                others = ("wheel", "belt", "press", "sideslip", "camber")
+                return "other" if any(abs(self.hands.ruler(one)) > 1e-6 for one in others) else "nothing"
+            return "yes" if moved > 0.0 else "reversed"
+        return question.choices[0]

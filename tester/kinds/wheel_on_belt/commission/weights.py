@@ -1,0 +1,209 @@
+"""Calibrate the load cell with hung weights: points, fit, residuals, uncertainty, who, with what, until when.
+
+Nothing has power. Each weight loads one channel; the cell's readings less its zero are fitted with one slope a channel
+through zero. Wires that are crossed, a sign, a gain and a weight that was typed wrongly show before anything presses:
+
+- a typed weight that is off the channel's other points by more than ``TYPED_SHARE`` is asked for again, once;
+- a channel that another one answers for, or with the other sign, or with another gain, is refused with what to set.
+
+The cell's error is not taken off the readings: it enters the budget as it was found (``budget.calibrated``).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Generator
+from dataclasses import dataclass, field
+from datetime import date
+from math import hypot, sqrt
+from statistics import median
+from typing import Final
+
+from tester.commission.person import Dialogue, Refused, Waits, line, measure
+from tester.commission.step import Notes
+from tester.kinds.wheel_on_belt.commission.quiet import QuietSeat, mean_cell
+
+CHANNELS: Final = ("x", "y", "z")
+PLAN: Final = {"z": (50.0, 100.0, 200.0, 300.0, 200.0), "x": (50.0, 100.0, 200.0, 100.0), "y": (50.0, 100.0, 200.0)}
+"""Weights about, N, by the channel that they load: rising, and one on the way back for hysteresis [A]."""
+AVERAGE_S: Final = 2.0
+"""Each point is averaged this long, s [A]: 0.25 N of noise at 100 readings a second leave 0.02 N."""
+TYPED_SHARE: Final = 0.05
+"""A point this far off its channel's others is a typed one, not the cell's [A]: its linearity is 0.1 %."""
+CROSSED_SHARE: Final = 0.5
+"""Another channel that shows more than this share of a weight has its wires [A]."""
+GAIN_SHARE: Final = 0.02
+"""A gain is refused beyond this [A]: a cell with a certificate has 0.5 % without adjustment."""
+COUPLING_SHARE: Final = 0.04
+"""Crosstalk and misalignment are refused beyond this [A]: 0.5 % and 0.5 degrees are 1.4 %."""
+WEIGHT_SHARE: Final = 2e-4
+"""Standard uncertainty of a hung force, share [A]: weights of class M1 (OIML R 111-1) have 5e-5, gravity typed to 1e-4,
+the direction of a wire over a pulley within 1 degree 1.5e-4."""
+
+
+@dataclass(slots=True)
+class Channel:
+    """The points of one channel: what was hung, N, and what all channels showed above zero, N."""
+
+    name: str
+    hung_n: list[float] = field(default_factory=list[float])
+    shown_n: list[tuple[float, float, float]] = field(default_factory=list[tuple[float, float, float]])
+
+    def slopes(self) -> tuple[float, float, float]:
+        """Return what each channel shows of a newton on this one, by least squares through zero."""
+        square = sum(f * f for f in self.hung_n)
+        x, y, z = (
+            sum(f * s[i] for f, s in zip(self.hung_n, self.shown_n, strict=True)) / square for i in range(3)
+        )
+        return x, y, z
+
+    @property
+    def own(self) -> int:
+        """The channel's own place."""
+        return CHANNELS.index(self.name)
+
+    def residuals(self) -> list[float]:
+        """Return what the channel's own readings are off its line, N."""
+        slope = self.slopes()[self.own]
+        return [s[self.own] - slope * f for f, s in zip(self.hung_n, self.shown_n, strict=True)]
+
+    def standard(self) -> float:
+        """Return the standard uncertainty of the slope: scatter about the line, and the weights."""
+        left = self.residuals()
+        scatter = sqrt(sum(r * r for r in left) / max(1, len(left) - 1))
+        return hypot(scatter / sqrt(sum(f * f for f in self.hung_n)), WEIGHT_SHARE)
+
+    def typed_wrongly(self) -> int:
+        """Return the place of the point that is farthest off the median sensitivity, -1 where none is too far."""
+        answer = self.answering()
+        shares = [s[answer] / f for f, s in zip(self.hung_n, self.shown_n, strict=True)]
+        middle = median(shares)
+        off = [abs(share / middle - 1.0) if middle else 0.0 for share in shares]
+        worst = max(range(len(off)), key=off.__getitem__)
+        return worst if off[worst] > TYPED_SHARE else -1
+
+    def answering(self) -> int:
+        """Return the place of the channel that shows most of these weights."""
+        totals = [sum(abs(s[i]) for s in self.shown_n) for i in range(3)]
+        return totals.index(max(totals))
+
+
+def calibrate(seat: QuietSeat, notes: Notes) -> Dialogue:
+    """Hang weights; raises Refused."""
+    most = {"x": seat.rig.limits.load_n, "y": seat.rig.limits.load_n, "z": seat.rig.limits.load_n}
+    weights = yield from line(
+        "weights certificate", "which weights, with which certificate? Force = mass times local gravity (9.78 to 9.83)"
+    )
+    channels: list[Channel] = []
+    zero: list[float] = []
+    for name, plan in PLAN.items():
+        yield from measure(f"hang {name} 0.0", f"F{name}: hang up hook and wire, no weight yet; type 0", "N")
+        zero, _ = yield from mean_cell(seat, AVERAGE_S)
+        channel = Channel(name)
+        for about in plan:
+            if about <= most[name]:
+                yield from _point(seat, notes, channel, about, zero)
+        channels.append(channel)
+        yield from measure(f"hang {name} 0.0", f"F{name}: take the weights off; type 0", "N")
+        wrong = channel.typed_wrongly()
+        if wrong >= 0:
+            yield from _again(notes, channel, wrong)
+        _judge(channel)
+    due = yield from _due()
+    _conclude(notes, channels, zero, weights, due)
+
+
+def _point(seat: QuietSeat, notes: Notes, channel: Channel, about: float, zero: list[float]) -> Dialogue:
+    what = f"F{channel.name}: hang about {about:g} N, wait until it is still, and type its force"
+    hung = yield from measure(f"hang {channel.name} {about}", what, "N")
+    if not hung > 0.0:
+        raise Refused(f"a weight of {hung:g} N cannot be hung")
+    mean, _ = yield from mean_cell(seat, AVERAGE_S)
+    shown = (mean[0] - zero[0], mean[1] - zero[1], mean[2] - zero[2])
+    channel.hung_n.append(hung)
+    channel.shown_n.append(shown)
+    notes.read(f"F{channel.name} {about:g} N", {"hung_n": hung, "shown_n": list(shown)})
+
+
+def _again(notes: Notes, channel: Channel, wrong: int) -> Dialogue:
+    """Ask once more for a weight that does not fit the others."""
+    answer = channel.answering()
+    others = [s[answer] / f for i, (f, s) in enumerate(zip(channel.hung_n, channel.shown_n, strict=True)) if i != wrong]
+    typed, seems = channel.hung_n[wrong], abs(channel.shown_n[wrong][answer] / median(others))
+    text = f"F{channel.name}: {typed:g} N was typed, by the other points it was about {seems:.1f} N; what was it?"
+    notes.tell(text)
+    channel.hung_n[wrong] = yield from measure(f"retype {channel.name} {seems:.6g}", text, "N")
+    notes.read(f"F{channel.name} typed again", {"before_n": typed, "hung_n": channel.hung_n[wrong]})
+    if channel.typed_wrongly() >= 0:
+        raise Refused(
+            f"F{channel.name}: the weight typed as {typed:g} N does not fit the others (it was about {seems:.1f} N):"
+            " a weight was typed wrongly, or something bears on the cell"
+        )
+
+
+def _judge(channel: Channel) -> None:
+    """Raise Refused for a channel that is not wired, scaled or mounted as the rig file says."""
+    slopes, own, name = channel.slopes(), channel.own, channel.name
+    answer = channel.answering()
+    if answer != own and abs(slopes[answer]) > CROSSED_SHARE:
+        raise Refused(
+            f"load cell channels are swapped: a weight on F{name} shows on F{CHANNELS[answer]}"
+            f" ({slopes[answer]:+.2f} N/N). Change the wires at the transmitter, or the profile's addresses"
+        )
+    gain = slopes[own]
+    if gain < 0.0:
+        raise Refused(
+            f"the sign of the load cell's F{name} is reversed: a weight shows {gain:+.3f} N/N."
+            " Swap its signal wires, or its sign at the transmitter"
+        )
+    if not abs(gain - 1.0) <= GAIN_SHARE:
+        raise Refused(
+            f"gain of the load cell's F{name}: {gain:.4f} N shown for each N hung, more than {100 * GAIN_SHARE:g} % off."
+            f" Multiply the channel's sensitivity at the transmitter (mV/V at full load) by {gain:.5f}, or the scale of"
+            f" its signal in the profile by {1 / gain:.5f}"
+        )
+    for place, slope in enumerate(slopes):
+        if place != own and abs(slope) > COUPLING_SHARE:
+            raise Refused(
+                f"F{CHANNELS[place]} shows {100 * slope:+.1f} % of a force on F{name}, more than"
+                f" {100 * COUPLING_SHARE:g} %: crosstalk, or the cell is mounted {57.3 * abs(slope):.1f} degrees off"
+            )
+
+
+def _due() -> Generator[Waits, str, str]:
+    """Ask until when the calibration counts."""
+    text = "until which day does this calibration count (2027-01-31)? A year is usual for a cell in daily use [A]"
+    while True:
+        found = yield from line("due", text)
+        try:
+            return date.fromisoformat(found).isoformat()
+        except ValueError:
+            text = f'"{found}" is no date such as 2027-01-31; until which day does it count?'
+
+
+def _conclude(notes: Notes, channels: list[Channel], zero: list[float], weights: str, due: str) -> None:
+    """Say and keep what was found, and the lines for the rig file."""
+    by_name = {channel.name: channel for channel in channels}
+    gains = {name: channel.slopes()[channel.own] for name, channel in by_name.items()}
+    standards = {name: channel.standard() for name, channel in by_name.items()}
+    ratio = gains["x"] / gains["z"] - 1.0
+    found = hypot(ratio, standards["x"], standards["z"])
+    residual = max(abs(r) for channel in channels for r in channel.residuals())
+    notes.values = {
+        "weights": weights,
+        "due": due,
+        "zero_n": zero,
+        "points": {name: {"hung_n": c.hung_n, "shown_n": [list(s) for s in c.shown_n]} for name, c in by_name.items()},
+        "gains": gains,
+        "standard_uncertainties": standards,
+        "matrix": {name: list(channel.slopes()) for name, channel in by_name.items()},
+        "residuals_n": {name: channel.residuals() for name, channel in by_name.items()},
+        "cell_sensitivity": found,
+    }
+    notes.text = (
+        ", ".join(f"F{name} {gains[name]:.5f} +- {standards[name]:.5f}" for name in CHANNELS)
+        + f" N/N (standard uncertainty); largest residual {residual:.2f} N; weights: {weights}; counts until {due}"
+    )
+    notes.tell("  for the rig file, section calibration:")
+    notes.tell(f'    load_cell: "{due}"')
+    notes.tell("    overdue: refuse               # or warn")
+    notes.tell(f"    cell_sensitivity: {100 * found:.3f} %     # Fx/Fz off by {100 * ratio:+.3f} %, with its uncertainty")

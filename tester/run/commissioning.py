@@ -1,0 +1,111 @@
+"""Commission a rig from the outside: its wires, its record, its locks, signals, and a recipe run in between."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from threading import current_thread, main_thread
+from types import FrameType
+from typing import Any
+
+from tester import kinds
+from tester.base import clock
+from tester.base.lock import ExclusiveUse, RigInUseError, user
+from tester.base.signals import handled
+from tester.base.source import InvalidSource, Problem
+from tester.commission.engine import Commissioning, Outcome
+from tester.commission.part import AtTheTwin, CommissionPart
+from tester.commission.person import Person
+from tester.commission.record import Record
+from tester.machine.ports import Ports
+from tester.machine.tickers import TickedWorld
+from tester.rig import Rig
+from tester.run.endings import CannotStartError
+from tester.run.part_run import connect_ports
+from tester.run.preconditions import hold_rig
+
+FOLDER = "commissioning"
+"""Below the folder of the runs: a record for each rig."""
+
+Connect = Callable[[], tuple[Ports, TickedWorld | None, Any]]
+
+
+@dataclass(frozen=True, slots=True)
+class CommissionOptions:
+    """What the command line said."""
+
+    out: Path = Path("runs")
+    seed: int = 0
+    operator: str = ""
+    lapse: float | None = None
+
+
+def part_of(rig: Rig) -> CommissionPart:
+    """Return how a rig is commissioned; raises InvalidSource where its kind guides nobody."""
+    part = kinds.find(rig.kind).commissions
+    if part is None:
+        said = f"kind: nobody is guided through commissioning a rig of the kind {rig.kind}"
+        raise InvalidSource([Problem(f"rig {rig.name}", 1, 1, said)])
+    return part()
+
+
+def record_path(runs: Path, rig: Rig) -> Path:
+    """Return where the record of a rig's commissioning is, by the rig's name."""
+    slug = re.sub(r"[^a-z0-9]+", "-", rig.name.lower()).strip("-") or "rig"
+    return runs / FOLDER / f"{slug}.jsonl"
+
+
+def commission(rig: Rig, options: CommissionOptions, person: Person, twin: AtTheTwin | None = None) -> Outcome:
+    """Walk a rig through its commissioning; ``twin``: the person, where it reads a simulated rig.
+
+    Raises CannotStartError, InvalidSource, RecordError, OSError.
+    """
+    path = record_path(options.out, rig)
+    with ExclusiveUse() as use:
+        hold_rig(use, rig, FOLDER)
+        path.parent.mkdir(parents=True, exist_ok=True)
+        try:
+            use.lock_file(f"the record {path.name}", path.with_suffix(".lock"), FOLDER, lasting=False)
+        except RigInUseError as error:
+            raise CannotStartError(str(error)) from error
+        record = Record(path, clock.utc_now, options.operator or user())
+
+        def connect() -> tuple[Ports, TickedWorld | None, Any]:
+            ports, world, hands = connect_ports(rig, options.seed, None)
+            if twin is not None:
+                twin.at(hands)
+            return ports, world, hands
+
+        def run_recipe(name: str, text: str) -> Mapping[str, Any]:
+            raise NotImplementedError(name, text)
+
+        walk = Commissioning(part_of(rig).steps, rig, person, record, connect, run_recipe, options.lapse)
+        with stopped_by_signals(walk):
+            return walk.run()
+
+
+class stopped_by_signals:  # noqa: N801 - reads as a statement
+    """STOP on INT, TERM and HUP while the block lasts, fast on a second one; only the main thread can be told."""
+
+    def __init__(self, walk: Commissioning) -> None:
+        """``walk``: what is stopped."""
+        self._walk = walk
+        self._count = 0
+        self._handled: Any = None
+
+    def __enter__(self) -> None:
+        """Listen."""
+        if current_thread() is main_thread():
+            self._handled = handled(self._on_signal)
+            self._handled.__enter__()
+
+    def __exit__(self, *error: Any) -> None:
+        """Listen no more."""
+        if self._handled is not None:
+            self._handled.__exit__(*error)
+
+    def _on_signal(self, _number: int, _frame: FrameType | None) -> None:
+        self._count += 1
+        self._walk.stop(fast=self._count > 1)

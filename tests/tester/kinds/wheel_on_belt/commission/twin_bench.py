@@ -1,0 +1,93 @@
+"""Commissioning on the twin, with a machine that may differ from what the rig file believes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+from sim.machines.wheel_on_belt.rig import WheelRig
+from tester.commission.engine import Commissioning, Outcome
+from tester.commission.record import Record
+from tester.commission.step import Step
+from tester.kinds.wheel_on_belt.commission.steps import STEPS
+from tester.kinds.wheel_on_belt.commission.twin import TwinPerson
+from tester.kinds.wheel_on_belt.rig import RigConfig
+from tester.run.rigs import load_rig
+from tester.run.simulated import simulated_ports
+
+
+def believed(*overrides: str) -> RigConfig:
+    """Return the simulated rig's file with some keys replaced."""
+    return RigConfig.of(load_rig("sim", overrides))
+
+
+def nothing(world: WheelRig) -> None:
+    """Leave a machine as it is."""
+
+
+def no_recipe(name: str, text: str) -> Mapping[str, Any]:
+    """Run nothing."""
+    raise AssertionError(f"no recipe was to be run: {name}")
+
+
+class Clock:
+    """A wall clock that goes on by a second at each look."""
+
+    def __init__(self) -> None:
+        self.seconds = 0
+
+    def __call__(self) -> str:
+        self.seconds += 1
+        return f"2026-11-23T10:{self.seconds // 60:02d}:{self.seconds % 60:02d}Z"
+
+
+class Bench:
+    """A rig file, a machine and a person."""
+
+    def __init__(
+        self,
+        path: Path,
+        seed: int = 0,
+        *,
+        rig: RigConfig | None = None,
+        machine: RigConfig | None = None,
+        built: Callable[[WheelRig], None] = nothing,
+        person: TwinPerson | None = None,
+        steps: tuple[Step, ...] = STEPS,
+        run_recipe: Callable[[str, str], Mapping[str, Any]] = no_recipe,
+    ) -> None:
+        """``machine``: what it is really like, ``rig`` unless it says; ``built``: what was done to it."""
+        self.rig = rig or believed()
+        self.machine = machine or self.rig
+        self.said: list[str] = []
+        self.person = person or TwinPerson()
+        self.person._say = self.said.append
+        self.path = path
+        self.seed = seed
+        self.built = built
+        self.steps = steps
+        self.run_recipe = run_recipe
+        self.world: WheelRig | None = None
+
+    def connect(self) -> tuple[Any, Any, Any]:
+        """Open the wires of a machine that was switched on anew."""
+        ports, world, hands = simulated_ports(self.machine, self.seed, None)
+        assert isinstance(world, WheelRig)
+        self.built(world)
+        self.world = world
+        self.person.at(hands)
+        return ports, world, hands
+
+    def run(self) -> Outcome:
+        """Commission."""
+        self.record = Record(self.path, Clock(), "a test")
+        self.walk = Commissioning(
+            self.steps, self.rig, self.person, self.record, self.connect, self.run_recipe
+        )
+        return self.walk.run()
+
+
+def named(*names: str) -> tuple[Step, ...]:
+    """Return some steps by name."""
+    return tuple(step for step in STEPS if step.name in names)
