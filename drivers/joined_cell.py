@@ -163,14 +163,18 @@ class JoinedCell:
     def blame(self, now: float, limit_s: float) -> str:
         """Return which transmitter keeps the cell from being read at ``now`` s, and why; "" = none does.
 
-        ``limit_s``: how old a reading may be.
+        ``limit_s``: how old a reading may be. Of those on one line that are too old the oldest holds the line up: it
+        alone is named, with those that are known not to answer.
         """
         found: list[str] = []
+        oldest = {one.link: one for one in sorted(self.transmitters, key=_stamp, reverse=True)}
         for one in self.transmitters:
             age_s = now - one.stamp_s
             if one.refused is not None:
                 found.append(f"{one.title}: {one.refused}")
             elif not age_s <= limit_s:
+                if oldest[one.link] is not one and not one.station.misses:
+                    continue
                 found.append(f"{one.title}: {f'no reading for {1e3 * age_s:.0f} ms' if age_s < inf else 'no answer'}")
             elif not one.valid:
                 found.append(f"{one.title}: reading not valid (status 0x{one.status:X})")

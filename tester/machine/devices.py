@@ -173,7 +173,8 @@ class DeviceList:
             else:
                 deadline = self.master.deadline
         if scan and next_scan_s > now:
-            self._prompt.scan_s = next_scan_s - now
+            for link in self._prompts:
+                link.scan_s = next_scan_s - now
         self.transmit_lines(now, scan=scan)
         # Only the load cell's lines may ask for a tick of their own (a retry there has to fit into a scan); the next
         # request of any other can wait for the next scan. A simulated line knows that the reply will be in time.
