@@ -3,8 +3,9 @@
 Give it what arrived (``feed``), then let it send what is due (``service``): in this order in every tick, so that a
 reply that came in time is never taken for a time-out because the tick was late.
 
-Over TCP any doubt about framing, and a time-out, ends the connection: what comes of the old one is never read. On a serial line nothing is written before it is known whether the adapter hears itself: a reply to a write
-begins like the write, or is equal to it.
+Over TCP any doubt about framing, and a time-out, ends the connection: what comes of the old one is never read. On a
+serial line nothing is written before it is known whether the adapter hears itself: a reply to a write begins like the
+write, or is equal to it.
 """
 
 from __future__ import annotations

@@ -238,6 +238,10 @@ class DeviceList:
         """Tell whether no drive's power stage is on."""
         return all(drive.state <= State.READY_TO_SWITCH_ON or drive.lost for drive in self.drives)
 
+    def real_lines(self) -> bool:
+        """Tell whether a Modbus line is one of which nobody knows when its next bytes come."""
+        return any(foreseen is None for _, _, foreseen in self._lines)
+
     def can_alive(self) -> bool:
         """Tell whether drives can still be told anything."""
         return self._can_alive
