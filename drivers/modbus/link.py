@@ -57,6 +57,7 @@ class ModbusLink:
         "_type",
         "deadline",
         "doubts",
+        "framing",
         "garbage",
         "hears_itself",
         "reopened",
@@ -67,6 +68,7 @@ class ModbusLink:
 
     def __init__(self, framing: codec.Framing = "rtu", baud: int = 115200, parity: Parity = "N") -> None:
         """Create an idle master; ``baud`` in bit/s and ``parity`` matter on RTU only."""
+        self.framing: codec.Framing = framing
         self._type = LineType(framing, baud, parity)
         self._gap_s = self._type.gap_s
         self._socket = self._type.socket
