@@ -300,7 +300,7 @@ SCAN_DELAYED: Final = Interlock(
 )
 
 ROWS: Final[tuple[Interlock, ...]] = (
-    SAFETY_CHAIN, CAN_SILENT, DRIVE_FAULT, BUS_LOST, SECOND_MASTER, CLOCK_JUMP, SCAN_LATE, GUARD_OPEN,
+    SAFETY_CHAIN, BUS_LOST, CAN_SILENT, DRIVE_FAULT, SECOND_MASTER, CLOCK_JUMP, SCAN_LATE, GUARD_OPEN,
 )  # fmt: skip
 WARNINGS: Final[tuple[Interlock, ...]] = (SCAN_DELAYED,)
 """Only said: they stand last in the table."""
