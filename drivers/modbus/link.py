@@ -3,8 +3,9 @@
 Give it what arrived (``feed``), then let it send what is due (``service``): in this order in every tick, so that a
 reply that came in time is never taken for a time-out because the tick was late.
 
-Over TCP any doubt about framing, and a time-out, ends the connection: what comes of the old one is never read. On a serial line nothing is written before it is known whether the adapter hears itself: a reply to a write
-begins like the write, or is equal to it.
+Over TCP any doubt about framing, and a time-out, ends the connection: what comes of the old one is never read. On a
+serial line nothing is written before it is known whether the adapter hears itself: a reply to a write begins like the
+write, or is equal to it.
 """
 
 from __future__ import annotations
@@ -56,6 +57,7 @@ class ModbusLink:
         "_type",
         "deadline",
         "doubts",
+        "framing",
         "garbage",
         "hears_itself",
         "reopened",
@@ -66,6 +68,7 @@ class ModbusLink:
 
     def __init__(self, framing: codec.Framing = "rtu", baud: int = 115200, parity: Parity = "N") -> None:
         """Create an idle master; ``baud`` in bit/s and ``parity`` matter on RTU only."""
+        self.framing: codec.Framing = framing
         self._type = LineType(framing, baud, parity)
         self._gap_s = self._type.gap_s
         self._socket = self._type.socket

@@ -29,6 +29,8 @@ _OPERATING: Final = State.OPERATION_ENABLED
 _FAULT_REACTION: Final = State.FAULT_REACTION
 _FAULT: Final = State.FAULT
 
+SPREAD_S: Final = 0.015
+"""Drives answer one SYNC, within 2 ms of each other: one that is further behind the others is missing, s [A]."""
 NEVER: Final = float("-inf")
 """Time stamp of a source that has not reported yet: older than anything, hence stale."""
 
@@ -125,6 +127,40 @@ class DeviceList:
         r.guard_closed = inputs & INPUT_GUARD != 0
         return inputs
 
+    def fill_unheard(self, r: BaseReadings) -> None:
+        """Name the drives that are behind the others: of a bus that is silent as a whole, none."""
+        oldest = newest = self.drives[0].stamp_s
+        for drive in self.drives:
+            stamp_s = drive.stamp_s
+            if stamp_s < oldest:
+                oldest = stamp_s
+            elif stamp_s > newest:
+                newest = stamp_s
+        if newest - oldest <= SPREAD_S:
+            r.unheard = ""
+            return
+        behind = [drive.config for drive in self.drives if newest - drive.stamp_s > SPREAD_S]
+        r.unheard = ", ".join(f"{one.name} drive (node {one.node_id}) not heard" for one in behind)
+
+    def fill_silent(self, r: BaseReadings) -> None:
+        """Name the Modbus lines on which no device answers, with the devices."""
+        for _, link in self.lines:
+            for station in link.stations:
+                if station.is_lost:
+                    r.line_silent = self._silent_lines()
+                    return
+        r.line_silent = ""
+
+    def _silent_lines(self) -> str:
+        found: list[str] = []
+        for _, link in self.lines:
+            there = [one for one in self.modbus if one.driver.link is link]
+            stations = [one.driver.station for one in there]
+            # One is lost, and the others have not answered since: their own loss takes as long again.
+            if any(one.is_lost for one in stations) and all(one.misses for one in stations):
+                found.append(f"nobody answers on line {there[0].line}: {', '.join(one.title for one in there)}")
+        return "; ".join(found)
+
     def receive(self, now: float) -> None:
         """Take in everything that arrived; a wire that is lost is left alone from then on (``lost`` says why)."""
         try:
@@ -152,7 +188,9 @@ class DeviceList:
 
     def _lose_line(self, link: ModbusLink, error: BusLost, now: float) -> None:
         """Go on without a line: what it carried is not valid any more."""
-        self.lost = self.lost or f"line lost: {error}"
+        there = [one for one in self.modbus if one.driver.link is link]
+        name = f" {there[0].line} ({', '.join(one.title for one in there)})" if there else ""
+        self.lost = self.lost or f"line lost:{name or ' unnamed'}: {error}"
         self._lines = tuple(entry for entry in self._lines if entry[1] is not link)
         self._watched = tuple((one, None if one is link else port) for one, port in self._watched)
         for station in link.stations:
@@ -242,6 +280,10 @@ class DeviceList:
     def all_off(self) -> bool:
         """Tell whether no drive's power stage is on."""
         return all(drive.state <= State.READY_TO_SWITCH_ON or drive.lost for drive in self.drives)
+
+    def real_lines(self) -> bool:
+        """Tell whether a Modbus line is one of which nobody knows when its next bytes come."""
+        return any(foreseen is None for _, _, foreseen in self._lines)
 
     def can_alive(self) -> bool:
         """Tell whether drives can still be told anything."""

@@ -32,6 +32,10 @@ class BaseReadings:
     """Which wire is gone (CAN adapter, serial line), as text; empty while all are there."""
     can_heard_s: float = NEVER
     """When a frame last came in over CAN."""
+    unheard: str = ""
+    """Drives of which nothing new has come although others are heard, as text; empty where all are alike."""
+    line_silent: str = ""
+    """Modbus lines on which no device answers, as text; empty = none."""
     foreign_master: str = ""
     """First frame on the CAN bus that only another master sends, as text; empty while we are alone."""
     device_fault: str = ""
@@ -49,7 +53,8 @@ class BaseReadings:
 
     def faults(self) -> list[str]:
         """Return what drives, wires and devices say is wrong with them, in words."""
-        said = (self.drive_fault, self.bus_fault, self.foreign_master, self.device_fault, self.line_fault)
+        wires = (self.bus_fault, self.line_silent, self.foreign_master)
+        said = (self.drive_fault, self.unheard, *wires, self.device_fault, self.line_fault)
         return [one for one in said if one]
 
 

@@ -6,6 +6,7 @@ from enum import Enum
 from typing import Final
 
 from drivers.ports import BusLost
+from tester.machine import line_speed
 from tester.machine.connect import Connector, Stage
 from tester.machine.context import AnyContext
 from tester.machine.devices import DeviceList
@@ -139,7 +140,9 @@ class Run:
         ctx.now = now
         ctx.before_reading()
         engine.devices.fill(ctx.readings, now)
-        for line in (self.connector.shown, *engine.devices.without(), *ctx.known()):
+        devices: DeviceList = engine.devices
+        measured = (line_speed.described(devices),) if devices.real_lines() else ()
+        for line in (self.connector.shown, *engine.devices.without(), *measured, *ctx.known()):
             ctx.journal.event(now, "arming", line)
         self._started = True
         refused = engine.control.start(ctx.readings)

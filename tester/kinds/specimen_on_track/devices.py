@@ -99,6 +99,8 @@ class TrackDevices(DeviceList):
             self.fill_status(r, track)
         r.inputs_at_s = track.inputs_stamp_s
         r.can_heard_s = self._can_heard_s
+        self.fill_unheard(r)
+        self.fill_silent(r)
         if self.lost:
             r.bus_fault = self.lost
         if self.master.foreign_master:

@@ -103,6 +103,8 @@ class Devices(DeviceList):
             inputs = self.fill_status(r, self.axes.press)
             r.contactor_closed = self._contactor_closed = inputs & INPUT_CONTACTOR != 0
         r.can_heard_s = self._can_heard_s
+        self.fill_unheard(r)
+        self.fill_silent(r)
         if self.lost:
             r.bus_fault = self.lost
         if self.master.foreign_master:

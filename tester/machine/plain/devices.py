@@ -76,6 +76,8 @@ class PlainDevices(DeviceList):
                 drive.news = drive.stands = False
             self.fill_status(r, self.io)
         r.can_heard_s = self._can_heard_s
+        self.fill_unheard(r)
+        self.fill_silent(r)
         r.bus_fault = self.lost or r.bus_fault
         if self.master.foreign_master:
             r.foreign_master = self.master.foreign_frame

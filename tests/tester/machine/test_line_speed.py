@@ -1,0 +1,48 @@
+"""A line too slow for the ages that the rig file allows is refused at connect, with what to do about it."""
+
+from __future__ import annotations
+
+import pytest
+
+from tester.kinds import load_rig
+from tester.kinds.wheel_on_belt.build import build_devices
+from tester.kinds.wheel_on_belt.procedures.connection import WheelArming
+from tester.machine import line_speed
+from tester.machine.connect import Connector, Stage
+from tester.machine.devices import DeviceList
+from tester.run.simulated import simulated_ports
+
+
+def connected(held: str) -> tuple[Connector, DeviceList]:
+    """Connect to the simulated rig until its devices are heard, or it is given up."""
+    rig = load_rig("sim", (f"sim.latency_timer={held}",))
+    ports, world, _ = simulated_ports(rig, 0, None)
+    devices = build_devices(rig, ports)
+    connector = Connector(devices, rig, WheelArming(devices, rig), rig.arming.listen_s)
+    now = 0.0
+    while connector.stage in (Stage.LISTEN, Stage.CONFIGURE, Stage.HEAR):
+        world.advance(now)
+        now = connector.tick(now)
+    return connector, devices
+
+
+def test_a_line_with_the_usual_latency_timer_is_measured_and_taken() -> None:
+    connector, devices = connected("16 ms")
+    assert (connector.stage, connector.failure) == (Stage.LIFT, "")
+    reply = next(one.driver.station.reply for one in devices.modbus if one.name == "load_cell")
+    assert reply.least_s == pytest.approx(0.017, abs=1e-4)
+    assert reply.measured
+    assert "load cell 17.0 to 17.0 ms" in line_speed.described(devices)
+
+
+def test_time_outs_may_follow_replies_as_far_as_the_age_allows() -> None:
+    _, devices = connected("0 ms")
+    longest = {one.name: one.driver.station.longest_s for one in devices.modbus}
+    assert longest["load_cell"] == pytest.approx(0.025)
+
+
+def test_a_line_too_slow_is_refused_with_the_key_and_the_remedy() -> None:
+    connector, _ = connected("40 ms")
+    assert connector.failed
+    assert "load cell: line load_cell is too slow for interlocks.stale_cell, 50.0 ms" in connector.failure
+    assert "sim.latency_timer" in connector.failure
