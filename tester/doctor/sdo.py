@@ -28,7 +28,7 @@ class WriteRefusedError(Exception):
     """An object is not to be written now; the message says why."""
 
 
-class ObjectAccess:
+class NodeAccess:
     """The objects of one node. Raises BusLost where the bus is gone."""
 
     def __init__(self, port: CanPort, wires: Wires, node: int) -> None:
