@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from drivers.axis import AxisConfig
 from drivers.canopen import objects as o
 from drivers.canopen.scan import Key
-from drivers.modbus.scan import Question
+from drivers.modbus.scan import RegisterQuestion
 from drivers.profiles.model import DeviceProfile
 from drivers.servo_setup import pdo_settings, settings
 from tester.run.kept import IDENTITY, KEPT
@@ -49,7 +49,7 @@ def objects_of(config: AxisConfig) -> list[Key]:
     return list(dict.fromkeys((*IDENTITY, *STATE, *KEPT, *written(config), *mapped(config))))
 
 
-def configuration(profile: DeviceProfile, unit_id: int) -> Iterator[tuple[str, Question]]:
+def configuration(profile: DeviceProfile, unit_id: int) -> Iterator[tuple[str, RegisterQuestion]]:
     """Yield name and question of every register of a device that is configuration: identity, set-up, parameters.
 
     A setpoint and a lease are commands, and are left out.
@@ -57,9 +57,9 @@ def configuration(profile: DeviceProfile, unit_id: int) -> Iterator[tuple[str, Q
     reads = 3 if 3 in profile.functions else 4
     identity = profile.identity
     if identity is not None:
-        yield "device type", Question(unit_id, identity.function, identity.address, 1)
+        yield "device type", RegisterQuestion(unit_id, identity.function, identity.address, 1)
     for write in profile.setup:
-        yield write.name, Question(unit_id, reads, write.address, 1)
+        yield write.name, RegisterQuestion(unit_id, reads, write.address, 1)
     for name, signal in profile.writes.items():
         if name not in ("setpoint", "lease"):
-            yield name, Question(unit_id, reads, signal.address, signal.size)
+            yield name, RegisterQuestion(unit_id, reads, signal.address, signal.size)
