@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import Annotated, Literal
 
 from drivers.canopen.dictionary import PRODUCT_CODE, VENDOR_ID
 from drivers.canopen.emcy import register_text
 from drivers.canopen.objects import emergency_text
+from drivers.digital_io import USUAL_WIRING, DigitalWiring
+from drivers.drives.model import DriveProfile
+from drivers.drives.reader import GENERIC, drive_profile
+from drivers.profiles.model import ProfileError
 from drivers.screw import Screw
 
 _I32_MAX = 0x7FFF_FFFF
@@ -24,6 +29,8 @@ class AxisConfig:
     0 = not used. ``feedback`` names the 32-bit field of TPDO1. Torque: 0x6077 is per mille of
     ``rated_torque_nm`` (0x6076). ``vendor_id``, ``product_code`` and ``serial_number`` are compared with
     0x1018 at connect; 0 = not compared. [A] marks an assumption: check it against the drive's manual.
+    ``profile`` names what is particular to the maker's drives (drivers.drives). Where its accelerations or its
+    greatest speed do not follow from 0x60FF's counts, the two further increments state them; 0 = by the profile.
     """
 
     name: str
@@ -58,6 +65,13 @@ class AxisConfig:
     consumer_heartbeat_s: Annotated[float, "s"] = 0.2    # 0x1016: how long the drive waits for ours
     rpdo_deadline_s: Annotated[float, "s"] = 0.0     # 0x1400:05; 0: off, the heartbeat watches
     proves_watchdog: bool = True                     # takes part in the proof at arming; false: it cannot report 0x8130
+    profile: str = GENERIC                           # of drivers/profiles/drives, or a path that ends in .toml
+    acceleration_increments: float = 0.0             # counts of 0x6083-85 and 0x609A per speed unit per s
+    max_speed_increments: float = 0.0                # counts of 0x6080 per unit of speed
+    gear: float = 1.0                                # motor turns in one of the shaft that rated_torque is of
+    wiring: DigitalWiring | None = None              # bits of 0x60FD and 0x60FE:01; as in docs/safety.md unless stated
+    parameters: Mapping[str, float] = field(default_factory=dict[str, float])
+    """Values of the profile's further objects (its table ``writes``), by name."""
 
     def __post_init__(self) -> None:
         for problem in self._problems():
@@ -65,10 +79,14 @@ class AxisConfig:
 
     def _problems(self) -> list[str]:
         problems: list[str] = []
+        try:
+            self._check_profile(problems)
+        except ProfileError as error:
+            problems.append(str(error))
         if not 1 <= self.node_id <= 126:
             problems.append(f"node id {self.node_id} is not within 1..126")
         for name in ("velocity_increments", "rated_torque_nm", "max_speed", "acceleration", "deceleration",
-                     "quick_stop_deceleration"):
+                     "quick_stop_deceleration", "gear"):
             value: float = getattr(self, name)
             if not (math.isfinite(value) and value > 0):
                 problems.append(f"{name} is {value}, it must be above 0")
@@ -93,6 +111,53 @@ class AxisConfig:
         if self.digital_io and not 0.01 <= self.inputs_period_s <= 65.535:
             problems.append(f"inputs_period is {self.inputs_period_s} s, possible are 0.01..65.535 s")
         return problems
+
+    def _check_profile(self, problems: list[str]) -> None:
+        """Raise ProfileError where there is no such profile; note parameters that it does not have."""
+        known = self.drive.parameters
+        for name, value in self.parameters.items():
+            if name not in known:
+                problems.append(f"profile {self.profile} has no parameter {name} (it has {', '.join(known) or 'none'})")
+            elif value != round(value):
+                problems.append(f"{name} is {value}, it must be a whole number of counts")
+        for name in ("acceleration_increments", "max_speed_increments"):
+            if not 0.0 <= getattr(self, name) < math.inf:
+                problems.append(f"{name} is {getattr(self, name)}, it must be above 0, or 0: by the profile")
+
+    @property
+    def drive(self) -> DriveProfile:
+        """What is particular to the maker's drives."""
+        return drive_profile(self.profile)
+
+    @property
+    def acceleration_counts(self) -> float:
+        """Counts of 0x6083, 0x6084, 0x6085 and 0x609A per speed unit per s."""
+        return self.acceleration_increments or self.velocity_increments * self.drive.units.acceleration
+
+    @property
+    def max_speed_counts(self) -> float:
+        """Counts of 0x6080 and 0x607F per unit of speed."""
+        return self.max_speed_increments or self.velocity_increments * self.drive.units.greatest_speed
+
+    @property
+    def profile_speed_counts(self) -> float:
+        """Counts of 0x6081 and 0x6099 per unit of speed."""
+        return self.velocity_increments * self.drive.units.profile_speed
+
+    @property
+    def rated_torque_counts(self) -> float:
+        """What 0x6076, of the motor, has to say: the rated torque of the axis over its gear."""
+        return self.rated_torque_nm / self.gear / self.drive.units.rated_torque_nm
+
+    @property
+    def io(self) -> DigitalWiring:
+        """Which bits of the digital inputs and outputs mean what."""
+        return self.wiring or USUAL_WIRING
+
+    @property
+    def standstill_by_pdo(self) -> bool:
+        """PDO 2 carries the statusword, for its bit 12."""
+        return self.speed_zero > 0.0 and self.drive.standstill
 
 
 @dataclass(frozen=True, slots=True)

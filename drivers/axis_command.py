@@ -39,14 +39,15 @@ class AxisCommand(CanNode):
     """
 
     __slots__ = ("_at_rest", "_goal", "_halt", "_high", "_homing", "_homing_start", "_low",
-                 "_new_set_point", "_outputs", "_per_unit", "_position_mode", "_raw", "_resetting", "_rpdo",
-                 "_set_point", "_target", "_target_counts", "aimed", "config", "homing_scans", "inhibited", "news",
-                 "state", "statusword")
+                 "_new_set_point", "_outputs", "_per_unit", "_position_mode", "_raw", "_remote_bit", "_resetting",
+                 "_rpdo", "_set_point", "_target", "_target_counts", "aimed", "config", "homing_scans", "inhibited",
+                 "news", "state", "statusword")
 
     def __init__(self, config: AxisConfig) -> None:
         super().__init__(config.name, config.node_id, config.heartbeat_s, config.digital_io)
         self.config = config
         self._position_mode = config.mode == "position"
+        self._remote_bit = cia402.REMOTE if config.drive.remote else 0
         self._per_unit = config.position_increments if self._position_mode else config.velocity_increments
         reach = _I32_MAX / self._per_unit
         limits = config.software_limits if self._position_mode else (-config.max_speed, config.max_speed)
@@ -157,8 +158,8 @@ class AxisCommand(CanNode):
 
     @property
     def remote(self) -> bool:
-        """Whether the drive listens to the bus (bit 9); enabling is not tried without."""
-        return self.statusword & cia402.REMOTE != 0
+        """Whether the drive listens to the bus (bit 9, where its make has it); enabling is not tried without."""
+        return self.statusword & self._remote_bit == self._remote_bit
 
     def emit(self, sync: bool) -> bytes | None:
         """Return RPDO1 for this scan, None while there is nothing to command; ``sync``: a SYNC follows."""
@@ -213,7 +214,7 @@ class AxisCommand(CanNode):
             self._rpdo = None
             return
         goal = _QUICK_STOP if self.lost else self._goal
-        if goal is _ENABLED and (self.inhibited or not self.statusword & cia402.REMOTE):
+        if goal is _ENABLED and (self.inhibited or not self.remote):
             goal = _DISABLED
         word = cia402.controlword(self.state, goal)
         if self._resetting:

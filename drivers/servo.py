@@ -6,7 +6,7 @@ import math
 import struct
 from typing import Final
 
-from drivers import cia402, servo_setup
+from drivers import cia402, servo_service, servo_setup
 from drivers.axis import AxisConfig as AxisConfig
 from drivers.axis import DeviceIdentity, Diagnosis
 from drivers.axis_command import AxisCommand
@@ -16,6 +16,7 @@ from drivers.canopen.conversation import AwaitedCondition, Conversation
 from drivers.canopen.emcy import Emergency
 from drivers.canopen.heartbeat import HeartbeatMonitor
 from drivers.cia402 import Goal, State
+from drivers.drive_settings import DrivePlan
 
 # All axes share this layout (drivers.canopen.pdo): statusword, velocity or position, torque.
 _TPDO1: Final = struct.Struct("<Hih").unpack
@@ -43,22 +44,24 @@ class ServoDrive(AxisCommand):
     booted while in use (``rebooted``); stays until the next connect, and until then it is sent a quick stop
     (nothing, once rebooted). ``refused`` says why connect or home failed. ``emergency`` is the last EMCY that
     was neither reset by the device nor acknowledged. ``parameters`` holds what was read back of the device,
-    by (index, sub-index). ``inputs_stamp_s`` is the arrival of the last TPDO2, -inf before the first. Whoever sees
-    that outputs have not done what they are for sets ``outputs_unanswered``: they are then sent again. ``stands``: it
-    has said between two SYNCs that it stands now; whoever has looked takes it back.
+    by (index, sub-index). ``plan`` says since connect what the drive is done without, and what is lost by that
+    (``without``). ``inputs`` and ``outputs`` have the program's bits (drivers.digital_io). ``inputs_stamp_s`` is the
+    arrival of the last TPDO2, -inf before the first. Whoever sees that outputs have not done what they are for sets
+    ``outputs_unanswered``: they are then sent again. ``stands``: it has said between two SYNCs that it stands now;
+    whoever has looked takes it back.
 
     The methods ``on_...``, ``emit...``, ``check_heartbeat`` and ``holds`` are the master's.
     """
 
     __slots__ = ("_nm_per_mille", "_outputs_again_s", "_outputs_sent", "_raw_per_unit", "actual", "diagnosis",
                  "emergencies_dropped", "emergency", "emergency_log", "homed", "identity", "inputs",
-                 "inputs_stamp_s", "outputs_unanswered", "parameters", "rebooted", "stands", "torque_nm")
+                 "inputs_stamp_s", "outputs_unanswered", "parameters", "plan", "rebooted", "stands", "torque_nm")
 
     def __init__(self, config: AxisConfig) -> None:
         super().__init__(config)
         by_position = config.feedback == "position"
         self._raw_per_unit = config.position_increments if by_position else config.velocity_increments
-        self._nm_per_mille = config.rated_torque_nm / 1000.0
+        self._nm_per_mille = config.rated_torque_nm / 1000.0 / config.drive.units.torque
         self.diagnosis: Diagnosis | None = None
         self.emergency_log: list[Emergency] = []
         self.emergencies_dropped = 0
@@ -85,6 +88,7 @@ class ServoDrive(AxisCommand):
         self.identity: DeviceIdentity | None = None
         self.refused = None
         self.parameters: dict[tuple[int, int], int] = {}
+        self.plan = DrivePlan()
         self._outputs_sent = 0
         self._outputs_again_s = math.inf
         self.outputs_unanswered = False
@@ -97,15 +101,23 @@ class ServoDrive(AxisCommand):
 
     def home(self) -> Conversation:
         """Return the conversation that finds the axis' reference; it enables the drive for that."""
-        return servo_setup.home(self)
+        return servo_service.home(self)
 
     def diagnose(self) -> Conversation:
         """Return the conversation that reads the fault objects into ``diagnosis``; it changes nothing."""
-        return servo_setup.diagnose(self)
+        return servo_service.diagnose(self)
+
+    def ask(self) -> Conversation:
+        """Return the conversation that reads the statusword of a drive that sends no process data."""
+        return servo_service.ask(self)
+
+    def start_again(self) -> Conversation:
+        """Return the conversation that brings back a drive that has left OPERATIONAL; set another goal first."""
+        return servo_service.start_again(self)
 
     def release(self) -> Conversation:
         """Return the conversation that leaves the drive disabled, unwatched and PRE-OPERATIONAL."""
-        return servo_setup.release(self)
+        return servo_service.release(self)
 
     def reset_fault(self) -> None:
         """Acknowledge: forget the last emergency and, in FAULT, raise bit 7 once with the next scan.
@@ -171,13 +183,13 @@ class ServoDrive(AxisCommand):
 
     def on_tpdo2(self, t: float, data: bytes) -> None:
         """Take the digital inputs, or the statusword that has changed, that arrived at ``t``."""
-        if self.config.speed_zero:
+        if self.config.standstill_by_pdo:
             self._on_status(t, data)
         elif len(data) != _IO_SIZE:
             self.malformed += 1
         elif self.connected:
             fields: tuple[int] = _IO_UNPACK(data)
-            inputs = fields[0]
+            inputs = self.config.io.from_drive(fields[0])
             self.inputs_stamp_s = t
             if inputs != self.inputs:
                 self.inputs = inputs
@@ -243,7 +255,7 @@ class ServoDrive(AxisCommand):
             return None
         self._outputs_sent = wanted
         self._outputs_again_s = now + OUTPUTS_AGAIN_S
-        return _IO_PACK(wanted)
+        return _IO_PACK(self.config.io.to_drive(wanted))
 
     def holds(self, condition: AwaitedCondition) -> bool:
         """Whether a condition a conversation waits for is true."""
@@ -259,7 +271,7 @@ class ServoDrive(AxisCommand):
             return True
         return self.homing_scans >= _HOMING_SCANS and (self.deviation or self.homing_succeeded)
 
-    # --- what the conversations call (drivers.servo_setup) --------------------------------------------------
+    # --- what the conversations call (servo_setup, servo_service) --------------------------------------------------
 
     def begin_connect(self) -> None:
         """Forget the device: nothing is commanded until finish_connect."""

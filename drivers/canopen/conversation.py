@@ -218,9 +218,9 @@ class Dialogue:
             self._until = now + request.seconds
 
 
-def read_number(index: int, sub: int = 0) -> Generator[Request, Reply, int]:
-    """Read an integer object of the dictionary; raises RequestError."""
-    value = yield SdoRead(index, sub)
+def read_number(index: int, sub: int = 0, kind: DataType | None = None) -> Generator[Request, Reply, int]:
+    """Read an integer object, of type ``kind`` where it is not in the dictionary; raises RequestError."""
+    value = yield SdoRead(index, sub, kind)
     if not isinstance(value, int):
         raise RequestError(f"{describe(index, sub)}: a number was expected, {value!r} was read", 0)
     return value

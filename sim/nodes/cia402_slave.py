@@ -32,6 +32,7 @@ _CONTROLWORD: Final = (o.CONTROLWORD, 0)
 _MODE: Final = (o.MODE, 0)
 _OUTPUTS: Final = (o.DIGITAL_OUTPUTS, 1)
 _OUTPUT_MASK: Final = (o.DIGITAL_OUTPUTS, 2)
+_NO_MASK: Final = 0xFFFF_FFFF
 
 _TARGET_VELOCITY: Final = (o.TARGET_VELOCITY, 0)
 _MAX_TORQUE: Final = (o.MAX_TORQUE, 0)
@@ -61,6 +62,7 @@ class Cia402Slave(DrivePower):
         "_mode_bits",
         "_offset",
         "_per_mille",
+        "_remote_bit",
         "_sent_data",
         "_sent_status",
         "_sent_torque",
@@ -97,7 +99,8 @@ class Cia402Slave(DrivePower):
         loop's ``lag_s`` (s) [A]. ``home_position``: where the home switch of a positioning axis is (axis unit).
         ``turnaround_s`` (s): from an SDO request to its answer [A].
         """
-        store = ObjectStore(config.node_id, drive_objects.overrides(config, serial_number))
+        entries = drive_objects.entries(config)
+        store = ObjectStore(config.node_id, drive_objects.overrides(config, serial_number), entries)
         axis = drive_objects.default_axis(config, lag_s) if axis is None else axis
         io = SafetyIo() if config.digital_io else None
         super().__init__(wire, store, axis, io, boot_s, turnaround_s, now)
@@ -123,7 +126,8 @@ class Cia402Slave(DrivePower):
         self._mode_bits = 0
         self._by_position = config.feedback == "position"
         self._increments = config.position_increments if self._by_position else config.velocity_increments
-        self._per_mille = 1000.0 / config.rated_torque_nm
+        self._per_mille = 1000.0 / config.rated_torque_nm * config.drive.units.torque
+        self._remote_bit = cia402.REMOTE if config.drive.remote else 0
         drive_objects.install(self)
         self._application_reset()
         self.power(powered)
@@ -234,7 +238,8 @@ class Cia402Slave(DrivePower):
         values = self.store.values
         controlword = values[_CONTROLWORD]
         if self.io is not None:
-            self._switch_outputs(values[_OUTPUTS] & values[_OUTPUT_MASK], t)
+            mask = values[_OUTPUT_MASK] if _OUTPUT_MASK in self.store.entries else _NO_MASK
+            self._switch_outputs(self.config.io.outputs_meant(values[_OUTPUTS] & mask), t)
         if self.local:
             return
         self.select_mode(values[_MODE])
@@ -286,7 +291,7 @@ class Cia402Slave(DrivePower):
 
     def reload_ramps(self) -> None:
         """Take over ramp and window objects; a move under way goes on with them."""
-        self.ramps.load(self.store, self.config.velocity_increments, self.config.position_increments)
+        self.ramps.load(self.store, self.config)
         if isinstance(self.mode, ProfileVelocity):
             self.mode.start()
 
@@ -318,7 +323,7 @@ class Cia402Slave(DrivePower):
         if not self.torque_off:
             word |= cia402.VOLTAGE
         if not self.local:
-            word |= cia402.REMOTE
+            word |= self._remote_bit
         if self.emergencies.present and state not in FAULTY:
             word |= cia402.WARNING
         if word != self.statusword:

@@ -11,6 +11,7 @@ from math import inf
 from typing import Final, Protocol
 
 from drivers import cia402
+from drivers.axis import AxisConfig
 from drivers.canopen import objects as o
 from sim.nodes.motion import VelocityAxis
 from sim.nodes.object_store import ObjectStore
@@ -25,6 +26,7 @@ class Ramps:
 
     __slots__ = (
         "acceleration",
+        "acceleration_counts",
         "deceleration",
         "following_error",
         "following_error_s",
@@ -33,6 +35,7 @@ class Ramps:
         "max_slippage",
         "position_window",
         "position_window_s",
+        "profile_speed_counts",
         "quick_stop",
         "velocity_increments",
         "velocity_threshold",
@@ -41,20 +44,24 @@ class Ramps:
         "velocity_window_s",
     )
 
-    def load(self, store: ObjectStore, velocity_increments: float, position_increments: float) -> None:
-        """Take over the objects; increments are counts per unit/s and per unit (0: positions are not used)."""
+    def load(self, store: ObjectStore, config: AxisConfig) -> None:
+        """Take over the objects, which are in the counts of the configuration."""
         values = store.values
-        per = self.velocity_increments = velocity_increments
-        per_position = position_increments or inf
-        self.acceleration = values[(o.PROFILE_ACCELERATION, 0)] / per
-        self.deceleration = values[(o.PROFILE_DECELERATION, 0)] / per
-        self.quick_stop = values[(o.QUICK_STOP_DECELERATION, 0)] / per
+        per = self.velocity_increments = config.velocity_increments
+        per_position = config.position_increments or inf
+        rate = self.acceleration_counts = config.acceleration_counts
+        self.profile_speed_counts = config.profile_speed_counts
+        threshold = per * config.drive.units.threshold
+        self.acceleration = values[(o.PROFILE_ACCELERATION, 0)] / rate
+        self.deceleration = values[(o.PROFILE_DECELERATION, 0)] / rate
+        self.quick_stop = values[(o.QUICK_STOP_DECELERATION, 0)] / rate
         self.halt = self.quick_stop if values[(o.HALT_OPTION, 0)] == 2 else self.deceleration
-        self.limit = min(values[(o.MAX_MOTOR_SPEED, 0)], values[(o.MAX_PROFILE_VELOCITY, 0)]) / per
+        greatest = min(values[(o.MAX_MOTOR_SPEED, 0)], values[(o.MAX_PROFILE_VELOCITY, 0)])
+        self.limit = greatest / config.max_speed_counts
         self.max_slippage = values[(o.MAX_SLIPPAGE, 0)] / per
         self.velocity_window = values[(o.VELOCITY_WINDOW, 0)] / per
         self.velocity_window_s = values[(o.VELOCITY_WINDOW_TIME, 0)] * 1e-3
-        self.velocity_threshold = values[(o.VELOCITY_THRESHOLD, 0)] / per
+        self.velocity_threshold = values[(o.VELOCITY_THRESHOLD, 0)] / threshold
         self.velocity_threshold_s = values[(o.VELOCITY_THRESHOLD_TIME, 0)] * 1e-3
         self.position_window = values[(o.POSITION_WINDOW, 0)] / per_position
         self.position_window_s = values[(o.POSITION_WINDOW_TIME, 0)] * 1e-3

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from drivers.axis import AxisConfig
 from drivers.canopen import objects as o
+from drivers.canopen.dictionary import DICTIONARY, Entry
 from drivers.canopen.objects import OperationMode
 from drivers.cia402 import State
+from drivers.drives.model import Substitute
+from drivers.drives.reader import GENERIC
 from sim.nodes import sdo_server as sdo
 from sim.nodes.motion import PositionAxis, VelocityAxis
 from sim.nodes.object_store import Key
@@ -57,6 +61,11 @@ _RAMP_OBJECTS = (
 _COMMANDS = (o.CONTROLWORD, o.MODE, o.TARGET_VELOCITY, o.TARGET_POSITION, o.DIGITAL_OUTPUTS)
 
 
+def entries(config: AxisConfig) -> Mapping[Key, Entry]:
+    """Return the objects that a drive of the axis' profile has."""
+    return DICTIONARY if config.profile == GENERIC else config.drive.dictionary()
+
+
 def overrides(config: AxisConfig, serial_number: int) -> dict[Key, int | str]:
     """Return the values that make the dictionary this axis' drive: identity, ratings, modes."""
     modes = 0
@@ -66,7 +75,7 @@ def overrides(config: AxisConfig, serial_number: int) -> dict[Key, int | str]:
         (o.IDENTITY, 1): config.vendor_id,
         (o.IDENTITY, 2): config.product_code,
         (o.IDENTITY, 4): serial_number or config.serial_number or config.node_id,
-        (o.RATED_TORQUE, 0): round(config.rated_torque_nm * 1000.0),
+        (o.RATED_TORQUE, 0): round(config.rated_torque_counts),
         (o.SUPPORTED_MODES, 0): modes,
     }
 
@@ -114,6 +123,8 @@ class _Objects:
             store.hooks[index] = self._on_ramp
         for index in _COMMANDS:
             store.hooks[index] = self._on_command
+        for key, one in drive.config.drive.substitutes.items():
+            store.hooks[one.key[0]] = _Stands(drive, key, one).on_write
 
     # shown ---------------------------------------------------------------------------------------------------
 
@@ -144,11 +155,11 @@ class _Objects:
 
     def _torque(self) -> int:
         drive = self._drive
-        return clamped_i16(drive.torque_nm * 1000.0 / drive.config.rated_torque_nm)
+        return clamped_i16(drive.torque_nm * 1000.0 / drive.config.rated_torque_nm * drive.config.drive.units.torque)
 
     def _inputs(self) -> int:
         io = self._drive.io
-        return 0 if io is None else io.inputs
+        return 0 if io is None else self._drive.config.io.inputs_shown(io.inputs)
 
     # accepted ------------------------------------------------------------------------------------------------
 
@@ -177,6 +188,25 @@ class _Objects:
 
     def _on_command(self, sub: int, value: int) -> None:
         self._drive.process(self._drive.now_s)
+
+
+class _Stands:
+    """Does, for an object of the maker's, what the standard one does that it stands in for."""
+
+    __slots__ = ("_drive", "_one", "_standard")
+
+    def __init__(self, drive: Cia402Slave, standard: Key, one: Substitute) -> None:
+        self._drive = drive
+        self._standard = standard
+        self._one = one
+
+    def on_write(self, sub: int, value: int) -> None:
+        """Take the value over into the standard object, inside the drive."""
+        one, store = self._one, self._drive.store
+        if sub == one.key[1]:
+            reference = 0 if one.per_mille_of is None else store.values[one.per_mille_of]
+            if reference or one.per_mille_of is None:
+                store.write(*self._standard, one.standard(value, reference))
 
 
 class _Choice:

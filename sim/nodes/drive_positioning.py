@@ -128,7 +128,7 @@ class ProfilePosition:
         ramps = self._drive.ramps
         self._target = target
         self._reached.clear()
-        speed = self._drive.store.values[(o.PROFILE_VELOCITY, 0)] / ramps.velocity_increments
+        speed = self._drive.store.values[(o.PROFILE_VELOCITY, 0)] / ramps.profile_speed_counts
         if not self._halt:
             self._axis.move(target, min(speed, ramps.limit), ramps.acceleration, ramps.deceleration)
 
@@ -209,7 +209,7 @@ class Homing:
         if values[(o.HOMING_METHOD, 0)] in _HERE:
             return
         ramps = drive.ramps
-        acceleration = values[(o.HOMING_ACCELERATION, 0)] / ramps.velocity_increments
-        speed = min(values[(o.HOMING_SPEED, 1)] / ramps.velocity_increments, ramps.limit)
+        acceleration = values[(o.HOMING_ACCELERATION, 0)] / ramps.acceleration_counts
+        speed = min(values[(o.HOMING_SPEED, 1)] / ramps.profile_speed_counts, ramps.limit)
         goal = self.home_position if self.switch_works else self.home_position - 0.1
         axis.move(goal, speed, acceleration, acceleration)

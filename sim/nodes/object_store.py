@@ -21,8 +21,6 @@ Reader = Callable[[], int]
 Guard = Callable[[int, int], None]
 """Called with (sub-index, value); raises SdoAbortError to refuse it."""
 
-_INDICES = frozenset(index for index, _ in DICTIONARY)
-
 _COMMUNICATION = range(0x1000, 0x2000)
 """The objects a communication reset sets back (CiA 301, 7.3.2.2.1)."""
 
@@ -30,11 +28,21 @@ _COMMUNICATION = range(0x1000, 0x2000)
 class ObjectStore:
     """The values of one device; SDO access through ``upload`` and ``download``."""
 
-    __slots__ = ("_overrides", "_saved", "guards", "hooks", "node_id", "readers", "values")
+    __slots__ = ("_all", "_overrides", "_saved", "entries", "guards", "hooks", "node_id", "readers", "values")
 
-    def __init__(self, node_id: int, overrides: Mapping[Key, int | str] | None = None) -> None:
-        """Create a device's values: the table's defaults with ``overrides`` (identity, ratings) over them."""
+    def __init__(
+        self,
+        node_id: int,
+        overrides: Mapping[Key, int | str] | None = None,
+        entries: Mapping[Key, Entry] = DICTIONARY,
+    ) -> None:
+        """Create a device's values: the table's defaults with ``overrides`` (identity, ratings) over them.
+
+        ``entries``: the objects that the device has. Those of the table that it lacks keep their defaults inside.
+        """
         self.node_id = node_id
+        self.entries = entries
+        self._all: Mapping[Key, Entry] = DICTIONARY if entries is DICTIONARY else {**DICTIONARY, **entries}
         self.guards: dict[int, Guard] = {}
         self.hooks: dict[int, Guard] = {}
         self.readers: dict[Key, Reader] = {}
@@ -45,7 +53,7 @@ class ObjectStore:
 
     def reset(self, communication_only: bool = False) -> None:
         """Set the objects (those of the communication profile only, if so asked) to their power-on values."""
-        for key, entry in DICTIONARY.items():
+        for key, entry in self._all.items():
             if entry.type is DataType.TEXT or (communication_only and key[0] not in _COMMUNICATION):
                 continue
             value = self._saved.get(key)
@@ -53,7 +61,7 @@ class ObjectStore:
 
     def save(self) -> None:
         """Keep the present values of all writable parameters as power-on values (0x1010 "save")."""
-        for key, entry in DICTIONARY.items():
+        for key, entry in self._all.items():
             if entry.access == "rw" and not entry.mappable and key[0] != o.ERROR_HISTORY:
                 self._saved[key] = self.values[key]
 
@@ -84,7 +92,7 @@ class ObjectStore:
     def download(self, index: int, sub: int, data: bytes, exact: bool) -> None:
         """Write an object from its bytes; surplus bytes are cut unless ``exact``; raises SdoAbortError."""
         self.check_writable(index, sub)
-        codec = o.CODEC[DICTIONARY[(index, sub)].type]
+        codec = o.CODEC[self.entries[(index, sub)].type]
         if not exact:
             data = data[: codec.size]
         if len(data) != codec.size:
@@ -107,6 +115,8 @@ class ObjectStore:
         copy = object.__new__(ObjectStore)
         memo[id(self)] = copy
         copy.node_id = self.node_id
+        copy.entries = self.entries
+        copy._all = self._all
         copy.values = self.values.copy()
         copy._saved = self._saved.copy()
         copy._overrides = self._overrides
@@ -123,9 +133,9 @@ class ObjectStore:
             raise TypeError(f"0x{key[0]:04X}:{key[1]:02X} is a number, not text")
         return value
 
-    @staticmethod
-    def _entry(index: int, sub: int) -> Entry:
-        entry = DICTIONARY.get((index, sub))
+    def _entry(self, index: int, sub: int) -> Entry:
+        entry = self.entries.get((index, sub))
         if entry is None:
-            raise SdoAbortError(sdo.NO_SUBINDEX if index in _INDICES else sdo.NO_OBJECT)
+            known = any(index == one for one, _ in self.entries)
+            raise SdoAbortError(sdo.NO_SUBINDEX if known else sdo.NO_OBJECT)
         return entry

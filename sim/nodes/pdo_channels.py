@@ -11,7 +11,6 @@ from math import inf
 from typing import Final, Protocol
 
 from drivers.canopen import objects as o
-from drivers.canopen.dictionary import DICTIONARY
 from drivers.canopen.pdo import PdoMap, PdoMapError
 from sim.nodes import sdo_server as sdo
 from sim.nodes.object_store import Key, ObjectStore
@@ -85,6 +84,10 @@ class PdoParameters:
     def _valid(self) -> bool:
         return not self._store.values[(self._communication, 1)] & o.COB_INVALID
 
+    def _locked(self) -> bool:
+        """Return whether it has to be switched off before it is changed; one that cannot be is changed as it is."""
+        return self._valid() and self._store.entries[(self._communication, 1)].writable
+
     def _guard_communication(self, sub: int, value: int) -> None:
         if sub == 1:
             identifier = value & 0x1FFF_FFFF
@@ -96,11 +99,11 @@ class PdoParameters:
         elif sub == 2:
             if LAST_CYCLIC < value < _EVENT:
                 raise SdoAbortError(sdo.VALUE_RANGE)
-        elif sub == 3 and self._valid():
+        elif sub == 3 and self._locked():
             raise SdoAbortError(sdo.UNSUPPORTED_ACCESS)
 
     def _guard_mapping(self, sub: int, value: int) -> None:
-        if self._valid():
+        if self._locked():
             raise SdoAbortError(sdo.UNSUPPORTED_ACCESS)
         values = self._store.values
         if sub == 0:
@@ -117,7 +120,7 @@ class PdoParameters:
             self._check_mappable(value)
 
     def _check_mappable(self, value: int) -> None:
-        entry = DICTIONARY.get((value >> 16, value >> 8 & 0xFF))
+        entry = self._store.entries.get((value >> 16, value >> 8 & 0xFF))
         if entry is None:
             raise SdoAbortError(sdo.NO_OBJECT)
         allowed = entry.readable if self._transmit else entry.writable

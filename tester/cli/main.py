@@ -53,6 +53,7 @@ COMMANDS: dict[str, CommandEntry] = {
     "report": CommandEntry("tester.cli.report_command", "report", "Write a run's results as a page to send and print."),
     "predict": CommandEntry("tester.cli.predict_command", "predict", "The friction model's value for one condition."),
     "sim": CommandEntry("tester.cli.sim_command", "sim", "A simulated rig in real time, on CAN and Modbus over TCP."),
+    "eds": CommandEntry("tester.cli.eds_command", "eds", "Hold a drive's data sheet against what an axis needs."),
     "doctor": CommandEntry("tester.cli.doctor_command", "doctor", "Look at a rig: what is wrong, and what to do."),
     "sdo": CommandEntry("tester.cli.device_commands", "sdo", "Read an object of a CANopen node, or write one."),
     "params": CommandEntry("tester.cli.device_commands", "params", "What devices are set to: dump it, or compare it."),

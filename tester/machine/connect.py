@@ -178,7 +178,8 @@ class Connector:
 
     def _advance(self, now: float, elapsed: float) -> None:
         devices = self.devices
-        refused = devices.refused()
+        # While others are still asked, a refusal waits: all of them are told at once.
+        refused = "" if self.stage is Stage.CONFIGURE and devices.busy() else devices.refused()
         unfit = self._unfit(now) if self.stage in _MOVING else ""
         if self.stage in _HEARD:
             self.arming.renew()

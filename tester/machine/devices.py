@@ -211,17 +211,21 @@ class DeviceList:
         return any(self.master.busy(node) for node in self.master.nodes)
 
     def refused(self) -> str:
-        """Return why a device cannot be used, or ""."""
-        for drive in self.drives:
-            if drive.refused:
-                return f"{drive.config.name} drive (node {drive.config.node_id}): {drive.refused}"
-        for node in self.nodes:
-            if node.refused:
-                return f"{node.name} (node {node.node_id}): {node.refused}"
-        for device in self.modbus:
-            if device.driver.refused:
-                return f"{device.title}: {device.driver.refused}"
-        return ""
+        """Return why devices cannot be used, all of them, or ""."""
+        if not self._any_refused():
+            return ""
+        said = [f"{one.config.name} drive (node {one.node_id}): {one.refused}" for one in self.drives if one.refused]
+        said += [f"{one.name} (node {one.node_id}): {one.refused}" for one in self.nodes if one.refused]
+        said += [f"{one.title}: {one.driver.refused}" for one in self.modbus if one.driver.refused]
+        return "; ".join(said)
+
+    def _any_refused(self) -> bool:
+        drivers = (*self.drives, *self.nodes, *(one.driver for one in self.modbus))
+        return any(one.refused for one in drivers)
+
+    def without(self) -> list[str]:
+        """Return what drives are done without, and what is lost by that: a line each."""
+        return [f"{drive.config.name} drive: {one}" for drive in self.drives for one in drive.plan.without]
 
     def alarm(self) -> bool:
         """Tell whether a drive has something to report that the next regular scan should not wait for."""

@@ -9,6 +9,7 @@ from __future__ import annotations
 from enum import Enum
 from math import inf, nan
 
+from drivers.canopen.objects import NmtState
 from drivers.cia402 import Goal, State
 from drivers.servo import ServoDrive
 from tester.machine.devices import DeviceList
@@ -51,6 +52,8 @@ class WatchdogProof:
         self.since_s = nan
         self.reset_s = -inf
         self.reported: set[str] = set()
+        self._asked: set[str] = set()
+        self._ran_on: set[str] = set()
 
     # -- what a kind says -----------------------------------------------------------------------------------
 
@@ -154,11 +157,13 @@ class WatchdogProof:
         self.enter(ProofStage.WITHHOLD, now)
 
     def _withhold(self, now: float, elapsed: float) -> None:
-        if elapsed < self.withhold_s:
+        self._bring_back()
+        if elapsed < self.withhold_s or self.devices.busy():
             return
         self.devices.master.withhold_heartbeat = False
         for drive in self._watched():
-            if drive.config.name not in self.reported or drive.state is State.OPERATION_ENABLED:
+            name = drive.config.name
+            if name not in self.reported or name in self._ran_on or drive.state is State.OPERATION_ENABLED:
                 self.failure = (
                     f"the {drive.config.name} drive did not stop with EMCY 0x8130 when our heartbeat was missing"
                     f" for {self.withhold_s * 1000:g} ms (0x1016, 0x6007)"
@@ -166,6 +171,24 @@ class WatchdogProof:
                 return
         self.stop()
         self.enter(ProofStage.STILL, now)
+
+    def _bring_back(self) -> None:
+        """Ask a drive that has left OPERATIONAL (it has no 0x1029) how it stands, and start it again, disabled.
+
+        Until then it sends no process data: no speed, and no safety inputs.
+        """
+        master = self.devices.master
+        for drive in self.devices.drives:
+            if drive.nmt_state != NmtState.PRE_OPERATIONAL or master.busy(drive):
+                continue
+            if drive.config.name not in self._asked:
+                self._asked.add(drive.config.name)
+                drive.goal = Goal.DISABLED
+                master.start(drive, drive.ask())
+                continue
+            if drive.state is State.OPERATION_ENABLED:
+                self._ran_on.add(drive.config.name)
+            master.start(drive, drive.start_again())
 
     def _watched(self) -> list[ServoDrive]:
         return [drive for drive in self.devices.drives if drive.config.proves_watchdog]

@@ -139,7 +139,7 @@ class Run:
         ctx.now = now
         ctx.before_reading()
         engine.devices.fill(ctx.readings, now)
-        for line in (self.connector.shown, *ctx.known()):
+        for line in (self.connector.shown, *engine.devices.without(), *ctx.known()):
             ctx.journal.event(now, "arming", line)
         self._started = True
         refused = engine.control.start(ctx.readings)

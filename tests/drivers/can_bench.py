@@ -43,7 +43,7 @@ def yaw(**changes: object) -> AxisConfig:
     """Return the configuration of a position axis: 100 counts per degree, -30..30 deg."""
     fields: dict[str, object] = {
         "name": "sideslip", "node_id": NODE, "mode": "position", "unit": "deg", "velocity_increments": 100.0,
-        "position_increments": 100.0, "feedback": "position", "rated_torque_nm": 20.0, "max_speed": 10.0,
+        "position_increments": 100.0, "feedback": "position", "rated_torque_nm": 10.0, "max_speed": 10.0,
         "acceleration": 20.0, "deceleration": 20.0, "quick_stop_deceleration": 60.0,
         "software_limits": (-30.0, 30.0),
     }

@@ -117,8 +117,8 @@ def unequal_decelerations(devices: Devices, radius_m: float) -> str:
     """Return "" or how the ramps read back from wheel and belt differ, in m/s2."""
     wheel, belt = devices.axes.wheel, devices.axes.belt
     for index, name in ((o.PROFILE_DECELERATION, "deceleration"), (o.QUICK_STOP_DECELERATION, "quick stop")):
-        at_rim = wheel.parameters.get((index, 0), 0) / wheel.config.velocity_increments * radius_m
-        of_belt = belt.parameters.get((index, 0), 0) / belt.config.velocity_increments
+        at_rim = wheel.parameters.get((index, 0), 0) / wheel.config.acceleration_counts * radius_m
+        of_belt = belt.parameters.get((index, 0), 0) / belt.config.acceleration_counts
         if not abs(at_rim - of_belt) <= EQUAL_DECELERATIONS * of_belt:
             return f"{name}: wheel {at_rim:.3g} m/s2 at the rim, belt {of_belt:.3g} m/s2: must be equal within 5 %"
     return ""

@@ -1,0 +1,74 @@
+"""Which bits of a drive's digital inputs (0x60FD) and outputs (0x60FE:01) mean what.
+
+The program knows one arrangement, the usual one below; a drive with another is translated at its edge.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from typing import Final
+
+SAFETY_CHAIN: Final = 1 << 16
+GUARD: Final = 1 << 17
+CONTACTOR: Final = 1 << 18
+"""Inputs, as the program knows them (docs/safety.md)."""
+REQUEST: Final = 1 << 16
+"""Output: pull the contactor in."""
+
+
+@dataclass(frozen=True, slots=True)
+class DigitalWiring:
+    """Bit numbers, 0..31; raises ValueError for one out of range or taken twice.
+
+    Only the contactor's feedback may be inverted: an inverted safety chain or guard would read a broken wire as
+    closed, and an inverted request would pull the contactor in when nobody asks any more.
+    """
+
+    safety_chain: int = 16
+    guard: int = 17
+    contactor: int = 18
+    request: int = 16
+    contactor_inverted: bool = False
+
+    def __post_init__(self) -> None:
+        """Look at the numbers."""
+        for one in fields(self):
+            value: int = getattr(self, one.name)
+            if not 0 <= value <= 31:
+                raise ValueError(f"{one.name}: bit {value} (expected 0 to 31)")
+        if len({self.safety_chain, self.guard, self.contactor}) < 3:
+            raise ValueError("safety_chain, guard and contactor need a bit each")
+
+    @property
+    def mask(self) -> int:
+        """Outputs that the program sets, for 0x60FE:02."""
+        return 0xFFFF_0000 if self == USUAL_WIRING else 1 << self.request
+
+    def from_drive(self, word: int) -> int:
+        """Return the drive's input word as the program knows it."""
+        if self == USUAL_WIRING:
+            return word
+        found = (word >> self.safety_chain & 1) * SAFETY_CHAIN | (word >> self.guard & 1) * GUARD
+        return found | ((word >> self.contactor & 1) ^ self.contactor_inverted) * CONTACTOR
+
+    def to_drive(self, outputs: int) -> int:
+        """Return the drive's output word for one of the program's."""
+        if self == USUAL_WIRING:
+            return outputs
+        return int(bool(outputs & REQUEST)) << self.request
+
+    def inputs_shown(self, inputs: int) -> int:
+        """Return what a simulated drive shows for its contacts, in the program's arrangement."""
+        if self == USUAL_WIRING:
+            return inputs
+        found = bool(inputs & SAFETY_CHAIN) << self.safety_chain | bool(inputs & GUARD) << self.guard
+        return found | (bool(inputs & CONTACTOR) ^ self.contactor_inverted) << self.contactor
+
+    def outputs_meant(self, word: int) -> int:
+        """Return what a simulated drive's output word switches, in the program's arrangement."""
+        if self == USUAL_WIRING:
+            return word
+        return (word >> self.request & 1) * REQUEST
+
+
+USUAL_WIRING: Final = DigitalWiring()

@@ -1,0 +1,352 @@
+"""Which objects of a drive an axis needs, with which values, and what becomes of those that its drive lacks.
+
+Pure: from the axis' configuration and the objects that are absent follow the writes, what is done without (and what is
+lost by that) and what is refused. Connecting (drivers.servo_setup), a look at a data sheet (drivers.canopen.data_sheet)
+and lists of a drive's parameters all ask here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Final
+
+from drivers.axis import AxisConfig
+from drivers.canopen import objects as o
+from drivers.canopen import pdo
+from drivers.canopen.dictionary import DICTIONARY, describe
+from drivers.canopen.heartbeat import consumer_entry
+from drivers.canopen.objects import DataType, OperationMode
+from drivers.canopen.pdo import PdoMap
+from drivers.drives.model import Key, Substitute
+
+ABORT_CONNECTION_QUICK_STOP: Final = 3     # 0x6007: heartbeat lost -> quick stop
+NO_STATE_CHANGE: Final = 1                 # 0x1029:01: a communication error leaves the NMT state alone
+STATUS_INHIBIT_100_US: Final = 50          # 0x1801:03: 5 ms between two statuswords sent by themselves [A]
+PC_NODE: Final = 127
+RATED_TORQUE_SHARE: Final = 0.02
+"""By so much 0x6076 may differ from the rig file: it is entered rounded, from a nameplate [A]."""
+
+_DEADLINE: Final = (o.RPDO_COMMUNICATION, 5)
+_WATCH: Final = (o.CONSUMER_HEARTBEAT, 1)
+_MASK: Final = (o.DIGITAL_OUTPUTS, 2)
+_INPUTS_TIMER: Final = (o.TPDO_COMMUNICATION + 1, 5)
+
+LOST: Final[Mapping[Key, str]] = {
+    (o.SYNC_PERIOD, 0): "",
+    (o.ERROR_BEHAVIOUR, 1): "",
+    (o.SHUTDOWN_OPTION, 0): "",         # never sent from operation
+    (o.DISABLE_OPERATION_OPTION, 0): "how the axis slows down when it is disabled is the drive's own",
+    (o.HALT_OPTION, 0): "how the axis slows down on halt is the drive's own",
+    (o.MAX_MOTOR_SPEED, 0): "the drive limits its speed by its own setting only; the PC limits what it asks for",
+    (o.SOFTWARE_LIMIT, 1): "the drive has no least position; the PC limits what it asks for",
+    (o.SOFTWARE_LIMIT, 2): "the drive has no greatest position; the PC limits what it asks for",
+    (o.POSITION_WINDOW, 0): "within which window a position counts as reached is the drive's own",
+    (o.VELOCITY_THRESHOLD, 0): "below which speed the axis stands is the drive's own",
+    (o.VELOCITY_THRESHOLD_TIME, 0): "for how long it has to be slow is the drive's own",
+    (o.TPDO_COMMUNICATION + 1, 3): "a statusword that chatters is not held back on the bus",
+    _MASK: "the drive sets every output as 0x60FE:01 says",
+    _INPUTS_TIMER: "the digital inputs come with every SYNC instead",
+    (o.HOME_OFFSET, 0): "the home switch is at position 0",
+    (o.RATED_TORQUE, 0): "the drive does not say its rated torque: the rig file's is believed",
+}
+"""Objects that a profile may call missing, and what is lost without them; "" = nothing. Any other is refused, but for
+those that ``_Plan`` knows something to take the place of."""
+
+
+USED: Final = frozenset({*LOST, _DEADLINE, (o.MAX_TORQUE, 0)})
+"""Objects that would be used if they were there, and without which some axis can be."""
+
+
+@dataclass(frozen=True, slots=True)
+class Setting:
+    """One write; ``mask``: the bits that have to read back. ``per_mille_of``: see drivers.drives.model.Substitute."""
+
+    index: int
+    sub: int
+    value: int
+    type: DataType | None = None
+    substitute: Substitute | None = None
+    name: str = ""
+
+    @property
+    def key(self) -> Key:
+        """Its address."""
+        return self.index, self.sub
+
+
+@dataclass(frozen=True, slots=True)
+class PdoSetting:
+    """One PDO; ``mapped`` None: it is off."""
+
+    communication: int
+    mapping: int
+    cob_id: int
+    kind: int
+    mapped: PdoMap | None
+
+
+@dataclass(slots=True)
+class DrivePlan:
+    """What connecting an axis writes, does without, and refuses."""
+
+    settings: list[Setting] = field(default_factory=list[Setting])
+    pdos: list[PdoSetting] = field(default_factory=list[PdoSetting])
+    homing: list[Setting] = field(default_factory=list[Setting])
+    watched: bool = True
+    """0x1016 is armed."""
+    rated_torque: bool = True
+    """0x6076 is read and compared."""
+    without: list[str] = field(default_factory=list[str])
+    """What is missing, and what is lost by that, a sentence each."""
+    refused: list[str] = field(default_factory=list[str])
+
+
+def mode_of(config: AxisConfig) -> OperationMode:
+    """Return the mode in which an axis works."""
+    return OperationMode.PROFILE_POSITION if config.mode == "position" else OperationMode.PROFILE_VELOCITY
+
+
+def plan(config: AxisConfig, absent: Collection[Key] = ()) -> DrivePlan:
+    """Return the plan for an axis; ``absent``: objects that the drive lacks beside those its profile says."""
+    return _Planner(config, frozenset(absent)).plan()
+
+
+def tried(config: AxisConfig) -> tuple[Key, ...]:
+    """Return the objects that are to be asked for before the plan is made, as some drives of the make lack them."""
+    silent = (o.SYNC_PERIOD, 0), (o.ERROR_BEHAVIOUR, 1)
+    return tuple(sorted(key for key in config.drive.optional if key not in silent))
+
+
+class _Planner:
+    """One axis' plan in the making."""
+
+    def __init__(self, config: AxisConfig, absent: frozenset[Key]) -> None:
+        self.config = config
+        self.profile = config.drive
+        self.absent = absent
+        self.made = DrivePlan()
+
+    def lacks(self, *key: int) -> bool:
+        """Tell whether the drive has no such object."""
+        index, sub = key
+        return (index, sub) in self.absent or self.profile.lacks((index, sub))
+
+    def plan(self) -> DrivePlan:
+        """Make it."""
+        made, config = self.made, self.config
+        for parameter in self._parameters():
+            made.settings.append(parameter)
+        for index, sub, value in _settings(config):
+            self._take(made.settings, index, sub, value)
+        if config.feedback == "position":
+            told = len(made.without), len(made.refused)
+            for index, sub, value in _homing(config):
+                self._take(made.homing, index, sub, value)
+            if config.mode != "position":        # it is not homed in the course of a run
+                del made.without[told[0]:], made.refused[told[1]:]
+        self._watches()
+        self._torque()
+        self._bits()
+        made.pdos = list(self._pdos())
+        return made
+
+    def _parameters(self) -> Iterator[Setting]:
+        for name, one in self.profile.parameters.items():
+            value = self.config.parameters.get(name, one.value)
+            if value is not None:
+                yield Setting(*one.key, round(value), one.type, None, name.replace("_", " "))
+
+    def _take(self, settings: list[Setting], index: int, sub: int, value: int) -> None:
+        """Note one write, what stands in for it, or that it cannot be."""
+        key = index, sub
+        if not self.lacks(index, sub):
+            settings.append(Setting(index, sub, self.profile.options.get(key, value)))
+            return
+        instead = self.profile.substitutes.get(key)
+        if instead is not None:
+            settings.append(Setting(*instead.key, value, instead.type, instead, f"in place of {describe(*key)}"))
+        elif key == (o.HOME_OFFSET, 0) and value:
+            self._refuse(key, "the rig file has a home_offset")
+        elif key in LOST:
+            self._lose(key, LOST[key])
+        elif key not in (_DEADLINE, (o.MAX_TORQUE, 0)):      # told by _watches, _torque
+            self._refuse(key, "nothing stands in for it")
+
+    def _lose(self, key: Key, lost: str) -> None:
+        if lost:
+            self.made.without.append(f"no {describe(*key)}: {lost}")
+
+    def _refuse(self, key: Key, why: str) -> None:
+        """Say it once of an object, with the first reason."""
+        said = f"{describe(*key)}: the drive does not have it"
+        if not any(one.startswith(said) for one in self.made.refused):
+            self.made.refused.append(f"{said}; {why}")
+
+    def _watches(self) -> None:
+        """Without the PC the drive has to stop: its heartbeat is watched, or else its setpoints are."""
+        deadline = self.config.rpdo_deadline_s > 0.0 and not self.lacks(*_DEADLINE)
+        self.made.watched = not self.lacks(*_WATCH)
+        if not self.made.watched and not deadline:
+            self._refuse(_WATCH, "and no RPDO deadline (0x1400:05, rpdo_deadline): it would run on without the PC")
+        elif not self.made.watched:
+            self._lose(_WATCH, "only the setpoints are watched, by 0x1400:05; it cannot be stopped by silence alone")
+            if self.config.proves_watchdog:
+                self._refuse(_WATCH, "the proof at arming needs it: proves_watchdog: false")
+        elif self.config.rpdo_deadline_s > 0.0 and not deadline:
+            self._lose(_DEADLINE, "a PC that sends heartbeats but no setpoints is not noticed by the drive; "
+                                  "its heartbeat is watched by 0x1016")
+
+    def _torque(self) -> None:
+        """The press' torque limit caps the force whatever the load cell says: without it that axis is refused."""
+        key = o.MAX_TORQUE, 0
+        if self.lacks(o.RATED_TORQUE, 0):
+            self.made.rated_torque = False
+            self._lose((o.RATED_TORQUE, 0), LOST[o.RATED_TORQUE, 0])
+        if not self.lacks(*key) or key in self.profile.substitutes:
+            return
+        if self.config.screw is not None:
+            self._refuse(key, "nothing stands in for it, and the torque limit caps the force of this axis")
+        else:
+            self._lose(key, "the drive limits its torque by its own setting only")
+
+    def _bits(self) -> None:
+        if not self.profile.remote:
+            self.made.without.append("no statusword bit 9: that a person has taken the drive into local control at its "
+                                     "keypad is not seen")
+        if self.config.speed_zero and not self.profile.standstill:
+            self.made.without.append("no statusword bit 12 in profile velocity: that the axis stands is seen with the "
+                                     "next SYNC, not at once")
+
+    def _pdos(self) -> Iterator[PdoSetting]:
+        limits = self.profile.pdo
+        for one in pdo_settings(self.config, inputs_with_sync=self.lacks(*_INPUTS_TIMER)):
+            if one.mapped is not None:
+                name = describe(one.mapping, 0)
+                if len(one.mapped.fields) > limits.entries:
+                    self.made.refused.append(
+                        f"{name}: the drive takes {limits.entries} objects, {len(one.mapped.fields)} are needed")
+                if one.kind == pdo.SYNCHRONOUS and not limits.synchronous:
+                    kind = describe(one.communication, 2)
+                    self.made.refused.append(f"{kind}: the drive has no type 1, with every SYNC")
+                for index, sub, _ in one.mapped.fields:
+                    if self.lacks(index, sub):
+                        self._refuse((index, sub), "it is needed in a PDO")
+            yield one
+
+
+def _settings(config: AxisConfig) -> Iterator[tuple[int, int, int]]:
+    """Yield (index, sub-index, value) of the drive parameters that follow from the configuration."""
+    rate = config.acceleration_counts
+    yield o.ABORT_CONNECTION_OPTION, 0, ABORT_CONNECTION_QUICK_STOP
+    yield o.QUICK_STOP_OPTION, 0, 2             # quick stop ramp, then SWITCH_ON_DISABLED
+    yield o.SHUTDOWN_OPTION, 0, 0               # power off; never sent from operation
+    yield o.DISABLE_OPERATION_OPTION, 0, 1      # slow down ramp, then power off
+    yield o.HALT_OPTION, 0, 1                   # slow down ramp, stay enabled
+    yield o.FAULT_REACTION_OPTION, 0, 2         # quick stop ramp
+    yield o.PROFILE_ACCELERATION, 0, round(config.acceleration * rate)
+    yield o.PROFILE_DECELERATION, 0, round(config.deceleration * rate)
+    yield o.QUICK_STOP_DECELERATION, 0, round(config.quick_stop_deceleration * rate)
+    yield o.MAX_TORQUE, 0, round(config.max_torque_per_mille * config.drive.units.torque)
+    yield o.MAX_MOTOR_SPEED, 0, round(config.max_speed * config.max_speed_counts)
+    if config.mode == "position":
+        yield o.PROFILE_VELOCITY, 0, round(config.max_speed * config.profile_speed_counts)
+        if config.software_limits is not None:
+            low, high = config.software_limits
+            yield o.SOFTWARE_LIMIT, 1, round(low * config.position_increments)
+            yield o.SOFTWARE_LIMIT, 2, round(high * config.position_increments)
+        if config.position_window:
+            yield o.POSITION_WINDOW, 0, round(config.position_window * config.position_increments)
+    if config.standstill_by_pdo:
+        threshold = config.velocity_increments * config.drive.units.threshold
+        yield o.VELOCITY_THRESHOLD, 0, round(config.speed_zero * threshold)
+        yield o.VELOCITY_THRESHOLD_TIME, 0, 0
+        # 65 bits in 5 ms: a statusword that chatters takes 3 % of a 500 kbit/s bus.
+        yield o.TPDO_COMMUNICATION + 1, 3, STATUS_INHIBIT_100_US
+    if config.digital_io:
+        yield o.DIGITAL_OUTPUTS, 2, config.io.mask
+        yield o.DIGITAL_OUTPUTS, 1, 0
+        # An event comes once, and a lost frame is not repeated: the timer shows that the inputs still arrive.
+        yield o.TPDO_COMMUNICATION + 1, 5, round(config.inputs_period_s * 1000)
+    if config.rpdo_deadline_s:
+        yield o.RPDO_COMMUNICATION, 5, round(config.rpdo_deadline_s * 1000)
+
+
+def _homing(config: AxisConfig) -> Iterator[tuple[int, int, int]]:
+    """Yield (index, sub-index, value) of the homing parameters."""
+    per = config.profile_speed_counts
+    yield o.HOMING_METHOD, 0, config.homing_method
+    yield o.HOMING_SPEED, 1, round((config.homing_speed or config.max_speed / 5) * per)
+    yield o.HOMING_SPEED, 2, round((config.homing_zero_speed or config.max_speed / 20) * per)
+    yield o.HOMING_ACCELERATION, 0, round(config.acceleration * config.acceleration_counts)
+    yield o.HOME_OFFSET, 0, round(config.home_offset * config.position_increments)
+
+
+def pdo_settings(config: AxisConfig, *, inputs_with_sync: bool = False) -> list[PdoSetting]:
+    """Return the axis' PDOs; ``inputs_with_sync``: the digital inputs come with every SYNC, not by event."""
+    node = config.node_id
+    rpdo1 = pdo.RPDO1_POSITION if config.mode == "position" else pdo.RPDO1_VELOCITY
+    tpdo1 = pdo.TPDO1_POSITION if config.feedback == "position" else pdo.TPDO1_VELOCITY
+    io = config.digital_io
+    tpdo2 = pdo.TPDO2_INPUTS if io else pdo.TPDO2_STATUS if config.standstill_by_pdo else None
+    kind2 = pdo.SYNCHRONOUS if io and inputs_with_sync else pdo.EVENT_DRIVEN
+    return [
+        PdoSetting(o.RPDO_COMMUNICATION, o.RPDO_MAPPING, o.RPDO1_BASE + node, pdo.SYNCHRONOUS, rpdo1),
+        PdoSetting(o.RPDO_COMMUNICATION + 1, o.RPDO_MAPPING + 1, o.RPDO2_BASE + node, pdo.EVENT_DRIVEN,
+                   pdo.RPDO2_OUTPUTS if io else None),
+        PdoSetting(o.TPDO_COMMUNICATION, o.TPDO_MAPPING, o.COB_NO_RTR | o.TPDO1_BASE + node, pdo.SYNCHRONOUS, tpdo1),
+        PdoSetting(o.TPDO_COMMUNICATION + 1, o.TPDO_MAPPING + 1, o.COB_NO_RTR | o.TPDO2_BASE + node, kind2, tpdo2),
+    ]
+
+
+@dataclass(frozen=True, slots=True)
+class AxisObject:
+    """An object that the program reads or writes on an axis' drive; ``expected`` None: it is only read."""
+
+    index: int
+    sub: int
+    name: str
+    type: DataType
+    expected: int | None
+
+
+_READ: Final = (
+    (o.DEVICE_TYPE, 0), (o.IDENTITY, 1), (o.IDENTITY, 2), (o.IDENTITY, 3), (o.IDENTITY, 4), (o.SUPPORTED_MODES, 0),
+    (o.STATUSWORD, 0), (o.MODE_DISPLAY, 0), (o.ERROR_CODE, 0), (o.RATED_TORQUE, 0),
+)  # fmt: skip
+
+
+def axis_objects(config: AxisConfig) -> list[AxisObject]:
+    """Return what the program reads and writes on an axis' drive, in the order of connecting; writes as read back.
+
+    What stands in for a missing object by way of another (per mille of a rating) has no value known beforehand.
+    """
+    made = plan(config)
+    found = [_object(index, sub, None) for index, sub in _READ
+             if made.rated_torque or (index, sub) != (o.RATED_TORQUE, 0)]
+    for one in (*made.settings, *made.homing):
+        instead = one.substitute
+        value = one.value
+        if instead is not None:
+            value = None if instead.per_mille_of is not None else instead.value(one.value, 0)
+        found.append(_object(one.index, one.sub, value, one.type, one.name))
+    for one in made.pdos:
+        if one.mapped is None:
+            continue
+        found.append(_object(one.communication, 1, one.cob_id))
+        found.append(_object(one.communication, 2, one.kind))
+        entries = one.mapped.parameters()
+        found.append(_object(one.mapping, 0, len(entries)))
+        found += [_object(one.mapping, sub, entry) for sub, entry in enumerate(entries, start=1)]
+    found.append(_object(o.PRODUCER_HEARTBEAT, 0, round(config.heartbeat_s * 1000)))
+    if made.watched:
+        found.append(_object(*_WATCH, consumer_entry(PC_NODE, config.consumer_heartbeat_s)))
+    found.append(_object(o.MODE, 0, int(mode_of(config))))
+    return found
+
+
+def _object(index: int, sub: int, expected: int | None, kind: DataType | None = None, name: str = "") -> AxisObject:
+    entry = DICTIONARY.get((index, sub))
+    if entry is not None:
+        return AxisObject(index, sub, name or entry.name, kind or entry.type, expected)
+    return AxisObject(index, sub, name, kind or DataType.U32, expected)

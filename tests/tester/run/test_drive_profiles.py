@@ -1,0 +1,57 @@
+"""A run on the twin with each drive profile. All: ``pytest -m campaign tests/tester/run/test_drive_profiles.py``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from drivers.drives.reader import GENERIC, drive_profile_names
+from tester.cli.main import invoke
+from tester.kinds import load_rig
+from tester.machine.run import Outcome
+from tests.tester.kinds.wheel_on_belt.bench import SHORT, Simulation
+
+PROFILES = drive_profile_names()
+NOT_FOR_A_PRESS = ("elmo_simpliq", "kinco_fd")
+"""They have no usable digital outputs, or no limit of torque: the press keeps the generic drive."""
+
+
+def overrides(profile: str) -> tuple[str, ...]:
+    """Give every axis a profile, the press where it is fit for it."""
+    press = GENERIC if profile in NOT_FOR_A_PRESS else profile
+    axes = dict.fromkeys(load_rig().drives(), profile) | {"press": press}
+    return tuple(f"axes.{name}.profile={one}" for name, one in axes.items())
+
+
+@pytest.mark.parametrize("profile", [name for name in PROFILES if name != GENERIC])
+def test_a_short_recipe_runs_to_its_end_without_a_trip(profile: str) -> None:
+    simulation = Simulation(SHORT, overrides(profile), seed=1).to_the_end(4000.0)
+    run = simulation.run
+    assert run.engine.control.state.trip is None and run.outcome is Outcome.DONE, run.reason
+    press = simulation.world.axes["press"]
+    assert press.torque_limit_nm == pytest.approx(0.46, abs=0.001)
+
+
+@pytest.mark.parametrize("profile", NOT_FOR_A_PRESS)
+def test_a_press_without_what_protects_it_is_refused_by_name(profile: str) -> None:
+    simulation = Simulation(SHORT, (f"axes.press.profile={profile}",)).to_the_end(60.0)
+    assert simulation.run.outcome is Outcome.UNREACHABLE
+    assert "press drive (node 3)" in simulation.run.reason and "0x60FE:01" in simulation.run.reason
+
+
+def test_what_every_drive_refuses_is_told_at_once() -> None:
+    simulation = Simulation(SHORT)
+    for name in ("wheel", "belt"):
+        values = simulation.world.axes[name].store.values
+        values[0x6076, 0] = 1000
+    connector = simulation.to_the_end(60.0).run.connector
+    assert connector.failure.count("0x6076:00") == 2
+
+
+@pytest.mark.campaign
+@pytest.mark.parametrize("seed", [0, 1, 2])
+@pytest.mark.parametrize("profile", PROFILES)
+def test_the_quickstart_runs_with_every_profile(profile: str, seed: int, tmp_path: Path) -> None:
+    arguments = [part for one in overrides(profile) for part in ("--set", one)]
+    assert invoke(["run", "quickstart", "--seed", str(seed), "--yes", "--out", str(tmp_path), *arguments]) == 0
