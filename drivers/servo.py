@@ -6,7 +6,7 @@ import math
 import struct
 from typing import Final
 
-from drivers import cia402, servo_setup
+from drivers import cia402, servo_service, servo_setup
 from drivers.axis import AxisConfig as AxisConfig
 from drivers.axis import DeviceIdentity, Diagnosis
 from drivers.axis_command import AxisCommand
@@ -101,23 +101,23 @@ class ServoDrive(AxisCommand):
 
     def home(self) -> Conversation:
         """Return the conversation that finds the axis' reference; it enables the drive for that."""
-        return servo_setup.home(self)
+        return servo_service.home(self)
 
     def diagnose(self) -> Conversation:
         """Return the conversation that reads the fault objects into ``diagnosis``; it changes nothing."""
-        return servo_setup.diagnose(self)
+        return servo_service.diagnose(self)
 
     def ask(self) -> Conversation:
         """Return the conversation that reads the statusword of a drive that sends no process data."""
-        return servo_setup.ask(self)
+        return servo_service.ask(self)
 
     def start_again(self) -> Conversation:
         """Return the conversation that brings back a drive that has left OPERATIONAL; set another goal first."""
-        return servo_setup.start_again(self)
+        return servo_service.start_again(self)
 
     def release(self) -> Conversation:
         """Return the conversation that leaves the drive disabled, unwatched and PRE-OPERATIONAL."""
-        return servo_setup.release(self)
+        return servo_service.release(self)
 
     def reset_fault(self) -> None:
         """Acknowledge: forget the last emergency and, in FAULT, raise bit 7 once with the next scan.
@@ -271,7 +271,7 @@ class ServoDrive(AxisCommand):
             return True
         return self.homing_scans >= _HOMING_SCANS and (self.deviation or self.homing_succeeded)
 
-    # --- what the conversations call (drivers.servo_setup) --------------------------------------------------
+    # --- what the conversations call (servo_setup, servo_service) --------------------------------------------------
 
     def begin_connect(self) -> None:
         """Forget the device: nothing is commanded until finish_connect."""

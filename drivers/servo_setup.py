@@ -1,8 +1,8 @@
-"""What is said to a drive once, outside the scan: bring-up, homing, fault diagnosis (CiA 402-2, CiA 301).
+"""What is said to a drive when it is connected (CiA 402-2, CiA 301): a conversation for ``CanMaster.start``.
 
-Each function is a conversation for ``CanMaster.start``. Everything written is read back and kept in
-``drive.parameters``. What a drive refuses while it is configured is collected, so that ``drive.refused`` tells all of
-it at once; what is done without stands in ``drive.plan``. An answer that does not come ends the conversation.
+Everything written is read back and kept in ``drive.parameters``. What a drive refuses while it is configured is
+collected, so that ``drive.refused`` tells all of it at once; what is done without stands in ``drive.plan``. An answer
+that does not come ends the conversation.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from collections.abc import Callable, Generator
 from typing import TYPE_CHECKING
 
 from drivers import cia402
-from drivers.axis import DeviceIdentity, Diagnosis
+from drivers.axis import DeviceIdentity
 from drivers.canopen import heartbeat, nmt
 from drivers.canopen import objects as o
 from drivers.canopen.conversation import (
@@ -27,39 +27,33 @@ from drivers.canopen.conversation import (
     read_number,
 )
 from drivers.canopen.dictionary import describe
-from drivers.canopen.objects import DataType, NmtCommand, OperationMode
+from drivers.canopen.objects import NmtCommand
 from drivers.canopen.sdo import NO_OBJECT, NO_SUB_INDEX, TIMED_OUT
-from drivers.cia402 import Goal, State
-from drivers.drive_settings import (
-    NO_STATE_CHANGE,
-    RATED_TORQUE_SHARE,
-    DrivePlan,
-    PdoSetting,
-    Setting,
-    mode_of,
-    plan,
-    tried,
-)
+from drivers.cia402 import State
+from drivers.drive_settings import NO_STATE_CHANGE, RATED_TORQUE_SHARE, DrivePlan, PdoSetting, mode_of, plan, tried
 from drivers.drives.model import Key
+from drivers.servo_talk import (
+    POLL_S,
+    Read,
+    SetupRefusedError,
+    Step,
+    apply,
+    compare,
+    keep,
+    refusal,
+    set_mode,
+    write,
+    write_where_present,
+)
 
 if TYPE_CHECKING:
     from drivers.servo import ServoDrive
 
 BOOT_TIMEOUT_S = 2.0        # a servo's restart of its communication takes well under a second [A]
 START_TIMEOUT_S = 1.0       # NMT start to the first heartbeat that says OPERATIONAL: 20 periods of 50 ms
-ENABLE_TIMEOUT_S = 3.0      # brake release and power stage [A]
 STOP_TIMEOUT_S = 10.0       # the slowest ramp from full speed [A]
-MODE_TIMEOUT_S = 0.5
-POLL_S = 0.02               # between two reads of an object that is waited for
 
 COB_ID_COMPARED = o.COB_INVALID | o.COB_ID_MASK     # devices are free to answer bit 30 as they like
-
-Step = Generator[Request, Reply, None]
-Read = Generator[Request, Reply, int]
-
-
-class SetupRefusedError(Exception):
-    """The device is not what the configuration says, or does not do as told."""
 
 
 def connect(drive: ServoDrive, pc_node_id: int) -> Conversation:
@@ -76,12 +70,8 @@ def connect(drive: ServoDrive, pc_node_id: int) -> Conversation:
         yield from _start(drive)
     except (RequestError, SetupRefusedError) as error:
         drive.disconnect()
-        drive.refused = _refusal(drive, error)
+        drive.refused = refusal(drive, error)
         yield SendNmt(NmtCommand.PRE_OPERATIONAL)      # where it takes no process data
-
-
-def _refusal(drive: ServoDrive, error: Exception) -> str:
-    return f"{drive.config.name} (node {drive.node_id}): {error}"
 
 
 def _boot() -> Step:
@@ -99,20 +89,20 @@ def _identify(drive: ServoDrive) -> Step:
     """See that it is the drive of the configuration: nothing is written to any other."""
     config = drive.config
     wrong: list[str] = []
-    device_type = yield from _keep(drive, o.DEVICE_TYPE)
+    device_type = yield from keep(drive, o.DEVICE_TYPE)
     if device_type & 0xFFFF != o.DEVICE_PROFILE:
         raise SetupRefusedError(f"{describe(o.DEVICE_TYPE, 0)}: read 0x{device_type:08X}, no CiA 402 drive")
-    highest = yield from _keep(drive, o.IDENTITY)
+    highest = yield from keep(drive, o.IDENTITY)
     values = [0, 0, 0, 0]
     for sub in range(1, min(highest, 4) + 1):
-        values[sub - 1] = yield from _keep(drive, o.IDENTITY, sub)
+        values[sub - 1] = yield from keep(drive, o.IDENTITY, sub)
     drive.identity = DeviceIdentity(device_type, *values)
     for sub, expected in ((1, config.vendor_id), (2, config.product_code), (4, config.serial_number)):
         if expected and values[sub - 1] != expected:
             wrong.append(f"{describe(o.IDENTITY, sub)}: read 0x{values[sub - 1]:08X}, "
                          f"the configuration has 0x{expected:08X}: wrong or swapped drive")
     if not wrong:
-        modes = yield from _keep(drive, o.SUPPORTED_MODES)
+        modes = yield from keep(drive, o.SUPPORTED_MODES)
         if not modes >> (mode_of(config) - 1) & 1:
             wrong.append(f"{describe(o.SUPPORTED_MODES, 0)}: read 0x{modes:08X}, without {mode_of(config).name}")
     if wrong:
@@ -126,7 +116,7 @@ def _make_quiet(drive: ServoDrive) -> Step:
     if state in (State.OPERATION_ENABLED, State.QUICK_STOP_ACTIVE):
         yield SdoWrite(o.CONTROLWORD, 0, cia402.QUICK_STOP)
         yield from _await(_is_stopped, STOP_TIMEOUT_S)
-    yield from _write(drive, o.CONTROLWORD, 0, cia402.DISABLE_VOLTAGE)
+    yield from write(drive, o.CONTROLWORD, 0, cia402.DISABLE_VOLTAGE)
     yield from _await(_is_off, START_TIMEOUT_S)
 
 
@@ -159,27 +149,27 @@ def _configure(drive: ServoDrive, pc_node_id: int) -> Step:
     made = yield from _plan(drive)
     refused = list(made.refused)
     # SYNC comes with the tick: no period to watch.
-    yield from _collect(refused, _write_where_present(drive, o.SYNC_PERIOD, 0, 0))
+    yield from _collect(refused, write_where_present(drive, o.SYNC_PERIOD, 0, 0))
     # Without our heartbeat the drive stops by 0x6007 and stays OPERATIONAL: its TPDOs show how it stops.
-    yield from _collect(refused, _write_where_present(drive, o.ERROR_BEHAVIOUR, 1, NO_STATE_CHANGE))
+    yield from _collect(refused, write_where_present(drive, o.ERROR_BEHAVIOUR, 1, NO_STATE_CHANGE))
     for setting in made.settings:
-        yield from _collect(refused, _apply(drive, setting))
+        yield from _collect(refused, apply(drive, setting))
     if made.rated_torque:
         yield from _collect(refused, _check_rated_torque(drive))
-    yield from _collect(refused, _set_mode(drive, mode_of(config)))
+    yield from _collect(refused, set_mode(drive, mode_of(config)))
     if config.mode == "position":
         yield from _collect(refused, _aim_where_it_stands(drive))
     else:
-        yield from _collect(refused, _write(drive, o.TARGET_VELOCITY, 0, 0))
+        yield from _collect(refused, write(drive, o.TARGET_VELOCITY, 0, 0))
     for one in made.pdos:
         yield from _collect(refused, _map(drive, one))
-    yield from _collect(refused, _write(drive, o.PRODUCER_HEARTBEAT, 0, round(config.heartbeat_s * 1000)))
+    yield from _collect(refused, write(drive, o.PRODUCER_HEARTBEAT, 0, round(config.heartbeat_s * 1000)))
     if refused:
         raise SetupRefusedError("; ".join(refused))
     if made.watched:
         # Last: the watch on us begins with our next heartbeat, and those have been sent since the first service.
         watched = heartbeat.consumer_entry(pc_node_id, config.consumer_heartbeat_s)
-        yield from _write(drive, o.CONSUMER_HEARTBEAT, 1, watched)
+        yield from write(drive, o.CONSUMER_HEARTBEAT, 1, watched)
 
 
 def _plan(drive: ServoDrive) -> Generator[Request, Reply, DrivePlan]:
@@ -208,28 +198,9 @@ def _collect(refused: list[str], step: Step) -> Step:
         refused.append(str(error))
 
 
-def _apply(drive: ServoDrive, setting: Setting) -> Step:
-    """Write one setting, or what stands in for it."""
-    value, instead = setting.value, setting.substitute
-    if instead is not None:
-        reference = 0
-        if instead.per_mille_of is not None:
-            index, sub = instead.per_mille_of
-            reference = yield from _keep(drive, index, sub, DataType.U32)
-            if reference <= 0:
-                raise SetupRefusedError(f"{describe(index, sub)}: reads {reference}, and {describe(*setting.key)} "
-                                        f"({setting.name}) is a share of it")
-        value = instead.value(value, reference)
-    try:
-        yield from _write(drive, setting.index, setting.sub, value, kind=setting.type)
-    except RequestError as error:
-        hint = f" ({setting.name})" if setting.name else ""
-        raise RequestError(f"{error}{hint}", error.code) from error
-
-
 def _check_rated_torque(drive: ServoDrive) -> Step:
     """Torques are per mille of it: another one than the rig file's makes every torque and every torque limit wrong."""
-    counts = yield from _keep(drive, o.RATED_TORQUE)
+    counts = yield from keep(drive, o.RATED_TORQUE)
     config = drive.config
     expected = config.rated_torque_counts
     if counts and abs(counts - expected) > max(RATED_TORQUE_SHARE * expected, 1.0):
@@ -241,7 +212,7 @@ def _check_rated_torque(drive: ServoDrive) -> Step:
 
 def _aim_where_it_stands(drive: ServoDrive) -> Step:
     position = yield from read_number(o.POSITION_ACTUAL)
-    yield from _write(drive, o.TARGET_POSITION, 0, position)
+    yield from write(drive, o.TARGET_POSITION, 0, position)
 
 
 def _map(drive: ServoDrive, one: PdoSetting) -> Step:
@@ -249,26 +220,26 @@ def _map(drive: ServoDrive, one: PdoSetting) -> Step:
     limits = drive.config.drive.pdo
     settable = limits.cob_ids == "set"
     if settable:
-        yield from _write(drive, one.communication, 1, o.COB_INVALID | one.cob_id, COB_ID_COMPARED)
+        yield from write(drive, one.communication, 1, o.COB_INVALID | one.cob_id, COB_ID_COMPARED)
     elif one.mapped is not None:
-        yield from _compare(drive, one.communication, 1, one.cob_id, COB_ID_COMPARED)
+        yield from compare(drive, one.communication, 1, one.cob_id, COB_ID_COMPARED)
     if one.mapped is None:
         if not settable and limits.mapping == "free":
-            yield from _write(drive, one.mapping, 0, 0)      # nothing mapped: nothing is sent or taken
+            yield from write(drive, one.mapping, 0, 0)      # nothing mapped: nothing is sent or taken
         return
     entries = one.mapped.parameters()
     if limits.mapping == "free":
-        yield from _write(drive, one.mapping, 0, 0)
+        yield from write(drive, one.mapping, 0, 0)
         for sub, entry in enumerate(entries, start=1):
-            yield from _write(drive, one.mapping, sub, entry)
-        yield from _write(drive, one.mapping, 0, len(entries))
+            yield from write(drive, one.mapping, sub, entry)
+        yield from write(drive, one.mapping, 0, len(entries))
     else:
-        yield from _compare(drive, one.mapping, 0, len(entries))
+        yield from compare(drive, one.mapping, 0, len(entries))
         for sub, entry in enumerate(entries, start=1):
-            yield from _compare(drive, one.mapping, sub, entry)
-    yield from _write(drive, one.communication, 2, one.kind)
+            yield from compare(drive, one.mapping, sub, entry)
+    yield from write(drive, one.communication, 2, one.kind)
     if settable:
-        yield from _write(drive, one.communication, 1, one.cob_id, COB_ID_COMPARED)
+        yield from write(drive, one.communication, 1, one.cob_id, COB_ID_COMPARED)
 
 
 def _start(drive: ServoDrive) -> Step:
@@ -284,156 +255,3 @@ def _start(drive: ServoDrive) -> Step:
     if config.digital_io:
         inputs = config.io.from_drive((yield from read_number(o.DIGITAL_INPUTS)))
     drive.finish_connect(statusword, raw, inputs)
-
-
-def home(drive: ServoDrive) -> Conversation:
-    """Find the reference of an axis with a position (mode 6), then go back to its own mode, disabled.
-
-    Sets the goal itself (DISABLED, ENABLED, DISABLED); a caller who sets another meanwhile ends the homing.
-    """
-    config = drive.config
-    drive.refused = None
-    drive.homed = False
-    modes = drive.parameters.get((o.SUPPORTED_MODES, 0), 0)
-    if not (drive.online and config.feedback == "position" and modes >> (OperationMode.HOMING - 1) & 1):
-        text = "homing needs a drive online, with position feedback and homing mode"
-        drive.refused = _refusal(drive, SetupRefusedError(text))
-        return
-    failure: Exception | None = None
-    try:
-        yield from _power_off(drive)
-        for setting in drive.plan.homing:
-            yield from _apply(drive, setting)
-        yield from _set_mode(drive, OperationMode.HOMING)
-        yield from _run_homing(drive)
-    except (RequestError, SetupRefusedError) as error:
-        failure = error
-        drive.goal = Goal.QUICK_STOP
-    try:
-        yield from _power_off(drive)
-        drive.set_homing(active=False)
-        yield from _set_mode(drive, mode_of(config))
-        raw = yield from read_number(o.POSITION_ACTUAL)
-        if failure is None:
-            drive.finish_homing(raw)
-    except (RequestError, SetupRefusedError) as error:
-        drive.disconnect()                    # in an unknown mode it must not be commanded
-        failure = failure or error
-    if failure is not None:
-        drive.refused = _refusal(drive, failure)
-
-
-def _power_off(drive: ServoDrive) -> Step:
-    if drive.goal is Goal.ENABLED:
-        drive.goal = Goal.DISABLED
-    done = yield Until(AwaitedCondition.DISABLED, STOP_TIMEOUT_S)
-    if not done:
-        raise SetupRefusedError(f"still {drive.state.name} {STOP_TIMEOUT_S:g} s after it was told to stop")
-
-
-def _run_homing(drive: ServoDrive) -> Step:
-    drive.set_homing(active=True)
-    drive.goal = Goal.DISABLED                # ends an earlier inhibition
-    drive.goal = Goal.ENABLED
-    enabled = yield Until(AwaitedCondition.ENABLED, ENABLE_TIMEOUT_S)
-    if not enabled:
-        raise SetupRefusedError(f"homing: {drive.state.name} instead of OPERATION_ENABLED after {ENABLE_TIMEOUT_S:g} s")
-    drive.set_homing(active=True, start=True)
-    ended = yield Until(AwaitedCondition.HOMING_ENDED, drive.config.home_timeout_s)
-    if not ended:
-        raise SetupRefusedError(f"homing: not finished within {drive.config.home_timeout_s:g} s")
-    if not (drive.state is State.OPERATION_ENABLED and drive.homing_succeeded):
-        raise SetupRefusedError(f"homing failed: statusword 0x{drive.statusword:04X} ({drive.state.name})")
-
-
-def diagnose(drive: ServoDrive) -> Conversation:
-    """Read 0x603F, 0x1001 and 0x1003 into ``drive.diagnosis``, for the journal, before anybody resets."""
-    error_code = 0
-    register = 0
-    history: list[int] = []
-    failed: str | None = None
-    try:
-        error_code = yield from read_number(o.ERROR_CODE)
-        register = yield from read_number(o.ERROR_REGISTER)
-        count = yield from read_number(o.ERROR_HISTORY)
-        for sub in range(1, min(count, 8) + 1):
-            history.append((yield from read_number(o.ERROR_HISTORY, sub)))
-    except RequestError as error:
-        failed = str(error)
-    drive.diagnosis = Diagnosis(error_code, register, tuple(history), failed)
-
-
-def ask(drive: ServoDrive) -> Conversation:
-    """Take the statusword of a drive that is connected, but sends no process data at present."""
-    try:
-        drive.take_statusword((yield from read_number(o.STATUSWORD)))
-    except RequestError as error:
-        drive.refused = _refusal(drive, error)
-
-
-def start_again(drive: ServoDrive) -> Conversation:
-    """Bring a connected drive back to OPERATIONAL; it is still configured, and its goal decides what it does there."""
-    yield SendNmt(NmtCommand.START)
-    yield Until(AwaitedCondition.OPERATIONAL, START_TIMEOUT_S)
-
-
-def release(drive: ServoDrive) -> Conversation:
-    """Leave a drive: power off, its watch on our heartbeat ended, PRE-OPERATIONAL, nothing commanded.
-
-    Without this a drive reports the end of our program as a fault. While its power is on it keeps watching,
-    and ``refused`` says so.
-    """
-    drive.refused = None
-    try:
-        yield from _power_off(drive)
-        if (o.CONSUMER_HEARTBEAT, 1) in drive.parameters:
-            yield from _write(drive, o.CONSUMER_HEARTBEAT, 1, 0)
-    except (RequestError, SetupRefusedError) as error:
-        drive.refused = _refusal(drive, error)
-        return
-    drive.disconnect()
-    yield SendNmt(NmtCommand.PRE_OPERATIONAL)
-
-
-def _keep(drive: ServoDrive, index: int, sub: int = 0, kind: DataType | None = None) -> Read:
-    """Read an object and keep it with the drive's parameters."""
-    value = yield from read_number(index, sub, kind)
-    drive.parameters[index, sub] = value
-    return value
-
-
-def _write(drive: ServoDrive, index: int, sub: int, value: int, mask: int = -1, kind: DataType | None = None) -> Step:
-    """Write an object and read it back; only bits of ``mask`` are compared."""
-    yield SdoWrite(index, sub, value, kind)
-    back = yield from _keep(drive, index, sub, kind)
-    if back & mask != value & mask:
-        raise SetupRefusedError(f"{describe(index, sub)}: wrote {value}, read {back}")
-
-
-def _compare(drive: ServoDrive, index: int, sub: int, value: int, mask: int = -1) -> Step:
-    """Read what the drive cannot be told; only bits of ``mask`` are compared."""
-    back = yield from _keep(drive, index, sub)
-    if back & mask != value & mask:
-        raise SetupRefusedError(f"{describe(index, sub)}: read 0x{back:X}, 0x{value:X} is needed and cannot be set")
-
-
-def _write_where_present(drive: ServoDrive, index: int, sub: int, value: int) -> Step:
-    """Write an optional object and read it back; a device without it has nothing to be told."""
-    try:
-        yield from _write(drive, index, sub, value)
-    except RequestError as error:
-        if error.code not in (NO_OBJECT, NO_SUB_INDEX):
-            raise
-
-
-def _set_mode(drive: ServoDrive, mode: OperationMode) -> Step:
-    """Select a mode of operation and see it confirmed by 0x6061."""
-    yield from _write(drive, o.MODE, 0, mode)
-    shown = yield from _keep(drive, o.MODE_DISPLAY)
-    for _ in range(round(MODE_TIMEOUT_S / POLL_S)):
-        if shown == mode:
-            return
-        yield Pause(POLL_S)
-        shown = yield from _keep(drive, o.MODE_DISPLAY)
-    if shown != mode:
-        raise SetupRefusedError(f"{describe(o.MODE_DISPLAY, 0)}: wrote mode {int(mode)} ({mode.name}), read {shown}")

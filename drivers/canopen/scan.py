@@ -20,6 +20,8 @@ Key = tuple[int, int]
 
 ANSWER_S: Final = 0.1
 """A node that has not answered by then is not there, s: servers answer within some milliseconds [A]."""
+PATIENCE_S: Final = 0.5
+"""A node that ought to be there is waited for so long, s: a busy computer hears an answer 0.1 s late."""
 AT_ONCE: Final = 4
 """Nodes asked at the same time: a SocketCAN interface queues ten frames unless told otherwise (txqueuelen)."""
 _FUNCTION: Final = 0x780
@@ -78,13 +80,14 @@ class ObjectAnswer:
 class _Node:
     """The questions to one node, in order."""
 
-    __slots__ = ("answers", "client", "surplus", "wanted")
+    __slots__ = ("answers", "client", "surplus", "timeouts", "wanted")
 
     def __init__(self, wanted: Sequence[Key], timeout_s: float) -> None:
         self.wanted = list(wanted)
         self.client = SdoClient(timeout_s)
         self.answers: dict[Key, ObjectAnswer] = {}
         self.surplus = 0
+        self.timeouts = 0
 
 
 class SdoScan:
@@ -116,8 +119,9 @@ class SdoScan:
 
     @property
     def surplus(self) -> dict[int, int]:
-        """How many answers too many came, by node, of those that sent any."""
-        return {number: node.surplus for number, node in self._nodes.items() if node.surplus}
+        """How many answers too many came, by node, of those that sent any; one that came too late is none."""
+        found = {number: node.surplus - node.timeouts for number, node in self._nodes.items()}
+        return {number: times for number, times in found.items() if times > 0}
 
     def feed(self, frames: Sequence[CanFrame], port: CanPort, now: float) -> None:
         """Take the frames that arrived up to ``now`` s; raises BusLost."""
@@ -157,6 +161,7 @@ class SdoScan:
             answer = ObjectAnswer(key, node.client.result)
         else:
             answer = ObjectAnswer(key, b"", str(error), error.code)
+        node.timeouts += answer.silent
         first = not node.answers
         node.answers[key] = answer
         if not node.wanted or (first and answer.silent):

@@ -19,7 +19,7 @@ SETTLE_S: Final = 0.005
 
 
 @dataclass(frozen=True, slots=True)
-class Question:
+class RegisterQuestion:
     """Registers to be read."""
 
     unit_id: int
@@ -32,7 +32,7 @@ class Question:
 class LineAnswer:
     """What became of a question: registers (``data``), an exception code, noise, or nothing."""
 
-    question: Question
+    question: RegisterQuestion
     data: bytes = b""
     exception: int = 0
     noise: bytes = b""
@@ -74,7 +74,7 @@ class LineScan:
         rtu = framing == "rtu"
         self._character_s = bits / baud if rtu else 0.0
         self._gap_s = silent_gap_s(bits, baud) if rtu else 0.0
-        self._question: Question | None = None
+        self._question: RegisterQuestion | None = None
         self._timeout_s = 0.0
         self._sent_s: float | None = None
         self._request_s = 0.0
@@ -83,7 +83,7 @@ class LineScan:
         self._transaction = 0
         self.answer: LineAnswer | None = None
 
-    def ask(self, question: Question, timeout_s: float) -> None:
+    def ask(self, question: RegisterQuestion, timeout_s: float) -> None:
         """Begin a question; it is sent by ``service``. The answer may begin ``timeout_s`` after the request."""
         self._question, self._timeout_s = question, timeout_s
         self._sent_s, self._buffer, self.answer = None, b"", None
@@ -110,7 +110,7 @@ class LineScan:
             self.answer = LineAnswer(question, noise=self._buffer)
             self._quiet_s = now + SETTLE_S
 
-    def _send(self, question: Question, port: LinePort, now: float) -> None:
+    def _send(self, question: RegisterQuestion, port: LinePort, now: float) -> None:
         frame = codec.read_request(self.framing, question.unit_id, question.function, question.address, question.count)
         if self.framing == "socket":
             self._transaction = self._transaction % 0xFFFF + 1
@@ -119,10 +119,10 @@ class LineScan:
         self._sent_s = now
         self._request_s = len(frame) * self._character_s
 
-    def _reply_s(self, question: Question) -> float:
+    def _reply_s(self, question: RegisterQuestion) -> float:
         return codec.reply_length(self.framing, question.function, question.count) * self._character_s
 
-    def _examine(self, question: Question, t: float) -> None:
+    def _examine(self, question: RegisterQuestion, t: float) -> None:
         """Find the answer in what has arrived; what is none stays, and is told when the time is over."""
         at, data = 0, self._buffer
         while at < len(data):

@@ -81,9 +81,9 @@ def sdo(node: str, name: str, rig_name: str, overrides: tuple[str, ...], value: 
 def _accessed(rig: Rig, wires: Wires, number: int, key: tuple[int, int], value: str | None, kind: str | None) -> int:
     from drivers.canopen.dictionary import DICTIONARY
     from drivers.canopen.objects import DataType
-    from tester.doctor.sdo import ObjectAccess, WriteRefusedError
+    from tester.doctor.sdo import NodeAccess, WriteRefusedError
 
-    access = ObjectAccess(wires.can(rig.can.bitrate), wires, number)
+    access = NodeAccess(wires.can(rig.can.bitrate), wires, number)
     before = access.read(key)
     if value is None:
         return _told(before, before.error)

@@ -11,6 +11,7 @@ from drivers.canopen import nmt
 from drivers.canopen import objects as o
 from drivers.canopen.dictionary import describe
 from drivers.cia402 import State
+from drivers.drive_settings import RATED_TORQUE_SHARE
 from sim.wires.can_traffic import frame_bits
 from tester.doctor import wanted
 from tester.doctor.examination import Examination
@@ -19,8 +20,6 @@ from tester.machine.devices import INPUT_GUARD, INPUT_SAFETY_CHAIN
 
 LOAD_MOST = 0.6
 """A bus that is busy for a greater share delays frames beyond their scan [A]."""
-TORQUE_OFF = 0.01
-"""By what share 0x6076 may differ from the rig file: rounding of makers' data sheets [A]."""
 BEAT_OFF = 0.2
 """By what share a heartbeat's period may differ from its object [A]."""
 MISSED = 3
@@ -176,9 +175,12 @@ def _drive_state(e: Examination, name: str, config: AxisConfig) -> Iterator[Find
             yield fault(name, "the drive is enabled, and no run is under way", "end whatever enabled it")
     inputs = can.number(node, (o.DIGITAL_INPUTS, 0)) if config.digital_io else None
     if inputs is not None:
+        io, shown = config.io, config.io.from_drive(inputs)
         word = f"0x60FD = 0x{inputs & 0xFFFFFFFF:08X}"
-        yield from _input(name, inputs & INPUT_SAFETY_CHAIN != 0, "safety chain", "healthy", "open", 16, word)
-        yield from _input(name, inputs & INPUT_GUARD != 0, "guard", "closed", "open", 17, word)
+        yield from _input(
+            name, shown & INPUT_SAFETY_CHAIN != 0, "safety chain", "healthy", "open", io.safety_chain, word
+        )
+        yield from _input(name, shown & INPUT_GUARD != 0, "guard", "closed", "open", io.guard, word)
 
 
 def _input(name: str, good: bool, what: str, yes: str, no: str, bit: int, word: str) -> Iterator[Finding]:
@@ -195,17 +197,19 @@ def _objects(e: Examination, name: str, config: AxisConfig) -> Iterator[Finding]
     """Look for every object that the set-up needs, and hold ratings and process data against the rig file."""
     answers = e.can.objects.get(config.node_id, {})
     needed = {**wanted.written(config), **wanted.mapped(config)}
-    missing = [describe(*key) for key in needed if key in answers and answers[key].missing]
+    missing = [describe(*key) for key in needed if key in answers and answers[key].missing
+               and key not in config.drive.optional]  # fmt: skip
     if missing:
         yield warning(
             name, f"the drive does not have {len(missing)} of the objects that a set-up writes: {'; '.join(missing)}",
             "its profile has to name them as missing or optional; compare with the maker's EDS",
         )  # fmt: skip
     rated = answers[o.RATED_TORQUE, 0].number if (o.RATED_TORQUE, 0) in answers else None
-    expected = config.rated_torque_nm * 1000.0
-    if rated and abs(rated - expected) > TORQUE_OFF * expected:
+    expected = config.rated_torque_counts
+    told_nm = (rated or 0) * config.drive.units.rated_torque_nm * config.gear
+    if rated and abs(rated - expected) > max(RATED_TORQUE_SHARE * expected, 1.0):
         yield fault(
-            name, f"0x6076 rated torque is {rated / 1000:g} N m, the rig file says {config.rated_torque_nm:g} N m",
+            name, f"0x6076 rated torque is {told_nm:.4g} N m, the rig file says {config.rated_torque_nm:g} N m",
             f"every torque would be shown and limited by a factor of {rated / expected:.3g} wrong: correct"
             f" axes.{name}.rated_torque, or the drive's motor data",
         )  # fmt: skip

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from drivers.canopen import objects as o
-from drivers.canopen.scan import Key, ObjectAnswer, SdoScan
+from drivers.canopen.scan import ANSWER_S, PATIENCE_S, Key, ObjectAnswer, SdoScan
 from drivers.ports import BusLost, CanFrame, CanPort
 from tester.doctor.wanted import objects_of
 from tester.doctor.wires import Wires
@@ -107,10 +107,13 @@ def survey_can(rig: Rig, wires: Wires) -> CanSurvey:
         found.heard = listen(port, wires, LISTEN_S, rig.can.node)
         everybody = [node for node in range(1, 128) if node != rig.can.node]
         scan = _scanned(port, wires, {node: [PRESENCE] for node in everybody})
-        found.present, found.surplus = tuple(sorted(scan.answers)), scan.surplus
         configs = {config.node_id: config for config in rig.drives().values()}
+        awaited = [*configs, *(node.node_id for node in rig.can.nodes.values())]
+        missing = [node for node in awaited if node not in scan.answers]
+        late = _scanned(port, wires, {node: [PRESENCE] for node in missing}, PATIENCE_S)
+        found.present, found.surplus = tuple(sorted({*scan.answers, *late.answers})), scan.surplus
         wanted = {node: objects_of(configs[node]) if node in configs else list(IDENTITY) for node in found.present}
-        found.objects = _scanned(port, wires, wanted).answers
+        found.objects = _scanned(port, wires, wanted, PATIENCE_S).answers
     except BusLost as lost:
         found.lost = str(lost)
     if not found.present and not found.heard.frames:
@@ -131,8 +134,8 @@ def listen(port: CanPort, wires: Wires, seconds: float, own_node: int) -> Heard:
     return heard
 
 
-def _scanned(port: CanPort, wires: Wires, wanted: Mapping[int, Sequence[Key]]) -> SdoScan:
-    scan, until_s = SdoScan(wanted), wires.now() + MOST_S
+def _scanned(port: CanPort, wires: Wires, wanted: Mapping[int, Sequence[Key]], timeout_s: float = ANSWER_S) -> SdoScan:
+    scan, until_s = SdoScan(wanted, timeout_s), wires.now() + MOST_S
     while not scan.done and wires.now() < until_s:
         scan.feed(port.receive(wires.now()), port, wires.now())
         scan.service(port, wires.now())

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 
 from drivers.modbus.line import Parity
-from drivers.modbus.scan import LineAnswer, LineScan, Question
+from drivers.modbus.scan import LineAnswer, LineScan, RegisterQuestion
 from drivers.ports import BusLost, LinePort
 from drivers.profiles.model import DeviceProfile
 from tester.doctor.wanted import configuration
@@ -79,7 +79,7 @@ def survey_line(rig: Rig, name: str, wires: Wires, *, everybody: bool = True) ->
         if everybody:
             known = {unit.config.unit_id for unit in found.units.values()}
             for other in UNITS:
-                answer = None if other in known else asked(scan, port, wires, Question(other, 3, 0, 1), SCAN_S)
+                answer = None if other in known else asked(scan, port, wires, RegisterQuestion(other, 3, 0, 1), SCAN_S)
                 if answer is not None and answer.there:
                     found.others[other] = answer
             _compare(scan, port, wires, found)
@@ -91,7 +91,7 @@ def survey_line(rig: Rig, name: str, wires: Wires, *, everybody: bool = True) ->
     return found
 
 
-def asked(scan: LineScan, port: LinePort, wires: Wires, question: Question, timeout_s: float) -> LineAnswer:
+def asked(scan: LineScan, port: LinePort, wires: Wires, question: RegisterQuestion, timeout_s: float) -> LineAnswer:
     """Ask a question and return what became of it; raises BusLost."""
     scan.ask(question, timeout_s)
     while True:
@@ -107,7 +107,7 @@ def _ask_unit(scan: LineScan, port: LinePort, wires: Wires, unit: UnitSurvey) ->
     """Read everything that the profile of a device names; one that is silent at first is not asked for the rest."""
     number = unit.config.unit_id
     for block in unit.profile.blocks:
-        answer = _patiently(scan, port, wires, Question(number, block.function, block.address, block.count))
+        answer = _patiently(scan, port, wires, RegisterQuestion(number, block.function, block.address, block.count))
         unit.blocks.append(answer)
         if not answer.there and len(unit.blocks) == 1:
             return
@@ -115,7 +115,7 @@ def _ask_unit(scan: LineScan, port: LinePort, wires: Wires, unit: UnitSurvey) ->
         unit.configuration[name] = _patiently(scan, port, wires, question)
 
 
-def _patiently(scan: LineScan, port: LinePort, wires: Wires, question: Question) -> LineAnswer:
+def _patiently(scan: LineScan, port: LinePort, wires: Wires, question: RegisterQuestion) -> LineAnswer:
     answer = asked(scan, port, wires, question, PATIENCE_S)
     for _ in range(TRIES - 1):
         if answer.there:
@@ -124,13 +124,13 @@ def _patiently(scan: LineScan, port: LinePort, wires: Wires, question: Question)
     return answer
 
 
-def _marks(unit: UnitSurvey, number: int) -> Iterator[tuple[Question, int | None]]:
+def _marks(unit: UnitSurvey, number: int) -> Iterator[tuple[RegisterQuestion, int | None]]:
     """Yield questions whose answers tell a type of device, at another unit number, with the value it must give."""
     identity = unit.profile.identity
     if identity is not None:
-        yield Question(number, identity.function, identity.address, 1), identity.value
+        yield RegisterQuestion(number, identity.function, identity.address, 1), identity.value
     block = unit.profile.blocks[0]
-    yield Question(number, block.function, block.address, block.count), None
+    yield RegisterQuestion(number, block.function, block.address, block.count), None
 
 
 def _compare(scan: LineScan, port: LinePort, wires: Wires, found: LineSurvey) -> None:
@@ -163,7 +163,7 @@ def _other_settings(config: LineConfig, name: str, wires: Wires, found: LineSurv
             scan = LineScan(tried.framing, baud, parity)
             for unit in found.units.values():
                 block = unit.profile.blocks[0]
-                question = Question(unit.config.unit_id, block.function, block.address, block.count)
+                question = RegisterQuestion(unit.config.unit_id, block.function, block.address, block.count)
                 if asked(scan, port, wires, question, PATIENCE_S).there:
                     return tried
     return None

@@ -7,7 +7,7 @@ from typing import Final
 from drivers import cia402
 from drivers.canopen import objects as o
 from drivers.canopen.objects import DataType
-from drivers.canopen.scan import ANSWER_S, Key, ObjectAnswer, SdoScan
+from drivers.canopen.scan import PATIENCE_S, Key, ObjectAnswer, SdoScan
 from drivers.canopen.sdo import SdoClient
 from drivers.cia402 import State
 from drivers.ports import CanPort
@@ -28,7 +28,7 @@ class WriteRefusedError(Exception):
     """An object is not to be written now; the message says why."""
 
 
-class ObjectAccess:
+class NodeAccess:
     """The objects of one node. Raises BusLost where the bus is gone."""
 
     def __init__(self, port: CanPort, wires: Wires, node: int) -> None:
@@ -41,14 +41,14 @@ class ObjectAccess:
 
     def read(self, key: Key) -> ObjectAnswer:
         """Upload an object."""
-        scan, wires = SdoScan({self._node: [key]}), self._wires
+        scan, wires = SdoScan({self._node: [key]}, PATIENCE_S), self._wires
         scan.service(self._port, wires.now())
         while not scan.done:
             wires.wait_until(wires.now() + STEP_S)
             scan.feed(self._port.receive(wires.now()), self._port, wires.now())
             scan.service(self._port, wires.now())
         found = scan.answers.get(self._node, {}).get(key)
-        return found or ObjectAnswer(key, error=f"nothing answers at node {self._node} within {ANSWER_S:g} s")
+        return found or ObjectAnswer(key, error=f"nothing answers at node {self._node} within {PATIENCE_S:g} s")
 
     def may_write(self, key: Key) -> None:
         """Raise WriteRefusedError for a command, and where the node is a drive that has power."""
@@ -68,7 +68,7 @@ class ObjectAccess:
         """
         data = o.encode(kind, value)
         self.may_write(key)
-        client, wires, port = SdoClient(), self._wires, self._port
+        client, wires, port = SdoClient(PATIENCE_S), self._wires, self._port
         port.send(o.SDO_REQUEST_BASE + self._node, client.download(*key, data, wires.now()), wires.now())
         while client.busy:
             wires.wait_until(wires.now() + STEP_S)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from math import inf
 
-from drivers.modbus.scan import LineScan, Question
+from drivers.modbus.scan import LineScan, RegisterQuestion
 from drivers.ports import BusLost, CanPort, LinePort
 from tester.doctor.can_survey import Heard
 from tester.doctor.line_survey import LineSurvey
@@ -68,11 +68,11 @@ class _Line:
         self.port = port
         self.scan = LineScan(config.framing, config.baud, config.parity)
         self.units = units
-        self._asked: list[tuple[str, Question, float]] = []
+        self._asked: list[tuple[str, RegisterQuestion, float]] = []
         self._due: dict[str, float] = {}
         self._now = ""
 
-    def add(self, key: str, question: Question, period_s: float) -> None:
+    def add(self, key: str, question: RegisterQuestion, period_s: float) -> None:
         """Read a device in its period, s; 0 = as fast as it goes."""
         self._asked.append((key, question, period_s))
         self._due[key] = -inf
@@ -160,7 +160,9 @@ def _open(rig: Rig, wires: Wires, lines: dict[str, LineSurvey], found: RigWatch)
         for key, unit in there.items():
             found.units[key] = UnitWatch()
             block = unit.profile.blocks[0]
-            line.add(key, Question(unit.config.unit_id, block.function, block.address, block.count), block.period_s)
+            line.add(
+                key, RegisterQuestion(unit.config.unit_id, block.function, block.address, block.count), block.period_s
+            )
         opened.append(line)
     return opened
 

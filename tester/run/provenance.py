@@ -12,6 +12,7 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 import recipes
+from drivers.drives.reader import GENERIC
 from tester import kinds
 from tester.base import clock
 from tester.base.plugins import plugins
@@ -150,6 +151,9 @@ def _calibration_of(rig: Rig) -> Iterator[Calibration]:
 def record_parameters(rig: Rig, devices: DeviceList, recorder: Recorder, now_s: float) -> None:
     """Store everything that was read back from the devices before the run was armed."""
     for drive in devices.drives:
+        profile = drive.config.drive
+        if profile.name != GENERIC:
+            recorder.device_parameter(now_s, drive.config.name, "profile", profile.name, profile.title)
         for (index, sub), value in drive.parameters.items():
             recorder.device_parameter(now_s, drive.config.name, f"0x{index:04X}:{sub:02X}", str(value))
     for device in devices.modbus:

@@ -64,6 +64,14 @@ def test_a_second_answer_to_one_question_is_counted() -> None:
     assert scan.surplus == {1: 1}
 
 
+def test_an_answer_that_comes_too_late_is_no_second_one() -> None:
+    bus, scan = Bus(), SdoScan({1: [(0x1000, 0)]})
+    scan.service(bus, 0.0)
+    scan.service(bus, ANSWER_S)
+    scan.feed([(0.15, 0x581, DEVICE_TYPE)], bus, 0.15)
+    assert scan.surplus == {}
+
+
 def test_no_more_nodes_are_asked_at_once_than_an_adapter_queues() -> None:
     bus, scan = Bus(), SdoScan({node: [(0x1000, 0)] for node in range(1, 20)})
     scan.service(bus, 0.0)

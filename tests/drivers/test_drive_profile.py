@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import re
+from pathlib import Path
+
 import pytest
 
 from drivers.digital_io import CONTACTOR, GUARD, REQUEST, SAFETY_CHAIN, DigitalWiring
@@ -42,6 +45,18 @@ def test_a_wrong_profile_names_file_and_key(text: str, said: str) -> None:
 def test_an_unknown_profile_names_those_there_are() -> None:
     with pytest.raises(ProfileError, match=r"no drive profile 'epos' \(there are cia402, elmo_gold"):
         drive_profile("epos")
+
+
+def test_the_profile_of_the_page_is_one() -> None:
+    page = Path(__file__).parents[2] / "docs" / "how-to" / "choose-a-drive.md"
+    (text,) = re.findall(r"<!-- file my_drive.toml -->\n```toml\n(.*?)```", page.read_text(encoding="utf-8"), re.DOTALL)
+    profile = read_drive_profile("my_drive", text)
+    assert (profile.vendor_id, profile.substitutes[0x6072, 0].factor) == (0x1A2, 0.1)
+
+
+def test_the_page_names_every_profile() -> None:
+    page = (Path(__file__).parents[2] / "docs" / "how-to" / "choose-a-drive.md").read_text(encoding="utf-8")
+    assert [name for name in drive_profile_names() if f"| `{name}` |" not in page] == []
 
 
 def test_the_usual_bits_are_left_as_they_are() -> None:

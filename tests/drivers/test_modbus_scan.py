@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from drivers.crc16 import with_crc
-from drivers.modbus.scan import LineScan, Question
+from drivers.modbus.scan import LineScan, RegisterQuestion
 from drivers.ports import WatchedLine
 
 
@@ -23,7 +23,7 @@ class Line(WatchedLine):
         return []
 
 
-QUESTION = Question(unit_id=1, function=3, address=100, count=1)
+QUESTION = RegisterQuestion(unit_id=1, function=3, address=100, count=1)
 REQUEST = with_crc(bytes.fromhex("01 03 00 64 00 01"))
 GOOD = with_crc(bytes.fromhex("01 03 02 46 58"))
 
@@ -95,7 +95,7 @@ def test_what_is_no_answer_is_noise(data: bytes) -> None:
 def test_an_answer_to_an_earlier_question_is_not_taken_for_this_ones() -> None:
     line, scan = asked()
     scan.service(line, 0.2)
-    scan.ask(Question(1, 3, 200, 1), 0.1)
+    scan.ask(RegisterQuestion(1, 3, 200, 1), 0.1)
     scan.feed([(0.2, GOOD)], 0.2)  # late: it comes before the next question is sent
     scan.service(line, 0.2)
     assert scan.answer is None

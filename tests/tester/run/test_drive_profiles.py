@@ -1,4 +1,4 @@
-"""A run on the twin with each drive profile. Campaign: ``pytest -m campaign tests/tester/run/test_drive_profiles.py``."""
+"""A run on the twin with each drive profile. All: ``pytest -m campaign tests/tester/run/test_drive_profiles.py``."""
 
 from __future__ import annotations
 
