@@ -24,6 +24,15 @@ _FOLDER = Path(__file__).parent.parent / "profiles" / "drives"
 _ADDRESS = re.compile(r"([0-9A-Fa-f]{4})(?::([0-9A-Fa-f]{2}))?")
 _TYPES = {kind.name.lower(): kind for kind in DataType if kind is not DataType.TEXT}
 Section = TypeVar("Section", Units, PdoLimits)
+_OPTIONS: dict[Key, tuple[int, ...]] = {
+    (0x6007, 0): (1, 3),        # a lost connection: fault (then 0x605E counts), quick stop
+    (0x605A, 0): (2,),          # quick stop: on its own ramp, then power off
+    (0x605B, 0): (0, 1),        # shutdown: never sent from operation
+    (0x605C, 0): (1,),          # disable operation: on the usual ramp; 0 would let the axis coast
+    (0x605D, 0): (1, 2),        # halt: on the usual ramp or that of a quick stop
+    (0x605E, 0): (1, 2),        # fault: on the usual ramp or that of a quick stop
+}
+"""Option objects that a profile may set, and values with which the drive stops the axis: no others can be chosen."""
 
 
 def drive_profile_names() -> list[str]:
@@ -69,6 +78,10 @@ def read_drive_profile(name: str, text: str) -> DriveProfile:
     )
     for one in (objects, status, table):
         one.end()
+    for key, value in profile.options.items():
+        if value not in _OPTIONS.get(key, ()):
+            known = ", ".join(map(str, _OPTIONS.get(key, ()))) or "no value"
+            raise ProfileError(f"{name}.toml: objects.options: {key[0]:04X} = {value} (a profile may choose {known})")
     for key in profile.substitutes:
         if not profile.lacks(key):
             raise ProfileError(f"{name}.toml: objects.instead: {key[0]:04X}:{key[1]:02X} is not among objects.missing")

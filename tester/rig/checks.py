@@ -6,6 +6,7 @@ import difflib
 import re
 from collections.abc import Iterator
 
+from drivers.drive_settings import plan
 from drivers.profiles import ProfileError
 from drivers.profiles.model import DeviceProfile
 from tester.base.source import Location, Problem, Tree
@@ -28,8 +29,8 @@ _Found = Iterator[tuple[Location, str]]
 
 def problems_of(rig: Rig, tree: Tree) -> list[Problem]:
     """Return what does not fit together, the kind's own included, with positions."""
-    found = [*_packaged(rig), *_nodes(rig), *_bus_load(rig), *_lines(rig), *_profiles(rig), *_channels(rig)]
-    found += [*problems_of_cells(rig), *_simulation(rig), *rig.problems()]
+    found = [*_packaged(rig), *_nodes(rig), *_drives(rig), *_bus_load(rig), *_lines(rig), *_profiles(rig)]
+    found += [*_channels(rig), *problems_of_cells(rig), *_simulation(rig), *rig.problems()]
     return [tree.problem(location, message) for location, message in found]
 
 
@@ -51,6 +52,13 @@ def _nodes(rig: Rig) -> _Found:
             yield ("can", "nodes", name, "node_id"), f"node {node.node_id} (expected 1 to 126)"
     if not 1 <= rig.can.node <= 127:
         yield ("can", "node"), f"node {rig.can.node} is not a CANopen node (expected 1 to 127)"
+
+
+def _drives(rig: Rig) -> _Found:
+    """What is known of a make of drive, an axis need not be connected to learn."""
+    for name, axis in rig.drives().items():
+        for refused in plan(axis).refused:
+            yield ("axes", name, "profile"), refused
 
 
 def bus_load(rig: Rig, scan_hz: float) -> float:

@@ -34,6 +34,9 @@ def test_a_missing_index_takes_its_sub_indices_along() -> None:
     (HEAD + '[objects.instead.6072]\nobject = "3001:02"\ntype = "u32"\n', "6072:00 is not among objects.missing"),
     (HEAD + '[writes.gear]\nobject = "6091:01"\ntype = "float"\n', "type: must be one of"),
     (HEAD + "[statusword]\nremote = 0\n", "remote: must be true or false"),
+    (HEAD + "[objects.options]\n6007 = 0\n", "6007 = 0 (a profile may choose 1, 3)"),
+    (HEAD + "[objects.options]\n605A = 0\n", "605A = 0 (a profile may choose 2)"),
+    (HEAD + "[objects.options]\n6072 = 9999\n", "6072 = 9999 (a profile may choose no value)"),
     ("title = ", "x.toml:"),
 ])
 def test_a_wrong_profile_names_file_and_key(text: str, said: str) -> None:

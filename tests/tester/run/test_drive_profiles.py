@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from drivers.drives.reader import GENERIC, drive_profile_names
+from tester.base.source import InvalidSource
 from tester.cli.main import invoke
 from tester.kinds import load_rig
 from tester.machine.run import Outcome
@@ -24,7 +25,7 @@ def overrides(profile: str) -> tuple[str, ...]:
     return tuple(f"axes.{name}.profile={one}" for name, one in axes.items())
 
 
-@pytest.mark.parametrize("profile", [name for name in PROFILES if name != GENERIC])
+@pytest.mark.parametrize("profile", ["kinco_fd", "maxon_epos4"])     # the two that are farthest from the generic one
 def test_a_short_recipe_runs_to_its_end_without_a_trip(profile: str) -> None:
     simulation = Simulation(SHORT, overrides(profile), seed=1).to_the_end(4000.0)
     run = simulation.run
@@ -35,9 +36,11 @@ def test_a_short_recipe_runs_to_its_end_without_a_trip(profile: str) -> None:
 
 @pytest.mark.parametrize("profile", NOT_FOR_A_PRESS)
 def test_a_press_without_what_protects_it_is_refused_by_name(profile: str) -> None:
-    simulation = Simulation(SHORT, (f"axes.press.profile={profile}",)).to_the_end(60.0)
-    assert simulation.run.outcome is Outcome.UNREACHABLE
-    assert "press drive (node 3)" in simulation.run.reason and "0x60FE:01" in simulation.run.reason
+    with pytest.raises(InvalidSource) as error:
+        load_rig(overrides=(f"axes.press.profile={profile}",))
+    told = [problem.message for problem in error.value.problems]
+    assert any(one.startswith("0x60FE:01") for one in told)
+    assert any("0x6072:00" in one and "caps the force" in one for one in told) is (profile == "kinco_fd")
 
 
 def test_what_every_drive_refuses_is_told_at_once() -> None:
