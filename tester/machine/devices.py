@@ -19,6 +19,7 @@ from drivers.sensor import Sensor
 from drivers.servo import ServoDrive
 from tester.machine.image import BaseReadings
 from tester.machine.modbus_health import Inspector
+from tester.machine.slip_ring import SlipRingWatch
 
 INPUT_SAFETY_CHAIN: Final = 1 << 16
 INPUT_GUARD: Final = 1 << 17
@@ -75,6 +76,7 @@ class DeviceList:
         self.nodes = tuple(nodes)
         self.news = True
         self.lost = ""
+        self.slip_ring: SlipRingWatch | None = None
         self.inspector = Inspector([(device.title, device.driver) for device in self.modbus])
         self._prompts = tuple(prompts)
         self._can_alive = True
