@@ -12,7 +12,7 @@ from tester.cli.formatting import dump
 from tester.cli.run_lookup import run_folder
 
 if TYPE_CHECKING:
-    from tester.export.slip_ring import RingRun
+    from tester.kinds.wheel_on_belt.ring_record import RingRun
 
 
 @click.command("slip-ring")
@@ -26,7 +26,7 @@ def slip_ring(runs: Sequence[str], before: float, as_json: bool) -> None:
     speaks of a worn place or a brush. The angle counts from where the wheel stood when it was put on. Several runs are
     put in order of time, with the turns of the ring until then: errors that grow with its age call for new brushes.
     """
-    from tester.export.slip_ring import ring_of, trend_of
+    from tester.kinds.wheel_on_belt.ring_record import ring_of, trend_of
 
     found = sorted((ring_of(run_folder(name), name) for name in dict.fromkeys(runs)), key=lambda one: one.started)
     if as_json:

@@ -20,8 +20,8 @@ from drivers.ports import CanPort, LinePort
 from drivers.sensor import Sensor
 from drivers.servo import ServoDrive
 from tester.kinds.wheel_on_belt.process import NEVER, Readings, Setpoints
+from tester.kinds.wheel_on_belt.ring_watch import SlipRingWatch
 from tester.machine.devices import DeviceList, FieldDevice
-from tester.machine.slip_ring import SlipRingWatch
 
 CELL_CHANNELS: Final = ("fx", "fy", "fz", "mz")
 """Longitudinal, lateral and normal force (N), moment about the vertical (N m), in the wheel's frame."""
@@ -84,7 +84,7 @@ class Devices(DeviceList):
         self._cell_old_s = cell_old_s
         self.thermometer = thermometer
         self.jacket = jacket
-        self.slip_ring = self._ring = SlipRingWatch(jacket)
+        self.counted = self.slip_ring = SlipRingWatch(jacket)
         self._positioned = tuple(axes.positioned.items())
         self._withheld = False
         self._contactor_closed = False  # its feedback, as it was last read
@@ -124,7 +124,7 @@ class Devices(DeviceList):
         r.jacket_valid, r.jacket_at_s, r.jacket_silent = jacket.valid, jacket.stamp_s, not jacket.ready
         if r.channels:
             self.fill_channels(r.channels, now)
-        self._ring.look(r.wheel_angle_rev, r.wheel_rad_s)
+        self.slip_ring.look(r.wheel_angle_rev, r.wheel_rad_s)
         inspector = self.inspector
         if now >= inspector.due_s:
             inspector.inspect(now)

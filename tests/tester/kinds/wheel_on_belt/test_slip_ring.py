@@ -11,9 +11,9 @@ from click.testing import CliRunner
 from sim.faults.scene import Scene
 from sim.machines.wheel_on_belt.faults.catalogue import CATALOGUE
 from sim.machines.wheel_on_belt.faults.slip_ring import WornSector
-from tester.analysis.slip_ring import sector_of
 from tester.cli.slip_ring_command import slip_ring
-from tester.machine.slip_ring import SlipRingWatch
+from tester.kinds.wheel_on_belt.ring_errors import sector_of
+from tester.kinds.wheel_on_belt.ring_watch import SlipRingWatch
 from tests.tester.kinds.wheel_on_belt.bench import SHORT, Simulation
 from tests.tester.kinds.wheel_on_belt.test_joined_cell import Unattended
 from tests.tester.store.build import CONDITIONS, RUN, SPECIMENS, open_writer
@@ -58,7 +58,7 @@ def test_a_sound_ring_has_no_errors() -> None:
 # the watch by itself -------------------------------------------------------------------------------------------------
 
 
-class Counted:
+class Counting:
     """A device with counters that the test sets."""
 
     def __init__(self) -> None:
@@ -69,7 +69,7 @@ class Counted:
 
 
 def test_an_error_belongs_to_where_the_wheel_stood_when_it_was_asked() -> None:
-    device = Counted()
+    device = Counting()
     watch = SlipRingWatch(device)  # type: ignore[arg-type]
     watch.look(10.0, 20.0)
     device.counters.requests = 1  # left at the end of that scan
@@ -81,7 +81,7 @@ def test_an_error_belongs_to_where_the_wheel_stood_when_it_was_asked() -> None:
 
 
 def test_another_wheel_begins_a_count_of_its_own() -> None:
-    device = Counted()
+    device = Counting()
     watch = SlipRingWatch(device)  # type: ignore[arg-type]
     watch.look(500.0, 20.0)
     watch.look(0.0, 0.0)
@@ -90,7 +90,7 @@ def test_another_wheel_begins_a_count_of_its_own() -> None:
 
 
 def test_an_error_while_the_wheel_stands_has_no_angle() -> None:
-    device = Counted()
+    device = Counting()
     watch = SlipRingWatch(device)  # type: ignore[arg-type]
     watch.look(3.0, 0.0)
     device.counters.requests = 1
@@ -111,7 +111,7 @@ def ring_run(folder: Path, started: str, errors: int) -> None:
     folder.mkdir(parents=True)
     writer = open_writer(folder)
     writer.begin_run(replace(RUN, started_utc=started), SPECIMENS, CONDITIONS)
-    device = Counted()
+    device = Counting()
     watch = SlipRingWatch(device)  # type: ignore[arg-type]
     for turn in range(1000):
         watch.look(turn + 0.25, 20.0)
@@ -119,7 +119,7 @@ def ring_run(folder: Path, started: str, errors: int) -> None:
         watch.look(turn + 0.26, 20.0)
         device.counters.crc_errors += turn < errors
     watch.look(1000.0, 20.0)
-    watch.store(writer, 900.0, "jacket")
+    watch.store(writer, 900.0)
     writer.close()
 
 

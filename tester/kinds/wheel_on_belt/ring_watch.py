@@ -1,6 +1,6 @@
 """Notes where a wheel stood and how fast it turned whenever a request over its slip ring failed.
 
-What it notes is stored with the counters of the buses when a run, or a part of one, ends; ``tester.analysis.slip_ring``
+What it notes is stored with the counters of the buses when a run, or a part of one, ends; ``ring_errors``
 makes something of it. The wheel's angle is the one that the wheel's speed gives: it counts from where the wheel stood
 when it was put on, and runs off by the error of the drive's scale, which the analysis takes out.
 """
@@ -8,23 +8,18 @@ when it was put on, and runs off by the error of the drive's scale, which the an
 from __future__ import annotations
 
 from math import pi
-from typing import Final, Protocol
+from typing import Final
 
 from drivers.modbus import Device
-from tester.analysis.slip_ring import BUS, RingSegment, speed_class
+from tester.kinds.wheel_on_belt.ring_errors import BUS, RingSegment, speed_class
 from tester.machine.modbus_health import failures
+from tester.store.recorder import Recorder
 
 MOST_NOTED: Final = 2000
 """Of so many failed requests of a wheel the angle is kept [A]: more say no more, and fill the record."""
+DEVICE: Final = "jacket"
+"""What is beyond the ring."""
 _TURN: Final = 2.0 * pi
-
-
-class Counting(Protocol):
-    """What takes counters."""
-
-    def bus_statistic(self, t_s: float, bus: str, device: str, counter: str, value: float) -> None:
-        """Store one."""
-        ...
 
 
 class SlipRingWatch:
@@ -66,15 +61,15 @@ class SlipRingWatch:
         if place > 0 and len(segment.at_rev) < MOST_NOTED:
             segment.at_rev.append(self._asked_rev)
 
-    def store(self, recorder: Counting, now_s: float, device: str) -> None:
+    def store(self, recorder: Recorder, now_s: float) -> None:
         """Store what was noted, with the counters of the buses."""
         for number, segment in enumerate(self.segments, start=1):
             if not any(segment.requests):
                 continue
-            recorder.bus_statistic(now_s, BUS, device, "wheel", number)
-            recorder.bus_statistic(now_s, BUS, device, "turns", segment.turns)
+            recorder.bus_statistic(now_s, BUS, DEVICE, "wheel", number)
+            recorder.bus_statistic(now_s, BUS, DEVICE, "turns", segment.turns)
             for place, (requests, errors) in enumerate(zip(segment.requests, segment.errors, strict=True)):
-                recorder.bus_statistic(now_s, BUS, device, f"requests {place}", requests)
-                recorder.bus_statistic(now_s, BUS, device, f"errors {place}", errors)
+                recorder.bus_statistic(now_s, BUS, DEVICE, f"requests {place}", requests)
+                recorder.bus_statistic(now_s, BUS, DEVICE, f"errors {place}", errors)
             for turns in segment.at_rev:
-                recorder.bus_statistic(now_s, BUS, device, "error at", turns)
+                recorder.bus_statistic(now_s, BUS, DEVICE, "error at", turns)

@@ -8,7 +8,7 @@ from math import inf, nan, sqrt
 from pathlib import Path
 from typing import TypeAlias
 
-from tester.analysis.slip_ring import BUS, SPEEDS_REV_S, RingSector, RingSegment, sector_of, speed_words
+from tester.kinds.wheel_on_belt.ring_errors import BUS, SPEEDS_REV_S, RingSector, RingSegment, sector_of, speed_words
 from tester.store.reader import RunReader
 
 Json: TypeAlias = "bool | int | float | str | list[Json] | dict[str, Json] | None"
