@@ -84,8 +84,8 @@ class DeviceList:
         self.nodes = tuple(nodes)
         self.news = True
         self.lost = ""
-        self.counted: CountedInRun | None = None
-        """What else is counted in a run, and stored with the counters of the buses; None = nothing."""
+        self.counted: list[CountedInRun] = []
+        """What else is counted in a run, and stored with the counters of the buses."""
         self.inspector = Inspector([(device.title, device.driver) for device in self.modbus])
         self._prompts = tuple(prompts)
         self._can_alive = True

@@ -17,6 +17,7 @@ from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.machine.run import Outcome
 from tester.rig.load import load
 from tester.rig.packaged import packaged_text
+from tester.run.provenance import record_statistics
 from tests.tester.kinds.wheel_on_belt.bench import QUIET, SHORT, Simulation, in_contact
 
 SINGLE = """\
@@ -153,6 +154,9 @@ def test_a_recipe_gives_the_coefficient_that_a_single_transmitter_gives(
     assert run.run.outcome is Outcome.DONE, run.run.reason
     cell = run.run.engine.devices.cell
     assert 0.0 < cell.greatest_skew_s <= 0.030
+    record_statistics(run.run.engine.devices, run.notes, run.now)
+    told = [" ".join(map(str, values)) for values in run.notes.written("INSERT INTO bus_statistic")]
+    assert any(f"greatest skew ms {1e3 * cell.greatest_skew_s}" in line for line in told)
     assert coefficient(run) == pytest.approx(single, rel=0.005)
 
 
