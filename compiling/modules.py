@@ -11,6 +11,7 @@ HOT = (
     "drivers/chamber.py",
     "drivers/cia402.py",
     "drivers/jacket.py",
+    "drivers/joined_cell.py",
     "drivers/modbus/device.py",
     "drivers/modbus/link.py",
     "drivers/modbus/request.py",

@@ -181,7 +181,7 @@ class JoinedCell:
         if found:
             return ", ".join(found)
         if not self.skew_s <= self.most_skew_s:
-            first, last = (pick(self.transmitters, key=_stamp) for pick in (min, max))
+            first, last = min(self.transmitters, key=_stamp), max(self.transmitters, key=_stamp)
             apart = f"{1e3 * self.skew_s:.0f} ms apart, at most {1e3 * self.most_skew_s:.0f} ms"
             return f"{first.title} and {last.title} are read {apart}"
         same = [one for one in self.transmitters if _bears(one)]

@@ -51,6 +51,7 @@ COMMANDS: dict[str, CommandEntry] = {
     "paper": CommandEntry("tester.cli.fit_command", "paper", "Hold the paper's equations against its own data."),
     "figure": CommandEntry("tester.cli.figure_command", "figure", "Draw a run's results."),
     "report": CommandEntry("tester.cli.report_command", "report", "Write a run's results as a page to send and print."),
+    "slip-ring": CommandEntry("tester.cli.slip_ring_command", "slip_ring", "Errors of the slip ring, and their trend."),
     "predict": CommandEntry("tester.cli.predict_command", "predict", "The friction model's value for one condition."),
     "sim": CommandEntry("tester.cli.sim_command", "sim", "A simulated rig in real time, on CAN and Modbus over TCP."),
     "eds": CommandEntry("tester.cli.eds_command", "eds", "Hold a drive's data sheet against what an axis needs."),

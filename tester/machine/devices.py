@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import inf, nan
-from typing import Any, Final
+from typing import Any, Final, Protocol
 
 from drivers.canopen.master import CanMaster
 from drivers.canopen.sensor_node import SensorNode
@@ -19,6 +19,7 @@ from drivers.sensor import Sensor
 from drivers.servo import ServoDrive
 from tester.machine.image import BaseReadings
 from tester.machine.modbus_health import Inspector
+from tester.store.recorder import Recorder
 
 INPUT_SAFETY_CHAIN: Final = 1 << 16
 INPUT_GUARD: Final = 1 << 17
@@ -45,6 +46,14 @@ class FieldDevice:
     """What people call it."""
     line: str
     driver: Device
+
+
+class CountedInRun(Protocol):
+    """Something that a kind of machine counts while it runs."""
+
+    def store(self, recorder: Recorder, now_s: float) -> None:
+        """Store what was counted until ``now_s`` s."""
+        ...
 
 
 class DeviceList:
@@ -77,6 +86,8 @@ class DeviceList:
         self.nodes = tuple(nodes)
         self.news = True
         self.lost = ""
+        self.counted: list[CountedInRun] = []
+        """What else is counted in a run, and stored with the counters of the buses."""
         self.inspector = Inspector([(device.title, device.driver) for device in self.modbus])
         self._prompts = tuple(prompts)
         self._can_alive = True

@@ -171,6 +171,8 @@ def record_statistics(devices: DeviceList, recorder: Recorder, now_s: float) -> 
         recorder.bus_statistic(now_s, "can", drive.config.name, "malformed", drive.malformed)
     for node in devices.nodes:
         recorder.bus_statistic(now_s, "can", node.name, "malformed", node.malformed)
+    for counted in devices.counted:
+        counted.store(recorder, now_s)
     for number, (_, link) in enumerate(devices.lines, start=1):
         bus = f"line {number}"
         recorder.bus_statistic(now_s, bus, "", "garbage", link.garbage)

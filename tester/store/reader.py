@@ -360,6 +360,11 @@ class RunReader:
         for row in self._rows("SELECT * FROM device_parameter ORDER BY id"):
             yield _record(StoredParameter, row)
 
+    def bus_statistics(self, bus: str) -> Iterator[tuple[str, float]]:
+        """Yield counters of a bus and their values, in the order they were stored."""
+        for row in self._rows("SELECT counter, value FROM bus_statistic WHERE bus = ? ORDER BY id", (bus,)):
+            yield _text(row, "counter"), _number(row, "value")
+
     def record_head(self) -> str:
         """Return the last head of the record's chain, hexadecimal; "" where an older version recorded without one."""
         if self.version < CHAINED:

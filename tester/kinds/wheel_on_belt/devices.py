@@ -14,12 +14,14 @@ from drivers.canopen.master import CanMaster
 from drivers.canopen.sensor_node import SensorNode
 from drivers.cia402 import Goal
 from drivers.jacket import HeatingJacket
-from drivers.joined_cell import LoadCell, blame, links_of
+from drivers.joined_cell import JoinedCell, LoadCell, blame, links_of
 from drivers.modbus import ModbusLink
 from drivers.ports import CanPort, LinePort
 from drivers.sensor import Sensor
 from drivers.servo import ServoDrive
+from tester.kinds.wheel_on_belt.cell_skew import CellSkew
 from tester.kinds.wheel_on_belt.process import NEVER, Readings, Setpoints
+from tester.kinds.wheel_on_belt.ring_watch import SlipRingWatch
 from tester.machine.devices import DeviceList, FieldDevice
 
 CELL_CHANNELS: Final = ("fx", "fy", "fz", "mz")
@@ -83,6 +85,10 @@ class Devices(DeviceList):
         self._cell_old_s = cell_old_s
         self.thermometer = thermometer
         self.jacket = jacket
+        self.slip_ring = SlipRingWatch(jacket)
+        self.counted.append(self.slip_ring)
+        if isinstance(cell, JoinedCell):
+            self.counted.append(CellSkew(cell))
         self._positioned = tuple(axes.positioned.items())
         self._withheld = False
         self._contactor_closed = False  # its feedback, as it was last read
@@ -124,6 +130,7 @@ class Devices(DeviceList):
         r.jacket_valid, r.jacket_at_s, r.jacket_silent = jacket.valid, jacket.stamp_s, not jacket.ready
         if r.channels:
             self.fill_channels(r.channels, now)
+        self.slip_ring.look(r.wheel_angle_rev, r.wheel_rad_s)
         inspector = self.inspector
         if now >= inspector.due_s:
             inspector.inspect(now)

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from copy import deepcopy
-from math import hypot
+from math import hypot, pi, sin
+from pathlib import Path
 from random import Random
 
 import pytest
@@ -16,6 +17,7 @@ from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.machine.run import Outcome
 from tester.rig.load import load
 from tester.rig.packaged import packaged_text
+from tester.run.provenance import record_statistics
 from tests.tester.kinds.wheel_on_belt.bench import QUIET, SHORT, Simulation, in_contact
 
 SINGLE = """\
@@ -152,6 +154,9 @@ def test_a_recipe_gives_the_coefficient_that_a_single_transmitter_gives(
     assert run.run.outcome is Outcome.DONE, run.run.reason
     cell = run.run.engine.devices.cell
     assert 0.0 < cell.greatest_skew_s <= 0.030
+    record_statistics(run.run.engine.devices, run.notes, run.now)
+    told = [" ".join(map(str, values)) for values in run.notes.written("INSERT INTO bus_statistic")]
+    assert any(f"greatest skew ms {1e3 * cell.greatest_skew_s}" in line for line in told)
     assert coefficient(run) == pytest.approx(single, rel=0.005)
 
 
@@ -200,3 +205,35 @@ def test_nothing_moves_while_a_transmitter_does_not_answer() -> None:
     assert run.run.outcome is Outcome.UNREACHABLE
     assert run.run.reason == "not up after 90 s: cell y"
     assert not any(scan.slip_m_s for scan in run.scans)
+
+
+# the page ------------------------------------------------------------------------------------------------------------
+
+
+def test_the_rig_file_of_the_how_to_page_is_taken_and_names_what_is_missing() -> None:
+    page = Path(__file__).parents[4] / "docs" / "how-to" / "a-cell-of-several-transmitters.md"
+    text = page.read_text(encoding="utf-8").split("```yaml\ndevices:\n")[1].split("```")[0]
+    rig = load(RigConfig, load_tree(packaged_text(RigConfig, "").replace(SINGLE, text)))
+    assert [name for name, one in rig.devices.items() if one.part_of] == ["cell_x", "cell_y", "cell_z"]
+    without = text[: text.index("  cell_y:")] + text[text.index("  cell_z:") :]
+    with pytest.raises(InvalidSource) as caught:
+        load(RigConfig, load_tree(packaged_text(RigConfig, "").replace(SINGLE, without)))
+    (said,) = caught.value.problems
+    assert f": {said.message}\n" in page.read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(("skew_ms", "momentary"), [(11.0, 0.007), (30.0, 0.019), (50.0, 0.030)])
+def test_the_skew_leaves_the_ratio_of_means_alone_and_moves_the_momentary_one(skew_ms: float, momentary: float) -> None:
+    turns_hz, swing_hz, shift_s = 2.83, 20.0, 1e-3 * skew_ms
+    times = [index / 5000.0 / turns_hz for index in range(5000 * 40)]
+
+    def normal_n(t: float) -> float:
+        return 200.0 * (1.0 + 0.05 * sin(2.0 * pi * turns_hz * t))
+
+    along = [0.75 * (1.0 + 0.2 * sin(2.0 * pi * swing_hz * t)) * normal_n(t) for t in times]
+    normal = [normal_n(t + shift_s) for t in times]
+    at_once = sum(along) / sum(map(normal_n, times))
+    assert sum(along) / sum(normal) == pytest.approx(at_once, rel=1e-4)
+    ratios = [normal_n(t) / later for t, later in zip(times, normal, strict=True)]
+    mean = sum(ratios) / len(ratios)
+    assert (sum((one - mean) ** 2 for one in ratios) / len(ratios)) ** 0.5 == pytest.approx(momentary, abs=0.0005)

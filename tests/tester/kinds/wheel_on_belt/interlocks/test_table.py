@@ -37,10 +37,10 @@ def compared(condition: Callable[[Inputs], bool], known: set[FunctionType] | Non
 
 
 INSIDE = {"rate_filter_s", "rate_window_s", "rate_settle_s", "blind_s", "ramp_share", "open_output_percent",
-          "open_below_k", "runaway_window_s", "press_lag_s", "lifted_mm", "late_warn_s",
+          "open_below_k", "runaway_window_s", "press_lag_s", "lifted_mm", "late_warn_s", "cell_skew_s",
           "heat_share", "heat_share_known", "heat_leak_w",
           "force_step_cross_share", "force_step_seen_share", "force_step_unseen_share"}  # fmt: skip
-"""Parameters of rows whose monitor, or whose stop, uses them and not the condition itself."""
+"""Parameters of rows whose monitor, driver or stop uses them and not the condition itself."""
 SHARED = {"stale_inputs_s", "speeds_old_s", "standing_m_s", "clear_mm", "lift_late_s"}
 """Parameters that ``known`` and earlier rows bring into a condition."""
 

@@ -1,0 +1,75 @@
+"""Notes where a wheel stood and how fast it turned whenever a request over its slip ring failed.
+
+What it notes is stored with the counters of the buses when a run, or a part of one, ends; ``ring_errors``
+makes something of it. The wheel's angle is the one that the wheel's speed gives: it counts from where the wheel stood
+when it was put on, and runs off by the error of the drive's scale, which the analysis takes out.
+"""
+
+from __future__ import annotations
+
+from math import pi
+from typing import Final
+
+from drivers.modbus import Device
+from tester.kinds.wheel_on_belt.ring_errors import BUS, RingSegment, speed_class
+from tester.machine.modbus_health import failures
+from tester.store.recorder import Recorder
+
+MOST_NOTED: Final = 2000
+"""Of so many failed requests of a wheel the angle is kept [A]: more say no more, and fill the record."""
+DEVICE: Final = "jacket"
+"""What is beyond the ring."""
+_TURN: Final = 2.0 * pi
+
+
+class SlipRingWatch:
+    """Looks at the counters of a device beyond a slip ring, once a scan.
+
+    A request leaves at the end of a scan, so it belongs to where the wheel stood in that one: its outcome is seen in a
+    later scan. Between two scans the wheel turns 12 degrees at 100 Hz and 58 at 20 Hz (3.2 rev/s).
+    """
+
+    def __init__(self, device: Device) -> None:
+        """Watch this device."""
+        self.device = device
+        self.segments: list[RingSegment] = [RingSegment()]
+        self._requests = self._failures = 0
+        self._asked_rev = self._asked_rev_s = 0.0
+        self._last_rev = self._last_rev_s = 0.0
+
+    def look(self, angle_rev: float, wheel_rad_s: float) -> None:
+        """Take the counters in a scan: turns of the wheel since it was put on, and its speed in rad/s."""
+        counters = self.device.station.counters
+        requests, failed = counters.requests, failures(counters)
+        if failed != self._failures:
+            self._note(failed - self._failures)
+            self._failures = failed
+        if requests != self._requests:
+            segment = self.segments[-1]
+            segment.requests[speed_class(self._last_rev_s)] += requests - self._requests
+            self._requests = requests
+            self._asked_rev, self._asked_rev_s = self._last_rev, self._last_rev_s
+        if angle_rev < self._last_rev - 0.5:  # another wheel
+            self.segments.append(RingSegment())
+        self.segments[-1].turns = max(self.segments[-1].turns, angle_rev)
+        self._last_rev, self._last_rev_s = angle_rev, abs(wheel_rad_s) / _TURN
+
+    def _note(self, more: int) -> None:
+        segment = self.segments[-1]
+        place = speed_class(self._asked_rev_s)
+        segment.errors[place] += more
+        if place > 0 and len(segment.at_rev) < MOST_NOTED:
+            segment.at_rev.append(self._asked_rev)
+
+    def store(self, recorder: Recorder, now_s: float) -> None:
+        """Store what was noted, with the counters of the buses."""
+        for number, segment in enumerate(self.segments, start=1):
+            if not any(segment.requests):
+                continue
+            recorder.bus_statistic(now_s, BUS, DEVICE, "wheel", number)
+            recorder.bus_statistic(now_s, BUS, DEVICE, "turns", segment.turns)
+            for place, (requests, errors) in enumerate(zip(segment.requests, segment.errors, strict=True)):
+                recorder.bus_statistic(now_s, BUS, DEVICE, f"requests {place}", requests)
+                recorder.bus_statistic(now_s, BUS, DEVICE, f"errors {place}", errors)
+            for turns in segment.at_rev:
+                recorder.bus_statistic(now_s, BUS, DEVICE, "error at", turns)
