@@ -52,7 +52,8 @@ COMMANDS: dict[str, CommandEntry] = {
     "figure": CommandEntry("tester.cli.figure_command", "figure", "Draw a run's results."),
     "report": CommandEntry("tester.cli.report_command", "report", "Write a run's results as a page to send and print."),
     "predict": CommandEntry("tester.cli.predict_command", "predict", "The friction model's value for one condition."),
-    "sim": CommandEntry("tester.cli.sim_command", "sim", "A simulated rig in real time, on CAN and Modbus over TCP."),
+    "sim": CommandEntry("tester.cli.sim_command", "sim", "A simulated rig in real time, on CAN and Modbus."),
+    "record": CommandEntry("tester.cli.record_command", "record", "Write down the frames of live wires."),
     "rig": CommandEntry("tester.cli.rig_commands", "rig", "Write or show a rig file."),
     "schema": CommandEntry("tester.cli.recipe_commands", "schema", "Print the JSON Schema of recipes."),
 }
