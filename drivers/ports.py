@@ -116,8 +116,19 @@ class LinePort(Protocol):
         ...
 
 
+@runtime_checkable
+class RenewablePort(LinePort, Protocol):
+    """A line that can be begun anew where nobody knows any more where a frame begins: a TCP connection."""
+
+    def renew(self, now: float) -> None:
+        """Drop the connection with all that is under way, and open another one; raises BusLost."""
+        ...
+
+
 class WatchedLine:
-    """What lines have in common: who is told of their bytes."""
+    """What lines have in common: who is told of their bytes, and what makes them quicker (``remedy``)."""
+
+    remedy = ""
 
     def __init__(self) -> None:
         """Nobody watches."""

@@ -33,6 +33,8 @@ class LineSpec:
 
     baud: int
     parity: Literal["N", "E", "O"] = "N"
+    held_s: float = 0.0
+    """The computer's adapter holds back for this long what it receives, s."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -169,7 +171,10 @@ def lines_of(spec: RigSpec, devices: Mapping[str, ModbusSlave]) -> dict[str, Mod
     """Return the Modbus lines of a wiring, each with its devices; ``devices`` by the wiring's names."""
     return {
         name: ModbusWire(
-            line.baud, line.parity, [slave for key, slave in devices.items() if spec.devices[key].line == name]
+            line.baud,
+            line.parity,
+            [slave for key, slave in devices.items() if spec.devices[key].line == name],
+            line.held_s,
         )
         for name, line in spec.lines.items()
     }

@@ -136,6 +136,38 @@ def next_frame(framing: Framing, buffer: bytes) -> tuple[int, int, int, bytes]:
     return used, unit_id, transaction, pdu
 
 
+class FramingError(ValueError):
+    """What came over TCP cannot be the reply: from here on nobody knows where a frame begins."""
+
+
+def tcp_reply(data: bytes, transaction: int, unit_id: int, function: int, length: int) -> bytes:
+    """Return the PDU of a reply over TCP that ``data`` is, whole and alone; b"" while it may still become one.
+
+    ``length``: bytes of the good reply. Raises FramingError for another transaction, protocol, length, unit or
+    function, and for bytes beyond the frame (Modbus messaging on TCP/IP implementation guide V1.0b, 3.1.3).
+    """
+    for what, at, known in (
+        ("transaction", 0, transaction.to_bytes(2, "big")),
+        ("protocol", 2, b"\0\0"),
+        ("unit", 6, bytes((unit_id,))),
+    ):
+        found = data[at : at + len(known)]
+        if not known.startswith(found):
+            raise FramingError(f"{what} {found.hex()} instead of {known.hex()}")
+    good, refused = length - 6, 3
+    counted = int.from_bytes(data[4:6], "big")
+    if len(data) >= 6 and counted not in (good, refused):
+        raise FramingError(f"{counted} bytes announced, expected {good}, or {refused} of an exception")
+    answered = {function} if counted == good else {function | 0x80}
+    if len(data) >= 8 and data[7] not in (answered if good != refused else {function, function | 0x80}):
+        raise FramingError(f"function {data[7]} in a reply of {counted} bytes")
+    if len(data) >= 9 and data[7] == function and function in (READ_HOLDING, READ_INPUT) and data[8] != length - 9:
+        raise FramingError(f"{data[8]} bytes of registers, expected {length - 9}")
+    if len(data) > 6 + counted and len(data) >= 6:
+        raise FramingError(f"{len(data) - 6 - counted} bytes after the reply")
+    return data[7:] if len(data) >= 6 and len(data) == 6 + counted else b""
+
+
 def classify(pdu: bytes, function: int, address: int, values: Sequence[int], count: int) -> DecodedAnswer:
     """Tell what ``pdu`` is to a request of ``function`` from ``address``: to read ``count``, or to write ``values``."""
     if pdu[0] == function | 0x80 and len(pdu) == 2:

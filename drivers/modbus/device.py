@@ -35,6 +35,7 @@ class Device(ABC):
         self.profile = profile
         self.link = link
         self.station = link.station(unit_id, profile.timing, self)
+        self.station.known_register = (profile.blocks[0].function, profile.blocks[0].address)
         self.ready = False
         self.valid = False
         self.complaint = ""

@@ -21,12 +21,13 @@ SOCKET_MARGIN_S = 0.05
 class LineType:
     """Makes requests. ``gap_s`` is the silence in s that ends a frame, 0 on TCP."""
 
-    __slots__ = ("_character_s", "framing", "gap_s", "socket")
+    __slots__ = ("_character_s", "_requests", "framing", "gap_s", "socket")
 
     def __init__(self, framing: codec.Framing, baud: int, parity: Parity) -> None:
         """Take the framing; ``baud`` in bit/s and ``parity`` matter on RTU only."""
         self.framing: codec.Framing = framing
         self.socket = framing == "socket"
+        self._requests: list[Request] = []
         bits = 10 if parity == "N" else 11
         self._character_s = 0.0 if self.socket else bits / baud
         self.gap_s = 0.0 if self.socket else silent_gap_s(bits, baud)
@@ -62,14 +63,32 @@ class LineType:
 
     def _timed(self, request: Request) -> Request:
         """Work out the times of a request."""
-        timing = request.station.timing
         request.reply_length = codec.reply_length(self.framing, request.function, request.count)
         request.reply_wire_s = request.reply_length * self._character_s
-        wire_s = len(request.frame) * self._character_s + self.gap_s + request.reply_wire_s
-        margin_s = SOCKET_MARGIN_S if self.socket else RTU_MARGIN_S
-        request.expected_s = wire_s + timing.turnaround_s
-        request.timeout_s = wire_s + timing.reply_max_s + margin_s
+        request.wire_s = len(request.frame) * self._character_s + self.gap_s + request.reply_wire_s
+        self._requests.append(request)
+        self._judge(request)
         return request
+
+    def _judge(self, request: Request) -> None:
+        """Work out how long its reply is waited for."""
+        station = request.station
+        reply = station.reply
+        usual_s = max(station.timing.turnaround_s, reply.least_s) if reply.measured else station.timing.turnaround_s
+        request.expected_s = request.wire_s + usual_s
+        request.quiet_s = limit_s = reply.limit_s(station.timing)
+        request.timeout_s = request.wire_s + limit_s + (SOCKET_MARGIN_S if self.socket else RTU_MARGIN_S)
+
+    def measured(self, station: Station) -> None:
+        """Take account of what is known by now of a station's replies."""
+        for request in self._requests:
+            if request.station is station:
+                self._judge(request)
+
+    def exchange_s(self, station: Station) -> float:
+        """Return how long the longest read of a station takes from request to reply, by what was measured, s."""
+        wire_s = max((one.wire_s for one in self._requests if one.station is station and not one.writes), default=0.0)
+        return wire_s + station.reply.greatest_s
 
 
 def silent_gap_s(character_bits: int, baud: int) -> float:

@@ -2,6 +2,10 @@
 
 Give it what arrived (``feed``), then let it send what is due (``service``): in this order in every tick, so that a
 reply that came in time is never taken for a time-out because the tick was late.
+
+Over TCP any doubt about framing, and a time-out, ends the connection: what comes of the old one is never read. On a
+serial line nothing is written before it is known whether the adapter hears itself: a reply to a write begins like the
+write, or is equal to it.
 """
 
 from __future__ import annotations
@@ -14,8 +18,8 @@ from drivers.crc16 import crc16
 from drivers.modbus import codec
 from drivers.modbus.line import LineType, Parity
 from drivers.modbus.request import Owner, Request, Station
-from drivers.modbus.schedule import Schedule
-from drivers.ports import LinePort
+from drivers.modbus.schedule import PROBE_S, Schedule
+from drivers.ports import BusLost, LinePort, RenewablePort
 from drivers.profiles.model import Timing
 
 MISSES_TO_LOSE: Final = 3
@@ -40,22 +44,31 @@ class ModbusLink:
         "_active",
         "_backlog_s",
         "_buffer",
+        "_doubt",
         "_gap_s",
         "_give_up_s",
         "_quiet_s",
         "_schedule",
+        "_sent",
         "_socket",
+        "_stripped",
         "_suspect",
         "_transaction",
         "_type",
         "deadline",
+        "doubts",
+        "framing",
         "garbage",
+        "hears_itself",
+        "reopened",
+        "scan_s",
         "stations",
         "wants_s",
     )
 
     def __init__(self, framing: codec.Framing = "rtu", baud: int = 115200, parity: Parity = "N") -> None:
         """Create an idle master; ``baud`` in bit/s and ``parity`` matter on RTU only."""
+        self.framing: codec.Framing = framing
         self._type = LineType(framing, baud, parity)
         self._gap_s = self._type.gap_s
         self._socket = self._type.socket
@@ -67,10 +80,21 @@ class ModbusLink:
         self._give_up_s = inf
         self._backlog_s = inf
         self._quiet_s = -inf
-        self._suspect: Station | None = None
+        self._suspect: Request | None = None
         self.deadline = self.wants_s = -inf
         self.garbage = 0
         """Pieces that arrived although no station had been asked."""
+        self.hears_itself: bool | None = False if self._socket else None
+        """Whether the adapter gives back what is sent: None until the first reply to a read shows it."""
+        self.reopened = 0
+        """How often the connection was dropped and opened anew (TCP)."""
+        self.doubts = ""
+        """Why it was, the last time."""
+        self.scan_s = inf
+        """Time between scans, s. Where the exchange of a read of every scan takes longer, the next begins at once."""
+        self._doubt = ""
+        self._sent = b""
+        self._stripped = False
 
     # what the drivers ask for ----------------------------------------------------------------------------------
 
@@ -139,6 +163,12 @@ class ModbusLink:
                 self._unasked(t)
                 continue
             data = self._buffer + chunk if self._buffer else chunk
+            if self._socket:
+                self._examine_tcp(request, data, t)
+                continue
+            if self.hears_itself is not False:
+                self._examine_with_echo(request, data, t)
+                continue
             # The usual cases by themselves, several times faster than the library, which takes everything else.
             if len(data) == request.reply_length and data[:3] == request.head and not crc16(data):
                 self._succeed(request, data[3:-2], t)
@@ -158,17 +188,25 @@ class ModbusLink:
                 self._wait(now)
                 return
             self._time_out(active, now)
+        if self._doubt:
+            self._begin_anew(port, now)
         schedule = self._schedule
-        if now < self._quiet_s - _TINY_S and now >= schedule.wants_s:
-            self.deadline = max(self._quiet_s, schedule.latest())
+        hurried = schedule.slowest_s > self.scan_s
+        reads_only = self.hears_itself is None
+        if now < self._quiet_s - _TINY_S and (reads_only or now >= schedule.wants_s):
+            self.deadline = self._quiet_s if hurried else max(self._quiet_s, schedule.latest())
             self.wants_s = self._quiet_s - _TINY_S
             return
-        request = schedule.choose(now, scan) if now >= schedule.wants_s else None
+        request = schedule.choose(now, scan or hurried, reads_only) if now >= schedule.wants_s else None
+        if request is None and reads_only and scan:
+            request = self._contact(now)
         if request is None:
             self.deadline = schedule.latest_s
-            self.wants_s = schedule.wants_s
+            self.wants_s = -inf if reads_only else schedule.wants_s
             return
-        port.write(self._numbered(request) if self._socket else request.frame, now)
+        self._sent = frame = self._numbered(request) if self._socket else request.frame
+        self._stripped = False
+        port.write(frame, now)
         request.sent_s = now
         if request.writes:
             request.fresh = False
@@ -178,12 +216,41 @@ class ModbusLink:
         request.station.counters.requests += 1
         self._active = request
         self._give_up_s = give_up_s = now + request.timeout_s
-        self._backlog_s = schedule.latest_s
-        if schedule.latest_s < give_up_s:
+        self._backlog_s = backlog_s = -inf if schedule.slowest_s > self.scan_s else schedule.latest_s
+        if backlog_s < give_up_s:
             self._wait(now)
         else:
             self.deadline = give_up_s
             self.wants_s = give_up_s - _TINY_S
+
+    def _contact(self, now: float) -> Request | None:
+        """Return a read of a station to which only writes are due, while it is not known whether we hear ourselves."""
+        request = self._schedule.write_due(now)
+        if request is None:
+            return None
+        station = request.station
+        if station.contact is None:
+            function, address = station.known_register
+            station.contact = self._type.read(station, function, address, 1, inf, 0.0)
+        return station.contact if station.contact.sent_s <= now - PROBE_S else None
+
+    def _begin_anew(self, port: LinePort, now: float) -> None:
+        """Drop a connection on which nobody knows where a frame begins; raises BusLost where there is no other."""
+        self.doubts, self._doubt = self._doubt, ""
+        if not isinstance(port, RenewablePort):
+            raise BusLost(f"{self.doubts}, and the line cannot be begun anew")
+        self.reopened += 1
+        port.renew(now)
+
+    def measure(self) -> None:
+        """Measure anew how long the stations' replies take, from the next ones on."""
+        for station in self.stations:
+            station.reply.forget()
+            self._type.measured(station)
+
+    def exchange_s(self, station: Station) -> float:
+        """Return how long the longest read of a station takes from request to reply, by what was measured, s."""
+        return self._type.exchange_s(station)
 
     @property
     def only_watches(self) -> bool:
@@ -229,6 +296,8 @@ class ModbusLink:
         station.misses = 0
         station.is_lost = False
         schedule = self._schedule
+        if not station.reply.measured:
+            self._measured(station, t - request.sent_s - request.wire_s)
         schedule.succeeded(request, t)
         self.wants_s = schedule.wants_s
         latest_s = schedule.latest_s
@@ -236,19 +305,34 @@ class ModbusLink:
         # A tick that came late cannot make a reading look newer than the time-out allows.
         station.owner.received(request, data, t if t < self._give_up_s else self._give_up_s)
 
+    def _measured(self, station: Station, seconds: float) -> None:
+        """Take note of how long a reply took beyond the wire."""
+        station.reply.note(max(0.0, seconds))
+        if station.reply.measured:
+            self._retimed(station)
+
+    def _retimed(self, station: Station) -> None:
+        """Let what is known of a station's replies count."""
+        self._type.measured(station)
+        self._schedule.look_again()
+
     def _time_out(self, request: Request, now: float) -> None:
         """Give a request up, and keep the line silent: its reply may still come.
 
         It would be taken for the reply to the next request of the same shape (pymodbus-dev/pymodbus#2636). A slave
-        slower than the longest time its profile states can still do that: nothing in an RTU frame tells. On TCP the
-        transaction number does.
+        slower than the longest time measured, and than its profile states, can still do that: nothing in an RTU frame
+        tells. Over TCP the connection is dropped.
         """
         station = request.station
         station.counters.timeouts += 1
         if self._buffer:
             station.counters.garbage += 1
-        self._suspect = station
-        self._fail(request, now, now + (0.0 if self._socket else station.timing.reply_max_s))
+        if self._socket:
+            self._doubt = f"no reply on {request.describe()}"
+            self._fail(request, now, now)
+            return
+        self._suspect = request
+        self._fail(request, now, now + request.quiet_s)
 
     def _fail(self, request: Request, t: float, quiet_s: float) -> None:
         """End an attempt without a good reply."""
@@ -264,17 +348,91 @@ class ModbusLink:
         self._schedule.lost(station, t)
         station.owner.lost(t)
 
-    def _examine(self, request: Request, data: bytes, t: float) -> None:
-        """Find the reply in what arrived, and count what else is there."""
+    def _examine_tcp(self, request: Request, data: bytes, t: float) -> None:
+        """Take what came over TCP for the reply where it is that and nothing else."""
+        if self._doubt:
+            return
+        try:
+            pdu = codec.tcp_reply(
+                data, self._transaction, request.station.unit_id, request.function, request.reply_length
+            )
+        except codec.FramingError as error:
+            late = data[:2] != self._sent[:2]
+            self._mistrust(request, f"{error} on {request.describe()}", t, late=late)
+            return
+        if not pdu:
+            self._buffer = data
+            return
+        answer = codec.classify(pdu, request.function, request.address, request.sent_values, request.count)
+        if answer is codec.DecodedAnswer.OTHER:
+            self._mistrust(request, f"another reply on {request.describe()}", t, late=True)
+        elif answer is codec.DecodedAnswer.EXCEPTION:
+            self._except(request, codec.exception_code(pdu), t)
+        else:
+            self._succeed(request, b"" if request.writes else pdu[2:], t)
+
+    def _mistrust(self, request: Request, why: str, t: float, *, late: bool) -> None:
+        """End an attempt after which nobody knows where a frame begins: the connection is dropped."""
         counters = request.station.counters
+        if late:
+            counters.late += 1
+        else:
+            counters.garbage += 1
+        self._doubt = why
+        self._fail(request, t, t)
+
+    def _examine_with_echo(self, request: Request, data: bytes, t: float) -> None:
+        """Take off what we have sent, where the adapter gives it back, and find out whether it does.
+
+        The request of a read is never a reply to it: who gets it back hears itself. Whose reply to a read comes
+        without it does not.
+        """
+        sent = self._sent
+        if not self._stripped:
+            if len(data) < len(sent) and sent.startswith(data):
+                self._buffer = data
+                return
+            if data.startswith(sent):
+                self._stripped = True
+                self.hears_itself = True
+                data = data[len(sent) :]
+                self._buffer = data
+                if not data:
+                    return
+            elif request.writes:
+                # Before its own echo nothing can be the answer to a write.
+                request.station.counters.garbage += 1
+                self._fail(request, t, t + self._gap_s + request.reply_wire_s)
+                return
+        if data == request.echo and request.writes:
+            self._succeed(request, b"", t)
+            return
+        replies = request.station.counters.replies
+        answered = sum(request.station.counters.exceptions.values())
+        self._examine(request, data, t)
+        settled = replies + answered < request.station.counters.replies + sum(
+            request.station.counters.exceptions.values()
+        )
+        if settled and self.hears_itself is None:
+            self.hears_itself = False
+            self.wants_s = -inf
+            self._schedule.look_again()
+
+    def _examine(self, request: Request, data: bytes, t: float) -> None:
+        """Find the reply in what arrived on a serial line, and count what else is there."""
+        counters = request.station.counters
+        if self.hears_itself is False and not request.writes and data.startswith(self._sent):
+            # Between two replies somebody has changed the adapter: from now on it is taken for one that does.
+            self._examine_with_echo(request, data, t)
+            return
         at = data.find(request.head) if request.head else -1
-        whole = data[at : at + request.reply_length] if at > 0 else b""
+        whole = data[at : at + request.reply_length] if at >= 0 else b""
         if len(whole) == request.reply_length and crc16(whole) == 0:
-            counters.garbage += 1  # noise before it, as when a driver of the line is switched on
+            counters.garbage += at > 0  # noise before it, as when a driver of the line is switched on
             self._succeed(request, whole[3:-2], t)
             return
         while data:
-            used, unit_id, transaction, pdu = codec.next_frame(self._type.framing, data)
+            used, unit_id, _, pdu = codec.next_frame("rtu", data)
             if not used:
                 break
             if not pdu:
@@ -282,12 +440,8 @@ class ModbusLink:
                 self._fail(request, t, t + self._gap_s + request.reply_wire_s)
                 return
             data = data[used:]
-            answer = codec.classify(
-                pdu, request.function, request.address, request.sent_values, request.count
-            )
-            if self._socket and transaction != self._transaction:
-                counters.late += 1
-            elif unit_id != request.station.unit_id:
+            answer = codec.classify(pdu, request.function, request.address, request.sent_values, request.count)
+            if unit_id != request.station.unit_id:
                 counters.garbage += 1
             elif answer is codec.DecodedAnswer.OTHER:
                 counters.late += 1
@@ -324,11 +478,21 @@ class ModbusLink:
 
     def _unasked(self, t: float) -> None:
         """Count bytes nobody waits for; after a time-out they are the late reply, and the silence starts anew."""
-        station = self._suspect
-        if station is None:
+        if self._socket:
+            if not self._doubt:
+                self._doubt = "bytes that nobody asked for"
+                self.garbage += 1
+                self.wants_s = -inf
+            return
+        suspect = self._suspect
+        if suspect is None:
             self.garbage += 1
-        else:
-            station.counters.late += 1
-        if not self._socket:
-            quiet_s = t + (self._gap_s if station is None else station.timing.reply_max_s)
-            self._quiet_s = max(self._quiet_s, quiet_s)
+            self._quiet_s = max(self._quiet_s, t + self._gap_s)
+            return
+        station = suspect.station
+        station.counters.late += 1
+        self._quiet_s = max(self._quiet_s, t + suspect.quiet_s)
+        if t - suspect.sent_s <= station.longest_s:
+            # The line is slower than it was measured, and not too slow yet: the next reply is waited for.
+            station.reply.note(t - suspect.sent_s - suspect.wire_s)
+            self._retimed(station)

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from math import inf
 from typing import Protocol
 
+from drivers.modbus.reply_times import ReplyTimes
 from drivers.profiles.model import Timing
 
 
@@ -51,6 +52,14 @@ class Station:
     """Three attempts in a row failed, or a gateway reported the device as gone; a good reply ends it."""
     refused: str | None = None
     """Why the device cannot be used as configured; stays until the program is started again."""
+    reply: ReplyTimes = field(default_factory=ReplyTimes)
+    """How long its replies take."""
+    known_register: tuple[int, int] = (3, 0)
+    """Function and address with which it can be read."""
+    contact: Request | None = None
+    """A read that shows whether the adapter hears itself, before anything is written."""
+    longest_s: float = 0.0
+    """Replies that were given up and came within this (request, wire and all, s) lengthen the time-out; 0 = none."""
 
 
 @dataclass(slots=True, eq=False)
@@ -83,6 +92,10 @@ class Request:
     """Time from sending after which it is given up."""
     reply_wire_s: float = 0.0
     """Time a reply occupies the wire."""
+    wire_s: float = 0.0
+    """Time that request, silence and reply take on the wire."""
+    quiet_s: float = 0.0
+    """After a time-out the line must have been quiet for this."""
     values: tuple[int, ...] = ()
     """What is written, one number a register."""
     sent_values: tuple[int, ...] = ()

@@ -14,6 +14,7 @@ RETRY_S: Final = 0.5
 SLACK_S: Final = 0.06
 """A periodic read waits this long for a regular scan: scans at 20 Hz serve the slow line without ticks of its own."""
 
+_TINY_S: Final = 1e-9
 _EARLY_S: Final = 1e-3
 """What falls due within this is sent now: the next scan would be later."""
 
@@ -25,13 +26,15 @@ class Schedule:
     as it may, of those not under way.
     """
 
-    __slots__ = ("_requests", "_soonest_s", "_with_scans", "latest_s", "wants_s")
+    __slots__ = ("_requests", "_soonest_s", "_with_scans", "latest_s", "slowest_s", "wants_s")
 
     def __init__(self) -> None:
         """Nothing is due."""
         self._requests: list[Request] = []  # those enabled, in the order they were
         self._soonest_s = self.latest_s = self.wants_s = -inf
         self._with_scans = False
+        self.slowest_s = 0.0
+        """The longest usual exchange among the reads that go out with every scan, s."""
 
     def enable(self, request: Request, due_s: float = -inf) -> None:
         """Let a request be sent at ``due_s``, then in its period."""
@@ -68,12 +71,14 @@ class Schedule:
         """Forget when the next request falls due: something has changed."""
         self._soonest_s = self.wants_s = -inf
 
-    def choose(self, now: float, scan: bool) -> Request | None:
+    def choose(self, now: float, scan: bool, reads_only: bool = False) -> Request | None:
         """Return the request to send at ``now``; reads of period 0 go out with a ``scan`` only.
 
+        ``reads_only``: writes wait, whatever is due.
         The same pass finds when the others fall due.
         """
         if self._soonest_s == -inf:
+            self.slowest_s = max((one.expected_s for one in self._requests if one.period_s == 0.0), default=0.0)
             self._with_scans = any(each.period_s == 0.0 and not each.attempts for each in self._requests)
         chosen: Request | None = None
         rank = soonest = latest = inf
@@ -81,6 +86,8 @@ class Schedule:
         for request in self._requests:
             due = request.due_s
             if due <= limit:
+                if reads_only and request.writes:
+                    continue
                 if request.period_s == 0.0 and not scan and not request.attempts:
                     continue
                 if due - request.priority_s < rank:
@@ -96,8 +103,12 @@ class Schedule:
                 latest = request.wish_s
         self._soonest_s = soonest
         self.latest_s = latest
-        self.wants_s = -inf if self._with_scans else soonest - _EARLY_S
+        self.wants_s = -inf if self._with_scans else soonest - _EARLY_S - _TINY_S
         return chosen
+
+    def write_due(self, now: float) -> Request | None:
+        """Return the first write that is due."""
+        return next((one for one in self._requests if one.writes and one.due_s <= now + _EARLY_S), None)
 
     def latest(self) -> float:
         """Return when the first of the requests will have waited as long as it may."""
@@ -121,7 +132,7 @@ class Schedule:
         if due < self._soonest_s and period > 0.0:
             self._soonest_s = due
             if not self._with_scans:
-                self.wants_s = due - _EARLY_S
+                self.wants_s = due - _EARLY_S - _TINY_S
 
     def failed(self, request: Request, t: float) -> None:
         """Set when a request without a good reply is tried again."""

@@ -8,6 +8,7 @@ never restarted.
 
 from __future__ import annotations
 
+import os
 from collections import deque
 from collections.abc import Callable
 from threading import Thread
@@ -16,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 from drivers.canopen import objects as o
 from drivers.ports import BusLost, CanFrame, FrameByFrame
 from drivers.transports import slcan, socketcand
+from drivers.transports.own_frames import OwnFrames
 
 if TYPE_CHECKING:
     import can
@@ -39,7 +41,9 @@ class PythonCanPort(FrameByFrame):
     Without one a frame's arrival is the ``now`` of the ``receive`` that returns it. ``on_urgent`` is called in
     that thread, too, when something arrived that a scan should not wait for: an emergency, a boot-up, changed
     inputs (TPDO2), or a TPDO1 whose first word, the statusword, shows another state than before. ``ignored``
-    counts frames that are none of ours: remote, error, 29-bit and FD frames.
+    counts frames that are none of ours: remote, error, 29-bit and FD frames. Frames of other programs of this computer
+    are heard as those from the wire (``local`` counts what the interface marks as sent here); our own, where the
+    interface gives them back, are not (``own``: how that is found out).
     """
 
     def __init__(
@@ -47,10 +51,12 @@ class PythonCanPort(FrameByFrame):
         bus: can.BusABC,
         clock: Callable[[], float] | None = None,
         on_urgent: Callable[[], None] | None = None,
+        name: str = "the interface",
     ) -> None:
         import can
 
         super().__init__()
+        self.name = name
         self._bus = bus
         self._clock = clock
         self._on_urgent = on_urgent
@@ -62,18 +68,26 @@ class PythonCanPort(FrameByFrame):
         self._lost: str | None = None
         self._closing = False
         self.ignored = 0
+        self.local = 0
+        self.own = OwnFrames(b"echo" + os.urandom(4))
         self._thread = Thread(target=self._run, name="can-receive", daemon=True)
         self._thread.start()
 
     def send(self, can_id: int, data: bytes, now: float) -> None:
         """Hand one data frame to the adapter; raises BusLost, also when its transmit queue is full."""
         self._check()
+        if self.own.probe is not None:
+            self._hand_over(*self.own.probe, now)
+        self._hand_over(can_id, data, now)
+
+    def _hand_over(self, can_id: int, data: bytes, now: float) -> None:
         message = self._message(arbitration_id=can_id, data=data, is_extended_id=False, check=False)
         try:
             self._bus.send(message, timeout=0)
         except self._errors as error:
             self._lose(f"sending failed: {error}")
             self._check()
+        self.own.sent(can_id, data, now)
         self.tell_sent(can_id, data, now)
 
     def receive(self, now: float) -> list[CanFrame]:
@@ -86,6 +100,11 @@ class PythonCanPort(FrameByFrame):
             taken.append((t if stamped else now, can_id, data))
         if not taken:
             self._check()
+        if self.own.echoes is not False or taken:
+            taken = self.own.others(taken, now)
+            if self.own.trouble:
+                self._lose(f"{self.name} cannot be used: {self.own.trouble}")
+                self._check()
         self.tell_received(taken)
         return taken
 
@@ -133,6 +152,7 @@ class PythonCanPort(FrameByFrame):
         if message.is_extended_id or message.is_remote_frame or message.is_fd:
             self.ignored += 1
             return True
+        self.local += not message.is_rx
         t = self._clock() if self._clock is not None else 0.0
         can_id, data = message.arbitration_id, bytes(message.data)
         self._frames.append((t, can_id, data))
@@ -175,4 +195,4 @@ def open_can(interface: str, channel: str, bitrate: int, clock: Callable[[], flo
         raise BusLost(f"cannot open {interface} {channel}: {error}") from error
     socketcand.tune(bus)
     slcan.tune(bus)
-    return PythonCanPort(bus, clock, on_urgent)
+    return PythonCanPort(bus, clock, on_urgent, f"{interface} {channel}")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from drivers.ports import BusLost, WatchedLine
@@ -14,12 +15,19 @@ if TYPE_CHECKING:
 class SerialLine(WatchedLine):
     """A port (``drivers.ports.LinePort``) over pyserial. Nothing blocks: the operating system keeps what arrives.
 
-    Bytes are stamped with the time they are fetched at, which is no earlier than they arrived.
+    Bytes are stamped with the time they are fetched at, which is no earlier than they arrived. ``low_latency``: the
+    driver's flag was set when it was opened (None: there is none to ask for). ``latency_timer_s``: what the driver says
+    that a USB adapter holds characters back for, s (None: it says nothing).
     """
 
-    def __init__(self, serial: Serial) -> None:
+    def __init__(
+        self, serial: Serial, low_latency: bool | None = None, latency_timer_s: float | None = None
+    ) -> None:
         """Take an open port without time-outs; see ``open_serial_line``."""
         super().__init__()
+        self.low_latency = low_latency
+        self.latency_timer_s = latency_timer_s
+        self.remedy = remedy_of(str(serial.name or ""))
         self._serial = serial
         self._unsent = b""
 
@@ -76,9 +84,30 @@ def open_serial_line(port: str, baud: int, parity: Literal["N", "E", "O"] = "N")
         serial.reset_input_buffer()
     except (SerialException, OSError, ValueError, *_settings_errors()) as error:
         raise BusLost(f"serial port {port}: {error}") from error
-    if sys.platform == "linux":
-        _ask_for_low_latency(serial)
-    return SerialLine(serial)
+    granted = _ask_for_low_latency(serial) if sys.platform == "linux" else None
+    return SerialLine(serial, granted, latency_timer_s(port))
+
+
+def latency_timer_s(port: str, root: Path = Path("/sys/class/tty")) -> float | None:
+    """Return the latency timer of a USB adapter on Linux, s; None where the driver has none, or elsewhere."""
+    try:
+        return 1e-3 * int((root / Path(port).resolve().name / "device" / "latency_timer").read_text(encoding="ascii"))
+    except (OSError, ValueError):
+        return None
+
+
+def remedy_of(port: str) -> str:
+    """Return what makes a USB adapter deliver at once, on this system."""
+    if sys.platform == "win32":
+        return (
+            f"set the latency timer of {port} to 1 ms: Device Manager, Ports, {port}, Port Settings, Advanced; in the"
+            " registry LatencyTimer below HKLM\\SYSTEM\\CurrentControlSet\\Enum\\FTDIBUS"
+        )
+    name = Path(port).name
+    return (
+        f"set the adapter's latency timer to 1 ms: echo 1 > /sys/class/tty/{name}/device/latency_timer, or"
+        f" setserial {port} low_latency; an adapter without one: another adapter"
+    )
 
 
 def _settings_errors() -> tuple[type[Exception], ...]:
@@ -90,10 +119,11 @@ def _settings_errors() -> tuple[type[Exception], ...]:
     return (termios.error,)
 
 
-def _ask_for_low_latency(serial: Serial) -> None:
-    """Set the driver's low-latency flag (1 ms with FTDI chips); ports that have none stay as they are."""
+def _ask_for_low_latency(serial: Serial) -> bool:
+    """Set the driver's low-latency flag (1 ms with FTDI chips); tell whether the port has one."""
     try:
         serial.set_low_latency_mode(True)
     except (OSError, ValueError):
         # A pty or an adapter without the flag: it works, with the latency it has.
-        return
+        return False
+    return True

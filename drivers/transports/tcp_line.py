@@ -2,23 +2,37 @@
 
 from __future__ import annotations
 
+import select
 import socket
+from math import inf
 
 from drivers.ports import BusLost, WatchedLine
 
 _CHUNK = 4096
 """Bytes fetched at once: a Modbus TCP frame has at most 260."""
+REOPEN_S = 0.5
+"""A connection that was dropped is there again by then, or lost, s: the shortest time after which a further sensor's
+reading is stale (drivers.sensor); what may be missing less long trips by its own row."""
+_AGAIN_S = 0.02
+"""Between two attempts to connect again, s [A]."""
 
 
 class TcpLine(WatchedLine):
     """A port (``drivers.ports.LinePort``) over a connected socket. Nothing blocks: the kernel keeps what arrives.
 
-    Bytes are stamped with the time they are fetched at, which is no earlier than they arrived.
+    Bytes are stamped with the time they are fetched at, which is no earlier than they arrived. ``renewed`` counts how
+    often the connection was dropped and opened anew (``renew``).
     """
+
+    remedy = "look at the network and at the gateway's own reply and polling times"
 
     def __init__(self, connection: socket.socket, peer: str) -> None:
         """Take a connected socket; ``peer`` names it in messages."""
         super().__init__()
+        self._family, self._address = connection.family, connection.getpeername()
+        self._connecting = False
+        self._until_s = self._again_s = inf
+        self.renewed = 0
         connection.setblocking(False)
         connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         self._socket = connection
@@ -32,7 +46,46 @@ class TcpLine(WatchedLine):
         if self.watchers:
             self.tell(now, data, True)
 
+    def renew(self, now: float) -> None:
+        """Drop the connection with all that is under way on it, and open another one.
+
+        It is there at the latest ``REOPEN_S`` after ``now`` (s), or a read raises BusLost. What is written meanwhile is
+        sent then.
+        """
+        self._unsent = b""
+        if self._connecting:
+            return
+        self.renewed += 1
+        self._connecting = True
+        self._until_s = now + REOPEN_S
+        self._attempt(now)
+
+    def _attempt(self, now: float) -> None:
+        self._socket.close()
+        self._socket = socket.socket(self._family, socket.SOCK_STREAM)
+        self._socket.setblocking(False)
+        self._again_s = now + _AGAIN_S
+        self._socket.connect_ex(self._address)
+
+    def _connected(self, now: float) -> bool:
+        """Tell whether the connection is up; raises BusLost once it should be."""
+        if not self._connecting:
+            return True
+        _, writable, failed = select.select((), (self._socket,), (self._socket,), 0.0)
+        error = self._socket.getsockopt(socket.SOL_SOCKET, socket.SO_ERROR) if writable or failed else 0
+        if writable and not error:
+            self._connecting = False
+            self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+            return True
+        if now >= self._until_s:
+            raise BusLost(f"{self._peer}: no connection within {1000 * REOPEN_S:g} ms after the last one was dropped")
+        if (error or failed) and now >= self._again_s:
+            self._attempt(now)
+        return False
+
     def _send(self) -> None:
+        if self._connecting:
+            return
         try:
             sent = self._socket.send(self._unsent) if self._unsent else 0
         except (BlockingIOError, InterruptedError):
@@ -43,6 +96,8 @@ class TcpLine(WatchedLine):
 
     def read(self, now: float) -> list[tuple[float, bytes]]:
         """Return what has arrived, stamped ``now`` (s). Raises BusLost, also when the peer closed the connection."""
+        if not self._connected(now):
+            return []
         if self._unsent:
             self._send()
         try:

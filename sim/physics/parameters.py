@@ -20,6 +20,7 @@ PowerLoss = Literal["retract", "hold"]
 
 _NOT_NEGATIVE = (
     "noise", "scatter", "running_in", "wear", "relaxation", "softening", "growth", "belt_conductance",
+    "latency_timer",
 )  # fmt: skip
 
 
@@ -265,6 +266,7 @@ class SimParameters:
     press_on_power_loss: PowerLoss = "retract"
     mirrored: bool = False  # errors of a session's sensors with the other sign: two runs of a seed are off both ways
     record_truth: bool = False  # keep what the plant knows beside what was measured
+    latency_timer: Annotated[float, "s"] = 0.0  # the adapters of the Modbus lines hold replies back for this long
     faults: tuple[str, ...] = ()  # a fault script (sim.faults.language)
     wheel: WheelParameters = field(default_factory=WheelParameters)
     friction: FrictionParameters = field(default_factory=FrictionParameters)

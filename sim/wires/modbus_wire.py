@@ -71,7 +71,8 @@ class ModbusWire:
     """The line and the computer's port on it (``drivers.ports.LinePort``).
 
     ``watchers`` are told of every frame in both directions; ``impair`` spoils transactions; ``occupied_s`` is how long
-    the line has carried characters, ``collisions`` how often the computer spoke while a slave did. ``arrives_s`` is
+    the line has carried characters, ``collisions`` how often the computer spoke while a slave did. The computer's
+    adapter may hold back what it receives, as a USB adapter's latency timer does. ``arrives_s`` is
     when the next bytes not read yet arrive, s: infinity when none are on their way, -infinity when a read would raise.
     """
 
@@ -79,6 +80,7 @@ class ModbusWire:
         "_busy_s",
         "_character_s",
         "_gap_s",
+        "_held_s",
         "_inbox",
         "_last_reply",
         "_slaves",
@@ -93,9 +95,18 @@ class ModbusWire:
     )
 
     def __init__(
-        self, baud: int = 115200, parity: Literal["N", "E", "O"] = "N", slaves: Iterable[ModbusSlave] = ()
+        self,
+        baud: int = 115200,
+        parity: Literal["N", "E", "O"] = "N",
+        slaves: Iterable[ModbusSlave] = (),
+        held_s: float = 0.0,
     ) -> None:
-        """Create a quiet line at ``baud`` bit/s with 8 data bits and 1 stop bit, and put ``slaves`` on it."""
+        """Create a quiet line at ``baud`` bit/s with 8 data bits and 1 stop bit, and put ``slaves`` on it.
+
+        ``held_s``: the adapter hands everything over this much after its last character, s. A real latency timer takes
+        0 to its whole time by chance: this is the worst of it.
+        """
+        self._held_s = held_s
         self.baud = baud
         self._character_s = (10 if parity == "N" else 11) / baud
         # Silence that ends a frame: 3.5 characters up to 19200 bit/s, 1.75 ms above (Modbus over serial line V1.02).
@@ -113,6 +124,11 @@ class ModbusWire:
         self.occupied_s = 0.0
         for slave in slaves:
             self.attach(slave)
+
+    @property
+    def remedy(self) -> str:
+        """What makes the computer's adapter deliver at once."""
+        return "lower sim.latency_timer"
 
     def attach(self, slave: ModbusSlave) -> None:
         """Put a slave on the line. Raises ValueError when its address is taken."""
@@ -171,6 +187,8 @@ class ModbusWire:
         self._busy_s = arrival = t + slave.turnaround_s + length_s
         self.occupied_s += length_s
         self._last_reply = reply
+        if self._held_s:
+            arrival += self._held_s
         if self.watchers:
             self._tell(arrival, reply, False)
         self._inbox.append((arrival, reply))
@@ -221,6 +239,7 @@ class ModbusWire:
         self._busy_s = arrival
         self.occupied_s += length_s
         self._last_reply = reply
+        arrival += self._held_s
         if self.watchers:
             self._tell(arrival, reply, False)
         self._inbox.append((arrival, reply))

@@ -11,6 +11,7 @@ from typing import Protocol
 
 from drivers.cia402 import Goal, State
 from drivers.ports import BusLost
+from tester.machine import line_speed
 from tester.machine.devices import DeviceList
 from tester.rig import Rig
 
@@ -169,7 +170,8 @@ class Connector:
             devices.transmit(now, scan=self.stage in _SCANNING)
         if devices.lost and not devices.can_alive():
             raise BusLost(devices.lost)
-        return now + CONNECT_S
+        measuring = not self.finished and devices.real_lines() and not line_speed.measured(devices)
+        return now + (line_speed.FINE_S if measuring else CONNECT_S)
 
     def abort(self, why: str) -> None:
         """Give up: whatever moves stops, and drives that were configured are released."""
@@ -214,7 +216,13 @@ class Connector:
             devices.master.sync = True
             self._configured_s = now
             self.stage = Stage.HEAR
-        elif self.stage is Stage.HEAR and self.arming.heard():
+        elif self.stage is Stage.HEAR and self.arming.heard() and line_speed.measured(devices):
+            limits = self.rig.stale_limits()
+            slow = line_speed.too_slow(devices, limits)
+            if slow:
+                self._fail(slow)
+                return
+            line_speed.allow_late(devices, limits)
             self._lifting = self.arming.lift()
             self.stage = Stage.LIFT
         elif self.stage is Stage.LIFT and self._lifting is not None:

@@ -78,6 +78,7 @@ class Control(Generic[StateT, ReadingsT, DemandT, InputsT]):
             dt = 0.2 if dt > 0.2 else 0.0
         self._watch(demand, readings, scan_s, dt)
         mode = state.mode
+        state.last_late_s = max(0.0, now - state.last_s - scan_s) if state.last_s > -inf else 0.0
         state.last_s = now
         if mode is _RUN:
             self.run_outputs(demand, readings, dt)
@@ -118,6 +119,7 @@ class Control(Generic[StateT, ReadingsT, DemandT, InputsT]):
         if state.mode is not _IDLE:
             return f"the rig is in {state.mode.value}, not idle"
         state.last_s = now
+        state.last_late_s = 0.0
         state.stop_requested = ""
         state.cooled = False
         state.stop.began_s = inf

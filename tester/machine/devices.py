@@ -173,6 +173,8 @@ class DeviceList:
                 self._lose_can(error)
             else:
                 deadline = self.master.deadline
+        if scan and next_scan_s > now:
+            self._prompt.scan_s = next_scan_s - now
         self.transmit_lines(now, scan=scan)
         # Only one line may ask for a tick of its own (a retry there has to fit into a scan); the next request of any
         # other can wait for the next scan. A simulated line knows that the reply will be in time.
@@ -235,6 +237,10 @@ class DeviceList:
     def all_off(self) -> bool:
         """Tell whether no drive's power stage is on."""
         return all(drive.state <= State.READY_TO_SWITCH_ON or drive.lost for drive in self.drives)
+
+    def real_lines(self) -> bool:
+        """Tell whether a Modbus line is one of which nobody knows when its next bytes come."""
+        return any(foreseen is None for _, _, foreseen in self._lines)
 
     def can_alive(self) -> bool:
         """Tell whether drives can still be told anything."""

@@ -32,6 +32,8 @@ class ScanInputs:
     """When the scan before was."""
     late_s: float = inf
     """How much later than its period this scan is, s."""
+    late_before_s: float = 0.0
+    """How much later than its period the scan before was, s."""
     mode_since_s: float = 0.0
     """Since when the rig has been in its mode."""
     loaded: bool = True
@@ -56,6 +58,7 @@ class ScanInputs:
         self.scan_s = scan_s
         self.last_s = last_s = state.last_s
         self.late_s = now_s - last_s - scan_s
+        self.late_before_s = state.last_late_s
         self.mode_since_s = state.mode_since_s
         mode = state.mode
         self.stopped_s = self.lifting_s = now_s - state.stop.began_s

@@ -89,6 +89,8 @@ class ControlState(Generic[SetpointsT_co]):
         self.events: list[ControlEvent] = []
         """Raised since the last scan, in order; the engine takes them out before the outputs leave."""
         self.last_s = -inf
+        self.last_late_s = 0.0
+        """How much later than its period the last scan was, s."""
         self.stop = StopProgress()
         self.stop_requested = ""
         self.cooled = False

@@ -43,6 +43,9 @@ class WireInputs(Protocol):
     @property
     def late_s(self) -> float: ...
 
+    @property
+    def late_before_s(self) -> float: ...
+
 
 def _chain_open(v: WireInputs) -> bool:
     return not v.readings.safety_chain
@@ -77,8 +80,9 @@ def _nobody_heard(v: WireInputs) -> bool:
     if r.drives_enabled:
         scans_s = p[SILENT_CAN_SCANS] * v.scan_s
         allowed_s = scans_s if scans_s < allowed_s else allowed_s
-    # A scan that comes late has not listened meanwhile: that is for "scan late" to judge.
-    late_s = v.late_s if v.late_s > 0.0 else 0.0
+    # A scan that comes late has not listened meanwhile: that is for "scan late" to judge. Nor has the one after it
+    # been answered yet.
+    late_s = v.late_before_s + (v.late_s if v.late_s > 0.0 else 0.0)
     return not (r.now_s - late_s - r.can_heard_s <= allowed_s)
 
 
@@ -230,9 +234,11 @@ STALE_CAN_S: Final = Parameter(
 
 def drive_data_allowed_s(v: WireInputs) -> float:
     """Return how old the drives' data may be, s."""
-    # Drives answer a scan's SYNC: after a late one their data is as old as that scan was ("scan late" judges).
+    # Drives answer a scan's SYNC. What is looked at answers the scan before, or where that answer is lost the one
+    # before that: their data is older by what these two scans came late ("scan late" judges that).
     p = v.parameters
-    allowed = p[STALE_CAN_SCANS] * max(v.scan_s, v.readings.now_s - v.last_s)
+    late_s = v.late_before_s + (v.late_s if v.late_s > 0.0 else 0.0)
+    allowed = p[STALE_CAN_SCANS] * v.scan_s + late_s
     most = p[STALE_CAN_S]
     return allowed if allowed < most else most
 

@@ -198,6 +198,10 @@ class Rig:
         """Return the days on which the certificates of the sensors end."""
         return CalibrationConfig()
 
+    def stale_limits(self) -> Mapping[str, tuple[str, float]]:
+        """Return the key and the value, s, of how old a device's reading may be, by its name in ``devices``."""
+        return {}
+
     def drives(self) -> Mapping[str, AxisConfig]:
         """Return the axes that have a drive on the bus, by name."""
         raise NotImplementedError

@@ -35,10 +35,11 @@ def simulated_ports(
 
 def spec_of(rig: Rig) -> RigSpec:
     """Return the wiring that a rig file describes."""
+    held_s: float = getattr(rig.plant, "latency_timer", 0.0)  # a kind may lack it
     return RigSpec(
         bitrate=rig.can.bitrate,
         axes=rig.drives(),
-        lines={name: LineSpec(line.baud, line.parity) for name, line in rig.lines.items()},
+        lines={name: LineSpec(line.baud, line.parity, held_s) for name, line in rig.lines.items()},
         devices={name: _device(config) for name, config in rig.devices.items()},
         nodes=tuple(rig.can.nodes.values()),
     )

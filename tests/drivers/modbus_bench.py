@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from drivers.crc16 import with_crc
 from drivers.modbus import ModbusLink, Request
+from drivers.modbus.reply_times import REPLIES
 from drivers.ports import BusLost
 from drivers.profiles import Timing
 
@@ -17,6 +18,13 @@ class Line:
     def __init__(self) -> None:
         self.sent: list[tuple[float, bytes]] = []
         self.lost = False
+        self.renewed: list[float] = []
+
+    def renew(self, now: float) -> None:
+        self.renewed.append(now)
+
+    def watch(self, watcher: object) -> None:
+        raise NotImplementedError
 
     def write(self, data: bytes, now: float) -> None:
         if self.lost:
@@ -46,13 +54,21 @@ class Notes:
 class Bench:
     """One link, one line, any number of stations."""
 
-    def __init__(self, framing: str = "rtu", baud: int = 115200) -> None:
+    def __init__(self, framing: str = "rtu", baud: int = 115200, *, known: bool = True) -> None:
+        """``known``: the adapter is known not to hear itself, and stations to answer as their timing says."""
         self.link = ModbusLink(framing, baud)  # type: ignore[arg-type]
+        self.known = known
+        if known:
+            self.link.hears_itself = False
         self.line = Line()
         self.notes = Notes()
 
     def station(self, unit_id: int = 1, timing: Timing = TIMING):
-        return self.link.station(unit_id, timing, self.notes)
+        station = self.link.station(unit_id, timing, self.notes)
+        if self.known:
+            for _ in range(REPLIES):
+                station.reply.note(timing.turnaround_s)
+        return station
 
     def serve(self, now: float, *chunks: tuple[float, bytes], scan: bool = True) -> None:
         """Feed, then service, as every tick does."""

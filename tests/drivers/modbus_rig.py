@@ -77,4 +77,4 @@ class Rig:
                     every_scan()
             if not self.sparing or self.now >= self.link.wants_s:
                 self.link.service(self.wire, self.now, scan=scan)
-            self.now = min(scan_s, max(self.link.deadline, self.now + 5e-4))
+            self.now = min(scan_s, max(self.link.deadline, self.now + 2e-4))

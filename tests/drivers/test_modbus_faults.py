@@ -8,14 +8,15 @@ from hypothesis import strategies as st
 
 from drivers.crc16 import with_crc
 from drivers.jacket import HeatingJacket
-from drivers.modbus import Request
+from drivers.modbus import ModbusLink, Request
+from drivers.ports import BusLost, LineWatcher, Unwatch
 from drivers.profiles import Timing, load_profile
 from drivers.sensor import Sensor
 from sim.nodes.cell_slave import CellSlave
 from sim.nodes.ir_slave import IrSlave
 from sim.nodes.jacket_slave import JacketSlave
 from sim.wires.modbus_wire import Impairment
-from tests.drivers.modbus_bench import Bench, refusal, reply
+from tests.drivers.modbus_bench import Bench, Notes, refusal, reply
 from tests.drivers.modbus_rig import Quantities, Rig
 
 NINE = tuple(range(9))
@@ -64,15 +65,84 @@ def test_a_late_reply_of_another_shape_is_not_taken_for_the_answer() -> None:
     assert len(bench.notes.replies) == 1
 
 
-def test_a_late_tcp_reply_is_known_by_its_number() -> None:
+def asked_over_tcp() -> tuple[Bench, Request]:
+    """Return a bench whose first request of one register, number 1, was sent at 0."""
     bench = Bench("socket")
     request = bench.link.read(bench.station(), 3, 0, 1, 0.0)
     bench.link.enable(request)
     bench.serve(0.0)
+    return bench, request
+
+
+def test_a_time_out_over_tcp_drops_the_connection_and_is_counted() -> None:
+    bench, request = asked_over_tcp()
     bench.serve(request.timeout_s)
-    bench.serve(0.1, (0.09, bytes.fromhex("0001000000050103020001")), (0.095, bytes.fromhex("0002000000050103020002")))
-    assert bench.notes.replies == [(0.095, b"\x00\x02")]
-    assert request.station.counters.late == 1
+    assert bench.line.renewed == [request.timeout_s]
+    assert (bench.link.reopened, request.station.counters.timeouts) == (1, 1)
+    assert "no reply" in bench.link.doubts
+    bench.serve(0.1, (0.09, bytes.fromhex("0002000000050103020002")))
+    assert bench.notes.replies == [(0.09, b"\x00\x02")]
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        "0002000000050103020001", "0001000100050103020001", "0001000000060103020001", "0001000000050203020001",
+        "0001000000050104020001", "0001000000050103040001", "000100000005010302000100", "000100000005010302" * 2,
+    ],
+    ids=["transaction", "protocol", "length", "unit", "function", "byte count", "bytes behind it", "cut, and another"],
+)
+def test_a_tcp_frame_in_doubt_drops_the_connection_and_gives_no_value(data: str) -> None:
+    bench, request = asked_over_tcp()
+    bench.serve(0.01, (0.005, bytes.fromhex(data)))
+    assert bench.notes.replies == []
+    assert (bench.line.renewed, bench.link.reopened) == ([0.01], 1)
+    assert request.station.counters.late + request.station.counters.garbage == 1
+
+
+def test_a_tcp_reply_in_pieces_is_put_together() -> None:
+    bench, _ = asked_over_tcp()
+    whole = bytes.fromhex("0001000000050103020001")
+    for at in range(len(whole)):
+        bench.link.feed([(0.001 * at, whole[at : at + 1])], 0.001 * at)
+    assert [data for _, data in bench.notes.replies] == [b"\x00\x01"]
+    assert bench.link.reopened == 0
+
+
+def test_what_comes_with_a_doubt_is_not_looked_at() -> None:
+    bench, _ = asked_over_tcp()
+    good = bytes.fromhex("0001000000050103020001")
+    bench.serve(0.01, (0.005, b"\xff"), (0.006, good))
+    assert bench.notes.replies == []
+
+
+def test_bytes_over_tcp_that_nobody_asked_for_drop_the_connection() -> None:
+    bench, _ = asked_over_tcp()
+    good = bytes.fromhex("0001000000050103020001")
+    bench.serve(0.01, (0.005, good), (0.006, good), scan=False)
+    assert len(bench.notes.replies) == 1
+    assert bench.link.reopened == 1
+
+
+def test_a_line_that_cannot_be_begun_anew_is_lost_by_a_doubt() -> None:
+    link, line = ModbusLink("socket"), SerialStub()
+    request = link.read(link.station(1, Timing(0.001, 0.008), Notes()), 3, 0, 1, 0.0)
+    link.enable(request)
+    link.service(line, 0.0)
+    with pytest.raises(BusLost, match="no reply on reading 1 register"):
+        link.service(line, 1.0)
+
+
+class SerialStub:
+    """A line that has no connection to open anew."""
+
+    def write(self, data: bytes, now: float) -> None: ...
+
+    def read(self, now: float) -> list[tuple[float, bytes]]:
+        return []
+
+    def watch(self, watcher: LineWatcher) -> Unwatch:
+        raise NotImplementedError
 
 
 def test_a_bad_crc_is_counted_and_asked_again_when_the_line_is_quiet() -> None:

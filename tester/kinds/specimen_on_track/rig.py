@@ -175,6 +175,15 @@ class TrackConfig(Rig):
         """Return the days on which the certificates end."""
         return self.calibration
 
+    def stale_limits(self) -> Mapping[str, tuple[str, float]]:
+        """Return the keys and values, s, of how old readings may be."""
+        limits = self.interlocks
+        return {
+            "load_cell": ("interlocks.stale_cell", limits.stale_cell_s),
+            "chamber": ("interlocks.stale_air", limits.stale_air_s),
+            "pyrometer": ("interlocks.stale_exit", limits.stale_exit_s),
+        }
+
     def drives(self) -> Mapping[str, AxisConfig]:
         """Return the axes that have a drive, by name."""
         lift = self.axes.lift

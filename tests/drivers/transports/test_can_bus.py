@@ -9,8 +9,10 @@ from threading import Event
 import can
 import pytest
 
+from drivers.canopen.master import CanMaster
 from drivers.ports import BusLost, CanFrame
 from drivers.transports.can_bus import PythonCanPort, open_can
+from drivers.transports.own_frames import PROBE_ID
 
 TRIES = 400
 _channels = itertools.count()
@@ -37,6 +39,13 @@ def until_lost(port: PythonCanPort) -> str:
             return str(error)
         pause.wait(0.005)
     raise AssertionError("the bus was not lost within two seconds")
+
+
+def after_the_probe(peer: can.BusABC) -> None:
+    """Take the first frame of a port off the bus."""
+    probe = peer.recv(2.0)
+    assert probe is not None
+    assert probe.arbitration_id == PROBE_ID
 
 
 @pytest.fixture
@@ -82,6 +91,7 @@ class StubBus(can.BusABC):
 
 def test_a_frame_sent_arrives_on_the_bus(port: PythonCanPort, peer: can.BusABC) -> None:
     port.send(0x205, bytes.fromhex("0F00 E8030000"), now=0.0)
+    after_the_probe(peer)
     message = peer.recv(2.0)
     assert message is not None
     assert (message.arbitration_id, bytes(message.data), message.is_extended_id) == (
@@ -90,6 +100,7 @@ def test_a_frame_sent_arrives_on_the_bus(port: PythonCanPort, peer: can.BusABC) 
 
 def test_a_sync_frame_has_no_data(port: PythonCanPort, peer: can.BusABC) -> None:
     port.send(0x080, b"", now=0.0)
+    after_the_probe(peer)
     message = peer.recv(2.0)
     assert message is not None
     assert message.dlc == 0
@@ -202,3 +213,45 @@ def test_what_a_scan_should_not_wait_for_is_told_at_once(frames: list[tuple[int,
     assert len(collect(port, len(frames))) == len(frames)
     port.close()
     assert len(told) == calls + 1  # the end of reception is the last thing told
+
+
+def test_frames_of_other_programs_of_this_computer_are_heard() -> None:
+    # As python-can gives them on SocketCAN: hardbyte/python-can#1274.
+    local = can.Message(arbitration_id=0x000, data=b"\x81\x01", is_extended_id=False, is_rx=False)
+    port = PythonCanPort(StubBus([local]))
+    assert collect(port, 1) == [(100.0, 0x000, b"\x81\x01")]
+    assert (port.local, port.ignored) == (1, 0)
+    port.close()
+
+
+def test_another_program_of_this_computer_is_a_second_master() -> None:
+    port = PythonCanPort(StubBus([can.Message(arbitration_id=0, data=b"\x81\x01", is_extended_id=False, is_rx=False)]))
+    master = CanMaster()
+    master.feed(collect(port, 1), 100.0)
+    assert master.foreign_frame == "NMT 000#8101"
+    port.close()
+
+
+def echoing(channel: str) -> PythonCanPort:
+    return PythonCanPort(can.Bus(interface="virtual", channel=channel, receive_own_messages=True), name="virtual 0")
+
+
+def test_an_interface_that_gives_our_frames_back_is_recognised_and_they_are_taken_off(
+    channel: str, peer: can.BusABC
+) -> None:
+    port = echoing(channel)
+    for number in range(5):
+        port.send(0x080, bytes((number,)), now=0.0)
+    peer.send(can.Message(arbitration_id=0x185, data=b"\x02", is_extended_id=False))
+    assert collect(port, 1, now=0.01) == [(0.01, 0x185, b"\x02")]
+    assert port.own.echoes is True
+    assert (port.own.returned, port.own.unreturned) == (6, 0)
+    port.close()
+
+
+def test_a_second_master_is_heard_through_an_interface_that_gives_ours_back(channel: str, peer: can.BusABC) -> None:
+    port = echoing(channel)
+    port.send(0x080, b"", now=0.0)
+    peer.send(can.Message(arbitration_id=0x080, is_extended_id=False))
+    assert collect(port, 1, now=0.01) == [(0.01, 0x080, b"")]
+    port.close()

@@ -10,7 +10,7 @@ from select import select
 import pytest
 
 from drivers.ports import BusLost
-from drivers.transports.serial_line import SerialLine, open_serial_line
+from drivers.transports.serial_line import SerialLine, latency_timer_s, open_serial_line, remedy_of
 
 if sys.platform == "win32":
     pytest.skip("this system has no pseudo-terminals", allow_module_level=True)
@@ -74,3 +74,25 @@ def test_a_port_in_use_is_bus_lost(ends: tuple[SerialLine, int, int]) -> None:
     _, _, slave = ends
     with pytest.raises(BusLost):
         open_serial_line(os.ttyname(slave), 9600)
+
+
+def test_the_latency_timer_of_an_adapter_is_read_where_its_driver_has_one(tmp_path: Path) -> None:
+    (tmp_path / "ttyUSB0" / "device").mkdir(parents=True)
+    (tmp_path / "ttyUSB0" / "device" / "latency_timer").write_text("16\n", encoding="ascii")
+    assert latency_timer_s("/dev/ttyUSB0", tmp_path) == 0.016
+    assert latency_timer_s("/dev/ttyUSB1", tmp_path) is None
+
+
+def test_a_pty_has_no_low_latency_flag_and_says_so(ends: tuple[SerialLine, int, int]) -> None:
+    line, _, _ = ends
+    assert line.low_latency in (False, None)
+    assert line.latency_timer_s is None
+
+
+def test_the_remedy_names_the_setting() -> None:
+    assert "/sys/class/tty/ttyUSB0/device/latency_timer" in remedy_of("/dev/ttyUSB0")
+
+
+def test_on_windows_the_remedy_names_the_registry(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys, "platform", "win32")
+    assert "LatencyTimer" in remedy_of("COM4")

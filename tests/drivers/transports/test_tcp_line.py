@@ -9,7 +9,7 @@ from select import select
 import pytest
 
 from drivers.ports import BusLost
-from drivers.transports.tcp_line import TcpLine, open_tcp_line
+from drivers.transports.tcp_line import REOPEN_S, TcpLine, open_tcp_line
 
 PATIENCE_S = 5.0
 """Bound of every wait for the kernel."""
@@ -72,6 +72,40 @@ def test_what_the_kernel_does_not_take_follows_later(ends: tuple[TcpLine, socket
         got += len(peer.recv(1 << 20))
         line.read(0.0)
     assert got == size
+
+
+def test_a_connection_begun_anew_has_nothing_of_the_old_one() -> None:
+    with socket.create_server(("127.0.0.1", 0)) as listener:
+        line = open_tcp_line("127.0.0.1", listener.getsockname()[1])
+        old, _ = listener.accept()
+        old.sendall(b"late")
+        line.renew(0.0)
+        line.write(b"asked", 0.0)
+        peer, _ = listener.accept()
+        peer.settimeout(PATIENCE_S)
+        for _ in range(1000):
+            line.read(0.0)
+            if select([peer], [], [], 0.005)[0]:
+                break
+        assert peer.recv(10) == b"asked"
+        peer.sendall(b"new")
+        assert select([line], [], [], PATIENCE_S)[0]
+        assert line.read(1.0) == [(1.0, b"new")]
+        assert line.renewed == 1
+        for one in (old, peer):
+            one.close()
+        line.close()
+
+
+def test_a_connection_that_does_not_come_back_in_time_is_bus_lost() -> None:
+    with socket.create_server(("127.0.0.1", 0)) as listener:
+        line = open_tcp_line("127.0.0.1", listener.getsockname()[1])
+    line.renew(0.0)
+    line.renew(REOPEN_S - 0.01)  # asked for again before it is there: the time still counts from the first
+    assert line.read(REOPEN_S - 0.01) == []
+    with pytest.raises(BusLost, match="no connection within 500 ms"):
+        line.read(REOPEN_S)
+    line.close()
 
 
 def test_nobody_listening_is_bus_lost() -> None:

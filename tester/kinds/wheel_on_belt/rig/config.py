@@ -102,6 +102,15 @@ class RigConfig(Rig):
         """Return the days on which the certificates of the sensors end."""
         return self.calibration
 
+    def stale_limits(self) -> Mapping[str, tuple[str, float]]:
+        """Return the keys and values, s, of how old readings may be."""
+        limits = self.interlocks
+        return {
+            "load_cell": ("interlocks.stale_cell", limits.stale_cell_s),
+            "ir_thermometer": ("interlocks.stale_ir", limits.stale_ir_s),
+            "jacket": ("interlocks.stale_jacket", limits.stale_jacket_s),
+        }
+
     def drives(self) -> Mapping[str, AxisConfig]:
         """Return the axes that have a drive, by name."""
         return self.axes.driven()
