@@ -42,16 +42,31 @@ rig=$!
 tries=0
 until grep -q ready sim.out || [ $tries -gt 60 ]; do sleep 1; tries=$((tries + 1)); done
 
-tester run "$JOB/recipe.yaml" --rig rig.yaml --accept-risk slow-kernel --yes --out first > first.out 2> first.err
-echo $? > first.code
+# A host that keeps this kernel waiting ends a run before its time: it is begun again, and how often is told.
+attempts=0
+code=1
+while [ $code -ne 0 ] && [ $attempts -lt 3 ]; do
+    attempts=$((attempts + 1))
+    rm -rf first
+    tester run "$JOB/recipe.yaml" --rig rig.yaml --accept-risk slow-kernel --yes --out first > first.out 2> first.err
+    code=$?
+    cp first.err "first.$attempts.err"
+done
+echo $attempts > first.attempts
+echo $code > first.code
 
-tester run "$JOB/recipe.yaml" --rig rig.yaml --accept-risk slow-kernel --yes --out second > second.out 2> second.err &
-run=$!
-tries=0
-until grep -q "1#, " second.err || [ $tries -gt 120 ]; do sleep 1; tries=$((tries + 1)); done
+attempts=0
+while [ $attempts -lt 3 ]; do
+    attempts=$((attempts + 1))
+    echo $attempts > second.attempts
+    tester run "$JOB/recipe.yaml" --rig rig.yaml --accept-risk slow-kernel --yes --out second > second.out 2> second.err &
+    run=$!
+    tries=0
+    until grep -q "1#, " second.err || [ $tries -gt 120 ] || ! kill -0 $run; do sleep 1; tries=$((tries + 1)); done
+    kill -0 $run && break
+done
 sleep 5
 cansend vcan0 "$FOREIGN"
-cut -d " " -f 1 /proc/uptime > sent
 wait $run
 echo $? > second.code
 kill $rig
