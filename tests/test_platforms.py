@@ -6,6 +6,7 @@ show. Untried there: docs/how-to/windows.md.
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -42,7 +43,8 @@ sys.exit(invoke({arguments!r}))
 def without_posix(code: str, folder: Path) -> subprocess.CompletedProcess[str]:
     """Run code in an interpreter that has lost what Windows lacks."""
     return subprocess.run(
-        [sys.executable, "-c", WITHOUT + code], cwd=folder, capture_output=True, text=True, encoding="utf-8", check=False
+        [sys.executable, "-c", WITHOUT + code], cwd=folder, capture_output=True, text=True, encoding="utf-8",
+        env=os.environ | {"LOGNAME": "somebody"}, check=False,  # Windows says USERNAME
     )
 
 
