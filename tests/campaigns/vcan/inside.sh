@@ -56,19 +56,19 @@ echo $attempts > first.attempts
 echo $code > first.code
 
 attempts=0
-while [ $attempts -lt 3 ]; do
+until grep -qs "^tripped: second master" second.err || [ $attempts -ge 3 ]; do
     attempts=$((attempts + 1))
-    echo $attempts > second.attempts
+    rm -rf second
     tester run "$JOB/recipe.yaml" --rig rig.yaml --accept-risk slow-kernel --yes --out second > second.out 2> second.err &
     run=$!
     tries=0
     until grep -q "1#, " second.err || [ $tries -gt 120 ] || ! kill -0 $run; do sleep 1; tries=$((tries + 1)); done
-    kill -0 $run && break
+    cansend vcan0 "$FOREIGN"
+    wait $run
+    echo $? > second.code
+    cp second.err "second.$attempts.err"
 done
-sleep 5
-cansend vcan0 "$FOREIGN"
-wait $run
-echo $? > second.code
+echo $attempts > second.attempts
 kill $rig
 wait $rig
 end
