@@ -61,6 +61,8 @@ COMMANDS: dict[str, CommandEntry] = {
     "commission": CommandEntry(
         "tester.cli.commission_command", "commission", "Guide a new rig to its first trusted coefficient."
     ),
+    "sim": CommandEntry("tester.cli.sim_command", "sim", "A simulated rig in real time, on CAN and Modbus."),
+    "record": CommandEntry("tester.cli.record_command", "record", "Write down the frames of live wires."),
     "rig": CommandEntry("tester.cli.rig_commands", "rig", "Write or show a rig file."),
     "schema": CommandEntry("tester.cli.recipe_commands", "schema", "Print the JSON Schema of recipes."),
 }

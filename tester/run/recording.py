@@ -1,0 +1,100 @@
+"""Frames of live wires, written down as a run's own bus log is: what a test can replay to the drivers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import ExitStack
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from drivers.modbus.tap import LineTap
+from drivers.transports.can_bus import open_can
+from drivers.transports.serial_line import SerialLine, open_serial_line
+from tester.base import clock
+from tester.run.bus_log import CanLog, LineLog
+
+LOOK_S = 0.002
+"""How often the wires are looked at, s: stamps are no better than this [A]."""
+_MASTER_FUNCTIONS = frozenset((0x000, 0x200, 0x300, 0x400, 0x500, 0x600))
+"""Function codes of frames that a master sends, besides SYNC: NMT, RPDOs, SDO requests (CiA 301, 7.3.3)."""
+_SYNC, _HEARTBEAT = 0x080, 0x700
+
+
+@dataclass(frozen=True, slots=True)
+class LineTapped:
+    """A serial port that only listens: its name in the record, and its settings (bit/s)."""
+
+    name: str
+    port: str
+    baud: int
+
+
+@dataclass(frozen=True, slots=True)
+class RecordOptions:
+    """What to listen to, and for how long (s)."""
+
+    folder: Path
+    seconds: float
+    can: tuple[str, str] | None = None
+    bitrate: int = 500_000
+    master: int = 127
+    """Node id of the master, whose heartbeats are its own."""
+    lines: tuple[LineTapped, ...] = ()
+
+
+@dataclass(slots=True)
+class Recorded:
+    """How many frames were written of each wire, and the bytes that belong to none."""
+
+    frames: dict[str, int] = field(default_factory=dict[str, int])
+    garbage: int = 0
+
+
+def from_master(can_id: int, master: int) -> bool:
+    """Tell whether a frame is one that the master sends."""
+    return can_id == _SYNC or can_id == _HEARTBEAT + master or can_id & 0x780 in _MASTER_FUNCTIONS
+
+
+def record(options: RecordOptions, stopped: Callable[[], bool]) -> Recorded:
+    """Listen until the time is over, or ``stopped``; return what was heard. Raises BusLost and OSError.
+
+    Nothing is sent: a CAN adapter acknowledges frames, as any node does.
+    """
+    found = Recorded()
+    with ExitStack() as opened:
+        begin = clock.monotonic()
+        options.folder.mkdir(parents=True, exist_ok=True)
+        bus = None
+        if options.can is not None:
+            bus = open_can(*options.can, options.bitrate, lambda: clock.monotonic() - begin)
+            opened.callback(bus.close)
+            found.frames["can"] = 0
+        lines: list[tuple[LineTapped, SerialLine, LineTap]] = []
+        for line in options.lines:
+            port = open_serial_line(line.port, line.baud)
+            opened.callback(port.close)
+            lines.append((line, port, LineTap()))
+            found.frames[line.name] = 0
+        can_log = CanLog(options.folder / "can.log") if bus is not None else None
+        if can_log is not None:
+            opened.callback(can_log.close)
+        logs: dict[str, LineLog] = {}
+        for line in options.lines:
+            logs[line.name] = LineLog(options.folder / f"modbus-{line.name}.log")
+            opened.callback(logs[line.name].close)
+        now = 0.0
+        while now < options.seconds and not stopped():
+            clock.sleep_until(clock.monotonic() + LOOK_S)
+            now = clock.monotonic() - begin
+            if bus is not None and can_log is not None:
+                for t, can_id, data in bus.receive(now):
+                    can_log.frame(t, can_id, data, from_master(can_id, options.master))
+                    found.frames["can"] += 1
+            for line, port, tap in lines:
+                for t, data in port.read(now):
+                    for frame, sent in tap.feed(data):
+                        logs[line.name].frame(t, frame, sent)
+                        found.frames[line.name] += 1
+        found.garbage = sum(tap.garbage for _, _, tap in lines)
+    return found
+
