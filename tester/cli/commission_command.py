@@ -53,7 +53,7 @@ def commission(
         if only_list:
             _list(record_path(out, found), part.steps, found)
             return
-        options = CommissionOptions(out, seed, operator)
+        options = CommissionOptions(rig, overrides, accept_risk, out, seed, operator)
         if yes:
             twin = part.twin(lambda text: click.echo(text, err=True))
             outcome = commission(found, options, twin, twin)

@@ -13,7 +13,7 @@ from typing import Any
 from drivers.ports import BusLost
 from tester.base import clock
 from tester.commission.person import Asks, Person, Question, Refused
-from tester.commission.record import BEGUN, DONE, READING, REFUSED, Record
+from tester.commission.record import BEGUN, DONE, READING, REFUSED, Entry, Record
 from tester.commission.step import Alone, Notes, Step, Walk, sections_sha256
 from tester.machine.ports import Ports
 from tester.machine.tickers import POLL_S, TickedWorld, TickStatistics, run_real_time, run_simulated
@@ -103,6 +103,7 @@ class Commissioning:
     def _do(self, step: Step) -> Outcome | None:
         """Do a step; return how the commissioning ends by it, None where it goes on."""
         self._add(step, BEGUN)
+        before_s = self.rig_s
         notes = Notes(self.person.tell, lambda text, values: self._add(step, READING, text, values), self._done())
         try:
             failed = self._alone(step, notes) if step.seat is None else self._seated(step, notes)
@@ -114,8 +115,9 @@ class Commissioning:
             self._add(step, REFUSED, failed)
             self.person.tell(f"FAILED: {failed}")
             return self._outcome(Ended.STOPPED if self._stopped else Ended.FAILED, step, failed)
-        self._add(step, DONE, notes.text, notes.values)
+        entry = self._add(step, DONE, notes.text, {**notes.values, "rig_s": round(self.rig_s - before_s, 1)})
         self.person.tell(f"passed: {notes.text}")
+        self.person.tell(f"  on record: {entry.sha256}")
         return None
 
     def _alone(self, step: Step, notes: Notes) -> str:
@@ -185,5 +187,5 @@ class Commissioning:
         found = {one.name: self.record.standing(one.name, self._sections(one)) for one in self.steps}
         return {name: entry.values for name, entry in found.items() if entry is not None}
 
-    def _add(self, step: Step, what: str, text: str = "", values: Mapping[str, Any] | None = None) -> None:
-        self.record.add(self.rig.name, self._rig_sha256, self._sections(step), step.name, what, text, values)
+    def _add(self, step: Step, what: str, text: str = "", values: Mapping[str, Any] | None = None) -> Entry:
+        return self.record.add(self.rig.name, self._rig_sha256, self._sections(step), step.name, what, text, values)

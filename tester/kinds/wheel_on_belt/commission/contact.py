@@ -32,10 +32,11 @@ def home(seat: ArmedSeat, notes: Notes) -> Dialogue:
     """Positioned axes were homed as before every run; a person says whether their zero is straight."""
     found: dict[str, Any] = {}
     for name in seat.run.engine.devices.axes.positioned:
-        text = f"{name}: it was homed and stands at {seat.ctx.readings.positions[name]:.2f} deg; what does an inclinometer say?"
+        at = seat.ctx.readings.positions[name]
+        text = f"{name}: it was homed and stands at {at:.2f} deg; what does an inclinometer say?"
         read = yield from measure(f"angle {name}", text, "deg")
-        off = read - seat.ctx.readings.positions[name]
-        found[name] = {"shown_deg": seat.ctx.readings.positions[name], "read_deg": read}
+        off = read - at
+        found[name] = {"shown_deg": at, "read_deg": read}
         if not abs(off) <= ANGLE_DEG:
             config = seat.rig.axes.driven()[name]
             raise Refused(
@@ -79,7 +80,8 @@ def touch(seat: ArmedSeat, notes: Notes) -> Dialogue:
     press_mm = seat.ctx.contact.contact_mm
     yield from seat.do(Sequence(Turn(0.0, 0.0), Power(False)))
     notes.values = {"diameter_mm": read, "touched_mm": press_mm, "zero": reference}
-    notes.text = f"wheel {read:g} mm, touched at {press_mm:.2f} mm; zero {', '.join(f'{z:.2f}' for z in reference[:3])} N"
+    zero = ", ".join(f"{one:.2f}" for one in reference[:3])
+    notes.text = f"wheel {read:g} mm, touched at {press_mm:.2f} mm; zero {zero} N"
 
 
 def _tare(seat: ArmedSeat, reference: list[float]) -> TakeTare:
@@ -111,22 +113,25 @@ def roll(seat: ArmedSeat, notes: Notes) -> Dialogue:
     if not abs(ratio) <= RATIO_SHARE + 2.0 * standard:
         geometry = seat.rig.geometry
         raise Refused(
-            f"speed ratio: rolling freely the belt is {100 * ratio:+.2f} % (+-{100 * standard:.2f} %) off the wheel's rim:"
-            f" either geometry.wheel_diameter is {geometry.wheel_diameter_mm * (1.0 - ratio):.2f} mm, or in the rig file"
-            f" axes.belt.velocity_increments: {seat.rig.axes.belt.velocity_increments * (1.0 - ratio):.7g}"
+            f"speed ratio: rolling freely the belt is {100 * ratio:+.2f} % (+-{100 * standard:.2f} %) off the rim:"
+            f" either geometry.wheel_diameter is {geometry.wheel_diameter_mm * (1.0 - ratio):.2f} mm, or in the rig"
+            f" file axes.belt.velocity_increments: {seat.rig.axes.belt.velocity_increments * (1.0 - ratio):.7g}"
         )
     notes.values = {
         "ratio_error": ratio, "standard_uncertainty": standard, "creep_m_s": creep,
         "turns_round": [list(one) for one in found],
     }  # fmt: skip
-    notes.text = f"speed ratio off by {100 * ratio:+.2f} % (standard uncertainty {100 * standard:.2f} %), creep {1e3 * creep:.1f} mm/s"
+    notes.text = (
+        f"speed ratio off by {100 * ratio:+.2f} % (standard uncertainty {100 * standard:.2f} %),"
+        f" creep {1e3 * creep:.1f} mm/s"
+    )
 
 
 def _turns_round(seat: ArmedSeat, speed: float) -> Generator[Waits, str, float]:
     """Return the slip (wheel less belt, m/s, as shown) at which friction turns round."""
     reach = SWEEP_SHARE * speed + CREEP_M_S
     low, high = -reach, reach
-    ends = []
+    ends: list[float] = []
     for slip in (low, high):
         friction = yield from _friction(seat, speed, slip)
         ends.append(friction)

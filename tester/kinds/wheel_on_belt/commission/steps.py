@@ -7,7 +7,7 @@ from typing import Any, Final
 from tester.commission.part import CommissionPart
 from tester.commission.person import Dialogue
 from tester.commission.step import Notes, Step
-from tester.kinds.wheel_on_belt.commission import contact, identify, jog, thermometer, weights
+from tester.kinds.wheel_on_belt.commission import contact, first, identify, jog, thermometer, weights
 from tester.kinds.wheel_on_belt.commission.armed import ArmedSeat
 from tester.kinds.wheel_on_belt.commission.quiet import QuietSeat
 from tester.kinds.wheel_on_belt.commission.twin import TwinPerson
@@ -17,6 +17,7 @@ from tester.machine.ports import Ports
 _BUS: Final = ("can", "lines", "devices")
 _CELL: Final = ("devices.load_cell", "lines.load_cell")
 _HEAT: Final = ("devices.ir_thermometer", "devices.jacket")
+_ALL: Final = (*_BUS, "axes", "geometry", "limits", "loops", "gates", "interlocks", "arming", "wear", "observer")
 _JOGGED: Final = tuple(f"jog {axis.name}" for axis in jog.AXES)
 
 
@@ -52,9 +53,13 @@ STEPS: Final = (
          contact.watchdogs),
     Step("touch", "first touch and tare", ("axes", "geometry", "loops", *_CELL), ("cell", "home"), _armed,
          contact.touch),
-    Step("rolling", "speed ratio by rolling", ("axes.wheel", "axes.belt", "geometry"), ("touch",), _armed, contact.roll),
+    Step("rolling", "speed ratio by rolling", ("axes.wheel", "axes.belt", "geometry"), ("touch",), _armed,
+         contact.roll),
     Step("thermometer", "thermometer against a hub soak", (*_HEAT, "geometry", "observer"), ("home",), _armed,
          thermometer.soak),
+    Step("directions", "crosstalk and misalignment by both directions of slip", _ALL, ("rolling",),
+         alone=first.directions),
+    Step("first", "a first condition three times", _ALL, ("rolling", "thermometer"), alone=first.coefficient),
 )  # fmt: skip
 """In the order in which each stands on what the ones before it have shown."""
 

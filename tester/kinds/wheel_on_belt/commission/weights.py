@@ -157,7 +157,7 @@ def _judge(channel: Channel) -> None:
         )
     if not abs(gain - 1.0) <= GAIN_SHARE:
         raise Refused(
-            f"gain of the load cell's F{name}: {gain:.4f} N shown for each N hung, more than {100 * GAIN_SHARE:g} % off."
+            f"gain of the load cell's F{name}: {gain:.4f} N shown for each N hung, beyond {100 * GAIN_SHARE:g} %."
             f" Multiply the channel's sensitivity at the transmitter (mV/V at full load) by {gain:.5f}, or the scale of"
             f" its signal in the profile by {1 / gain:.5f}"
         )
@@ -206,4 +206,5 @@ def _conclude(notes: Notes, channels: list[Channel], zero: list[float], weights:
     notes.tell("  for the rig file, section calibration:")
     notes.tell(f'    load_cell: "{due}"')
     notes.tell("    overdue: refuse               # or warn")
-    notes.tell(f"    cell_sensitivity: {100 * found:.3f} %     # Fx/Fz off by {100 * ratio:+.3f} %, with its uncertainty")
+    notes.tell("    record: ...                   # what stands behind \"on record\", below")
+    notes.tell(f"    cell_sensitivity: {100 * found:.3f} %     # Fx/Fz off by {100 * ratio:+.3f} %, and how sure")

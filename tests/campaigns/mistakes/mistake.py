@@ -1,0 +1,16 @@
+"""A mistake of wiring or scaling, what has to name it, and how it is looked for."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Mistake:
+    """A mistake on the simulated rig: ``find`` makes a rig of that seed with it and returns what is said of it."""
+
+    name: str
+    named_by: str
+    """A regular expression that one of the findings has to match."""
+    find: Callable[[int], list[str]]
