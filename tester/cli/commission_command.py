@@ -62,7 +62,7 @@ def commission(
     except (CannotStartError, RecordError) as error:
         raise click.ClickException(str(error)) from error
     click.echo(f"{outcome.ended.value}{f' at: {outcome.step}' if outcome.step else ''}"
-               f"; {outcome.rig_s / 60:.0f} min of rig time", err=True)  # fmt: skip
+               f"; {outcome.rig_s / 60:.1f} min of rig time", err=True)  # fmt: skip
     click.echo(str(record_path(out, found)))
     codes = {
         Ended.DONE: EXIT_DONE, Ended.REFUSED: EXIT_INVALID, Ended.FAILED: EXIT_FAILED, Ended.STOPPED: EXIT_TRIPPED,

@@ -51,7 +51,7 @@ class Notes:
     """What a procedure leaves: told to the person, and on record."""
 
     tell: Callable[[str], None]
-    read: Callable[[str, Mapping[str, Any]], None]
+    read: Callable[[str, Mapping[str, Any]], object]
     """Put a reading on record at once."""
     done: Mapping[str, Mapping[str, Any]]
     """Values of the steps that stand, by step."""
