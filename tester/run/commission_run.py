@@ -10,7 +10,7 @@ from typing import Any
 
 from tester.analysis.misalignment import misalignment
 from tester.base.keys import FAST_STOP, STOP
-from tester.commission.person import Asks, Person, Question, Refused
+from tester.commission.person import Asks, Person, Question, StepRefused
 from tester.export.results import results_of
 from tester.machine.context import Progress
 from tester.machine.prompts import DONE, Prompt, Prompts
@@ -81,7 +81,7 @@ class PersonScreen:
 
 
 def run_recipe(options: SessionOptions, folder: Path, person: Person, name: str, text: str) -> Mapping[str, Any]:
-    """Run a recipe; ``options`` name the rig. Raises Refused where it did not go through, CannotStartError."""
+    """Run a recipe; ``options`` name the rig. Raises StepRefused where it did not go through, CannotStartError."""
     folder.mkdir(parents=True, exist_ok=True)
     path = folder / f"{name}.yaml"
     path.write_text(text, encoding="utf-8")
@@ -90,14 +90,14 @@ def run_recipe(options: SessionOptions, folder: Path, person: Person, name: str,
     code = session.run()
     ending, where = session.ending, session.folder
     if ending is None or where is None:
-        raise Refused(f"the recipe {name} was not run (exit code {code})")
+        raise StepRefused(f"the recipe {name} was not run (exit code {code})")
     with RunReader(where) as reader:
         results = results_of(reader)
         found = [row.result for row in results.rows]
         rig_s = results.run.rig_seconds
     if code:
         why = ending.reason or "a condition is without a value"
-        raise Refused(f"the run {where.name} ended with {ending.outcome.value}: {why}")
+        raise StepRefused(f"the run {where.name} ended with {ending.outcome.value}: {why}")
     angle = misalignment(found)
     conditions = [
         {

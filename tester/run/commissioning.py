@@ -15,10 +15,10 @@ from tester.base import clock
 from tester.base.lock import ExclusiveUse, RigInUseError, user
 from tester.base.signals import handled
 from tester.base.source import InvalidSource, Problem
-from tester.commission.engine import Commissioning, Outcome
+from tester.commission.engine import Commissioning, CommissionOutcome
 from tester.commission.part import AtTheTwin, CommissionPart
 from tester.commission.person import Person
-from tester.commission.record import Record
+from tester.commission.record import CommissionRecord
 from tester.machine.ports import Ports
 from tester.machine.tickers import TickedWorld
 from tester.rig import Rig
@@ -59,7 +59,9 @@ def record_path(runs: Path, rig: Rig) -> Path:
     return runs / FOLDER / f"{slug}.jsonl"
 
 
-def commission(rig: Rig, options: CommissionOptions, person: Person, twin: AtTheTwin | None = None) -> Outcome:
+def commission(
+    rig: Rig, options: CommissionOptions, person: Person, twin: AtTheTwin | None = None
+) -> CommissionOutcome:
     """Walk a rig through its commissioning; ``twin``: the person, where it reads a simulated rig.
 
     Raises CannotStartError, InvalidSource, RecordError, OSError.
@@ -71,7 +73,7 @@ def commission(rig: Rig, options: CommissionOptions, person: Person, twin: AtThe
             use.lock_file(f"the record {path.name}", path.with_suffix(".lock"), FOLDER, lasting=False)
         except RigInUseError as error:
             raise CannotStartError(str(error)) from error
-        record = Record(path, clock.utc_now, options.operator or user())
+        record = CommissionRecord(path, clock.utc_now, options.operator or user())
         session = SessionOptions(
             rig=options.rig, overrides=options.overrides, accept_risk=options.accept_risk, out=options.out,
             seed=options.seed, operator=options.operator,

@@ -55,5 +55,5 @@ def test_what_weights_found_is_a_term_and_the_run_names_the_record() -> None:
     term = next(one for one in run_parts(rig).terms(rig) if one.name == "cell sensitivity")
     assert (term.acts, term.bound) == (Acts.COEFFICIENT, pytest.approx(0.0026))
     assert "aaaaaaaaaaaa" in term.source
-    found = {one.name: one.value for one in run_parts(rig).calibration(rig)}
+    found = {one.quantity: one.value for one in run_parts(rig).calibration(rig)}
     assert found["calibration record"] == "a" * 64

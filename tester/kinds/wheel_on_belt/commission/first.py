@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, Final
 
-from tester.commission.person import Refused
+from tester.commission.person import StepRefused
 from tester.commission.step import Alone, Notes
 
 RECIPE: Final = """\
@@ -45,9 +45,9 @@ def directions(alone: Alone, notes: Notes) -> None:
     found = alone.run_recipe("commissioning-directions", _recipe(alone, "both directions of slip", 50.0, both=True))
     angle, expanded = found["angle_deg"], found["angle_expanded_deg"]
     if angle is None or expanded is None:
-        raise Refused("both directions of slip gave no angle: too few pairs were valid")
+        raise StepRefused("both directions of slip gave no angle: too few pairs were valid")
     if not abs(angle) <= ANGLE_DEG + expanded:
-        raise Refused(
+        raise StepRefused(
             f"misalignment and crosstalk: the cell's axes seem {angle:+.2f} +- {expanded:.2f} degrees off the contact's"
             f" (more than {ANGLE_DEG:g}): shim the cell or the wheel's carrier, or measure in both directions"
         )

@@ -11,7 +11,7 @@ from collections.abc import Generator
 from math import isfinite, nan
 from typing import Final
 
-from tester.commission.person import Dialogue, Refused, Waits, wait
+from tester.commission.person import Dialogue, StepRefused, Waits, wait
 from tester.commission.step import Notes
 from tester.kinds.wheel_on_belt.build import loss_ratios
 from tester.kinds.wheel_on_belt.commission.armed import ArmedSeat
@@ -36,15 +36,15 @@ AT_MOST_S: Final = 900.0
 
 
 def soak(seat: ArmedSeat, notes: Notes) -> Dialogue:
-    """Compare cold and soaked; raises Refused."""
+    """Compare cold and soaked; raises StepRefused."""
     air = seat.rig.ambient_c
     surface, hub = yield from _means(seat, AVERAGE_S)
     offset = surface - hub
     notes.read("cold", {"surface_c": surface, "hub_c": hub, "air_c": air})
     if abs(hub - air) > COLD_K:
-        raise Refused(f"the hub is at {hub:.1f} degC, the air at {air:g} degC: let the wheel get cold first")
+        raise StepRefused(f"the hub is at {hub:.1f} degC, the air at {air:g} degC: let the wheel get cold first")
     if not abs(offset) <= COLD_K:
-        raise Refused(
+        raise StepRefused(
             f"thermometer offset: cold it shows {offset:+.1f} K against the hub (at most {COLD_K:g} K): lens, housing's"
             " temperature, or a reflection; the device has an offset to set"
         )
@@ -60,7 +60,7 @@ def soak(seat: ArmedSeat, notes: Notes) -> Dialogue:
     expected = (warm_hub - hub) / (1.0 + lifted)
     gain = (warm - surface) / expected if expected > 0.0 else 0.0
     if warm_hub > MOST_C + 1.0:
-        raise Refused(f"the hub came to {warm_hub:.1f} degC, more than {MOST_C:g} degC: its controller overshoots")
+        raise StepRefused(f"the hub came to {warm_hub:.1f} degC, more than {MOST_C:g} degC: its controller overshoots")
     emissivity = seat.rig.devices["ir_thermometer"].parameters.get("emissivity")
     if not abs(gain - 1.0) <= GAIN_SHARE:
         right = (
@@ -68,7 +68,7 @@ def soak(seat: ArmedSeat, notes: Notes) -> Dialogue:
             if emissivity is not None
             else ""
         )
-        raise Refused(
+        raise StepRefused(
             f"emissivity: soaked the thermometer shows {warm - surface:.1f} K above the cold tread, the hub at"
             f" {warm_hub:.1f} degC means {expected:.1f} K: gain {gain:.2f}.{right}"
         )
@@ -92,7 +92,7 @@ def _steady(seat: ArmedSeat) -> Generator[Waits, str, tuple[float, float]]:
             return going, hub
         before = going
         if seat.ctx.now - began_s > AT_MOST_S:
-            raise Refused(f"not soaked after {AT_MOST_S / 60:g} min: hub {hub:.1f} degC, surface {surface:.1f} degC")
+            raise StepRefused(f"not soaked after {AT_MOST_S / 60:g} min: hub {hub:.1f}, surface {surface:.1f} degC")
 
 
 def _going(means: list[float]) -> float:
