@@ -13,8 +13,8 @@ from tester.base.exits import EXIT_DONE, EXIT_FAILED, EXIT_INCOMPLETE, EXIT_INVA
 from tester.cli.options import risk_option, seed_option, set_option
 
 if TYPE_CHECKING:
-    from tester.commission.engine import Outcome
-    from tester.commission.step import Step
+    from tester.commission.engine import CommissionOutcome
+    from tester.commission.step import CommissionStep
     from tester.rig import Rig
     from tester.run.commissioning import CommissionOptions
 
@@ -53,7 +53,7 @@ def commission(
         if only_list:
             _list(record_path(out, found), part.steps, found)
             return
-        options = CommissionOptions(out, seed, operator)
+        options = CommissionOptions(rig, overrides, accept_risk, out, seed, operator)
         if yes:
             twin = part.twin(lambda text: click.echo(text, err=True))
             outcome = commission(found, options, twin, twin)
@@ -62,7 +62,7 @@ def commission(
     except (CannotStartError, RecordError) as error:
         raise click.ClickException(str(error)) from error
     click.echo(f"{outcome.ended.value}{f' at: {outcome.step}' if outcome.step else ''}"
-               f"; {outcome.rig_s / 60:.0f} min of rig time", err=True)  # fmt: skip
+               f"; {outcome.rig_s / 60:.1f} min of rig time", err=True)  # fmt: skip
     click.echo(str(record_path(out, found)))
     codes = {
         Ended.DONE: EXIT_DONE, Ended.REFUSED: EXIT_INVALID, Ended.FAILED: EXIT_FAILED, Ended.STOPPED: EXIT_TRIPPED,
@@ -72,8 +72,8 @@ def commission(
 
 
 def _at_terminal(
-    rig: Rig, options: CommissionOptions, commission: Callable[..., Outcome], *, time_stands: bool
-) -> Outcome:
+    rig: Rig, options: CommissionOptions, commission: Callable[..., CommissionOutcome], *, time_stands: bool
+) -> CommissionOutcome:
     """Commission with whoever is at this terminal."""
     from tester.cli.commission_person import TerminalPerson
 
@@ -87,12 +87,12 @@ def _at_terminal(
         person.end()
 
 
-def _list(path: Path, steps: tuple[Step, ...], rig: Rig) -> None:
+def _list(path: Path, steps: tuple[CommissionStep, ...], rig: Rig) -> None:
     """Print a line a step: whether it stands, since when, by whom."""
-    from tester.commission.record import Record
+    from tester.commission.record import CommissionRecord
     from tester.commission.step import sections_sha256
 
-    record = Record(path, str, "")
+    record = CommissionRecord(path, str, "")
     for step in steps:
         entry = record.standing(step.name, sections_sha256(rig, step.sections))
         last = record.last(step.name)

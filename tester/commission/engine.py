@@ -12,9 +12,9 @@ from typing import Any
 
 from drivers.ports import BusLost
 from tester.base import clock
-from tester.commission.person import Asks, Person, Question, Refused
-from tester.commission.record import BEGUN, DONE, READING, REFUSED, Record
-from tester.commission.step import Alone, Notes, Step, Walk, sections_sha256
+from tester.commission.person import Asks, Person, Question, StepRefused
+from tester.commission.record import BEGUN, DONE, READING, REFUSED, CommissionRecord, RecordEntry
+from tester.commission.step import Alone, CommissionStep, Notes, Walk, sections_sha256
 from tester.machine.ports import Ports
 from tester.machine.tickers import POLL_S, TickedWorld, TickStatistics, run_real_time, run_simulated
 from tester.rig import Rig
@@ -33,7 +33,7 @@ class Ended(Enum):
 
 
 @dataclass(frozen=True, slots=True)
-class Outcome:
+class CommissionOutcome:
     """How it ended, at which step and with what words; ``rig_s``: rig time that the steps took, s."""
 
     ended: Ended
@@ -47,10 +47,10 @@ class Commissioning:
 
     def __init__(
         self,
-        steps: Sequence[Step],
+        steps: Sequence[CommissionStep],
         rig: Rig,
         person: Person,
-        record: Record,
+        record: CommissionRecord,
         connect: Callable[[], tuple[Ports, TickedWorld | None, Any]],
         run_recipe: Callable[[str, str], Mapping[str, Any]],
         lapse: float | None = None,
@@ -75,7 +75,7 @@ class Commissioning:
         if self._walk is not None:
             self._walk.stop(STOPPED, fast=fast)
 
-    def run(self) -> Outcome:
+    def run(self) -> CommissionOutcome:
         """Walk through the steps that do not stand. Raises OSError for a record that cannot be written."""
         said = self.record.last
         for number, step in enumerate(self.steps, 1):
@@ -95,18 +95,19 @@ class Commissioning:
             outcome = self._do(step)
             if outcome is not None:
                 return outcome
-        return Outcome(Ended.DONE, rig_s=self.rig_s)
+        return CommissionOutcome(Ended.DONE, rig_s=self.rig_s)
 
-    def _outcome(self, ended: Ended, step: Step, text: str = "") -> Outcome:
-        return Outcome(ended, step.name, text, self.rig_s)
+    def _outcome(self, ended: Ended, step: CommissionStep, text: str = "") -> CommissionOutcome:
+        return CommissionOutcome(ended, step.name, text, self.rig_s)
 
-    def _do(self, step: Step) -> Outcome | None:
+    def _do(self, step: CommissionStep) -> CommissionOutcome | None:
         """Do a step; return how the commissioning ends by it, None where it goes on."""
         self._add(step, BEGUN)
+        before_s = self.rig_s
         notes = Notes(self.person.tell, lambda text, values: self._add(step, READING, text, values), self._done())
         try:
             failed = self._alone(step, notes) if step.seat is None else self._seated(step, notes)
-        except Refused as refused:
+        except StepRefused as refused:
             self._add(step, REFUSED, str(refused))
             self.person.tell(f"REFUSED: {refused}")
             return self._outcome(Ended.REFUSED, step, str(refused))
@@ -114,18 +115,19 @@ class Commissioning:
             self._add(step, REFUSED, failed)
             self.person.tell(f"FAILED: {failed}")
             return self._outcome(Ended.STOPPED if self._stopped else Ended.FAILED, step, failed)
-        self._add(step, DONE, notes.text, notes.values)
+        entry = self._add(step, DONE, notes.text, {**notes.values, "rig_s": round(self.rig_s - before_s, 1)})
         self.person.tell(f"passed: {notes.text}")
+        self.person.tell(f"  on record: {entry.sha256}")
         return None
 
-    def _alone(self, step: Step, notes: Notes) -> str:
+    def _alone(self, step: CommissionStep, notes: Notes) -> str:
         assert step.alone is not None
         step.alone(Alone(self.rig, self.person, self._run_recipe), notes)
         self.rig_s += float(notes.values.get("rig_s", 0.0))
         return ""
 
-    def _seated(self, step: Step, notes: Notes) -> str:
-        """Do a step on the rig; return why it failed. Raises Refused."""
+    def _seated(self, step: CommissionStep, notes: Notes) -> str:
+        """Do a step on the rig; return why it failed. Raises StepRefused."""
         assert step.seat is not None and step.procedure is not None
         with ExitStack() as opened:
             try:
@@ -178,12 +180,14 @@ class Commissioning:
             self.person.put(question)
         return ""
 
-    def _sections(self, step: Step) -> str:
+    def _sections(self, step: CommissionStep) -> str:
         return sections_sha256(self.rig, step.sections)
 
     def _done(self) -> dict[str, Mapping[str, Any]]:
         found = {one.name: self.record.standing(one.name, self._sections(one)) for one in self.steps}
         return {name: entry.values for name, entry in found.items() if entry is not None}
 
-    def _add(self, step: Step, what: str, text: str = "", values: Mapping[str, Any] | None = None) -> None:
-        self.record.add(self.rig.name, self._rig_sha256, self._sections(step), step.name, what, text, values)
+    def _add(
+        self, step: CommissionStep, what: str, text: str = "", values: Mapping[str, Any] | None = None
+    ) -> RecordEntry:
+        return self.record.add(self.rig.name, self._rig_sha256, self._sections(step), step.name, what, text, values)

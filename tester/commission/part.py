@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 from tester.commission.person import Person
-from tester.commission.step import Step
+from tester.commission.step import CommissionStep
 
 
 class AtTheTwin(Person, Protocol):
@@ -22,5 +22,5 @@ class AtTheTwin(Person, Protocol):
 class CommissionPart:
     """The steps in their order, and the person who does them on the simulated rig."""
 
-    steps: tuple[Step, ...]
+    steps: tuple[CommissionStep, ...]
     twin: Callable[[Callable[[str], None]], AtTheTwin]

@@ -104,12 +104,12 @@ class Person(Protocol):
         ...
 
 
-class Refused(Exception):  # noqa: N818 - a finding, said to a person
+class StepRefused(Exception):  # noqa: N818 - a finding, said to a person
     """A step does not pass: what was found, and what to do about it; for people and for the record."""
 
 
 @dataclass(frozen=True, slots=True)
-class Ask:
+class AskPerson:
     """Wait for an answer that fits."""
 
     question: Question
@@ -117,32 +117,32 @@ class Ask:
 
 Until = Callable[[float], bool]
 """Wait until something is so: called once a tick with rig time, s."""
-Waits = Ask | Until
+Waits = AskPerson | Until
 Dialogue = Generator[Waits, str, None]
 Measured = Generator[Waits, str, float]
 
 
 def choose(key: str, text: str, *choices: str) -> Generator[Waits, str, str]:
     """Ask for one of some words."""
-    return (yield Ask(Question(key, text, Asks.CHOICE, choices))).strip()
+    return (yield AskPerson(Question(key, text, Asks.CHOICE, choices))).strip()
 
 
 def measure(key: str, text: str, unit: str) -> Measured:
     """Ask for a quantity; return it in ``unit``."""
     question = Question(key, text, Asks.QUANTITY, unit=unit)
-    return question.value((yield Ask(question)))
+    return question.value((yield AskPerson(question)))
 
 
 def line(key: str, text: str) -> Generator[Waits, str, str]:
     """Ask for a line of text."""
-    return (yield Ask(Question(key, text, Asks.TEXT))).strip()
+    return (yield AskPerson(Question(key, text, Asks.TEXT))).strip()
 
 
 def press(key: str, text: str) -> Dialogue:
-    """Ask for the word that makes something move; raises Refused for "no"."""
-    answer = (yield Ask(Question(key, text, Asks.KEY))).strip()
+    """Ask for the word that makes something move; raises StepRefused for "no"."""
+    answer = (yield AskPerson(Question(key, text, Asks.KEY))).strip()
     if answer != GO:
-        raise Refused(f"left by the person at: {text}")
+        raise StepRefused(f"left by the person at: {text}")
 
 
 def wait(seconds: float) -> Dialogue:

@@ -26,7 +26,7 @@ class RecordError(Exception):
 
 
 @dataclass(frozen=True, slots=True)
-class Entry:
+class RecordEntry:
     """One line. ``values``: numbers and texts by name, units in the names."""
 
     at: str
@@ -55,14 +55,14 @@ class Entry:
         )  # fmt: skip
 
 
-class Record:
+class CommissionRecord:
     """The entries of a rig, oldest first."""
 
     def __init__(self, path: Path, utc: Callable[[], str], by: str) -> None:
         """Read what is there; raises RecordError, OSError. ``by``: who adds to it from now on."""
         self.path = path
         self.by = by
-        self.entries: list[Entry] = []
+        self.entries: list[RecordEntry] = []
         self.torn = False
         """The last line was cut off."""
         self._utc = utc
@@ -95,13 +95,13 @@ class Record:
         what: str,
         text: str = "",
         values: Mapping[str, Any] | None = None,
-    ) -> Entry:
+    ) -> RecordEntry:
         """Append an entry; it is on the disk when this returns. Raises OSError, ValueError for what is no number."""
         previous = self.entries[-1].sha256 if self.entries else FIRST
-        made = Entry(self._utc(), self.by, rig, rig_sha256, sections, step, what, text, values or {}, previous)
+        made = RecordEntry(self._utc(), self.by, rig, rig_sha256, sections, step, what, text, values or {}, previous)
         body = made.body()
         sha256 = hashlib.sha256(body.encode()).hexdigest()
-        entry = Entry(
+        entry = RecordEntry(
             made.at, made.by, rig, rig_sha256, sections, step, what, text, made.values, previous, sha256
         )
         written = f'{body[:-1]}, "sha256": "{sha256}"}}\n'
@@ -117,22 +117,22 @@ class Record:
         self.entries.append(entry)
         return entry
 
-    def last(self, step: str) -> Entry | None:
+    def last(self, step: str) -> RecordEntry | None:
         """Return the newest entry of a step that says how it stands: readings are passed over."""
         return next((one for one in reversed(self.entries) if one.step == step and one.what != READING), None)
 
-    def standing(self, step: str, sections: str) -> Entry | None:
+    def standing(self, step: str, sections: str) -> RecordEntry | None:
         """Return the entry by which a step has passed with these sections of the rig file; None: it is to be done."""
         found = self.last(step)
         return found if found is not None and found.what == DONE and found.sections == sections else None
 
 
-def _entry(raw: bytes) -> Entry | None:
+def _entry(raw: bytes) -> RecordEntry | None:
     """Return a line's entry, None where it is none or its hash is not its own."""
     try:
         found: dict[str, Any] = json.loads(raw)
         sha256 = str(found.pop("sha256"))
-        entry = Entry(**found, sha256=sha256)
+        entry = RecordEntry(**found, sha256=sha256)
     except (ValueError, TypeError, KeyError, AttributeError):
         return None
     return entry if hashlib.sha256(entry.body().encode()).hexdigest() == sha256 else None

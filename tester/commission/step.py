@@ -10,7 +10,7 @@ from math import inf
 from typing import Any, Protocol
 
 from tester.base.config_reader import as_tree
-from tester.commission.person import Ask, Dialogue, Person
+from tester.commission.person import AskPerson, Dialogue, Person
 from tester.machine.ports import Ports
 from tester.rig import Rig
 
@@ -51,7 +51,7 @@ class Notes:
     """What a procedure leaves: told to the person, and on record."""
 
     tell: Callable[[str], None]
-    read: Callable[[str, Mapping[str, Any]], None]
+    read: Callable[[str, Mapping[str, Any]], object]
     """Put a reading on record at once."""
     done: Mapping[str, Mapping[str, Any]]
     """Values of the steps that stand, by step."""
@@ -68,11 +68,11 @@ class Alone:
     person: Person
     run_recipe: Callable[[str, str], Mapping[str, Any]]
     """Run a recipe (its name and text) on the rig as a run like any other; return its results as plain data. Raises
-    Refused where it did not go through."""
+    StepRefused where it did not go through."""
 
 
 @dataclass(frozen=True, slots=True)
-class Step:
+class CommissionStep:
     """One step. ``sections``: dotted keys of the rig file on which its result depends; a change of them undoes it.
 
     ``needs``: steps whose results it takes. Of ``seat`` and ``alone`` one: whether it has the rig on its wires, or
@@ -129,7 +129,7 @@ class Walk:
     @property
     def waiting(self) -> bool:
         """Simulated time stands still while a person thinks."""
-        asked = isinstance(self._awaited, Ask) and not self.ended and not self.seat.finished
+        asked = isinstance(self._awaited, AskPerson) and not self.ended and not self.seat.finished
         return asked and self.person.time_stands and self.seat.ready and self.person.taken(inf) is None
 
     def tick(self, now: float) -> float:
@@ -161,12 +161,12 @@ class Walk:
 
     def _await(self, awaited: Any) -> None:
         self._awaited = awaited
-        if isinstance(awaited, Ask):
+        if isinstance(awaited, AskPerson):
             self.person.put(awaited.question)
 
     def _answer(self, now: float) -> str | None:
         """Return what the procedure is woken with; None while it has to wait."""
-        if not isinstance(self._awaited, Ask):
+        if not isinstance(self._awaited, AskPerson):
             return "" if self._awaited(now) else None
         answer = self.person.taken(now)
         if answer is None:

@@ -8,7 +8,7 @@ always from a file that a person can read, the rig's own or the packaged one of 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field, fields, make_dataclass
+from dataclasses import dataclass, field, make_dataclass
 from datetime import date
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Final, Literal, TypeVar
 
@@ -111,17 +111,27 @@ class OwnDevice:
 class CalibrationConfig:
     """The last days on which the certificates of the sensors hold, as 2027-01-31; "" is not known.
 
-    A kind declares a text for each certificate. Nothing is computed with them: the list before a start shows them.
+    A kind declares a text for each certificate, by ``certificates``. The list before a start shows them; ``overdue``
+    says what a start does once one has ended: "warn", or "refuse".
     """
 
+    certificates: ClassVar[tuple[str, ...]] = ()
+    overdue: str = "warn"
+
     def __post_init__(self) -> None:
-        """Refuse what is no date."""
+        """Refuse what is no date, and no word for ``overdue``."""
         self.ends()
+        if self.overdue not in ("warn", "refuse"):
+            raise ValueError(f'overdue: expected warn or refuse, got "{self.overdue}"')
 
     def ends(self) -> dict[str, date | None]:
         """Return the last day of each certificate by its name; raises ValueError for a text that is no date."""
-        names = {one.name: one.name.replace("_", " ") for one in fields(self)}
+        names = {name: name.replace("_", " ") for name in self.certificates}
         return {words: _day(words, getattr(self, name)) for name, words in names.items()}
+
+    def over(self, today: date) -> str:
+        """Return which certificates have ended before a day, "" where none has."""
+        return ", ".join(f"{name} ended {end}" for name, end in self.ends().items() if end is not None and end < today)
 
 
 def _day(name: str, text: str) -> date | None:

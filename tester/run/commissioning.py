@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 from threading import current_thread, main_thread
@@ -15,27 +15,29 @@ from tester.base import clock
 from tester.base.lock import ExclusiveUse, RigInUseError, user
 from tester.base.signals import handled
 from tester.base.source import InvalidSource, Problem
-from tester.commission.engine import Commissioning, Outcome
+from tester.commission.engine import Commissioning, CommissionOutcome
 from tester.commission.part import AtTheTwin, CommissionPart
 from tester.commission.person import Person
-from tester.commission.record import Record
+from tester.commission.record import CommissionRecord
 from tester.machine.ports import Ports
 from tester.machine.tickers import TickedWorld
 from tester.rig import Rig
+from tester.run.commission_run import run_recipe
 from tester.run.endings import CannotStartError
 from tester.run.part_run import connect_ports
 from tester.run.preconditions import hold_rig
+from tester.run.session import SessionOptions
 
 FOLDER = "commissioning"
 """Below the folder of the runs: a record for each rig."""
-
-Connect = Callable[[], tuple[Ports, TickedWorld | None, Any]]
-
 
 @dataclass(frozen=True, slots=True)
 class CommissionOptions:
     """What the command line said."""
 
+    rig: str = "sim"
+    overrides: tuple[str, ...] = ()
+    accept_risk: str = ""
     out: Path = Path("runs")
     seed: int = 0
     operator: str = ""
@@ -57,33 +59,48 @@ def record_path(runs: Path, rig: Rig) -> Path:
     return runs / FOLDER / f"{slug}.jsonl"
 
 
-def commission(rig: Rig, options: CommissionOptions, person: Person, twin: AtTheTwin | None = None) -> Outcome:
+def commission(
+    rig: Rig, options: CommissionOptions, person: Person, twin: AtTheTwin | None = None
+) -> CommissionOutcome:
     """Walk a rig through its commissioning; ``twin``: the person, where it reads a simulated rig.
 
     Raises CannotStartError, InvalidSource, RecordError, OSError.
     """
     path = record_path(options.out, rig)
+    path.parent.mkdir(parents=True, exist_ok=True)
     with ExclusiveUse() as use:
-        hold_rig(use, rig, FOLDER)
-        path.parent.mkdir(parents=True, exist_ok=True)
         try:
             use.lock_file(f"the record {path.name}", path.with_suffix(".lock"), FOLDER, lasting=False)
         except RigInUseError as error:
             raise CannotStartError(str(error)) from error
-        record = Record(path, clock.utc_now, options.operator or user())
-
-        def connect() -> tuple[Ports, TickedWorld | None, Any]:
-            ports, world, hands = connect_ports(rig, options.seed, None)
-            if twin is not None:
-                twin.at(hands)
-            return ports, world, hands
-
-        def run_recipe(name: str, text: str) -> Mapping[str, Any]:
-            raise NotImplementedError(name, text)
-
-        walk = Commissioning(part_of(rig).steps, rig, person, record, connect, run_recipe, options.lapse)
+        record = CommissionRecord(path, clock.utc_now, options.operator or user())
+        session = SessionOptions(
+            rig=options.rig, overrides=options.overrides, accept_risk=options.accept_risk, out=options.out,
+            seed=options.seed, operator=options.operator,
+        )  # fmt: skip
+        walk = Commissioning(
+            part_of(rig).steps,
+            rig,
+            person,
+            record,
+            lambda: _connect(rig, options.seed, twin),
+            lambda name, text: run_recipe(session, path.parent, person, name, text),
+            options.lapse,
+        )
         with stopped_by_signals(walk):
             return walk.run()
+
+
+def _connect(rig: Rig, seed: int, twin: AtTheTwin | None) -> tuple[Ports, TickedWorld | None, Any]:
+    """Open the wires of a rig that nobody else uses until they are closed again. Raises CannotStartError, BusLost."""
+    with ExitStack() as opened:
+        use = opened.enter_context(ExclusiveUse())
+        hold_rig(use, rig, FOLDER)
+        ports, world, hands = connect_ports(rig, seed, None)
+        opened.callback(ports.close)
+        if twin is not None:
+            twin.at(hands)
+        return Ports(ports.can, ports.lines, ports.pace, opened.pop_all()), world, hands
 
 
 class stopped_by_signals:  # noqa: N801 - reads as a statement

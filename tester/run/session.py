@@ -6,11 +6,13 @@ import signal
 from collections.abc import Callable, Generator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from datetime import date
 from pathlib import Path
 from threading import current_thread, main_thread
 from types import FrameType
 from typing import TypeVar
 
+from tester.base.clock import utc_now
 from tester.base.exits import EXIT_INVALID, EXIT_USAGE
 from tester.base.lock import ExclusiveUse, user
 from tester.base.plain import plain_text
@@ -112,6 +114,7 @@ class Session:
         if refusal:
             self.screen.message(refusal)
             return EXIT_USAGE
+        self._calibrated(rig)
         options.out.mkdir(parents=True, exist_ok=True)
         for left in cut_off(options.out):
             self.screen.message(f"{left.name} was cut off: tester resume {left} goes on with it")
@@ -153,6 +156,7 @@ class Session:
             if refusal:
                 self.screen.message(refusal)
                 return EXIT_USAGE
+            self._calibrated(resumed.rig)
             enough_room(folder, resumed.plan, resumed.rig)
             hold_rig(use, resumed.rig, folder.name)
             self.screen.message(resumed.summary)
@@ -226,6 +230,15 @@ class Session:
         if not self.screen.can_ask:
             return "the recipe asks a person, and nobody is at this terminal: use --yes"
         return ""
+
+    def _calibrated(self, rig: Rig) -> None:
+        """Say, or refuse to start, where a certificate has ended (``calibration.overdue``). Raises CannotStartError."""
+        calibration = rig.certificates()
+        over = calibration.over(date.fromisoformat(utc_now()[:10]))
+        if over and calibration.overdue == "refuse":
+            raise CannotStartError(f"calibration overdue: {over} (calibration.overdue: refuse)", EXIT_INVALID)
+        if over:
+            self.screen.message(f"calibration overdue: {over}")
 
     def _job(self, folder: Path, seed: int, rig: Rig) -> Job:
         o = self.options

@@ -88,6 +88,8 @@ class TrackArmingConfig:
 class TrackCertificatesConfig(CalibrationConfig):
     """What has a certificate."""
 
+    certificates: ClassVar[tuple[str, ...]] = ("load_cell", "weights", "temperature")
+
     load_cell: str = ""
     weights: str = ""
     temperature: str = ""

@@ -17,6 +17,22 @@ from tester.store import older
 TERMS: Final[tuple[Term, ...]] = older.TERMS
 """Those of the records that do not say theirs, as long as nothing about the machine is known better."""
 
+
+
+def terms_of(cell_sensitivity: float, record: str) -> tuple[Term, ...]:
+    """Return the terms of a rig; one whose cell was calibrated with weights has what was found in them.
+
+    ``cell_sensitivity``: of Fx over Fz, with its standard uncertainty (``commission.weights``), 0: not stated.
+    """
+    if not cell_sensitivity > 0.0:
+        return TERMS
+    source = f"hung weights, record {record[:12]}" if record else "hung weights"
+    sensitivity = Term(
+        "cell sensitivity", Acts.COEFFICIENT, cell_sensitivity, "1", "normal", source, setting="cell_sensitivity"
+    )
+    return (*TERMS, sensitivity)
+
+
 BETWEEN_PERCENT: Final = 100.0 * sum(one.standard for one in TERMS if one.acts is Acts.PIECE)
 """Standard deviation from wheel to wheel of one compound, as stated."""
 

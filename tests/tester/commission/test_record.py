@@ -6,15 +6,15 @@ from pathlib import Path
 
 import pytest
 
-from tester.commission.record import BEGUN, DONE, READING, Record, RecordError
+from tester.commission.record import BEGUN, DONE, READING, CommissionRecord, RecordError
 
 
 def utc() -> str:
     return "2026-11-23T10:00:00Z"
 
 
-def filled(path: Path) -> Record:
-    record = Record(path, utc, "me")
+def filled(path: Path) -> CommissionRecord:
+    record = CommissionRecord(path, utc, "me")
     record.add("rig", "a" * 64, "s1", "one", BEGUN)
     record.add("rig", "a" * 64, "s1", "one", READING, "first", {"way_mm": 1.25})
     record.add("rig", "a" * 64, "s1", "one", DONE, "passed", {"scale": 1.0})
@@ -23,7 +23,7 @@ def filled(path: Path) -> Record:
 
 def test_what_was_added_reads_back(tmp_path: Path) -> None:
     written = filled(tmp_path / "r.jsonl")
-    read = Record(tmp_path / "r.jsonl", utc, "you")
+    read = CommissionRecord(tmp_path / "r.jsonl", utc, "you")
     assert read.entries == written.entries
     assert read.standing("one", "s1") == written.entries[-1]
     assert read.standing("one", "s2") is None
@@ -36,12 +36,12 @@ def test_a_line_cut_off_by_a_kill_is_passed_over_and_work_goes_on_behind_it(tmp_
     filled(path)
     whole = path.read_bytes()
     path.write_bytes(whole[:-cut])
-    record = Record(path, utc, "me")
+    record = CommissionRecord(path, utc, "me")
     before = len(record.entries)
     record.add("rig", "a" * 64, "s1", "one", DONE, "again")
-    assert len(Record(path, utc, "me").entries) == before + 1
+    assert len(CommissionRecord(path, utc, "me").entries) == before + 1
     record.add("rig", "a" * 64, "s1", "two", BEGUN)
-    assert len(Record(path, utc, "me").entries) == before + 2
+    assert len(CommissionRecord(path, utc, "me").entries) == before + 2
 
 
 def test_a_changed_line_is_found(tmp_path: Path) -> None:
@@ -49,7 +49,7 @@ def test_a_changed_line_is_found(tmp_path: Path) -> None:
     filled(path)
     path.write_text(path.read_text().replace("1.25", "1.26"))
     with pytest.raises(RecordError, match="line 3"):
-        Record(path, utc, "me")
+        CommissionRecord(path, utc, "me")
 
 
 def test_a_line_taken_out_is_found(tmp_path: Path) -> None:
@@ -58,11 +58,11 @@ def test_a_line_taken_out_is_found(tmp_path: Path) -> None:
     lines = path.read_text().splitlines(keepends=True)
     path.write_text(lines[0] + lines[2])
     with pytest.raises(RecordError, match="line 2"):
-        Record(path, utc, "me")
+        CommissionRecord(path, utc, "me")
 
 
 def test_what_is_no_number_is_not_written(tmp_path: Path) -> None:
-    record = Record(tmp_path / "r.jsonl", utc, "me")
+    record = CommissionRecord(tmp_path / "r.jsonl", utc, "me")
     with pytest.raises(ValueError, match="JSON"):
         record.add("rig", "", "", "one", READING, "", {"x": float("nan")})
     assert not (tmp_path / "r.jsonl").exists()

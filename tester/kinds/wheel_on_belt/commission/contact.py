@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Generator
 from typing import Any, Final
 
-from tester.commission.person import Dialogue, Refused, Waits, measure
+from tester.commission.person import Dialogue, StepRefused, Waits, measure
 from tester.commission.step import Notes
 from tester.kinds.wheel_on_belt.commission.armed import ArmedSeat
 from tester.kinds.wheel_on_belt.procedures.first_contact import FirstContact, Friction
@@ -32,13 +32,14 @@ def home(seat: ArmedSeat, notes: Notes) -> Dialogue:
     """Positioned axes were homed as before every run; a person says whether their zero is straight."""
     found: dict[str, Any] = {}
     for name in seat.run.engine.devices.axes.positioned:
-        text = f"{name}: it was homed and stands at {seat.ctx.readings.positions[name]:.2f} deg; what does an inclinometer say?"
+        at = seat.ctx.readings.positions[name]
+        text = f"{name}: it was homed and stands at {at:.2f} deg; what does an inclinometer say?"
         read = yield from measure(f"angle {name}", text, "deg")
-        off = read - seat.ctx.readings.positions[name]
-        found[name] = {"shown_deg": seat.ctx.readings.positions[name], "read_deg": read}
+        off = read - at
+        found[name] = {"shown_deg": at, "read_deg": read}
         if not abs(off) <= ANGLE_DEG:
             config = seat.rig.axes.driven()[name]
-            raise Refused(
+            raise StepRefused(
                 f"home of the {name} axis: straight is {off:+.2f} deg off. In the rig file:"
                 f" axes.{name}.home_offset: {config.home_offset + off:.2f} (now {config.home_offset:g})"
             )
@@ -52,11 +53,11 @@ def watchdogs(seat: ArmedSeat, notes: Notes) -> Dialogue:
     shown = seat.shown
     left_out = shown.partition("NOT shown: ")[2]
     if left_out:
-        raise Refused(f"watchdogs not shown: {left_out} (arming.watchdog_proof, axes.*.proves_watchdog, the jacket)")
+        raise StepRefused(f"watchdogs not shown: {left_out} (arming.watchdog_proof, axes.*.proves_watchdog, jacket)")
     deadlines = {drive.config.name: drive.config.rpdo_deadline_s for drive in seat.run.engine.devices.drives}
     without = [name for name, limit in deadlines.items() if not limit and name in ("wheel", "belt", "press")]
     if without:
-        raise Refused(f"no deadline for setpoints (axes.*.rpdo_deadline): {', '.join(without)}")
+        raise StepRefused(f"no deadline for setpoints (axes.*.rpdo_deadline): {', '.join(without)}")
     notes.values = {"shown": shown, "withheld_s": seat.rig.arming.withhold_s, "deadlines_s": deadlines}
     notes.text = shown
 
@@ -66,7 +67,7 @@ def touch(seat: ArmedSeat, notes: Notes) -> Dialogue:
     believed = seat.rig.geometry.wheel_diameter_mm
     read = yield from measure("diameter", f"what does a caliper say of the new wheel (believed {believed:g} mm)?", "mm")
     if not abs(read - believed) <= DIAMETER_MM:
-        raise Refused(
+        raise StepRefused(
             f"wheel diameter: {read:g} mm measured, the rig file has {believed:g} mm."
             f" In the rig file: geometry.wheel_diameter: {read:g} mm"
         )
@@ -75,11 +76,12 @@ def touch(seat: ArmedSeat, notes: Notes) -> Dialogue:
     tare = _tare(seat, reference)
     yield from seat.do(Sequence(Power(True), Lift(), tare))
     if tare.failed:
-        raise Refused(f"tare: {tare.failed}")
+        raise StepRefused(f"tare: {tare.failed}")
     press_mm = seat.ctx.contact.contact_mm
     yield from seat.do(Sequence(Turn(0.0, 0.0), Power(False)))
     notes.values = {"diameter_mm": read, "touched_mm": press_mm, "zero": reference}
-    notes.text = f"wheel {read:g} mm, touched at {press_mm:.2f} mm; zero {', '.join(f'{z:.2f}' for z in reference[:3])} N"
+    zero = ", ".join(f"{one:.2f}" for one in reference[:3])
+    notes.text = f"wheel {read:g} mm, touched at {press_mm:.2f} mm; zero {zero} N"
 
 
 def _tare(seat: ArmedSeat, reference: list[float]) -> TakeTare:
@@ -110,28 +112,31 @@ def roll(seat: ArmedSeat, notes: Notes) -> Dialogue:
     standard = ((left / (count - 2) + resolved * resolved / 12.0) / square) ** 0.5
     if not abs(ratio) <= RATIO_SHARE + 2.0 * standard:
         geometry = seat.rig.geometry
-        raise Refused(
-            f"speed ratio: rolling freely the belt is {100 * ratio:+.2f} % (+-{100 * standard:.2f} %) off the wheel's rim:"
-            f" either geometry.wheel_diameter is {geometry.wheel_diameter_mm * (1.0 - ratio):.2f} mm, or in the rig file"
-            f" axes.belt.velocity_increments: {seat.rig.axes.belt.velocity_increments * (1.0 - ratio):.7g}"
+        raise StepRefused(
+            f"speed ratio: rolling freely the belt is {100 * ratio:+.2f} % (+-{100 * standard:.2f} %) off the rim:"
+            f" either geometry.wheel_diameter is {geometry.wheel_diameter_mm * (1.0 - ratio):.2f} mm, or in the rig"
+            f" file axes.belt.velocity_increments: {seat.rig.axes.belt.velocity_increments * (1.0 - ratio):.7g}"
         )
     notes.values = {
         "ratio_error": ratio, "standard_uncertainty": standard, "creep_m_s": creep,
         "turns_round": [list(one) for one in found],
     }  # fmt: skip
-    notes.text = f"speed ratio off by {100 * ratio:+.2f} % (standard uncertainty {100 * standard:.2f} %), creep {1e3 * creep:.1f} mm/s"
+    notes.text = (
+        f"speed ratio off by {100 * ratio:+.2f} % (standard uncertainty {100 * standard:.2f} %),"
+        f" creep {1e3 * creep:.1f} mm/s"
+    )
 
 
 def _turns_round(seat: ArmedSeat, speed: float) -> Generator[Waits, str, float]:
     """Return the slip (wheel less belt, m/s, as shown) at which friction turns round."""
     reach = SWEEP_SHARE * speed + CREEP_M_S
     low, high = -reach, reach
-    ends = []
+    ends: list[float] = []
     for slip in (low, high):
         friction = yield from _friction(seat, speed, slip)
         ends.append(friction)
     if not (ends[0] < 0.0 < ends[1]):
-        raise Refused(
+        raise StepRefused(
             f"friction does not turn round between {low:.3f} and {high:.3f} m/s of slip at {speed:g} m/s"
             f" ({ends[0]:.1f}, {ends[1]:.1f} N): direction, scale or diameter of wheel or belt"
         )

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import Any
 
-from tester.commission.person import Dialogue, Refused, choose
+from tester.commission.person import Dialogue, StepRefused, choose
 from tester.commission.step import Notes
 from tester.kinds.wheel_on_belt.commission.quiet import QuietSeat
 
 
 def identify(seat: QuietSeat, notes: Notes) -> Dialogue:
-    """List what is connected; raises Refused where a person does not know it again."""
+    """List what is connected; raises StepRefused where a person does not know it again."""
     found: dict[str, Any] = {}
     for drive in seat.devices.drives:
         name, identity = drive.config.name, drive.identity
@@ -34,6 +34,6 @@ def identify(seat: QuietSeat, notes: Notes) -> Dialogue:
         )
     answer = yield from choose("identify", "are these the devices of this rig?", "yes", "no")
     if answer != "yes":
-        raise Refused("the person at the rig does not know these devices again: check adapters, node ids and unit ids")
+        raise StepRefused("the person at the rig does not know these devices again: check adapters, node and unit ids")
     notes.values = found
     notes.text = f"{len(found)} devices heard and known again"

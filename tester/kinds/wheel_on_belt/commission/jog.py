@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from math import degrees, pi
 from typing import Final
 
-from tester.commission.person import Dialogue, Measured, Refused, choose, measure, press, wait
+from tester.commission.person import Dialogue, Measured, StepRefused, choose, measure, press, wait
 from tester.commission.step import Notes
 from tester.kinds.wheel_on_belt.commission.quiet import JogSpeeds, QuietSeat
 
@@ -23,7 +23,7 @@ RIGHT, REVERSED, OTHER, NOTHING = "yes", "reversed", "other", "nothing"
 
 
 @dataclass(frozen=True, slots=True)
-class Axis:
+class JoggedAxis:
     """How an axis is jogged and read. ``tolerance``: of its scale; ``reading``: standard uncertainty, in ``unit``."""
 
     name: str
@@ -44,15 +44,15 @@ class Axis:
 
 
 AXES: Final = (
-    Axis("wheel", JogSpeeds(0.4, 0.4, 1.0, 2.0 * pi), "deg", "a protractor, or a mark on the tread and one beside it",
+    JoggedAxis("wheel", JogSpeeds(0.4, 0.4, 1.0, 2.0 * pi), "deg", "a protractor, or marks on the tread and beside it",
          "so that its lowest point goes the way of the arrow of the belt", 0.01, 0.5, False),
-    Axis("belt", JogSpeeds(0.02, 0.02, 0.05, 0.25), "mm", "a mark on the belt and a ruler beside it",
+    JoggedAxis("belt", JogSpeeds(0.02, 0.02, 0.05, 0.25), "mm", "a mark on the belt and a ruler beside it",
          "so that its upper side goes the way of the arrow", 0.01, 0.5, False),
-    Axis("press", JogSpeeds(0.5, 0.25, 2.0, 4.0), "mm", "a dial gauge on the press", "towards the wheel's contact",
+    JoggedAxis("press", JogSpeeds(0.5, 0.25, 2.0, 4.0), "mm", "a dial gauge on the press", "towards the contact",
          0.01, 0.01, True, True),
-    Axis("sideslip", JogSpeeds(1.0, 0.5, 2.0, 10.0), "deg", "the yaw axis's scale, or an inclinometer",
+    JoggedAxis("sideslip", JogSpeeds(1.0, 0.5, 2.0, 10.0), "deg", "the yaw axis's scale, or an inclinometer",
          "to the side that the rig's papers call positive", 0.03, 0.1, True),
-    Axis("camber", JogSpeeds(1.0, 0.5, 2.0, 5.0), "deg", "an inclinometer on the wheel's carrier",
+    JoggedAxis("camber", JogSpeeds(1.0, 0.5, 2.0, 5.0), "deg", "an inclinometer on the wheel's carrier",
          "to the side that the rig's papers call positive", 0.05, 0.1, True),
 )  # fmt: skip
 """Ways and speeds in the axes' units (rad, m, mm, deg; a second) [A]; tolerances [A], readings: half of what the finest
@@ -61,8 +61,8 @@ mark of such an instrument tells [A]."""
 SPEEDS: Final = {axis.name: axis.speeds for axis in AXES}
 
 
-def jog_axis(axis: Axis, seat: QuietSeat, notes: Notes) -> Dialogue:
-    """Jog an axis for direction and scale; raises Refused."""
+def jog_axis(axis: JoggedAxis, seat: QuietSeat, notes: Notes) -> Dialogue:
+    """Jog an axis for direction and scale; raises StepRefused."""
     if axis.name not in seat.believed.axes.driven():
         notes.text = "set by hand: nothing to jog"
         return
@@ -82,7 +82,7 @@ def jog_axis(axis: Axis, seat: QuietSeat, notes: Notes) -> Dialogue:
     share = abs(read / axis.shown(first))
     least = 2.0 * axis.reading / abs(axis.shown(first))
     if not abs(share - 1.0) <= max(FIRST_SHARE, least):
-        raise Refused(_wrong_scale(axis, seat, share, "on the first, little way: measure it anew after the change"))
+        raise StepRefused(_wrong_scale(axis, seat, share, "on the first, little way: measure it anew after the change"))
     moved, whole = 0.0, speeds.way
     yield from _mark(axis)
     while abs(moved) < abs(whole) - 1e-3 * abs(whole):
@@ -93,7 +93,7 @@ def jog_axis(axis: Axis, seat: QuietSeat, notes: Notes) -> Dialogue:
     share = read / shown
     notes.read("whole way", {"reported": shown, "read": read, "unit": axis.unit, "share": share})
     if not abs(share - 1.0) <= axis.tolerance:
-        raise Refused(_wrong_scale(axis, seat, share, f"more than {100 * axis.tolerance:g} % off"))
+        raise StepRefused(_wrong_scale(axis, seat, share, f"more than {100 * axis.tolerance:g} % off"))
     drive = seat.jogging.drive(axis.name)
     while axis.back and abs(left := began - drive.actual) > 0.02 * abs(speeds.way):
         yield from _move(axis, seat, "back", left, speeds.speed)
@@ -108,7 +108,7 @@ def jog_axis(axis: Axis, seat: QuietSeat, notes: Notes) -> Dialogue:
     )
 
 
-def _move(axis: Axis, seat: QuietSeat, which: str, way: float, speed: float) -> Measured:
+def _move(axis: JoggedAxis, seat: QuietSeat, which: str, way: float, speed: float) -> Measured:
     """Wait for a key, a closed guard, and the axis; return how far the drive says it went."""
     text = f"{axis.name}: hands off, guard closed; it moves by {axis.shown(way):.4g} {axis.unit} at most, and stops"
     while True:
@@ -125,7 +125,7 @@ def _move(axis: Axis, seat: QuietSeat, which: str, way: float, speed: float) -> 
     return jog.moved
 
 
-def _rest(axis: Axis, seat: QuietSeat) -> Dialogue:
+def _rest(axis: JoggedAxis, seat: QuietSeat) -> Dialogue:
     """Take the power of an axis that was held to be read."""
     jog = seat.jogging.rest() if axis.holds else None
     if jog is not None:
@@ -133,36 +133,36 @@ def _rest(axis: Axis, seat: QuietSeat) -> Dialogue:
         yield from wait(SPRING_S)
 
 
-def _mark(axis: Axis) -> Dialogue:
+def _mark(axis: JoggedAxis) -> Dialogue:
     yield from choose(f"jog {axis.name} mark", f"{axis.name}: set {axis.instrument} to zero now; done?", "yes")
 
 
-def _read(axis: Axis, which: str) -> Measured:
+def _read(axis: JoggedAxis, which: str) -> Measured:
     """Ask how far it has gone; the way that it should is positive."""
     text = f"{axis.name}: how far has it moved, by {axis.instrument}?"
     return (yield from measure(f"jog {axis.name} {which} read", text, axis.unit))
 
 
-def _direction(axis: Axis, seat: QuietSeat, seen: str) -> None:
+def _direction(axis: JoggedAxis, seat: QuietSeat, seen: str) -> None:
     name = axis.name
     if seen == REVERSED:
-        raise Refused(
+        raise StepRefused(
             f"the {name} axis is reversed: it moves the wrong way round. Set its drive's polarity (0x607E) or swap two"
             " of its motor's phases and its encoder's direction, as its manual says; the rig file has no sign for it"
         )
     if seen == OTHER:
-        raise Refused(
+        raise StepRefused(
             f"the {name} axis is not the one that moves at node {seat.drive_node(name)}: node ids or motors are swapped"
             f" (axes.*.node_id)"
         )
     if seen == NOTHING:
-        raise Refused(
+        raise StepRefused(
             f"the {name} axis does not move although its drive at node {seat.drive_node(name)} says so: motor, encoder"
             " or coupling"
         )
 
 
-def _wrong_scale(axis: Axis, seat: QuietSeat, share: float, why: str) -> str:
+def _wrong_scale(axis: JoggedAxis, seat: QuietSeat, share: float, why: str) -> str:
     """Return what is wrong with a scale, and the lines of the rig file that would be right."""
     config = seat.believed.axes.driven()[axis.name]
     if not abs(share) > 1e-6:

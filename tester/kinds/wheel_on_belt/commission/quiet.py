@@ -67,7 +67,7 @@ def jog_rig(rig: RigConfig, speeds: dict[str, JogSpeeds]) -> RigConfig:
 
 
 @dataclass(slots=True)
-class Jog:
+class JogMove:
     """One key press: an axis moves ``way`` (signed, its unit) at ``speed``, or as far as it gets in ``PRESS_S``."""
 
     axis: str
@@ -89,7 +89,7 @@ class Jogging:
         self.rig = rig
         self.done = False
         self.failure = ""
-        self.jog: Jog | None = None
+        self.jog: JogMove | None = None
         self.stepped_s = 0.0
         self._drives: dict[str, ServoDrive] = {drive.config.name: drive for drive in devices.drives}
         self._phase = ""
@@ -106,9 +106,9 @@ class Jogging:
             return True
         return any(drive.state > State.READY_TO_SWITCH_ON for drive in self.devices.drives if drive.connected)
 
-    def begin(self, axis: str, way: float, speed: float, *, holds: bool = False) -> Jog:
+    def begin(self, axis: str, way: float, speed: float, *, holds: bool = False) -> JogMove:
         """Begin a jog."""
-        self.jog = Jog(axis, way, speed, holds)
+        self.jog = JogMove(axis, way, speed, holds)
         self._phase = "enable"
         self._since_s = inf
         self._rest = tuple(self.devices.cell.raw)
@@ -118,7 +118,7 @@ class Jogging:
         """Return an axis's drive."""
         return self._drives[axis]
 
-    def rest(self) -> Jog | None:
+    def rest(self) -> JogMove | None:
         """Take the power of an axis that was held; return the jog that is over once it is off."""
         jog = self.jog
         if jog is not None and jog.over and jog.holds:
@@ -166,14 +166,14 @@ class Jogging:
     def _enter(self, phase: str, now: float) -> None:
         self._phase, self._since_s = phase, now
 
-    def _command(self, drive: ServoDrive, jog: Jog, now: float) -> None:
+    def _command(self, drive: ServoDrive, jog: JogMove, now: float) -> None:
         if drive.config.mode == "position":
             most = jog.speed * PRESS_S
             drive.target = drive.actual + max(-most, min(jog.way, most))
         else:
             drive.target = jog.speed if jog.way > 0.0 else -jog.speed
 
-    def _arrived(self, drive: ServoDrive, jog: Jog) -> bool:
+    def _arrived(self, drive: ServoDrive, jog: JogMove) -> bool:
         if drive.config.mode == "position":
             return drive.reached
         ramp = 0.5 * jog.speed * jog.speed / drive.config.deceleration  # what it runs on after the word

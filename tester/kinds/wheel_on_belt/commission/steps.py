@@ -6,8 +6,8 @@ from typing import Any, Final
 
 from tester.commission.part import CommissionPart
 from tester.commission.person import Dialogue
-from tester.commission.step import Notes, Step
-from tester.kinds.wheel_on_belt.commission import contact, identify, jog, thermometer, weights
+from tester.commission.step import CommissionStep, Notes
+from tester.kinds.wheel_on_belt.commission import contact, first, identify, jog, thermometer, weights
 from tester.kinds.wheel_on_belt.commission.armed import ArmedSeat
 from tester.kinds.wheel_on_belt.commission.quiet import QuietSeat
 from tester.kinds.wheel_on_belt.commission.twin import TwinPerson
@@ -17,6 +17,7 @@ from tester.machine.ports import Ports
 _BUS: Final = ("can", "lines", "devices")
 _CELL: Final = ("devices.load_cell", "lines.load_cell")
 _HEAT: Final = ("devices.ir_thermometer", "devices.jacket")
+_ALL: Final = (*_BUS, "axes", "geometry", "limits", "loops", "gates", "interlocks", "arming", "wear", "observer")
 _JOGGED: Final = tuple(f"jog {axis.name}" for axis in jog.AXES)
 
 
@@ -28,11 +29,11 @@ def _armed(rig: Any, ports: Ports, hands: Any) -> ArmedSeat:
     return ArmedSeat(RigConfig.of(rig), ports, hands)
 
 
-def _jog(axis: jog.Axis) -> Step:
+def _jog(axis: jog.JoggedAxis) -> CommissionStep:
     def procedure(seat: QuietSeat, notes: Notes) -> Dialogue:
         return jog.jog_axis(axis, seat, notes)
 
-    return Step(
+    return CommissionStep(
         f"jog {axis.name}",
         f"direction and scale of the {axis.name} axis",
         (f"axes.{axis.name}", *(("geometry",) if axis.name == "press" else ())),
@@ -43,18 +44,22 @@ def _jog(axis: jog.Axis) -> Step:
 
 
 STEPS: Final = (
-    Step("identify", "who is on the wires", (*_BUS, "axes"), (), _quiet, identify.identify),
+    CommissionStep("identify", "who is on the wires", (*_BUS, "axes"), (), _quiet, identify.identify),
     *(_jog(axis) for axis in jog.AXES),
-    Step("cell", "load cell with hung weights", (*_CELL, "limits"), ("identify",), _quiet, weights.calibrate),
-    Step("home", "homing, and whether zero is straight", ("axes.sideslip", "axes.camber", "can", "arming"), _JOGGED,
-         _armed, contact.home),
-    Step("watchdogs", "drives stop by themselves", ("axes", "can", "arming", "devices.jacket"), _JOGGED, _armed,
-         contact.watchdogs),
-    Step("touch", "first touch and tare", ("axes", "geometry", "loops", *_CELL), ("cell", "home"), _armed,
+    CommissionStep("cell", "load cell with hung weights", (*_CELL, "limits"), ("identify",), _quiet, weights.calibrate),
+    CommissionStep("home", "homing, and whether zero is straight", ("axes.sideslip", "axes.camber", "can", "arming"),
+         _JOGGED, _armed, contact.home),
+    CommissionStep("watchdogs", "drives stop by themselves", ("axes", "can", "arming", "devices.jacket"), _JOGGED,
+         _armed, contact.watchdogs),
+    CommissionStep("touch", "first touch and tare", ("axes", "geometry", "loops", *_CELL), ("cell", "home"), _armed,
          contact.touch),
-    Step("rolling", "speed ratio by rolling", ("axes.wheel", "axes.belt", "geometry"), ("touch",), _armed, contact.roll),
-    Step("thermometer", "thermometer against a hub soak", (*_HEAT, "geometry", "observer"), ("home",), _armed,
+    CommissionStep("rolling", "speed ratio by rolling", ("axes.wheel", "axes.belt", "geometry"), ("touch",), _armed,
+         contact.roll),
+    CommissionStep("thermometer", "thermometer against a hub soak", (*_HEAT, "geometry", "observer"), ("home",), _armed,
          thermometer.soak),
+    CommissionStep("directions", "crosstalk and misalignment by both directions of slip", _ALL, ("rolling",),
+         alone=first.directions),
+    CommissionStep("first", "a first condition three times", _ALL, ("rolling", "thermometer"), alone=first.coefficient),
 )  # fmt: skip
 """In the order in which each stands on what the ones before it have shown."""
 

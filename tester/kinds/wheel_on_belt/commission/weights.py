@@ -18,7 +18,7 @@ from math import hypot, sqrt
 from statistics import median
 from typing import Final
 
-from tester.commission.person import Dialogue, Refused, Waits, line, measure
+from tester.commission.person import Dialogue, StepRefused, Waits, line, measure
 from tester.commission.step import Notes
 from tester.kinds.wheel_on_belt.commission.quiet import QuietSeat, mean_cell
 
@@ -41,7 +41,7 @@ the direction of a wire over a pulley within 1 degree 1.5e-4."""
 
 
 @dataclass(slots=True)
-class Channel:
+class HungChannel:
     """The points of one channel: what was hung, N, and what all channels showed above zero, N."""
 
     name: str
@@ -88,17 +88,17 @@ class Channel:
 
 
 def calibrate(seat: QuietSeat, notes: Notes) -> Dialogue:
-    """Hang weights; raises Refused."""
+    """Hang weights; raises StepRefused."""
     most = {"x": seat.rig.limits.load_n, "y": seat.rig.limits.load_n, "z": seat.rig.limits.load_n}
     weights = yield from line(
         "weights certificate", "which weights, with which certificate? Force = mass times local gravity (9.78 to 9.83)"
     )
-    channels: list[Channel] = []
+    channels: list[HungChannel] = []
     zero: list[float] = []
     for name, plan in PLAN.items():
         yield from measure(f"hang {name} 0.0", f"F{name}: hang up hook and wire, no weight yet; type 0", "N")
         zero, _ = yield from mean_cell(seat, AVERAGE_S)
-        channel = Channel(name)
+        channel = HungChannel(name)
         for about in plan:
             if about <= most[name]:
                 yield from _point(seat, notes, channel, about, zero)
@@ -112,11 +112,11 @@ def calibrate(seat: QuietSeat, notes: Notes) -> Dialogue:
     _conclude(notes, channels, zero, weights, due)
 
 
-def _point(seat: QuietSeat, notes: Notes, channel: Channel, about: float, zero: list[float]) -> Dialogue:
+def _point(seat: QuietSeat, notes: Notes, channel: HungChannel, about: float, zero: list[float]) -> Dialogue:
     what = f"F{channel.name}: hang about {about:g} N, wait until it is still, and type its force"
     hung = yield from measure(f"hang {channel.name} {about}", what, "N")
     if not hung > 0.0:
-        raise Refused(f"a weight of {hung:g} N cannot be hung")
+        raise StepRefused(f"a weight of {hung:g} N cannot be hung")
     mean, _ = yield from mean_cell(seat, AVERAGE_S)
     shown = (mean[0] - zero[0], mean[1] - zero[1], mean[2] - zero[2])
     channel.hung_n.append(hung)
@@ -124,7 +124,7 @@ def _point(seat: QuietSeat, notes: Notes, channel: Channel, about: float, zero: 
     notes.read(f"F{channel.name} {about:g} N", {"hung_n": hung, "shown_n": list(shown)})
 
 
-def _again(notes: Notes, channel: Channel, wrong: int) -> Dialogue:
+def _again(notes: Notes, channel: HungChannel, wrong: int) -> Dialogue:
     """Ask once more for a weight that does not fit the others."""
     answer = channel.answering()
     others = [s[answer] / f for i, (f, s) in enumerate(zip(channel.hung_n, channel.shown_n, strict=True)) if i != wrong]
@@ -134,36 +134,36 @@ def _again(notes: Notes, channel: Channel, wrong: int) -> Dialogue:
     channel.hung_n[wrong] = yield from measure(f"retype {channel.name} {seems:.6g}", text, "N")
     notes.read(f"F{channel.name} typed again", {"before_n": typed, "hung_n": channel.hung_n[wrong]})
     if channel.typed_wrongly() >= 0:
-        raise Refused(
+        raise StepRefused(
             f"F{channel.name}: the weight typed as {typed:g} N does not fit the others (it was about {seems:.1f} N):"
             " a weight was typed wrongly, or something bears on the cell"
         )
 
 
-def _judge(channel: Channel) -> None:
-    """Raise Refused for a channel that is not wired, scaled or mounted as the rig file says."""
+def _judge(channel: HungChannel) -> None:
+    """Raise StepRefused for a channel that is not wired, scaled or mounted as the rig file says."""
     slopes, own, name = channel.slopes(), channel.own, channel.name
     answer = channel.answering()
     if answer != own and abs(slopes[answer]) > CROSSED_SHARE:
-        raise Refused(
+        raise StepRefused(
             f"load cell channels are swapped: a weight on F{name} shows on F{CHANNELS[answer]}"
             f" ({slopes[answer]:+.2f} N/N). Change the wires at the transmitter, or the profile's addresses"
         )
     gain = slopes[own]
     if gain < 0.0:
-        raise Refused(
+        raise StepRefused(
             f"the sign of the load cell's F{name} is reversed: a weight shows {gain:+.3f} N/N."
             " Swap its signal wires, or its sign at the transmitter"
         )
     if not abs(gain - 1.0) <= GAIN_SHARE:
-        raise Refused(
-            f"gain of the load cell's F{name}: {gain:.4f} N shown for each N hung, more than {100 * GAIN_SHARE:g} % off."
+        raise StepRefused(
+            f"gain of the load cell's F{name}: {gain:.4f} N shown for each N hung, beyond {100 * GAIN_SHARE:g} %."
             f" Multiply the channel's sensitivity at the transmitter (mV/V at full load) by {gain:.5f}, or the scale of"
             f" its signal in the profile by {1 / gain:.5f}"
         )
     for place, slope in enumerate(slopes):
         if place != own and abs(slope) > COUPLING_SHARE:
-            raise Refused(
+            raise StepRefused(
                 f"F{CHANNELS[place]} shows {100 * slope:+.1f} % of a force on F{name}, more than"
                 f" {100 * COUPLING_SHARE:g} %: crosstalk, or the cell is mounted {57.3 * abs(slope):.1f} degrees off"
             )
@@ -180,7 +180,7 @@ def _due() -> Generator[Waits, str, str]:
             text = f'"{found}" is no date such as 2027-01-31; until which day does it count?'
 
 
-def _conclude(notes: Notes, channels: list[Channel], zero: list[float], weights: str, due: str) -> None:
+def _conclude(notes: Notes, channels: list[HungChannel], zero: list[float], weights: str, due: str) -> None:
     """Say and keep what was found, and the lines for the rig file."""
     by_name = {channel.name: channel for channel in channels}
     gains = {name: channel.slopes()[channel.own] for name, channel in by_name.items()}
@@ -206,4 +206,5 @@ def _conclude(notes: Notes, channels: list[Channel], zero: list[float], weights:
     notes.tell("  for the rig file, section calibration:")
     notes.tell(f'    load_cell: "{due}"')
     notes.tell("    overdue: refuse               # or warn")
-    notes.tell(f"    cell_sensitivity: {100 * found:.3f} %     # Fx/Fz off by {100 * ratio:+.3f} %, with its uncertainty")
+    notes.tell("    record: ...                   # what stands behind \"on record\", below")
+    notes.tell(f"    cell_sensitivity: {100 * found:.3f} %     # Fx/Fz off by {100 * ratio:+.3f} %, and how sure")

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, fields, make_dataclass
-from typing import TYPE_CHECKING, Annotated, Any, Final
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Final
 
 from drivers.axis import AxisConfig
 from sim.physics.parameters import ThermalParameters, WheelParameters
@@ -240,11 +240,17 @@ class WearConfig:
 
 @dataclass(frozen=True, slots=True)
 class CertificatesConfig(CalibrationConfig):
-    """The sensors that have a certificate."""
+    """The sensors that have a certificate, and what hung weights have shown of the load cell."""
+
+    certificates: ClassVar[tuple[str, ...]] = ("load_cell", "thermometer", "jacket")
 
     load_cell: str = ""
     thermometer: str = ""
     jacket: str = ""
+    cell_sensitivity: Annotated[float, "1", Range(ge=0.0, le=0.05)] = 0.0
+    """Of Fx over Fz, as found and with its standard uncertainty (commission.weights); 0: not in the budget."""
+    record: str = ""
+    """Name of the entry that says so: the SHA-256 of the step ``cell`` in the record of the commissioning."""
 
 
 @dataclass(frozen=True, slots=True)

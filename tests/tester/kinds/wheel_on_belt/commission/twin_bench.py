@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import Any
 
 from sim.machines.wheel_on_belt.rig import WheelRig
-from tester.commission.engine import Commissioning, Outcome
-from tester.commission.record import Record
-from tester.commission.step import Step
+from tester.commission.engine import Commissioning, CommissionOutcome
+from tester.commission.record import CommissionRecord
+from tester.commission.step import CommissionStep
 from tester.kinds.wheel_on_belt.commission.steps import STEPS
 from tester.kinds.wheel_on_belt.commission.twin import TwinPerson
 from tester.kinds.wheel_on_belt.rig import RigConfig
@@ -54,7 +54,7 @@ class Bench:
         machine: RigConfig | None = None,
         built: Callable[[WheelRig], None] = nothing,
         person: TwinPerson | None = None,
-        steps: tuple[Step, ...] = STEPS,
+        steps: tuple[CommissionStep, ...] = STEPS,
         run_recipe: Callable[[str, str], Mapping[str, Any]] = no_recipe,
     ) -> None:
         """``machine``: what it is really like, ``rig`` unless it says; ``built``: what was done to it."""
@@ -79,15 +79,15 @@ class Bench:
         self.person.at(hands)
         return ports, world, hands
 
-    def run(self) -> Outcome:
+    def run(self) -> CommissionOutcome:
         """Commission."""
-        self.record = Record(self.path, Clock(), "a test")
+        self.record = CommissionRecord(self.path, Clock(), "a test")
         self.walk = Commissioning(
             self.steps, self.rig, self.person, self.record, self.connect, self.run_recipe
         )
         return self.walk.run()
 
 
-def named(*names: str) -> tuple[Step, ...]:
+def named(*names: str) -> tuple[CommissionStep, ...]:
     """Return some steps by name."""
     return tuple(step for step in STEPS if step.name in names)

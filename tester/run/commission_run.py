@@ -1,0 +1,121 @@
+"""A recipe that is run within a commissioning: a run like any other, its results handed back as plain data."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from math import inf, isfinite
+from pathlib import Path
+from typing import Any
+
+from tester.analysis.misalignment import misalignment
+from tester.base.keys import FAST_STOP, STOP
+from tester.commission.person import Asks, Person, Question, StepRefused
+from tester.export.results import results_of
+from tester.machine.context import Progress
+from tester.machine.prompts import DONE, Prompt, Prompts
+from tester.run.session import Session, SessionOptions
+from tester.store.reader import RunReader
+
+
+class PersonScreen:
+    """The person of the commissioning as the screen of a run (tester.run.reporter.ReportScreen)."""
+
+    def __init__(self, person: Person, *, answer_yes: bool) -> None:
+        """``answer_yes``: the simulated person does what is asked."""
+        self.person = person
+        self.answer_yes = answer_yes
+        self.can_ask = not answer_yes
+        self.stopped = False
+        self._asked: Prompt | None = None
+        self._title = ""
+
+    def begin(self, name: str) -> None:
+        """Say that it begins."""
+        self.person.tell(f"  run {name}")
+
+    def show(self, now_s: float, run: Progress, share: float) -> None:
+        """Say what the run does, step by step."""
+        if run.title != self._title:
+            self._title = run.title
+            self.person.tell(f"  {100 * min(share, 1.0):3.0f} %  {run.title}")
+
+    def attend(self, prompts: Prompts) -> None:
+        """Put the question that waits, and take its answer."""
+        waiting = prompts.waiting
+        if waiting is None:
+            return
+        if waiting is not self._asked:
+            self._asked = waiting
+            self._put(waiting)
+            return
+        answer = self.person.taken(inf)
+        if answer is None:
+            return
+        if answer.strip() == DONE:
+            waiting.answer = DONE
+        else:
+            self._put(waiting)
+
+    def _put(self, prompt: Prompt) -> None:
+        self.person.put(Question(f"prompt {prompt.number}", prompt.text, Asks.CHOICE, (DONE,)))
+
+    def commands(self) -> list[str]:
+        """Return the stops that were asked for."""
+        found = [one for one in self.person.poll() if one in (STOP.command, FAST_STOP.command)]
+        self.stopped = self.stopped or bool(found)
+        return found
+
+    def end(self) -> None:
+        """Nothing to take away."""
+
+    def message(self, text: str) -> None:
+        """Say it."""
+        self.person.tell(f"  {text}")
+
+    def emit(self, record: dict[str, object]) -> None:
+        """Nobody reads records here."""
+
+    def result(self, line: str) -> None:
+        """The folder goes into the results."""
+
+
+def run_recipe(options: SessionOptions, folder: Path, person: Person, name: str, text: str) -> Mapping[str, Any]:
+    """Run a recipe; ``options`` name the rig. Raises StepRefused where it did not go through, CannotStartError."""
+    folder.mkdir(parents=True, exist_ok=True)
+    path = folder / f"{name}.yaml"
+    path.write_text(text, encoding="utf-8")
+    screen = PersonScreen(person, answer_yes=not person.time_stands and _scripted(person))
+    session = Session(replace(options, recipe=str(path)), screen)
+    code = session.run()
+    ending, where = session.ending, session.folder
+    if ending is None or where is None:
+        raise StepRefused(f"the recipe {name} was not run (exit code {code})")
+    with RunReader(where) as reader:
+        results = results_of(reader)
+        found = [row.result for row in results.rows]
+        rig_s = results.run.rig_seconds
+    if code:
+        why = ending.reason or "a condition is without a value"
+        raise StepRefused(f"the run {where.name} ended with {ending.outcome.value}: {why}")
+    angle = misalignment(found)
+    conditions = [
+        {
+            "mu": one.mu_resultant, "s": _number(one.s), "n": one.n_valid, "expanded": _number(one.expanded),
+            "difference_percent": _number(one.both_ways.difference_percent) if one.both_ways is not None else None,
+        }
+        for one in found
+    ]  # fmt: skip
+    return {
+        "run": where.name, "rig_s": rig_s, "conditions": conditions, "angle_deg": _number(angle.deg),
+        "angle_expanded_deg": _number(angle.expanded_deg),
+    }  # fmt: skip
+
+
+def _scripted(person: Person) -> bool:
+    """Tell whether a person reads a simulated rig: the run then mounts and answers by itself."""
+    return hasattr(person, "at")
+
+
+def _number(value: float) -> float | None:
+    return value if isfinite(value) else None

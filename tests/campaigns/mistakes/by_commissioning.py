@@ -1,0 +1,184 @@
+"""Mistakes that commissioning has to name: a machine that is not what its rig file believes, a person who mistypes.
+
+Each is commissioned on the twin up to the first refusal, in virtual time; a clean rig has to pass every step that has
+the rig on its wires.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from sim.machines.wheel_on_belt.faults.sensors import SpoiledForces, SpoiledTemperature
+from sim.machines.wheel_on_belt.rig import WheelRig
+from sim.noise import NormalStream
+from tester.commission.engine import Ended
+from tester.commission.person import Question
+from tester.kinds.wheel_on_belt.commission.jog import AXES
+from tester.kinds.wheel_on_belt.commission.steps import STEPS
+from tester.kinds.wheel_on_belt.commission.twin import TwinPerson
+from tester.kinds.wheel_on_belt.rig import RigConfig
+from tests.campaigns.mistakes.mistake import Mistake
+from tests.tester.kinds.wheel_on_belt.commission.twin_bench import Bench, believed
+
+Built = Callable[[WheelRig], None]
+
+
+def _found(bench: Bench) -> list[str]:
+    outcome = bench.run()
+    return [] if outcome.ended is Ended.DONE else [f"{outcome.step}: {outcome.text}"]
+
+
+def look(
+    seed: int,
+    *,
+    steps: tuple[str, ...] = (),
+    machine: RigConfig | None = None,
+    rig: RigConfig | None = None,
+    built: Built | None = None,
+    person: TwinPerson | None = None,
+) -> list[str]:
+    """Commission a rig of a seed; return what was found. ``steps``: only these, else all that have the rig on wires."""
+    wanted = tuple(step for step in STEPS if (step.name in steps if steps else step.seat is not None))
+    with TemporaryDirectory() as folder:
+        return _found(
+            Bench(
+                Path(folder) / "record.jsonl",
+                seed,
+                rig=rig,
+                machine=machine,
+                built=built or (lambda world: None),
+                person=person,
+                steps=wanted,
+            )
+        )
+
+
+def scaled(name: str, factor: float) -> RigConfig:
+    """Return a machine whose axis goes ``factor`` times as far as the rig file says."""
+    rig = believed()
+    axis = rig.axes.driven()[name]
+    new = replace(
+        axis,
+        velocity_increments=axis.velocity_increments / factor,
+        position_increments=axis.position_increments / factor,
+    )
+    return replace(rig, axes=replace(rig.axes, **{name: new}))
+
+
+def without_deadline(name: str) -> RigConfig:
+    """Return a rig whose drive waits for setpoints for ever: what its file may say only with a risk accepted."""
+    rig = believed()
+    new = replace(rig.axes.driven()[name], rpdo_deadline_s=0.0)
+    return replace(rig, axes=replace(rig.axes, **{name: new}))
+
+
+def reverse(name: str, world: WheelRig) -> None:
+    """Let an axis move the wrong way round."""
+    if name == "wheel":
+        world.plant.wheel_speed.factor *= -1.0
+    elif name == "belt":
+        world.plant.belt_speed.factor *= -1.0
+    else:
+        world.turned.add(name)
+
+
+def cross(kind: str, world: WheelRig) -> None:
+    """Cross the wires of the load cell (sim.machines.wheel_on_belt.faults.sensors.CROSSED)."""
+    world.cell.source = SpoiledForces(world.cell.source, kind, 0.0, 0.0, NormalStream(0, "unused"))
+
+
+def gain(percent: float, world: WheelRig) -> None:
+    """Let the load cell's Fz have another gain."""
+    world.cell.source = SpoiledForces(world.cell.source, "gain", percent, 0.0, NormalStream(0, "unused"))
+
+
+def see(kind: str, size: float, world: WheelRig) -> None:
+    """Let the thermometer show something else: ``gain`` is what a wrong emissivity does, per cent of the excess."""
+    world.ir.source = SpoiledTemperature(world.ir.source, kind, size, 0.0, 23.0, NormalStream(0, "unused"))
+
+
+def swap(world: WheelRig) -> None:
+    """Connect the motors of wheel and belt to each other's drives."""
+    world.swapped = True
+
+
+def grow(share: float, world: WheelRig) -> None:
+    """Put wheels on of another diameter."""
+    world.plant.set_size(share)
+
+
+def deafen(name: str, world: WheelRig) -> None:
+    """Let a drive take its heartbeat consumer and not watch it."""
+    drive = world.axes[name]
+    drive.store.hooks.pop(DEAF, None)
+
+
+DEAF = 0x1016
+"""Consumer heartbeat time (CiA 301)."""
+
+
+class Mistypes(TwinPerson):
+    """Types a weight ten times too great, and again when asked."""
+
+    def answer(self, question: Question) -> str:
+        said = super().answer(question)
+        if question.key == "hang z 200.0" or question.key.startswith("retype z"):
+            return "2000"
+        return said
+
+
+class Uncalibrated(TwinPerson):
+    """Reads the belt's ruler in centimetres."""
+
+    def answer(self, question: Question) -> str:
+        said = super().answer(question)
+        return f"{0.1 * float(said):.3f}" if question.key == "jog belt whole read" else said
+
+
+def _mistakes() -> tuple[Mistake, ...]:
+    found: list[Mistake] = []
+    for axis in AXES:
+        name, only = axis.name, (f"jog {axis.name}",)
+        found.append(Mistake(f"{name} axis reversed", rf"the {name} axis is reversed",
+                             partial(look, steps=only, built=partial(reverse, name))))
+        for factor in (1.1, 2.0, 10.0) if name in ("wheel", "belt", "press") else (1.1,):
+            found.append(Mistake(f"{name} scale x {factor:g}", rf"scale of the {name} axis",
+                                 partial(look, steps=only, machine=scaled(name, factor))))
+    cell = partial(look, steps=("cell",))
+    found += [
+        Mistake("wheel and belt drives swapped", r"node ids or motors are swapped|not the one that moves",
+                partial(look, steps=("jog wheel",), built=swap)),
+        Mistake("cell channels swapped", r"channels are swapped", partial(cell, built=partial(cross, "exchanged x z"))),
+        *(Mistake(f"cell sign of F{c} reversed", rf"sign of the load cell's F{c} is reversed",
+                  partial(cell, built=partial(cross, f"reversed {c}"))) for c in "xyz"),
+        Mistake("cell gain 10 % off", r"gain of the load cell's Fz", partial(cell, built=partial(gain, 110.0))),
+        Mistake("a weight typed ten times too great", r"the weight typed as 2000 N does not fit",
+                lambda seed: look(seed, steps=("cell",), person=Mistypes())),
+        Mistake("a ruler read in centimetres", r"scale of the belt axis",
+                lambda seed: look(seed, steps=("jog belt",), person=Uncalibrated())),
+        Mistake("wheel diameter 5 % off", r"wheel diameter",
+                partial(look, steps=("touch",), built=partial(grow, 1.05))),
+        Mistake("belt roller 0.9 % off, within the jog's tolerance", r"speed ratio",
+                partial(look, steps=("rolling",), machine=scaled("belt", 1.009 * 1.003))),
+        Mistake("emissivity 0.95 of a tread with 0.76", r"emissivity",
+                partial(look, steps=("thermometer",), built=partial(see, "gain", 80.0))),
+        Mistake("thermometer offset of 4 K", r"thermometer offset",
+                partial(look, steps=("thermometer",), built=partial(see, "offset", 4.0))),
+        Mistake("heartbeat watchdog of the belt drive not armed", r"belt drive did not stop with EMCY 0x8130",
+                partial(look, steps=("watchdogs",), built=partial(deafen, "belt"))),
+        Mistake("no deadline for setpoints", r"no deadline for setpoints.*belt",
+                lambda seed: look(seed, steps=("watchdogs",), rig=without_deadline("belt"))),
+    ]  # fmt: skip
+    return tuple(found)
+
+
+MISTAKES: tuple[Mistake, ...] = _mistakes()
+
+
+def clean(seed: int) -> list[str]:
+    """Return what is said of a rig without a mistake: nothing."""
+    return look(seed)

@@ -1,0 +1,130 @@
+"""`tester commission`: at a terminal with real keys, by the simulated person, and its list."""
+
+from __future__ import annotations
+
+import os
+import sys
+from pathlib import Path
+
+import pytest
+
+from tester.cli.commission_person import TerminalPerson
+from tester.cli.main import invoke
+from tester.commission.engine import Ended
+from tester.commission.person import Question
+from tester.kinds.wheel_on_belt.commission.twin import TwinPerson
+from tests.tester.kinds.wheel_on_belt.commission.twin_bench import Bench, named
+
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="pseudo-terminals are POSIX")
+
+
+class AtKeys(TerminalPerson):
+    """A terminal at whose keyboard the simulated person types: keys go through a real pseudo-terminal."""
+
+    def __init__(self, twin: TwinPerson, master: int, slave: int) -> None:
+        from tester.cli.keys import keys_of
+
+        self.stream = os.fdopen(slave, "r")
+        super().__init__(time_stands=True, keys=keys_of(self.stream))
+        self.twin = twin
+        self.master = master
+        self.to_type = b""
+        self.said: list[str] = []
+
+    def at(self, hands: object) -> None:
+        self.twin.at(hands)  # type: ignore[arg-type]
+
+    def tell(self, text: str) -> None:
+        self.said.append(text)
+
+    def put(self, question: Question) -> None:
+        super().put(question)
+        self.twin.asked.append(question)
+        self.twin.prepare(question)
+        self.to_type = (self.twin.answer(question) + "\r").encode()
+
+    def poll(self) -> list[str]:
+        typed, self.to_type = self.to_type, b""
+        if typed:
+            os.write(self.master, typed)
+        return super().poll()
+
+
+def at_keys(tmp_path: Path, *steps: str) -> tuple[Bench, AtKeys]:
+    import pty
+
+    master, slave = pty.openpty()
+    bench = Bench(tmp_path / "r.jsonl", steps=named(*steps))
+    person = AtKeys(bench.person, master, slave)
+    bench.person = person  # type: ignore[assignment]
+    person.begin()
+    return bench, person
+
+
+def test_a_person_commissions_with_real_keys(tmp_path: Path) -> None:
+    bench, person = at_keys(tmp_path, "identify", "jog belt", "cell", "touch")
+    try:
+        outcome = bench.run()
+    finally:
+        person.end()
+    assert outcome.ended is Ended.DONE, outcome
+    assert any("direction right" in text for text in person.said)
+
+
+def test_a_word_that_is_no_answer_is_asked_for_again(tmp_path: Path) -> None:
+    bench, person = at_keys(tmp_path, "identify")
+    wrong = [b"perhaps\r", b"Yes\r"]
+    put = person.put
+
+    def once_wrong(question: Question) -> None:
+        put(question)
+        if wrong:
+            person.to_type = wrong.pop()
+
+    person.put = once_wrong  # type: ignore[method-assign]
+    try:
+        assert bench.run().ended is Ended.DONE
+    finally:
+        person.end()
+    assert person.said.count("expected one of: yes, no") == 2
+
+
+@pytest.mark.parametrize("key", [b"\x18", b"\x1b[24~", b"\x06"])
+def test_a_stop_key_stops_while_a_question_stands(tmp_path: Path, key: bytes) -> None:
+    bench, person = at_keys(tmp_path, "jog belt")
+    put = person.put
+
+    def stopping(question: Question) -> None:
+        put(question)
+        if question.key == "jog belt whole read":
+            person.to_type = key
+
+    person.put = stopping  # type: ignore[method-assign]
+    try:
+        outcome = bench.run()
+    finally:
+        person.end()
+    assert outcome.ended is Ended.STOPPED
+    assert bench.world is not None and not any(drive.energised for drive in bench.world.axes.values())
+
+
+def test_nobody_at_the_terminal_is_said(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    assert invoke(["commission", "sim", "--out", str(tmp_path)]) == 2
+    assert "nobody is at this terminal" in capfd.readouterr().err
+
+
+def test_the_list_says_what_is_to_be_done(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    assert invoke(["commission", "sim", "--list", "--out", str(tmp_path)]) == 0
+    assert "jog wheel        to be done" in capfd.readouterr().out
+
+
+@pytest.mark.campaign
+@pytest.mark.parametrize("seed", range(5))
+def test_the_whole_way_takes_less_than_half_an_hour_of_rig_time(
+    tmp_path: Path, seed: int, capfd: pytest.CaptureFixture[str]
+) -> None:
+    assert invoke(["commission", "sim", "--yes", "--seed", str(seed), "--out", str(tmp_path)]) == 0
+    said = capfd.readouterr().err
+    assert "passed: coefficient" in said
+    minutes = float(said.rsplit(";", 1)[1].split()[0])
+    assert minutes < 30
