@@ -53,17 +53,16 @@ COMMANDS: dict[str, CommandEntry] = {
     "report": CommandEntry("tester.cli.report_command", "report", "Write a run's results as a page to send and print."),
     "slip-ring": CommandEntry("tester.cli.slip_ring_command", "slip_ring", "Errors of the slip ring, and their trend."),
     "predict": CommandEntry("tester.cli.predict_command", "predict", "The friction model's value for one condition."),
-    "sim": CommandEntry("tester.cli.sim_command", "sim", "A simulated rig in real time, on CAN and Modbus over TCP."),
-    "eds": CommandEntry("tester.cli.eds_command", "eds", "Hold a drive's data sheet against what an axis needs."),
+    "sim": CommandEntry("tester.cli.sim_command", "sim", "A simulated rig in real time, on CAN and Modbus."),
+    "rig": CommandEntry("tester.cli.rig_commands", "rig", "Write or show a rig file."),
     "doctor": CommandEntry("tester.cli.doctor_command", "doctor", "Look at a rig: what is wrong, and what to do."),
-    "sdo": CommandEntry("tester.cli.device_commands", "sdo", "Read an object of a CANopen node, or write one."),
-    "params": CommandEntry("tester.cli.device_commands", "params", "What devices are set to: dump it, or compare it."),
     "commission": CommandEntry(
         "tester.cli.commission_command", "commission", "Guide a new rig to its first trusted coefficient."
     ),
-    "sim": CommandEntry("tester.cli.sim_command", "sim", "A simulated rig in real time, on CAN and Modbus."),
+    "eds": CommandEntry("tester.cli.eds_command", "eds", "Hold a drive's data sheet against what an axis needs."),
+    "sdo": CommandEntry("tester.cli.device_commands", "sdo", "Read an object of a CANopen node, or write one."),
+    "params": CommandEntry("tester.cli.device_commands", "params", "What devices are set to: dump it, or compare it."),
     "record": CommandEntry("tester.cli.record_command", "record", "Write down the frames of live wires."),
-    "rig": CommandEntry("tester.cli.rig_commands", "rig", "Write or show a rig file."),
     "schema": CommandEntry("tester.cli.recipe_commands", "schema", "Print the JSON Schema of recipes."),
 }
 """The commands in the order of the help page. A test holds every entry against the module it names."""
