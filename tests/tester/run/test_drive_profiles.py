@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
 
 from drivers.drives.reader import GENERIC, drive_profile_names
 from tester.base.source import InvalidSource
-from tester.cli.main import invoke
 from tester.kinds import load_rig
 from tester.machine.run import Outcome
 from tests.tester.kinds.wheel_on_belt.bench import SHORT, Simulation
@@ -57,4 +58,7 @@ def test_what_every_drive_refuses_is_told_at_once() -> None:
 @pytest.mark.parametrize("profile", PROFILES)
 def test_the_quickstart_runs_with_every_profile(profile: str, seed: int, tmp_path: Path) -> None:
     arguments = [part for one in overrides(profile) for part in ("--set", one)]
-    assert invoke(["run", "quickstart", "--seed", str(seed), "--yes", "--out", str(tmp_path), *arguments]) == 0
+    program = [sys.executable, "-c", "from tester.cli.main import main; main()"]
+    command = [*program, "run", "quickstart", "--seed", str(seed)]
+    done = subprocess.run([*command, "--yes", "--out", str(tmp_path), *arguments], capture_output=True, check=False)
+    assert done.returncode == 0, done.stderr.decode()
