@@ -17,12 +17,13 @@ ABSENT = ("termios", "tty", "pty", "fcntl", "resource", "pwd", "grp", "syslog", 
 """Modules of the standard library that Windows does not have."""
 WITHOUT = f"""
 import os, socket, sys
+import filelock  # it has a lock of Windows' own; without fcntl, elsewhere, it has none that is held
 for name in {ABSENT!r}:
     sys.modules[name] = None  # every import of it fails
 for name in ("AF_UNIX", "SO_REUSEPORT", "AF_CAN", "PF_CAN", "CAN_RAW"):
     if hasattr(socket, name):
         delattr(socket, name)
-for name in ("fork", "openpty", "getuid", "geteuid", "setsid", "killpg", "sched_setscheduler", "sched_getscheduler",
+for name in ("fork", "openpty", "setsid", "killpg", "sched_setscheduler", "sched_getscheduler",
              "sched_param", "SCHED_RR", "sched_setaffinity", "wait4", "mkfifo", "tcgetpgrp"):
     if hasattr(os, name):
         delattr(os, name)
