@@ -86,7 +86,9 @@ def _refuse(
     found, refused = refusals([blocks[i] for i in positions], revolutions, seconds)
     singles = iter(found.repeats)
     for position, index in enumerate(positions):
-        one = refused[position] if position in refused else next(singles)
+        one = refused[position] if position in refused else next(singles, None)
+        if one is None:
+            continue  # too little was measured for a fit: nothing is known of its drift
         judged[index] = replace(judged[index], drift_percent=one.drift_percent, bound_percent=one.bound_percent)
         if position in refused:
             judged[index] = replace(judged[index], status=RepeatStatus.REFUSED, reason=one.reason)

@@ -57,6 +57,13 @@ def test_a_repeat_that_drifts_is_refused_with_its_reason_and_keeps_its_value() -
     assert found.flags == ""
 
 
+def test_repeats_with_too_few_blocks_for_a_fit_are_kept_and_their_drift_is_not_shown() -> None:
+    repeats = [repeat(seed)[:2] for seed in (1, 2, 3)]
+    results, found = judge([result_of(one) for one in repeats], repeats, 3, 3, None)
+    assert all(result.valid for result in results)
+    assert NOT_SHOWN in flags_in(found.flags)
+
+
 def test_repeats_carry_the_drift_of_the_common_fit() -> None:
     before = [result_of(repeat(seed)) for seed in (1, 2, 3)]
     after, _ = judged([repeat(seed) for seed in (1, 2, 3)])
