@@ -64,6 +64,7 @@ HOT = (
     "tester/kinds/specimen_on_track/interlocks/*.py",
     "tester/kinds/specimen_on_track/procedures/*.py",
     "tester/kinds/specimen_on_track/process.py",
+    "tester/kinds/wheel_on_belt/commission/moves.py",
     "tester/kinds/wheel_on_belt/context.py",
     "tester/kinds/wheel_on_belt/control/*.py",
     "tester/kinds/wheel_on_belt/devices.py",

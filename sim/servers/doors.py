@@ -32,7 +32,7 @@ class Place:
         return f"{self.at} ({self.speaks})"
 
 
-class Door(Protocol):
+class WireDoor(Protocol):
     """One wire of the rig, open to other programs. No method waits, and none raises for what a client does."""
 
     @property

@@ -16,7 +16,7 @@ from typing import Protocol
 from sim.rig import SHORTEST_STEP_S, SimRig
 from sim.servers.adapter_door import AdapterDoor
 from sim.servers.connection import listen
-from sim.servers.doors import CAN_DOORS, Door, Doors, Place, Readable
+from sim.servers.doors import CAN_DOORS, Doors, Place, Readable, WireDoor
 from sim.servers.pty_doors import RtuDoor, SlcanDoor
 from sim.servers.tcp_doors import GatewayDoor, SocketcandDoor, address_of
 
@@ -71,7 +71,7 @@ class RigServer:
         with ExitStack() as opened:
             self.can, self.lines = _open(rig, doors or Doors(host=host, port=port), opened)
             opened.pop_all()
-        self._doors: list[Door] = [self.can, *self.lines.values()]
+        self._doors: list[WireDoor] = [self.can, *self.lines.values()]
         self._step_due_s = 0.0
 
     @property
@@ -92,7 +92,7 @@ class RigServer:
         """Where each Modbus line is."""
         return {name: door.place for name, door in self.lines.items()}
 
-    def add(self, door: Door) -> None:
+    def add(self, door: WireDoor) -> None:
         """Serve one more door, which is shut with the others."""
         self._doors.append(door)
 
@@ -144,10 +144,10 @@ class RigServer:
         return min(due, min((door.due_s for door in self._doors), default=inf))
 
 
-def _open(rig: SimRig, doors: Doors, opened: ExitStack) -> tuple[Door, dict[str, Door]]:
+def _open(rig: SimRig, doors: Doors, opened: ExitStack) -> tuple[WireDoor, dict[str, WireDoor]]:
     """Open the doors of a rig: all of them or none."""
 
-    def kept(door: Door) -> Door:
+    def kept(door: WireDoor) -> WireDoor:
         opened.callback(door.close)
         return door
 
@@ -155,7 +155,7 @@ def _open(rig: SimRig, doors: Doors, opened: ExitStack) -> tuple[Door, dict[str,
         return doors.port + number if doors.port else 0
 
     links = Path(doors.links) if doors.links else None
-    can: Door
+    can: WireDoor
     if doors.can == "tcp":
         can = kept(SocketcandDoor(rig.can, listen(doors.host, at(0))))
     elif doors.can == "slcan":
@@ -166,7 +166,7 @@ def _open(rig: SimRig, doors: Doors, opened: ExitStack) -> tuple[Door, dict[str,
             known = ", ".join(CAN_DOORS)
             raise ValueError(f"{doors.can!r} is no door of the CAN bus; expected {known} or INTERFACE:CHANNEL")
         can = kept(AdapterDoor(rig.can, interface, channel))
-    lines: dict[str, Door] = {}
+    lines: dict[str, WireDoor] = {}
     for number, (name, wire) in enumerate(rig.lines.items(), 1):
         if doors.lines == "tcp":
             lines[name] = kept(GatewayDoor(wire, listen(doors.host, at(number))))

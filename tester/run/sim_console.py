@@ -131,7 +131,7 @@ class _NotHere:
         """Do nothing."""
 
 
-class Console:
+class SimConsole:
     """Answers commands: ``command`` takes a line and the rig's time, and returns the lines of the answer.
 
     ``ended`` is set by ``end``. What begins and ends by itself is told to ``say``.

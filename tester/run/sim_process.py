@@ -26,7 +26,7 @@ from tester.rig.reach import reached
 from tester.run.bus_log import BusLog
 from tester.run.kinds import run_parts
 from tester.run.rigs import load_rig
-from tester.run.sim_console import Console, RigClock, SpoiledLife
+from tester.run.sim_console import RigClock, SimConsole, SpoiledLife
 from tester.run.simulated import simulated_ports
 
 SHOWN_EVERY_S = 1.0
@@ -103,7 +103,7 @@ def run_sim(options: SimOptions, say: Callable[[str], None], show: Callable[[str
             state_log = StateLog(options.log, rig_clock, machine)
             stack.callback(state_log.close)
         life = SpoiledLife(rig)
-        console = Console(life, machine, rig, rig_clock)
+        console = SimConsole(life, machine, rig, rig_clock)
         server = RigServer(rig, "", 0, doors=options.doors)
         stack.callback(server.close)
         server.life = life
@@ -133,7 +133,7 @@ class _Observers:
         self,
         server: RigServer,
         rig_clock: RigClock,
-        console: Console,
+        console: SimConsole,
         state_log: StateLog | None,
         say: Callable[[str], None],
         show: Callable[[str], None] | None,

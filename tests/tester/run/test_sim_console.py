@@ -11,7 +11,7 @@ from drivers.ports import BusLost
 from sim import machines
 from sim.faults.can import FaultyCanWire
 from tester.kinds import load_rig
-from tester.run.sim_console import HELP, Console, RigClock, SpoiledLife
+from tester.run.sim_console import HELP, RigClock, SimConsole, SpoiledLife
 from tester.run.simulated import simulated_ports
 
 
@@ -34,7 +34,7 @@ class Bench:
         self.computer = Computer()
         self.clock = RigClock(now=self.computer)
         machine = machines.find("wheel_on_belt" if name == "sim" else "specimen_on_track")
-        self.console = Console(self.life, machine, self.rig, self.clock)
+        self.console = SimConsole(self.life, machine, self.rig, self.clock)
         self.heard: list[tuple[float, int]] = []
 
     def live(self, until_s: float) -> None:

@@ -72,11 +72,27 @@ def test_without_a_run_nothing_is_claimed_of_it() -> None:
 @pytest.mark.parametrize(
     ("calibration", "ok", "words"),
     [
-        (CertificatesConfig("2027-01-31", "2027-02-28", "2027-03-31"), True, "in date until 2027-01-31"),
-        (CertificatesConfig("2026-02-28", "2027-02-28", "2027-03-31"), False, "load cell ended 2026-02-28"),
-        (CertificatesConfig("2026-03-20", "2027-02-28", "2027-03-31"), True, "load cell ends 2026-03-20"),
-        (CertificatesConfig("2027-01-31"), None, "not in the rig file: thermometer, jacket"),
-        (CertificatesConfig("2026-03-01", "2027-02-28", "2027-03-31"), True, "load cell ends 2026-03-01"),
+        (
+            CertificatesConfig(load_cell="2027-01-31", thermometer="2027-02-28", jacket="2027-03-31"),
+            True,
+            "in date until 2027-01-31",
+        ),
+        (
+            CertificatesConfig(load_cell="2026-02-28", thermometer="2027-02-28", jacket="2027-03-31"),
+            False,
+            "load cell ended 2026-02-28",
+        ),
+        (
+            CertificatesConfig(load_cell="2026-03-20", thermometer="2027-02-28", jacket="2027-03-31"),
+            True,
+            "load cell ends 2026-03-20",
+        ),
+        (CertificatesConfig(load_cell="2027-01-31"), None, "not in the rig file: thermometer, jacket"),
+        (
+            CertificatesConfig(load_cell="2026-03-01", thermometer="2027-02-28", jacket="2027-03-31"),
+            True,
+            "load cell ends 2026-03-01",
+        ),
     ],
 )
 def test_a_certificate_is_held_against_the_date(calibration: CertificatesConfig, ok: bool | None, words: str) -> None:

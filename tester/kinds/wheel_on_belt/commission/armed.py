@@ -6,43 +6,21 @@ Control, interlocks, limits and stops are those of a run: here is only who says 
 from __future__ import annotations
 
 from math import nan
-from typing import Any, Final
+from typing import Any
 
 from drivers.ports import BusLost
 from tester.commission.person import Dialogue
 from tester.kinds.wheel_on_belt.build import build_run
+from tester.kinds.wheel_on_belt.commission.moves import COMMISSIONING, MovesExecutor
 from tester.kinds.wheel_on_belt.context import Context
 from tester.kinds.wheel_on_belt.control.permissives import rig_bounds
 from tester.kinds.wheel_on_belt.recipe.steps import WheelPlan
 from tester.kinds.wheel_on_belt.rig import RigConfig
-from tester.machine.activity import Activity, MoveFailedError
-from tester.machine.executor import Executor, Procedures
+from tester.machine.activity import Activity
 from tester.machine.ports import Ports
 from tester.machine.prompts import Prompts
 from tester.machine.state import Mode
 from tester.store.recorder import NullRecorder
-
-NAME: Final = "commissioning"
-
-
-class MovesExecutor(Executor[Any]):
-    """Serves one activity after the other, as a procedure hands them in; between two the demand stays."""
-
-    def __init__(self) -> None:
-        """Nothing is wanted."""
-        super().__init__(WheelPlan(NAME, (), (), 1), Procedures())
-        self.watch: Activity[Context] | None = None
-
-    def step(self, ctx: Context) -> None:
-        """Advance the activity in progress."""
-        if self.activity is None:
-            return
-        try:
-            if self.activity.step(ctx):
-                self.activity = None
-        except MoveFailedError as failed:
-            self.failed = str(failed)
-            self.finished = True
 
 
 class ArmedSeat:
@@ -52,7 +30,7 @@ class ArmedSeat:
         """Nothing is sent; the simulated rig gets a new wheel."""
         self.rig = rig
         self.hands = hands
-        self.run = build_run(rig, WheelPlan(NAME, (), (), 1), ports, hands, NullRecorder(), Prompts())
+        self.run = build_run(rig, WheelPlan(COMMISSIONING, (), (), 1), ports, hands, NullRecorder(), Prompts())
         self.executor = MovesExecutor()
         engine = self.run.engine
         engine.executor = self.executor

@@ -7,6 +7,7 @@ from typing import Any, Final
 from tester.commission.part import CommissionPart
 from tester.commission.person import Dialogue
 from tester.commission.step import CommissionStep, Notes
+from tester.kinds.wheel_on_belt.axes import POSITIONED
 from tester.kinds.wheel_on_belt.commission import contact, first, identify, jog, thermometer, weights
 from tester.kinds.wheel_on_belt.commission.armed import ArmedSeat
 from tester.kinds.wheel_on_belt.commission.quiet import QuietSeat
@@ -18,6 +19,7 @@ _BUS: Final = ("can", "lines", "devices")
 _CELL: Final = ("devices.load_cell", "lines.load_cell")
 _HEAT: Final = ("devices.ir_thermometer", "devices.jacket")
 _ALL: Final = (*_BUS, "axes", "geometry", "limits", "loops", "gates", "interlocks", "arming", "wear", "observer")
+_HOMED: Final = tuple(f"axes.{axis.name}" for axis in POSITIONED)
 _JOGGED: Final = tuple(f"jog {axis.name}" for axis in jog.AXES)
 
 
@@ -47,7 +49,7 @@ STEPS: Final = (
     CommissionStep("identify", "who is on the wires", (*_BUS, "axes"), (), _quiet, identify.identify),
     *(_jog(axis) for axis in jog.AXES),
     CommissionStep("cell", "load cell with hung weights", (*_CELL, "limits"), ("identify",), _quiet, weights.calibrate),
-    CommissionStep("home", "homing, and whether zero is straight", ("axes.sideslip", "axes.camber", "can", "arming"),
+    CommissionStep("home", "homing, and whether zero is straight", (*_HOMED, "can", "arming"),
          _JOGGED, _armed, contact.home),
     CommissionStep("watchdogs", "drives stop by themselves", ("axes", "can", "arming", "devices.jacket"), _JOGGED,
          _armed, contact.watchdogs),

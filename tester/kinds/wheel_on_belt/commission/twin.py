@@ -10,6 +10,7 @@ from math import inf
 from typing import Any, Final, Protocol
 
 from tester.commission.person import GO, Asks, Question
+from tester.kinds.wheel_on_belt.commission.jog import AXES as JOGGED
 
 THINKS_S: Final = 15.0
 """Rig time of an answer for which something is read or hung, s [A]."""
@@ -120,7 +121,6 @@ class TwinPerson:
             return f"{moved:.2f}"
         if "direction" in question.key:
             if abs(moved) < 1e-6:
-                others = ("wheel", "belt", "press", "sideslip", "camber")
-                return "other" if any(abs(self.hands.ruler(one)) > 1e-6 for one in others) else "nothing"
+                return "other" if any(abs(self.hands.ruler(one.name)) > 1e-6 for one in JOGGED) else "nothing"
             return "yes" if moved > 0.0 else "reversed"
         return question.choices[0]

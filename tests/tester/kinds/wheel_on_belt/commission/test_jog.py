@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
@@ -20,6 +21,17 @@ from tests.tester.kinds.wheel_on_belt.commission.twin_bench import Bench, believ
 NAMES = [axis.name for axis in AXES]
 
 
+def watched(monkeypatch: pytest.MonkeyPatch, look: Callable[[WheelRig], None]) -> None:
+    """Look at the machine at every tick."""
+    advance = WheelRig.advance
+
+    def and_look(world: WheelRig, now: float) -> None:
+        advance(world, now)
+        look(world)
+
+    monkeypatch.setattr(WheelRig, "advance", and_look)
+
+
 def scaled(rig: RigConfig, name: str, factor: float) -> RigConfig:
     """Return a machine whose axis moves ``factor`` times as far as the rig file says: it needs fewer counts."""
     axis = getattr(rig.axes, name)
@@ -31,7 +43,7 @@ def scaled(rig: RigConfig, name: str, factor: float) -> RigConfig:
     return replace(rig, axes=replace(rig.axes, **{name: new}))
 
 
-def turned(name: str) -> object:
+def turned(name: str) -> Callable[[WheelRig], None]:
     def build(world: WheelRig) -> None:
         if name in ("wheel", "belt"):
             sensor = world.plant.wheel_speed if name == "wheel" else world.plant.belt_speed
@@ -78,22 +90,18 @@ def test_a_wrong_scale_is_named_with_the_right_increments(tmp_path: Path, name: 
 
 @pytest.mark.parametrize("name", ["wheel", "belt", "press"])
 def test_a_scale_ten_times_wrong_is_found_before_anything_is_faster_than_a_person_may_be_near(
-    tmp_path: Path, name: str
+    tmp_path: Path, name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     rig = believed()
     bench = Bench(tmp_path / "r.jsonl", rig=rig, machine=scaled(rig, name, 10.0), steps=named(f"jog {name}"))
     fastest = [0.0]
     deepest = [0.0]
 
-    class Watched(TwinPerson):
-        def taken(self, now_s: float) -> str | None:
-            world = bench.world
-            if world is not None:
-                fastest[0] = max(fastest[0], abs(world.rim_m_s), abs(world.belt_m_s))
-                deepest[0] = max(deepest[0], world.ruler("press"))
-            return super().taken(now_s)
+    def look(world: WheelRig) -> None:
+        fastest[0] = max(fastest[0], abs(world.rim_m_s), abs(world.belt_m_s))
+        deepest[0] = max(deepest[0], world.ruler("press"))
 
-    bench.person = Watched()
+    watched(monkeypatch, look)
     assert bench.run().ended is Ended.REFUSED
     assert fastest[0] <= 0.25
     assert deepest[0] < rig.geometry.touch_mm
@@ -119,21 +127,19 @@ def test_a_key_press_moves_for_two_seconds_at_most_and_power_is_off_in_between(t
     assert not any(powered)
 
 
-def test_only_the_axis_that_is_jogged_has_power_and_its_torque_is_bounded(tmp_path: Path) -> None:
+def test_only_the_axis_that_is_jogged_has_power_and_its_torque_is_bounded(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     bench = Bench(tmp_path / "r.jsonl", steps=named("jog wheel"))
     on: set[str] = set()
 
-    class Watched(TwinPerson):
-        def taken(self, now_s: float) -> str | None:
-            world = bench.world
-            if world is not None:
-                on.update(name for name, drive in world.axes.items() if drive.energised)
-                for name, drive in world.axes.items():
-                    if drive.energised:
-                        assert drive.store.values[(o.MAX_TORQUE, 0)] <= 300, name
-            return super().taken(now_s)
+    def look(world: WheelRig) -> None:
+        for name, drive in world.axes.items():
+            if drive.energised:
+                on.add(name)
+                assert drive.store.values[(o.MAX_TORQUE, 0)] <= 300, name
 
-    bench.person = Watched()
+    watched(monkeypatch, look)
     assert bench.run().ended is Ended.DONE
     assert on == {"wheel"}
 

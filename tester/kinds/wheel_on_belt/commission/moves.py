@@ -1,0 +1,33 @@
+"""Who says what an armed rig is to do while it is commissioned."""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+from tester.kinds.wheel_on_belt.context import Context
+from tester.kinds.wheel_on_belt.recipe.steps import WheelPlan
+from tester.machine.activity import Activity, MoveFailedError
+from tester.machine.executor import Executor, Procedures
+
+COMMISSIONING: Final = "commissioning"
+"""Name of the plan, which has no steps."""
+
+
+class MovesExecutor(Executor[Any]):
+    """Serves one activity after the other, as a procedure hands them in; between two the demand stays."""
+
+    def __init__(self) -> None:
+        """Nothing is wanted."""
+        super().__init__(WheelPlan(COMMISSIONING, (), (), 1), Procedures())
+        self.watch: Activity[Context] | None = None
+
+    def step(self, ctx: Context) -> None:
+        """Advance the activity in progress."""
+        if self.activity is None:
+            return
+        try:
+            if self.activity.step(ctx):
+                self.activity = None
+        except MoveFailedError as failed:
+            self.failed = str(failed)
+            self.finished = True
