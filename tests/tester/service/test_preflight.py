@@ -69,27 +69,32 @@ def test_without_a_run_nothing_is_claimed_of_it() -> None:
     assert last_run_check(None, "").ok is None and last_run_check(None, "rig lost").ok is False
 
 
+def ending(load_cell: str, thermometer: str, jacket: str) -> CertificatesConfig:
+    """Return certificates that end on these days."""
+    return CertificatesConfig(load_cell=load_cell, thermometer=thermometer, jacket=jacket)
+
+
 @pytest.mark.parametrize(
     ("calibration", "ok", "words"),
     [
         (
-            CertificatesConfig(load_cell="2027-01-31", thermometer="2027-02-28", jacket="2027-03-31"),
+            ending("2027-01-31", "2027-02-28", "2027-03-31"),
             True,
             "in date until 2027-01-31",
         ),
         (
-            CertificatesConfig(load_cell="2026-02-28", thermometer="2027-02-28", jacket="2027-03-31"),
+            ending("2026-02-28", "2027-02-28", "2027-03-31"),
             False,
             "load cell ended 2026-02-28",
         ),
         (
-            CertificatesConfig(load_cell="2026-03-20", thermometer="2027-02-28", jacket="2027-03-31"),
+            ending("2026-03-20", "2027-02-28", "2027-03-31"),
             True,
             "load cell ends 2026-03-20",
         ),
         (CertificatesConfig(load_cell="2027-01-31"), None, "not in the rig file: thermometer, jacket"),
         (
-            CertificatesConfig(load_cell="2026-03-01", thermometer="2027-02-28", jacket="2027-03-31"),
+            ending("2026-03-01", "2027-02-28", "2027-03-31"),
             True,
             "load cell ends 2026-03-01",
         ),
