@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 if TYPE_CHECKING:
     from tester.analysis.kelvin import KnownSlope
-    from tester.analysis.terms import Term
     from tester.machine.ports import Ports
     from tester.machine.prompts import Prompts
     from tester.machine.run import Run
@@ -93,10 +92,6 @@ class KindRun(Protocol):
     def calibration(self, rig: Rig) -> Iterable[Calibration]:
         """Return the figures of the kind's own that turn what devices say into quantities; those of devices, nodes
         and drives are known without it."""
-        ...
-
-    def terms(self, rig: Rig) -> Iterable[Term]:
-        """Return what the rig's measuring chain may be off by: the machine's part of every budget."""
         ...
 
     def known_slopes(self, plan: Plan) -> Iterable[KnownSlope]:

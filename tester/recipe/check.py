@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
+from difflib import get_close_matches
 from pathlib import Path
 
+from tester.analysis.terms import PREFIX, Term
 from tester.base.source import InvalidSource, Problem, Tree, read_tree
 from tester.base.units import shown
 from tester.recipe.loader import LoadedRecipe, validated
 from tester.recipe.part import RecipePart
+from tester.recipe.schema import Recipe
 from tester.rig import Rig
 
 
@@ -31,11 +35,26 @@ def load_checked(source: Path | str, rig: Rig, part: RecipePart, name: str | Non
         raise InvalidSource(other)
     recipe, more = validated(tree, part)
     problems += [*more, *sorted(set(part.limits(tree, rig)))]
+    if recipe is not None:
+        problems += _settings(recipe, tree, part.terms(rig))
     if recipe is not None and not problems:
         problems += part.outlasted(recipe, tree, rig)
     if recipe is None or problems:
         raise InvalidSource(problems)
     return LoadedRecipe(recipe, tree)
+
+
+def _settings(recipe: Recipe, tree: Tree, terms: Sequence[Term]) -> Iterator[Problem]:
+    """Yield what is to replace a bound of the budget, and is the setting of none of the rig's terms."""
+    known = [f"{PREFIX}{name}" for one in terms for name in (one.setting, one.factor_setting) if name]
+    for key in recipe.experiment:
+        if key.startswith(PREFIX) and key not in known:
+            yield tree.problem(("experiment", key), f"{key}: no term of this rig's budget has it{_meant(key, known)}")
+
+
+def _meant(key: str, known: Sequence[str]) -> str:
+    near = get_close_matches(key, known, 1)
+    return f", did you mean {near[0]}?" if near else f" (expected one of {', '.join(known) or 'none'})"
 
 
 def _other_kind(tree: Tree, rig: Rig) -> list[Problem]:

@@ -8,13 +8,14 @@ long they take, and the words for them.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, ClassVar
 
 from tester.recipe.schema import GridModel, MeasureModel, Recipe
 from tester.recipe.settings import Settings, settings_of
 
 if TYPE_CHECKING:
+    from tester.analysis.terms import Term
     from tester.axes import Axes
     from tester.base.source import Location, Problem, Tree
     from tester.recipe.estimate import Estimate, Estimator, StepEstimate
@@ -86,6 +87,10 @@ class RecipePart(ABC):
     def limits(self, tree: Tree, rig: Rig) -> Iterator[Problem]:
         """Yield what is beyond the rig's limits, as far as the values of the file can be read."""
         yield from ()
+
+    def terms(self, rig: Rig) -> Sequence[Term]:
+        """Return what the rig's measuring chain may be off by: the machine's part of every budget."""
+        return ()
 
     def outlasted(self, recipe: Recipe, tree: Tree, rig: Rig) -> Iterator[Problem]:
         """Yield what a rig could do and a specimen would not outlast, of a recipe that is valid otherwise."""

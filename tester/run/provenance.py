@@ -23,7 +23,7 @@ from tester.rig import Rig
 from tester.rig.load import risks_of
 from tester.rig.profiles import profile_of
 from tester.rig.sensors import title_of
-from tester.run.kinds import run_parts, served_kind
+from tester.run.kinds import recipe_part, run_parts, served_kind
 from tester.store.recorder import Recorder
 from tester.store.records import ACCEPTED_RISK, EXTENSION, LOOSE_KEYS, Calibration, RunInfo, SessionInfo
 
@@ -71,7 +71,7 @@ def run_info(
         calibration=calibration_of(rig),
         metadata={**plan.metadata, **(risks or {})},
         versions=library_versions(),
-        terms=tuple(run_parts(rig).terms(rig)),
+        terms=tuple(recipe_part(rig).terms(rig)),
         known=tuple(run_parts(rig).known_slopes(plan)),
     )
 

@@ -8,9 +8,7 @@ from pathlib import Path
 from typing import Final
 
 from tester.analysis.kelvin import KnownSlope
-from tester.analysis.terms import Term
 from tester.kinds.specimen_on_track.axes import NAME
-from tester.kinds.specimen_on_track.budget import TERMS
 from tester.kinds.specimen_on_track.build import build_run
 from tester.kinds.specimen_on_track.context import TrackAttendant, TrackNobody
 from tester.kinds.specimen_on_track.rig import TrackConfig
@@ -75,10 +73,6 @@ class TrackRuns:
         """Yield the weights."""
         for number, weight_n in enumerate(TrackConfig.of(rig).weights, start=1):
             yield Calibration("weights", f"set {number}", repr(weight_n), "N")
-
-    def terms(self, rig: Rig) -> tuple[Term, ...]:
-        """Return what the measuring chain may be off by."""
-        return TERMS
 
     def known_slopes(self, plan: Plan) -> tuple[KnownSlope, ...]:
         """Return that nothing is published of its rubbers."""

@@ -7,8 +7,7 @@ from pathlib import Path
 from typing import ClassVar, Final
 
 from tester.analysis.kelvin import KnownSlope
-from tester.analysis.terms import Term
-from tester.kinds.wheel_on_belt.budget import known_slopes, terms_of
+from tester.kinds.wheel_on_belt.budget import known_slopes
 from tester.kinds.wheel_on_belt.build import build_run
 from tester.kinds.wheel_on_belt.context import Attendant, Nobody
 from tester.kinds.wheel_on_belt.heatings import known_heat
@@ -76,11 +75,6 @@ class WheelRuns:
             yield Calibration("load_cell", "cell sensitivity", repr(known.cell_sensitivity), "1")
         yield Calibration("wheel", "diameter when new", repr(geometry.wheel_diameter_mm), "mm")
         yield Calibration("belt", "roller diameter", repr(geometry.belt_roller_diameter_mm), "mm")
-
-    def terms(self, rig: Rig) -> tuple[Term, ...]:
-        """Return what the measuring chain may be off by."""
-        known = RigConfig.of(rig).calibration
-        return terms_of(known.cell_sensitivity, known.record)
 
     def known_slopes(self, plan: Plan) -> Iterator[KnownSlope]:
         """Return what is published of the plan's compounds."""

@@ -8,7 +8,6 @@ from math import nan
 from pathlib import Path
 
 from tester.analysis.kelvin import KnownSlope
-from tester.analysis.terms import Term
 from tester.axes import Setpoint
 from tester.machine.connect import Connector
 from tester.machine.engine import Engine
@@ -110,10 +109,6 @@ class PlainRuns:
     def calibration(self, rig: Rig) -> Iterator[Calibration]:
         """Yield nothing beside the figures of devices and drives."""
         yield from ()
-
-    def terms(self, rig: Rig) -> tuple[Term, ...]:
-        """Return nothing beside the repeats: what its chain may be off by, a kind of one's own says."""
-        return ()
 
     def known_slopes(self, plan: Plan) -> tuple[KnownSlope, ...]:
         """Return that nothing is published of its rubbers."""

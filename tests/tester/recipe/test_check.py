@@ -343,3 +343,9 @@ def test_what_replaces_a_bound_of_the_budget_is_a_number(value: str) -> None:
     said = f"experiment: {{uncertainty.misalignment_deg: {value}}}\n"
     with pytest.raises(InvalidSource, match=r"misalignment_deg: .* is not a number >= 0"):
         load_checked(SMALL + said, rig(), PART, "r.yaml")
+
+
+def test_a_setting_that_no_term_of_the_budget_has_is_refused_with_the_nearest() -> None:
+    said = "experiment: {uncertainty.misalignment: 0.1}\n"
+    with pytest.raises(InvalidSource, match=r"no term of this rig's budget .* mean uncertainty.misalignment_deg\?"):
+        load_checked(SMALL + said, rig(), PART, "r.yaml")

@@ -10,7 +10,7 @@ import pytest
 from tester.analysis.terms import Acts
 from tester.kinds.wheel_on_belt.budget import TERMS
 from tester.run.endings import CannotStartError
-from tester.run.kinds import run_parts
+from tester.run.kinds import recipe_part, run_parts
 from tester.run.rigs import load_rig
 from tester.run.session import Session, SessionOptions
 from tests.tester.kinds.wheel_on_belt.bench import SHORT
@@ -47,12 +47,12 @@ def test_a_calibration_holds_on_its_last_day() -> None:
 
 def test_without_a_record_the_budget_is_as_it_was() -> None:
     rig = load_rig("sim")
-    assert run_parts(rig).terms(rig) == TERMS
+    assert recipe_part(rig).terms(rig) == TERMS
 
 
 def test_what_weights_found_is_a_term_and_the_run_names_the_record() -> None:
     rig = load_rig("sim", ["calibration.cell_sensitivity=0.26 %", f"calibration.record={'a' * 64}"])
-    term = next(one for one in run_parts(rig).terms(rig) if one.name == "cell sensitivity")
+    term = next(one for one in recipe_part(rig).terms(rig) if one.name == "cell sensitivity")
     assert (term.acts, term.bound) == (Acts.COEFFICIENT, pytest.approx(0.0026))
     assert "aaaaaaaaaaaa" in term.source
     found = {one.quantity: one.value for one in run_parts(rig).calibration(rig)}

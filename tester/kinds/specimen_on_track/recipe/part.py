@@ -7,10 +7,12 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import ClassVar, Final
 
+from tester.analysis.terms import Term
 from tester.axes import Axes, Setpoint, condition_words, numbers
 from tester.base.source import Location, Problem, Tree
 from tester.base.units import show
 from tester.kinds.specimen_on_track.axes import AXES, NAME, held_by
+from tester.kinds.specimen_on_track.budget import TERMS
 from tester.kinds.specimen_on_track.recipe.estimate import TrackEstimator
 from tester.kinds.specimen_on_track.recipe.schema import TrackGrid, TrackMeasure, TrackRecipe, track_settings
 from tester.kinds.specimen_on_track.recipe.steps import INSERTED, MountSpecimen, Prepare, Temper, TrackCondition
@@ -55,6 +57,10 @@ class TrackPart(RecipePart):
             for key in UNUSED:
                 if isinstance(node, dict) and key in node:
                     yield tree.problem((*at, key), f"{key}: this machine slides for a way (expected distance)")
+
+    def terms(self, rig: Rig) -> tuple[Term, ...]:
+        """Return what the measuring chain may be off by."""
+        return TERMS
 
     def outlasted(self, recipe: Recipe, tree: Tree, rig: Rig) -> Iterator[Problem]:
         """Yield what the rig cannot do, and where friction would heat the contact of a tempered specimen."""

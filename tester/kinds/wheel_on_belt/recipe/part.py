@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import ClassVar, Final
 
+from tester.analysis.terms import Term
 from tester.axes import Axes, numbers
 from tester.base.source import Location, Problem, Tree
 from tester.base.units import show
 from tester.kinds.wheel_on_belt.axes import AXES, KIND, LEAST_SPEED_M_S
+from tester.kinds.wheel_on_belt.budget import terms_of
 from tester.kinds.wheel_on_belt.recipe import describe
 from tester.kinds.wheel_on_belt.recipe.estimate import WheelEstimator
 from tester.kinds.wheel_on_belt.recipe.expand import expand
@@ -70,6 +72,11 @@ class WheelPart(RecipePart):
     def limits(self, tree: Tree, rig: Rig) -> Iterator[Problem]:
         """Yield what is beyond the rig's limits."""
         yield from limit_problems(tree, RigConfig.of(rig))
+
+    def terms(self, rig: Rig) -> tuple[Term, ...]:
+        """Return what the measuring chain may be off by, the cell's calibration included."""
+        known = RigConfig.of(rig).calibration
+        return terms_of(known.cell_sensitivity, known.record)
 
     def outlasted(self, recipe: Recipe, tree: Tree, rig: Rig) -> Iterator[Problem]:
         """Yield what would wear a wheel beyond ``wheel.replace_after`` in one go."""
