@@ -84,12 +84,13 @@ def run_sim(options: SimOptions, say: Callable[[str], None], show: Callable[[str
 
     ``say`` is called with a line that says where everything is, once clients can connect and the rig file is written,
     and with the answers to commands; ``show``, where given, every second with the rig in one line.
-    Raises InvalidSource for an invalid rig file, ValueError for a door that there is not, and OSError where a port, a
-    device, an interface or a file cannot be had.
+    Raises InvalidSource for an invalid rig file, ValueError for a door that there is not or a fault that is none,
+    and OSError where a port, a device, an interface or a file cannot be had.
     """
     config = _on_doors(load_rig(options.rig, options.overrides, options.accept_risk), options.doors)
     kind = run_parts(config)
     machine = machines.find(kind.plant)
+    machine.language().parse_script(config.faults)
     with ExitStack() as stack:
         bus_log = None
         if options.bus_log is not None:
@@ -115,6 +116,9 @@ def run_sim(options: SimOptions, say: Callable[[str], None], show: Callable[[str
             places.append(str(door.place))
         if options.typed:
             server.add(StandardInput(console.command, say))
+        for text in config.faults:
+            for line in console.command(f"fault {text}", rig.now_s):
+                say(line)
         asked = stack.enter_context(EndAsked())
         if options.write_rig is not None:
             write_atomically(options.write_rig, _reached(config, server).text)

@@ -52,6 +52,11 @@ def test_it_can_be_reached_by_its_rig_file_and_logs_its_state_until_it_is_ended(
         assert said.startswith("ended; at most ")
 
 
+def test_a_fault_of_the_rig_file_that_is_none_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
+    assert invoke(["sim", "--set", 'sim.faults=["t=1 s: nonsense"]']) == 2
+    assert "unknown fault 'nonsense'" in capsys.readouterr().err
+
+
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no signal for one process")
 def test_an_interrupt_ends_it_in_order(sim: subprocess.Popen[str]) -> None:
     sim.send_signal(signal.SIGINT)
