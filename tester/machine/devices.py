@@ -272,8 +272,11 @@ class DeviceList:
         return "; ".join(said)
 
     def _any_refused(self) -> bool:
-        drivers = (*self.drives, *self.nodes, *(one.driver for one in self.modbus))
-        return any(one.refused for one in drivers)
+        return (
+            any(one.refused for one in self.drives)
+            or any(one.refused for one in self.nodes)
+            or any(one.driver.refused for one in self.modbus)
+        )
 
     def without(self) -> list[str]:
         """Return what drives are done without, and what is lost by that: a line each."""
