@@ -25,8 +25,8 @@ grids:
     load: {load} N
     temperature: {temperature} degC
 """
-WARMER_K: Final = 1.0
-"""The surface is asked to be this much warmer than the air [A]: nothing has to be waited for."""
+WARMER_K: Final = 2.0
+"""The surface is asked to be this much warmer than the air [A]: little has to be waited for, to warm or to cool."""
 ANGLE_DEG: Final = 1.5
 """An apparent angle is refused beyond this and its uncertainty [A]: 0.5 degrees of mounting, 0.5 % of crosstalk."""
 
