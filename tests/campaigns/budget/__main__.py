@@ -19,7 +19,7 @@ from tester.analysis.difference import difference
 from tests.campaigns.acceptance.figure import Figure, at_least, holds
 from tests.campaigns.budget.cells import BETWEEN, CELLS, Cell, measured, replicates, rig
 from tests.campaigns.budget.mutants import mutants, survivors
-from tests.campaigns.budget.twin import Held, held, rigs_differ
+from tests.campaigns.budget.twin import Held, held
 
 DRAWS, SAMPLE_DRAWS = 10_000, 1_000
 PAIRS, SAMPLE_PAIRS = 1_000, 300
@@ -106,9 +106,6 @@ def twin(seeds: int, jobs: int) -> Iterator[Figure]:
         both, called = sum(one.both for one in found), sum(one.wheels_differ for one in found)
         yield _within("on the twin: the compound covered by two wheels", both, count, *ON_THE_TWIN, exact=exact)
         yield _within("two wheels of a run called different", called, count, *CALLED_ON_THE_TWIN, exact=exact)
-        apart = rigs_differ(found)
-        name = "wheels of two rigs called different"
-        yield _within(name, sum(apart), len(apart), *CALLED_ON_THE_TWIN, exact=False)
 
 
 def killed(every: int) -> Iterator[Figure]:
