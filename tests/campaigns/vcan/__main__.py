@@ -114,9 +114,17 @@ def coefficient(job: Path, name: str) -> tuple[float, float]:
     return math.nan, math.nan
 
 
+def _why(log: str) -> str:
+    """Return why a kernel did not come up, from its log."""
+    if "set fp regs failed" in log:
+        # Linux 6.1 keeps room for the registers of AVX-512; a processor with AMX has more of them.
+        return "it has no room for this processor's registers (AMX): use another machine, or a newer user-mode-linux"
+    return log[-300:]
+
+
 def figures(job: Path) -> Iterator[Figure]:
     """Say what came of it."""
-    failed = said(job, "failed") or ("" if said(job, "kernel") else f"no kernel: {said(job, 'kernel.log')[-300:]}")
+    failed = said(job, "failed") or ("" if said(job, "kernel") else f"no kernel: {_why(said(job, 'kernel.log'))}")
     yield holds("kernel with a vcan", not failed, failed or said(job, "kernel"), "boots")
     if failed:
         return
