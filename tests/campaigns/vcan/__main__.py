@@ -38,7 +38,7 @@ PATIENCE_S = 900.0
 FOREIGN = "000#8101"
 """NMT, reset node 1: what no other program may send."""
 REPLY_MS = 400
-PROFILES = {"load_cell": "four_axis_transmitter", "jacket": "eurotherm_3200", "ir_thermometer": "calex_pyrominibus"}
+PROFILES = {"load_cell": "four_axis_transmitter", "jacket": "simulated_jacket", "ir_thermometer": "calex_pyrominibus"}
 LIMITS = {
     "scan.sliding": "50Hz",
     "can.consumer_heartbeat": "0.35s",
