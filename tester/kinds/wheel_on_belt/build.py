@@ -7,6 +7,7 @@ from math import log, nan, pi
 from drivers.canopen.master import CanMaster
 from drivers.canopen.sensor_node import SensorNode
 from drivers.jacket import HeatingJacket
+from drivers.joined_cell import JoinedCell
 from drivers.modbus import Device
 from drivers.servo import ServoDrive
 from tester.analysis.closest import combining_of
@@ -80,7 +81,6 @@ def build_devices(rig: RigConfig, ports: Ports) -> Devices:
         ],
         sensors=list(further.values()),
         nodes=nodes,
-        cell_old_s=rig.interlocks.stale_cell_s,
     )
 
 
@@ -117,20 +117,22 @@ def build_run(
     load = LoadLoop()
     state = WheelState(Setpoints(), load, HeatLoop(rig.loops.heat.hub_min_c))
     control = WheelControl(rig, state, loss_ratios(rig), plan_bounds(plan, rig))
-    geometry, quantities = rig.geometry, quantities_on(rig)
+    geometry, quantities, cell = rig.geometry, quantities_on(rig), devices.cell
     ctx = Context(
         rig=rig,
         readings=Readings(
             cold_mm=geometry.wheel_diameter_mm,
             diameter_mm=geometry.wheel_diameter_mm,
             channels=[nan] * len(quantities.further),
+            joined=cell if isinstance(cell, JoinedCell) else None,
+            cell_old_s=rig.interlocks.stale_cell_s,
         ),
         demand=Demand(),
         gates=Gates(rig.gates),
         prompts=prompts,
         journal=recorder,
         attendant=attendant,
-        cell=devices.cell,
+        cell=cell,
         wheel=WheelLife(installed_mm=geometry.wheel_diameter_mm, width_mm=geometry.wheel_width_mm),
         contact=load,
         ambient_c=rig.ambient_c,
