@@ -31,9 +31,9 @@ from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.kinds.wheel_on_belt.rig.sections import VELOCITY_AXES
 from tester.machine.cells import link_of, load_cell_of, sensor_of
 from tester.machine.connect import Connector
-from tester.machine.devices import FieldDevice
 from tester.machine.engine import Engine
 from tester.machine.executor import Executor
+from tester.machine.field_device import FieldDevice
 from tester.machine.ports import Ports
 from tester.machine.prompts import Prompts
 from tester.machine.run import Run

@@ -22,7 +22,8 @@ from drivers.servo import ServoDrive
 from tester.kinds.wheel_on_belt.cell_skew import CellSkew
 from tester.kinds.wheel_on_belt.process import NEVER, Readings, Setpoints
 from tester.kinds.wheel_on_belt.ring_watch import SlipRingWatch
-from tester.machine.devices import DeviceList, FieldDevice
+from tester.machine.devices import DeviceList
+from tester.machine.field_device import FieldDevice
 
 CELL_CHANNELS: Final = ("fx", "fy", "fz", "mz")
 """Longitudinal, lateral and normal force (N), moment about the vertical (N m), in the wheel's frame."""
