@@ -304,7 +304,8 @@ class HomingBench(BenchDrive):
                 self.started += 1
                 if self.started >= self.steps:
                     status |= self.outcome
-                    self.objects[0x6064, 0] = -250
+                    offset = self.objects.get((0x607C, 0), 0)     # the zero lies this far beyond the switch
+                    self.objects[0x6064, 0] = 2**32 - offset if offset >= 2**31 else -offset
             else:
                 status |= 0x0400
         self.objects[0x6041, 0] = status
@@ -326,7 +327,7 @@ def home(bench: BenchDrive, config: AxisConfig, start_goal: Goal = Goal.DISABLED
 
 def test_a_homed_axis_has_its_new_position_as_reading_and_target() -> None:
     drive = home(HomingBench(), yaw(home_offset=-2.5))
-    assert (drive.refused, drive.homed, drive.actual, drive.target) == (None, True, -2.5, -2.5)
+    assert (drive.refused, drive.homed, drive.actual, drive.target) == (None, True, 2.5, 2.5)
 
 
 def test_homing_writes_its_parameters_and_returns_to_its_mode() -> None:
@@ -344,7 +345,8 @@ def test_homing_ends_with_the_power_off() -> None:
 
 def test_a_press_is_homed_and_returns_to_profile_velocity() -> None:
     bench = HomingBench()
-    drive = home(bench, wheel(name="press", feedback="position", position_increments=100.0))
+    config = wheel(name="press", feedback="position", position_increments=100.0, home_offset=2.5)
+    drive = home(bench, config)
     assert (drive.homed, drive.actual, drive.target) == (True, -2.5, 0.0)
     assert bench.writes[-1] == (0x6060, 0, 3)
 
