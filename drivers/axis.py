@@ -48,7 +48,8 @@ class AxisConfig:
     max_torque_per_mille: int = 3000                 # 0x6072, of rated; 3000 is a usual servo's peak [A]
     screw: Screw | None = None                       # what the torque moves, where that is a screw
     software_limits: tuple[float, float] | None = None   # position unit; 0x607D
-    home_offset: float = 0.0                         # position unit; 0x607C
+    home_offset: float = 0.0                         # position unit; 0x607C: the zero lies this far beyond the switch,
+                                                     # which then is at -home_offset (CiA 402-2, home offset)
     homing_method: int = 19                          # 0x6098; 19: home switch, no index pulse [A]
     homing_speed: float = 0.0                        # 0x6099:01; 0: a fifth of max_speed
     homing_zero_speed: float = 0.0                   # 0x6099:02; 0: a twentieth of max_speed

@@ -204,11 +204,6 @@ def links_of(cell: LoadCell) -> tuple[ModbusLink, ...]:
     return cell.links if isinstance(cell, JoinedCell) else (cell.link,)
 
 
-def blame(cell: LoadCell, now: float, limit_s: float) -> str:
-    """Return which of a cell's transmitters keeps it from being read, "" for one with a single transmitter."""
-    return cell.blame(now, limit_s) if isinstance(cell, JoinedCell) else ""
-
-
 def _bears(one: Transmitter) -> bool:
     """Tell whether it shows a force that cannot stand still while a wheel turns under it."""
     return any(not -STILL_N < value < STILL_N for value in one.raw)

@@ -55,6 +55,19 @@ class CanPort(Protocol):
         ...
 
 
+@runtime_checkable
+class TellingCanPort(CanPort, Protocol):
+    """An adapter that passes error frames on, and may know its own state."""
+
+    errors: dict[str, int]
+    """Error frames since it was opened, by what they say; one that says two things counts for both."""
+
+    @property
+    def state(self) -> str:
+        """Active, passive or error; "" where it is not known."""
+        ...
+
+
 def add_watcher(watchers: list[Watcher], watcher: Watcher) -> Unwatch:
     """Add to a port's watchers; return how to take this one off again."""
     watchers.append(watcher)

@@ -14,7 +14,7 @@ from drivers.canopen.objects import NmtCommand, OperationMode
 from drivers.cia402 import Goal, State
 from drivers.drive_settings import mode_of
 from drivers.servo_setup import START_TIMEOUT_S, STOP_TIMEOUT_S
-from drivers.servo_talk import SetupRefusedError, Step, apply, refusal, set_mode, write
+from drivers.servo_talk import SetupRefusedError, Step, apply, set_mode, write
 
 if TYPE_CHECKING:
     from drivers.servo import ServoDrive
@@ -33,7 +33,7 @@ def home(drive: ServoDrive) -> Conversation:
     modes = drive.parameters.get((o.SUPPORTED_MODES, 0), 0)
     if not (drive.online and config.feedback == "position" and modes >> (OperationMode.HOMING - 1) & 1):
         text = "homing needs a drive online, with position feedback and homing mode"
-        drive.refused = refusal(drive, SetupRefusedError(text))
+        drive.refused = text
         return
     failure: Exception | None = None
     try:
@@ -56,7 +56,7 @@ def home(drive: ServoDrive) -> Conversation:
         drive.disconnect()                    # in an unknown mode it must not be commanded
         failure = failure or error
     if failure is not None:
-        drive.refused = refusal(drive, failure)
+        drive.refused = str(failure)
 
 
 def _power_off(drive: ServoDrive) -> Step:
@@ -104,7 +104,7 @@ def ask(drive: ServoDrive) -> Conversation:
     try:
         drive.take_statusword((yield from read_number(o.STATUSWORD)))
     except RequestError as error:
-        drive.refused = refusal(drive, error)
+        drive.refused = str(error)
 
 
 def start_again(drive: ServoDrive) -> Conversation:
@@ -125,7 +125,7 @@ def release(drive: ServoDrive) -> Conversation:
         if (o.CONSUMER_HEARTBEAT, 1) in drive.parameters:
             yield from write(drive, o.CONSUMER_HEARTBEAT, 1, 0)
     except (RequestError, SetupRefusedError) as error:
-        drive.refused = refusal(drive, error)
+        drive.refused = str(error)
         return
     drive.disconnect()
     yield SendNmt(NmtCommand.PRE_OPERATIONAL)

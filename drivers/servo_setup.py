@@ -40,7 +40,6 @@ from drivers.servo_talk import (
     apply,
     compare,
     keep,
-    refusal,
     set_mode,
     write,
     write_where_present,
@@ -70,7 +69,7 @@ def connect(drive: ServoDrive, pc_node_id: int) -> Conversation:
         yield from _start(drive)
     except (RequestError, SetupRefusedError) as error:
         drive.disconnect()
-        drive.refused = refusal(drive, error)
+        drive.refused = str(error)
         yield SendNmt(NmtCommand.PRE_OPERATIONAL)      # where it takes no process data
 
 

@@ -26,10 +26,6 @@ class SetupRefusedError(Exception):
     """The device is not what the configuration says, or does not do as told."""
 
 
-def refusal(drive: ServoDrive, error: Exception) -> str:
-    return f"{drive.config.name} (node {drive.node_id}): {error}"
-
-
 def keep(drive: ServoDrive, index: int, sub: int = 0, kind: DataType | None = None) -> Read:
     """Read an object and keep it with the drive's parameters."""
     value = yield from read_number(index, sub, kind)

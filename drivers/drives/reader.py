@@ -7,8 +7,6 @@ own. A new drive is a new file, not a new class.
 from __future__ import annotations
 
 import re
-import tomllib
-from collections.abc import Mapping
 from dataclasses import fields
 from functools import cache
 from pathlib import Path
@@ -17,12 +15,16 @@ from typing import Any, TypeVar, cast
 from drivers.canopen.objects import DataType
 from drivers.drives.model import DriveProfile, FurtherObject, Key, PdoLimits, Substitute, Units
 from drivers.profiles.model import ProfileError
+from drivers.profiles.table import ProfileTable, read_table
 
 GENERIC = "cia402"
 """The profile of an axis that names none."""
 _FOLDER = Path(__file__).parent.parent / "profiles" / "drives"
 _ADDRESS = re.compile(r"([0-9A-Fa-f]{4})(?::([0-9A-Fa-f]{2}))?")
 _TYPES = {kind.name.lower(): kind for kind in DataType if kind is not DataType.TEXT}
+_CHOICES = {"cob_ids": ("set", "fixed"), "mapping": ("free", "fixed")}
+_LEAST, _MOST = -(2**31), 2**32 - 1
+"""Of what an object of 32 bits can hold, with or without a sign."""
 Section = TypeVar("Section", Units, PdoLimits)
 _OPTIONS: dict[Key, tuple[int, ...]] = {
     (0x6007, 0): (1, 3),        # a lost connection: fault (then 0x605E counts), quick stop
@@ -54,27 +56,26 @@ def drive_profile(name: str = GENERIC) -> DriveProfile:
 
 def read_drive_profile(name: str, text: str) -> DriveProfile:
     """Return the profile that a text in TOML describes; raises ProfileError, which names file and key."""
-    try:
-        data = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
-        raise ProfileError(f"{name}.toml: {error}") from error
-    table = _ProfileTable(f"{name}.toml", data)
+    table = read_table(f"{name}.toml", text)
     objects = table.table("objects")
     status = table.table("statusword")
+    options = objects.table("options")
+    instead = objects.table("instead")
+    writes = table.table("writes")
     profile = DriveProfile(
         name=name,
-        title=table.take("title", str),
-        checked=table.take("checked", str),
-        vendor_id=table.take("vendor_id", int, 0),
-        missing=objects.keys_of("missing"),
-        optional=objects.keys_of("optional"),
-        substitutes={objects.key(key): _substitute(one) for key, one in objects.tables("instead")},
-        options={objects.key(key): objects.whole(key, value) for key, value in objects.values("options")},
-        parameters={key: _parameter(one) for key, one in table.tables("writes")},
-        units=table.section("units", Units),
-        pdo=_pdo_limits(table),
-        remote=status.take("remote", bool, True),
-        standstill=status.take("standstill", bool, True),
+        title=table.text("title"),
+        checked=table.text("checked"),
+        vendor_id=table.integer("vendor_id", 0, _MOST, 0),
+        missing=_keys(objects, "missing"),
+        optional=_keys(objects, "optional"),
+        substitutes={_key(instead, key): _substitute(instead.table(key)) for key in instead.keys()},  # noqa: SIM118
+        options={_key(options, key): options.integer(key, _LEAST, _MOST) for key in options.keys()},  # noqa: SIM118
+        parameters={key: _parameter(writes.table(key)) for key in writes.keys()},  # noqa: SIM118
+        units=_section(table, "units", Units),
+        pdo=_section(table, "pdo", PdoLimits),
+        remote=status.flag("remote", True),
+        standstill=status.flag("standstill", True),
     )
     for one in (objects, status, table):
         one.end()
@@ -88,14 +89,14 @@ def read_drive_profile(name: str, text: str) -> DriveProfile:
     return profile
 
 
-def _substitute(table: _ProfileTable) -> Substitute:
-    reference = table.take("per_mille_of", str, "")
+def _substitute(table: ProfileTable) -> Substitute:
+    reference = table.text("per_mille_of", "")
     found = Substitute(
-        key=table.key(table.take("object", str)),
-        type=table.type(),
+        key=_key(table, table.text("object")),
+        type=_type(table),
         factor=table.number("factor", 1.0),
-        per_mille_of=table.key(reference) if reference else None,
-        reference=table.take("simulated", int, 1000),
+        per_mille_of=_key(table, reference) if reference else None,
+        reference=table.integer("simulated", 1, _MOST, 1000),
     )
     if found.factor == 0.0:
         raise table.error("factor", "must not be 0")
@@ -103,107 +104,49 @@ def _substitute(table: _ProfileTable) -> Substitute:
     return found
 
 
-def _parameter(table: _ProfileTable) -> FurtherObject:
-    has_value = "value" in table
+def _parameter(table: ProfileTable) -> FurtherObject:
     found = FurtherObject(
-        key=table.key(table.take("object", str)),
-        type=table.type(),
-        value=table.take("value", int, 0) if has_value else None,
-        text=table.take("text", str, ""),
+        key=_key(table, table.text("object")),
+        type=_type(table),
+        value=table.integer("value", _LEAST, _MOST) if "value" in table else None,
+        text=table.text("text", ""),
     )
     table.end()
     return found
 
 
-def _pdo_limits(table: _ProfileTable) -> PdoLimits:
-    limits = table.section("pdo", PdoLimits)
-    for name, words in (("cob_ids", ("set", "fixed")), ("mapping", ("free", "fixed"))):
-        if getattr(limits, name) not in words:
-            raise table.error(f"pdo.{name}", f"must be one of {', '.join(words)}")
-    return limits
+def _type(table: ProfileTable) -> DataType:
+    return _TYPES[table.choice("type", tuple(_TYPES))]
 
 
-class _ProfileTable:
-    """A table of the file: every key is taken once, with its type, and none may be left."""
+def _key(table: ProfileTable, text: str) -> Key:
+    """Return the address that a text says: ``6072`` or ``1400:05``."""
+    match = _ADDRESS.fullmatch(text)
+    if match is None:
+        raise table.error(text, 'is no object: expected an address such as "6072" or "1400:05"')
+    return int(match[1], 16), int(match[2] or "0", 16)
 
-    def __init__(self, where: str, data: Mapping[str, Any]) -> None:
-        self.where = where
-        self._data = dict(data)
 
-    def __contains__(self, key: str) -> bool:
-        return key in self._data
+def _keys(table: ProfileTable, key: str) -> frozenset[Key]:
+    """Take a list of addresses."""
+    return frozenset(_key(table, str(one)) for one in table.items(key))
 
-    def error(self, key: str, text: str) -> ProfileError:
-        return ProfileError(f"{self.where}: {key}: {text}")
 
-    def take(self, key: str, kind: type[Any], default: object = None) -> Any:
-        """Take a value of a type."""
-        value = self._data.pop(key, default)
-        if value is None:
-            raise self.error(key, "is missing")
-        if not isinstance(value, kind) or (kind is not bool and isinstance(value, bool)):
-            raise self.error(key, f"must be {_WORDS[kind]}, not {value!r}")
-        return value
-
-    def number(self, key: str, default: float) -> float:
-        return float(self.take(key, cast("type[Any]", int | float), default))
-
-    def type(self) -> DataType:
-        """Take the key ``type``."""
-        word = self.take("type", str)
-        if word not in _TYPES:
-            raise self.error("type", f"must be one of {', '.join(_TYPES)}, not {word!r}")
-        return _TYPES[word]
-
-    def key(self, text: str) -> Key:
-        """Return the address that a text says: ``6072`` or ``1400:05``."""
-        match = _ADDRESS.fullmatch(text)
-        if match is None:
-            raise self.error(text, 'is no object: expected an address such as "6072" or "1400:05"')
-        return int(match[1], 16), int(match[2] or "0", 16)
-
-    def keys_of(self, key: str) -> frozenset[Key]:
-        """Take a list of addresses."""
-        return frozenset(self.key(str(one)) for one in self.take(key, list, []))
-
-    def table(self, key: str) -> _ProfileTable:
-        return _ProfileTable(f"{self.where}: {key}", self.take(key, dict, {}))
-
-    def tables(self, key: str) -> list[tuple[str, _ProfileTable]]:
-        """Take a table of tables."""
-        outer = self.table(key)
-        return [(name, outer.table(name)) for name in list(outer._data)]
-
-    def values(self, key: str) -> list[tuple[str, object]]:
-        return list(self.take(key, dict, {}).items())
-
-    def whole(self, key: str, value: object) -> int:
-        if isinstance(value, bool) or not isinstance(value, int):
-            raise self.error(key, f"must be a whole number, not {value!r}")
-        return value
-
-    def section(self, key: str, kind: type[Section]) -> Section:
-        """Take a table as a dataclass whose fields all have defaults, of which numbers must be above 0."""
-        inner = self.table(key)
-        found: dict[str, Any] = {}
-        for one in fields(kind):
-            default = cast("object", one.default)
-            if isinstance(default, float):
-                found[one.name] = inner.number(one.name, default)
-            else:
-                found[one.name] = inner.take(one.name, type(default), default)
-            if not isinstance(default, bool | str) and not found[one.name] > 0:
+def _section(table: ProfileTable, key: str, kind: type[Section]) -> Section:
+    """Take a table as a dataclass whose fields all have defaults, of which numbers must be above 0."""
+    inner = table.table(key)
+    found: dict[str, Any] = {}
+    for one in fields(kind):
+        default = cast("object", one.default)
+        if isinstance(default, bool):
+            found[one.name] = inner.flag(one.name, default)
+        elif isinstance(default, str):
+            found[one.name] = inner.choice(one.name, _CHOICES[one.name], default)
+        elif isinstance(default, int):
+            found[one.name] = inner.integer(one.name, 1, _MOST, default)
+        else:
+            found[one.name] = inner.number(one.name, cast("float", default))
+            if not found[one.name] > 0.0:
                 raise inner.error(one.name, f"must be above 0, not {found[one.name]!r}")
-        inner.end()
-        return kind(**found)
-
-    def end(self) -> None:
-        """Refuse what is left."""
-        if self._data:
-            raise self.error(", ".join(self._data), "unknown key")
-
-
-_WORDS: dict[object, str] = {
-    str: "a text", int: "a whole number", bool: "true or false", list: "a list", dict: "a table",
-    int | float: "a number",
-}  # fmt: skip
+    inner.end()
+    return kind(**found)

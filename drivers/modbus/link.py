@@ -3,9 +3,8 @@
 Give it what arrived (``feed``), then let it send what is due (``service``): in this order in every tick, so that a
 reply that came in time is never taken for a time-out because the tick was late.
 
-Over TCP any doubt about framing, and a time-out, ends the connection: what comes of the old one is never read. On a
-serial line nothing is written before it is known whether the adapter hears itself: a reply to a write begins like the
-write, or is equal to it.
+Over TCP any doubt about framing, and a time-out, ends the connection: what comes of the old one is never read
+(drivers.modbus.answers). On a serial line nothing is written before it is known whether the adapter hears itself.
 """
 
 from __future__ import annotations
@@ -16,6 +15,7 @@ from typing import Final
 
 from drivers.crc16 import crc16
 from drivers.modbus import codec
+from drivers.modbus.answers import AnswerKind, ReplySoFar, SerialEar, numbered, tcp_answer
 from drivers.modbus.line import LineType, Parity
 from drivers.modbus.request import Owner, Request, Station
 from drivers.modbus.schedule import PROBE_S, Schedule
@@ -32,6 +32,7 @@ POLL_S: Final = 0.002
 _TINY_S: Final = 1e-9
 _CONFIGURATION: Final = frozenset({1, 2, 3})
 _DEVICE_GONE: Final = frozenset({10, 11})
+_GOOD: Final = AnswerKind.GOOD
 
 
 class ModbusLink:
@@ -51,15 +52,14 @@ class ModbusLink:
         "_schedule",
         "_sent",
         "_socket",
-        "_stripped",
         "_suspect",
         "_transaction",
         "_type",
         "deadline",
         "doubts",
+        "ear",
         "framing",
         "garbage",
-        "hears_itself",
         "reopened",
         "scan_s",
         "stations",
@@ -84,8 +84,6 @@ class ModbusLink:
         self.deadline = self.wants_s = -inf
         self.garbage = 0
         """Pieces that arrived although no station had been asked."""
-        self.hears_itself: bool | None = False if self._socket else None
-        """Whether the adapter gives back what is sent: None until the first reply to a read shows it."""
         self.reopened = 0
         """How often the connection was dropped and opened anew (TCP)."""
         self.doubts = ""
@@ -94,7 +92,12 @@ class ModbusLink:
         """Time between scans, s. Where the exchange of a read of every scan takes longer, the next begins at once."""
         self._doubt = ""
         self._sent = b""
-        self._stripped = False
+        self.ear = SerialEar(False if self._socket else None)
+
+    @property
+    def hears_itself(self) -> bool | None:
+        """Whether the adapter gives back what is sent: None until the first reply to a read shows it."""
+        return self.ear.hears_itself
 
     # what the drivers ask for ----------------------------------------------------------------------------------
 
@@ -164,18 +167,21 @@ class ModbusLink:
                 continue
             data = self._buffer + chunk if self._buffer else chunk
             if self._socket:
-                self._examine_tcp(request, data, t)
+                self._act(request, tcp_answer(request, self._sent, data), t)
                 continue
-            if self.hears_itself is not False:
-                self._examine_with_echo(request, data, t)
-                continue
+            hears_itself = self.ear.hears_itself
             # The usual cases by themselves, several times faster than the library, which takes everything else.
-            if len(data) == request.reply_length and data[:3] == request.head and not crc16(data):
+            if hears_itself is not False:
+                self._act(request, self.ear.answer(request, self._sent, data), t)
+                if hears_itself is None and self.ear.hears_itself is False:
+                    self.wants_s = -inf
+                    self._schedule.look_again()
+            elif len(data) == request.reply_length and data[:3] == request.head and not crc16(data):
                 self._succeed(request, data[3:-2], t)
             elif request.echo and data == request.echo:
                 self._succeed(request, b"", t)
             else:
-                self._examine(request, data, t)
+                self._act(request, self.ear.answer(request, self._sent, data), t)
 
     def service(self, port: LinePort, now: float, *, scan: bool = True) -> None:
         """Send what is due at ``now``, judge time-outs and set ``deadline``; raises BusLost.
@@ -192,7 +198,7 @@ class ModbusLink:
             self._begin_anew(port, now)
         schedule = self._schedule
         hurried = schedule.slowest_s > self.scan_s
-        reads_only = self.hears_itself is None
+        reads_only = self.ear.hears_itself is None
         if now < self._quiet_s - _TINY_S and (reads_only or now >= schedule.wants_s):
             self.deadline = self._quiet_s if hurried else max(self._quiet_s, schedule.latest())
             self.wants_s = self._quiet_s - _TINY_S
@@ -204,8 +210,12 @@ class ModbusLink:
             self.deadline = schedule.latest_s
             self.wants_s = -inf if reads_only else schedule.wants_s
             return
-        self._sent = frame = self._numbered(request) if self._socket else request.frame
-        self._stripped = False
+        frame = request.frame
+        if self._socket:
+            self._transaction = self._transaction % 0xFFFF + 1
+            frame = numbered(request, self._transaction)
+        self._sent = frame
+        self.ear.asked()
         port.write(frame, now)
         request.sent_s = now
         if request.writes:
@@ -256,11 +266,6 @@ class ModbusLink:
     def only_watches(self) -> bool:
         """Tell that ``deadline`` is for a missing reply alone: nothing else waits for the line."""
         return self._active is not None and self.deadline == self._give_up_s
-
-    def _numbered(self, request: Request) -> bytes:
-        """Return the request with the next transaction number (TCP)."""
-        self._transaction = self._transaction % 0xFFFF + 1
-        return self._transaction.to_bytes(2, "big") + request.frame[2:]
 
     def _wait(self, now: float) -> None:
         """Set the deadline while a reply is awaited: others waiting, it is fetched when it should be there."""
@@ -348,112 +353,20 @@ class ModbusLink:
         self._schedule.lost(station, t)
         station.owner.lost(t)
 
-    def _examine_tcp(self, request: Request, data: bytes, t: float) -> None:
-        """Take what came over TCP for the reply where it is that and nothing else."""
-        if self._doubt:
-            return
-        try:
-            pdu = codec.tcp_reply(
-                data, self._transaction, request.station.unit_id, request.function, request.reply_length
-            )
-        except codec.FramingError as error:
-            late = data[:2] != self._sent[:2]
-            self._mistrust(request, f"{error} on {request.describe()}", t, late=late)
-            return
-        if not pdu:
-            self._buffer = data
-            return
-        answer = codec.classify(pdu, request.function, request.address, request.sent_values, request.count)
-        if answer is codec.DecodedAnswer.OTHER:
-            self._mistrust(request, f"another reply on {request.describe()}", t, late=True)
-        elif answer is codec.DecodedAnswer.EXCEPTION:
-            self._except(request, codec.exception_code(pdu), t)
+    def _act(self, request: Request, answer: ReplySoFar, t: float) -> None:
+        """Do what follows from what came."""
+        kind = answer.kind
+        if kind is _GOOD:
+            self._succeed(request, answer.data, t)
+        elif kind is AnswerKind.WAITED_FOR:
+            self._buffer = answer.data
+        elif kind is AnswerKind.EXCEPTION:
+            self._except(request, answer.code, t)
+        elif kind is AnswerKind.BROKEN:
+            self._fail(request, t, t + self._gap_s + request.reply_wire_s)
         else:
-            self._succeed(request, b"" if request.writes else pdu[2:], t)
-
-    def _mistrust(self, request: Request, why: str, t: float, *, late: bool) -> None:
-        """End an attempt after which nobody knows where a frame begins: the connection is dropped."""
-        counters = request.station.counters
-        if late:
-            counters.late += 1
-        else:
-            counters.garbage += 1
-        self._doubt = why
-        self._fail(request, t, t)
-
-    def _examine_with_echo(self, request: Request, data: bytes, t: float) -> None:
-        """Take off what we have sent, where the adapter gives it back, and find out whether it does.
-
-        The request of a read is never a reply to it: who gets it back hears itself. Whose reply to a read comes
-        without it does not.
-        """
-        sent = self._sent
-        if not self._stripped:
-            if len(data) < len(sent) and sent.startswith(data):
-                self._buffer = data
-                return
-            if data.startswith(sent):
-                self._stripped = True
-                self.hears_itself = True
-                data = data[len(sent) :]
-                self._buffer = data
-                if not data:
-                    return
-            elif request.writes:
-                # Before its own echo nothing can be the answer to a write.
-                request.station.counters.garbage += 1
-                self._fail(request, t, t + self._gap_s + request.reply_wire_s)
-                return
-        if data == request.echo and request.writes:
-            self._succeed(request, b"", t)
-            return
-        replies = request.station.counters.replies
-        answered = sum(request.station.counters.exceptions.values())
-        self._examine(request, data, t)
-        settled = replies + answered < request.station.counters.replies + sum(
-            request.station.counters.exceptions.values()
-        )
-        if settled and self.hears_itself is None:
-            self.hears_itself = False
-            self.wants_s = -inf
-            self._schedule.look_again()
-
-    def _examine(self, request: Request, data: bytes, t: float) -> None:
-        """Find the reply in what arrived on a serial line, and count what else is there."""
-        counters = request.station.counters
-        if self.hears_itself is False and not request.writes and data.startswith(self._sent):
-            # Between two replies somebody has changed the adapter: from now on it is taken for one that does.
-            self._examine_with_echo(request, data, t)
-            return
-        at = data.find(request.head) if request.head else -1
-        whole = data[at : at + request.reply_length] if at >= 0 else b""
-        if len(whole) == request.reply_length and crc16(whole) == 0:
-            counters.garbage += at > 0  # noise before it, as when a driver of the line is switched on
-            self._succeed(request, whole[3:-2], t)
-            return
-        while data:
-            used, unit_id, _, pdu = codec.next_frame("rtu", data)
-            if not used:
-                break
-            if not pdu:
-                counters.crc_errors += 1
-                self._fail(request, t, t + self._gap_s + request.reply_wire_s)
-                return
-            data = data[used:]
-            answer = codec.classify(pdu, request.function, request.address, request.sent_values, request.count)
-            if unit_id != request.station.unit_id:
-                counters.garbage += 1
-            elif answer is codec.DecodedAnswer.OTHER:
-                counters.late += 1
-            else:
-                if data:
-                    counters.garbage += 1
-                if answer is codec.DecodedAnswer.EXCEPTION:
-                    self._except(request, codec.exception_code(pdu), t)
-                else:
-                    self._succeed(request, b"" if request.writes else pdu[2:], t)
-                return
-        self._buffer = data
+            self._doubt = answer.why  # the connection is dropped
+            self._fail(request, t, t)
 
     def _except(self, request: Request, code: int, t: float) -> None:
         """Act on an exception: a wrong configuration latches, a busy device is asked again, a gone one is lost."""

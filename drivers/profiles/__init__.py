@@ -6,9 +6,8 @@ own, and ``read_profile`` a text that comes from elsewhere. A new device is a ne
 
 from __future__ import annotations
 
-import tomllib
 from pathlib import Path
-from typing import Any, Literal, cast, get_args
+from typing import Literal, cast, get_args
 
 from drivers.profiles.model import (
     SIZES,
@@ -25,6 +24,7 @@ from drivers.profiles.model import (
     Timing,
     WordOrder,
 )
+from drivers.profiles.table import ProfileTable, read_table
 
 __all__ = [
     "DeviceProfile",
@@ -47,8 +47,6 @@ _FORCES = ("fx", "fy", "fz", "mz", "force")
 that of a transmitter with one channel: which of them it measures the rig file says."""
 _FIRST_READ: dict[Kind, tuple[str, ...]] = {"load_cell": _FORCES, "ir_thermometer": ("surface",)}
 """Of these channels the first read of a kind must hold one at least, and the status."""
-UNKNOWN = "unknown"
-"""Stands in a profile where we do not know the manufacturer's value; such a profile cannot be used as it is."""
 
 
 def profile_names() -> list[str]:
@@ -73,114 +71,10 @@ def load_profile(name: str) -> DeviceProfile:
 
 def read_profile(name: str, text: str) -> DeviceProfile:
     """Return the profile that a text in TOML describes, under this name; raises ProfileError as ``load_profile``."""
-    where = f"{name}.toml"
-    try:
-        data = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
-        raise ProfileError(f"{where}: {error}") from error
-    return _profile(name, _Table(where, data))
+    return _profile(name, read_table(f"{name}.toml", text))
 
 
-class _Table:
-    """A table of the file: every key is taken once, with its type, and none may be left."""
-
-    def __init__(self, where: str, data: dict[str, Any]) -> None:
-        self.where = where
-        self._data = dict(data)
-
-    def __contains__(self, key: str) -> bool:
-        return key in self._data
-
-    def error(self, key: str, text: str) -> ProfileError:
-        """Return an error that names the place."""
-        return ProfileError(f"{self.where}: {key}: {text}")
-
-    def _take(self, key: str, default: object) -> object:
-        value = self._data.pop(key, default)
-        if value is None:
-            raise self.error(key, "is missing")
-        if value == UNKNOWN:
-            raise self.error(key, "is not known to us: take it from the manual, in a profile of your own")
-        return value
-
-    def text(self, key: str, default: str | None = None) -> str:
-        """Take a string."""
-        value = self._take(key, default)
-        if not isinstance(value, str):
-            raise self.error(key, f"must be a text, not {value!r}")
-        return value
-
-    def choice(self, key: str, allowed: tuple[str, ...], default: str | None = None) -> str:
-        """Take one of a few words."""
-        value = self.text(key, default)
-        if value not in allowed:
-            raise self.error(key, f"must be one of {', '.join(allowed)}, not {value!r}")
-        return value
-
-    def integer(self, key: str, least: int, greatest: int, default: int | None = None) -> int:
-        """Take a whole number within bounds."""
-        value = self._take(key, default)
-        if isinstance(value, bool) or not isinstance(value, int) or not least <= value <= greatest:
-            raise self.error(key, f"must be a whole number {least}..{greatest}, not {value!r}")
-        return value
-
-    def number(self, key: str, default: float | None = None) -> float:
-        """Take a number."""
-        value = self._take(key, default)
-        if isinstance(value, bool) or not isinstance(value, int | float):
-            raise self.error(key, f"must be a number, not {value!r}")
-        return float(value)
-
-    def share(self, key: str, default: float | None) -> float | None:
-        """Take a number above 0 and at most 1, or nothing."""
-        if key not in self:
-            return default
-        value = self.number(key)
-        if not 0.0 < value <= 1.0:
-            raise self.error(key, f"must be above 0 and at most 1, not {value:g}")
-        return value
-
-    def flag(self, key: str, default: bool) -> bool:
-        """Take true or false."""
-        value = self._take(key, default)
-        if not isinstance(value, bool):
-            raise self.error(key, f"must be true or false, not {value!r}")
-        return value
-
-    def items(self, key: str) -> list[object]:
-        """Take a list, empty when absent."""
-        value = self._take(key, [])
-        if not isinstance(value, list):
-            raise self.error(key, f"must be a list, not {value!r}")
-        return cast(list[object], value)
-
-    def table(self, key: str, required: bool = False) -> _Table:
-        """Take a table, empty when absent."""
-        value = self._take(key, None if required else {})
-        if not isinstance(value, dict):
-            raise self.error(key, f"must be a table, not {value!r}")
-        return _Table(f"{self.where}: {key}", cast(dict[str, Any], value))
-
-    def tables(self, key: str) -> list[_Table]:
-        """Take a list of tables, empty when absent."""
-        found: list[_Table] = []
-        for place, item in enumerate(self.items(key), 1):
-            if not isinstance(item, dict):
-                raise self.error(key, f"must hold tables, not {item!r}")
-            found.append(_Table(f"{self.where}: {key} {place}", cast(dict[str, Any], item)))
-        return found
-
-    def keys(self) -> list[str]:
-        """Return what has not been taken."""
-        return list(self._data)
-
-    def end(self) -> None:
-        """Refuse what nobody took."""
-        for key in self._data:
-            raise self.error(key, "is not a key of a device profile")
-
-
-def _profile(name: str, top: _Table) -> DeviceProfile:
+def _profile(name: str, top: ProfileTable) -> DeviceProfile:
     kind = cast(Kind, top.choice("kind", get_args(Kind)))
     title = top.text("title")
     functions = frozenset(
@@ -225,7 +119,7 @@ def _profile(name: str, top: _Table) -> DeviceProfile:
     return profile
 
 
-def _look_at_first_read(top: _Table, kind: Kind, first: RegisterBlock) -> None:
+def _look_at_first_read(top: ProfileTable, kind: Kind, first: RegisterBlock) -> None:
     """Refuse a sensor whose first read does not hold what it is read for."""
     names = {signal.name for signal in first.signals}
     if kind == "sensor" and names == {"status"}:
@@ -235,13 +129,13 @@ def _look_at_first_read(top: _Table, kind: Kind, first: RegisterBlock) -> None:
         raise top.error("reads", f"the first read must hold status and {' or '.join(wanted)}")
 
 
-def _whole(table: _Table, key: str, item: object, greatest: int) -> int:
+def _whole(table: ProfileTable, key: str, item: object, greatest: int) -> int:
     if isinstance(item, bool) or not isinstance(item, int) or not 0 <= item <= greatest:
         raise table.error(key, f"must hold whole numbers 0..{greatest}, not {item!r}")
     return item
 
 
-def _signals(table: _Table) -> dict[str, Signal]:
+def _signals(table: ProfileTable) -> dict[str, Signal]:
     found: dict[str, Signal] = {}
     for key in table.keys():  # noqa: SIM118 - not a dictionary
         row = table.table(key)
@@ -263,7 +157,7 @@ def _signals(table: _Table) -> dict[str, Signal]:
     return found
 
 
-def _block(table: _Table, signals: dict[str, Signal], order: WordOrder) -> RegisterBlock:
+def _block(table: ProfileTable, signals: dict[str, Signal], order: WordOrder) -> RegisterBlock:
     chosen: list[Signal] = []
     for item in table.items("signals"):
         if not isinstance(item, str) or item not in signals:
@@ -286,14 +180,14 @@ def _block(table: _Table, signals: dict[str, Signal], order: WordOrder) -> Regis
     return RegisterBlock(function, address, end - address, period_s, tuple(chosen), order)
 
 
-def _line(table: _Table) -> LineData:
+def _line(table: ProfileTable) -> LineData:
     baud = table.integer("baud", 300, 10_000_000)
     parity = cast(Literal["N", "E", "O"], table.choice("parity", ("N", "E", "O")))
     table.end()
     return LineData(baud, parity)
 
 
-def _timing(table: _Table) -> Timing:
+def _timing(table: ProfileTable) -> Timing:
     timing = Timing(
         turnaround_s=1e-3 * table.number("turnaround_ms"),
         reply_max_s=1e-3 * table.number("reply_max_ms"),
@@ -305,14 +199,14 @@ def _timing(table: _Table) -> Timing:
     return timing
 
 
-def _identity(table: _Table) -> Identity:
+def _identity(table: ProfileTable) -> Identity:
     address = table.integer("address", 0, 0xFFFF)
     identity = Identity(address, table.integer("function", 3, 4, 3), table.integer("value", 0, 0xFFFF))
     table.end()
     return identity
 
 
-def _setup(table: _Table) -> SetupWrite:
+def _setup(table: ProfileTable) -> SetupWrite:
     write = SetupWrite(
         name=table.text("name"),
         address=table.integer("address", 0, 0xFFFF),
@@ -323,7 +217,7 @@ def _setup(table: _Table) -> SetupWrite:
     return write
 
 
-def _switches(table: _Table) -> dict[str, Switch]:
+def _switches(table: ProfileTable) -> dict[str, Switch]:
     found: dict[str, Switch] = {}
     for key in table.keys():  # noqa: SIM118 - not a dictionary
         row = table.table(key)

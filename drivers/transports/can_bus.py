@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 from drivers.canopen import objects as o
 from drivers.ports import BusLost, CanFrame, FrameByFrame
-from drivers.transports import slcan, socketcand
+from drivers.transports import can_health, slcan, socketcand
 from drivers.transports.own_frames import OwnFrames
 
 if TYPE_CHECKING:
@@ -26,8 +26,6 @@ POLL_S = 0.1
 """How long the receive thread waits for a frame before it looks whether the port was closed."""
 MAX_WAITING = 20_000
 """Frames kept until the caller takes them: over 2 s of a full bus at 1 Mbit/s. More means that nobody reads."""
-_BUS_OFF = 0x40
-"""Class bit of a SocketCAN error frame (linux/can/error.h, CAN_ERR_BUSOFF)."""
 _FUNCTION = 0x780
 _BOOT_UP = bytes((o.NmtState.BOOT_UP,))
 _STATE_LOW, _STATE_HIGH = 0x7F, 0x22
@@ -41,9 +39,9 @@ class PythonCanPort(FrameByFrame):
     Without one a frame's arrival is the ``now`` of the ``receive`` that returns it. ``on_urgent`` is called in
     that thread, too, when something arrived that a scan should not wait for: an emergency, a boot-up, changed
     inputs (TPDO2), or a TPDO1 whose first word, the statusword, shows another state than before. ``ignored``
-    counts frames that are none of ours: remote, error, 29-bit and FD frames. Frames of other programs of this computer
-    are heard as those from the wire (``local`` counts what the interface marks as sent here); our own, where the
-    interface gives them back, are not (``own``: how that is found out).
+    counts frames that are none of ours: remote, 29-bit and FD frames; ``errors`` error frames, by what they say. Frames
+    of other programs of this computer are heard as those from the wire (``local`` counts what the interface marks as
+    sent here); our own, where the interface gives them back, are not (``own``: how that is found out).
     """
 
     def __init__(
@@ -57,6 +55,7 @@ class PythonCanPort(FrameByFrame):
 
         super().__init__()
         self.name = name
+        self._interface = name.partition(" ")[0]
         self._bus = bus
         self._clock = clock
         self._on_urgent = on_urgent
@@ -68,6 +67,7 @@ class PythonCanPort(FrameByFrame):
         self._lost: str | None = None
         self._closing = False
         self.ignored = 0
+        self.errors: dict[str, int] = {}
         self.local = 0
         self.own = OwnFrames(b"echo" + os.urandom(4))
         self._thread = Thread(target=self._run, name="can-receive", daemon=True)
@@ -108,6 +108,11 @@ class PythonCanPort(FrameByFrame):
         self.tell_received(taken)
         return taken
 
+    @property
+    def state(self) -> str:
+        """The adapter's: active, passive or error; "" where its interface tells none."""
+        return can_health.state_of(self._bus)
+
     def close(self) -> None:
         """Stop receiving and give the adapter back; the port is lost afterwards."""
         self._closing = True
@@ -147,8 +152,9 @@ class PythonCanPort(FrameByFrame):
     def _accept(self, message: can.Message) -> bool:
         """Queue a data frame; False where the bus is of no use any more."""
         if message.is_error_frame:
-            self.ignored += 1
-            return not message.arbitration_id & _BUS_OFF
+            for kind in can_health.kinds_of(self._interface, message.arbitration_id):
+                self.errors[kind] = self.errors.get(kind, 0) + 1
+            return not message.arbitration_id & can_health.BUS_OFF
         if message.is_extended_id or message.is_remote_frame or message.is_fd:
             self.ignored += 1
             return True

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections import deque
 from dataclasses import dataclass
-from math import inf
+from math import inf, isfinite
 from struct import Struct
 
 from drivers.crc16 import crc16, with_crc
@@ -63,7 +63,8 @@ class ModbusSession:
 
 @dataclass(slots=True)
 class _Transaction:
-    session: ModbusSession
+    session: ModbusSession | None
+    """Who asked; None once that client is gone."""
     number: int
     frame: bytes
     until_s: float = inf
@@ -84,7 +85,9 @@ class ModbusGateway:
     @property
     def due_s(self) -> float:
         """When ``serve`` has something to do next, s; infinity when nothing is asked."""
-        return inf if self._active is None else min(self._active.until_s, self.wire.arrives_s)
+        if self._active is None:
+            return -inf if self._waiting else inf
+        return min(self._active.until_s, self.wire.arrives_s)
 
     def take(self, session: ModbusSession, data: bytes, now: float) -> None:
         """Take what a client sent."""
@@ -94,8 +97,19 @@ class ModbusGateway:
         self.serve(now)
 
     def forget(self, session: ModbusSession) -> None:
-        """Drop what a client that is gone has asked."""
+        """Drop what a client that is gone has asked.
+
+        Of what is on the line already the reply is waited for, if one is on its way: two may not speak at once.
+        """
         self._waiting = deque(one for one in self._waiting if one.session is not session)
+        if self._active is not None and self._active.session is session:
+            self._active.session = None
+            self._end_if_unheard()
+
+    def _end_if_unheard(self) -> None:
+        """End a transaction that nobody waits for once nothing more comes of it."""
+        if self._active is not None and self._active.session is None and not isfinite(self.wire.arrives_s):
+            self._active = None
 
     def serve(self, now: float) -> None:
         """Pass replies on that have arrived, and requests whose turn it is."""
@@ -120,10 +134,14 @@ class ModbusGateway:
         active = self._active
         if active is None:
             return
+        session = active.session
+        if session is None:
+            self._end_if_unheard()
+            return
         for _, chunk in chunks:
             self._reply += chunk
             if len(self._reply) >= _SHORTEST_REPLY and crc16(self._reply) == 0:
-                active.session.reply(active.number, self._reply[:-2])
+                session.reply(active.number, self._reply[:-2])
                 self._active = None
                 return
         if now >= active.until_s:

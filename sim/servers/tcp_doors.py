@@ -174,6 +174,7 @@ class GatewayDoor:
                 self.gateway.forget(session)
                 connection.close()
                 del self.clients[client]
+                self.gateway.serve(now)  # it may have held the line
 
     def close(self) -> None:
         """Shut it and let go of every client."""

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Sequence
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
 from tester.base.units import UnitError, parse
+
+if TYPE_CHECKING:
+    from tester.rig import Rig
 
 Decorated = TypeVar("Decorated", bound=Callable[..., Any])
 
@@ -85,6 +88,14 @@ def json_option(command: Decorated) -> Decorated:
 def print_json(data: object) -> None:
     """Print data as one line of JSON, numbers in full precision; not-a-number is refused (ValueError)."""
     click.echo(json.dumps(data, ensure_ascii=False, allow_nan=False))
+
+
+def say_other_settings(rig_name: str, rig: Rig) -> None:
+    """Say on stderr which lines are set otherwise than the profiles of their devices say."""
+    from tester.rig.line_settings import other_settings
+
+    for text in other_settings(rig):
+        click.echo(f"{rig_name}: warning: {text}", err=True)
 
 
 def say_packaged_keys(rig_name: str, overrides: Sequence[str]) -> None:

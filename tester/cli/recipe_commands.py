@@ -19,6 +19,7 @@ from tester.cli.options import (
     print_json,
     rig_option,
     risk_option,
+    say_other_settings,
     say_packaged_keys,
     set_option,
 )
@@ -76,6 +77,7 @@ def check(recipe: str, rig_name: str, overrides: tuple[str, ...], accept_risk: s
         every = f", a reference condition after every {section.every}" if watched else ""
         click.echo(f'{name}: valid on rig "{rig.name}", {count} conditions{every}')
     say_packaged_keys(rig_name, overrides)
+    say_other_settings(rig_name, rig)
     return 0
 
 

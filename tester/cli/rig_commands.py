@@ -6,7 +6,15 @@ from pathlib import Path
 
 import click
 
-from tester.cli.options import json_option, print_json, rig_option, risk_option, say_packaged_keys, set_option
+from tester.cli.options import (
+    json_option,
+    print_json,
+    rig_option,
+    risk_option,
+    say_other_settings,
+    say_packaged_keys,
+    set_option,
+)
 from tester.kinds import DEFAULT
 
 
@@ -58,6 +66,7 @@ def show(rig_name: str, overrides: tuple[str, ...], accept_risk: str, as_json: b
     else:
         click.echo(config.text, nl=False)
     say_packaged_keys(rig_name, overrides)
+    say_other_settings(rig_name, config)
 
 
 @rig.command()

@@ -23,8 +23,8 @@ LOAD_MOST = 0.6
 BEAT_OFF = 0.2
 """By what share a heartbeat's period may differ from its object [A]."""
 MISSED = 3
-_BUS = "CAN bus"
-_WIRING = "drives' supply, the plug, CAN high and low, 120 ohm terminators at both ends, can.bitrate"
+BUS = "CAN bus"
+WIRING = "drives' supply, the plug, CAN high and low, 120 ohm terminators at both ends, can.bitrate"
 
 
 def bus(e: Examination) -> Iterator[Finding]:
@@ -32,18 +32,18 @@ def bus(e: Examination) -> Iterator[Finding]:
     can, told = e.can, e.rig.can.bitrate
     if can.answers_at:
         yield fault(
-            _BUS, f"nodes answer at a bit rate of {can.answers_at} bit/s, the rig file says {told}",
+            BUS, f"nodes answer at a bit rate of {can.answers_at} bit/s, the rig file says {told}",
             f"set can.bitrate to {can.answers_at}, or the drives to {told}",
         )  # fmt: skip
         return
     if can.lost:
-        yield fault(_BUS, can.lost, f"another bit rate on the bus, or nobody acknowledges: look at {_WIRING}")
+        yield fault(BUS, can.lost, f"another bit rate on the bus, or nobody acknowledges: look at {WIRING}")
     elif not can.present and not can.heard.frames:
-        yield fault(_BUS, f"silent at {told} bit/s: no frame was heard, and no node answers", f"look at {_WIRING}")
+        yield fault(BUS, f"silent at {told} bit/s: no frame was heard, and no node answers", f"look at {WIRING}")
     elif not can.present:
-        yield fault(_BUS, "frames are heard, but no node answers an SDO request", "switch the drives off and on")
+        yield fault(BUS, "frames are heard, but no node answers an SDO request", "switch the drives off and on")
     else:
-        yield ok(_BUS, f"{told} bit/s, nodes {', '.join(map(str, can.present))}")
+        yield ok(BUS, f"{told} bit/s, nodes {', '.join(map(str, can.present))}")
 
 
 def masters(e: Examination) -> Iterator[Finding]:
@@ -51,7 +51,7 @@ def masters(e: Examination) -> Iterator[Finding]:
     heard = [*e.can.heard.masters, *e.watch.can.masters]
     if heard:
         yield fault(
-            _BUS, f"another master is sending: {', '.join(dict.fromkeys(heard))}",
+            BUS, f"another master is sending: {', '.join(dict.fromkeys(heard))}",
             "two masters command one machine: end the other program, or unplug the maker's set-up tool",
         )  # fmt: skip
 
@@ -60,7 +60,7 @@ def load(e: Examination) -> Iterator[Finding]:
     """Measure the load of the bus as it stands, and add what a run's scans will bring."""
     watch = e.watch.can
     if e.watch.can_lost and not e.can.lost:
-        yield fault(_BUS, f"lost while it was watched: {e.watch.can_lost}", f"look at {_WIRING}")
+        yield fault(BUS, f"lost while it was watched: {e.watch.can_lost}", f"look at {WIRING}")
     if not watch.seconds or e.can.lost:
         return
     bits = sum(frame_bits(length) * count for length, count in watch.lengths.items())
@@ -69,9 +69,9 @@ def load(e: Examination) -> Iterator[Finding]:
     run = now + per_scan * e.rig.scan.sliding_hz / e.rig.can.bitrate
     found = f"load {100 * now:.1f} % now, up to {100 * run:.0f} % while a run is sliding"
     if run > LOAD_MOST:
-        yield warning(_BUS, found, "a higher bit rate, a lower scan.sliding, or nodes taken off the bus")
+        yield warning(BUS, found, "a higher bit rate, a lower scan.sliding, or nodes taken off the bus")
     else:
-        yield ok(_BUS, found)
+        yield ok(BUS, found)
 
 
 def axes(e: Examination) -> Iterator[Finding]:
@@ -264,7 +264,7 @@ def strangers(e: Examination) -> Iterator[Finding]:
         name = e.can.text(node, (o.DEVICE_NAME, 0)) or "no name"
         serial = e.can.number(node, (o.IDENTITY, 4))
         yield warning(
-            _BUS, f"node {node} is not in the rig file: {name}, serial number {serial}",
+            BUS, f"node {node} is not in the rig file: {name}, serial number {serial}",
             "a device that nobody watches: add it to the rig file, or take it off the bus",
         )  # fmt: skip
 

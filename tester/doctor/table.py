@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import Final, NamedTuple
 
-from tester.doctor import can_probes, host_probes, line_probes
+from tester.doctor import bus_errors, can_probes, host_probes, line_probes
 from tester.doctor.examination import Examination
 from tester.doctor.finding import Finding
 
@@ -36,6 +36,7 @@ PROBES: Final[tuple[ProbeEntry, ...]] = (
     ProbeEntry("watch", can_probes.heartbeats),
     ProbeEntry("watch", can_probes.emergencies),
     ProbeEntry("watch", can_probes.load),
+    ProbeEntry("watch", bus_errors.errors),
     ProbeEntry("watch", line_probes.ages),
     ProbeEntry("watch", host_probes.punctuality),
 )

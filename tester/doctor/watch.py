@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from math import inf
 
 from drivers.modbus.scan import LineScan, RegisterQuestion
-from drivers.ports import BusLost, CanPort, LinePort
+from drivers.ports import BusLost, CanPort, LinePort, TellingCanPort
 from tester.doctor.can_survey import Heard
 from tester.doctor.line_survey import LineSurvey
 from tester.doctor.wires import Wires
@@ -49,6 +49,10 @@ class RigWatch:
     seconds: float = 0.0
     can: Heard = field(default_factory=Heard)
     can_lost: str = ""
+    can_errors: dict[str, int] | None = None
+    """Error frames by what they say; None where the adapter passes none on."""
+    can_state: str = ""
+    """The adapter's own state at the end, "" where it tells none."""
     units: dict[str, UnitWatch] = field(default_factory=dict[str, UnitWatch])
     """By the devices' names in the rig file."""
     lines_lost: dict[str, str] = field(default_factory=dict[str, str])
@@ -121,7 +125,7 @@ def watched(rig: Rig, wires: Wires, lines: dict[str, LineSurvey], seconds: float
     """RigWatch for ``seconds``; ``lines``: those that were looked at; ``can``: the bus could be opened."""
     found = RigWatch()
     opened = _open(rig, wires, lines, found)
-    bus = _bus(rig, wires, found) if can else None
+    bus = wire = _bus(rig, wires, found) if can else None
     period_s = 1.0 / rig.scan.sliding_hz
     begun_s = wires.now()
     scan_due_s = begun_s + period_s
@@ -141,6 +145,8 @@ def watched(rig: Rig, wires: Wires, lines: dict[str, LineSurvey], seconds: float
         wires.wait_until(min(now + STEP_S, max(scan_due_s, now)))
         if wires.now() <= now:
             wires.wait_until(now + STEP_S)
+    if isinstance(wire, TellingCanPort):
+        found.can_errors, found.can_state = dict(wire.errors), wire.state
     found.seconds = wires.now() - begun_s
     found.can.seconds = found.seconds
     return found

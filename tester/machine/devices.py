@@ -6,19 +6,20 @@ What a kind of machine reads from them and commands is its own (``fill`` and ``a
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from math import inf, nan
 from typing import Any, Final, Protocol
 
 from drivers.canopen.master import CanMaster
 from drivers.canopen.sensor_node import SensorNode
 from drivers.cia402 import State
-from drivers.modbus import Device, ModbusLink
+from drivers.modbus import ModbusLink
 from drivers.ports import BusLost, CanPort, ForeseeingPort, LinePort
 from drivers.sensor import Sensor
 from drivers.servo import ServoDrive
+from tester.machine.field_device import FieldDevice
 from tester.machine.image import BaseReadings
 from tester.machine.modbus_health import Inspector
+from tester.machine.silence import fault_text, name_of, refusals, silent_lines, unheard
 from tester.store.recorder import Recorder
 
 INPUT_SAFETY_CHAIN: Final = 1 << 16
@@ -30,22 +31,8 @@ _OPERATING: Final = State.OPERATION_ENABLED
 _FAULT_REACTION: Final = State.FAULT_REACTION
 _FAULT: Final = State.FAULT
 
-SPREAD_S: Final = 0.015
-"""Drives answer one SYNC, within 2 ms of each other: one that is further behind the others is missing, s [A]."""
 NEVER: Final = float("-inf")
 """Time stamp of a source that has not reported yet: older than anything, hence stale."""
-
-
-@dataclass(slots=True)
-class FieldDevice:
-    """A Modbus device of the rig file."""
-
-    name: str
-    """Its key in the rig file."""
-    title: str
-    """What people call it."""
-    line: str
-    driver: Device
 
 
 class CountedInRun(Protocol):
@@ -127,11 +114,11 @@ class DeviceList:
             else:
                 enabled = False
                 if not fault and (state is _FAULT or state is _FAULT_REACTION):
-                    fault = _fault_text(drive)
+                    fault = fault_text(drive)
             if not fault and (
                 drive.lost or drive.rebooted or drive.emergency is not None or (drive.connected and not drive.remote)
             ):
-                fault = _fault_text(drive)
+                fault = fault_text(drive)
         r.drives_enabled, r.drives_disabled, r.drive_fault = enabled, disabled, fault
         inputs = with_inputs.inputs
         r.safety_chain = inputs & INPUT_SAFETY_CHAIN != 0
@@ -139,38 +126,12 @@ class DeviceList:
         return inputs
 
     def fill_unheard(self, r: BaseReadings) -> None:
-        """Name the drives that are behind the others: of a bus that is silent as a whole, none."""
-        oldest = newest = self.drives[0].stamp_s
-        for drive in self.drives:
-            stamp_s = drive.stamp_s
-            if stamp_s < oldest:
-                oldest = stamp_s
-            elif stamp_s > newest:
-                newest = stamp_s
-        if newest - oldest <= SPREAD_S:
-            r.unheard = ""
-            return
-        behind = [drive.config for drive in self.drives if newest - drive.stamp_s > SPREAD_S]
-        r.unheard = ", ".join(f"{one.name} drive (node {one.node_id}) not heard" for one in behind)
+        """Name the drives that are behind the others."""
+        r.unheard = unheard(self.drives)
 
     def fill_silent(self, r: BaseReadings) -> None:
         """Name the Modbus lines on which no device answers, with the devices."""
-        for _, link in self.lines:
-            for station in link.stations:
-                if station.is_lost:
-                    r.line_silent = self._silent_lines()
-                    return
-        r.line_silent = ""
-
-    def _silent_lines(self) -> str:
-        found: list[str] = []
-        for _, link in self.lines:
-            there = [one for one in self.modbus if one.driver.link is link]
-            stations = [one.driver.station for one in there]
-            # One is lost, and the others have not answered since: their own loss takes as long again.
-            if any(one.is_lost for one in stations) and all(one.misses for one in stations):
-                found.append(f"nobody answers on line {there[0].line}: {', '.join(one.title for one in there)}")
-        return "; ".join(found)
+        r.line_silent = silent_lines(self.lines, self.modbus)
 
     def receive(self, now: float) -> None:
         """Take in everything that arrived; a wire that is lost is left alone from then on (``lost`` says why)."""
@@ -199,9 +160,7 @@ class DeviceList:
 
     def _lose_line(self, link: ModbusLink, error: BusLost, now: float) -> None:
         """Go on without a line: what it carried is not valid any more."""
-        there = [one for one in self.modbus if one.driver.link is link]
-        name = f" {there[0].line} ({', '.join(one.title for one in there)})" if there else ""
-        self.lost = self.lost or f"line lost:{name or ' unnamed'}: {error}"
+        self.lost = self.lost or f"line lost: {name_of(link, self.modbus)}: {error}"
         self._lines = tuple(entry for entry in self._lines if entry[1] is not link)
         self._watched = tuple((one, None if one is link else port) for one, port in self._watched)
         for station in link.stations:
@@ -264,19 +223,7 @@ class DeviceList:
 
     def refused(self) -> str:
         """Return why devices cannot be used, all of them, or ""."""
-        if not self._any_refused():
-            return ""
-        said = [f"{one.config.name} drive (node {one.node_id}): {one.refused}" for one in self.drives if one.refused]
-        said += [f"{one.name} (node {one.node_id}): {one.refused}" for one in self.nodes if one.refused]
-        said += [f"{one.title}: {one.driver.refused}" for one in self.modbus if one.driver.refused]
-        return "; ".join(said)
-
-    def _any_refused(self) -> bool:
-        return (
-            any(one.refused for one in self.drives)
-            or any(one.refused for one in self.nodes)
-            or any(one.driver.refused for one in self.modbus)
-        )
+        return "; ".join(refusals(self.drives, self.nodes, self.modbus))
 
     def without(self) -> list[str]:
         """Return what drives are done without, and what is lost by that: a line each."""
@@ -313,17 +260,3 @@ class DeviceList:
         """Name what has not answered."""
         names = [node.name for node in self.master.nodes if self.master.busy(node) or not node.online]
         return names + [device.title for device in self.modbus if not device.driver.valid]
-
-
-def _fault_text(drive: ServoDrive) -> str:
-    """Describe what is wrong with a drive."""
-    name = f"{drive.config.name} drive"
-    if drive.lost:
-        return f"{name}: heartbeat lost"
-    if drive.rebooted:
-        return f"{name}: rebooted"
-    if drive.emergency is not None:
-        return f"{name}: {drive.emergency.text} (0x{drive.emergency.code:04X})"
-    if drive.connected and not drive.remote:
-        return f"{name}: under local control"
-    return f"{name}: fault"

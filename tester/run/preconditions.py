@@ -1,14 +1,17 @@
-"""What a run claims before it begins: room on the disk, the rig's buses, its folder."""
+"""What a run claims before it begins: room on the disk, the rig's buses, its folder; and what it tells people then."""
 
 from __future__ import annotations
 
+from datetime import date
 from pathlib import Path
 
+from tester.base.exits import EXIT_INVALID
 from tester.base.lock import RUN_LOCK, ExclusiveUse, RigInUseError
 from tester.machine.run import Outcome
 from tester.recipe.estimate import Estimate
 from tester.recipe.plan import Plan
 from tester.rig import Rig
+from tester.rig.line_settings import other_settings
 from tester.run.endings import EXIT_CODES, CannotStartError
 from tester.run.kinds import recipe_part
 from tester.store.space import expected_bytes, too_little_room
@@ -43,3 +46,16 @@ def buses_of(rig: Rig) -> list[str]:
         return []
     lines = [f"line {line.port}" for line in rig.lines.values()]
     return [f"can {rig.can.interface}:{rig.can.channel}", *lines]
+
+
+def told_before(rig: Rig, today: date) -> list[str]:
+    """Return what somebody should know before a rig starts: certificates that have ended, lines set otherwise.
+
+    Raises CannotStartError where a certificate has and that refuses a start (``calibration.overdue``).
+    """
+    calibration = rig.certificates()
+    over = calibration.over(today)
+    if over and calibration.overdue == "refuse":
+        raise CannotStartError(f"calibration overdue: {over} (calibration.overdue: refuse)", EXIT_INVALID)
+    lines = [] if rig.simulated else [f"warning: {text}" for text in other_settings(rig)]
+    return [f"calibration overdue: {over}", *lines] if over else lines

@@ -36,7 +36,7 @@ from tester.run.latch import acknowledge, open_trips
 from tester.run.merge_parts import put_together, recover
 from tester.run.part_run import run_part
 from tester.run.pool import WorkerPool
-from tester.run.preconditions import enough_room, hold_rig, hold_run
+from tester.run.preconditions import enough_room, hold_rig, hold_run, told_before
 from tester.run.preparing import Prepared, prepared
 from tester.run.provenance import accepted_risks, recipe_source, rig_source, run_info, session_info
 from tester.run.reporter import LastingScreen, ReportScreen
@@ -114,7 +114,7 @@ class Session:
         if refusal:
             self.screen.message(refusal)
             return EXIT_USAGE
-        self._calibrated(rig)
+        self._foretell(rig)
         options.out.mkdir(parents=True, exist_ok=True)
         for left in cut_off(options.out):
             self.screen.message(f"{left.name} was cut off: tester resume {left} goes on with it")
@@ -156,7 +156,7 @@ class Session:
             if refusal:
                 self.screen.message(refusal)
                 return EXIT_USAGE
-            self._calibrated(resumed.rig)
+            self._foretell(resumed.rig)
             enough_room(folder, resumed.plan, resumed.rig)
             hold_rig(use, resumed.rig, folder.name)
             self.screen.message(resumed.summary)
@@ -231,14 +231,10 @@ class Session:
             return "the recipe asks a person, and nobody is at this terminal: use --yes"
         return ""
 
-    def _calibrated(self, rig: Rig) -> None:
-        """Say, or refuse to start, where a certificate has ended (``calibration.overdue``). Raises CannotStartError."""
-        calibration = rig.certificates()
-        over = calibration.over(date.fromisoformat(utc_now()[:10]))
-        if over and calibration.overdue == "refuse":
-            raise CannotStartError(f"calibration overdue: {over} (calibration.overdue: refuse)", EXIT_INVALID)
-        if over:
-            self.screen.message(f"calibration overdue: {over}")
+    def _foretell(self, rig: Rig) -> None:
+        """Say what somebody should know of a rig before it starts. Raises CannotStartError."""
+        for text in told_before(rig, date.fromisoformat(utc_now()[:10])):
+            self.screen.message(text)
 
     def _job(self, folder: Path, seed: int, rig: Rig) -> Job:
         o = self.options

@@ -7,7 +7,8 @@ from typing import Protocol, runtime_checkable
 
 from drivers.canopen.sensor_node import SensorNode
 from drivers.servo import ServoDrive
-from tester.machine.devices import DeviceList, FieldDevice
+from tester.machine.devices import DeviceList
+from tester.machine.field_device import FieldDevice
 from tester.rig import Rig
 from tester.service.state import BusView, DeviceView
 

@@ -59,7 +59,7 @@ class Bench:
         self.link = ModbusLink(framing, baud)  # type: ignore[arg-type]
         self.known = known
         if known:
-            self.link.hears_itself = False
+            self.link.ear.hears_itself = False
         self.line = Line()
         self.notes = Notes()
 

@@ -183,7 +183,7 @@ def test_a_drive_without_boot_up_that_answers_is_connected() -> None:
 def test_an_absent_drive_is_named() -> None:
     bench = BenchDrive()
     bench.boots = bench.answers = False
-    assert refusal(bench) == ("wheel (node 5): no boot-up message within 2 s; 0x1000:00 (device type): "
+    assert refusal(bench) == ("no boot-up message within 2 s; 0x1000:00 (device type): "
                               "read failed: no reply within 0.3 s")
 
 
@@ -216,13 +216,13 @@ def test_a_drive_without_the_mode_is_refused() -> None:
 def test_a_value_the_drive_did_not_keep_is_refused() -> None:
     bench = BenchDrive()
     bench.on_write = lambda index, sub, value: 1 if index == 0x605E else value
-    assert refusal(bench) == "wheel (node 5): 0x605E:00 (fault reaction option code): wrote 2, read 1"
+    assert refusal(bench) == "0x605E:00 (fault reaction option code): wrote 2, read 1"
 
 
 def test_an_abort_is_named_with_object_and_value() -> None:
     bench = BenchDrive()
     bench.aborts["write", 0x1016, 1] = 0x06020000
-    assert refusal(bench) == ("wheel (node 5): 0x1016:01 (consumer heartbeat (node << 16 | ms)): write of 8323272 "
+    assert refusal(bench) == ("0x1016:01 (consumer heartbeat (node << 16 | ms)): write of 8323272 "
                               "failed: abort 0x06020000 (object does not exist)")
 
 
@@ -304,7 +304,8 @@ class HomingBench(BenchDrive):
                 self.started += 1
                 if self.started >= self.steps:
                     status |= self.outcome
-                    self.objects[0x6064, 0] = -250
+                    offset = self.objects.get((0x607C, 0), 0)     # the zero lies this far beyond the switch
+                    self.objects[0x6064, 0] = 2**32 - offset if offset >= 2**31 else -offset
             else:
                 status |= 0x0400
         self.objects[0x6041, 0] = status
@@ -326,7 +327,7 @@ def home(bench: BenchDrive, config: AxisConfig, start_goal: Goal = Goal.DISABLED
 
 def test_a_homed_axis_has_its_new_position_as_reading_and_target() -> None:
     drive = home(HomingBench(), yaw(home_offset=-2.5))
-    assert (drive.refused, drive.homed, drive.actual, drive.target) == (None, True, -2.5, -2.5)
+    assert (drive.refused, drive.homed, drive.actual, drive.target) == (None, True, 2.5, 2.5)
 
 
 def test_homing_writes_its_parameters_and_returns_to_its_mode() -> None:
@@ -344,7 +345,8 @@ def test_homing_ends_with_the_power_off() -> None:
 
 def test_a_press_is_homed_and_returns_to_profile_velocity() -> None:
     bench = HomingBench()
-    drive = home(bench, wheel(name="press", feedback="position", position_increments=100.0))
+    config = wheel(name="press", feedback="position", position_increments=100.0, home_offset=2.5)
+    drive = home(bench, config)
     assert (drive.homed, drive.actual, drive.target) == (True, -2.5, 0.0)
     assert bench.writes[-1] == (0x6060, 0, 3)
 
@@ -355,14 +357,14 @@ def test_a_reference_found_at_once_is_accepted() -> None:
 
 def test_a_homing_error_is_refused_and_the_axis_stopped() -> None:
     drive = home(HomingBench(outcome=0x2400), yaw())
-    assert drive.refused == "sideslip (node 5): homing failed: statusword 0x2627 (OPERATION_ENABLED)"
+    assert drive.refused == "homing failed: statusword 0x2627 (OPERATION_ENABLED)"
     assert (drive.homed, drive.state) == (False, State.SWITCH_ON_DISABLED)
 
 
 def test_a_homing_that_never_ends_is_refused_and_stopped() -> None:
     bench = HomingBench(steps=10**9)
     drive = home(bench, yaw(home_timeout_s=1.0))
-    assert drive.refused == "sideslip (node 5): homing: not finished within 1 s"
+    assert drive.refused == "homing: not finished within 1 s"
     assert (drive.state, bench.words[-1]) == (State.SWITCH_ON_DISABLED, 0x02)
 
 
@@ -383,7 +385,7 @@ def test_a_goal_set_by_the_caller_ends_the_homing() -> None:
 
 def test_an_axis_without_a_position_cannot_be_homed() -> None:
     drive = home(HomingBench(), wheel())
-    assert drive.refused == "wheel (node 5): homing needs a drive online, with position feedback and homing mode"
+    assert drive.refused == "homing needs a drive online, with position feedback and homing mode"
 
 
 # --- diagnosis and release ----------------------------------------------------------------------------------

@@ -21,9 +21,9 @@ from tester.kinds.specimen_on_track.procedures.steps import TrackProcedures
 from tester.kinds.specimen_on_track.process import TrackDemand
 from tester.kinds.specimen_on_track.rig import TrackConfig
 from tester.machine.connect import Connector
-from tester.machine.devices import FieldDevice
 from tester.machine.engine import Engine
 from tester.machine.executor import Executor
+from tester.machine.field_device import FieldDevice
 from tester.machine.ports import Ports
 from tester.machine.prompts import Prompts
 from tester.machine.run import Run

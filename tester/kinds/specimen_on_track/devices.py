@@ -20,7 +20,8 @@ from drivers.sensor import Sensor
 from drivers.servo import ServoDrive
 from tester.kinds.specimen_on_track.process import NEVER, TrackReadings, TrackSetpoints
 from tester.kinds.specimen_on_track.rig import ArmConfig
-from tester.machine.devices import DeviceList, FieldDevice
+from tester.machine.devices import DeviceList
+from tester.machine.field_device import FieldDevice
 
 CELL_CHANNELS: Final = ("fx",)
 """Tangential force (N)."""

@@ -7,6 +7,7 @@ from math import log, nan, pi
 from drivers.canopen.master import CanMaster
 from drivers.canopen.sensor_node import SensorNode
 from drivers.jacket import HeatingJacket
+from drivers.joined_cell import JoinedCell
 from drivers.modbus import Device
 from drivers.servo import ServoDrive
 from tester.analysis.closest import combining_of
@@ -30,9 +31,9 @@ from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.kinds.wheel_on_belt.rig.sections import VELOCITY_AXES
 from tester.machine.cells import link_of, load_cell_of, sensor_of
 from tester.machine.connect import Connector
-from tester.machine.devices import FieldDevice
 from tester.machine.engine import Engine
 from tester.machine.executor import Executor
+from tester.machine.field_device import FieldDevice
 from tester.machine.ports import Ports
 from tester.machine.prompts import Prompts
 from tester.machine.run import Run
@@ -80,7 +81,6 @@ def build_devices(rig: RigConfig, ports: Ports) -> Devices:
         ],
         sensors=list(further.values()),
         nodes=nodes,
-        cell_old_s=rig.interlocks.stale_cell_s,
     )
 
 
@@ -117,20 +117,22 @@ def build_run(
     load = LoadLoop()
     state = WheelState(Setpoints(), load, HeatLoop(rig.loops.heat.hub_min_c))
     control = WheelControl(rig, state, loss_ratios(rig), plan_bounds(plan, rig))
-    geometry, quantities = rig.geometry, quantities_on(rig)
+    geometry, quantities, cell = rig.geometry, quantities_on(rig), devices.cell
     ctx = Context(
         rig=rig,
         readings=Readings(
             cold_mm=geometry.wheel_diameter_mm,
             diameter_mm=geometry.wheel_diameter_mm,
             channels=[nan] * len(quantities.further),
+            joined=cell if isinstance(cell, JoinedCell) else None,
+            cell_old_s=rig.interlocks.stale_cell_s,
         ),
         demand=Demand(),
         gates=Gates(rig.gates),
         prompts=prompts,
         journal=recorder,
         attendant=attendant,
-        cell=devices.cell,
+        cell=cell,
         wheel=WheelLife(installed_mm=geometry.wheel_diameter_mm, width_mm=geometry.wheel_width_mm),
         contact=load,
         ambient_c=rig.ambient_c,

@@ -14,7 +14,7 @@ from drivers.canopen.master import CanMaster
 from drivers.canopen.sensor_node import SensorNode
 from drivers.cia402 import Goal
 from drivers.jacket import HeatingJacket
-from drivers.joined_cell import JoinedCell, LoadCell, blame, links_of
+from drivers.joined_cell import JoinedCell, LoadCell, links_of
 from drivers.modbus import ModbusLink
 from drivers.ports import CanPort, LinePort
 from drivers.sensor import Sensor
@@ -22,7 +22,8 @@ from drivers.servo import ServoDrive
 from tester.kinds.wheel_on_belt.cell_skew import CellSkew
 from tester.kinds.wheel_on_belt.process import NEVER, Readings, Setpoints
 from tester.kinds.wheel_on_belt.ring_watch import SlipRingWatch
-from tester.machine.devices import DeviceList, FieldDevice
+from tester.machine.devices import DeviceList
+from tester.machine.field_device import FieldDevice
 
 CELL_CHANNELS: Final = ("fx", "fy", "fz", "mz")
 """Longitudinal, lateral and normal force (N), moment about the vertical (N m), in the wheel's frame."""
@@ -75,14 +76,12 @@ class Devices(DeviceList):
         modbus: Sequence[FieldDevice],
         sensors: Sequence[Sensor] = (),
         nodes: Sequence[SensorNode] = (),
-        cell_old_s: float = 0.05,
     ) -> None:
         """Take the drivers; ``modbus``: every device on the lines, ``sensors`` and ``nodes``: those besides the
-        three and the drives; ``cell_old_s``: a transmitter of the cell without a reading for so long is named."""
+        three and the drives."""
         super().__init__(can, master, axes.present(), lines, modbus, sensors, nodes, links_of(cell))
         self.axes = axes
         self.cell: LoadCell = cell
-        self._cell_old_s = cell_old_s
         self.thermometer = thermometer
         self.jacket = jacket
         self.slip_ring = SlipRingWatch(jacket)
@@ -119,7 +118,6 @@ class Devices(DeviceList):
         r.force_x_n, r.force_y_n, r.force_z_n, r.moment_z_nm = cell.values
         r.cell_valid, r.cell_at_s, r.cell_changed_s = cell.valid, cell.stamp_s, cell.changed_s
         r.cell_silent = not cell.ready
-        r.cell_fault = blame(cell, now, self._cell_old_s)
         thermometer = self.thermometer
         r.surface_c = thermometer.values[0]
         r.surface_valid, r.surface_at_s = thermometer.valid, thermometer.stamp_s

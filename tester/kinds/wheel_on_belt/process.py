@@ -9,7 +9,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from enum import IntEnum
-from typing import Final
+from math import inf
+from typing import Final, Protocol
 
 from tester.kinds.wheel_on_belt.axes import straight
 from tester.machine.image import NAN, NEVER, BaseDemand, BaseReadings, BaseSetpoints
@@ -25,6 +26,14 @@ GATE_SETTLING: Final = 32
 
 CELL: Final = ("force_x_n", "force_y_n", "force_z_n", "moment_z_nm")
 """The load cell's channels, in its order: what a tare takes off."""
+
+
+class Parted(Protocol):
+    """A load cell of several transmitters (``drivers.joined_cell``)."""
+
+    def blame(self, now: float, limit_s: float) -> str:
+        """Return which transmitter keeps it from being read at ``now`` s, or ""; ``limit_s``: how old a part may be."""
+        ...
 
 
 class Press(IntEnum):
@@ -75,8 +84,10 @@ class Readings(BaseReadings):
     cell_valid: bool = False
     cell_silent: bool = False
     """The load cell has not answered several requests in a row, and is not set up again yet."""
-    cell_fault: str = ""
-    """Which of the load cell's transmitters keeps it from being read, and why; empty with one, and while none does."""
+    joined: Parted | None = None
+    """The load cell, where it has several transmitters: asked which of them is to blame, where something trips."""
+    cell_old_s: float = inf
+    """A transmitter of the cell without a reading for so long is named."""
     cell_at_s: float = NEVER
     cell_changed_s: float = NEVER
     """When a reading of the cell last differed from the one before."""
@@ -106,7 +117,8 @@ class Readings(BaseReadings):
     def faults(self) -> list[str]:
         """Return what drives, wires and devices say is wrong with them, in words; the cell's transmitter first."""
         said = BaseReadings.faults(self)
-        return [self.cell_fault, *said] if self.cell_fault else said
+        blamed = "" if self.joined is None else self.joined.blame(self.now_s, self.cell_old_s)
+        return [blamed, *said] if blamed else said
 
     @property
     def cell(self) -> tuple[float, float, float, float]:

@@ -12,7 +12,8 @@ from drivers.cia402 import Goal
 from drivers.modbus import ModbusLink
 from drivers.sensor import Sensor
 from drivers.servo import ServoDrive
-from tester.machine.devices import NEVER, DeviceList, FieldDevice
+from tester.machine.devices import NEVER, DeviceList
+from tester.machine.field_device import FieldDevice
 from tester.machine.plain.image import PlainReadings, PlainSetpoints
 from tester.machine.ports import Ports
 from tester.rig.plain import PlainRig

@@ -64,7 +64,7 @@ class Wire:
     def __init__(self, framing: str, spoilings: dict[str, Callable[[random.Random, bytes, Line], Chunks]]) -> None:
         """Ask one station of which the reply times are known."""
         self.link = ModbusLink(framing)  # type: ignore[arg-type]
-        self.link.hears_itself = False
+        self.link.ear.hears_itself = False
         self.line, self.owner = Line(), Owner()
         station = self.link.station(UNIT, TIMING, self.owner)
         for _ in range(REPLIES):

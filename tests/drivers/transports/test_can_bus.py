@@ -10,7 +10,7 @@ import can
 import pytest
 
 from drivers.canopen.master import CanMaster
-from drivers.ports import BusLost, CanFrame
+from drivers.ports import BusLost, CanFrame, TellingCanPort
 from drivers.transports.can_bus import PythonCanPort, open_can
 from drivers.transports.own_frames import PROBE_ID
 
@@ -132,11 +132,44 @@ def test_frames_that_are_none_of_ours_are_counted() -> None:
     port = PythonCanPort(StubBus([
         can.Message(arbitration_id=0x181, is_extended_id=True),
         can.Message(arbitration_id=0x181, is_extended_id=False, is_remote_frame=True),
-        can.Message(arbitration_id=0x01, is_error_frame=True),
         can.Message(arbitration_id=0x185, is_extended_id=False)]))
     assert collect(port, 1) == [(100.0, 0x185, b"")]
-    assert port.ignored == 3
+    assert port.ignored == 2
+    assert port.errors == {}
     port.close()
+
+
+@pytest.mark.parametrize(("name", "counted"), [
+    ("socketcan can0", {"no acknowledgement": 2, "controller": 1, "bus error": 1, "error": 1}),
+    ("pcan PCAN_USBBUS1", {"error": 4}),
+])
+def test_error_frames_are_counted_by_what_they_say(name: str, counted: dict[str, int]) -> None:
+    frames = [can.Message(arbitration_id=bits, is_error_frame=True) for bits in (0x020, 0x024, 0x080, 0x400)]
+    port = PythonCanPort(StubBus([*frames, can.Message(arbitration_id=0x185, is_extended_id=False)]), name=name)
+    assert collect(port, 1) == [(100.0, 0x185, b"")]
+    assert port.errors == counted
+    assert port.ignored == 0
+    port.close()
+
+
+class StatefulBus(StubBus):
+    """A bus whose interface tells a state."""
+
+    @property
+    def state(self) -> can.BusState:
+        if self.fail_send is not None:
+            raise self.fail_send
+        return can.BusState.PASSIVE
+
+
+def test_a_state_is_told_where_the_interface_tells_one() -> None:
+    port, other = PythonCanPort(StatefulBus([])), PythonCanPort(StubBus([]))
+    assert isinstance(port, TellingCanPort)
+    assert (port.state, other.state) == ("passive", "")
+    port._bus.fail_send = can.CanOperationError("gone")
+    assert port.state == ""
+    port.close()
+    other.close()
 
 
 @pytest.mark.parametrize("error", [can.CanOperationError("read error"), OSError(19, "No such device"),

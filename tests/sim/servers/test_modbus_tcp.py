@@ -123,6 +123,38 @@ def test_what_a_client_that_is_gone_has_asked_is_dropped(gateway: ModbusGateway)
     assert gateway.wire.requests == 2  # one's first was on the line already
 
 
+def test_the_next_client_does_not_wait_for_a_slave_that_is_silent_to_one_that_is_gone(gateway: ModbusGateway) -> None:
+    one, other = ModbusSession(), ModbusSession()
+    gateway.take(one, bytes.fromhex("0001 0000 0006 09 03 0000 0002"), 1.0)
+    gateway.take(other, READ, 1.0)
+    gateway.forget(one)
+    assert gateway.due_s <= 1.001
+    gateway.serve(1.001)
+    [(t, reply)] = answers(gateway, other)
+    assert reply == REPLY
+    assert t == pytest.approx(1.001 + 17 * 10 / 115200 + 0.00175 + 0.002)
+
+
+def test_a_reply_to_one_that_is_gone_is_let_pass_before_the_next_request(gateway: ModbusGateway) -> None:
+    one, other = ModbusSession(), ModbusSession()
+    gateway.wire.impair = Impairment("split", delay_s=0.01)
+    gateway.take(one, READ, 1.0)
+    gateway.take(other, b"\x99\x99" + READ[2:], 1.0)
+    gateway.forget(one)
+    assert gateway.due_s > 1.0
+    [(_, reply)] = answers(gateway, other)
+    assert (reply, bytes(one.outgoing)) == (b"\x99\x99" + REPLY[2:], b"")
+    assert gateway.wire.collisions == 0
+
+
+def test_a_request_of_one_that_is_gone_on_an_unplugged_line_is_dropped(gateway: ModbusGateway) -> None:
+    one = ModbusSession()
+    gateway.take(one, READ, 1.0)
+    gateway.wire.disconnect()
+    gateway.forget(one)
+    assert gateway.due_s == inf
+
+
 def test_a_client_cannot_pile_requests_up(gateway: ModbusGateway) -> None:
     session = ModbusSession()
     gateway.take(session, READ * 100, 1.0)

@@ -51,6 +51,10 @@ def test_what_every_drive_refuses_is_told_at_once() -> None:
         values[0x6076, 0] = 1000
     connector = simulation.to_the_end(60.0).run.connector
     assert connector.failure.count("0x6076:00") == 2
+    assert [part.partition(": ")[0] for part in connector.failure.split("; ") if "(node " in part] == [
+        "wheel drive (node 1)", "belt drive (node 2)",
+    ]
+    assert connector.failure.count("wheel") == connector.failure.count("belt") == 1
 
 
 @pytest.mark.campaign

@@ -41,7 +41,7 @@ def home(seat: ArmedSeat, notes: Notes) -> Dialogue:
             config = seat.rig.axes.driven()[name]
             raise StepRefused(
                 f"home of the {name} axis: straight is {off:+.2f} deg off. In the rig file:"
-                f" axes.{name}.home_offset: {config.home_offset + off:.2f} (now {config.home_offset:g})"
+                f" axes.{name}.home_offset: {config.home_offset - off:.2f} (now {config.home_offset:g})"
             )
     notes.values = found
     notes.text = "homed; " + ", ".join(f"{name} {one['read_deg']:+.2f} deg" for name, one in found.items())

@@ -10,6 +10,8 @@ from random import Random
 
 import pytest
 
+from bench.machine import scan_is_compiled
+from drivers.joined_cell import JoinedCell
 from sim.faults.scene import Scene
 from sim.machines.wheel_on_belt.faults.catalogue import CATALOGUE
 from tester.base.source import InvalidSource, load_tree
@@ -196,6 +198,28 @@ def test_a_transmitter_whose_bridge_is_broken_is_named(pressed: Simulation) -> N
     first = run.notes.texts("trip")[0]
     assert first.startswith("load cell saturated")
     assert "[cell y: reading not valid (status 0x" in first
+
+
+@pytest.mark.skipif(scan_is_compiled() == "yes", reason="a compiled method is not counted from outside")
+def test_who_is_to_blame_is_asked_where_something_trips_alone(
+    pressed: Simulation, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked: list[float] = []
+
+    def blame(self: JoinedCell, now: float, limit_s: float) -> str:
+        asked.append(now)
+        return f"nobody for {limit_s} s"
+
+    monkeypatch.setattr(JoinedCell, "blame", blame)
+    run = deepcopy(pressed)
+    end = run.now + 1.0
+    run.until(lambda one: one.now >= end)
+    assert asked == []
+    run.world.cells["cell_y"].power(False)
+    run.to_the_end()
+    assert run.notes.texts("trip")[0].startswith("load cell silent")
+    assert asked
+    assert "[nobody for 0.05 s]" in run.notes.texts("trip")[0]
 
 
 def test_nothing_moves_while_a_transmitter_does_not_answer() -> None:
