@@ -48,8 +48,8 @@ ASKED = GuideView(
     ("1/7 title of identify: stands (2026-11-23, A. Name): 8 devices", "> go"), True, None, "",
 )  # fmt: skip
 MOVING = replace(ASKED, question=None)
-REFUSAL = ("scale of the belt axis: it moved 1.25 times as far as its drive reports, more than 1 % off. In the rig file:"
-           " axes.belt.velocity_increments: 1234567 (now 1543209)")  # fmt: skip
+REFUSAL = ("scale of the belt axis: it moved 1.25 times as far as its drive reports, more than 1 % off. In the rig"
+           " file: axes.belt.velocity_increments: 1234567 (now 1543209)")  # fmt: skip
 ENDED = replace(
     MOVING,
     steps=tuple(
