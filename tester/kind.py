@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from tester.commission.part import CommissionPart
+    from tester.export.ring_part import RingPart
     from tester.fit.part import FitPart
     from tester.machine.interlock_sheet import InterlockSheet
     from tester.machine.run_parts import KindRun
@@ -53,3 +54,5 @@ class Kind:
     """Which laws can be fitted to its conditions; None: none."""
     commissions: Callable[[], CommissionPart] | None = None
     """How a rig of it is commissioned; None: nobody is guided."""
+    ring: Callable[[], RingPart] | None = None
+    """The ring over which a device on a turning part is reached; None: there is none."""

@@ -5,12 +5,14 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from types import FrameType
 from typing import TYPE_CHECKING
 
 import click
 
 from tester.base.exits import EXIT_DONE, EXIT_FAILED, EXIT_INCOMPLETE, EXIT_INVALID, EXIT_TRIPPED
 from tester.cli.options import risk_option, seed_option, set_option
+from tester.cli.tui_command import SWITCH_S, SpeedType, need_terminal
 
 if TYPE_CHECKING:
     from tester.commission.engine import CommissionOutcome
@@ -28,10 +30,15 @@ if TYPE_CHECKING:
               help="Folder of the runs; the record is in its folder commissioning.")
 @click.option("--operator", default="", metavar="NAME", help="Who commissions; goes on record with every entry.")
 @click.option("--yes", is_flag=True, help="Simulated rig only: a simulated person reads ruler, weight, thermometer.")
+@click.option("--tui", is_flag=True, help="On a screen: steps, live readings, the question, what is on record.")
+@click.option("--speed", type=SpeedType(), default="max", show_default=True, metavar="X",
+              help="Rig seconds per second of a simulated rig, or max.")
+@click.option("--theme", type=click.Choice(["dark", "light", "16"]), default=None, help="Colours of --tui.")
+@click.option("--ascii", "plain", is_flag=True, help="--tui: draw with ASCII characters only.")
 @click.option("--list", "only_list", is_flag=True, help="Say which steps stand, and do nothing.")
 def commission(
     rig: str, overrides: tuple[str, ...], accept_risk: str, seed: int, out: Path, operator: str, yes: bool,
-    only_list: bool,
+    tui: bool, speed: float | None, theme: str | None, plain: bool, only_list: bool,
 ) -> None:  # fmt: skip
     """Guide a person through commissioning RIG (a rig file, or sim), step by step, each on record.
 
@@ -48,13 +55,17 @@ def commission(
     simulated = found.can.interface == "sim"
     if yes and not simulated:
         raise click.UsageError("--yes: only a person can read a ruler at a real rig")
+    if yes and tui:
+        raise click.UsageError("--yes and --tui: either a simulated person answers, or the one at the screen")
     part = part_of(found)
+    options = CommissionOptions(rig, overrides, accept_risk, out, seed, operator, speed)
     try:
         if only_list:
             _list(record_path(out, found), part.steps, found)
             return
-        options = CommissionOptions(rig, overrides, accept_risk, out, seed, operator)
-        if yes:
+        if tui:
+            outcome = _on_screen(lambda: load_rig(rig, overrides, accept_risk), options, theme or "", plain=plain)
+        elif yes:
             twin = part.twin(lambda text: click.echo(text, err=True))
             outcome = commission(found, options, twin, twin)
         else:
@@ -87,19 +98,38 @@ def _at_terminal(
         person.end()
 
 
+def _on_screen(load: Callable[[], Rig], options: CommissionOptions, theme: str, *, plain: bool) -> CommissionOutcome:
+    """Commission with whoever is at this screen; however it ends, what moves is at rest when this returns."""
+    need_terminal("tester commission --tui", "`tester commission RIG` asks line by line")
+    from tester.base.signals import handled
+    from tester.tui.guide.app import GuideApp
+    from tester.tui.guide.guide import Guide
+
+    guide = Guide(load, options)
+    app = GuideApp(guide, theme=theme, plain=plain)
+    asked = 0
+
+    def on_signal(_number: int, _frame: FrameType | None) -> None:
+        nonlocal asked
+        asked += 1
+        guide.person.press(fast=asked > 1)
+        app.exit("")
+
+    sys.setswitchinterval(SWITCH_S)
+    try:
+        with handled(on_signal):
+            app.run()
+    finally:
+        guide.close()
+    if guide.outcome is None:
+        raise click.ClickException(guide.trouble or "the screen has ended before anything was begun")
+    return guide.outcome
+
+
 def _list(path: Path, steps: tuple[CommissionStep, ...], rig: Rig) -> None:
     """Print a line a step: whether it stands, since when, by whom."""
     from tester.commission.record import CommissionRecord
-    from tester.commission.step import sections_sha256
+    from tester.commission.standing import standing_of
 
-    record = CommissionRecord(path, str, "")
-    for step in steps:
-        entry = record.standing(step.name, sections_sha256(rig, step.sections))
-        last = record.last(step.name)
-        if entry is not None:
-            said = f"stands since {entry.at[:10]}, {entry.by}: {entry.text}"
-        elif last is not None:
-            said = f"to be done again ({last.what} {last.at[:10]}): {last.text}"
-        else:
-            said = "to be done"
-        click.echo(f"{step.name:16} {said}")
+    for one in standing_of(CommissionRecord(path, str, ""), steps, rig):
+        click.echo(f"{one.step.name:16} {one.words}")

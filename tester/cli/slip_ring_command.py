@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import isfinite
 from typing import TYPE_CHECKING
 
 import click
@@ -12,7 +11,7 @@ from tester.cli.formatting import dump
 from tester.cli.run_lookup import run_folder
 
 if TYPE_CHECKING:
-    from tester.kinds.wheel_on_belt.ring_record import RingRun
+    from tester.analysis.ring_runs import RingRun
 
 
 @click.command("slip-ring")
@@ -26,32 +25,34 @@ def slip_ring(runs: Sequence[str], before: float, as_json: bool) -> None:
     speaks of a worn place or a brush. The angle counts from where the wheel stood when it was put on. Several runs are
     put in order of time, with the turns of the ring until then: errors that grow with its age call for new brushes.
     """
-    from tester.kinds.wheel_on_belt.ring_record import ring_of, trend_of
+    from tester.analysis.ring_runs import ages_of, trend_of
 
-    found = sorted((ring_of(run_folder(name), name) for name in dict.fromkeys(runs)), key=lambda one: one.started)
+    found = sorted((_ring_of(name) for name in dict.fromkeys(runs)), key=lambda one: one.started)
+    ages = ages_of(found, before)
     if as_json:
-        dump([{**one.as_json(), "age_turns": age} for one, age in zip(found, _ages(found, before), strict=True)])
+        dump([{**one.as_json(), "age_turns": age} for one, age in zip(found, ages, strict=True)])
         return
     for one in found:
         _tell(one)
     if len(found) > 1:
         click.echo("run                             turns of the ring  requests  errors  of 1000")
-        for one, age in zip(found, _ages(found, before), strict=True):
+        for one, age in zip(found, ages, strict=True):
             click.echo(f"{one.name:<32}{age:>17.0f}{one.requests:>10}{one.errors:>8}{one.per_thousand:>9.2f}")
-        ages = _ages(found, before)
-        trend = trend_of([(age, one.requests, one.errors) for one, age in zip(found, ages, strict=True)])
-        if isfinite(trend.per_thousand_turns):
-            grows = "grows" if trend.grows else "no trend beyond chance"
-            slope = f"{trend.per_thousand_turns:+.3f} errors of 1000 for every 1000 turns"
-            click.echo(f"{slope} (z {trend.z:.1f}): {grows}")
+        told = trend_of([(age, one.requests, one.errors) for one, age in zip(found, ages, strict=True)]).words
+        if told:
+            click.echo(told)
 
 
-def _ages(found: Sequence[RingRun], before: float) -> list[float]:
-    ages: list[float] = []
-    for one in found:
-        before += one.turns
-        ages.append(before)
-    return ages
+def _ring_of(name: str) -> RingRun:
+    """Return what a run has on record; raises ClickException where its machine has no ring."""
+    from dataclasses import replace
+
+    from tester.run.ring import ring_in
+
+    found = ring_in(run_folder(name))
+    if found is None:
+        raise click.ClickException(f"{name}: a rig of its kind has no slip ring")
+    return replace(found.run, name=name)
 
 
 def _tell(one: RingRun) -> None:

@@ -12,6 +12,7 @@ from typing import Any
 
 from drivers.ports import BusLost
 from tester.base import clock
+from tester.commission.onlooker import Onlooker
 from tester.commission.person import Asks, Person, Question, StepRefused
 from tester.commission.record import BEGUN, DONE, READING, REFUSED, CommissionRecord, RecordEntry
 from tester.commission.step import Alone, CommissionStep, Notes, Walk, sections_sha256
@@ -54,6 +55,7 @@ class Commissioning:
         connect: Callable[[], tuple[Ports, TickedWorld | None, Any]],
         run_recipe: Callable[[str, str], Mapping[str, Any]],
         lapse: float | None = None,
+        onlooker: Onlooker | None = None,
     ) -> None:
         """``connect``: opens the wires (and the simulated rig behind them, with the hands at it), once a step;
         raises BusLost. ``lapse``: of simulated time, None as fast as it goes."""
@@ -65,6 +67,7 @@ class Commissioning:
         self._connect = connect
         self._run_recipe = run_recipe
         self._lapse = lapse
+        self._onlooker = onlooker
         self._rig_sha256 = hashlib.sha256(rig.text.encode()).hexdigest()
         self._walk: Walk | None = None
         self._stopped = False
@@ -138,7 +141,7 @@ class Commissioning:
             seat = step.seat(self.rig, ports, hands)
             walk = self._walk = Walk(seat, step.procedure(seat, notes), self.person)
             try:
-                self._tick(walk, world, ports)
+                self._tick(step, walk, world, ports)
             except BusLost as lost:
                 return str(lost)
             finally:
@@ -152,8 +155,10 @@ class Commissioning:
             return STOPPED
         return seat.reason if seat.reason or walk.ended else "the rig ended before the step did"
 
-    def _tick(self, walk: Walk, world: TickedWorld | None, ports: Ports) -> None:
+    def _tick(self, step: CommissionStep, walk: Walk, world: TickedWorld | None, ports: Ports) -> None:
         def poll(_now_s: float) -> None:
+            if self._onlooker is not None:
+                self._onlooker.look(step, walk)
             for command in self.person.poll():
                 if command in ("stop", "fast stop"):
                     self.stop(fast=command == "fast stop")
@@ -190,4 +195,8 @@ class Commissioning:
     def _add(
         self, step: CommissionStep, what: str, text: str = "", values: Mapping[str, Any] | None = None
     ) -> RecordEntry:
-        return self.record.add(self.rig.name, self._rig_sha256, self._sections(step), step.name, what, text, values)
+        sections = self._sections(step)
+        entry = self.record.add(self.rig.name, self._rig_sha256, sections, step.name, what, text, values)
+        if self._onlooker is not None:
+            self._onlooker.entered(entry)
+        return entry

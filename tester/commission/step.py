@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from math import inf
 from typing import Any, Protocol
@@ -61,6 +61,17 @@ class Notes:
 
 
 @dataclass(frozen=True, slots=True)
+class StepReading:
+    """What the rig shows at present, for a person: ``value`` in ``unit``, NaN where there is none; ``words`` beside."""
+
+    label: str
+    value: float
+    unit: str
+    decimals: int
+    words: str = ""
+
+
+@dataclass(frozen=True, slots=True)
 class Alone:
     """What a step without a seat may use."""
 
@@ -76,7 +87,7 @@ class CommissionStep:
     """One step. ``sections``: dotted keys of the rig file on which its result depends; a change of them undoes it.
 
     ``needs``: steps whose results it takes. Of ``seat`` and ``alone`` one: whether it has the rig on its wires, or
-    runs a recipe or nothing.
+    runs a recipe or nothing. ``readings``: from a seat, what a person wants to see meanwhile; looks only.
     """
 
     name: str
@@ -87,6 +98,7 @@ class CommissionStep:
     """From rig, wires and the hands at the rig."""
     procedure: Callable[[Any, Notes], Dialogue] | None = None
     alone: Callable[[Alone, Notes], None] | None = None
+    readings: Callable[[Any], Sequence[StepReading]] | None = None
 
 
 def sections_sha256(rig: Rig, sections: tuple[str, ...]) -> str:

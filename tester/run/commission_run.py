@@ -6,16 +6,19 @@ from collections.abc import Mapping
 from dataclasses import replace
 from math import inf, isfinite
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 from tester.analysis.misalignment import misalignment
-from tester.base.keys import FAST_STOP, STOP
+from tester.base.keys import FAST_STOP, MEANINGS, STOP
 from tester.commission.person import Asks, Person, Question, StepRefused
 from tester.export.results import results_of
 from tester.machine.context import Progress
 from tester.machine.prompts import DONE, Prompt, Prompts
 from tester.run.session import Session, SessionOptions
 from tester.store.reader import RunReader
+
+STOPS: Final = frozenset({STOP.command, FAST_STOP.command})
+COMMANDS: Final = frozenset(one.command for one in MEANINGS)
 
 
 class PersonScreen:
@@ -61,9 +64,9 @@ class PersonScreen:
         self.person.put(Question(f"prompt {prompt.number}", prompt.text, Asks.CHOICE, (DONE,)))
 
     def commands(self) -> list[str]:
-        """Return the stops that were asked for."""
-        found = [one for one in self.person.poll() if one in (STOP.command, FAST_STOP.command)]
-        self.stopped = self.stopped or bool(found)
+        """Return what was asked for."""
+        found = [one for one in self.person.poll() if one in COMMANDS]
+        self.stopped = self.stopped or not STOPS.isdisjoint(found)
         return found
 
     def end(self) -> None:

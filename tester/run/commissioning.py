@@ -16,6 +16,7 @@ from tester.base.lock import ExclusiveUse, RigInUseError, user
 from tester.base.signals import handled
 from tester.base.source import InvalidSource, Problem
 from tester.commission.engine import Commissioning, CommissionOutcome
+from tester.commission.onlooker import Onlooker
 from tester.commission.part import AtTheTwin, CommissionPart
 from tester.commission.person import Person
 from tester.commission.record import CommissionRecord
@@ -60,7 +61,11 @@ def record_path(runs: Path, rig: Rig) -> Path:
 
 
 def commission(
-    rig: Rig, options: CommissionOptions, person: Person, twin: AtTheTwin | None = None
+    rig: Rig,
+    options: CommissionOptions,
+    person: Person,
+    twin: AtTheTwin | None = None,
+    onlooker: Onlooker | None = None,
 ) -> CommissionOutcome:
     """Walk a rig through its commissioning; ``twin``: the person, where it reads a simulated rig.
 
@@ -86,6 +91,7 @@ def commission(
             lambda: _connect(rig, options.seed, twin),
             lambda name, text: run_recipe(session, path.parent, person, name, text),
             options.lapse,
+            onlooker,
         )
         with stopped_by_signals(walk):
             return walk.run()

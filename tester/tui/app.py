@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from typing import ClassVar
 
-from textual.app import ComposeResult, SystemCommand
+from textual.app import ComposeResult, SuspendNotSupported, SystemCommand
 from textual.binding import Binding, BindingType
 from textual.events import Resize
-from textual.filter import LineFilter
 from textual.screen import Screen
 from textual.widget import Widget
 from textual.widgets import ContentSwitcher
@@ -16,10 +15,10 @@ from textual.widgets import ContentSwitcher
 from tester.base import clock
 from tester.service.commands import Acknowledge, Hold, Release, ResumeRun, TakeControl
 from tester.service.state import RunView
+from tester.tui.commissioning import FREE, begins_here, commission_rig
 from tester.tui.dialogs.confirm import AbortDialog, GoOnDialog
 from tester.tui.dialogs.dialog import Dialog
 from tester.tui.dialogs.log import TextDialog
-from tester.tui.filters import AsciiOnly, Colourless
 from tester.tui.gone import TITLE, death_text
 from tester.tui.host import HostApp, TuiOptions
 from tester.tui.pages.bus import BusPage
@@ -29,7 +28,7 @@ from tester.tui.pages.results import ResultsView
 from tester.tui.pages.run import RunPage as RunScreen
 from tester.tui.pages.view import Keys, View
 from tester.tui.scene import UNDER_WAY
-from tester.tui.theme import CSS, DARK, THEMES
+from tester.tui.theme import CSS, THEMES
 from tester.tui.widgets.head import TABS, KeyLine, StateLine, TabLine, Tabs
 from tester.tui.widgets.small import SMALLEST, SmallPanel
 
@@ -68,21 +67,9 @@ class TesterApp(HostApp):
     def __init__(self, options: TuiOptions, now: Callable[[], float] = clock.monotonic) -> None:
         """As of HostApp."""
         super().__init__(options, now)
-        for theme in THEMES.values():
-            self.register_theme(theme)
-        self.theme = THEMES.get(options.theme, DARK).name
         self._entered: View | None = None
         self._settled = False
         """A screen has been chosen, by the run that was found or by a person."""
-        self._last_filters: list[LineFilter] = [Colourless()] if self.no_color else []
-        if options.plain:
-            self._last_filters.append(AsciiOnly())
-
-    def get_line_filters(self) -> list[LineFilter]:
-        """Return what stands between the screen and the terminal; NO_COLOR takes all colour, not its saturation."""
-        if self._last_filters and self.no_color:
-            return list(self._last_filters)
-        return [*super().get_line_filters(), *self._last_filters]
 
     # -- layout -----------------------------------------------------------------------------------------------
 
@@ -110,8 +97,7 @@ class TesterApp(HostApp):
 
     def on_mount(self) -> None:
         """Begin to listen."""
-        if not self.options.theme and self.console.color_system == "standard":
-            self.theme = THEMES["16"].name
+        self.choose_colours()
         self.query_one(TabLine).tabs = self.SCREENS_HERE
         self.go_to(self.FIRST)
         self.connect()
@@ -233,6 +219,22 @@ class TesterApp(HostApp):
         """Take control from whoever has it."""
         self.order(TakeControl(force=True), "this screen controls")
 
+    def action_commission(self) -> None:
+        """Commission the rig on a screen of its own, as `tester commission RIG --tui`, while no run is on."""
+        state, options = self.scene.state, self.options
+        if options.view_only or state is None or not self.scene.linked:
+            self.say("not from here: `tester commission RIG --tui` in a shell")
+        elif state.mode not in FREE:
+            self.say("the rig is in use: commissioning begins while no run and no manual mode is on")
+        elif not begins_here(options, state):
+            self.say("the service has another rig than this screen knows: `tester commission RIG --tui` in a shell")
+        else:
+            try:
+                with self.suspend():
+                    commission_rig(options)
+            except SuspendNotSupported:
+                self.say("no other screen can be shown here: `tester commission RIG --tui` in a shell", problem=True)
+
     def action_use_theme(self, name: str) -> None:
         """Change the colours."""
         self.theme = THEMES[name].name
@@ -247,6 +249,7 @@ class TesterApp(HostApp):
         yield SystemCommand("Acknowledge", "The alarm of line 2 (a)", self.action_acknowledge)
         for key, title, name in self.SCREENS_HERE:
             yield SystemCommand(f"Screen: {title}", key.upper(), lambda name=name: self.go_to(name))
+        yield SystemCommand("Commission…", "Guide a new rig to its first coefficient", self.action_commission)
         yield SystemCommand("Take control", "From the client that has it", self.action_take_control)
         for name in THEMES:
             yield SystemCommand(f"Theme: {name}", "Colours", lambda name=name: self.action_use_theme(name))

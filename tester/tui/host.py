@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import ClassVar, cast
 
 from pydantic import JsonValue
-from textual.app import App
 from textual.binding import Binding, BindingType
 from textual.dom import DOMNode
 
@@ -25,6 +24,7 @@ from tester.service.state import RunView
 from tester.service.stop_call import NotTakenError
 from tester.tui.formatting import clean
 from tester.tui.gone import farewell, stop_failed
+from tester.tui.look import LookApp
 from tester.tui.scene import ScreenScene
 from tester.tui.starting import start_service
 from tester.tui.stop_line import StopLine, stopping
@@ -50,7 +50,7 @@ class TuiOptions:
     recipe_folder: Path = Path()
 
 
-class HostApp(App[str]):
+class HostApp(LookApp):
     """Holds the link and the scene; knows no screen."""
 
     ENABLE_COMMAND_PALETTE = True
@@ -64,7 +64,7 @@ class HostApp(App[str]):
 
     def __init__(self, options: TuiOptions, now: Callable[[], float] = clock.monotonic) -> None:
         """``now``: seconds of tester.base.clock.monotonic; another one in tests."""
-        super().__init__()
+        super().__init__(options.theme, plain=options.plain)
         self.options = options
         self.stop_line = StopLine(options.address, client_name())
         if self.HAS_RIG and not options.view_only:

@@ -10,6 +10,7 @@ from concurrent.futures import Future
 from contextlib import suppress
 from queue import Empty, SimpleQueue
 from threading import Thread
+from typing import Protocol
 
 from textual.driver import Driver
 from textual.events import Key
@@ -21,6 +22,14 @@ from tester.service.stop_call import NotTakenError, StopCall
 
 LOOK_S = 1.0
 """A connection that was lost is opened again this often, s."""
+
+
+class TakesStop(Protocol):
+    """What takes STOP."""
+
+    def press(self, *, fast: bool = False) -> None:
+        """STOP; from any thread."""
+        ...
 
 
 class StopLine:
@@ -78,7 +87,7 @@ class StopLine:
                 sent.set_result(None)
 
 
-def stopping(driver: type[Driver], line: StopLine) -> type[Driver]:
+def stopping(driver: type[Driver], line: TakesStop) -> type[Driver]:
     """Return a terminal driver that presses ``line`` with STOP's keys before anybody else hears of them."""
 
     class StoppingDriver(driver):

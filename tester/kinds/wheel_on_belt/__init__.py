@@ -8,6 +8,7 @@ from tester.kind import Kind
 
 if TYPE_CHECKING:
     from tester.commission.part import CommissionPart
+    from tester.export.ring_part import RingPart
     from tester.fit.part import FitPart
     from tester.machine.interlock_sheet import InterlockSheet
     from tester.machine.run_parts import KindRun
@@ -60,6 +61,12 @@ def _commissions() -> CommissionPart:
     return COMMISSIONS
 
 
+def _ring() -> RingPart:
+    from tester.kinds.wheel_on_belt.ring_record import RING
+
+    return RING
+
+
 KIND: Final = Kind(
     name="wheel_on_belt",
     title="rubber wheel on a belt",
@@ -74,4 +81,5 @@ KIND: Final = Kind(
     served=_served,
     fits=_fits,
     commissions=_commissions,
+    ring=_ring,
 )

@@ -1,6 +1,6 @@
 """Notes where a wheel stood and how fast it turned whenever a request over its slip ring failed.
 
-What it notes is stored with the counters of the buses when a run, or a part of one, ends; ``ring_errors``
+What it notes is stored with the counters of the buses when a run, or a part of one, ends; ``tester.analysis.ring_errors``
 makes something of it. The wheel's angle is the one that the wheel's speed gives: it counts from where the wheel stood
 when it was put on, and runs off by the error of the drive's scale, which the analysis takes out.
 """
@@ -11,10 +11,12 @@ from math import pi
 from typing import Final
 
 from drivers.modbus import Device
-from tester.kinds.wheel_on_belt.ring_errors import BUS, RingSegment, speed_class
+from tester.analysis.ring_errors import RingSegment, speed_class
 from tester.machine.modbus_health import failures
 from tester.store.recorder import Recorder
 
+BUS: Final = "slip ring"
+"""Under this name the record's table of bus counters has what is noted."""
 MOST_NOTED: Final = 2000
 """Of so many failed requests of a wheel the angle is kept [A]: more say no more, and fill the record."""
 DEVICE: Final = "jacket"

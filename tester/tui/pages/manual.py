@@ -21,7 +21,7 @@ from tester.tui.widgets.events import EventsPanel
 from tester.tui.widgets.panel import FAINT, WARNING, Panel, Part, Parts, rows
 from tester.tui.widgets.values import value_row
 
-CALIBRATION = "load cell calibration by a wizard: not here yet, see the rig file"
+COMMISSIONING = "load cell, scales, directions: c commissions the rig"
 SIGN_S = 0.25
 """Signs of life are given this often, s; a second without one ends manual mode."""
 SOON_S = 15.0
@@ -34,7 +34,8 @@ m         arm manual mode, or disarm it. It disarms 60 s after the last step, an
 up, down  choose an axis.     right or +, left or -   one step up, one step down.
 t         zero (tare) of the load cell: lifted and standing. Says the old and the new zero.
 F12       STOP stops manual motion too, F9 is a fast stop. A screen that stands still for 1 s ends the mode.
-The calibration of the load cell is in the rig file (`tester rig show`); it is not changed from here.
+c         commission the rig: directions, scales, load cell, first contact, step by step and on record. A screen of its
+          own, as `tester commission RIG --tui`; it begins where the record stands, and only while no run is on.
 """
 
 
@@ -92,6 +93,7 @@ class ManualPage(View):
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("m", "arm", "Arm", show=False),
         Binding("t", "tare", "Tare", show=False),
+        Binding("c", "app.commission", "Commission", show=False),
         Binding("right,plus,equals_sign", "jog(1)", "Step up", show=False),
         Binding("left,minus", "jog(-1)", "Step down", show=False),
     ]
@@ -110,7 +112,7 @@ class ManualPage(View):
         for name, title in (("manual-values", "Values"), ("manual-axes", "Axis"), ("manual-state", "Manual mode"),
                             ("manual-events", "Events")):  # fmt: skip
             self.query_one(f"#{name}").border_title = title
-        self.query_one("#manual-values").border_subtitle = CALIBRATION
+        self.query_one("#manual-values").border_subtitle = COMMISSIONING
         self.set_interval(SIGN_S, self._give_sign)
 
     def show(self, scene: ScreenScene) -> None:

@@ -128,3 +128,13 @@ def test_the_whole_way_takes_less_than_half_an_hour_of_rig_time(
     assert "passed: coefficient" in said
     minutes = float(said.rsplit(";", 1)[1].split()[0])
     assert minutes < 30
+
+
+@pytest.mark.parametrize(
+    ("more", "said"), [([], "needs a terminal"), (["--yes"], "either a simulated person answers, or the one")]
+)
+def test_a_screen_needs_a_terminal_and_a_person(
+    more: list[str], said: str, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    assert invoke(["commission", "sim", "--tui", "--out", str(tmp_path), *more]) == 2
+    assert said in capfd.readouterr().err

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from tester.run.rigs import load_rig
 from tester.service.commands import Acknowledge, Answer, Arm, Hold, Jog, Release, RunRecipe, Stop, Tare, WatchFrames
 from tester.service.state import ManualView
 from tester.tui.pages.recipes import RecipesView
@@ -308,3 +309,34 @@ def test_a_refusal_is_shown_with_its_reason(house: House) -> None:
         assert [order.action for order in on.fake.orders] == [Hold()]
 
     house.play(act)
+
+
+def test_commissioning_is_offered_only_while_nobody_has_the_rig(house: House) -> None:
+    async def act(on: Stage) -> None:
+        await on.pilot.press("f4", "c")
+        await on.until(lambda: "commissioning begins while no run" in on.text(), "why not is said")
+        on.app.clear_notifications()
+        await on.show(a_state("OFFLINE"))
+        await on.pilot.press("c")
+        await on.until(lambda: "the service has another rig" in on.text(), "the way in a shell is said")
+
+    house.play(act)
+
+
+def test_commissioning_begins_on_a_screen_of_its_own_with_this_screens_rig_and_runs(
+    house: House, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    begun: list[list[str]] = []
+    monkeypatch.setattr("tester.tui.commissioning.subprocess.run", lambda command, check: begun.append(command))
+
+    async def act(on: Stage) -> None:
+        monkeypatch.setattr(on.app, "suspend", nullcontext)
+        monkeypatch.setattr(on.app, "options", replace(on.app.options, address=None))
+        await on.show(replace(a_state("OFFLINE"), rig=load_rig("sim").name))
+        await on.pilot.press("f4", "c")
+        await on.until(lambda: bool(begun), "the other screen begins")
+
+    house.play(act)
+    ((*_, command, rig, screen, out, runs, theme, dark),) = begun
+    assert (command, rig, screen, out, theme, dark) == ("commission", "sim", "--tui", "--out", "--theme", "dark")
+    assert runs.endswith("runs")

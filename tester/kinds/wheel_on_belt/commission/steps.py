@@ -8,7 +8,7 @@ from tester.commission.part import CommissionPart
 from tester.commission.person import Dialogue
 from tester.commission.step import CommissionStep, Notes
 from tester.kinds.wheel_on_belt.axes import POSITIONED
-from tester.kinds.wheel_on_belt.commission import contact, first, identify, jog, thermometer, weights
+from tester.kinds.wheel_on_belt.commission import contact, first, identify, jog, readings, thermometer, weights
 from tester.kinds.wheel_on_belt.commission.armed import ArmedSeat
 from tester.kinds.wheel_on_belt.commission.quiet import QuietSeat
 from tester.kinds.wheel_on_belt.commission.twin import TwinPerson
@@ -42,23 +42,26 @@ def _jog(axis: jog.JoggedAxis) -> CommissionStep:
         ("identify",),
         _quiet,
         procedure,
+        readings=readings.of_axis(axis),
     )
 
 
 STEPS: Final = (
-    CommissionStep("identify", "who is on the wires", (*_BUS, "axes"), (), _quiet, identify.identify),
+    CommissionStep("identify", "who is on the wires", (*_BUS, "axes"), (), _quiet, identify.identify,
+         readings=readings.of_bus),
     *(_jog(axis) for axis in jog.AXES),
-    CommissionStep("cell", "load cell with hung weights", (*_CELL, "limits"), ("identify",), _quiet, weights.calibrate),
+    CommissionStep("cell", "load cell with hung weights", (*_CELL, "limits"), ("identify",), _quiet, weights.calibrate,
+         readings=readings.of_cell),
     CommissionStep("home", "homing, and whether zero is straight", (*_HOMED, "can", "arming"),
-         _JOGGED, _armed, contact.home),
+         _JOGGED, _armed, contact.home, readings=readings.of_positions),
     CommissionStep("watchdogs", "drives stop by themselves", ("axes", "can", "arming", "devices.jacket"), _JOGGED,
-         _armed, contact.watchdogs),
+         _armed, contact.watchdogs, readings=readings.of_armed(readings.SPEEDS, readings.PRESS)),
     CommissionStep("touch", "first touch and tare", ("axes", "geometry", "loops", *_CELL), ("cell", "home"), _armed,
-         contact.touch),
+         contact.touch, readings=readings.of_armed(readings.PRESS, readings.FORCES, readings.SPEEDS)),
     CommissionStep("rolling", "speed ratio by rolling", ("axes.wheel", "axes.belt", "geometry"), ("touch",), _armed,
-         contact.roll),
+         contact.roll, readings=readings.of_armed(readings.SPEEDS, readings.FORCES)),
     CommissionStep("thermometer", "thermometer against a hub soak", (*_HEAT, "geometry", "observer"), ("home",), _armed,
-         thermometer.soak),
+         thermometer.soak, readings=readings.of_armed(readings.HEAT, readings.SPEEDS)),
     CommissionStep("directions", "crosstalk and misalignment by both directions of slip", _ALL, ("rolling",),
          alone=first.directions),
     CommissionStep("first", "a first condition three times", _ALL, ("rolling", "thermometer"), alone=first.coefficient),

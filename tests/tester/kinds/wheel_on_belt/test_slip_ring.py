@@ -11,8 +11,8 @@ from click.testing import CliRunner
 from sim.faults.scene import Scene
 from sim.machines.wheel_on_belt.faults.catalogue import CATALOGUE
 from sim.machines.wheel_on_belt.faults.slip_ring import WornSector
+from tester.analysis.ring_errors import sector_of
 from tester.cli.slip_ring_command import slip_ring
-from tester.kinds.wheel_on_belt.ring_errors import sector_of
 from tester.kinds.wheel_on_belt.ring_watch import SlipRingWatch
 from tests.tester.kinds.wheel_on_belt.bench import SHORT, Simulation
 from tests.tester.kinds.wheel_on_belt.test_joined_cell import Unattended

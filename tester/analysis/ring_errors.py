@@ -23,8 +23,6 @@ CHANCE: Final = 0.001
 """Errors gather where chance alone would make as much of it in at most this share of cases [A]."""
 SPEEDS_REV_S: Final = (0.02, 1.0, 2.0, 4.0)
 """Classes of wheel speed begin at these, below the first the wheel stands, rev/s [A]; 0.8 m/s are 3.2 rev/s."""
-BUS: Final = "slip ring"
-"""Under this name the record's table of bus counters has what is noted."""
 
 
 @dataclass(slots=True)

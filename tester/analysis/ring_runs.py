@@ -1,0 +1,134 @@
+"""What runs have on record of a ring that carries a device's line to a turning part, and its trend from run to run."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from math import inf, isfinite, nan, sqrt
+from typing import TypeAlias
+
+from tester.analysis.ring_errors import SPEEDS_REV_S, RingSector, RingSegment, sector_of, speed_words
+
+Json: TypeAlias = "bool | int | float | str | list[Json] | dict[str, Json] | None"
+
+GROWS_Z = 2.0
+"""A slope of this many standard uncertainties or more is no chance alone (95 %)."""
+
+
+@dataclass(frozen=True, slots=True)
+class RingRun:
+    """The ring in one run."""
+
+    name: str
+    started: str
+    """When the run began, UTC."""
+    segments: list[RingSegment] = field(default_factory=list[RingSegment])
+
+    @property
+    def turns(self) -> float:
+        """Of the wheel in this run."""
+        return sum(one.turns for one in self.segments)
+
+    @property
+    def requests(self) -> int:
+        """To the device beyond the ring."""
+        return sum(sum(one.requests) for one in self.segments)
+
+    @property
+    def errors(self) -> int:
+        """Of these requests: without a good reply."""
+        return sum(sum(one.errors) for one in self.segments)
+
+    @property
+    def per_thousand(self) -> float:
+        """Errors of a thousand requests; NaN without any."""
+        return 1e3 * self.errors / self.requests if self.requests else nan
+
+    def by_speed(self) -> list[tuple[str, int, int]]:
+        """Return for each class of speed: words, requests, errors."""
+        return [
+            (
+                speed_words(place),
+                sum(one.requests[place] for one in self.segments),
+                sum(one.errors[place] for one in self.segments),
+            )
+            for place in range(len(SPEEDS_REV_S) + 1)
+        ]
+
+    def sectors(self) -> list[RingSector]:
+        """Return where errors gather, for each wheel that was on."""
+        return [sector_of(one.at_rev) for one in self.segments]
+
+    def as_json(self) -> dict[str, Json]:
+        """Return what there is to tell."""
+        return {
+            "run": self.name,
+            "started": self.started,
+            "turns": self.turns,
+            "requests": self.requests,
+            "errors": self.errors,
+            "by_speed": [
+                {"speed": words, "requests": requests, "errors": errors} for words, requests, errors in self.by_speed()
+            ],
+            "wheels": [
+                {
+                    "errors": one.errors,
+                    "gather": one.found,
+                    "centre_deg": one.centre_deg if one.found else None,
+                    "half_deg": one.half_deg if one.found else None,
+                    "sectors": list(one.sectors),
+                }
+                for one in self.sectors()
+            ],
+        }
+
+
+def ages_of(runs: Sequence[RingRun], before: float = 0.0) -> list[float]:
+    """Return the turns of the ring until the end of each run, in order of time; ``before``: those before the first."""
+    ages: list[float] = []
+    for one in runs:
+        before += one.turns
+        ages.append(before)
+    return ages
+
+
+@dataclass(frozen=True, slots=True)
+class RingTrend:
+    """How the share of failed requests goes with the age of the ring."""
+
+    per_thousand_turns: float
+    """Errors of 1000 requests more for every 1000 turns; NaN where nothing can be said."""
+    z: float
+    """The slope over its standard uncertainty."""
+
+    @property
+    def grows(self) -> bool:
+        """More errors with age, beyond chance."""
+        return self.z >= GROWS_Z
+
+    @property
+    def words(self) -> str:
+        """Return it for people, "" where nothing can be said."""
+        if not isfinite(self.per_thousand_turns):
+            return ""
+        grows = "grows" if self.grows else "no trend beyond chance"
+        return f"{self.per_thousand_turns:+.3f} errors of 1000 for every 1000 turns (z {self.z:.1f}): {grows}"
+
+
+def trend_of(runs: Sequence[tuple[float, int, int]]) -> RingTrend:
+    """Return the trend of runs with (turns of the ring until then, requests, errors).
+
+    A straight line by least squares, each share weighted by its binomial variance at the mean share of all.
+    """
+    counted = [(age, requests, errors) for age, requests, errors in runs if requests > 0]
+    total = sum(requests for _, requests, _ in counted)
+    share = sum(errors for _, _, errors in counted) / total if total else 0.0
+    if len(counted) < 2 or not 0.0 < share < 1.0:
+        return RingTrend(nan, 0.0)
+    mean = sum(age * requests for age, requests, _ in counted) / total
+    spread = sum(requests * (age - mean) ** 2 for age, requests, _ in counted)
+    if spread <= 0.0:
+        return RingTrend(nan, 0.0)
+    slope = sum((errors - share * requests) * (age - mean) for age, requests, errors in counted) / spread
+    uncertainty = sqrt(share * (1.0 - share) / spread)
+    return RingTrend(1e6 * slope, slope / uncertainty if uncertainty > 0.0 else inf)

@@ -1,0 +1,82 @@
+"""What the rig shows while it is commissioned: of each step what belongs to it, for the screen of a person."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from math import nan
+from typing import Final
+
+from drivers.cia402 import State
+from tester.commission.step import StepReading
+from tester.kinds.wheel_on_belt.commission.armed import ArmedSeat
+from tester.kinds.wheel_on_belt.commission.jog import JoggedAxis
+from tester.kinds.wheel_on_belt.commission.quiet import QuietSeat
+
+STATES: Final = {
+    State.OPERATION_ENABLED: "has power", State.QUICK_STOP_ACTIVE: "quick stop", State.FAULT_REACTION: "fault",
+    State.FAULT: "fault",
+}  # fmt: skip
+SPEEDS: Final = (("wheel", "wheel_speed_m_s", "m/s", 3), ("belt", "belt_speed_m_s", "m/s", 3))
+FORCES: Final = (("Fx", "force_x_n", "N", 1), ("Fy", "force_y_n", "N", 1), ("Fz", "force_z_n", "N", 1))
+HEAT: Final = (("surface", "surface_c", "°C", 1), ("hub", "hub_c", "°C", 1), ("heat", "heat_percent", "%", 0))
+PRESS: Final = (("press", "press_mm", "mm", 2),)
+Table = tuple[tuple[str, str, str, int], ...]
+"""Label, attribute of the readings, unit, decimals."""
+
+
+def of_bus(seat: QuietSeat) -> Sequence[StepReading]:
+    """Return whether each drive and device is heard."""
+    drives = [(drive.config.name, drive.online) for drive in seat.devices.drives]
+    heard = [*drives, *((device.title, device.driver.ready) for device in seat.devices.modbus)]
+    return tuple(StepReading(name, nan, "", 0, "heard" if online else "not heard") for name, online in heard)
+
+
+def of_axis(axis: JoggedAxis) -> Callable[[QuietSeat], Sequence[StepReading]]:
+    """Return what tells of one axis: where it is, how far it has come since the key, whether it has power."""
+
+    def readings(seat: QuietSeat) -> Sequence[StepReading]:
+        if axis.name not in seat.believed.axes.driven():
+            return ()
+        drive, jog = seat.jogging.drive(axis.name), seat.jogging.jog
+        config = drive.config
+        by_position = config.feedback == "position"
+        moved = axis.shown(jog.moved) if jog is not None and jog.axis == axis.name else nan
+        guard = "closed" if seat.guarded() else "open"
+        return (
+            StepReading(f"{axis.name} {'at' if by_position else 'speed'}", axis.shown(drive.actual),
+                        axis.unit if by_position else f"{axis.unit}/s", 2,
+                        STATES.get(drive.state, "no power")),
+            StepReading("since the key", moved, axis.unit, 2),
+            StepReading("guard, safety chain", nan, "", 0, guard),
+            *of_cell(seat),
+        )  # fmt: skip
+
+    return readings
+
+
+def of_cell(seat: QuietSeat) -> Sequence[StepReading]:
+    """Return what the load cell shows, without a zero taken."""
+    cell = seat.devices.cell
+    words = "" if cell.valid else "not valid"
+    return tuple(
+        StepReading(f"F{name}, raw", value, "N", 2, words) for name, value in zip("xyz", cell.raw, strict=False)
+    )
+
+
+def of_armed(*tables: Table) -> Callable[[ArmedSeat], Sequence[StepReading]]:
+    """Return some of the process image."""
+
+    def readings(seat: ArmedSeat) -> Sequence[StepReading]:
+        found = seat.ctx.readings
+        return tuple(
+            StepReading(label, float(getattr(found, name)), unit, decimals)
+            for table in tables
+            for label, name, unit, decimals in table
+        )
+
+    return readings
+
+
+def of_positions(seat: ArmedSeat) -> Sequence[StepReading]:
+    """Return where the positioned axes are."""
+    return tuple(StepReading(name, value, "deg", 2) for name, value in seat.ctx.readings.positions.items())

@@ -1,0 +1,176 @@
+"""The engine in a thread of its own, and what its screen shows of it."""
+
+from __future__ import annotations
+
+import sqlite3
+from collections.abc import Callable
+from dataclasses import dataclass
+from threading import Thread
+
+from tester.base import clock
+from tester.base.source import InvalidSource
+from tester.base.trouble import in_words
+from tester.commission.engine import CommissionOutcome, Ended
+from tester.commission.part import AtTheTwin
+from tester.commission.person import Question
+from tester.commission.record import CommissionRecord, RecordError
+from tester.commission.standing import StepStanding, standing_of
+from tester.commission.step import CommissionStep
+from tester.rig import Rig
+from tester.run.commissioning import CommissionOptions, commission, part_of, record_path
+from tester.run.endings import CannotStartError
+from tester.store.schema import StoreError
+from tester.tui.guide.person import Live, ScreenPerson
+
+REFUSALS = (CannotStartError, InvalidSource, RecordError, StoreError, OSError, sqlite3.Error)
+"""What keeps a commissioning from going on that a person can do something about."""
+
+
+@dataclass(frozen=True, slots=True)
+class GuideView:
+    """Everything that is shown. ``now``: the step under way, "" for none; ``next``: the one that comes."""
+
+    rig: str
+    simulated: bool
+    steps: tuple[StepStanding, ...]
+    now: str
+    next: str
+    rig_s: dict[str, float]
+    """Rig time that each step took, s."""
+    live: Live | None
+    question: Question | None
+    said: tuple[str, ...]
+    running: bool
+    outcome: CommissionOutcome | None
+    trouble: str
+
+    @property
+    def stand(self) -> int:
+        """Return how many steps stand."""
+        return sum(one.stands is not None for one in self.steps)
+
+
+class Guide:
+    """Begins the engine, again and again where a person wants it; the record says where it goes on."""
+
+    def __init__(self, load: Callable[[], Rig], options: CommissionOptions, twin: AtTheTwin | None = None) -> None:
+        """``load``: reads the rig file, raises InvalidSource; ``twin``: is told of the simulated rig."""
+        self.options = options
+        self.rig = load()
+        self.steps: tuple[CommissionStep, ...] = part_of(self.rig).steps
+        self.path = record_path(options.out, self.rig)
+        self.person = ScreenPerson(time_stands=self.rig.can.interface == "sim")
+        self.outcome: CommissionOutcome | None = None
+        self.trouble = ""
+        self.crash: BaseException | None = None
+        """An error of the program itself: raised again where the screen ends."""
+        self._load, self._twin = load, twin
+        self._thread: Thread | None = None
+        self._standing: tuple[StepStanding, ...] = ()
+        self._now = ""
+        self._read()
+
+    @property
+    def running(self) -> bool:
+        """The engine has not ended."""
+        return self._thread is not None and self._thread.is_alive()
+
+    @property
+    def recipe_runs(self) -> bool:
+        """The step under way runs a recipe, which can be held."""
+        return any(step.name == self._now and step.alone is not None for step in self.steps)
+
+    @property
+    def moving(self) -> bool:
+        """A step is under way, and no question stands: something may be moving."""
+        return self.running and bool(self._now) and self.person.asked is None
+
+    def begin(self) -> None:
+        """Read the rig file and begin; what keeps it from beginning is ``trouble``."""
+        if self.running:
+            return
+        self.outcome, self.trouble = None, ""
+        self.person.begin()
+        try:
+            self.rig = self._load()
+            self.steps = part_of(self.rig).steps
+            self.path = record_path(self.options.out, self.rig)
+            self._read()
+        except REFUSALS as error:
+            self.trouble = in_words(error)
+            return
+        self._thread = Thread(target=self._work, name="commissioning")
+        self._thread.start()
+
+    def _work(self) -> None:
+        try:
+            self.outcome = commission(self.rig, self.options, self.person, self._twin, self.person)
+        except REFUSALS as error:
+            self.trouble = in_words(error)
+        except BaseException as error:  # noqa: BLE001 - shown at once, and raised again when the screen has gone
+            self.crash = error
+            self.trouble = f"the program has failed: {type(error).__name__}: {error}"
+        finally:
+            self.person.end()
+
+    def close(self) -> None:
+        """STOP, and wait until the rig is at rest; raises what the program itself has failed with."""
+        thread = self._thread
+        if thread is not None:
+            while thread.is_alive():
+                self.person.press()
+                thread.join(0.2)
+        if self.crash is not None:
+            raise self.crash
+
+    def view(self) -> GuideView:
+        """Return what there is to show."""
+        person, running = self.person, self.running
+        if person.entries:
+            person.entries.clear()
+            self._read()
+        return GuideView(
+            self.rig.name,
+            self.rig.simulated,
+            self._standing,
+            self._now if running else "",
+            next((one.step.name for one in self._standing if one.stands is None and one.step.name != self._now), ""),
+            {one.step.name: float(one.stands.values.get("rig_s", 0.0)) for one in self._standing if one.stands},
+            person.live,
+            person.asked,
+            tuple(person.said),
+            running,
+            None if running else self.outcome,
+            "" if running else self.trouble,
+        )
+
+    def on_record(self, step: str) -> str:
+        """Return every entry of a step, the newest first, in paragraphs."""
+        lines: list[str] = []
+        for entry in reversed(self._record().entries):
+            if entry.step == step:
+                lines.append(f"{entry.at[:19].replace('T', ' ')}  {entry.what}, by {entry.by}. {entry.text}")
+                lines += [f"{name}  {value}" for name, value in entry.values.items()]
+                lines.append("")
+        return "\n".join(lines) or "Nothing is on record of this step."
+
+    def _record(self) -> CommissionRecord:
+        return CommissionRecord(self.path, clock.utc_now, "")
+
+    def _read(self) -> None:
+        """Look how the steps stand; raises RecordError, OSError."""
+        record = self._record()
+        self._standing = standing_of(record, self.steps, self.rig)
+        under_way = record.entries[-1] if record.entries else None
+        open_step = under_way is not None and under_way.what in ("begun", "reading")
+        self._now = under_way.step if under_way is not None and open_step else ""
+
+
+ENDINGS = {
+    Ended.DONE: "every step stands: the rig is commissioned",
+    Ended.LEFT: "left before the end: it goes on where it stands",
+    Ended.REFUSED: "refused",
+    Ended.FAILED: "failed",
+    Ended.STOPPED: "stopped",
+}
+"""How a commissioning ended, in words."""

@@ -1,0 +1,161 @@
+"""What the screen of a commissioning shows: fixed lines, steps, the rig's readings, the question, what was told."""
+
+from __future__ import annotations
+
+from math import isfinite
+from textwrap import wrap
+from typing import Final
+
+from tester.commission.engine import Ended
+from tester.commission.standing import StepStanding
+from tester.commission.step import StepReading
+from tester.tui.formatting import NOTHING, clean, fit, minutes, number
+from tester.tui.guide.guide import ENDINGS, GuideView
+from tester.tui.scene import ScreenScene
+from tester.tui.widgets.panel import ABNORMAL, FAINT, NOTICE, WARNING, Panel, Part, Parts, rows
+
+TIME: Final = 8
+"""Columns of a step's time."""
+LABEL: Final = 19
+CELL: Final = 9
+BAD: Final = frozenset({Ended.REFUSED, Ended.FAILED, Ended.STOPPED})
+
+
+class GuidePanel(Panel):
+    """Shows a part of a GuideView."""
+
+    seen: GuideView | None = None
+
+    def see(self, seen: GuideView) -> None:
+        """Draw this from now on."""
+        self.seen = seen
+        self.show(self.scene or ScreenScene())
+
+    def picture(self, scene: ScreenScene, width: int, height: int) -> Parts:
+        """Return what to show in so many columns and rows."""
+        return [] if self.seen is None else self.drawn(self.seen, width, height)
+
+    def drawn(self, seen: GuideView, width: int, height: int) -> Parts:
+        """Return the same, of what is seen."""
+        return []
+
+
+class GuideLine(GuidePanel):
+    """Line 1: which rig, how many steps stand, rig time of all of them and of the one under way."""
+
+    def drawn(self, seen: GuideView, width: int, height: int) -> Parts:
+        """Return the line."""
+        total = sum(seen.rig_s.values()) + (seen.live.now_s if seen.live is not None else 0.0)
+        simulated = ", simulated" if seen.simulated else ""
+        text = f"  {seen.stand} of {len(seen.steps)} steps stand   rig time {minutes(total)}   {clean(seen.rig, 40)}"
+        title = " COMMISSIONING "
+        return [(title, "bold reverse"), fit(f"{text}{simulated}", width - len(title))]
+
+
+class EndLine(GuidePanel):
+    """Line 2: what is going on; once the engine has ended, how, and how it goes on."""
+
+    def drawn(self, seen: GuideView, width: int, height: int) -> Parts:
+        """Return the line."""
+        text, style = end_words(seen)
+        return [(fit(f" {text}", width).ljust(width), style)]
+
+
+def end_words(seen: GuideView) -> tuple[str, str]:
+    """Return what goes on in words, and its style."""
+    if seen.trouble:
+        return f"{clean(seen.trouble)} (r tries again)", ABNORMAL
+    outcome = seen.outcome
+    if outcome is not None:
+        at = f" at {outcome.step}" if outcome.step else ""
+        why = f": {clean(outcome.text)}" if outcome.text else ""
+        again = "" if outcome.ended is Ended.DONE else ". r goes on where it stands"
+        return f"{ENDINGS[outcome.ended]}{at}{why}{again}", ABNORMAL if outcome.ended in BAD else "bold"
+    if not seen.now:
+        return f"nothing is connected, nothing moves. Next: {seen.next or NOTHING}", ""
+    if seen.question is not None:
+        return f"{seen.now}: waits for your answer", "bold"
+    return f"{seen.now}: under way", NOTICE
+
+
+def step_row(one: StepStanding, seen: GuideView, width: int) -> Part:
+    """Return a step: sign, name, its rig time or what becomes of it."""
+    name, style, sign, word = one.step.name, "", "·", ""
+    if name == seen.now:
+        sign, style, word = "▶", "bold", f"now {minutes(seen.live.now_s)}" if seen.live is not None else "now"
+    elif one.stands is not None:
+        sign, style, word = "✔", FAINT, minutes(seen.rig_s.get(name, 0.0))
+    elif name == seen.next:
+        sign, style, word = "▸", "bold", "next"
+        sign = "✘" if one.last is not None else sign
+    elif one.last is not None:
+        sign, word = "✘", "again"
+    room = max(width - TIME - 3, 4)
+    return f"{sign} {fit(clean(name), room).ljust(room)} {word:>{TIME}}", style
+
+
+class ReadingsPanel(GuidePanel):
+    """What the rig shows of what the step is about."""
+
+    def drawn(self, seen: GuideView, width: int, height: int) -> Parts:
+        """Return a row a reading."""
+        if seen.live is None:
+            return [("the rig is not connected", FAINT)]
+        if not seen.live.readings:
+            return [("connecting, or nothing to show in this step", FAINT)]
+        return rows([reading_row(one, width) for one in seen.live.readings[:height]])
+
+
+def reading_row(one: StepReading, width: int) -> Parts:
+    """Return a reading: label, value, unit, words."""
+    value = number(one.value, one.decimals) if isfinite(one.value) else "" if one.words and not one.unit else NOTHING
+    text = f"{fit(clean(one.label), LABEL):<{LABEL}}{value:>{CELL}} {clean(one.unit, 5):<5} {clean(one.words)}"
+    return [fit(text.rstrip(), width)]
+
+
+class QuestionPanel(GuidePanel):
+    """The question that waits."""
+
+    def drawn(self, seen: GuideView, width: int, height: int) -> Parts:
+        """Return it in full lines."""
+        if seen.question is not None:
+            text, style = clean(seen.question.text), "bold"
+        elif seen.running:
+            text, style = "no question: the step is under way" if seen.now else "", FAINT
+        else:
+            text, style = end_words(seen)[0], "bold"
+        return rows([[(one, style)] for one in wrap(text, width)[:height]])
+
+
+class HintPanel(GuidePanel):
+    """What may be answered; in its place why the last answer was none."""
+
+    refusal = ""
+
+    def drawn(self, seen: GuideView, width: int, height: int) -> Parts:
+        """Return a line."""
+        if self.refusal:
+            return [(fit(f" {clean(self.refusal)}", width), WARNING)]
+        return [(fit(f"[{clean(seen.question.hint)}]", width), FAINT)] if seen.question is not None else []
+
+
+class SaidPanel(GuidePanel):
+    """What the engine has told, the newest last."""
+
+    def drawn(self, seen: GuideView, width: int, height: int) -> Parts:
+        """Return as many lines as there is room for."""
+        lines: list[Parts] = []
+        for text in reversed(seen.said):
+            style = said_style(text)
+            for line in reversed(wrap(clean(text), width, subsequent_indent="  ") or [""]):
+                lines.append([(line, style)])
+            if len(lines) >= height:
+                break
+        return rows(list(reversed(lines[:height])))
+
+
+def said_style(text: str) -> str:
+    """Return how a line that was told is drawn."""
+    if text.startswith(("REFUSED", "FAILED")):
+        return ABNORMAL
+    return FAINT if text.startswith("  on record") else "bold" if text.startswith("passed") else ""

@@ -1,0 +1,125 @@
+"""The person at the screen, as the engine sees them: questions, answers and commands pass between two threads here."""
+
+from __future__ import annotations
+
+from collections import deque
+from dataclasses import dataclass
+from math import inf
+from queue import Empty, SimpleQueue
+from threading import Lock
+from typing import Final
+
+from tester.base import clock
+from tester.base.keys import FAST_STOP, STOP
+from tester.commission.person import Question
+from tester.commission.record import RecordEntry
+from tester.commission.step import CommissionStep, StepReading, Walk
+
+KEPT: Final = 500
+"""Lines of what was told."""
+LOOK_S: Final = 0.2
+"""Readings are taken this often, s of wall time."""
+
+
+@dataclass(frozen=True, slots=True)
+class Live:
+    """A step that has the rig: its name, rig time in it, s, and what the rig shows."""
+
+    step: str
+    now_s: float
+    readings: tuple[StepReading, ...]
+
+
+class ScreenPerson:
+    """A front of the engine (tester.commission.person.Person), which looks on as well (Onlooker)."""
+
+    def __init__(self, *, time_stands: bool) -> None:
+        """``time_stands``: on a rig simulated in this process."""
+        self.time_stands = time_stands
+        self.said: deque[str] = deque(maxlen=KEPT)
+        self.entries: deque[RecordEntry] = deque()
+        """Put on record and not shown yet."""
+        self.live: Live | None = None
+        self._lock = Lock()
+        self._question: Question | None = None
+        self._answer: str | None = None
+        self._commands: SimpleQueue[str] = SimpleQueue()
+        self._looked_s = -inf
+
+    # -- the engine's side ------------------------------------------------------------------------------------
+
+    def tell(self, text: str) -> None:
+        """Say something."""
+        self.said.append(text)
+
+    def put(self, question: Question) -> None:
+        """Put a question; the one before is answered or withdrawn."""
+        with self._lock:
+            self._question, self._answer = question, None
+
+    def taken(self, now_s: float) -> str | None:
+        """Return the answer; it is taken away where a rig runs (``now_s`` finite)."""
+        with self._lock:
+            answer = self._answer
+            if answer is not None and now_s < inf:
+                self._answer = self._question = None
+            return answer
+
+    def poll(self) -> list[str]:
+        """Return the commands given since the last call."""
+        found: list[str] = []
+        while True:
+            try:
+                found.append(self._commands.get_nowait())
+            except Empty:
+                return found
+
+    def entered(self, entry: RecordEntry) -> None:
+        """Take note of an entry."""
+        self.entries.append(entry)
+
+    def look(self, step: CommissionStep, walk: Walk) -> None:
+        """Take the readings, not too often."""
+        wall_s = clock.monotonic()
+        if wall_s - self._looked_s < LOOK_S and self.live is not None and self.live.step == step.name:
+            return
+        self._looked_s = wall_s
+        found = tuple(step.readings(walk.seat)) if step.readings is not None and walk.seat.ready else ()
+        self.live = Live(step.name, walk.now_s, found)
+
+    # -- the screen's side ------------------------------------------------------------------------------------
+
+    @property
+    def asked(self) -> Question | None:
+        """Return the question that waits for an answer."""
+        with self._lock:
+            return self._question if self._answer is None else None
+
+    def answer(self, question: Question, text: str) -> bool:
+        """Answer a question; return False where it stands no more."""
+        with self._lock:
+            if self._question is not question or self._answer is not None:
+                return False
+            self._answer = text
+            return True
+
+    def press(self, *, fast: bool = False) -> None:
+        """STOP, from any thread; pressed again it does no more."""
+        self._commands.put((FAST_STOP if fast else STOP).command)
+
+    def command(self, command: str) -> None:
+        """Give another command (tester.base.keys)."""
+        self._commands.put(command)
+
+    def begin(self) -> None:
+        """Forget what was asked and commanded of an engine that has ended."""
+        self.poll()
+        self.live = None
+        with self._lock:
+            self._question = self._answer = None
+
+    def end(self) -> None:
+        """The engine has ended: nobody waits for an answer any more."""
+        with self._lock:
+            self._question = self._answer = None
+        self.live = None
