@@ -70,15 +70,15 @@ def mean_square_slope(wave: Sinusoid) -> float:
     return 0.5 * (2.0 * pi * wave.ra_m / wave.wavelength_m) ** 2
 
 
-def contact_share(pressure_pa: float, modulus_pa: float, m2: float) -> float:
-    """Return Ac / A0 (Eq 13), at most 1."""
-    return min(1.0, 2.0 * pressure_pa / (modulus_pa * sqrt(pi * m2)))
+def contact_slope(wave: Sinusoid) -> float:
+    """Return sqrt(pi m2) / 2: the pressure of full contact over the modulus, by Eq 13."""
+    return 0.5 * sqrt(pi * mean_square_slope(wave))
 
 
 class Greta:
     """The law of one rubber on one surface."""
 
-    __slots__ = ("_coarse", "_fine", "_m2", "_scratch", "_shear", "parameters", "rubber")
+    __slots__ = ("_scratch", "_shear", "coarse", "fine", "full_per_modulus", "parameters", "rubber")
 
     def __init__(self, rubber: Rubber, surface: Surface, parameters: GretaParameters | None = None) -> None:
         """Take the materials. Raises ValueError where one of them lacks what the law needs."""
@@ -88,9 +88,11 @@ class Greta:
             raise ValueError(f"surface {surface.name!r}: greta needs its two waves, coarse and fine")
         self.rubber = rubber
         self.parameters = parameters if parameters is not None else GretaParameters()
-        self._shear, self._coarse, self._fine = rubber.shear, surface.coarse, surface.fine
-        self._m2 = mean_square_slope(surface.fine)
-        self._scratch = Scratch(surface.coarse.wavelength_m, 1e-3 * self.parameters.tread)
+        self.coarse, self.fine = surface.coarse, surface.fine
+        self.full_per_modulus = pi * self.coarse.ra_m / (self.coarse.wavelength_m * (1.0 - rubber.poisson**2))
+        """Pressure of full contact with the coarse wave over the modulus there (Eqs 21 and 22)."""
+        self._shear = rubber.shear
+        self._scratch = Scratch(self.coarse.wavelength_m, 1e-3 * self.parameters.tread)
 
     def mu(self, temperature_c: float, load_n: float, slip_m_s: float) -> float:
         """Return the coefficient. Raises OutsideError, PoleError where the modulus is not known."""
@@ -101,22 +103,19 @@ class Greta:
         v = max(slip_m_s, SLOWEST_M_S)
         pressure_pa = self.pressure_pa(load_n)
         coarse, fine = self.dynamic(temperature_c, v)
-        share = contact_share(pressure_pa, fine.magnitude_pa, self._m2)
+        share = min(1.0, pressure_pa / (fine.magnitude_pa * contact_slope(self.fine)))
         adhesion = shear_strength_pa(self._shear, v) / pressure_pa * share
         return Components(adhesion, self.hysteresis(pressure_pa, coarse, adhesion))
 
     def hysteresis(self, pressure_pa: float, dynamic: Dynamic, friction: float) -> float:
         """Return mu_hys (Eq 20) under a pressure; ``friction``: K, of which more than the limit does not count."""
-        wave = self._coarse
-        limited = min(friction, self.parameters.friction_limit)
-        squares_m = self._scratch.squares_m(self.full_share(pressure_pa, dynamic), limited)
-        return pi * dynamic.tan_delta * squares_m * pressure_pa / (wave.wavelength_m * dynamic.magnitude_pa)
+        normal_m, shear_m = self.stress_m(pressure_pa / (dynamic.magnitude_pa * self.full_per_modulus))
+        squares_m = normal_m + min(friction, self.parameters.friction_limit) ** 2 * shear_m
+        return pi * dynamic.tan_delta * squares_m * pressure_pa / (self.coarse.wavelength_m * dynamic.magnitude_pa)
 
-    def full_share(self, pressure_pa: float, dynamic: Dynamic) -> float:
-        """Return the pressure over that of full contact with the coarse wave (Eqs 21 and 22 in square)."""
-        wave = self._coarse
-        full_pa = pi * dynamic.magnitude_pa * wave.ra_m / (wave.wavelength_m * (1.0 - self.rubber.poisson**2))
-        return pressure_pa / full_pa
+    def stress_m(self, share: float) -> tuple[float, float]:
+        """Return int s1^2 dV over p^2 A0, of pressure alone and what K^2 multiplies; ``share``: of full contact."""
+        return self._scratch.parts_m(share)
 
     def pressure_pa(self, load_n: float) -> float:
         """Return the mean pressure under a load above 0."""
@@ -124,7 +123,7 @@ class Greta:
 
     def dynamic(self, temperature_c: float, v_m_s: float) -> tuple[Dynamic, Dynamic]:
         """Return the modulus as the coarse and the fine wave see it; raises as ``mu``."""
-        lengths = np.array([self._coarse.wavelength_m, self._fine.wavelength_m])
+        lengths = np.array([self.coarse.wavelength_m, self.fine.wavelength_m])
         rates: Array = 2.0 * pi * v_m_s / lengths
         found = 2.0 * (1.0 + self.rubber.poisson) * self.rubber.modulus.complex_pa(rates, temperature_c)
         coarse, fine = (Dynamic(abs(complex(one)), float(one.imag / one.real)) for one in found)

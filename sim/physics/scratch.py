@@ -95,17 +95,12 @@ class Scratch:
         half[-1] = 0.0
         self._shear: Array = half * ((shear_x(u) ** 2 + shear_z(u) ** 2) @ trapezia)
 
-    def squares_m(self, share: float, friction: float) -> float:
-        """Return the mean over a square of l by l of int s1^2 dz, in m and shares of p^2; s1^2 = sx^2 + sy^2 + sz^2.
-
-        ``share``: p / p_full, above 0. ``friction``: K, at least 0. Products of cos and sin are 0 in the mean, so that
-        each harmonic adds by itself.
-        """
-        normal, shear = self.parts_m(share)
-        return normal + friction * friction * shear
-
     def parts_m(self, share: float) -> tuple[float, float]:
-        """Return the two parts of ``squares_m``, of pressure alone and what K^2 multiplies."""
+        """Return the mean over a square of l by l of int s1^2 dz, s1^2 = sx^2 + sy^2 + sz^2 in shares of p^2, in m.
+
+        In two parts, of pressure alone and what K^2 multiplies. ``share``: p / p_full, above 0. Products of cos and
+        sin are 0 in the mean, so that each harmonic adds by itself.
+        """
         harmonics = np.abs(np.fft.rfft(pressure(share, self._points))[1:]) / self._points
         harmonics[:-1] *= 2.0
         squares = FADE * harmonics**2
