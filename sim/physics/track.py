@@ -74,6 +74,7 @@ class TrackSensors:
     force_zero: Annotated[float, "N"] = 0.5  # greatest offset of a session: what the tare takes off
     force_drift: Annotated[float, "N/K"] = 0.005  # greatest, of the air's temperature against ambient
     air_rms: Annotated[float, "K"] = 0.02
+    air_bias: Annotated[float, "K"] = 1.0  # greatest of a session: Pt100 class B, and the air's layers
     air_time: Annotated[float, "s"] = 5.0
     pyrometer_rms: Annotated[float, "K"] = 0.1
     pyrometer_bias: Annotated[float, "K"] = 1.0  # greatest of a session

@@ -44,13 +44,13 @@ class TrackPlant:
         p = parameters
         self.parameters = p
         self._seed = seed
-        bias, zero, drift = uniforms(3, seed, "session track")
+        bias, zero, drift, air_bias = uniforms(4, seed, "session track")
         s, noise = p.sensors, p.noise
         unused = NormalStream(seed, "unused")
         self._pyrometer = TemperatureSensor(
             s.pyrometer_time, noise * s.pyrometer_rms, noise * s.pyrometer_bias * bias, unused
         )
-        self._air = TemperatureSensor(s.air_time, noise * s.air_rms, 0.0, unused)
+        self._air = TemperatureSensor(s.air_time, noise * s.air_rms, noise * s.air_bias * air_bias, unused)
         self._zero_n, self._drift_n_k = noise * s.force_zero * zero, noise * s.force_drift * drift
         self.air_c = self.specimen_c = p.ambient
         self._pyrometer.reset(p.ambient)
