@@ -7,37 +7,33 @@ converted is noted, what is doubtful is kept.
 
 from __future__ import annotations
 
-import csv
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from difflib import get_close_matches
 from math import isfinite, nan
 
 from tester.materials.finding import Findings
 from tester.materials.headings import (
-    QUANTITIES,
     Heading,
     UnitRefusedError,
     accepted,
     conversion,
+    first_unit,
     heading,
     is_unit,
     quantity_of,
     unit_of,
 )
+from tester.materials.layout import DmaLayout, layout_of, without_brackets
 from tester.materials.moduli import ModuliRow, ModuliTable, judge
 
 MAX_BYTES = 16 * 1024 * 1024
-LOOKED_AT = 400
-"""Lines at the beginning among which the headings are looked for."""
 TAN_PERCENT, TAN_LEAST = 2.0, 5e-4
 """A loss factor in a column of its own is that of the moduli within this share, or this difference [A]."""
 
-_DELIMITERS = ("\t", ";", ",")
 _WITH_COMMA = re.compile(r"[+-]?[0-9]*,[0-9]+([eE][+-]?[0-9]+)?")
 _THOUSANDS = re.compile(r"[+-]?[1-9][0-9]{0,2},[0-9]{3}")
-_IN_BRACKETS = re.compile(r"^[\[({](.*)[\])}]$")
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,89 +63,13 @@ class DmaColumn:
 
 def read_dma(text: str, options: DmaOptions, found: Findings) -> ModuliTable:
     """Return the moduli of a file's text; adds to ``found``. Raises InvalidSource with every problem."""
-    layout = _layout(text.splitlines(), options)
+    layout = layout_of(text.splitlines(), options.columns.values())
     if layout is None:
         asked = options.ask_column.format(quantity="E'")
         found.refuse((1, 1), f"no row of headings is recognised (expected temperature, frequency, E', E''; {asked})")
         found.end()
         raise AssertionError
     return _Reading(layout, options, found).table()
-
-
-def heading_problems(texts: Sequence[str]) -> Iterator[str]:
-    """Yield what is wrong with the headings of a table that a file of ours holds itself."""
-    seen: set[str] = set()
-    for text in texts:
-        try:
-            one = heading(text)
-        except UnitRefusedError as error:
-            yield str(error)
-            continue
-        if not one.quantity:
-            yield f'"{text}" is no heading of a table of moduli (expected one of {", ".join(QUANTITIES)}, with its unit)'
-        elif not one.unit:
-            yield f'"{text}" has no unit (expected {accepted(one.quantity)}, such as "{text} {accepted(one.quantity).split(",")[0]}")'
-        elif one.quantity in seen:
-            yield f"{one.quantity} is there twice"
-        seen.add(one.quantity)
-
-
-@dataclass(frozen=True, slots=True)
-class DmaLayout:
-    """Where headings, units and rows are; lines count from 0."""
-
-    lines: Sequence[str]
-    delimiter: str
-    at: int
-    headings: Sequence[str]
-    units: Sequence[str] | None
-
-    def cells(self, line: int) -> list[str]:
-        """Return the cells of a line."""
-        return _split(self.lines[line], self.delimiter)
-
-    def rows(self) -> Iterator[tuple[int, list[str]]]:
-        """Yield line and cells of every row that is not empty."""
-        for line in range(self.at + (2 if self.units is not None else 1), len(self.lines)):
-            cells = self.cells(line)
-            if any(cells):
-                yield line, cells
-
-
-def _split(line: str, delimiter: str) -> list[str]:
-    return [cell.strip() for cell in next(csv.reader([line], delimiter=delimiter), [])]
-
-
-def _layout(lines: Sequence[str], options: DmaOptions) -> DmaLayout | None:
-    """Return the row in which most quantities are recognised, two at least."""
-    named = {text.casefold() for text in options.columns.values()}
-    best: tuple[int, int, str] | None = None
-    for delimiter in _DELIMITERS:
-        for at, line in enumerate(lines[:LOOKED_AT]):
-            cells = _split(line, delimiter)
-            score = len({_named(cell) or cell for cell in cells if _named(cell) or cell.casefold() in named})
-            if len(cells) >= 2 and score >= 2 and (best is None or score > best[0]):
-                best = (score, at, delimiter)
-    if best is None:
-        return None
-    _, at, delimiter = best
-    units = None
-    if at + 1 < len(lines):
-        below = [_IN_BRACKETS.sub(r"\1", cell) for cell in _split(lines[at + 1], delimiter)]
-        if any(below) and all(is_unit(cell) for cell in below) and not all(_numeric(cell) for cell in below if cell):
-            units = below
-    return DmaLayout(lines, delimiter, at, _split(lines[at], delimiter), units)
-
-
-def _numeric(cell: str) -> bool:
-    return bool(re.fullmatch(r"[-+]?[0-9.]+", cell))
-
-
-def _named(cell: str) -> str:
-    try:
-        return heading(cell).quantity
-    except UnitRefusedError:
-        return "a unit that is refused"
 
 
 class _Reading:
@@ -205,7 +125,8 @@ class _Reading:
         folded = [text.casefold() for text in self.layout.headings]
         if name.casefold() in folded:
             return folded.index(name.casefold())
-        bare = [index for index, text in enumerate(folded) if re.match(rf"{re.escape(name.casefold())}\s*[\[(/{{,]", text)]
+        start = re.compile(rf"{re.escape(name.casefold())}\s*[\[(/{{,]")
+        bare = [index for index, text in enumerate(folded) if start.match(text)]
         return bare[0] if len(bare) == 1 else None
 
     def _heading(self, index: int, text: str, quantity: str | None) -> Heading | None:
@@ -226,8 +147,9 @@ class _Reading:
             if self._index(name) == index:
                 unit, refused = self._unit(one.quantity, given, text), ""
         if not unit and one.quantity != "tan":
-            asked = self.options.ask_unit.format(heading=text, unit=accepted(one.quantity).split(",")[0].split(" or")[0])
-            self.found.refuse(self.place, refused or f'"{text}" has no unit (expected {accepted(one.quantity)}; {asked})')
+            asked = self.options.ask_unit.format(heading=text, unit=first_unit(one.quantity))
+            told = f'"{text}" has no unit (expected {accepted(one.quantity)}; {asked})'
+            self.found.refuse(self.place, refused or told)
         return Heading(text, one.quantity, unit or "1")
 
     def _bracketed(self, text: str, quantity: str) -> str:
@@ -239,7 +161,7 @@ class _Reading:
 
     def _unit(self, quantity: str, text: str, where: str) -> str:
         try:
-            return unit_of(quantity, _IN_BRACKETS.sub(r"\1", text.strip()), where)
+            return unit_of(quantity, without_brackets(text), where)
         except UnitRefusedError as error:
             self.found.refuse(self.place, str(error))
             return "1"
@@ -310,7 +232,8 @@ class _Reading:
             self.found.refuse((line + 1, 1), told)
         elif with_comma and all(_THOUSANDS.fullmatch(cell) for _, cell in with_comma):
             line, cell = with_comma[0]
-            self.found.doubt((line + 1, 1), f'"{cell}" is read as {cell.replace(",", ".")}: its comma may mean thousands')
+            told = f'"{cell}" is read as {cell.replace(",", ".")}: its comma may mean thousands'
+            self.found.doubt((line + 1, 1), told)
         if with_comma:
             self.found.notes.append("numbers have a decimal comma")
         return bool(with_comma)

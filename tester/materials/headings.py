@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import pi
 from types import MappingProxyType
@@ -111,6 +111,30 @@ def accepted(quantity: str) -> str:
     """Return the units of a quantity in words."""
     units = _UNITS[quantity]
     return units[0] if len(units) == 1 else f"{', '.join(units[:-1])} or {units[-1]}"
+
+
+def first_unit(quantity: str) -> str:
+    """Return a unit of a quantity, for an example."""
+    return _UNITS[quantity][0]
+
+
+def heading_problems(texts: Sequence[str]) -> Iterator[str]:
+    """Yield what is wrong with the headings of a table that a file of ours holds itself."""
+    seen: set[str] = set()
+    for text in texts:
+        try:
+            one = heading(text)
+        except UnitRefusedError as error:
+            yield str(error)
+            continue
+        if not one.quantity:
+            known = ", ".join(QUANTITIES)
+            yield f'"{text}" is no heading of a table of moduli (expected one of {known}, with its unit)'
+        elif not one.unit:
+            yield f'"{text}" has no unit (expected {accepted(one.quantity)}, such as "{text} {first_unit(one.quantity)}")'
+        elif one.quantity in seen:
+            yield f"{one.quantity} is there twice"
+        seen.add(one.quantity)
 
 
 def conversion(quantity: str, unit: str) -> Callable[[float], float]:

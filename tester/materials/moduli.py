@@ -23,6 +23,8 @@ SOFTEST_PA, STIFFEST_PA = 1e4, 2e10
 """Storage moduli of rubber and its glass lie within [A]."""
 WLF_SPAN_K = 100.0
 """From the glass transition on, over which the WLF shift holds (Williams, Landel, Ferry 1955)."""
+POLE_K = 51.5
+"""So far below the glass transition the shift has its pole: 50 K - 101.5 K."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,8 +97,8 @@ def _impossible(row: ModuliRow, rows: Sequence[ModuliRow]) -> Iterator[str]:
         yield f"temperature: {row.temperature_c:g} degC is out of range (expected {COLDEST_C:g} to {HOTTEST_C:g} degC)"
     if row.storage_pa <= 0.0:
         yield f"E': {row.storage_pa:g} Pa is not above 0"
-    if row.loss_pa < 0.0:
-        yield f"E'': {row.loss_pa:g} Pa is negative"
+    if row.loss_pa <= 0.0:
+        yield f"E'': {row.loss_pa:g} Pa is not above 0"
 
 
 def _duplicates(rows: Sequence[ModuliRow], place: Place, found: Findings) -> None:
@@ -114,7 +116,8 @@ def _doubts(rows: Sequence[ModuliRow], above: Sequence[int], place: Place, found
     if above:
         first = rows[above[0]]
         ratio = first.loss_pa / first.storage_pa
-        found.doubt(place(above[0]), f"E'' is above E' at {len(above)} of {len(rows)} points, first tan delta {ratio:.2f}")
+        told = f"E'' is above E' at {len(above)} of {len(rows)} points, first tan delta {ratio:.2f}"
+        found.doubt(place(above[0]), told)
     if len(rows) < FEW_ROWS:
         found.doubt(place(0), f"{len(rows)} points only (expected {FEW_ROWS} or more): much lies between them")
     _swapped_doubt(rows, place, found)
@@ -142,8 +145,8 @@ def _swapped_doubt(rows: Sequence[ModuliRow], place: Place, found: Findings) -> 
     in_decades = max(ratios) - min(ratios) < 0.05 and sum(ratios) >= 1.0
     in_steps = max(steps) - min(steps) < 0.05 * max(steps)
     if in_decades and in_steps:
-        told = f"temperature goes in decades ({temperatures[0]:g} to {temperatures[-1]:g} degC), frequency in even steps"
-        found.doubt(place(0), f"{told}: are temperature and frequency swapped?")
+        told = f"temperature goes in decades ({temperatures[0]:g} to {temperatures[-1]:g} degC)"
+        found.doubt(place(0), f"{told}, frequency in even steps: are temperature and frequency swapped?")
 
 
 def _order_doubt(rows: Sequence[ModuliRow], place: Place, found: Findings) -> None:
@@ -165,8 +168,8 @@ def _order_doubt(rows: Sequence[ModuliRow], place: Place, found: Findings) -> No
 def shift_doubts(table: ModuliTable, glass_c: float | None, decade_k: float | None) -> Iterator[str]:
     """Yield what is doubtful in how a table reaches frequencies that were not measured.
 
-    At one frequency a temperature stands for others by ``decade_k`` (paper G, Eq 9); at several the WLF shift of Tg + 50
-    K puts them on one curve.
+    At one frequency a temperature stands for others by ``decade_k`` (paper G, Eq 9); at several the WLF shift of
+    Tg + 50 K puts them on one curve.
     """
     low, high = table.temperatures_c
     frequencies = table.frequencies_hz
@@ -177,7 +180,10 @@ def shift_doubts(table: ModuliTable, glass_c: float | None, decade_k: float | No
             yield f"{high - low:g} K at one frequency stand for less than two decades"
         return
     if glass_c is None:
-        yield "Tg is not said: several frequencies are put on one curve by the shift of Tg + 50 K"
+        yield "Tg is not said: without it several frequencies are not put on one curve, and no law can use them"
+    elif low <= glass_c - POLE_K:
+        ends = f"{glass_c - POLE_K:g} degC, where the WLF shift of Tg + 50 K ends"
+        yield f"{low:g} degC is not above {ends}: no law can use it"
     elif low < glass_c or high > glass_c + WLF_SPAN_K:
         yield (
             f"measured from {low:g} to {high:g} degC; the WLF shift holds from Tg to Tg + 100 K, "

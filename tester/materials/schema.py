@@ -49,9 +49,9 @@ class TableFileModel(Section, frozen=True):
 
     name: Text
     """the file, relative to this one"""
-    columns: dict[Text, Text] = {}
+    columns: dict[Text, Text] = Field(default_factory=dict[str, str])
     """which heading is which, where it is not recognised, such as {"E'": "Modulus 1"}"""
-    units: dict[Text, Text] = {}
+    units: dict[Text, Text] = Field(default_factory=dict[str, str])
     """units of headings that say none, such as {"Storage Modulus": MPa}"""
     frequency: Annotated[float, Quantity("Hz", gt=0)] | None = None
     """of every point, where the file has no such column"""
@@ -97,13 +97,15 @@ class ModuliModel(Section, frozen=True):
     file: TableFileModel | None = None
     fractional_zener: ZenerModel | None = None
     constant: ConstantModel | None = None
+    beyond: Literal["refuse", "hold"] = "refuse"
+    """at frequencies beyond a table's: no value, or that of its end"""
 
     @model_validator(mode="after")
     def _one(self) -> ModuliModel:
-        said = [name for name in type(self).model_fields if getattr(self, name) is not None]
+        ways = ("table", "file", "fractional_zener", "constant")
+        said = [name for name in ways if getattr(self, name) is not None]
         if len(said) != 1:
-            ways = ", ".join(type(self).model_fields)
-            raise ValueError(f"{' and '.join(said) or 'nothing'} is said (expected exactly one of {ways})")
+            raise ValueError(f"{' and '.join(said) or 'nothing'} is said (expected exactly one of {', '.join(ways)})")
         return self
 
 
@@ -126,7 +128,7 @@ class CompoundModel(Section, frozen=True):
     note: Note | None = None
     source: Note | None = None
     """where the figures are from; [A] for an assumption"""
-    formulation: dict[Text, Phr] = {}
+    formulation: dict[Text, Phr] = Field(default_factory=dict[str, float])
     """parts per hundred of rubber (phr), by ingredient"""
     batch: Text | None = None
     cure: CureModel | None = None

@@ -299,7 +299,9 @@ class Recipe(Section, frozen=True):
     abrasive: AbrasiveModel | None = None
     humidity: Annotated[float, Quantity("%", ge=0, le=100)] | None = None
     ambient: Temperature | None = None
-    experiment: dict[Annotated[str, Field(min_length=1, max_length=60)], FreeField] = {}
+    experiment: dict[Annotated[str, Field(min_length=1, max_length=60)], FreeField] = Field(
+        default_factory=dict[str, str]
+    )
     """free fields, stored with the run and in conditions.csv; `uncertainty.SETTING` replaces a bound of the budget"""
     measure: MeasureModel | None = None
     grids: Sequence[GridModel] = ()
