@@ -172,8 +172,22 @@ def _nothing_collected() -> Generator[None, None, None]:
 
 
 @click.command()
-def schema() -> None:
-    """Print the JSON Schema of recipes, for editors and other programs."""
+@click.option(
+    "--of",
+    "what",
+    type=click.Choice(["recipe", "compound", "surface"]),
+    default="recipe",
+    show_default=True,
+    help="Which files it is of.",
+)
+def schema(what: str) -> None:
+    """Print the JSON Schema of recipes, or of compounds or surfaces, for editors and other programs."""
+    if what != "recipe":
+        from tester.base.section import editor_text
+        from tester.materials.schema import CompoundModel, SurfaceModel
+
+        click.echo(editor_text(CompoundModel if what == "compound" else SurfaceModel), nl=False)
+        return
     from tester import kinds
     from tester.recipe.schema import schema_text
 
