@@ -238,7 +238,7 @@ def dma(
     data = read_beside(file, file.name, MAX_BYTES)
     table = read_dma(decoded(data.content), options, found)
     _tell(found)
-    _write(out, compound_text(name, table, data, _remarks(found)), force)
+    _write(out, compound_text(name, table, data, found), force)
     click.echo(f"{table.describe()}", err=True)
     _check_written(out)
 
@@ -272,7 +272,7 @@ def scan(
         raise click.ClickException(str(error)) from error
     spectrum = spectrum_of(heights, way, found)
     _tell(found)
-    _write(out, surface_text(name or file.stem, spectrum, data, _remarks(found)), force)
+    _write(out, surface_text(name or file.stem, spectrum, data, found), force)
     _check_written(out)
 
 
@@ -282,10 +282,6 @@ def _pairs(texts: Sequence[str], option: str) -> Iterable[tuple[str, str]]:
         if not equals or not left.strip() or not right.strip():
             raise click.BadParameter(f'"{text}" (expected such as "E\'=Storage Modulus")', param_hint=option)
         yield left.strip(), right.strip()
-
-
-def _remarks(found: Findings) -> list[str]:
-    return [*found.notes, *(f"doubt, line {one.line}: {one.message}" for one in found.doubts)]
 
 
 def _tell(found: Findings) -> None:
