@@ -41,6 +41,8 @@ class ContactByScale:
     q_1_m: Array
     share: Array
     """P(q), of the nominal area."""
+    mu_up_to: Array
+    """The coefficient of a track that has no finer roughness than q."""
     mu: float
 
 
@@ -76,7 +78,9 @@ class PerssonLaw:
         ``components``."""
         square, loss = self._of_modulus(temperature_c, slip_m_s)
         share = self._share(square, pressure_pa)
-        return ContactByScale(self._q, share, self._simpson(loss * share) / pressure_pa)
+        integrand = loss * share
+        mu = self._simpson(integrand) / pressure_pa
+        return ContactByScale(self._q, share, self._running(integrand) / pressure_pa, mu)
 
     def _of_modulus(self, temperature_c: float, slip_m_s: float) -> tuple[Array, Array]:
         """Return F s^2 and the integrand of mu s / P at every q: both integrals over phi are four quadrants alike."""

@@ -89,6 +89,15 @@ GRETA: Final = Law(
     value=_unbound,
     published={},
 )
-LAWS: Final[Mapping[str, Law]] = {law.name: law for law in (WLF_BELL, POWER, GRETA)}
+PERSSON: Final = Law(
+    name="persson",
+    title="hysteresis of the compound's modulus on the surface's spectrum up to the wave number q1",
+    formula="mu = 1/2 int_q0^q1 dq q^3 C(q) P(q) int dphi cos(phi) Im[2 G(q v cos(phi), T) / (p (1 - nu))]",
+    variables=FITTED,
+    parameters=(LawParameter("q1", "1/m", 1e5, 0.3, positive=True),),
+    value=_unbound,
+    published={},
+)
+LAWS: Final[Mapping[str, Law]] = {law.name: law for law in (WLF_BELL, POWER, PERSSON, GRETA)}
 """By name; the bell first: it needs nothing but what was measured."""
-OF_MATERIALS: Final = frozenset({GRETA.name})
+OF_MATERIALS: Final = frozenset({PERSSON.name, GRETA.name})

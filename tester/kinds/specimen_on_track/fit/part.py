@@ -8,11 +8,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from tester.axes import Setpoint
+from tester.base.source import InvalidSource
 from tester.fit.law import FitError, FitPoint, Law, Sourced
 from tester.fit.part import FitPart, PublishedTable
 from tester.kinds.specimen_on_track.axes import INTERFACES
 from tester.kinds.specimen_on_track.fit.groups import TrackGroup, group_of
-from tester.kinds.specimen_on_track.fit.laws import LAWS, OF_MATERIALS
+from tester.kinds.specimen_on_track.fit.laws import GRETA, LAWS, OF_MATERIALS
 from tester.kinds.specimen_on_track.fit.runs import INTERFACE, LOAD, SPEED
 
 if TYPE_CHECKING:
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
 def _library() -> Materials:
     from tester.materials.library import Library
 
-    return Library()
+    return Library.beside()
 
 
 class TrackFits:
@@ -57,17 +58,18 @@ class TrackFits:
                 raise FitError(f"the law {law.name} is given no figures, not {', '.join(figures)}")
             return law
         own = group_of(group)
-        if own.interface != INTERFACES[0]:
+        if law.name == GRETA.name and own.interface != INTERFACES[0]:
             raise FitError(f"{group}: the law {law.name} has an adhesion, and is of dry contact")
         named = surface or own.surface
         if not named:
             raise FitError(f"{group}: the run does not say on what surface (expected --surface NAME)")
-        from tester.kinds.specimen_on_track.fit.greta import bound
+        from tester.kinds.specimen_on_track.fit import greta, persson
 
+        bound = greta.bound if law.name == GRETA.name else persson.bound
         try:
             materials = self._materials()
             return bound(materials.rubber(own.compound), materials.surface(named), figures)
-        except ValueError as error:
+        except (ValueError, InvalidSource) as error:
             raise FitError(f"{group}: {error}") from error
 
     def published_values(self) -> Sequence[tuple[Setpoint, float]]:

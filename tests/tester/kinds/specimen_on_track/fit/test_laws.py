@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from itertools import product
 from math import exp
 from pathlib import Path
@@ -12,12 +13,15 @@ import pytest
 
 from sim.physics.greta import Greta, GretaParameters
 from sim.physics.materials import Rubber, Surface, UnknownMaterialError
+from sim.physics.moduli import FractionalZener
+from sim.physics.persson import PerssonByLoad, PerssonLaw
+from sim.physics.roughness import SelfAffine
 from sim.physics.simple import PowerLaw, PowerParameters
 from sim.physics.wlf import WlfBell, WlfBellParameters
 from tester.fit.joint import GroupFit, fit_group
 from tester.fit.law import FitError, FitPoint, Law, Source
 from tester.kinds.specimen_on_track.fit.groups import TrackGroup, group_of
-from tester.kinds.specimen_on_track.fit.laws import GRETA, POWER, WLF_BELL
+from tester.kinds.specimen_on_track.fit.laws import GRETA, PERSSON, POWER, WLF_BELL
 from tester.kinds.specimen_on_track.fit.part import TrackFits
 from tests.sim.physics.greta_example import SHEAR, road, rubber
 from tests.tester.kinds.specimen_on_track.fit.made import made_track_run
@@ -26,21 +30,27 @@ pytest.importorskip("scipy", reason="needs the extra `report`")
 
 SPEEDS_M_S = (0.05, 0.1, 0.2, 0.5, 1.0, 2.0)
 LOADS_N = (10.0, 20.0)
-GROUP = "SBR, dry on road"
+GROUP, SMOOTH = "SBR, dry on road", "Zener, dry on track"
 TEMPERATURES_C = (5.0, 23.0, 45.0)
 NOISE = 0.02
 Value = Callable[[float, float, float], float]
 
 
+ZENER = FractionalZener(1e6, 1e9, 1e-6, 0.6, shift_c=-3.0)
+
+
 class Shelf:
-    """Where the tests' materials are."""
+    """Where the tests' materials are: a track of two waves, and one of a spectrum with its rubber."""
 
     def rubber(self, name: str) -> Rubber:
-        if name != "SBR":
+        known = {"SBR": rubber(), "Zener": Rubber("Zener", ZENER)}
+        if name not in known:
             raise UnknownMaterialError(f"no compound {name!r}")
-        return rubber()
+        return known[name]
 
     def surface(self, name: str) -> Surface:
+        if name == "track":
+            return Surface("track", spectrum=SelfAffine(2.6023e-19, 2e4, 10.0**5.344, 0.8))
         if name != "road":
             raise UnknownMaterialError(f"no surface {name!r}")
         return road()
@@ -92,11 +102,34 @@ def test_what_was_put_in_comes_back(law: Law, truth: tuple[float, ...], mu: Valu
 
 def test_the_intervals_of_greta_hold_what_was_put_in() -> None:
     truth = (SHEAR.strength_pa, SHEAR.speed_m_s, SHEAR.exponent)
-    held = np.zeros(3, dtype=int)
+    law, mu, held = PART.bound(GRETA, GROUP, "", {}), Greta(rubber(), road()).mu, np.zeros(3, dtype=int)
     for seed in range(20):
-        found = fitted(GRETA, points(Greta(rubber(), road()).mu, noise=NOISE, seed=seed), 199)
+        found = fit_group(law, GROUP, points(mu, noise=NOISE, seed=seed), PART.cells, count=199)
         held += [low <= one <= high for one, (low, high) in zip(truth, found.intervals, strict=True)]
     assert min(held) >= 17, held
+
+
+def test_the_fitted_persson_is_the_simulators_up_to_any_wave_number() -> None:
+    own = points(lambda *_: 1.0)
+    law = PART.bound(PERSSON, SMOOTH, "", {"area": 50.0})
+    x = np.array([one.measured for one in own])
+    for q1 in (1e5, 10.0**5.344):
+        spectrum = SelfAffine(2.6023e-19, 2e4, q1, 0.8)
+        exact = PerssonByLoad(PerssonLaw(ZENER, 0.5, spectrum), 50.0)
+        expected = [exact.mu(t, load, v) for v, t, load in x.tolist()]
+        assert law.value(np.array([q1]), x) == pytest.approx(expected, rel=5e-3)
+
+
+def test_the_interval_of_q1_holds_what_was_put_in() -> None:
+    mu = PerssonByLoad(PerssonLaw(ZENER, 0.5, SelfAffine(2.6023e-19, 2e4, 1e5, 0.8)), 100.0).mu
+    law, exact = PART.bound(PERSSON, SMOOTH, "", {}), points(mu, temperatures=(10.0, 30.0))
+    held = 0
+    for seed in range(20):
+        scatter = np.exp(np.random.default_rng(seed).normal(0.0, NOISE, len(exact)))
+        own = [replace(one, value=one.value * float(e)) for one, e in zip(exact, scatter, strict=True)]
+        (low, high), *_ = fit_group(law, GROUP, own, PART.cells, count=199).intervals
+        held += low <= 1e5 <= high
+    assert held >= 17
 
 
 def test_without_different_speeds_the_shear_of_a_contact_cannot_be_told() -> None:
