@@ -47,18 +47,17 @@ def tabulated(
     figures: Mapping[str, float],
     setting: laws.LawSetting,
     span: TableSpan,
-    folder: Path | None = None,
 ) -> TabulatedLaw:
-    """Return the table of a law, out of ``folder`` where it is there, else made and put there.
+    """Return the table of a law, out of the setting's folder where it is there, else made and put there.
 
     Raises what ``laws.make`` raises, NoPartsError for a law that does not know its parts, and what the law raises
     where the span leads out of what it knows.
     """
     slow = laws.with_parts(name, laws.make(name, compound, figures, setting))
     file = None
-    if folder is not None:
+    if setting.tables is not None:
         key = _key(name, compound, figures, setting, span)
-        file = folder / f"{key}.table" if key else None
+        file = setting.tables / f"{key}.table" if key else None
     kept = _read(file) if file is not None else None
     if kept is not None:
         points, error, mu, share = kept

@@ -60,7 +60,7 @@ def points(number: int, seed: int = 5) -> list[tuple[float, float, float]]:
 
 def made(folder: Path | None, span: TableSpan = SPAN, setting: laws.LawSetting = SETTING) -> TabulatedLaw:
     """Return the table of persson for SBR on grit."""
-    return tabulated.tabulated("persson", "SBR", {}, setting, span, folder)
+    return tabulated.tabulated("persson", "SBR", {}, replace(setting, tables=folder), span)
 
 
 def test_a_table_of_persson_is_right_within_half_a_percent() -> None:
@@ -177,7 +177,7 @@ def test_all_that_enters_makes_another_file(tmp_path: Path, monkeypatch: pytest.
     assert files() == 3
     made(tmp_path, setting=replace(SETTING, surface="track"))
     assert files() == 4
-    tabulated.tabulated("persson", "plain", {}, SETTING, SPAN, tmp_path)
+    tabulated.tabulated("persson", "plain", {}, replace(SETTING, tables=tmp_path), SPAN)
     assert files() == 5
     monkeypatch.setitem(laws._LAWS, "persson", replace(laws._LAWS["persson"], version=2))  # type: ignore[type-var]
     made(tmp_path)
