@@ -29,6 +29,17 @@ class PoleError(ValueError):
     """A temperature at or below the pole of the shift."""
 
 
+def log10_shift(temperature_c: float, t_ref_c: float, c1: float = C1, c2_k: float = C2_K) -> float:
+    """Return log10 aT of a temperature in degC, 0 at t_ref_c. Raises PoleError at and below t_ref_c - c2_k."""
+    off_k = temperature_c - t_ref_c
+    if not off_k > -c2_k:
+        raise PoleError(
+            f"{temperature_c:g} degC: the WLF shift with t_ref {t_ref_c:g} degC and c2 {c2_k:g} K holds only above"
+            f" {t_ref_c - c2_k:g} degC"
+        )
+    return -c1 * off_k / (c2_k + off_k)
+
+
 @dataclass(frozen=True, slots=True)
 class WlfBellParameters:
     """One rubber on one track. The defaults are an SBR-like rubber on an abrasive.
@@ -87,13 +98,7 @@ class WlfBell:
     def shift(self, temperature_c: float) -> float:
         """Return log10 aT, 0 at t_ref. Raises PoleError."""
         p = self._parameters
-        off_k = temperature_c - p.t_ref
-        if not off_k > -p.c2:
-            raise PoleError(
-                f"{temperature_c:g} degC: the WLF shift with t_ref {p.t_ref:g} degC and c2 {p.c2:g} K holds only above"
-                f" {p.pole_c:g} degC"
-            )
-        return -p.c1 * off_k / (p.c2 + off_k)
+        return log10_shift(temperature_c, p.t_ref, p.c1, p.c2)
 
     def mu(self, temperature_c: float, load_n: float, slip_m_s: float) -> float:
         """Return the coefficient; at standstill that of the slowest sliding, mu_0. Raises PoleError."""

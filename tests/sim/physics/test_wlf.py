@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from sim.physics.wlf import PoleError, WlfBell, WlfBellParameters, wlf_bell
+from sim.physics.wlf import PoleError, WlfBell, WlfBellParameters, log10_shift, wlf_bell
 
 LAW = WlfBell(WlfBellParameters())
 TABLE = {
@@ -18,7 +18,17 @@ TABLE = {
 
 @pytest.mark.parametrize(("off_k", "expected"), TABLE.items())
 def test_the_shift_is_that_of_williams_landel_and_ferry(off_k: float, expected: float) -> None:
+    assert log10_shift(12.0 + off_k, 12.0) == pytest.approx(expected, abs=1e-6)
     assert LAW.shift(LAW.parameters.t_ref + off_k) == pytest.approx(expected, abs=1e-6)
+
+
+def test_a_shift_with_constants_of_its_own() -> None:
+    assert log10_shift(40.0, 20.0, 17.4, 51.6) == pytest.approx(-17.4 * 20.0 / 71.6, rel=1e-12)
+
+
+def test_the_shift_is_refused_at_its_pole() -> None:
+    with pytest.raises(PoleError, match=r"-101\.5 degC: .* holds only above -101\.5 degC"):
+        log10_shift(-101.5, 0.0)
 
 
 def test_the_maximum_stands_at_the_reference_speed_and_temperature() -> None:
