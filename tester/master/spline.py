@@ -25,7 +25,7 @@ def quantile_knots(x: Array, interior: int) -> Array:
 
 
 def basis(x: Array, knots: Array) -> Array:
-    """Return the B-splines of order 4 at ``x`` (within the knots), shape (n, knots - 4), by the Cox-de Boor recursion."""
+    """Return the B-splines of order 4 at ``x`` (within the knots), shape (n, knots - 4), by Cox and de Boor."""
     return _basis(x, knots, ORDER)
 
 
