@@ -1,4 +1,4 @@
-"""`python -m tests.campaigns.master [--seeds N] [--jobs N] [--sample]`: master curves against known truth.
+"""`python -m tests.campaigns.master [--seeds N] [--jobs N] [--only synthetic | twin] [--sample]`: master curves against known truth.
 
 Synthetic two-peak sets of 99 conditions: how near Ts comes, how often its interval holds it, and whether sets that do
 not collapse are told from those that do. Then the simulated slow track, from the recipe to Ts.
@@ -125,7 +125,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser("python -m tests.campaigns.master", description=__doc__)
     parser.add_argument("--seeds", type=int, default=SEEDS, metavar="N", help=f"simulated runs of each sort ({SEEDS})")
     parser.add_argument("--jobs", type=int, default=1, metavar="N", help="processes (1)")
-    parser.add_argument("--synthetic", action="store_true", help="no simulated runs")
+    parser.add_argument("--only", choices=("synthetic", "twin"), help="sets that are made up, or simulated runs")
     parser.add_argument("--sample", action="store_true", help="few synthetic sets, one simulated run")
     read = parser.parse_args(arguments)
     sets = SAMPLE_SETS if read.sample else SETS
@@ -137,12 +137,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
         missed += not met
         print(f"{'ok  ' if met else 'MISS'} {text}", flush=True)
 
-    for figure in near(sets):
-        tell(figure)
-    tell(covered(SAMPLE_COVERED if read.sample else COVERED_SETS))
-    for figure in refused(sets):
-        tell(figure)
-    if not read.synthetic:
+    if read.only != "twin":
+        for figure in (*near(sets), covered(SAMPLE_COVERED if read.sample else COVERED_SETS), *refused(sets)):
+            tell(figure)
+    if read.only != "synthetic":
         for figure in twin(1 if read.sample else read.seeds, read.jobs, sample=read.sample):
             tell(figure)
     print("every figure met" if not missed else f"{missed} missed")
