@@ -68,8 +68,9 @@ def points_of(bench: TrackBench) -> list[MasterPoint]:
     return points
 
 
-def measured(seed: int, unbiased: bool) -> Found:
-    """Return what a run of a seed gives; ``unbiased``: with a thermometer that is right."""
+def measured(which: tuple[int, bool]) -> Found:
+    """Return what a run gives: of which seed, and whether with a thermometer that is right."""
+    seed, unbiased = which
     text = Path(recipes.find("grosch")).read_text(encoding="utf-8")
     bench = TrackBench("grosch", text, UNBIASED if unbiased else PLAIN, seed).to_the_end()
     if bench.run.outcome is not Outcome.DONE or bench.kept.trips:
