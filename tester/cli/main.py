@@ -64,7 +64,10 @@ COMMANDS: dict[str, CommandEntry] = {
     "sdo": CommandEntry("tester.cli.device_commands", "sdo", "Read an object of a CANopen node, or write one."),
     "params": CommandEntry("tester.cli.device_commands", "params", "What devices are set to: dump it, or compare it."),
     "record": CommandEntry("tester.cli.record_command", "record", "Write down the frames of live wires."),
-    "schema": CommandEntry("tester.cli.recipe_commands", "schema", "Print the JSON Schema of recipes."),
+    "materials": CommandEntry("tester.cli.materials_commands", "materials", "Compounds and surfaces as files."),
+    "schema": CommandEntry(
+        "tester.cli.recipe_commands", "schema", "Print the JSON Schema of recipes, compounds or surfaces."
+    ),
 }
 """The commands in the order of the help page. A test holds every entry against the module it names."""
 

@@ -7,15 +7,15 @@ adds sections of its own (``tester.recipe.part``).
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, TypeAlias, cast
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema, create_model, model_validator
+from pydantic import BaseModel, BeforeValidator, Field, WithJsonSchema, create_model, model_validator
 
 from tester.axes import Axes, Axis
+from tester.base.section import Section, editor_schema, editor_text
 from tester.base.units import Quantity, UnitError, as_text, expected, parse_one_of
 
 if TYPE_CHECKING:
@@ -129,12 +129,6 @@ FreeField: TypeAlias = Annotated[
     BeforeValidator(_free_field),
     WithJsonSchema({"type": ["string", "number", "boolean"], "maxLength": MAX_FREE_FIELD}),
 ]
-
-
-class Section(BaseModel, frozen=True):
-    """A section of a recipe: no key beyond its fields, whose docstrings editors show."""
-
-    model_config = ConfigDict(extra="forbid", strict=True, use_attribute_docstrings=True)
 
 
 class SpecimenModel(Section, frozen=True):
@@ -305,7 +299,9 @@ class Recipe(Section, frozen=True):
     abrasive: AbrasiveModel | None = None
     humidity: Annotated[float, Quantity("%", ge=0, le=100)] | None = None
     ambient: Temperature | None = None
-    experiment: dict[Annotated[str, Field(min_length=1, max_length=60)], FreeField] = {}
+    experiment: dict[Annotated[str, Field(min_length=1, max_length=60)], FreeField] = Field(
+        default_factory=dict[str, str]
+    )
     """free fields, stored with the run and in conditions.csv; `uncertainty.SETTING` replaces a bound of the budget"""
     measure: MeasureModel | None = None
     grids: Sequence[GridModel] = ()
@@ -333,34 +329,9 @@ def recipe_model(part: RecipePart) -> type[Recipe]:
 
 def recipe_schema(part: RecipePart) -> dict[str, object]:
     """Return the JSON Schema (2020-12) of a kind's recipes, for editors."""
-    schema: dict[str, object] = {"$schema": "https://json-schema.org/draft/2020-12/schema"}
-    schema.update(cast("dict[str, object]", _tidy(recipe_model(part).model_json_schema(by_alias=True))))
-    return schema
+    return editor_schema(recipe_model(part))
 
 
 def schema_text(part: RecipePart) -> str:
     """Return the JSON Schema as the text of a file, such as ``recipes/recipe.schema.json``."""
-    return json.dumps(recipe_schema(part), indent=2, ensure_ascii=False) + "\n"
-
-
-def _tidy(node: object) -> object:
-    """Drop what misleads an editor: generated titles, null for "left out", defaults without their unit."""
-    if isinstance(node, list):
-        return [_tidy(one) for one in cast("list[object]", node)]
-    if not isinstance(node, dict):
-        return node
-    entries = cast("dict[str, object]", node)
-    tidy = {
-        key: _tidy(value)
-        for key, value in entries.items()
-        if not (key == "title" and isinstance(value, str))
-        and not (key == "default" and not isinstance(value, str | int))
-    }
-    choices = tidy.get("anyOf")
-    if isinstance(choices, list):
-        kept = [one for one in cast("list[object]", choices) if one != {"type": "null"}]
-        if len(kept) == 1 and isinstance(kept[0], dict):
-            del tidy["anyOf"]
-            return {**cast("dict[str, object]", kept[0]), **tidy}
-        tidy["anyOf"] = kept
-    return tidy
+    return editor_text(recipe_model(part))

@@ -1,0 +1,77 @@
+"""A file of a material as it lies in a folder: its text with its hash, and what it refers to beside it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from hashlib import sha256
+from pathlib import Path, PurePosixPath
+from typing import Literal
+
+from tester.base.source import Problem
+from tester.base.trouble import in_words
+
+Role = Literal["compound", "surface"]
+FOLDERS: dict[Role, str] = {"compound": "compounds", "surface": "surfaces"}
+"""Where files of each lie, beside a recipe and in the package."""
+
+
+@dataclass(frozen=True, slots=True)
+class DataFile:
+    """A file that a material's file refers to: its name relative to that, and its bytes."""
+
+    name: str
+    content: bytes
+
+    @property
+    def sha256(self) -> str:
+        """Return the hash of its bytes, hexadecimal."""
+        return sha256(self.content).hexdigest()
+
+
+@dataclass(frozen=True, slots=True)
+class MaterialFile:
+    """A material's file as it was read."""
+
+    role: Role
+    name: str
+    """As recipes say it."""
+    path: Path
+    text: str
+    data: tuple[DataFile, ...] = ()
+    doubts: tuple[Problem, ...] = ()
+
+    @property
+    def sha256(self) -> str:
+        """Return the hash of its text, UTF-8, hexadecimal."""
+        return sha256(self.text.encode()).hexdigest()
+
+
+class DataFileError(ValueError):
+    """A file that a material's file refers to and that cannot be used; the message says why."""
+
+
+def read_beside(path: Path, name: str, at_most: int) -> DataFile:
+    """Return a file beside a material's file, or in a folder below it. Raises DataFileError."""
+    relative = PurePosixPath(name)
+    if relative.is_absolute() or ".." in relative.parts or "\\" in name or ":" in name:
+        raise DataFileError(f'"{name}" is not beside this file (expected a name such as dma.csv)')
+    found = path.parent / relative
+    try:
+        if not found.is_file():
+            raise DataFileError(f'there is no file "{name}" beside this one')
+        if found.stat().st_size > at_most:
+            raise DataFileError(f'"{name}" is larger than {at_most // 1024**2} MB')
+        return DataFile(relative.as_posix(), found.read_bytes())
+    except OSError as error:
+        raise DataFileError(f'"{name}" cannot be read: {in_words(error)}') from error
+
+
+def decoded(content: bytes) -> str:
+    """Return the text of what an instrument wrote: UTF-8, UTF-16 with its mark, else Windows-1252."""
+    for mark, coding in ((b"\xff\xfe", "utf-16"), (b"\xfe\xff", "utf-16"), (b"\xef\xbb\xbf", "utf-8-sig")):
+        if content.startswith(mark):
+            return content.decode(coding, errors="replace")
+    try:
+        return content.decode("utf-8")
+    except UnicodeDecodeError:
+        return content.decode("cp1252", errors="replace")

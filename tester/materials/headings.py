@@ -1,0 +1,149 @@
+"""Headings of a table of moduli in the words of their makers: which quantity, in which unit.
+
+``Storage Modulus [MPa]``, ``E' / MPa``, ``Temp./degC``, ``omega (rad/s)``, ``Tan Delta``.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from math import pi
+from types import MappingProxyType
+from typing import Final
+
+ZERO_C = 273.15
+
+QUANTITIES: Final = ("temperature", "frequency", "omega", "E'", 'E"', "G'", 'G"', "tan")
+"""What a column can be; ``E"`` may be written as ``E''``, too."""
+
+_NAMES: Final[Mapping[str, frozenset[str]]] = MappingProxyType({
+    "temperature": frozenset({"temperature", "temp", "ts", "t", "sampletemperature", "sampletemp"}),
+    "frequency": frozenset({"frequency", "freq", "f"}),
+    "omega": frozenset({"omega", "ω", "w", "angularfrequency", "angfrequency", "angularfreq"}),
+    "E'": frozenset({"e'", "m'", "storagemodulus", "storage", "storagemodulus(e')", "tensilestoragemodulus"}),
+    'E"': frozenset({'e"', 'm"', "lossmodulus", "loss", "tensilelossmodulus"}),
+    "G'": frozenset({"g'", "shearstoragemodulus", "storageshearmodulus"}),
+    'G"': frozenset({'g"', "shearlossmodulus", "lossshearmodulus"}),
+    "tan": frozenset({"tan", "tandelta", "tanδ", "tand", "lossfactor", "dampingfactor", "tan(delta)", "tan(δ)"}),
+})
+
+_MODULUS_UNITS = {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9}
+_UNITS: Final[Mapping[str, tuple[str, ...]]] = MappingProxyType({
+    "temperature": ("degC", "K"),
+    "frequency": ("Hz", "kHz", "rad/s"),
+    "omega": ("rad/s",),
+    **{one: tuple(_MODULUS_UNITS) for one in ("E'", 'E"', "G'", 'G"')},
+    "tan": ("1",),
+})
+"""Units of each quantity."""
+
+_SPELLINGS: Final = {
+    "°c": "degC", "℃": "degC", "c": "degC", "degc": "degC", "deg c": "degC", "celsius": "degC", "k": "K",
+    "kelvin": "K", "hz": "Hz", "khz": "kHz", "rad/s": "rad/s", "rad/sec": "rad/s", "rad s-1": "rad/s",
+    "rad·s⁻¹": "rad/s", "pa": "Pa", "kpa": "kPa", "n/mm2": "MPa", "n/mm²": "MPa", "gpa": "GPa",
+    "-": "1", "1": "1", "": "1", "--": "1",
+}  # fmt: skip
+"""Units as makers write them, in small letters; MPa stands apart, for mPa is none of ours."""
+_BRACKETED = re.compile(r"^(?P<name>.*?)\s*[\[({](?P<unit>[^\[\](){}]*)[\])}]\s*$")
+_SLASHED = re.compile(r"^(?P<name>.*?)\s*(?:/|,)\s*(?P<unit>\S.*?)\s*$")
+_LAST_WORD = re.compile(r"^(?P<name>.+?)\s+(?P<unit>\S+)\s*$")
+_QUOTES = str.maketrans({"′": "'", "’": "'", "‘": "'", "´": "'", "`": "'", "″": '"', "”": '"', "“": '"'})
+
+
+class UnitRefusedError(ValueError):
+    """A unit that its quantity cannot have; the message names those it can."""
+
+
+@dataclass(frozen=True, slots=True)
+class Heading:
+    """A column's heading: ``text`` as the file has it, the quantity that it is ("" for none of ours), its unit."""
+
+    text: str
+    quantity: str
+    unit: str = ""
+    """Of the table of units; "" where the heading says none."""
+
+
+def heading(text: str) -> Heading:
+    """Return what a heading says. Raises UnitRefusedError where its unit is none of the quantity's."""
+    clean = text.strip()
+    for form in (_BRACKETED, _SLASHED, _LAST_WORD):
+        match = form.match(clean)
+        quantity = quantity_of(match["name"]) if match else ""
+        if match is None or not quantity:
+            continue
+        if form is _LAST_WORD and not is_unit(match["unit"]):
+            continue
+        return Heading(clean, quantity, unit_of(quantity, match["unit"], clean))
+    quantity = quantity_of(clean)
+    return Heading(clean, quantity, "1" if quantity == "tan" else "")
+
+
+def quantity_of(name: str) -> str:
+    """Return which quantity a name means, "" for none."""
+    tidy = re.sub(r"[\s._:\-*|]+", "", name.translate(_QUOTES).casefold()).replace("''", '"')
+    return next((quantity for quantity, names in _NAMES.items() if tidy in names), "")
+
+
+def quantity_named(text: str) -> str:
+    """Return a quantity by its own name, as an option or a file gives it; "" where it is none."""
+    tidy = text.strip().translate(_QUOTES).replace("''", '"')
+    return tidy if tidy in QUANTITIES else ""
+
+
+def is_unit(text: str) -> bool:
+    """Return whether a text is a unit that some quantity here can have."""
+    return text.strip() in ("MPa", "Mpa") or text.strip().casefold() in _SPELLINGS
+
+
+def unit_of(quantity: str, text: str, where: str = "") -> str:
+    """Return the table's unit that a text means for a quantity. Raises UnitRefusedError."""
+    tidy = text.strip()
+    unit = "MPa" if tidy in ("MPa", "Mpa") else _SPELLINGS.get(tidy.casefold(), "")
+    if quantity and unit not in _UNITS[quantity]:
+        of = f'"{where}": ' if where else ""
+        raise UnitRefusedError(f'{of}the unit "{tidy}" is none of {quantity} (expected {accepted(quantity)})')
+    return unit
+
+
+def accepted(quantity: str) -> str:
+    """Return the units of a quantity in words."""
+    units = _UNITS[quantity]
+    return units[0] if len(units) == 1 else f"{', '.join(units[:-1])} or {units[-1]}"
+
+
+def first_unit(quantity: str) -> str:
+    """Return a unit of a quantity, for an example."""
+    return _UNITS[quantity][0]
+
+
+def heading_problems(texts: Sequence[str]) -> Iterator[str]:
+    """Yield what is wrong with the headings of a table that a file of ours holds itself."""
+    seen: set[str] = set()
+    for text in texts:
+        try:
+            one = heading(text)
+        except UnitRefusedError as error:
+            yield str(error)
+            continue
+        if not one.quantity:
+            known = ", ".join(QUANTITIES)
+            yield f'"{text}" is no heading of a table of moduli (expected one of {known}, with its unit)'
+        elif not one.unit:
+            such = f"{text} {first_unit(one.quantity)}"
+            yield f'"{text}" has no unit (expected {accepted(one.quantity)}, such as "{such}")'
+        elif one.quantity in seen:
+            yield f"{one.quantity} is there twice"
+        seen.add(one.quantity)
+
+
+def conversion(quantity: str, unit: str) -> Callable[[float], float]:
+    """Return what turns a number in a unit into degC, Hz, Pa or a plain number."""
+    if unit == "K":
+        return lambda value: value - ZERO_C
+    if quantity in ("frequency", "omega"):
+        factor = {"Hz": 1.0, "kHz": 1e3, "rad/s": 1.0 / (2.0 * pi)}[unit]
+    else:
+        factor = _MODULUS_UNITS.get(unit, 1.0)
+    return lambda value: value * factor

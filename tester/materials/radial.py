@@ -1,0 +1,113 @@
+"""The radial power spectrum of a map of heights, by a fast Fourier transform under a Hann window.
+
+C(q) = (2 pi)^-2 int <h h> exp(-iqx) d2x in m^4, so that <h^2> = 2 pi int q C dq, averaged over directions.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+
+Detrend = Literal["mean", "plane"]
+PER_DECADE = 20
+"""Rings of one point of the table each: so many in a decade of q, but none thinner than the map resolves [A]."""
+LEAST_POINTS = 16
+"""Points along each side of a map, at least [A]: with fewer there are no decades of waves."""
+
+
+@dataclass(frozen=True, slots=True)
+class RadialSpectrum:
+    """C at wave numbers that rise: 1/m and m^4."""
+
+    q_1_m: Array
+    power_m4: Array
+
+    @property
+    def rms_height_m(self) -> float:
+        """Return the root of 2 pi int q C dq over the table, straight in logarithms between its points, m."""
+        return self._root(1)
+
+    @property
+    def rms_slope(self) -> float:
+        """Return the root of 2 pi int q^3 C dq over the table."""
+        return self._root(3)
+
+    def _root(self, order: int) -> float:
+        x = np.log(self.q_1_m)
+        y = (order + 1) * x + np.log(self.power_m4)
+        steps, rises = np.diff(x), np.diff(y)
+        flat = np.abs(rises) < 1e-9
+        # int exp(y) dx of a straight y; where it does not rise, its value times the step.
+        share = np.where(flat, 1.0, np.expm1(rises) / np.where(flat, 1.0, rises))
+        return float(np.sqrt(2.0 * np.pi * np.sum(np.exp(y[:-1]) * share * steps)))
+
+
+def detrended(heights_m: Array, pixel_m: tuple[float, float], detrend: Detrend) -> Array:
+    """Return heights without their mean, or without their plane of least squares; heights (rows, columns) in m."""
+    flat = heights_m - heights_m.mean()
+    if detrend == "mean":
+        return flat
+    # Even grids about their middle: the two slopes do not depend on each other.
+    for axis in (0, 1):
+        x = _places(flat.shape[axis], pixel_m[axis])
+        slope = float(np.mean(flat, axis=1 - axis) @ x / (x @ x))
+        flat = flat - slope * (x[:, None] if axis == 0 else x[None, :])
+    return flat
+
+
+def _places(points: int, apart_m: float) -> Array:
+    return apart_m * (np.arange(points, dtype=np.float64) - (points - 1) / 2.0)
+
+
+def radial_spectrum(heights_m: Array, pixel_m: tuple[float, float]) -> RadialSpectrum:
+    """Return the spectrum of detrended heights (rows, columns) in m; ``pixel_m``: from row to row, column to column.
+
+    From the longest wave that the shorter side holds to the shortest that two points show, rings of wave numbers are
+    averaged. Raises ValueError for a map that is too small, or flat.
+    """
+    rows, columns = heights_m.shape
+    if min(rows, columns) < LEAST_POINTS:
+        raise ValueError(f"{rows} x {columns} heights are too few (expected {LEAST_POINTS} x {LEAST_POINTS} or more)")
+    window = np.outer(_hann(rows), _hann(columns))
+    weighted = heights_m * window
+    # The window would turn a mean that is left over into a long wave.
+    weighted -= window * (weighted.sum() / window.sum())
+    amplitude = np.fft.rfft2(weighted) / (rows * columns)
+    area_m2 = rows * pixel_m[0] * columns * pixel_m[1]
+    power = area_m2 / (4.0 * np.pi**2) * np.abs(amplitude) ** 2 / np.mean(window**2)
+    q = 2.0 * np.pi * np.hypot(np.fft.fftfreq(rows, pixel_m[0])[:, None], np.fft.rfftfreq(columns, pixel_m[1])[None, :])
+    # A real map's transform has each wave twice; the half that is here counts double but at its two edges.
+    counted = np.full(q.shape, 2.0)
+    counted[:, 0] = 1.0
+    if columns % 2 == 0:
+        counted[:, -1] = 1.0
+    edges = _edges(2.0 * np.pi / min(rows * pixel_m[0], columns * pixel_m[1]), np.pi / max(pixel_m))
+    ring = np.digitize(q.ravel(), edges)
+    total = np.bincount(ring, counted.ravel(), len(edges) + 1)[1:-1]
+    mean_power = np.bincount(ring, (counted * power).ravel(), len(edges) + 1)[1:-1]
+    mean_q = np.bincount(ring, (counted * q).ravel(), len(edges) + 1)[1:-1]
+    kept = (total > 0.0) & (mean_power > 0.0)
+    if np.count_nonzero(kept) < 2:
+        raise ValueError("the heights are all alike: there is no spectrum")
+    return RadialSpectrum(mean_q[kept] / total[kept], mean_power[kept] / total[kept])
+
+
+def _hann(points: int) -> Array:
+    """Return the periodic Hann window."""
+    return 0.5 - 0.5 * np.cos(2.0 * np.pi * np.arange(points) / points)
+
+
+def _edges(step_1_m: float, last_1_m: float) -> Array:
+    """Return the edges of the rings: a step wide, and further out even in logarithms; from half a step on."""
+    edges = [0.5 * step_1_m]
+    while edges[-1] < last_1_m:
+        edges.append(max(edges[-1] + step_1_m, edges[-1] * 10.0 ** (1.0 / PER_DECADE)))
+    edges[-1] = last_1_m * (1.0 + 1e-9)
+    return np.array(edges)

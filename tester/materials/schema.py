@@ -1,0 +1,238 @@
+"""What a file of a compound or of a surface may say: the validated models of the YAML files.
+
+Every quantity is a text with a unit in the file and a float here, in the unit of the annotation. The JSON Schemas for
+editors are generated from these classes.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal, TypeAlias
+
+from pydantic import Field, model_validator
+
+from tester.base.section import Section
+from tester.base.units import Quantity
+
+Text: TypeAlias = Annotated[str, Field(min_length=1, max_length=200)]
+Note: TypeAlias = Annotated[str, Field(min_length=1, max_length=2000)]
+Phr: TypeAlias = Annotated[float, Quantity("1", ge=0, le=1000)]
+Modulus: TypeAlias = Annotated[float, Quantity("Pa", gt=0, le=1e12)]
+Celsius: TypeAlias = Annotated[float, Quantity("degC", ge=-200, le=400)]
+Length: TypeAlias = Annotated[float, Quantity("m", gt=0, le=1)]
+WaveNumber: TypeAlias = Annotated[float, Quantity("1/m", gt=0, le=1e11)]
+Cells: TypeAlias = Annotated[list[float | int], Field(min_length=1, max_length=20)]
+Headings: TypeAlias = Annotated[list[Text], Field(min_length=2, max_length=20)]
+MAX_ROWS = 20_000
+
+LEAST_WAVES = 1.01
+"""q1 over q0, at least: a narrower band is a line, not a spectrum."""
+
+
+class CureModel(Section, frozen=True):
+    """How it was vulcanised."""
+
+    temperature: Celsius | None = None
+    time: Annotated[float, Quantity("s", gt=0)] | None = None
+
+
+class TableModel(Section, frozen=True):
+    """Moduli as measured, in the file itself."""
+
+    columns: Headings
+    """names with units, such as [temperature degC, frequency Hz, E' MPa, E'' MPa]"""
+    rows: Annotated[list[Cells], Field(max_length=MAX_ROWS)]
+    """a list of numbers for each point, in the order of the columns"""
+
+
+class TableFileModel(Section, frozen=True):
+    """Moduli as measured, in a file of columns beside this one."""
+
+    name: Text
+    """the file, relative to this one"""
+    columns: dict[Text, Text] = Field(default_factory=dict[str, str])
+    """which heading is which, where it is not recognised, such as {"E'": "Modulus 1"}"""
+    units: dict[Text, Text] = Field(default_factory=dict[str, str])
+    """units of headings that say none, such as {"Storage Modulus": MPa}"""
+    frequency: Annotated[float, Quantity("Hz", gt=0)] | None = None
+    """of every point, where the file has no such column"""
+    temperature: Celsius | None = None
+    """of every point, where the file has no such column"""
+
+
+class ZenerModel(Section, frozen=True):
+    """G = Gr + (Gg - Gr) z / (1 + z), z = (i omega tau aT)^b: a rubber as a formula."""
+
+    Gr: Modulus
+    """shear modulus of the rubber"""
+    Gg: Modulus
+    """shear modulus of the glass"""
+    tau: Annotated[float, Quantity("s", gt=0)]
+    """relaxation time at the temperature `at`"""
+    at: Celsius
+    """temperature at which tau holds"""
+    b: Annotated[float, Quantity("1", gt=0, le=1)]
+    Ts: Celsius
+    """reference temperature of the WLF shift, Tg + 50 K"""
+
+    @model_validator(mode="after")
+    def _in_order(self) -> ZenerModel:
+        if self.Gg <= self.Gr:
+            raise ValueError(f"Gg, {self.Gg:g} Pa, is not above Gr, {self.Gr:g} Pa: the glass is stiffer")
+        return self
+
+
+class ConstantModel(Section, frozen=True):
+    """One complex shear modulus at every frequency and temperature: for comparison, no rubber is like that."""
+
+    G: Modulus
+    """its real part"""
+    loss_factor: Annotated[float, Quantity("1", ge=0, le=10)] = 0.0
+    """tan delta, G'' over G'"""
+
+
+class ModuliModel(Section, frozen=True):
+    """The complex modulus in small strain; exactly one of these."""
+
+    table: TableModel | None = None
+    file: TableFileModel | None = None
+    fractional_zener: ZenerModel | None = None
+    constant: ConstantModel | None = None
+    beyond: Literal["refuse", "hold"] = "refuse"
+    """at frequencies beyond a table's: no value, or that of its end"""
+
+    @model_validator(mode="after")
+    def _one(self) -> ModuliModel:
+        ways = ("table", "file", "fractional_zener", "constant")
+        said = [name for name in ways if getattr(self, name) is not None]
+        if len(said) != 1:
+            raise ValueError(f"{' and '.join(said) or 'nothing'} is said (expected exactly one of {', '.join(ways)})")
+        return self
+
+
+class ShearModel(Section, frozen=True):
+    """How a contact of clean rubber is sheared off: tau_s0 [1 + ratio / (1 + v_c / v)^n]."""
+
+    tau_s0: Annotated[float, Quantity("Pa", gt=0)]
+    """shear strength of slowest sliding"""
+    v_c: Annotated[float, Quantity("m/s", gt=0)]
+    n: Annotated[float, Quantity("1", gt=0, le=10)]
+    ratio: Annotated[float, Quantity("1", ge=0, le=1e6)]
+    """modulus of the glass over that of the rubber"""
+
+
+class CompoundModel(Section, frozen=True):
+    """A rubber compound: what it is made of, and what is known of it."""
+
+    name: Text
+    """as recipes name it; the file may be called otherwise"""
+    note: Note | None = None
+    source: Note | None = None
+    """where the figures are from; [A] for an assumption"""
+    doubts: Annotated[list[Note], Field(max_length=100)] = Field(default_factory=list[str])
+    """what is doubtful in it, as an import or a person says; named wherever it is used"""
+    formulation: dict[Text, Phr] = Field(default_factory=dict[str, float])
+    """parts per hundred of rubber (phr), by ingredient"""
+    batch: Text | None = None
+    cure: CureModel | None = None
+    density: Annotated[float, Quantity("kg/m3", ge=500, le=5000)] | None = None
+    hardness: Annotated[float, Quantity("1", ge=0, le=100)] | None = None
+    """Shore A"""
+    Tg: Celsius | None = None
+    """glass transition"""
+    poisson: Annotated[float, Quantity("1", ge=0.3, le=0.5)] = 0.5
+    decade_k: Annotated[float, Quantity("K", gt=0, le=50, bare=True)] | None = None
+    """kelvin that stand for a decade of frequency, as of a sweep at one frequency (default 8)"""
+    moduli: ModuliModel | None = None
+    shear: ShearModel | None = None
+
+
+class PowerLawModel(Section, frozen=True):
+    """A self-affine surface: C(q) = C0 (q / q0)^(-2 (1 + H)) from q0 to q1."""
+
+    C0: Annotated[float, Quantity("m4", gt=0)]
+    q0: WaveNumber
+    q1: WaveNumber
+    H: Annotated[float, Quantity("1", ge=0, le=1)]
+    """Hurst exponent"""
+
+    @model_validator(mode="after")
+    def _in_order(self) -> PowerLawModel:
+        _band(self.q0, self.q1)
+        return self
+
+
+def _band(q0: float, q1: float) -> None:
+    """Raise ValueError for a band that is none."""
+    if q1 < LEAST_WAVES * q0:
+        raise ValueError(f"q1, {q1:g} 1/m, is not above q0, {q0:g} 1/m: waves go from long (q0) to short (q1)")
+
+
+class WaveModel(Section, frozen=True):
+    """A wave: its length, and its arithmetic mean roughness."""
+
+    wavelength: Length
+    Ra: Length
+
+    @model_validator(mode="after")
+    def _flat(self) -> WaveModel:
+        if self.wavelength <= self.Ra:
+            raise ValueError(f"Ra, {self.Ra:g} m, is not below wavelength, {self.wavelength:g} m: are they swapped?")
+        return self
+
+
+class WavesModel(Section, frozen=True):
+    """Two waves, as of a road: its stones, and what is on them."""
+
+    coarse: WaveModel
+    fine: WaveModel
+
+    @model_validator(mode="after")
+    def _in_order(self) -> WavesModel:
+        if self.fine.wavelength >= self.coarse.wavelength:
+            raise ValueError("fine is not finer than coarse: its wavelength is as long or longer (are they swapped?)")
+        return self
+
+
+class ScanModel(Section, frozen=True):
+    """Heights as an instrument wrote them, in a file beside this one."""
+
+    file: Text
+    """the file, relative to this one: a matrix of heights as text, or a format of instruments (extra `topography`)"""
+    pixel: Length | None = None
+    """distance from point to point, where the file does not say it"""
+    unit: Literal["nm", "um", "mm", "m"] | None = None
+    """of the heights, where the file does not say it"""
+    detrend: Literal["mean", "plane"] = "plane"
+    """what is taken off before anything else"""
+
+
+class RadialModel(Section, frozen=True):
+    """A spectrum as a table: C at wave numbers that rise."""
+
+    columns: Literal["q 1/m, C m4"] = "q 1/m, C m4"
+    rows: Annotated[list[Annotated[list[float | int], Field(min_length=2, max_length=2)]], Field(max_length=5000)]
+
+
+class SurfaceModel(Section, frozen=True):
+    """What rubber slides on: a spectrum of heights, two waves, or both."""
+
+    name: Text
+    """as recipes name it under `abrasive`; the file may be called otherwise"""
+    note: Note | None = None
+    source: Note | None = None
+    """where the figures are from; [A] for an assumption"""
+    doubts: Annotated[list[Note], Field(max_length=100)] = Field(default_factory=list[str])
+    """what is doubtful in it, as an import or a person says; named wherever it is used"""
+    spectrum: PowerLawModel | None = None
+    radial: RadialModel | None = None
+    scan: ScanModel | None = None
+    waves: WavesModel | None = None
+
+    @model_validator(mode="after")
+    def _one(self) -> SurfaceModel:
+        said = [name for name in ("spectrum", "radial", "scan") if getattr(self, name) is not None]
+        if len(said) > 1:
+            raise ValueError(f"{' and '.join(said)} are said (expected at most one of spectrum, radial, scan)")
+        if not said and self.waves is None:
+            raise ValueError("nothing is said of its heights (expected one of spectrum, radial, scan, waves)")
+        return self
