@@ -13,11 +13,15 @@ from tester.cli.formatting import dump, shown
 from tester.cli.options import QuantityType, json_option
 
 if TYPE_CHECKING:
+    from sim.physics.materials import Rubber
     from tester.kind import Kind
     from tester.master.made import Master
     from tester.master.points import MasterPoint, MasterRun
+    from tester.materials.compound import LoadedCompound
 
 FORMATS = ("csv", "png", "svg", "pdf")
+GLASS = "glass"
+"""Asks for Ts = Tg + 50 K."""
 
 
 @click.command()
@@ -27,8 +31,8 @@ FORMATS = ("csv", "png", "svg", "pdf")
     help="Temperature at which the curve stands.  [default: 20degC]",
 )
 @click.option(
-    "--ts", "ts_c", type=QuantityType("degC"), default=None, metavar="TS",
-    help="Ts of the shift, Tg + 50 K. Unless told it is looked for.",
+    "--ts", "ts_words", metavar="TS",
+    help="Ts of the shift: such as -3degC, or glass, which is Tg + 50 K of the compound's file. Else it is looked for.",
 )
 @click.option("--compound", metavar="NAME", help="Which compound, where there are several.")
 @click.option("--interface", metavar="NAME", help="Which interface, where there are several: dry, wet, talc.")
@@ -42,7 +46,7 @@ FORMATS = ("csv", "png", "svg", "pdf")
 def master(
     runs: Sequence[str],
     reference_c: float,
-    ts_c: float | None,
+    ts_words: str | None,
     compound: str | None,
     interface: str | None,
     load: str | None,
@@ -66,9 +70,12 @@ def master(
     kind_of_file = _ending(ending, out)
     found = _runs(runs)
     points = [point for one in found for point in one.points]
-    points = _chosen(points, compound, interface, _load_words(load))
+    points = _chosen(points, compound, interface, _quantity("--load", load, "N"))
+    name = points[0].compound
+    file = _compound_file(runs[0], name)
+    glass_c = file.model.Tg if file is not None else None
     try:
-        made = master_of(points, reference_c, ts_c)
+        made = master_of(points, reference_c, _ts(ts_words, name, glass_c), _rubber(file), glass_c)
     except MasterError as error:
         raise click.ClickException(shown(str(error))) from error
     _tell(made, [entry for one in found for entry in one.left_out], as_json)
@@ -92,15 +99,48 @@ def _ending(given: str | None, out: Path | None) -> str:
     return told
 
 
-def _load_words(load: str | None) -> str | None:
+def _quantity(option: str, text: str | None, unit: str) -> float | None:
     from tester.base.units import UnitError, parse
 
-    if load is None:
-        return None
     try:
-        return f"{parse(load, 'N'):g} N"
+        return None if text is None else parse(text, unit)
     except UnitError as error:
-        raise click.UsageError(f"--load: {error}") from error
+        raise click.UsageError(f"{option}: {error}") from error
+
+
+def _ts(words: str | None, compound: str, glass_c: float | None) -> float | None:
+    """Return the Ts that was asked for, degC, None where it is to be looked for."""
+    from sim.physics.wlf import GLASS_TO_REFERENCE_K
+
+    if words != GLASS:
+        return _quantity("--ts", words, "degC")
+    if glass_c is None:
+        raise click.UsageError(f"--ts {GLASS}: no file says the Tg of {shown(compound)} (expected such as --ts=-3degC)")
+    return glass_c + GLASS_TO_REFERENCE_K
+
+
+def _compound_file(run: str, compound: str) -> LoadedCompound | None:
+    """Return a compound's file: the run's copy, else the laboratory's or the packaged one; None where there is none."""
+    from sim.physics.materials import UnknownMaterialError
+    from tester.base.source import InvalidSource
+    from tester.cli.run_lookup import run_folder
+    from tester.materials.library import Library
+
+    try:
+        return Library.beside(run_folder(run) / "recipe.yaml").compound(compound)
+    except UnknownMaterialError:
+        return None
+    except InvalidSource as error:
+        raise click.ClickException(shown(str(error))) from error
+
+
+def _rubber(file: LoadedCompound | None) -> Rubber | None:
+    from tester.materials.library import MissingModuliError, rubber_of
+
+    try:
+        return rubber_of(file) if file is not None else None
+    except MissingModuliError:
+        return None
 
 
 def _runs(names: Sequence[str]) -> list[MasterRun]:
@@ -140,10 +180,11 @@ def _run(name: str) -> tuple[Kind, MasterRun]:
 
 
 def _chosen(
-    points: Iterable[MasterPoint], compound: str | None, interface: str | None, load: str | None
+    points: Iterable[MasterPoint], compound: str | None, interface: str | None, load_n: float | None
 ) -> list[MasterPoint]:
     """Return the conditions that were asked for; a usage error where they differ in more than speed and temperature."""
     left = [*points]
+    load = None if load_n is None else f"{load_n:g} N"
     wanted = {"compound": compound, "interface": interface, "load": load}
     for name, value in wanted.items():
         there = sorted({_held(one, name) for one in left} - {""})

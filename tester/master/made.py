@@ -37,6 +37,8 @@ class Master:
     judged: Judged
     peaks: tuple[Peak, ...]
     rules: tuple[Rule, ...] = ()
+    glass_c: float | None = None
+    """Glass transition that the compound's file says."""
 
     @property
     def points(self) -> tuple[MasterPoint, ...]:
@@ -62,9 +64,11 @@ def master_of(
     reference_c: float,
     ts_c: float | None = None,
     rubber: Rubber | None = None,
+    glass_c: float | None = None,
     resamples: int = RESAMPLES,
 ) -> Master:
-    """Return the master curve of conditions; ``ts_c``: of the shift, None: it is looked for; ``rubber``: its moduli.
+    """Return the master curve of conditions; ``ts_c``: of the shift, None: it is looked for; ``rubber``: its moduli;
+    ``glass_c``: its glass transition, where they are known.
 
     Raises MasterError where there is none: too few conditions, a temperature beyond the pole of the shift.
     """
@@ -75,4 +79,4 @@ def master_of(
         rules = rules_of(rubber.modulus, reference_c, peaks) if rubber is not None else ()
     except PoleError as error:
         raise MasterError(f"no shift: {error}") from error
-    return Master(reference_c, one, pairs, judge(one, pairs), peaks, rules)
+    return Master(reference_c, one, pairs, judge(one, pairs), peaks, rules, glass_c)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import isfinite
 
+from sim.physics.wlf import GLASS_TO_REFERENCE_K
 from tester.master.made import Master
 from tester.master.overlap import Pair
 from tester.master.verdict import TEST_WORDS
@@ -43,6 +44,8 @@ def summary_lines(one: Master) -> Iterator[str]:
     )
     yield f"verdict: {judged.verdict.value}" + "".join(f"\n  {reason}" for reason in judged.reasons)
     yield f"Ts {_ts_words(one)}; reference {one.reference_c:g} degC"
+    if one.glass_c is not None:
+        yield f"the compound's file says Tg {one.glass_c:g} degC: Ts = Tg + 50 K is {_expected(one.glass_c):g} degC"
     c = one.collapse
     yield (
         f"scatter about the curve {100.0 * c.scatter_rms:.2f} % of mu ({c.scatter_mu:.4f} in mu), a cubic spline with"
@@ -66,6 +69,10 @@ def _ts_words(one: Master) -> str:
     thermometer = c.of.thermometer_k
     parts = f"{c.u_fit_k:.2f} K of the fit, {thermometer:.2f} K of the thermometer"
     return f"{c.ts_c:.2f} degC (95 %: {low:.2f} to {high:.2f}; standard uncertainty {parts})"
+
+
+def _expected(glass_c: float) -> float:
+    return glass_c + GLASS_TO_REFERENCE_K
 
 
 def _rule_words(speed_m_s: float, decades: float) -> str:
@@ -112,6 +119,7 @@ def plain(one: Master) -> dict[str, Plain]:
         "ts_given": not c.searched,
         "ts_interval_c": [*c.interval],
         "u_fit_k": c.u_fit_k,
+        "glass_c": one.glass_c,
         "u_thermometer_k": c.of.thermometer_k,
         "scatter_ln": c.scatter_rms,
         "scatter_mu": c.scatter_mu,

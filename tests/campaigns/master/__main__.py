@@ -51,7 +51,7 @@ def near(sets: int) -> Iterator[Figure]:
         worst = max(map(abs, off))
         told = f"{np.mean(off):+.2f} +- {np.std(off):.2f} K" if noise else f"{off[0]:+.3f} K"
         yield (
-            f"Ts of {len(found)} sets with {100.0 * noise:g} % noise: {told}, worst {worst:.2f} K (asked: {most_k:g} K)",
+            f"Ts of {len(found)} sets, {100.0 * noise:g} % noise: {told}, worst {worst:.2f} K (asked: {most_k:g} K)",
             worst <= most_k,
         )
         missed = sum(one.judged.verdict is not Verdict.COLLAPSES for one in found)

@@ -1,7 +1,7 @@
 """The simulated slow track end to end: the packaged recipe, run in process, and its rows on a master curve.
 
-The rig is ticked without a record, and with half the scans while drives are enabled (10 Hz instead of 20: four fifths of
-the time of a run are soaking and the two slowest speeds): 25 s of processor time a run instead of 60.
+The rig is ticked without a record, and with half the scans while drives are enabled (10 Hz instead of 20: most of the
+time goes into soaking and into the slowest speed): 20 s of processor time a run instead of 60.
 """
 
 from __future__ import annotations

@@ -31,7 +31,7 @@ def test_slopes_are_those_of_the_spline() -> None:
 
 def test_knots_stand_at_quantiles() -> None:
     inner = quantile_knots(X, 3)[4:-4]
-    assert [int(np.sum(X < one)) for one in inner] == [20, 40, 60]
+    assert [int(np.sum(X < one)) for one in inner] == [20, 40, 60]  # noqa: SIM300
 
 
 def test_columns_that_say_nothing_new_drop_out() -> None:
