@@ -10,7 +10,7 @@ from math import isfinite
 
 from tester.axes import Axis, AxisValue, Setpoint, condition_words, plain
 from tester.export.results import Measured, RunResults
-from tester.report.chart import Chart, ChartPanel, Figure, Series, Surface
+from tester.report.chart import Chart, ChartPanel, ChartSurface, Figure, Series
 from tester.report.words import labelled, name_of, unit_of
 
 NAN = float("nan")
@@ -195,7 +195,7 @@ def _curve(law: Law, values: Sequence[ChartValue], along: Axis, style: int) -> S
     return Series("", tuple(x), tuple(y), "law", style)
 
 
-def _surfaces(values: Sequence[ChartValue], along: Axis, upward: Axis) -> Iterator[Surface]:
+def _surfaces(values: Sequence[ChartValue], along: Axis, upward: Axis) -> Iterator[ChartSurface]:
     """Yield the coefficient over two axes, for each compound at what most of its conditions share."""
     panels: list[tuple[str, tuple[float, ...], tuple[float, ...], tuple[tuple[float, ...], ...]]] = []
     for compound in _compounds(values):
@@ -211,7 +211,7 @@ def _surfaces(values: Sequence[ChartValue], along: Axis, upward: Axis) -> Iterat
     if panels:
         title = f"{Y_LABEL} over {name_of(along)} and {name_of(upward)}"
         note = "empty: not measured"
-        yield Surface("surface", title, labelled(along), labelled(upward), Y_LABEL, tuple(panels), note)
+        yield ChartSurface("surface", title, labelled(along), labelled(upward), Y_LABEL, tuple(panels), note)
 
 
 def repeats_chart(measured: Measured) -> Chart:

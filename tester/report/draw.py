@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, BinaryIO, Final
 
 from tester.base.extras import MissingExtraError, needs
 from tester.base.plain import harmless
-from tester.report.chart import Chart, ChartPanel, Figure, Series, Surface
+from tester.report.chart import Chart, ChartPanel, ChartSurface, Figure, Series
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -169,7 +169,7 @@ def _draw_series(series: Series, place: Any, joined: bool) -> Any:
     return drawn.lines[0]
 
 
-def _draw_surface(surface: Surface, canvas: Any, places: Sequence[Any]) -> None:
+def _draw_surface(surface: ChartSurface, canvas: Any, places: Sequence[Any]) -> None:
     """Draw a field for each pair of values, at its place on both axes, its number in it; lightness alone tells the
     colours apart."""
     every = [v for _, _, _, grid in surface.panels for row in grid for v in row if v == v]

@@ -15,7 +15,7 @@ TERMS: Final[tuple[Term, ...]] = (
          channel="load_n", setting="weights_share"),
     Term("axis misalignment", Acts.ROTATION, 0.2, "deg", "U-shaped", "track and cell, of unknown sign [A]",
          setting="misalignment_deg"),
-    Term("thermometer", Acts.TEMPERATURE, 0.5, "K", "rectangular", "Pt100 class B and the air's layers [A]",
+    Term("thermometer", Acts.TEMPERATURE, 1.0, "K", "rectangular", "Pt100 class B and the air's layers [A]",
          setting="temperature_k"),
     Term("track speed", Acts.SLIDING, 0.001, "m/s", "rectangular", "0.1 % of the speed [A]", channel="sliding_m_s",
          setting="speed_share"),

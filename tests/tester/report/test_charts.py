@@ -10,7 +10,7 @@ import pytest
 
 from tester.export.results import RunResults, results_of
 from tester.kinds.wheel_on_belt.fit.setpoints import law_at, published_values
-from tester.report.chart import Chart, Figure, Series, Surface
+from tester.report.chart import Chart, ChartSurface, Figure, Series
 from tester.report.charts import ChartValue, Material, charts_of, repeats_chart, values_of
 from tester.store.reader import RunReader
 from tests.tester.kinds.wheel_on_belt.fit.made import made_run
@@ -87,7 +87,7 @@ def test_a_speed_is_told_and_asked_for_in_its_own_units(charts: dict[str, Figure
 
 def test_the_surface_has_a_value_for_each_pair_that_was_measured(charts: dict[str, Figure]) -> None:
     surface = charts["surface"]
-    assert isinstance(surface, Surface)
+    assert isinstance(surface, ChartSurface)
     ((title, x, y, grid),) = surface.panels
     assert (x, y) == ((100.0, 200.0, 300.0, 400.0), (0.0, 100.0, 200.0, 300.0, 400.0))
     assert sum(not isnan(value) for row in grid for value in row) == 8 and title == "1#, 40 degC"
