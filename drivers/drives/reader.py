@@ -1,12 +1,13 @@
 """Reads drive profiles: one TOML file for each make of drive.
 
 ``drive_profile("maxon_epos4")`` reads a file of drivers/profiles/drives, ``drive_profile("my_drive.toml")`` one of your
-own. A new drive is a new file, not a new class.
+own. A new drive is a new file, not a new class. Of a name that is neither, ``look_up_with`` says who is asked.
 """
 
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from dataclasses import fields
 from functools import cache
 from pathlib import Path
@@ -20,6 +21,9 @@ from drivers.profiles.table import ProfileTable, read_table
 GENERIC = "cia402"
 """The profile of an axis that names none."""
 _FOLDER = Path(__file__).parent.parent / "profiles" / "drives"
+_PACKAGED = {path.stem: path for path in sorted(_FOLDER.glob("*.toml"))}
+LookUp = Callable[[str], str]
+"""Returns the TOML text of a profile by its name; raises ValueError with what is wrong."""
 _ADDRESS = re.compile(r"([0-9A-Fa-f]{4})(?::([0-9A-Fa-f]{2}))?")
 _TYPES = {kind.name.lower(): kind for kind in DataType if kind is not DataType.TEXT}
 _CHOICES = {"cob_ids": ("set", "fixed"), "mapping": ("free", "fixed")}
@@ -37,21 +41,52 @@ _OPTIONS: dict[Key, tuple[int, ...]] = {
 """Option objects that a profile may set, and values with which the drive stops the axis: no others can be chosen."""
 
 
+def _nobody(name: str) -> str:
+    raise ValueError("nobody else is asked")
+
+
+_look_up: LookUp = _nobody
+
+
 def drive_profile_names() -> list[str]:
     """Return the names of the drive profiles that come with the program."""
-    return sorted(path.stem for path in _FOLDER.glob("*.toml"))
+    return list(_PACKAGED)
+
+
+def look_up_with(found: LookUp) -> None:
+    """Have ``found`` asked for every name that is not a packaged profile's, nor a path's."""
+    global _look_up
+    _look_up = found
+
+
+def drive_profile(name: str = GENERIC) -> DriveProfile:
+    """Return the profile of this name, or from this path when it ends in ``.toml``; raises ProfileError.
+
+    A packaged name cannot be taken by another profile.
+    """
+    if name.endswith(".toml") or _PACKAGED.get(name) is not None:
+        return _from_file(name)
+    known = ", ".join(_PACKAGED)
+    try:
+        text = _look_up(name)
+    except ValueError as error:
+        raise ProfileError(f"no drive profile {name!r} (there are {known}); {error}") from error
+    return _from_text(name, text)
 
 
 @cache
-def drive_profile(name: str = GENERIC) -> DriveProfile:
-    """Return the profile of this name, or from this path when it ends in ``.toml``; raises ProfileError."""
-    path = Path(name) if name.endswith(".toml") else _FOLDER / f"{name}.toml"
+def _from_file(name: str) -> DriveProfile:
+    path = Path(name) if name.endswith(".toml") else _PACKAGED[name]
     try:
         text = path.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError, ValueError) as error:
-        known = ", ".join(drive_profile_names())
-        raise ProfileError(f"no drive profile {name!r} (there are {known})") from error
+        raise ProfileError(f"no drive profile {name!r} (there are {', '.join(_PACKAGED)})") from error
     return read_drive_profile(path.stem, text)
+
+
+@cache
+def _from_text(name: str, text: str) -> DriveProfile:
+    return read_drive_profile(name, text)
 
 
 def read_drive_profile(name: str, text: str) -> DriveProfile:

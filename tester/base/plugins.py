@@ -1,7 +1,7 @@
-"""Extensions of a laboratory's own, from installed packages: sensor profiles, export formats, friction laws, kinds.
+"""Extensions of a laboratory's own, from installed packages: profiles of devices, export formats, laws, kinds.
 
 An extension is asked for by name and found in one of two ways. A package declares an entry point of that name in the
-group ``friction_tester.profiles``, ``.formats``, ``.laws`` or ``.kinds``; or the name is dotted,
+group ``friction_tester.profiles``, ``.drives``, ``.formats``, ``.laws`` or ``.kinds``; or the name is dotted,
 ``package.module:object``. A path is refused. Nothing is imported before it is asked for, and what was loaded is kept
 for the run's record.
 
@@ -25,7 +25,7 @@ from operator import attrgetter
 from pathlib import Path
 from typing import Literal
 
-Group = Literal["profiles", "formats", "laws", "kinds"]
+Group = Literal["profiles", "drives", "formats", "laws", "kinds"]
 
 ALLOW_VARIABLE = "TESTER_ALLOW"
 """Environment variable: names, separated by commas, of the extensions that may be loaded; empty for none. Where it is

@@ -15,9 +15,10 @@ from tester.cli.options import json_option, print_json, rig_option, set_option
 
 if TYPE_CHECKING:
     from drivers.canopen.scan import ObjectAnswer
-    from tester.doctor.parameters import ParameterDump, Parameters
+    from tester.doctor.parameters import ParameterDump
     from tester.doctor.wires import Wires
     from tester.rig import Rig
+    from tester.run.set_up import Parameters
 
 TYPES = ("u8", "i8", "u16", "i16", "u32", "i32", "text")
 _OBJECT = re.compile(r"(?:0x)?([0-9a-fA-F]{4})(?::([0-9a-fA-F]{1,2}))?")
@@ -176,7 +177,8 @@ def compare(rig_name: str, other: str, out: str, as_json: bool) -> int:
     Without either: with the newest run on a rig of this name that went through its plan. Exit code 1 where something
     differs that this program does not write at every connect.
     """
-    from tester.doctor.parameters import DumpError, differences
+    from tester.doctor.parameters import DumpError
+    from tester.run.set_up import differences
     from tester.store.schema import StoreError
 
     try:
@@ -221,8 +223,9 @@ def _dump(rig_name: str) -> ParameterDump:
 
 def _before(rig_name: str, other: str, runs: Path) -> tuple[str, Parameters]:
     """Return what is compared with, and how it is called. Raises DumpError, StoreError, OSError."""
-    from tester.doctor.parameters import last_good, read_dump, stored_in
+    from tester.doctor.parameters import read_dump, stored_in
     from tester.kinds import load_rig
+    from tester.run.set_up import last_good
 
     rig = load_rig(rig_name, (), "what devices are set to, not a run")
     if other and Path(other).is_file() and Path(other).suffix != ".db":

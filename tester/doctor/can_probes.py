@@ -13,10 +13,10 @@ from drivers.canopen.dictionary import describe
 from drivers.cia402 import State
 from drivers.drive_settings import RATED_TORQUE_SHARE
 from sim.wires.can_traffic import frame_bits
-from tester.doctor import wanted
 from tester.doctor.examination import Examination
 from tester.doctor.finding import Finding, fault, note, ok, warning
 from tester.machine.devices import INPUT_GUARD, INPUT_SAFETY_CHAIN
+from tester.run.set_up import mapped, written
 
 LOAD_MOST = 0.6
 """A bus that is busy for a greater share delays frames beyond their scan [A]."""
@@ -196,7 +196,7 @@ def _input(name: str, good: bool, what: str, yes: str, no: str, bit: int, word: 
 def _objects(e: Examination, name: str, config: AxisConfig) -> Iterator[Finding]:
     """Look for every object that the set-up needs, and hold ratings and process data against the rig file."""
     answers = e.can.objects.get(config.node_id, {})
-    needed = {**wanted.written(config), **wanted.mapped(config)}
+    needed = {**written(config), **mapped(config)}
     missing = [describe(*key) for key in needed if key in answers and answers[key].missing
                and key not in config.drive.optional]  # fmt: skip
     if missing:
@@ -213,7 +213,7 @@ def _objects(e: Examination, name: str, config: AxisConfig) -> Iterator[Finding]
             f"every torque would be shown and limited by a factor of {rated / expected:.3g} wrong: correct"
             f" axes.{name}.rated_torque, or the drive's motor data",
         )  # fmt: skip
-    other = [key for key, value in wanted.mapped(config).items() if key in answers and answers[key].number != value]
+    other = [key for key, value in mapped(config).items() if key in answers and answers[key].number != value]
     if other:
         yield note(name, f"{len(other)} objects of process data differ from the rig file; every connect writes them")
 

@@ -148,11 +148,14 @@ def _opened(source: str | Path) -> tuple[Kind, Tree]:
     """Return a rig's kind, and its file as data."""
     from tester.base.source import load_tree
     from tester.rig.packaged import new_tree
+    from tester.rig.profiles import find_beside
 
     kind = shipping(str(source))
     if kind is not None:
         return kind, new_tree(kind.rig(), str(source))
-    tree = load_tree(Path(source))
+    path = Path(source)
+    tree = load_tree(path)
+    find_beside(tree, path.parent)
     return _kind_of(tree), tree
 
 

@@ -7,6 +7,7 @@ from copy import deepcopy
 from functools import cache
 from typing import TypeVar
 
+from drivers.drives import reader
 from sim.physics import laws
 from tester.base.config_reader import read
 from tester.base.source import InvalidSource, Problem, Tree, Value, load_tree
@@ -16,9 +17,11 @@ from tester.rig.config import Rig
 from tester.rig.laws import extension_law
 from tester.rig.missing import complete, unstated
 from tester.rig.packaged import new_tree
+from tester.rig.profiles import extension_drive
 
 OneRig = TypeVar("OneRig", bound=Rig)
 laws.look_up_with(extension_law)
+reader.look_up_with(extension_drive)
 MISSING = "only those who built the machine know it: no packaged value stands in"
 """Said of a key that has to be in the file."""
 

@@ -1,9 +1,12 @@
-"""The profile of a device by the name that a rig file gives: packaged, a TOML file, or from an installed package."""
+"""Profiles by the names that a rig file gives: packaged, a TOML file beside it, or from an installed package."""
 
 from __future__ import annotations
 
+from pathlib import Path
+
 from drivers.profiles import DeviceProfile, ProfileError, load_profile, profile_names, read_profile
 from tester.base.plugins import PluginError, plugins
+from tester.base.source import Tree, Value
 
 
 def profile_of(name: str) -> DeviceProfile:
@@ -20,3 +23,28 @@ def profile_of(name: str) -> DeviceProfile:
         known = ", ".join(profile_names())
         raise ProfileError(f"no device profile {name!r} (there are {known}); {error}") from error
     return read_profile(name, text)
+
+
+def extension_drive(name: str) -> str:
+    """Return the text of a drive's profile, of an extension of the group ``drives``; raises PluginError."""
+    return plugins().text("drives", name, ".toml")
+
+
+def find_beside(tree: Tree, folder: Path) -> None:
+    """Let paths of profiles count from a rig file's folder, where they lead to a file there.
+
+    Any other is left as it is: it counts from where the program was started.
+    """
+    if not isinstance(tree.data, dict):
+        return
+    for key in ("devices", "axes"):
+        section = tree.data.get(key)
+        for part in section.values() if isinstance(section, dict) else ():
+            if isinstance(part, dict):
+                _find_beside(part, folder)
+
+
+def _find_beside(part: dict[str, Value], folder: Path) -> None:
+    name = part.get("profile")
+    if isinstance(name, str) and name.endswith(".toml") and (folder / name).is_file():
+        part["profile"] = str(folder / name)

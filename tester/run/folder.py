@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from tester.base import clock
@@ -18,6 +18,7 @@ from tester.rig import Rig
 from tester.run.endings import CannotStartError
 from tester.run.kinds import recipe_part, run_parts
 from tester.run.rigs import load_rig_text
+from tester.run.set_up import GoodRun
 from tester.store.files import write_text
 from tester.store.records import RunInfo, SpecimenInfo
 from tester.store.resume import ResumePoint
@@ -45,6 +46,8 @@ class Job:
     """Lines of a fault script (sim.faults.language), beside those of the rig file."""
     history: History | None = None
     """What earlier runs make known of the rig, None for nothing: the same for every part."""
+    good: GoodRun | None = field(default=None, compare=False)
+    """The last good run on the rig, with whose parameters those read while connecting are compared."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
@@ -25,6 +25,7 @@ from tester.run.folder import Begin, Job, Work
 from tester.run.kept import record_kept
 from tester.run.kinds import recipe_part, run_parts
 from tester.run.provenance import record_parameters, record_statistics
+from tester.run.set_up import GoodRun
 from tester.run.truth import Witnessed, truth_of
 from tester.store.reader import DATABASE
 from tester.store.writer import RESERVE_BYTES, RunWriter
@@ -50,6 +51,10 @@ class Watch(Protocol):
         """Take notice of the run: from now on it can be stopped."""
         ...
 
+    def say(self, text: str) -> None:
+        """Tell people something about the run that has begun."""
+        ...
+
     def rested(self) -> None:
         """Take notice that the run is at rest: nothing ticks any more, its record is not closed yet."""
         ...
@@ -69,10 +74,15 @@ class Unsampled(RunWriter):
 class RunNotes:
     """What is stored beside the scan: parameters once they were read back, and the state of the specimen."""
 
-    def __init__(self, run: Run, recorder: RunWriter) -> None:
-        """Nothing is stored before the rig is connected."""
+    def __init__(self, run: Run, recorder: RunWriter, good: GoodRun | None, say: Callable[[str], None]) -> None:
+        """Nothing is stored before the rig is connected.
+
+        ``good``: the last good run, with which the parameters are compared; ``say`` is told what differs.
+        """
         self.run = run
         self.recorder = recorder
+        self.good = good
+        self.say = say
         self.kind = run_parts(run.engine.ctx.rig)
         self.connected = False
         self.state_due_s = 0.0
@@ -83,7 +93,10 @@ class RunNotes:
             return
         if not self.connected:
             self.connected, engine = True, self.run.engine
-            record_parameters(engine.ctx.rig, engine.devices, self.recorder, now_s)
+            told = record_parameters(engine.ctx.rig, engine.devices, self.recorder, now_s, self.good)
+            if told:
+                engine.ctx.journal.event(now_s, "arming", told, "warning")
+                self.say(f"warning: {told}")
         wall_s = clock.monotonic()
         if wall_s >= self.state_due_s:
             self.state_due_s = wall_s + STATE_EVERY_S
@@ -172,7 +185,7 @@ def _execute(
         with collector_at_rest():  # already: from here to the first tick nothing takes long, and STOP waits for that
             watch.begun(run)
             with left_safe(run):
-                seconds = _tick(run, ticked, lives, ports.pace, job.lapse, left, writer, watch)
+                seconds = _tick(run, ticked, lives, ports.pace, job.lapse, left, writer, watch, job.good)
         watch.rested()
         record_statistics(run.engine.devices, writer, seconds)
         if run.outcome is Outcome.DONE:
@@ -208,8 +221,9 @@ def _tick(
     left: TimeLeft,
     recorder: RunWriter,
     watch: Watch,
+    good: GoodRun | None,
 ) -> float:
-    notes = RunNotes(run, recorder)
+    notes = RunNotes(run, recorder, good, watch.say)
 
     def poll(now_s: float) -> None:
         notes.poll(now_s)

@@ -23,9 +23,20 @@ from tester.rig import Rig
 from tester.rig.load import risks_of
 from tester.rig.profiles import profile_of
 from tester.rig.sensors import title_of
+from tester.run.kept import object_key
 from tester.run.kinds import recipe_part, run_parts, served_kind
+from tester.run.set_up import GoodRun
 from tester.store.recorder import Recorder
-from tester.store.records import ACCEPTED_RISK, EXTENSION, LOOSE_KEYS, Calibration, RunInfo, SessionInfo, StoredMaterial
+from tester.store.records import (
+    ACCEPTED_RISK,
+    EXTENSION,
+    LOOSE_KEYS,
+    Calibration,
+    RunInfo,
+    SessionInfo,
+    StoredMaterial,
+    StoredParameter,
+)
 
 LIBRARIES = ("friction-tester", "numpy", "pyarrow", "pydantic", "pymodbus", "pyserial", "python-can", "pyyaml")
 """Distributions whose versions are stored with a run."""
@@ -150,20 +161,30 @@ def _calibration_of(rig: Rig) -> Iterator[Calibration]:
     yield from run_parts(rig).calibration(rig)
 
 
-def record_parameters(rig: Rig, devices: DeviceList, recorder: Recorder, now_s: float) -> None:
-    """Store everything that was read back from the devices before the run was armed."""
+def read_back(rig: Rig, devices: DeviceList, now_s: float) -> Iterator[StoredParameter]:
+    """Yield everything that was read back from the devices before the run was armed."""
     for drive in devices.drives:
-        profile = drive.config.drive
-        if profile.name != GENERIC:
-            recorder.device_parameter(now_s, drive.config.name, "profile", profile.name, profile.title)
-        for (index, sub), value in drive.parameters.items():
-            recorder.device_parameter(now_s, drive.config.name, f"0x{index:04X}:{sub:02X}", str(value))
+        name, drive_profile = drive.config.name, drive.config.drive
+        if drive_profile.name != GENERIC:
+            yield StoredParameter(now_s, name, "profile", drive_profile.title, drive_profile.name)
+        for key, value in drive.parameters.items():
+            yield StoredParameter(now_s, name, object_key(key), "", str(value))
     for device in devices.modbus:
         name, profile = title_of(rig, device.name), device.driver.profile
-        recorder.device_parameter(now_s, name, "profile", profile.name, profile.title)
+        yield StoredParameter(now_s, name, "profile", profile.title, profile.name)
         if profile.identity is not None:
             register = f"0x{profile.identity.address:04X}"
-            recorder.device_parameter(now_s, name, register, str(profile.identity.value), "device type, as read back")
+            yield StoredParameter(now_s, name, register, "device type, as read back", str(profile.identity.value))
+
+
+def record_parameters(
+    rig: Rig, devices: DeviceList, recorder: Recorder, now_s: float, good: GoodRun | None = None
+) -> str:
+    """Store what was read back; return what of it is not as in the last good run, "" where all is."""
+    rows = list(read_back(rig, devices, now_s))
+    for row in rows:
+        recorder.device_parameter(row.t_s, row.device, row.parameter, row.value, row.name)
+    return good.told(rig, rows) if good is not None else ""
 
 
 def record_statistics(devices: DeviceList, recorder: Recorder, now_s: float) -> None:

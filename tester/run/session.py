@@ -42,6 +42,7 @@ from tester.run.preparing import Prepared, prepared
 from tester.run.provenance import accepted_risks, recipe_source, rig_source, run_info, session_info
 from tester.run.reporter import LastingScreen, ReportScreen
 from tester.run.resume import prepare
+from tester.run.set_up import last_good_run
 from tester.run.workers import Sight, side_by_side
 from tester.store.catalogue import MANIFEST, cut_off
 from tester.store.reader import DATABASE, RunReader
@@ -195,6 +196,10 @@ class Session:
         if self._level:
             self.stop(self._level)
 
+    def say(self, text: str) -> None:
+        """Tell it at the screen."""
+        self.screen.message(text)
+
     def rested(self) -> None:
         """Nothing: who is at this screen asks for nothing while a record is closed."""
 
@@ -244,7 +249,9 @@ class Session:
     def _job(self, folder: Path, seed: int, rig: Rig) -> Job:
         o = self.options
         history = self.aside(lambda: run_parts(rig).history(folder.parent, rig))
-        return Job(folder, seed, o.lapse, o.bus_log, o.samples, o.faults, history)
+        # One simulated in this process is built from its file anew each time: it has no settings of its own.
+        good = self.aside(lambda: last_good_run(rig, folder.parent)) if rig.can.interface != "sim" else None
+        return Job(folder, seed, o.lapse, o.bus_log, o.samples, o.faults, history, good)
 
     def _beginning(
         self, folder: Path, path: Path, recipe: LoadedRecipe, work: Work, kept: Sequence[KeptFile]

@@ -93,6 +93,9 @@ class _Reporting:
         """Obey a stop that was ordered meanwhile."""
         self._obey(run)
 
+    def say(self, text: str) -> None:
+        """Nothing: it stands in the record; only simulated rigs are there several times."""
+
     def rested(self) -> None:
         """Nothing: the parent hears STOP."""
 

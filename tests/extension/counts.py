@@ -35,7 +35,7 @@ COUNTS = (Count("axis", "camber", 9), Count("channel", "moment_z_nm", 8))
 
 
 EXAMPLES = ROOT / "tests" / "extension" / "examples"
-AT_MOST = {"sensor": 3, "axis": 2, "interlock": 1, "format": 2, "law": 1, "kind": 15}
+AT_MOST = {"sensor": 3, "drive": 3, "axis": 2, "interlock": 1, "format": 2, "law": 1, "kind": 15}
 """Files of an example, by its folder: an axis stands inside a kind, an interlock with its fault."""
 
 

@@ -29,9 +29,12 @@ def test_a_page_has_every_file_of_its_example(name: str, example: str) -> None:
     assert said == {key: path.read_text(encoding="utf-8") for key, path in files.items()}
 
 
-def test_the_package_of_a_profile_is_that_of_the_example() -> None:
-    said = {found["name"]: found["text"] for found in FILE.finditer(page("a-profile-for-your-load-cell"))}
-    assert said["pyproject.toml"] == (EXAMPLES / "sensor" / "pyproject.toml").read_text(encoding="utf-8")
+@pytest.mark.parametrize(
+    ("name", "example"), [("a-profile-for-your-load-cell", "sensor"), ("choose-a-drive", "drive")]
+)
+def test_the_package_of_a_profile_is_that_of_the_example(name: str, example: str) -> None:
+    said = {found["name"]: found["text"] for found in FILE.finditer(page(name))}
+    assert said["pyproject.toml"] == (EXAMPLES / example / "pyproject.toml").read_text(encoding="utf-8")
 
 
 def test_the_part_of_the_rig_file_is_what_the_example_sets() -> None:

@@ -59,7 +59,7 @@ def test_a_drive_that_cannot_be_talked_to_is_not_used_and_the_reason_says_why(fa
     while not stage.run.finished:
         stage.tick()
     assert stage.next_s < 10.0
-    assert "belt (node 2)" in stage.run.reason and reason in stage.run.reason
+    assert stage.run.reason.startswith("belt drive (node 2): 0x") and reason in stage.run.reason
     assert not stage.observer.found
 
 

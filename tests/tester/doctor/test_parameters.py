@@ -8,17 +8,10 @@ import pytest
 
 from drivers.canopen import objects as o
 from tester.doctor.examination import Examination
-from tester.doctor.parameters import (
-    DeviceParameter,
-    DumpError,
-    ParameterDump,
-    differences,
-    dumped,
-    read_dump,
-    stored,
-)
+from tester.doctor.parameters import DumpError, ParameterDump, dumped, read_dump
 from tester.doctor.wires import SimulatedWires
 from tester.kinds import load_rig
+from tester.run.set_up import DeviceParameter, differences, stored
 from tester.store.records import StoredParameter
 from tests.tester.doctor.fake_computer import FakeComputer
 
