@@ -41,6 +41,7 @@ class CommissionOptions:
     out: Path = Path("runs")
     seed: int = 0
     operator: str = ""
+    compound: str = ""
     lapse: float | None = None
 
 
@@ -86,6 +87,7 @@ def commission(
             lambda: _connect(rig, options.seed, twin),
             lambda name, text: run_recipe(session, path.parent, person, name, text),
             options.lapse,
+            {"compound": options.compound} if options.compound else {},
         )
         with stopped_by_signals(walk):
             return walk.run()
