@@ -62,6 +62,7 @@ class CanMaster:
         "sdo_timeout_s",
         "sync",
         "unknown_frames",
+        "withhold_setpoints",
     )
 
     def __init__(self, node_id: int = 127, heartbeat_s: float = 0.05, sdo_timeout_s: float = 0.3) -> None:
@@ -73,6 +74,7 @@ class CanMaster:
         self.foreign_master = False
         self.foreign_frame = ""
         self.unknown_frames = 0
+        self.withhold_setpoints = False
         self._heartbeat = (o.HEARTBEAT_BASE + node_id, bytes((o.NmtState.OPERATIONAL,)))
         self._heartbeat_due = -math.inf
         self._withheld = False
@@ -171,7 +173,10 @@ class CanMaster:
                 self._commands[i] = node.emit(sync)
         if changed:
             self._compose(sync)
-        port.send_cycle(self._cycle_ids, self._payloads, now)
+        if not self.withhold_setpoints:
+            port.send_cycle(self._cycle_ids, self._payloads, now)
+        elif sync:
+            port.send(_SYNC_ID, b"", now)
         if self._heartbeat_due < until - EARLY_S:
             self._heartbeat_due = self.deadline = now
         if self._dialogues or now + EARLY_S >= self.deadline:

@@ -29,6 +29,8 @@ if TYPE_CHECKING:
 @click.option("--out", type=click.Path(path_type=Path), default=Path("runs"), show_default=True, metavar="FOLDER",
               help="Folder of the runs; the record is in its folder commissioning.")
 @click.option("--operator", default="", metavar="NAME", help="Who commissions; goes on record with every entry.")
+@click.option("--compound", default="", metavar="NAME",
+              help='What the first wheel is made of, e.g. "1#"; you are asked, with this as the answer.')
 @click.option("--yes", is_flag=True, help="Simulated rig only: a simulated person reads ruler, weight, thermometer.")
 @click.option("--tui", is_flag=True, help="On a screen: steps, live readings, the question, what is on record.")
 @click.option("--speed", type=SpeedType(), default="max", show_default=True, metavar="X",
@@ -37,7 +39,7 @@ if TYPE_CHECKING:
 @click.option("--ascii", "plain", is_flag=True, help="--tui: draw with ASCII characters only.")
 @click.option("--list", "only_list", is_flag=True, help="Say which steps stand, and do nothing.")
 def commission(
-    rig: str, overrides: tuple[str, ...], accept_risk: str, seed: int, out: Path, operator: str, yes: bool,
+    rig: str, overrides: tuple[str, ...], accept_risk: str, seed: int, out: Path, operator: str, compound: str, yes: bool,
     tui: bool, speed: float | None, theme: str | None, plain: bool, only_list: bool,
 ) -> None:  # fmt: skip
     """Guide a person through commissioning RIG (a rig file, or sim), step by step, each on record.
@@ -58,7 +60,10 @@ def commission(
     if yes and tui:
         raise click.UsageError("--yes and --tui: either a simulated person answers, or the one at the screen")
     part = part_of(found)
-    options = CommissionOptions(rig, overrides, accept_risk, out, seed, operator, speed)
+    if simulated and compound and compound not in part.compounds:
+        expected = ", ".join(part.compounds)
+        raise click.UsageError(f'--compound: no friction model for "{compound}" to simulate it (expected {expected})')
+    options = CommissionOptions(rig, overrides, accept_risk, out, seed, operator, compound, speed)
     try:
         if only_list:
             _list(record_path(out, found), part.steps, found)
@@ -72,6 +77,8 @@ def commission(
             outcome = _at_terminal(found, options, commission, time_stands=simulated)
     except (CannotStartError, RecordError) as error:
         raise click.ClickException(str(error)) from error
+    for name, seconds in outcome.took_s:
+        click.echo(f"  {name:16} {seconds:6.1f} s of rig time", err=True)
     click.echo(f"{outcome.ended.value}{f' at: {outcome.step}' if outcome.step else ''}"
                f"; {outcome.rig_s / 60:.1f} min of rig time", err=True)  # fmt: skip
     click.echo(str(record_path(out, found)))

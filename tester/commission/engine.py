@@ -35,12 +35,13 @@ class Ended(Enum):
 
 @dataclass(frozen=True, slots=True)
 class CommissionOutcome:
-    """How it ended, at which step and with what words; ``rig_s``: rig time that the steps took, s."""
+    """How it ended, at which step and with what words; ``rig_s``: rig time of its steps, s, by step in ``took_s``."""
 
     ended: Ended
     step: str = ""
     text: str = ""
     rig_s: float = 0.0
+    took_s: tuple[tuple[str, float], ...] = ()
 
 
 class Commissioning:
@@ -56,18 +57,22 @@ class Commissioning:
         run_recipe: Callable[[str, str], Mapping[str, Any]],
         lapse: float | None = None,
         onlooker: Onlooker | None = None,
+        given: Mapping[str, str] | None = None,
     ) -> None:
         """``connect``: opens the wires (and the simulated rig behind them, with the hands at it), once a step;
-        raises BusLost. ``lapse``: of simulated time, None as fast as it goes."""
+        raises BusLost. ``lapse``: of simulated time, None as fast as it goes. ``given``: answers that the
+        command line has, by the question's key."""
         self.steps = tuple(steps)
         self.rig = rig
         self.person = person
         self.record = record
         self.rig_s = 0.0
+        self._took_s: list[tuple[str, float]] = []
         self._connect = connect
         self._run_recipe = run_recipe
         self._lapse = lapse
         self._onlooker = onlooker
+        self._given = dict(given or {})
         self._rig_sha256 = hashlib.sha256(rig.text.encode()).hexdigest()
         self._walk: Walk | None = None
         self._stopped = False
@@ -98,18 +103,23 @@ class Commissioning:
             outcome = self._do(step)
             if outcome is not None:
                 return outcome
-        return CommissionOutcome(Ended.DONE, rig_s=self.rig_s)
+        return CommissionOutcome(Ended.DONE, rig_s=self.rig_s, took_s=tuple(self._took_s))
 
     def _outcome(self, ended: Ended, step: CommissionStep, text: str = "") -> CommissionOutcome:
-        return CommissionOutcome(ended, step.name, text, self.rig_s)
+        return CommissionOutcome(ended, step.name, text, self.rig_s, tuple(self._took_s))
 
     def _do(self, step: CommissionStep) -> CommissionOutcome | None:
         """Do a step; return how the commissioning ends by it, None where it goes on."""
         self._add(step, BEGUN)
         before_s = self.rig_s
-        notes = Notes(self.person.tell, lambda text, values: self._add(step, READING, text, values), self._done())
+        notes = Notes(
+            self.person.tell, lambda text, values: self._add(step, READING, text, values), self._done(), self._given
+        )
         try:
-            failed = self._alone(step, notes) if step.seat is None else self._seated(step, notes)
+            try:
+                failed = self._alone(step, notes) if step.seat is None else self._seated(step, notes)
+            finally:
+                self._took_s.append((step.name, self.rig_s - before_s))
         except StepRefused as refused:
             self._add(step, REFUSED, str(refused))
             self.person.tell(f"REFUSED: {refused}")

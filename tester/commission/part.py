@@ -23,4 +23,6 @@ class CommissionPart:
     """The steps in their order, and the person who does them on the simulated rig."""
 
     steps: tuple[CommissionStep, ...]
+    compounds: tuple[str, ...]
+    """For these there is a model of what their coefficient is about; another has its own name only."""
     twin: Callable[[Callable[[str], None]], AtTheTwin]

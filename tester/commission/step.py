@@ -55,6 +55,8 @@ class Notes:
     """Put a reading on record at once."""
     done: Mapping[str, Mapping[str, Any]]
     """Values of the steps that stand, by step."""
+    given: Mapping[str, str] = field(default_factory=dict[str, str])
+    """What the command line has said already, by the key of the question."""
     values: dict[str, Any] = field(default_factory=dict[str, Any])
     """Of the entry by which the step passes."""
     text: str = ""

@@ -39,6 +39,9 @@ class ProofStage(Enum):
 class WatchdogProof:
     """Goes through the stages, one call of ``step`` a scan. ``failure`` says what was not shown; "" while all is."""
 
+    emergency: int = HEARTBEAT_LOST
+    """Code of the EMCY by which a drive says that it has noticed."""
+
     def __init__(self, devices: DeviceList, *, follow: bool, watchdog: bool, withhold_s: float) -> None:
         """Nothing moves before the first ``step``.
 
@@ -51,7 +54,9 @@ class WatchdogProof:
         self.stage = ProofStage.ENABLE if follow or watchdog else ProofStage.RESTORE
         self.since_s = nan
         self.reset_s = -inf
-        self.reported: set[str] = set()
+        self.reported: dict[str, float] = {}
+        """Who has said so, and when the EMCY arrived, s after the last that was not withheld."""
+        self.withheld_s = nan
         self._asked: set[str] = set()
         self._ran_on: set[str] = set()
 
@@ -72,6 +77,23 @@ class WatchdogProof:
     def still(self) -> bool:
         """Tell whether everything stands."""
         raise NotImplementedError
+
+    # -- what is withheld -----------------------------------------------------------------------------------
+
+    def withhold(self, withheld: bool) -> None:
+        """Keep back, or send again, what the drives watch: our heartbeat."""
+        self.devices.master.withhold_heartbeat = withheld
+
+    def watched(self) -> list[ServoDrive]:
+        """Return the drives that have to stop by themselves."""
+        return [drive for drive in self.devices.drives if drive.config.proves_watchdog]
+
+    def ran_on(self, name: str) -> str:
+        """Say that a drive did not."""
+        return (
+            f"the {name} drive did not stop with EMCY 0x8130 when our heartbeat was missing"
+            f" for {self.withhold_s * 1000:g} ms (0x1016, 0x6007)"
+        )
 
     # ---------------------------------------------------------------------------------------------------------
 
@@ -100,16 +122,16 @@ class WatchdogProof:
             self.since_s = now
         for drive in self.devices.drives:
             for emergency in drive.take_emergencies():
-                if emergency.code == HEARTBEAT_LOST and self.stage in (ProofStage.WITHHOLD, ProofStage.STILL):
-                    self.reported.add(drive.config.name)
+                if emergency.code == self.emergency and self.stage in (ProofStage.WITHHOLD, ProofStage.STILL):
+                    self.reported.setdefault(drive.config.name, emergency.t - self.withheld_s)
         if not self.failure:
             self._stage(now, now - self.since_s)
         if self.failure:
             self.stop()
 
     def stop(self) -> None:
-        """Bring every drive to standstill and power off; our heartbeat is there again."""
-        self.devices.master.withhold_heartbeat = False
+        """Bring every drive to standstill and power off; nothing is withheld any more."""
+        self.withhold(False)
         for drive in self.devices.drives:
             drive.goal = Goal.DISABLED
         self.stand()
@@ -127,7 +149,7 @@ class WatchdogProof:
             if self.still():
                 self.enter(ProofStage.RESTORE, now)
             elif elapsed > STILL_S:
-                self.failure = "a drive still turns after it lost our heartbeat"
+                self.failure = "a drive still turns after it should have stopped by itself"
         elif stage is ProofStage.RESTORE:
             self._restore(now, elapsed)
 
@@ -153,21 +175,19 @@ class WatchdogProof:
             self.enter(ProofStage.RESTORE, now)
             return
         self.reported.clear()
-        self.devices.master.withhold_heartbeat = True
+        self.withheld_s = now
+        self.withhold(True)
         self.enter(ProofStage.WITHHOLD, now)
 
     def _withhold(self, now: float, elapsed: float) -> None:
         self._bring_back()
         if elapsed < self.withhold_s or self.devices.busy():
             return
-        self.devices.master.withhold_heartbeat = False
-        for drive in self._watched():
+        self.withhold(False)
+        for drive in self.watched():
             name = drive.config.name
             if name not in self.reported or name in self._ran_on or drive.state is State.OPERATION_ENABLED:
-                self.failure = (
-                    f"the {drive.config.name} drive did not stop with EMCY 0x8130 when our heartbeat was missing"
-                    f" for {self.withhold_s * 1000:g} ms (0x1016, 0x6007)"
-                )
+                self.failure = self.ran_on(name)
                 return
         self.stop()
         self.enter(ProofStage.STILL, now)
@@ -189,9 +209,6 @@ class WatchdogProof:
             if drive.state is State.OPERATION_ENABLED:
                 self._ran_on.add(drive.config.name)
             master.start(drive, drive.start_again())
-
-    def _watched(self) -> list[ServoDrive]:
-        return [drive for drive in self.devices.drives if drive.config.proves_watchdog]
 
     def _restore(self, now: float, elapsed: float) -> None:
         self.stop()

@@ -42,6 +42,7 @@ class CommissionOptions:
     out: Path = Path("runs")
     seed: int = 0
     operator: str = ""
+    compound: str = ""
     lapse: float | None = None
 
 
@@ -92,6 +93,7 @@ def commission(
             lambda name, text: run_recipe(session, path.parent, person, name, text),
             options.lapse,
             onlooker,
+            {"compound": options.compound} if options.compound else {},
         )
         with stopped_by_signals(walk):
             return walk.run()

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
+from math import inf
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -131,6 +132,24 @@ class Mistypes(TwinPerson):
         return said
 
 
+class Silences(TwinPerson):
+    """Switches a watchdog off at its device before it is tried out."""
+
+    def __init__(self, key: str) -> None:
+        super().__init__()
+        self.key = key
+
+    def prepare(self, question: Question) -> None:
+        super().prepare(question)
+        if question.key != self.key:
+            return
+        if self.key == "watchdog heat":
+            self.hands.jacket.lease_s = 0.0
+        else:
+            for received in self.hands.axes["belt"].pdos.rpdos:
+                received.deadline_s = inf
+
+
 class Uncalibrated(TwinPerson):
     """Reads the belt's ruler in centimetres."""
 
@@ -170,6 +189,10 @@ def _mistakes() -> tuple[Mistake, ...]:
                 partial(look, steps=("thermometer",), built=partial(see, "offset", 4.0))),
         Mistake("heartbeat watchdog of the belt drive not armed", r"belt drive did not stop with EMCY 0x8130",
                 partial(look, steps=("watchdogs",), built=partial(deafen, "belt"))),
+        Mistake("setpoints' deadline of the belt drive not armed", r"belt drive did not stop with EMCY 0x8250",
+                lambda seed: look(seed, steps=("watchdogs",), person=Silences("watchdog setpoints"))),
+        Mistake("lease of the jacket not armed", r"jacket's lease did not end its heat",
+                lambda seed: look(seed, steps=("watchdogs",), person=Silences("watchdog heat"))),
         Mistake("no deadline for setpoints", r"no deadline for setpoints.*belt",
                 lambda seed: look(seed, steps=("watchdogs",), rig=without_deadline("belt"))),
     ]  # fmt: skip

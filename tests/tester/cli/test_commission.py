@@ -12,7 +12,12 @@ from tester.cli.commission_person import TerminalPerson
 from tester.cli.main import invoke
 from tester.commission.engine import Ended
 from tester.commission.person import Question
+from tester.commission.record import CommissionRecord
+from tester.kinds.wheel_on_belt.commission.steps import STEPS
 from tester.kinds.wheel_on_belt.commission.twin import TwinPerson
+from tester.run.commissioning import CommissionOptions, commission, record_path
+from tester.run.rigs import load_rig
+from tester.store.reader import RunReader
 from tests.tester.kinds.wheel_on_belt.commission.twin_bench import Bench, named
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="pseudo-terminals are POSIX")
@@ -61,14 +66,17 @@ def at_keys(tmp_path: Path, *steps: str) -> tuple[Bench, AtKeys]:
     return bench, person
 
 
-def test_a_person_commissions_with_real_keys(tmp_path: Path) -> None:
-    bench, person = at_keys(tmp_path, "identify", "jog belt", "cell", "touch")
+def test_a_person_commissions_with_real_keys_from_the_start_to_the_coefficient(tmp_path: Path) -> None:
+    _, person = at_keys(tmp_path)
     try:
-        outcome = bench.run()
+        outcome = commission(load_rig("sim", ()), CommissionOptions(out=tmp_path), person, person)
     finally:
         person.end()
     assert outcome.ended is Ended.DONE, outcome
+    assert [name for name, _ in outcome.took_s] == [step.name for step in STEPS]
+    assert outcome.rig_s == pytest.approx(sum(seconds for _, seconds in outcome.took_s))
     assert any("direction right" in text for text in person.said)
+    assert any(text.startswith("passed: coefficient of 1#") for text in person.said)
 
 
 def test_a_word_that_is_no_answer_is_asked_for_again(tmp_path: Path) -> None:
@@ -113,13 +121,18 @@ def test_nobody_at_the_terminal_is_said(tmp_path: Path, capfd: pytest.CaptureFix
     assert "nobody is at this terminal" in capfd.readouterr().err
 
 
+def test_a_compound_that_the_twin_has_no_model_of_is_said(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    assert invoke(["commission", "sim", "--yes", "--compound", "mine", "--out", str(tmp_path)]) == 2
+    assert "expected 1#, 2#, 3#" in capfd.readouterr().err
+
+
 def test_the_list_says_what_is_to_be_done(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     assert invoke(["commission", "sim", "--list", "--out", str(tmp_path)]) == 0
     assert "jog wheel        to be done" in capfd.readouterr().out
 
 
 @pytest.mark.campaign
-@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize("seed", range(10))
 def test_the_whole_way_takes_less_than_half_an_hour_of_rig_time(
     tmp_path: Path, seed: int, capfd: pytest.CaptureFixture[str]
 ) -> None:
@@ -128,6 +141,15 @@ def test_the_whole_way_takes_less_than_half_an_hour_of_rig_time(
     assert "passed: coefficient" in said
     minutes = float(said.rsplit(";", 1)[1].split()[0])
     assert minutes < 30
+    steps = [float(text.split(" s of rig time")[0].split()[-1]) for text in said.splitlines() if "s of rig" in text]
+    assert len(steps) == len(STEPS)
+    assert sum(steps) / 60 == pytest.approx(minutes, abs=0.1)
+    record = CommissionRecord(record_path(tmp_path, load_rig("sim", ())), str, "")
+    soak, last = record.last("thermometer"), record.last("first")
+    assert soak is not None and soak.values["hub_c"] <= 45.0
+    assert last is not None and last.values["conditions"][0]["n"] >= 3
+    with RunReader(tmp_path / last.values["run"]) as reader:
+        assert max(row.hub_c for row in reader.repeats()) <= 45.0
 
 
 @pytest.mark.parametrize(

@@ -5,11 +5,12 @@ Control, interlocks, limits and stops are those of a run: here is only who says 
 
 from __future__ import annotations
 
-from math import nan
+from collections.abc import Generator
+from math import isfinite, nan
 from typing import Any
 
 from drivers.ports import BusLost
-from tester.commission.person import Dialogue
+from tester.commission.person import Dialogue, Waits
 from tester.kinds.wheel_on_belt.build import build_run
 from tester.kinds.wheel_on_belt.commission.moves import COMMISSIONING, MovesExecutor
 from tester.kinds.wheel_on_belt.context import Context
@@ -90,3 +91,21 @@ class ArmedSeat:
     def cold(self) -> None:
         """Want no heat."""
         self.ctx.demand.surface_c = nan
+
+
+def mean_temperatures(seat: ArmedSeat, seconds: float) -> Generator[Waits, str, tuple[float, float]]:
+    """Return the means of surface and hub over a time, degC."""
+    sums = [0.0, 0.0, 0.0]
+    began: list[float] = []
+
+    def enough(now_s: float) -> bool:
+        r = seat.ctx.readings
+        began.append(now_s) if not began else None
+        if isfinite(r.surface_c) and isfinite(r.hub_c) and r.surface_valid and r.jacket_valid:
+            sums[0] += r.surface_c
+            sums[1] += r.hub_c
+            sums[2] += 1.0
+        return now_s - began[0] >= seconds and sums[2] > 0.0
+
+    yield enough
+    return sums[0] / sums[2], sums[1] / sums[2]

@@ -1,13 +1,14 @@
-"""Home, watchdogs, touch and tare, and the ratio of the speeds by rolling: what the armed rig is asked, cold."""
+"""Home, touch and tare, and the ratio of the speeds by rolling: what the armed rig is asked, cold."""
 
 from __future__ import annotations
 
 from collections.abc import Generator
 from typing import Any, Final
 
-from tester.commission.person import Dialogue, StepRefused, Waits, measure
+from sim.physics.friction import KNOWN
+from tester.commission.person import Dialogue, StepRefused, Waits, choose, line, measure
 from tester.commission.step import Notes
-from tester.kinds.wheel_on_belt.commission.armed import ArmedSeat
+from tester.kinds.wheel_on_belt.commission.armed import ArmedSeat, mean_temperatures
 from tester.kinds.wheel_on_belt.procedures.first_contact import FirstContact, Friction
 from tester.kinds.wheel_on_belt.procedures.motions import Lift, Load, TakeTare, Turn
 from tester.machine.motions import Power, Sequence, Settle
@@ -22,6 +23,8 @@ ROLLING_N: Final = 50.0
 SPEEDS_M_S: Final = (0.2, 0.5, 0.8)
 HALVINGS: Final = 6
 """The belt's speed at which friction turns round is found by halving this often: from +-(3 % and 10 mm/s) to 0.05 %."""
+SURFACE_S: Final = 3.0
+"""The tread is looked at this long once it is lifted: thirty readings of 0.1 K leave 0.02 K [A]."""
 SWEEP_SHARE: Final = 0.03
 CREEP_M_S: Final = 0.010
 RATIO_SHARE: Final = 0.005
@@ -47,21 +50,6 @@ def home(seat: ArmedSeat, notes: Notes) -> Dialogue:
     notes.text = "homed; " + ", ".join(f"{name} {one['read_deg']:+.2f} deg" for name, one in found.items())
 
 
-def watchdogs(seat: ArmedSeat, notes: Notes) -> Dialogue:
-    """Every drive has just stopped by itself when the heartbeat was withheld; what was not shown is refused."""
-    yield lambda now_s: True
-    shown = seat.shown
-    left_out = shown.partition("NOT shown: ")[2]
-    if left_out:
-        raise StepRefused(f"watchdogs not shown: {left_out} (arming.watchdog_proof, axes.*.proves_watchdog, jacket)")
-    deadlines = {drive.config.name: drive.config.rpdo_deadline_s for drive in seat.run.engine.devices.drives}
-    without = [name for name, limit in deadlines.items() if not limit and name in ("wheel", "belt", "press")]
-    if without:
-        raise StepRefused(f"no deadline for setpoints (axes.*.rpdo_deadline): {', '.join(without)}")
-    notes.values = {"shown": shown, "withheld_s": seat.rig.arming.withhold_s, "deadlines_s": deadlines}
-    notes.text = shown
-
-
 def touch(seat: ArmedSeat, notes: Notes) -> Dialogue:
     """Measure the wheel, touch it at little load, see friction turn round, and take the cell's zero."""
     believed = seat.rig.geometry.wheel_diameter_mm
@@ -71,6 +59,7 @@ def touch(seat: ArmedSeat, notes: Notes) -> Dialogue:
             f"wheel diameter: {read:g} mm measured, the rig file has {believed:g} mm."
             f" In the rig file: geometry.wheel_diameter: {read:g} mm"
         )
+    compound = yield from _compound(notes)
     yield from seat.do(FirstContact())
     reference: list[float] = []
     tare = _tare(seat, reference)
@@ -79,9 +68,20 @@ def touch(seat: ArmedSeat, notes: Notes) -> Dialogue:
         raise StepRefused(f"tare: {tare.failed}")
     press_mm = seat.ctx.contact.contact_mm
     yield from seat.do(Sequence(Turn(0.0, 0.0), Power(False)))
-    notes.values = {"diameter_mm": read, "touched_mm": press_mm, "zero": reference}
+    notes.values = {"compound": compound, "diameter_mm": read, "touched_mm": press_mm, "zero": reference}
     zero = ", ".join(f"{one:.2f}" for one in reference[:3])
-    notes.text = f"wheel {read:g} mm, touched at {press_mm:.2f} mm; zero {zero} N"
+    notes.text = f"wheel of {compound}, {read:g} mm, touched at {press_mm:.2f} mm; zero {zero} N"
+
+
+def _compound(notes: Notes) -> Generator[Waits, str, str]:
+    """Return what the wheel is made of, as the command line or a person says."""
+    given, known = notes.given.get("compound", ""), ", ".join(KNOWN)
+    if given:
+        said = yield from choose("compound given", f"is the wheel of the compound {given}?", "yes", "no")
+        if said == "yes":
+            return given
+    text = f"which compound is on the wheel? What the first coefficient should be about is known of {known}"
+    return (yield from line("compound", f"{text}; any other name will do"))
 
 
 def _tare(seat: ArmedSeat, reference: list[float]) -> TakeTare:
@@ -101,7 +101,9 @@ def roll(seat: ArmedSeat, notes: Notes) -> Dialogue:
         slip = yield from _turns_round(seat, speed)
         found.append((speed, slip))
         notes.read("friction turns round", {"wheel_m_s": speed, "slip_m_s": slip})
-    yield from seat.do(Sequence(Turn(first, first), Lift(), Turn(0.0, 0.0), Power(False)))
+    yield from seat.do(Sequence(Turn(first, first), Lift()))
+    surface_c, _ = yield from mean_temperatures(seat, SURFACE_S)
+    yield from seat.do(Sequence(Turn(0.0, 0.0), Power(False)))
     count = len(found)
     mean_v, mean_s = sum(v for v, _ in found) / count, sum(s for _, s in found) / count
     square = sum((v - mean_v) ** 2 for v, _ in found)
@@ -119,7 +121,7 @@ def roll(seat: ArmedSeat, notes: Notes) -> Dialogue:
         )
     notes.values = {
         "ratio_error": ratio, "standard_uncertainty": standard, "creep_m_s": creep,
-        "turns_round": [list(one) for one in found],
+        "turns_round": [list(one) for one in found], "surface_c": surface_c,
     }  # fmt: skip
     notes.text = (
         f"speed ratio off by {100 * ratio:+.2f} % (standard uncertainty {100 * standard:.2f} %),"

@@ -2,20 +2,27 @@
 
 from __future__ import annotations
 
+import json
+from collections.abc import Mapping
 from typing import Any, Final
 
+from sim.physics.friction import KNOWN
+from sim.physics.slip import predict
 from tester.commission.person import StepRefused
 from tester.commission.step import Alone, Notes
+from tester.kinds.wheel_on_belt.build import loss_ratios
+from tester.kinds.wheel_on_belt.commission.thermometer import HUB_C
+from tester.kinds.wheel_on_belt.rig import RigConfig
 
 RECIPE: Final = """\
 recipe: {title}
 specimens:
-  - compound: "1#"
+  - compound: {compound}
     note: first wheel of a commissioning
 measure:
-  wheel_speed: 0.8 m/s
-  repeats: {repeats}
-  min_valid: {repeats}
+  wheel_speed: {wheel} m/s
+  repeats: {{at_least: {repeats}, at_most: {at_most}}}
+  min_valid: {valid}
   window: {window} rev
   temperature_band: 4 degC
   soak: {{within: 3 degC, for: 2 s}}{more}
@@ -25,24 +32,72 @@ grids:
     load: {load} N
     temperature: {temperature} degC
 """
-WARMER_K: Final = 2.0
-"""The surface is asked to be this much warmer than the air [A]: little has to be waited for, to warm or to cool."""
+WARMER_K: Final = 0.1
+"""A repeat slips in from the loop's ``rolling_offset`` below its temperature, at most 0.3 K below and 0.1 K above that
+(tester.kinds.wheel_on_belt.procedures.bursts): the middle of it is met by a wheel as it is [A]."""
+BELOW_K: Final = 3.0
+"""The first condition's hub is to be this much below the soak's [A]: slip warms the tread by 1 K, and the ratio of the
+losses is known to a tenth of itself."""
+LOAD_N: Final = 100.0
+SLIP_M_S: Final = 0.1
+"""Of the first conditions [A]: 6 W of friction, by which a tread warms little."""
+WHEEL_M_S: Final = 0.8
+PAIRS: Final = 5
+"""Repeats in both directions [A]: 2 % of scatter leave 0.5 degrees (95 %), of three pairs 1.4."""
+TOLD_SHARE: Final = 0.25
+REFUSED_SHARE: Final = 0.5
+"""A first coefficient this far off its compound's model is told of, or refused [A]: the paper's compounds are
+a quarter to a third apart."""
+LEAST_MU, MOST_MU = 0.1, 2.5
+"""Of rubber on an abrasive, whatever it is made of [A]."""
 ANGLE_DEG: Final = 1.5
 """An apparent angle is refused beyond this and its uncertainty [A]: 0.5 degrees of mounting, 0.5 % of crosstalk."""
 
 
-def _recipe(alone: Alone, title: str, load: float, *, both: bool) -> str:
+def _recipe(title: str, compound: str, temperature_c: float, *, both: bool) -> str:
     more = "\n  both_directions: true" if both else ""
-    warm = round(alone.rig.ambient_c + WARMER_K)
-    slip = 100 if both else 200
     return RECIPE.format(
-        title=title, repeats=3, window=8 if both else 14, more=more, slip=slip, load=f"{load:g}", temperature=warm
-    )
+        title=title, compound=json.dumps(compound, ensure_ascii=False), wheel=WHEEL_M_S,
+        repeats=PAIRS if both else 3, at_most=PAIRS + 1 if both else 6, valid=3, window=8 if both else 10, more=more,
+        slip=f"{1e3 * SLIP_M_S:g}", load=f"{LOAD_N:g}",
+        temperature=f"{temperature_c:.1f}",
+    )  # fmt: skip
+
+
+def mounted(notes: Notes) -> str:
+    """Return the compound of which the wheel is said to be."""
+    found = notes.done.get("touch", {}).get("compound")
+    if not found:
+        raise StepRefused("what the wheel is made of is not on record (the step touch asks for it)")
+    return str(found)
+
+
+def as_it_is_c(rig: RigConfig, done: Mapping[str, Mapping[str, Any]]) -> float:
+    """Return the temperature of a condition for which a cold wheel need not be heated, degC.
+
+    It is what the thermometer showed of the tread after rolling, and the offset from which slip warms it.
+    """
+    shown = float(done.get("rolling", {}).get("surface_c", rig.ambient_c))
+    return shown + rig.loops.heat.rolling_offset_k + WARMER_K
+
+
+def as_soaked_c(rig: RigConfig, done: Mapping[str, Mapping[str, Any]]) -> float:
+    """Return the temperature of a condition for which the hub stays about where the soak has brought it, degC.
+
+    In rolling contact the tread's excess over its cold reading is the hub's over 1 + ratio (``build.loss_ratios``). So
+    the wheel is heated once, and nobody waits for it to cool; ``BELOW_K`` keeps the hub from going higher than it was.
+    """
+    soaked = done.get("thermometer", {})
+    _, rolling = loss_ratios(rig)
+    hub_k = float(soaked.get("hub_c", HUB_C)) - float(soaked.get("cold_hub_c", rig.ambient_c)) - BELOW_K
+    return float(soaked.get("cold_c", rig.ambient_c)) + hub_k / (1.0 + rolling)
 
 
 def directions(alone: Alone, notes: Notes) -> None:
     """Slip both ways: half the sum of the signed coefficients is crosstalk and misalignment (tester.analysis)."""
-    found = alone.run_recipe("commissioning-directions", _recipe(alone, "both directions of slip", 50.0, both=True))
+    warm_c = as_it_is_c(RigConfig.of(alone.rig), notes.done)
+    recipe = _recipe("both directions of slip", mounted(notes), warm_c, both=True)
+    found = alone.run_recipe("commissioning-directions", recipe)
     angle, expanded = found["angle_deg"], found["angle_expanded_deg"]
     if angle is None or expanded is None:
         raise StepRefused("both directions of slip gave no angle: too few pairs were valid")
@@ -57,9 +112,36 @@ def directions(alone: Alone, notes: Notes) -> None:
 
 def coefficient(alone: Alone, notes: Notes) -> None:
     """Measure one condition three times."""
-    found = alone.run_recipe("commissioning-first", _recipe(alone, "a first condition three times", 100.0, both=False))
+    warm_c, compound = as_soaked_c(RigConfig.of(alone.rig), notes.done), mounted(notes)
+    recipe = _recipe("a first condition three times", compound, warm_c, both=False)
+    found = alone.run_recipe("commissioning-first", recipe)
     one: dict[str, Any] = found["conditions"][0]
-    notes.values = dict(found)
+    plausible = _plausible(notes, compound, float(one["mu"]), round(warm_c, 1))
+    notes.values = {**found, "compound": compound, "temperature_c": round(warm_c, 1), **plausible}
     spread = f"{100 * one['s'] / one['mu']:.1f} % between its {one['n']} repeats" if one["s"] is not None else ""
     uncertain = f", U {one['expanded']:.3f} (95 %)" if one["expanded"] is not None else ""
-    notes.text = f"coefficient {one['mu']:.3f}{uncertain}; {spread}; run {found['run']}"
+    notes.text = f"coefficient of {compound} {one['mu']:.3f}{uncertain}; {spread}; run {found['run']}"
+
+
+def _plausible(notes: Notes, compound: str, mu: float, surface_c: float) -> dict[str, Any]:
+    """Hold a coefficient against the model of its compound; raises StepRefused for one that cannot be.
+
+    A belt of another grade, and another laboratory's mix of the compound, move it by some tens of per cent; a scale or
+    a zero that got past the steps before, or another compound than was said, by more.
+    """
+    if compound not in KNOWN:
+        if not LEAST_MU <= mu <= MOST_MU:
+            raise StepRefused(f"coefficient {mu:.3f}: rubber on an abrasive has {LEAST_MU:g} to {MOST_MU:g}")
+        notes.tell(f"  nothing is known of {compound}: its coefficient is held against {LEAST_MU:g} to {MOST_MU:g}")
+        return {"expected_mu": None}
+    expected = predict(compound, SLIP_M_S, LOAD_N, surface_c, 0.0, WHEEL_M_S)
+    off = mu / expected - 1.0
+    said = f"coefficient {mu:.3f} of {compound} is {100 * off:+.0f} % off what its model gives, {expected:.3f}"
+    if not abs(off) <= REFUSED_SHARE:
+        raise StepRefused(
+            f"{said} (more than {100 * REFUSED_SHARE:g} %): is the wheel of another compound? Else the load cell's"
+            " zero, or a belt that is worn or greasy"
+        )
+    if abs(off) > TOLD_SHARE:
+        notes.tell(f"  {said}: take care; a belt of another grade does that, another compound, too")
+    return {"expected_mu": expected, "off_share": off}

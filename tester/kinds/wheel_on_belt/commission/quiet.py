@@ -8,16 +8,18 @@ of the inputs, a second master; and here that the load cell does not change. Two
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Generator
 from dataclasses import dataclass, replace
-from math import hypot, inf, isfinite
+from math import hypot, inf, isfinite, sqrt
+from statistics import fmean, stdev
 from typing import Any, Final
 
 from drivers.axis import AxisConfig
 from drivers.cia402 import Goal, State
 from drivers.ports import BusLost
 from drivers.servo import ServoDrive
-from tester.commission.person import Waits
+from tester.commission.person import StepRefused, Waits
 from tester.kinds.wheel_on_belt.build import build_devices
 from tester.kinds.wheel_on_belt.devices import Devices
 from tester.kinds.wheel_on_belt.procedures.connection import WheelArming
@@ -35,6 +37,10 @@ TORQUE_SHARE: Final = 0.3
 """Of the rated torque, for a jog [A]: bearings and inertia of this machine's axes take a tenth of it."""
 PRESS_LOAD_N: Final = 60.0
 """The press gets the torque that surely brings this about, N [A]: its spring pulls back with 40 N."""
+
+
+LEAST_READINGS: Final = 20
+"""Readings of the cell from which it is told whether they have settled [A]: ten a half."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -224,7 +230,12 @@ class QuietArming(WheelArming):
     def unfit(self, now: float, configured_s: float) -> str:
         """Return why nothing may move, while anything has power."""
         said = super().unfit(now, configured_s)
-        return said if self.jogging.powered or said not in ("safety chain", "guard open") else ""
+        return said if self.powered or said not in ("safety chain", "guard open") else ""
+
+    @property
+    def powered(self) -> bool:
+        """A drive has power, or is about to."""
+        return self.jogging.powered
 
     def lift(self) -> Any:
         """Return what moves one axis at a key press: nothing lifts by itself here."""
@@ -248,12 +259,25 @@ class QuietSeat:
 
     def __init__(self, rig: RigConfig, ports: Ports, hands: Any, speeds: dict[str, JogSpeeds]) -> None:
         """Connect with the drives bounded (``jog_rig``)."""
-        self.rig = jog_rig(rig, speeds)
-        self.believed = rig
-        self.hands = hands
-        self.devices = build_devices(self.rig, ports)
-        self._arming = QuietArming(self.devices, self.rig)
-        self.connector = QuietConnector(self.devices, self.rig, self._arming, rig.arming.listen_s)
+        bounded = jog_rig(rig, speeds)
+        devices = build_devices(bounded, ports)
+        arming = QuietArming(devices, bounded)
+        self.begin(bounded, rig, hands, devices, arming, QuietConnector(devices, bounded, arming, rig.arming.listen_s))
+
+    def begin(
+        self,
+        rig: RigConfig,
+        believed: RigConfig,
+        hands: Any,
+        devices: Devices,
+        arming: QuietArming,
+        connector: QuietConnector,
+    ) -> None:
+        """Take what the wires are driven with; ``believed``: the rig file's, ``rig``: what the drives are given."""
+        self.rig, self.believed, self.hands = rig, believed, hands
+        self.devices = devices
+        self._arming = arming
+        self.connector = connector
         self._told = False
         self._lost = ""
 
@@ -261,6 +285,11 @@ class QuietSeat:
     def jogging(self) -> Jogging:
         """What moves an axis."""
         return self._arming.jogging
+
+    @property
+    def moving(self) -> Any:
+        """What is stopped where nobody ticks any more."""
+        return self.jogging
 
     @property
     def ready(self) -> bool:
@@ -302,28 +331,45 @@ class QuietSeat:
 
     def abandon(self) -> None:
         """Send zero and power off once."""
-        self.jogging.stop()
-        self.devices.transmit(self.jogging.stepped_s, scan=True)
+        self.moving.stop()
+        self.devices.transmit(self.moving.stepped_s, scan=True)
 
 
-def mean_cell(seat: QuietSeat, seconds: float) -> Generator[Waits, str, tuple[list[float], list[float]]]:
-    """Yield until the cell was read for a while; return the mean and the standard deviation of Fx, Fy, Fz, raw, N."""
-    sums, squares, count = [0.0] * 3, [0.0] * 3, 0
-    last_s, began_s = -inf, inf
+def settled_cell(
+    seat: QuietSeat, least_s: float, at_most_s: float, still_n: float
+) -> Generator[Waits, str, list[float]]:
+    """Yield until the cell's readings have settled; return the means of Fx, Fy, Fz, raw, N.
+
+    Settled: the halves of the last ``least_s`` of readings are the same within ``still_n`` and three standard
+    deviations of their difference. Raises StepRefused for what still swings after ``at_most_s``.
+    """
+    rows: deque[tuple[float, float, float, float]] = deque()
+    began_s = inf
+
+    def settled() -> bool:
+        half = len(rows) // 2
+        first, second = list(rows)[:half], list(rows)[half:]
+        for i in range(1, 4):
+            one, two = [row[i] for row in first], [row[i] for row in second]
+            noise = hypot(stdev(one), stdev(two)) / sqrt(half)
+            if abs(fmean(one) - fmean(two)) > still_n + 3.0 * noise:
+                return False
+        return True
 
     def enough(now_s: float) -> bool:
-        nonlocal count, last_s, began_s
+        nonlocal began_s
         began_s = min(began_s, now_s)
         cell = seat.devices.cell
-        if cell.valid and cell.stamp_s > last_s and all(isfinite(value) for value in cell.raw[:3]):
-            last_s = cell.stamp_s
-            count += 1
-            for i in range(3):
-                sums[i] += cell.raw[i]
-                squares[i] += cell.raw[i] * cell.raw[i]
-        return now_s - began_s >= seconds and count > 1
+        if cell.valid and (not rows or cell.stamp_s > rows[-1][0]) and all(isfinite(one) for one in cell.raw[:3]):
+            rows.append((cell.stamp_s, cell.raw[0], cell.raw[1], cell.raw[2]))
+            while rows[-1][0] - rows[0][0] > least_s:
+                rows.popleft()
+        if now_s - began_s > at_most_s:
+            raise StepRefused(
+                f"the load cell's readings have not settled within {still_n:g} N in {at_most_s:g} s: the weight swings,"
+                " or the cell drifts"
+            )
+        return now_s - began_s >= least_s and len(rows) >= LEAST_READINGS and settled()
 
     yield enough
-    mean = [one / count for one in sums]
-    spread = [max(0.0, (two - count * m * m) / (count - 1)) ** 0.5 for two, m in zip(squares, mean, strict=True)]
-    return mean, spread
+    return [fmean(row[i] for row in rows) for i in range(1, 4)]

@@ -4,11 +4,21 @@ from __future__ import annotations
 
 from typing import Any, Final
 
+from sim.physics.friction import KNOWN
 from tester.commission.part import CommissionPart
 from tester.commission.person import Dialogue
 from tester.commission.step import CommissionStep, Notes
 from tester.kinds.wheel_on_belt.axes import POSITIONED
-from tester.kinds.wheel_on_belt.commission import contact, first, identify, jog, readings, thermometer, weights
+from tester.kinds.wheel_on_belt.commission import (
+    contact,
+    first,
+    identify,
+    jog,
+    readings,
+    thermometer,
+    watchdogs,
+    weights,
+)
 from tester.kinds.wheel_on_belt.commission.armed import ArmedSeat
 from tester.kinds.wheel_on_belt.commission.quiet import QuietSeat
 from tester.kinds.wheel_on_belt.commission.twin import TwinPerson
@@ -29,6 +39,10 @@ def _quiet(rig: Any, ports: Ports, hands: Any) -> QuietSeat:
 
 def _armed(rig: Any, ports: Ports, hands: Any) -> ArmedSeat:
     return ArmedSeat(RigConfig.of(rig), ports, hands)
+
+
+def _trial(rig: Any, ports: Ports, hands: Any) -> watchdogs.TrialSeat:
+    return watchdogs.TrialSeat(RigConfig.of(rig), ports, hands)
 
 
 def _jog(axis: jog.JoggedAxis) -> CommissionStep:
@@ -55,17 +69,17 @@ STEPS: Final = (
     CommissionStep("home", "homing, and whether zero is straight", (*_HOMED, "can", "arming"),
          _JOGGED, _armed, contact.home, readings=readings.of_positions),
     CommissionStep("watchdogs", "drives stop by themselves", ("axes", "can", "arming", "devices.jacket"), _JOGGED,
-         _armed, contact.watchdogs, readings=readings.of_armed(readings.SPEEDS, readings.PRESS)),
+         _trial, watchdogs.watchdogs, readings=readings.of_armed(readings.SPEEDS, readings.PRESS)),
     CommissionStep("touch", "first touch and tare", ("axes", "geometry", "loops", *_CELL), ("cell", "home"), _armed,
          contact.touch, readings=readings.of_armed(readings.PRESS, readings.FORCES, readings.SPEEDS)),
     CommissionStep("rolling", "speed ratio by rolling", ("axes.wheel", "axes.belt", "geometry"), ("touch",), _armed,
          contact.roll, readings=readings.of_armed(readings.SPEEDS, readings.FORCES)),
-    CommissionStep("thermometer", "thermometer against a hub soak", (*_HEAT, "geometry", "observer"), ("home",), _armed,
-         thermometer.soak, readings=readings.of_armed(readings.HEAT, readings.SPEEDS)),
     CommissionStep("directions", "crosstalk and misalignment by both directions of slip", _ALL, ("rolling",),
          alone=first.directions),
+    CommissionStep("thermometer", "thermometer against a hub soak", (*_HEAT, "geometry", "observer"), ("home",), _armed,
+         thermometer.soak, readings=readings.of_armed(readings.HEAT, readings.SPEEDS)),
     CommissionStep("first", "a first condition three times", _ALL, ("rolling", "thermometer"), alone=first.coefficient),
 )  # fmt: skip
-"""In the order in which each stands on what the ones before it have shown."""
+"""In the order in which each stands on what the ones before it have shown; what heats comes last, and cools once."""
 
-COMMISSIONS: Final = CommissionPart(STEPS, TwinPerson)
+COMMISSIONS: Final = CommissionPart(STEPS, tuple(KNOWN), TwinPerson)

@@ -7,14 +7,15 @@ set emissivity over the true one, for a tread that is not much warmer than what 
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Generator
-from math import isfinite, nan
 from typing import Final
 
 from tester.commission.person import Dialogue, StepRefused, Waits, wait
 from tester.commission.step import Notes
 from tester.kinds.wheel_on_belt.build import loss_ratios
-from tester.kinds.wheel_on_belt.commission.armed import ArmedSeat
+from tester.kinds.wheel_on_belt.commission.armed import ArmedSeat, mean_temperatures
+from tester.kinds.wheel_on_belt.commission.settling import MEAN_S, SettlingFit
 from tester.kinds.wheel_on_belt.procedures.motions import Lift, Turn
 from tester.machine.motions import Power, Sequence
 
@@ -28,9 +29,11 @@ COLD_K: Final = 2.0
 GAIN_SHARE: Final = 0.10
 """Of the excess at the soak [A]: the ratio of the losses is known to a third of itself, 5 % of the excess."""
 AVERAGE_S: Final = 10.0
-STEADY_S: Final = 60.0
-STEADY_K: Final = 0.3
-"""Soaked: where the surface is going, by three minutes' means, is the same as a minute ago within this [A] ..."""
+SURE_K: Final = 0.3
+"""Soaked: where the surface is going is known with this standard uncertainty, K: 2.5 % of the excess [A] ..."""
+SAME_S: Final = 30.0
+SAME_K: Final = 0.5
+"""... and has been the same within this for so long, K, s [A] ..."""
 AT_MOST_S: Final = 900.0
 """... within this, s."""
 
@@ -38,7 +41,7 @@ AT_MOST_S: Final = 900.0
 def soak(seat: ArmedSeat, notes: Notes) -> Dialogue:
     """Compare cold and soaked; raises StepRefused."""
     air = seat.rig.ambient_c
-    surface, hub = yield from _means(seat, AVERAGE_S)
+    surface, hub = yield from mean_temperatures(seat, AVERAGE_S)
     offset = surface - hub
     notes.read("cold", {"surface_c": surface, "hub_c": hub, "air_c": air})
     if abs(hub - air) > COLD_K:
@@ -54,7 +57,7 @@ def soak(seat: ArmedSeat, notes: Notes) -> Dialogue:
     seat.ctx.demand.surface_c = (HUB_C + air * lifted + surface) / (2.0 + lifted)
     yield from wait(2.0 * seat.rig.loops.heat.period_s)
     seat.ctx.demand.freeze_heat = True
-    warm, warm_hub = yield from _steady(seat)
+    warm, sure_k, warm_hub = yield from _steady(seat)
     notes.read("soaked", {"surface_c": warm, "hub_c": warm_hub})
     seat.cold()
     expected = (warm_hub - hub) / (1.0 + lifted)
@@ -72,52 +75,26 @@ def soak(seat: ArmedSeat, notes: Notes) -> Dialogue:
             f"emissivity: soaked the thermometer shows {warm - surface:.1f} K above the cold tread, the hub at"
             f" {warm_hub:.1f} degC means {expected:.1f} K: gain {gain:.2f}.{right}"
         )
-    notes.values = {"offset_k": offset, "gain": gain, "hub_c": warm_hub, "surface_c": warm, "expected_k": expected}
-    notes.text = f"offset {offset:+.2f} K cold, gain {gain:.3f} at {warm_hub:.1f} degC of the hub"
+    notes.values = {
+        "offset_k": offset, "gain": gain, "hub_c": warm_hub, "surface_c": warm, "expected_k": expected,
+        "cold_c": surface, "cold_hub_c": hub, "gain_standard_uncertainty": sure_k / expected,
+    }  # fmt: skip
+    notes.text = f"offset {offset:+.2f} K cold, gain {gain:.3f} +- {sure_k / expected:.3f}"
+    notes.text += f" (standard uncertainty) at {warm_hub:.1f} degC of the hub"
 
 
-def _steady(seat: ArmedSeat) -> Generator[Waits, str, tuple[float, float]]:
-    """Wait for the soak; return where the surface is going with the hub held, and the hub, degC.
-
-    A surface that nears its end exponentially is there after m2 - (m2 - m1)^2 / ((m2 - m1) - (m1 - m0)) (Aitken).
-    """
-    means: list[float] = []
-    before = nan
+def _steady(seat: ArmedSeat) -> Generator[Waits, str, tuple[float, float, float]]:
+    """Wait until it is known where the surface is going with the hub held; return that, its standard uncertainty, K,
+    and the hub, degC."""  # fmt: skip
+    fit, last = SettlingFit(), deque[tuple[float, float]](maxlen=round(SAME_S / MEAN_S))
     began_s = seat.ctx.now
     while True:
-        surface, hub = yield from _means(seat, STEADY_S)
-        means.append(surface)
-        going = _going(means)
-        if abs(going - before) <= STEADY_K:
-            return going, hub
-        before = going
+        surface, hub = yield from mean_temperatures(seat, MEAN_S)
+        fit.add(surface)
+        going, standard = fit.going()
+        last.append((going, hub))
+        same = len(last) == last.maxlen and all(abs(one - going) <= SAME_K for one, _ in last)
+        if same and standard <= SURE_K:
+            return going, standard, sum(one for _, one in last) / len(last)
         if seat.ctx.now - began_s > AT_MOST_S:
             raise StepRefused(f"not soaked after {AT_MOST_S / 60:g} min: hub {hub:.1f}, surface {surface:.1f} degC")
-
-
-def _going(means: list[float]) -> float:
-    """Return what the last three means go to, NaN before their steps get smaller."""
-    if len(means) < 3:
-        return nan
-    first, second = means[-2] - means[-3], means[-1] - means[-2]
-    if abs(second) < STEADY_K / 3.0:
-        return means[-1]
-    return means[-1] + second * second / (first - second) if 0.0 < second < 0.9 * first else nan
-
-
-def _means(seat: ArmedSeat, seconds: float) -> Generator[Waits, str, tuple[float, float]]:
-    """Return the means of surface and hub over a time, degC."""
-    sums = [0.0, 0.0, 0.0]
-    began: list[float] = []
-
-    def enough(now_s: float) -> bool:
-        r = seat.ctx.readings
-        began.append(now_s) if not began else None
-        if isfinite(r.surface_c) and isfinite(r.hub_c) and r.surface_valid and r.jacket_valid:
-            sums[0] += r.surface_c
-            sums[1] += r.hub_c
-            sums[2] += 1.0
-        return now_s - began[0] >= seconds and sums[2] > 0.0
-
-    yield enough
-    return sums[0] / sums[2], sums[1] / sums[2]

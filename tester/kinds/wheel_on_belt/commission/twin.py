@@ -14,6 +14,8 @@ from tester.kinds.wheel_on_belt.commission.jog import AXES as JOGGED
 
 THINKS_S: Final = 15.0
 """Rig time of an answer for which something is read or hung, s [A]."""
+STILL_M_S: Final = 0.002
+"""Slower than this a person sees no motion, m/s [A]."""
 KEY_S: Final = 2.0
 """Rig time from a question to a key, s [A]."""
 
@@ -23,6 +25,16 @@ class TwinHands(Protocol):
 
     def ruler(self, axis: str) -> float:
         """Return where an axis is."""
+        ...
+
+    @property
+    def rim_m_s(self) -> float:
+        """Speed of the wheel's rim, m/s."""
+        ...
+
+    @property
+    def belt_m_s(self) -> float:
+        """Speed of the belt, m/s."""
         ...
 
     def hang(self, fx: float, fy: float, fz: float) -> None:
@@ -107,6 +119,11 @@ class TwinPerson:
             return words[2]
         if words[0] == "angle":
             return f"{self.hands.ruler(words[1]):.1f}"
+        if words[0] == "watchdog":
+            still = abs(self.hands.rim_m_s) < STILL_M_S and abs(self.hands.belt_m_s) < STILL_M_S
+            return question.choices[0 if still else 1]
+        if words[0] == "compound" and question.asks is Asks.TEXT:
+            return "1#"
         if words[0] == "diameter":
             return f"{self.hands.ruler('diameter'):.2f}"
         if question.asks is Asks.CHOICE:

@@ -20,13 +20,17 @@ from typing import Final
 
 from tester.commission.person import Dialogue, StepRefused, Waits, line, measure
 from tester.commission.step import Notes
-from tester.kinds.wheel_on_belt.commission.quiet import QuietSeat, mean_cell
+from tester.kinds.wheel_on_belt.commission.quiet import QuietSeat, settled_cell
 
 CHANNELS: Final = ("x", "y", "z")
 PLAN: Final = {"z": (50.0, 100.0, 200.0, 300.0, 200.0), "x": (50.0, 100.0, 200.0, 100.0), "y": (50.0, 100.0, 200.0)}
 """Weights about, N, by the channel that they load: rising, and one on the way back for hysteresis [A]."""
-AVERAGE_S: Final = 2.0
-"""Each point is averaged this long, s [A]: 0.25 N of noise at 100 readings a second leave 0.02 N."""
+AVERAGE_S: Final = 1.0
+"""Each point is averaged this long once it has settled, s [A]: 0.25 N of noise, 100 readings a second: 0.025 N."""
+STILL_N: Final = 0.1
+"""Settled: the halves of that time are the same within this and their noise [A]: 0.2 % of the least weight."""
+SWINGS_S: Final = 30.0
+"""A weight swings for so long at most, s [A]."""
 TYPED_SHARE: Final = 0.05
 """A point this far off its channel's others is a typed one, not the cell's [A]: its linearity is 0.1 %."""
 CROSSED_SHARE: Final = 0.5
@@ -95,19 +99,21 @@ def calibrate(seat: QuietSeat, notes: Notes) -> Dialogue:
     )
     channels: list[HungChannel] = []
     zero: list[float] = []
+    off = ""
     for name, plan in PLAN.items():
-        yield from measure(f"hang {name} 0.0", f"F{name}: hang up hook and wire, no weight yet; type 0", "N")
-        zero, _ = yield from mean_cell(seat, AVERAGE_S)
+        yield from measure(f"hang {name} 0.0", f"{off}F{name}: hang up hook and wire, no weight yet; type 0", "N")
+        zero = yield from _settled(seat)
         channel = HungChannel(name)
         for about in plan:
             if about <= most[name]:
                 yield from _point(seat, notes, channel, about, zero)
         channels.append(channel)
-        yield from measure(f"hang {name} 0.0", f"F{name}: take the weights off; type 0", "N")
+        off = f"F{name}: take the weights off. "
         wrong = channel.typed_wrongly()
         if wrong >= 0:
             yield from _again(notes, channel, wrong)
         _judge(channel)
+    yield from measure(f"hang {channels[-1].name} 0.0", f"{off}Hook and wire, too; type 0", "N")
     due = yield from _due()
     _conclude(notes, channels, zero, weights, due)
 
@@ -117,11 +123,15 @@ def _point(seat: QuietSeat, notes: Notes, channel: HungChannel, about: float, ze
     hung = yield from measure(f"hang {channel.name} {about}", what, "N")
     if not hung > 0.0:
         raise StepRefused(f"a weight of {hung:g} N cannot be hung")
-    mean, _ = yield from mean_cell(seat, AVERAGE_S)
+    mean = yield from _settled(seat)
     shown = (mean[0] - zero[0], mean[1] - zero[1], mean[2] - zero[2])
     channel.hung_n.append(hung)
     channel.shown_n.append(shown)
     notes.read(f"F{channel.name} {about:g} N", {"hung_n": hung, "shown_n": list(shown)})
+
+
+def _settled(seat: QuietSeat) -> Generator[Waits, str, list[float]]:
+    return (yield from settled_cell(seat, AVERAGE_S, SWINGS_S, STILL_N))
 
 
 def _again(notes: Notes, channel: HungChannel, wrong: int) -> Dialogue:

@@ -56,6 +56,7 @@ class Bench:
         person: TwinPerson | None = None,
         steps: tuple[CommissionStep, ...] = STEPS,
         run_recipe: Callable[[str, str], Mapping[str, Any]] = no_recipe,
+        given: Mapping[str, str] | None = None,
     ) -> None:
         """``machine``: what it is really like, ``rig`` unless it says; ``built``: what was done to it."""
         self.rig = rig or believed()
@@ -68,6 +69,7 @@ class Bench:
         self.built = built
         self.steps = steps
         self.run_recipe = run_recipe
+        self.given = given
         self.world: WheelRig | None = None
 
     def connect(self) -> tuple[Any, Any, Any]:
@@ -83,7 +85,8 @@ class Bench:
         """Commission."""
         self.record = CommissionRecord(self.path, Clock(), "a test")
         self.walk = Commissioning(
-            self.steps, self.rig, self.person, self.record, self.connect, self.run_recipe
+            self.steps, self.rig, self.person, self.record, self.connect, self.run_recipe,
+            given=self.given,
         )
         return self.walk.run()
 

@@ -1,0 +1,66 @@
+"""Where a temperature that settles is going, and how sure that is: its tail is fitted while it is still on its way."""
+
+from __future__ import annotations
+
+from math import isfinite, nan, sqrt
+from typing import Final
+
+import numpy as np
+
+MEAN_S: Final = 5.0
+"""Readings are averaged over this long before they are fitted, s [A]."""
+PAST_SHARE: Final = 0.75
+"""The tail begins once the rise is down to this share of its greatest [A]: faster modes than the last are over."""
+TAIL: Final = 12
+"""Means of the tail that are fitted, at least: a minute."""
+TIMES_S: Final = np.geomspace(20.0, 1000.0, 200)
+"""Time constants that are tried, s."""
+
+
+class SettlingFit:
+    """Means of a temperature, each ``MEAN_S`` long, and the end of their tail."""
+
+    def __init__(self) -> None:
+        """Nothing was read."""
+        self.means: list[float] = []
+
+    def add(self, mean: float) -> None:
+        """Take another mean, any unit."""
+        self.means.append(mean)
+
+    def going(self) -> tuple[float, float]:
+        """Return where the tail goes to and its standard uncertainty; NaN while there is too little of it.
+
+        y(t) = end - step exp(-t / T): least squares for end and step at each T of ``TIMES_S``; the best T's rows of
+        d y / d (end, step, T) give the uncertainty, the residuals the noise.
+        """
+        tail = self._tail()
+        count = len(tail)
+        if count < TAIL:
+            return nan, nan
+        times = MEAN_S * np.arange(count)
+        decays = np.exp(-times[None, :] / TIMES_S[:, None])
+        centred, wanted = decays - decays.mean(axis=1, keepdims=True), tail - tail.mean()
+        squares = (centred * centred).sum(axis=1)
+        slopes = (centred @ wanted) / squares
+        left = ((wanted[None, :] - slopes[:, None] * centred) ** 2).sum(axis=1)
+        best = int(np.argmin(left))
+        if best in (0, len(TIMES_S) - 1):
+            return nan, nan
+        decay, slope, time = decays[best], float(slopes[best]), float(TIMES_S[best])
+        end = float(tail.mean()) - slope * float(decay.mean())
+        rows = np.stack([np.ones(count), decay, slope * times / time**2 * decay], axis=1)
+        noise = float(left[best]) / (count - 3)
+        variance = float(np.linalg.pinv(rows.T @ rows)[0, 0]) * noise
+        return (end, sqrt(variance)) if isfinite(variance) else (nan, nan)
+
+    def _tail(self) -> np.ndarray:
+        """Return the means since the rise is well past its greatest."""
+        means = np.asarray(self.means)
+        if len(means) < 2 * TAIL:
+            return means[:0]
+        smooth = np.convolve(means, np.ones(4) / 4.0, mode="valid")
+        rises = np.abs(smooth[4:] - smooth[:-4])
+        peak = int(np.argmax(rises))
+        past = np.flatnonzero(rises[peak:] <= PAST_SHARE * rises[peak])
+        return means[peak + int(past[0]) + 4 :] if len(past) else means[:0]

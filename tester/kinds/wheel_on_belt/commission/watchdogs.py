@@ -1,0 +1,277 @@
+"""The watchdogs of drives and jacket, provoked in front of a person: heartbeat, setpoints, and the lease of the heat.
+
+Cold, lifted and unloaded, guard closed. Each is tried out by itself: what is withheld is one thing at a time, the rest
+goes on. What a device has read back of its deadline, and what it said when that was over, goes on record.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Generator
+from math import inf, isfinite
+from typing import Any, Final
+
+from drivers.canopen import objects as o
+from drivers.jacket import HeatingJacket
+from drivers.servo import ServoDrive
+from tester.commission.person import Dialogue, StepRefused, Waits, choose, press, wait
+from tester.commission.step import Notes
+from tester.kinds.wheel_on_belt.build import build_devices
+from tester.kinds.wheel_on_belt.commission.quiet import QuietArming, QuietConnector, QuietSeat
+from tester.kinds.wheel_on_belt.devices import Devices
+from tester.kinds.wheel_on_belt.procedures.arming import Proof
+from tester.kinds.wheel_on_belt.procedures.lift_check import Unloaded
+from tester.kinds.wheel_on_belt.rig import RigConfig
+from tester.machine.ports import Ports
+from tester.machine.proof import WatchdogProof
+
+SETPOINT_LATE: Final = 0x8250
+"""EMCY code of an RPDO that did not come in time (CiA 301, table 26)."""
+MORE_S: Final = 0.15
+"""Setpoints are withheld for the longest deadline and this, s [A]: the EMCY is there, the ramp from creep is over."""
+NEEDS_DEADLINE: Final = ("wheel", "belt", "press")
+"""Axes that go on by themselves with their last setpoint."""
+COOLER_K: Final = 20.0
+"""The jacket is asked for so much less than the hub has: it runs, and gives no heat."""
+RUNS_S: Final = 1.5
+"""It runs so long with its setpoint, s: three writes of it, and a reading."""
+LEASE_MORE_S: Final = 3.0
+"""After its lease the jacket has so long to say so, s [A]: a period of its own and of its readings."""
+NO_OUTPUT_PERCENT: Final = 0.5
+
+
+class SetpointProof(Proof):
+    """Wheel and belt creep while their setpoints are withheld; heartbeat and SYNC go on."""
+
+    emergency = SETPOINT_LATE
+
+    def __init__(self, devices: Devices, rig: RigConfig) -> None:
+        """Nothing moves before the first ``step``."""
+        super().__init__(devices, rig)
+        self.follow, self.watchdog = False, True
+        self.withhold_s = max((deadline_s(drive) for drive in self.watched()), default=0.0) + MORE_S
+
+    def withhold(self, withheld: bool) -> None:
+        """Keep back, or send again, the RPDOs."""
+        self.devices.master.withhold_setpoints = withheld
+
+    def watched(self) -> list[ServoDrive]:
+        """Return the drives that have a deadline for setpoints."""
+        return [drive for drive in self.devices.drives if deadline_s(drive) > 0.0]
+
+    def ran_on(self, name: str) -> str:
+        """Say that a drive did not stop."""
+        return (
+            f"the {name} drive did not stop with EMCY 0x8250 when its setpoints were missing"
+            f" for {self.withhold_s * 1000:g} ms (0x1400:05, axes.{name}.rpdo_deadline)"
+        )
+
+
+def deadline_s(drive: ServoDrive) -> float:
+    """Return the deadline for setpoints that a drive has read back, s; 0: none."""
+    return 1e-3 * drive.parameters.get((o.RPDO_COMMUNICATION, 5), 0)
+
+
+class Trials:
+    """Lifts, and then steps the proof that a procedure hands in (tester.machine.connect.Lifting)."""
+
+    done = False
+    """The procedure says when."""
+
+    def __init__(self, devices: Devices, rig: RigConfig) -> None:
+        """Nothing moves before the first ``step``."""
+        self.unloaded = Unloaded(devices, rig)
+        self.proof: WatchdogProof | None = None
+        self.stepped_s = 0.0
+
+    @property
+    def failure(self) -> str:
+        """Why nothing can be tried out. What a proof has not shown is the procedure's to say."""
+        return self.unloaded.failure
+
+    @property
+    def trying(self) -> bool:
+        """A proof is under way."""
+        return self.proof is not None and not self.proof.done
+
+    def step(self, now: float) -> None:
+        """Advance by one tick at ``now`` s."""
+        self.stepped_s = now
+        if not self.unloaded.done:
+            self.unloaded.step(now)
+        elif self.proof is not None and not self.proof.done:
+            self.proof.step(now)
+
+    def trouble(self, now: float) -> str:
+        """Return why the rig is not known to be unloaded any more; a person may reach in while nothing is tried."""
+        return self.unloaded.trouble(now) if self.trying else ""
+
+    def stop(self) -> None:
+        """Bring to standstill what moves."""
+        self.unloaded.stop()
+        if self.proof is not None:
+            self.proof.stop()
+
+
+class TrialArming(QuietArming):
+    """As before every run, but that the jacket's lease may be left to run out."""
+
+    def __init__(self, devices: Devices, rig: RigConfig) -> None:
+        """Nothing is sent."""
+        super().__init__(devices, rig)
+        self.trials = Trials(devices, rig)
+        self.renews = True
+
+    def renew(self) -> None:
+        """Renew the jacket's lease, unless that is what is tried out."""
+        if self.renews:
+            super().renew()
+
+    @property
+    def powered(self) -> bool:
+        """A drive has power, or is about to."""
+        return self.trials.trying or not self.trials.unloaded.done or super().powered
+
+    def lift(self) -> Any:
+        """Return what lifts and tries out."""
+        return self.trials
+
+
+class TrialConnector(QuietConnector):
+    """Connects, hears, lifts, and stays there; drives that are made to stop by themselves end nothing."""
+
+    def __init__(self, devices: Devices, rig: RigConfig, arming: TrialArming) -> None:
+        """Nothing is sent."""
+        super().__init__(devices, rig, arming, rig.arming.listen_s)
+        self._trials = arming.trials
+
+    @property
+    def watches_drives(self) -> bool:
+        """Every drive is configured, and one that stops by itself without being made to ends the connection."""
+        proof = self._trials.proof
+        return super().watches_drives and not (proof is not None and not proof.done and proof.provokes)
+
+
+class TrialSeat(QuietSeat):
+    """The rig lifted and unloaded, for watchdogs to be tried out (tester.commission.step.Seat)."""
+
+    def __init__(self, rig: RigConfig, ports: Ports, hands: Any) -> None:
+        """Connect; drives have the torque of a run."""
+        devices = build_devices(rig, ports)
+        self.arming = TrialArming(devices, rig)
+        super().begin(rig, rig, hands, devices, self.arming, TrialConnector(devices, rig, self.arming))
+
+    @property
+    def ready(self) -> bool:
+        """Everything is heard, the press lifted, nothing loaded."""
+        return super().ready and self.arming.trials.unloaded.done and not self.arming.trials.failure
+
+    @property
+    def moving(self) -> Trials:
+        """What is stopped where nobody ticks any more."""
+        return self.arming.trials
+
+    def prove(self, proof: WatchdogProof) -> Dialogue:
+        """Yield until a proof is done; raises StepRefused for what was not shown."""
+        self.arming.trials.proof = proof
+        yield lambda now_s: proof.done
+        if proof.failure:
+            raise StepRefused(f"watchdogs: {proof.failure}")
+
+
+def watchdogs(seat: TrialSeat, notes: Notes) -> Dialogue:
+    """Let each watchdog run out in front of a person; raises StepRefused for one that does nothing."""
+    arming = seat.rig.arming
+    if not (arming.bump_test and arming.watchdog_proof):
+        raise StepRefused("watchdogs not shown: the rig file does without (arming.bump_test, arming.watchdog_proof)")
+    drives = seat.devices.drives
+    unproven = [drive.config.name for drive in drives if not drive.config.proves_watchdog]
+    without = [one.config.name for one in drives if one.config.name in NEEDS_DEADLINE and not deadline_s(one) > 0.0]
+    if unproven:
+        raise StepRefused(f"watchdogs not shown: the rig file leaves out axes.*.proves_watchdog: {', '.join(unproven)}")
+    if without:
+        raise StepRefused(f"no deadline for setpoints (axes.*.rpdo_deadline): {', '.join(without)}")
+    what = "hands off, guard closed; wheel, belt and press move a little, then wheel and belt creep"
+    yield from _shown(seat, notes, "heartbeat", Proof(seat.devices, seat.rig), f"{what}, and our heartbeat stays away")
+    proof = SetpointProof(seat.devices, seat.rig)
+    yield from _shown(seat, notes, "setpoints", proof, f"{what}, and their setpoints stay away")
+    heat = yield from _lease(seat, notes)
+    notes.values["heat"] = heat
+    notes.text = (
+        f"each drive stops by itself without our heartbeat; {', '.join(one.config.name for one in proof.watched())}"
+        f" without setpoints; heat: {heat}"
+    )
+
+
+def _shown(seat: TrialSeat, notes: Notes, name: str, proof: WatchdogProof, text: str) -> Dialogue:
+    """Try one out when a person says so, ask what was seen, and put on record what every drive read back and said."""
+    while True:
+        yield from press(f"watchdog {name}", text)
+        if seat.guarded():
+            break
+        text = f"the guard or the safety chain is open: close it, and again; {text}"
+    yield from seat.prove(proof)
+    for drive in proof.watched():
+        entry = o.RPDO_COMMUNICATION, 5
+        if name == "heartbeat":
+            entry = o.CONSUMER_HEARTBEAT, 1
+        raw = drive.parameters.get(entry, 0)
+        said = {
+            "object": f"0x{entry[0]:04X}:{entry[1]:02d}", "read_back_ms": raw & 0xFFFF,
+            "emergency": f"0x{proof.emergency:04X}", "after_ms": round(1e3 * proof.reported[drive.config.name]),
+        }  # fmt: skip
+        notes.read(f"{name}: {drive.config.name} stopped by itself", said)
+        notes.values.setdefault(name, {})[drive.config.name] = said
+    seen = yield from choose(f"watchdog {name} seen", "did wheel and belt stand still by themselves?", "yes", "no")
+    if seen != "yes":
+        raise StepRefused(f"watchdogs: a person saw wheel or belt run on without {name}, though their drives say not")
+
+
+def _lease(seat: TrialSeat, notes: Notes) -> Generator[Waits, str, str]:
+    """Let the jacket run, asked for no heat, and say nothing until its lease, or its own setpoint, ends that."""
+    jacket: HeatingJacket = seat.devices.jacket
+    if jacket.ends_s is None:
+        how = seat.rig.devices["jacket"].heat_off or "nothing that the rig file names"
+        notes.tell(f"  the jacket has no watchdog of its own: {how} ends its heat; try that out by hand")
+        return f"ended by {how}, not tried out here"
+    asked_c = jacket.hub_c - COOLER_K
+    if not isfinite(asked_c):
+        raise StepRefused("the jacket says no temperature: sensor, or its wires")
+    yield from press("watchdog heat", f"the jacket runs for {jacket.ends_s:g} s, asked for no heat, and hears no more")
+    seat.arming.renews = False
+    ends_s, begun_s, heard_s, ended_s = jacket.ends_s, inf, -inf, -inf
+
+    def running(now_s: float) -> bool:
+        nonlocal begun_s, heard_s
+        begun_s = min(begun_s, now_s)
+        jacket.set_setpoint(asked_c)
+        jacket.enable(True)
+        heard_s = now_s
+        return now_s - begun_s >= RUNS_S
+
+    yield running
+    if jacket.remote_failed:
+        raise StepRefused("watchdogs: the jacket says that our setpoint does not reach it, though it is sent")
+
+    def over(now_s: float) -> bool:
+        nonlocal ended_s
+        ended_s = now_s
+        return jacket.remote_failed or now_s - heard_s > ends_s + LEASE_MORE_S
+
+    yield over
+    failed, after_s = jacket.remote_failed, ended_s - heard_s
+    yield from wait(1.0)  # its output is read anew
+    output = jacket.output_percent
+    seat.arming.renews = True
+    jacket.enable(False)
+    yield from wait(1.0)
+    kind = "lease" if jacket.has_lease else "setpoint that it falls back to"
+    if not failed:
+        raise StepRefused(
+            f"watchdogs: the jacket's {kind} did not end its heat {after_s:.1f} s after our last setpoint"
+            f" (expected {jacket.ends_s:g} s): it would heat on without the PC"
+        )
+    if not output <= NO_OUTPUT_PERCENT:
+        raise StepRefused(f"watchdogs: the jacket gives {output:g} % of its heat after its {kind} has ended that")
+    said = {"kind": kind, "read_back_s": jacket.ends_s, "after_s": round(after_s, 1), "output_percent": output}
+    notes.read("heat: ended without our setpoint", said)
+    return f"{kind} over after {after_s:.1f} s (set and read back: {jacket.ends_s:g} s)"
