@@ -21,7 +21,7 @@ from tester.tui.pages.view import Keys, View
 from tester.tui.rings import KeptRings, RingRow
 from tester.tui.widgets.ring import AgePanel, AnglePanel, SpeedPanel
 
-HEADER = ("Run", "Turns of the ring", "Requests", "Errors", "of 1000", "Angle")
+HEADER = ("Run", "Turns", "Requests", "Errors", "of 1000", "Angle")
 MISSING = (StoreError, OSError, sqlite3.Error)
 HELP = """\
 Requests over the ring that had no good reply, as the stored runs have them: a run under way tells when it ends.

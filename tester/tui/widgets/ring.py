@@ -38,7 +38,7 @@ class AnglePanel(Panel):
         lines: list[Parts] = [[line] for line in columns(counts, width, height - 2)]
         for number_, one in enumerate(sectors, start=1):
             if one.found and len(lines) < height:
-                told = f"{number_}: gather at {one.centre_deg:.0f}°, half within {one.half_deg:.0f}° of it"
+                told = f"{number_}: most at {one.centre_deg:.0f}°, half within {one.half_deg:.0f}° of it"
                 lines.append([(fit(told, width), NOTICE)])
         if len(lines) < height:
             lines.append([(fit("from where it stood when mounted", width), FAINT)])

@@ -45,7 +45,7 @@ def test_angle_speed_and_age_stand_on_the_page(size: str, folder: Path, monkeypa
         await at_ring(on)
         text = on.text()
         assert "2026-03-01-run" in text and "3000" in text and "6.00" in text
-        assert "gather at 90°" in text and "2 to 4 rev/s" in text and "grows" in text
+        assert "1: most at 90°" in text and "2 to 4 rev/s" in text and "grows" in text
         compare(f"ring-{size}", text)
 
     play(act, folder, SIZES[size])
