@@ -125,6 +125,8 @@ class MachineView:
     """What turns or travels, and must be seen to stand."""
     look: tuple[str, ...] = ()
     """What else a person looks after at the machine when nobody controls it, a sentence each."""
+    ring: str = ""
+    """What people call the ring over which a device on a turning part is reached; "" where there is none."""
 
 
 def axis_views(axes: Axes) -> tuple[AxisView, ...]:

@@ -111,7 +111,7 @@ class RingTrend:
         """Return it for people, "" where nothing can be said."""
         if not isfinite(self.per_thousand_turns):
             return ""
-        grows = "grows" if self.grows else "no trend beyond chance"
+        grows = "grows" if self.grows else "falls" if self.z <= -GROWS_Z else "no trend beyond chance"
         return f"{self.per_thousand_turns:+.3f} errors of 1000 for every 1000 turns (z {self.z:.1f}): {grows}"
 
 

@@ -53,7 +53,8 @@ def words_of(info: RunInfo) -> MachineWords:
     kind = kind_of(info)
     if kind is None:
         return MachineWords(info.kind, "")
+    ring = kind.ring() if kind.ring is not None else None
     like = info.rig_source if info.rig_source in kind.rigs else next(iter(kind.rigs), "")
     if like not in packaged_rigs():  # a laboratory's own kind says in its own files what it assumes
-        return MachineWords(kind.title, kind.measurand)
-    return MachineWords(kind.title, kind.measurand, packaged_text(like), load_rig(like).text)
+        return MachineWords(kind.title, kind.measurand, ring=ring)
+    return MachineWords(kind.title, kind.measurand, packaged_text(like), load_rig(like).text, ring)

@@ -11,7 +11,7 @@ from tester.store.reader import RunReader
 
 @dataclass(frozen=True, slots=True)
 class RingPart:
-    """``title``: what people call the ring; ``counted``: which requests are counted; ``turns``: what it turns with."""
+    """``title``: what people call it; ``counted``: which requests are; ``turns``: what it turns with; all in words."""
 
     title: str
     counted: str

@@ -15,6 +15,7 @@ from tester.report.layout import Chapter, FactSheet, Paragraph, Part, Picture, R
 from tester.report.materials import materials_sections
 from tester.report.overview import overview_chart
 from tester.report.record import RunRecord
+from tester.report.ring import ring_sections
 from tester.report.runs import runs_chapter
 from tester.report.sections import (
     assumption_section,
@@ -102,6 +103,7 @@ def _chapter(record: RunRecord, key: str, showing: Showing) -> Chapter:
         calibration_section(record, f"{key}-calibration"),
         trips_section(record, f"{key}-trips"),
         control_section(record, f"{key}-control"),
+        *ring_sections(record, f"{key}-ring"),
         assumption_section(record, f"{key}-assumptions"),
         provenance_section(record, f"{key}-provenance"),
     ]

@@ -8,8 +8,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from tester.analysis.results import RepeatStatus
+from tester.analysis.ring_runs import RingRun
 from tester.export.manifest import MANIFEST
 from tester.export.results import Measured, RunResults, results_of
+from tester.export.ring_part import RingPart
 from tester.export.verify import Verification, verify
 from tester.store.reader import RunReader
 from tester.store.records import (
@@ -38,6 +40,8 @@ class MachineWords:
     """Its packaged rig file that a run's is like, with its remarks."""
     packaged: str = ""
     """The same as a run stores it."""
+    ring: RingPart | None = None
+    """Over which a device on a turning part is reached; None: there is none."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,6 +66,8 @@ class RunRecord:
     verification: Verification
     files: Mapping[str, str]
     """SHA-256 of the folder's files, as its manifest says."""
+    ring: RingRun | None = None
+    """What is on record of its ring, where its machine has one."""
 
     def left_out(self) -> list[tuple[Measured, StoredRepeat, str]]:
         """Return the repeats that are in no mean, each with its condition and the reason."""
@@ -97,6 +103,7 @@ def read_record(folder: Path, machine: MachineWords) -> RunRecord:
             void=void,
             verification=verify(folder),
             files=_files(folder),
+            ring=machine.ring.of(reader, folder.name) if machine.ring is not None else None,
         )
 
 

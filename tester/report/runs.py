@@ -21,6 +21,7 @@ from tester.report.layout import (
 )
 from tester.report.overview import overview_chart
 from tester.report.record import RunRecord
+from tester.report.ring import ring_trend_sections
 from tester.report.words import NONE, counted, number
 
 
@@ -30,6 +31,7 @@ def runs_chapter(records: Sequence[RunRecord]) -> Chapter:
     alike = [one for one in records[1:] if one.results.axes == first.results.axes]
     sections = [ReportSection("all-figures", "Runs in one picture", _pictures([first, *alike]))] if alike else []
     sections += [_compared(first, one, f"all-compared-{i}") for i, one in enumerate(alike, start=2)]
+    sections += ring_trend_sections(records, "all-ring")
     strange = [one.name for one in records[1:] if one not in alike]
     if strange:
         told = f"Of another kind of rig than {first.name}, and not compared: {', '.join(strange)}."

@@ -25,11 +25,12 @@ from tester.tui.pages.bus import BusPage
 from tester.tui.pages.manual import ManualPage
 from tester.tui.pages.recipes import RecipesView
 from tester.tui.pages.results import ResultsView
+from tester.tui.pages.ring import RingPage
 from tester.tui.pages.run import RunPage as RunScreen
 from tester.tui.pages.view import Keys, View
 from tester.tui.scene import UNDER_WAY
 from tester.tui.theme import CSS, THEMES
-from tester.tui.widgets.head import TABS, KeyLine, StateLine, TabLine, Tabs
+from tester.tui.widgets.head import RING, TABS, KeyLine, StateLine, TabLine, Tabs
 from tester.tui.widgets.small import SMALLEST, SmallPanel
 
 WIDE = (110, 34)
@@ -39,7 +40,7 @@ EVERYWHERE = """\
 On every screen
 F12, Ctrl+X  STOP: controlled software stop, at once, no question. Not an emergency stop: that is hardware.
 F9, Ctrl+F   FAST STOP: quick stop of both drives, the same way; latched until acknowledged.
-F2 … F6      the screens.   Ctrl+P  all commands.   F1  this help.   Esc  closes a dialog.
+F2 … F7      the screens.   Ctrl+P  all commands.   F1  this help.   Esc  closes a dialog.
 space  HOLD    r  resume    x  abort…    a  acknowledge
 q, Ctrl+C    detach: the run goes on; `tester tui` comes back.
 """
@@ -94,6 +95,7 @@ class TesterApp(HostApp):
         yield ManualPage(id="manual")
         yield ResultsView(id="results")
         yield BusPage(id="bus")
+        yield RingPage(id=RING)
 
     def on_mount(self) -> None:
         """Begin to listen."""
@@ -157,6 +159,9 @@ class TesterApp(HostApp):
         base = self.screen_stack[0]
         if not base.query(f"#{name}"):
             self.say("that screen needs a service: `tester tui`")
+            return
+        if name == RING and not self.scene.machine.ring:
+            self.say("this machine has no ring to watch")
             return
         before = self.view
         base.query_one(ContentSwitcher).current = name

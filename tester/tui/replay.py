@@ -14,12 +14,13 @@ from tester.tui.app import TesterApp
 from tester.tui.formatting import minutes
 from tester.tui.host import TuiOptions
 from tester.tui.pages.results import ResultsView
+from tester.tui.pages.ring import RingPage
 from tester.tui.pages.run import RunPage
 from tester.tui.pages.view import Keys, View
 from tester.tui.playback import Playback
 from tester.tui.scene import ScreenScene
 from tester.tui.stored import Stored
-from tester.tui.widgets.head import TABS, Tabs
+from tester.tui.widgets.head import RING, TABS, Tabs
 from tester.tui.widgets.panel import FAINT, Panel, Parts
 
 FRAME_S = 0.25
@@ -56,7 +57,7 @@ class ReplayApp(TesterApp):
     """Shows moments of a run."""
 
     FIRST = "run"
-    SCREENS_HERE: ClassVar[Tabs] = tuple(tab for tab in TABS if tab[2] in ("run", "results"))
+    SCREENS_HERE: ClassVar[Tabs] = tuple(tab for tab in TABS if tab[2] in ("run", "results", RING))
     EVERYWHERE = HELP
     HAS_RIG: ClassVar[bool] = False
     BINDINGS: ClassVar[list[BindingType]] = [
@@ -83,6 +84,7 @@ class ReplayApp(TesterApp):
         """Return the screens that a record can fill."""
         yield RunPage(plain=self.options.plain, id="run")
         yield ResultsView(id="results")
+        yield RingPage(id=RING)
 
     def below(self) -> Iterable[Widget]:
         """Return the slider."""
@@ -90,7 +92,10 @@ class ReplayApp(TesterApp):
 
     def keys_of(self, view: View) -> Keys:
         """Return the keys of a replay."""
-        own = (("p", "Plot"), ("e", "Export")) if isinstance(view, ResultsView) else (("l", "Log"),)
+        if isinstance(view, RingPage):
+            own: Keys = (("n", "New ring"),)
+        else:
+            own = (("p", "Plot"), ("e", "Export")) if isinstance(view, ResultsView) else (("l", "Log"),)
         return (("space", "Play"), ("←→", "10 s"), ("s", "Faster"), *own, ("F1", "Help"), ("q", "Leave"))
 
     def connect(self) -> None:

@@ -133,6 +133,12 @@ Dialog.-tall > #box { width: 100%; height: 100%; }
 #plot { height: 40%; display: none; }
 Screen.-wide #plot { display: block; }
 Screen.-wide #runs { height: 25%; }
+#ring-runs { height: 8; }
+#ring-angle { width: 42; height: 100%; }
+#ring-speed { height: 7; }
+#ring-age { height: 1fr; }
+Screen.-wide #ring-runs { height: 35%; }
+Screen.-wide #ring-angle { width: 1fr; }
 #devices { height: 11; }
 #buses { height: 5; }
 Screen.-wide #devices { height: 14; }

@@ -33,7 +33,7 @@ def ring_of(reader: RunReader, name: str) -> RingRun:
 
 RING: Final = RingPart(
     "Slip ring",
-    "requests to the jacket over the wheel's slip ring that had no good reply",
+    "requests to the jacket over the wheel's slip ring",
     "the wheel",
     ring_of,
 )

@@ -1,8 +1,9 @@
 """Notes where a wheel stood and how fast it turned whenever a request over its slip ring failed.
 
-What it notes is stored with the counters of the buses when a run, or a part of one, ends; ``tester.analysis.ring_errors``
-makes something of it. The wheel's angle is the one that the wheel's speed gives: it counts from where the wheel stood
-when it was put on, and runs off by the error of the drive's scale, which the analysis takes out.
+What it notes is stored with the counters of the buses when a run, or a part of one, ends;
+``tester.analysis.ring_errors`` makes something of it. The wheel's angle is the one that the wheel's speed gives: it
+counts from where the wheel stood when it was put on, and runs off by the error of the drive's scale, which the analysis
+takes out.
 """
 
 from __future__ import annotations

@@ -53,6 +53,7 @@ MACHINE: Final = MachineView(
     specimen="wheel",
     moves="wheel and belt",
     look=("Switch the heating off at the machine if the jacket stays hot.",),
+    ring="Slip ring",
 )
 
 

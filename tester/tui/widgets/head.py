@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Final
+
 from tester.service.state import Alarm, StateView
 from tester.tui.formatting import clean, clock_text, fit, hours, number
 from tester.tui.gone import gone_line
@@ -10,8 +12,10 @@ from tester.tui.widgets.panel import ABNORMAL, FAINT, NOTICE, WARNING, Panel, Pa
 
 Tabs = tuple[tuple[str, str, str], ...]
 TABS: Tabs = (("f2", "Recipes", "recipes"), ("f3", "Run", "run"), ("f4", "Manual", "manual"),
-        ("f5", "Results", "results"), ("f6", "Bus", "bus"))  # fmt: skip
+        ("f5", "Results", "results"), ("f6", "Bus", "bus"), ("f7", "Ring", "ring"))  # fmt: skip
 """Key, title, id of each screen."""
+RING: Final = "ring"
+"""The screen that only a machine with a ring has (tester.screen.MachineView)."""
 CALM_MODES = frozenset({"RUN", "IDLE", "OFFLINE", "ARMED", "CONNECTING", "MANUAL"})
 TRIPPED_MODES = frozenset({"FAST STOP", "LATCHED", "E-STOP"})
 ALARM_SIGNS = {"active": "■", "acknowledged": "▣", "returned": "◇"}
@@ -113,6 +117,8 @@ class TabLine(Panel):
             return [(text.ljust(width - len(key)) + key, ALARM_STYLES[alarm.priority])]
         parts: Parts = []
         for key, title, name in self.tabs:
+            if name == RING and not scene.machine.ring:
+                continue
             label = f" {key.upper()} {title} "
             parts.append((label, "bold reverse") if name == self.current else label)
         return _cut(parts, width)

@@ -74,3 +74,8 @@ def test_errors_that_grow_with_age_are_a_trend_and_equal_ones_are_none(seed: int
 def test_one_run_or_none_with_errors_has_no_trend() -> None:
     assert isnan(trend_of([(5000.0, 1000, 3)]).per_thousand_turns)
     assert isnan(trend_of([(5000.0, 1000, 0), (9000.0, 1000, 0)]).per_thousand_turns)
+
+
+@pytest.mark.parametrize(("late", "says"), [(60, "grows"), (10, "no trend beyond chance"), (0, "falls")])
+def test_a_trend_is_told_in_words(late: int, says: str) -> None:
+    assert trend_of([(1000.0, 10_000, 10), (2000.0, 10_000, late)]).words.endswith(says)

@@ -108,6 +108,27 @@ def test_stop_during_a_jog_brings_it_to_rest_and_the_step_can_be_begun_again(
     assert stage.guide.outcome is not None and stage.guide.outcome.ended is Ended.STOPPED
 
 
+def test_stop_needs_no_screen_that_draws(tmp_path: Path) -> None:
+    stage = TwinStage(tmp_path, 2.0)
+    person = stage.guide.person = HeldPerson()
+    driver: Driver = stopping(Silent, person)()  # type: ignore[call-arg]
+
+    async def act(on: TwinStage) -> None:
+        await on.answer_until("jog wheel first")
+        await on.type("go")
+        await on.until(person.moving.is_set, "the wheel moves")
+        driver.process_message(Key("f12", None))  # as the thread does that reads the terminal
+        person.pressed.set()
+        engine = on.guide._thread
+        assert engine is not None
+        engine.join(WAIT_S)  # the screen's loop stands still meanwhile
+        assert not engine.is_alive()
+        at_rest(on)
+
+    stage.play(act)
+    assert stage.guide.outcome is not None and stage.guide.outcome.ended is Ended.STOPPED
+
+
 @pytest.mark.parametrize(("key", "command"), [("f12", "stop"), ("ctrl+x", "stop"), ("f9", "fast stop")])
 def test_stop_is_taken_where_the_terminal_is_read_before_the_screen_hears_of_it(key: str, command: str) -> None:
     person = ScreenPerson(time_stands=True)
