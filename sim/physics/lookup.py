@@ -120,7 +120,8 @@ class TabulatedLaw:
     """
 
     __slots__ = (
-        "_adhesion", "_load", "_load_n", "_n", "_slow", "_t", "_total", "_v", "_x", "_y", "_z", "error", "outside", "points", "span",
+        "_adhesion", "_load", "_load_n", "_n", "_slow", "_t", "_total", "_v", "_x", "_y", "_z",
+        "error", "outside", "points", "span",
     )  # fmt: skip
 
     def __init__(
