@@ -50,6 +50,8 @@ class Chart:
     """Whether the upright axis begins at 0."""
     stacked: bool = False
     """Whether panels stand one above the other, with the axis along in common and each with its own upright."""
+    by_ratio: bool = False
+    """Whether the axis along is logarithmic; all of it is above 0."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -121,8 +121,21 @@ def _draw_chart(chart: Chart, places: Sequence[Any]) -> None:
         if not chart.stacked or number == len(chart.panels) - 1:
             place.set_xlabel(chart.x_label)
         place.set_ylabel(panel.y_label or chart.y_label)
+    if chart.by_ratio:
+        places[0].set_xscale("log")
+        for place in places[: len(chart.panels)]:  # matplotlib's own numbers would be formulas
+            place.xaxis.set_major_formatter(_plain)
+            place.xaxis.set_minor_formatter(_plain_two_and_five)
     if chart.from_zero:  # last: an axis that is set follows no further points, of no panel that shares it
         places[0].set_ylim(bottom=0.0)
+
+
+def _plain(value: float, _: object) -> str:
+    return f"{value:g}"
+
+
+def _plain_two_and_five(value: float, _: object) -> str:
+    return f"{value:g}" if f"{value:e}"[0] in "25" else ""
 
 
 def _draw_panel(panel: ChartPanel, place: Any, number: int) -> None:
@@ -145,7 +158,7 @@ def _draw_series(series: Series, place: Any, joined: bool) -> Any:
     colour = COLOURS[i]
     label = _told(series.label, LONGEST_LABEL) or None
     if series.look == "law":
-        return place.plot(series.x, series.y, color=colour, linestyle=DASHES[i], linewidth=1.0)[0]
+        return place.plot(series.x, series.y, color=colour, linestyle=DASHES[i], linewidth=1.0, label=label)[0]
     if series.look == "limit":
         return place.plot(series.x, series.y, color="#606060", linestyle=DASHES[i], linewidth=0.9, label=label)[0]
     if series.look == "published":
