@@ -5,12 +5,12 @@ speed, load and temperature
 
     hysteresis = mu_film,  adhesion = mu_dry - mu_film,  share = mu_film / mu_dry  (of hysteresis).
 
-Both coefficients are of one specimen on one rig. What they have in common (the terms of the budget that are the rig's
-or the piece's, ``Contribution.common``) moves both the same way, and only what it moves a component by is left; what
-is each one's own adds in squares. The contact is warmer dry than with a film. mu_film is taken to the temperature of the
-dry contact with the sensitivity c = d ln mu / dT that is known of it, mu_film exp(c (T_dry - T_film)). What is not known
-of c adds its uncertainty times that difference, which is itself not known better than ``RUBBER_K``. The expanded
-uncertainty is of 95 %, with Welch and Satterthwaite's degrees of freedom.
+Both coefficients are of one specimen on one rig. What they have in common (the terms of the budget that are the
+rig's or the piece's, ``Contribution.common``) moves both the same way, and only what it moves a component by is left;
+what is each one's own adds in squares. The contact is warmer dry than with a film. mu_film is taken to the temperature
+of the dry contact with the sensitivity c = d ln mu / dT that is known of it, mu_film exp(c (T_dry - T_film)). What is
+not known of c adds its uncertainty times that difference, which is itself not known better than ``RUBBER_K``. The
+expanded uncertainty is of 95 %, with Welch and Satterthwaite's degrees of freedom.
 """
 
 from __future__ import annotations

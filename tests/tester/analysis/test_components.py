@@ -66,7 +66,8 @@ def test_the_film_is_taken_to_the_temperature_of_the_dry_contact() -> None:
     parts = by_film(result(2.0, at_c=33.0), result(1.2, at_c=23.0), Slope(-0.01, 0.002, "known"))
     assert parts.warmer_k == 10.0
     assert parts.hysteresis.value == pytest.approx(1.2 * exp(-0.1), rel=1e-12)
-    assert parts.hysteresis.common[SENSITIVITY][0] == pytest.approx(1.2 * exp(-0.1) * hypot(10.0, RUBBER_K) * 0.002, rel=1e-12)
+    expected = 1.2 * exp(-0.1) * hypot(10.0, RUBBER_K) * 0.002
+    assert parts.hysteresis.common[SENSITIVITY][0] == pytest.approx(expected, rel=1e-12)
 
 
 def test_an_unknown_sensitivity_widens_what_differs_in_temperature() -> None:
