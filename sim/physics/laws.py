@@ -13,6 +13,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
 from math import isfinite
+from pathlib import Path
 from types import MappingProxyType
 from typing import Final, Protocol, runtime_checkable
 
@@ -48,6 +49,8 @@ class LawSetting:
     """Name of the track."""
     area_mm2: float | None = None
     """Nominal area of contact: it makes a pressure of the load."""
+    tables: Path | None = None
+    """Folder in which tables of slow laws are kept; None: they are made anew."""
 
 
 @dataclass(frozen=True, slots=True)

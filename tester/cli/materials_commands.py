@@ -174,13 +174,13 @@ def check(file: Path, as_json: bool) -> int | None:
 def _load(file: Path) -> Loaded:
     from tester.base.source import read_tree
     from tester.materials.compound import load_compound
-    from tester.materials.schema import SurfaceModel
+    from tester.materials.schema import CompoundModel, SurfaceModel
     from tester.materials.surface import load_surface
 
     if file.parent.name in ("compounds", "surfaces"):
         return load_surface(file) if file.parent.name == "surfaces" else load_compound(file)
     data = read_tree(file)[0].data
-    own = set(SurfaceModel.model_fields) - {"name", "note", "source"}
+    own = set(SurfaceModel.model_fields) - set(CompoundModel.model_fields)
     return load_surface(file) if isinstance(data, dict) and own & set(data) else load_compound(file)
 
 
@@ -238,7 +238,7 @@ def dma(
     data = read_beside(file, file.name, MAX_BYTES)
     table = read_dma(decoded(data.content), options, found)
     _tell(found)
-    _write(out, compound_text(name, table, data, _remarks(found)), force)
+    _write(out, compound_text(name, table, data, found), force)
     click.echo(f"{table.describe()}", err=True)
     _check_written(out)
 
@@ -272,7 +272,7 @@ def scan(
         raise click.ClickException(str(error)) from error
     spectrum = spectrum_of(heights, way, found)
     _tell(found)
-    _write(out, surface_text(name or file.stem, spectrum, data, _remarks(found)), force)
+    _write(out, surface_text(name or file.stem, spectrum, data, found), force)
     _check_written(out)
 
 
@@ -282,10 +282,6 @@ def _pairs(texts: Sequence[str], option: str) -> Iterable[tuple[str, str]]:
         if not equals or not left.strip() or not right.strip():
             raise click.BadParameter(f'"{text}" (expected such as "E\'=Storage Modulus")', param_hint=option)
         yield left.strip(), right.strip()
-
-
-def _remarks(found: Findings) -> list[str]:
-    return [*found.notes, *(f"doubt, line {one.line}: {one.message}" for one in found.doubts)]
 
 
 def _tell(found: Findings) -> None:

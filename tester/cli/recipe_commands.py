@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import gc
 import sys
-from collections.abc import Generator
+from collections.abc import Generator, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from tester.analysis.repeatability import Pool
     from tester.base.source import Problem
     from tester.recipe.schema import Recipe
+    from tester.run.materials import UsedMaterials
 
 
 def recipe_file(name_or_path: str) -> tuple[Path, str]:
@@ -45,16 +46,21 @@ def recipe_file(name_or_path: str) -> tuple[Path, str]:
 @set_option
 @risk_option
 @json_option
-def check(recipe: str, rig_name: str, overrides: tuple[str, ...], accept_risk: str, as_json: bool) -> int:
+@click.option("--verbose", is_flag=True, help="Also say which files its compounds and its surface are described by.")
+def check(
+    recipe: str, rig_name: str, overrides: tuple[str, ...], accept_risk: str, as_json: bool, verbose: bool
+) -> int:
     """Validate RECIPE (a file, or the name of a packaged recipe) against the schema and the rig.
 
-    Every problem at once, as file:line:col: message, and exit code 3.
+    Every problem at once, as file:line:col: message, and exit code 3. What is doubtful in the files of its compounds
+    and its surface is said as a warning.
     """
     from tester.base.source import InvalidSource
     from tester.recipe.check import load_checked
     from tester.recipe.conditions import conditions_of
     from tester.recipe.reference import REFERENCE, ReferenceSection
     from tester.run.kinds import recipe_part
+    from tester.run.materials import used_materials
     from tester.run.rigs import load_rig
 
     path, name = recipe_file(recipe)
@@ -62,6 +68,7 @@ def check(recipe: str, rig_name: str, overrides: tuple[str, ...], accept_risk: s
     part = recipe_part(rig)
     try:
         loaded = load_checked(path, rig, part, name)
+        used = used_materials(loaded.recipe, path)
     except InvalidSource as error:
         if not as_json:
             raise
@@ -70,13 +77,24 @@ def check(recipe: str, rig_name: str, overrides: tuple[str, ...], accept_risk: s
     valid = loaded.recipe
     count = len(conditions_of(valid, part.settings)) * len(valid.specimens) * valid.replicates
     if as_json:
-        print_json({"valid": True, "problems": [], "conditions": count})
+        print_json({"valid": True, "problems": [], "conditions": count, "doubts": used.doubts})
     else:
+        for doubt in used.doubts:
+            click.echo(f"warning: {doubt}", err=True)
+        for line in _materials(used) if verbose else ():
+            click.echo(line, err=True)
         watched = isinstance(section := getattr(valid, REFERENCE, None), ReferenceSection)
         every = f", a reference condition after every {section.every}" if watched else ""
         click.echo(f'{name}: valid on rig "{rig.name}", {count} conditions{every}')
     say_packaged_keys(rig_name, overrides)
     return 0
+
+
+def _materials(used: UsedMaterials) -> Iterator[str]:
+    for one in used.files:
+        yield f"{one.role} {one.name}: {one.path}, sha256 {one.sha256}"
+    for role, what in used.bare:
+        yield f"{role} {what}: no file describes it, its name alone is recorded"
 
 
 @click.command()

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 
 _SESSION = "session origin_s started_utc host operator software_version git_revision"
 _CHANGE = "session utc subject before_sha256 after_sha256 reason"
+_MATERIAL = "role name file source sha256 doubts"
 _WORD = "condition repeat attempt excluded reason operator utc software_version"
 """Fields of the records of these names that ``show --json`` tells."""
 
@@ -123,6 +124,7 @@ def _summary(name: str, results: RunResults) -> dict[str, Json]:
         "git_revision": run.info.git_revision,
         "versions": dict(run.info.versions),
         "calibration_sha256": run.calibration_sha256,
+        "materials": [_fields(one, _MATERIAL) for one in run.info.materials],
         "started_utc": run.info.started_utc,
         "ended_utc": run.ended_utc or None,
         "rig_seconds": number(run.rig_seconds),
@@ -223,6 +225,9 @@ def _lines(name: str, results: RunResults) -> Iterator[str]:
     yield f"rig time {duration(run.rig_seconds)}, started {run.info.started_utc}{ended}"
     for name, described in run.info.extensions.items():
         yield f"loaded   {shown(name)}: {shown(described)}"
+    for one in run.info.materials:
+        yield shown(f"{one.role:8} {one.name}: {one.source}, sha256 {one.sha256}")
+        yield from (shown(f"  doubt: {doubt}") for doubt in one.doubts.splitlines())
     if run.overruns:
         yield f"overruns {run.overruns} samples dropped"
     yield f"values   {results.valued()} of {len(results.rows)} conditions"

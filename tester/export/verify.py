@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
+from hashlib import file_digest
 from pathlib import Path
 
 from tester import __version__
@@ -162,7 +164,24 @@ def _texts(folder: Path, run: StoredRun) -> list[str]:
             problems.append(f"{path.name}: missing")
         elif _sha256(path) != sha:
             problems.append(f"{path.name}: not what the run was made with")
-    return problems
+    return [*problems, *_materials(folder, run)]
+
+
+def _materials(folder: Path, run: StoredRun) -> Iterator[str]:
+    """Yield what differs of the files of compounds and surfaces: their texts on record, and the folder's copies."""
+    for one in run.info.materials:
+        if one.text is not None and text_sha256(one.text) != one.sha256:
+            yield f"run.db: the text of {one.file} has another hash"
+        path = folder / one.file
+        if not path.is_file():
+            yield f"{one.file}: missing"
+        elif _file_sha256(path) != one.sha256:
+            yield f"{one.file}: not what the run was made with"
+
+
+def _file_sha256(path: Path) -> str:
+    with path.open("rb") as file:
+        return file_digest(file, "sha256").hexdigest()
 
 
 def _sha256(path: Path) -> str:

@@ -62,6 +62,8 @@ def load_compound(path: Path, name: str | None = None) -> LoadedCompound:
     for doubt in _doubts(model, table):
         found.doubt(tree.key_position(("moduli",)), doubt)
     _formulation(model, tree, found)
+    for number, doubt in enumerate(model.doubts):
+        found.doubt(tree.position(("doubts", number)), doubt)
     file = MaterialFile("compound", model.name, path, tree.text, data, tuple(sorted(found.doubts)))
     return LoadedCompound(model, file, table, tuple(found.notes))
 

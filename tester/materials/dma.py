@@ -185,11 +185,12 @@ class _Reading:
         by_name = storage is not None and quantity_of(storage.heading[:2]) == "" and "'" not in storage.heading
         if storage is not None and letter == "E" and "E'" not in options.columns:
             if storage.heading.upper().startswith("M"):
-                self.found.doubt(self.place, f'"{storage.heading}" is taken for the modulus of tension, E\'')
+                told = f'"{storage.heading}" is taken for the modulus of tension, E\''
+                self.found.doubt(self.place, told, lasting=True)
             elif by_name and "tensile" not in storage.heading.casefold():
                 asked = options.ask_column.format(quantity="G'")
                 told = f'"{storage.heading}" does not say of which deformation: taken for tension, E\''
-                self.found.doubt(self.place, f"{told} ({asked} for shear)")
+                self.found.doubt(self.place, f"{told} ({asked} for shear)", lasting=True)
 
     def _missing(self, quantity: str, words: str, example: str = "") -> None:
         there = ", ".join(f'"{one}"' for one in self.layout.headings if one)
@@ -233,7 +234,7 @@ class _Reading:
         elif with_comma and all(_THOUSANDS.fullmatch(cell) for _, cell in with_comma):
             line, cell = with_comma[0]
             told = f'"{cell}" is read as {cell.replace(",", ".")}: its comma may mean thousands'
-            self.found.doubt((line + 1, 1), told)
+            self.found.doubt((line + 1, 1), told, lasting=True)
         if with_comma:
             self.found.notes.append("numbers have a decimal comma")
         return bool(with_comma)
@@ -288,6 +289,6 @@ class _Reading:
             _, line, tan, ratio = max(off)
             told = f"tan delta {tan:g} is not {letter}''/{letter}' = {ratio:.4g}"
             more = f" (the worst of {len(off)} of {len(values)} points)"
-            self.found.doubt((line + 1, 1), f"{told}{more}: the moduli count")
+            self.found.doubt((line + 1, 1), f"{told}{more}: the moduli count", lasting=True)
         else:
             note(f"tan delta agrees with {letter}''/{letter}' within {TAN_PERCENT:g} %")

@@ -19,14 +19,18 @@ class Findings:
     problems: list[Problem] = field(default_factory=list[Problem])
     doubts: list[Problem] = field(default_factory=list[Problem])
     notes: list[str] = field(default_factory=list[str])
+    lasting: list[str] = field(default_factory=list[str])
+    """Doubts that nobody can see again in what is made of the file: an import writes them down."""
 
     def refuse(self, place: tuple[int, int], message: str) -> None:
         """Add a problem."""
         self.problems.append(Problem(self.file, *place, message))
 
-    def doubt(self, place: tuple[int, int], message: str) -> None:
+    def doubt(self, place: tuple[int, int], message: str, *, lasting: bool = False) -> None:
         """Add a doubt."""
         self.doubts.append(Problem(self.file, *place, message))
+        if lasting:
+            self.lasting.append(f"line {place[0]} of what was imported: {message}")
 
     def end(self) -> None:
         """Raise InvalidSource where there are problems."""

@@ -131,7 +131,8 @@ def heading_problems(texts: Sequence[str]) -> Iterator[str]:
             known = ", ".join(QUANTITIES)
             yield f'"{text}" is no heading of a table of moduli (expected one of {known}, with its unit)'
         elif not one.unit:
-            yield f'"{text}" has no unit (expected {accepted(one.quantity)}, such as "{text} {first_unit(one.quantity)}")'
+            such = f"{text} {first_unit(one.quantity)}"
+            yield f'"{text}" has no unit (expected {accepted(one.quantity)}, such as "{such}")'
         elif one.quantity in seen:
             yield f"{one.quantity} is there twice"
         seen.add(one.quantity)

@@ -174,7 +174,7 @@ def _sinusoid(wave: WaveModel) -> Sinusoid:
 
 def _named(folder: Path) -> Iterator[tuple[Path, str]]:
     """Yield the YAML files of a folder with the name that each says; by that line alone, for a list is to be quick."""
-    for path in sorted(folder.glob("*.yaml")) if folder.is_dir() else ():
+    for path in _files(folder):
         try:
             line = _NAME.search(path.read_text(encoding="utf-8", errors="replace"))
             data = load_tree(line[0].rstrip("\r")).data if line else None
@@ -184,12 +184,17 @@ def _named(folder: Path) -> Iterator[tuple[Path, str]]:
             yield path, str(data["name"])
 
 
+def _files(folder: Path) -> list[Path]:
+    """Return the YAML files of a folder, and of the folders in it."""
+    return [*sorted(folder.glob("*.yaml")), *sorted(folder.glob("*/*.yaml"))]
+
+
 def nameless(library: Library) -> Iterator[Path]:
     """Yield the YAML files of a library's folders that say no name."""
     for folder in library.folders:
         for below in FOLDERS.values():
             named = {path for path, _ in _named(folder / below)}
-            yield from (path for path in sorted((folder / below).glob("*.yaml")) if path not in named)
+            yield from (path for path in _files(folder / below) if path not in named)
 
 
 def _refuse_doubled(entries: Sequence[LibraryEntry]) -> None:

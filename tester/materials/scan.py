@@ -70,13 +70,14 @@ def read_scan(path: Path, content: bytes, options: ScanOptions, found: Findings)
         matrix, pixel, unit = _instrument(path, found)
     if options.unit is not None:
         if unit is not None and unit != options.unit:
-            found.doubt((1, 1), f"the file says heights in {unit}; taken in {options.unit}, as asked")
+            found.doubt((1, 1), f"the file says heights in {unit}; taken in {options.unit}, as asked", lasting=True)
         unit = options.unit
     if unit is None:
         found.refuse((1, 1), f"the heights have no unit (expected nm, um, mm or m; {options.ask_unit})")
     if options.pixel_m is not None:
         if pixel is not None and not np.allclose(pixel, options.pixel_m, rtol=1e-3):
-            found.doubt((1, 1), f"the file says points {pixel[0]:.4g} m apart; taken {options.pixel_m:.4g} m, as asked")
+            told = f"the file says points {pixel[0]:.4g} m apart; taken {options.pixel_m:.4g} m, as asked"
+            found.doubt((1, 1), told, lasting=True)
         pixel = (options.pixel_m, options.pixel_m)
     if pixel is None:
         found.refuse((1, 1), f"the distance from point to point is not said (expected such as {options.ask_pixel})")
@@ -108,7 +109,7 @@ def spectrum_of(scan: HeightMap, detrend: Detrend, found: Findings) -> RadialSpe
     share = (spectrum.rms_height_m / rms) ** 2 - 1.0
     if abs(share) > BLUNT_SHARE:
         told = f"the spectrum's <h^2> is {100.0 * share:+.0f} % off that of the heights"
-        found.doubt((1, 1), f"{told}: the map has waves as long as itself, or is not alike in all places")
+        found.doubt((1, 1), f"{told}: the map has waves as long as itself, or is not alike in all places", lasting=True)
     return spectrum
 
 
@@ -175,7 +176,7 @@ def _instrument(path: Path, found: Findings) -> tuple[Array, tuple[float, float]
     values = np.asarray(heights.filled(np.nan), dtype=np.float64)
     known = unit if unit in UNITS_M else None
     if unit and known is None:
-        found.doubt((1, 1), f'the file says heights in "{unit}", which is not known here')
+        found.doubt((1, 1), f'the file says heights in "{unit}", which is not known here', lasting=True)
     if sizes is None or known is None:
         return values, None, known
     pixel = tuple(float(size) / points * UNITS_M[known] for size, points in zip(sizes, values.shape, strict=True))

@@ -128,6 +128,8 @@ class CompoundModel(Section, frozen=True):
     note: Note | None = None
     source: Note | None = None
     """where the figures are from; [A] for an assumption"""
+    doubts: Annotated[list[Note], Field(max_length=100)] = Field(default_factory=list[str])
+    """what is doubtful in it, as an import or a person says; named wherever it is used"""
     formulation: dict[Text, Phr] = Field(default_factory=dict[str, float])
     """parts per hundred of rubber (phr), by ingredient"""
     batch: Text | None = None
@@ -219,6 +221,8 @@ class SurfaceModel(Section, frozen=True):
     note: Note | None = None
     source: Note | None = None
     """where the figures are from; [A] for an assumption"""
+    doubts: Annotated[list[Note], Field(max_length=100)] = Field(default_factory=list[str])
+    """what is doubtful in it, as an import or a person says; named wherever it is used"""
     spectrum: PowerLawModel | None = None
     radial: RadialModel | None = None
     scan: ScanModel | None = None

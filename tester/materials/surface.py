@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 from pydantic import ValidationError
 
+from tester.base.extras import MissingExtraError
 from tester.base.source import InvalidSource, Problem, Tree, problems_from_validation, read_tree
 from tester.materials.files import DataFile, DataFileError, MaterialFile, read_beside
 from tester.materials.finding import Findings
@@ -59,6 +60,8 @@ def load_surface(path: Path, name: str | None = None) -> LoadedSurface:
         radial, data = _scanned(model.scan, path, tree, found)
     found.end()
     assert model is not None
+    for number, doubt in enumerate(model.doubts):
+        found.doubt(tree.position(("doubts", number)), doubt)
     file = MaterialFile("surface", model.name, path, tree.text, data, tuple(sorted(found.doubts)))
     return LoadedSurface(model, file, radial, tuple(found.notes))
 
@@ -116,6 +119,9 @@ def _scanned(
         radial = spectrum_of(scan, model.detrend, own)
     except InvalidSource as error:
         found.problems += error.problems
+        return None, ()
+    except MissingExtraError as error:
+        found.refuse(tree.position(("scan", "file")), str(error))
         return None, ()
     found.doubts += own.doubts
     found.notes += own.notes

@@ -5,17 +5,15 @@ The numbers stand in the file itself, so that it is whole without what it was ma
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-
 from tester.base.plain import harmless
 from tester.materials.files import DataFile
+from tester.materials.finding import Findings
 from tester.materials.moduli import ModuliTable
 from tester.materials.radial import RadialSpectrum
 
 
-
-def compound_text(name: str, table: ModuliTable, data: DataFile, remarks: Iterable[str]) -> str:
-    """Return a compound's file with a table of moduli. ``remarks``: what was converted, and what is doubtful."""
+def compound_text(name: str, table: ModuliTable, data: DataFile, found: Findings) -> str:
+    """Return a compound's file with a table of moduli. ``found``: what was converted, and what is doubtful."""
     rows = "".join(
         f"      - [{r.temperature_c!r}, {r.frequency_hz!r}, {r.storage_pa / 1e6!r}, {r.loss_pa / 1e6!r}]\n"
         for r in table.rows
@@ -23,12 +21,13 @@ def compound_text(name: str, table: ModuliTable, data: DataFile, remarks: Iterab
     head = [
         f"# Moduli imported from {_line(data.name)}, SHA-256",
         f"# {data.sha256}.",
-        *(f"# {_line(one)}" for one in remarks),
-        "# What else is known of it belongs here: formulation (phr), batch, cure, density, hardness, Tg, decade_k, shear.",
+        *(f"# {_line(one)}" for one in found.notes),
+        "# What else is known belongs here: formulation (phr), batch, cure, density, hardness, Tg, decade_k, shear.",
     ]
     return "\n".join(head) + (
         f"\nname: {_quoted(name)}\n"
         f"source: {_quoted(f'imported from {_line(data.name)}')}\n"
+        f"{_doubts(found)}"
         "moduli:\n"
         "  table:\n"
         "    columns: [temperature degC, frequency Hz, E' MPa, E'' MPa]\n"
@@ -36,23 +35,30 @@ def compound_text(name: str, table: ModuliTable, data: DataFile, remarks: Iterab
     )
 
 
-def surface_text(name: str, spectrum: RadialSpectrum, data: DataFile, remarks: Iterable[str]) -> str:
-    """Return a surface's file with a spectrum as a table. ``remarks``: what was taken off, and what is doubtful."""
+def surface_text(name: str, spectrum: RadialSpectrum, data: DataFile, found: Findings) -> str:
+    """Return a surface's file with a spectrum as a table. ``found``: what was taken off, and what is doubtful."""
     points = zip(spectrum.q_1_m.tolist(), spectrum.power_m4.tolist(), strict=True)
     rows = "".join(f"    - [{q!r}, {power!r}]\n" for q, power in points)
     head = [
         f"# Spectrum of the scan {_line(data.name)}, SHA-256",
         f"# {data.sha256}.",
-        *(f"# {_line(one)}" for one in remarks),
+        *(f"# {_line(one)}" for one in found.notes),
         f"# rms height {spectrum.rms_height_m * 1e6:.4g} um, rms slope {spectrum.rms_slope:.4g}.",
     ]
     return "\n".join(head) + (
         f"\nname: {_quoted(name)}\n"
         f"source: {_quoted(f'scan {_line(data.name)}')}\n"
+        f"{_doubts(found)}"
         "radial:\n"
         "  columns: q 1/m, C m4\n"
         f"  rows:\n{rows}"
     )
+
+
+def _doubts(found: Findings) -> str:
+    if not found.lasting:
+        return ""
+    return "doubts:\n" + "".join(f"  - {_quoted(_line(one))}\n" for one in found.lasting)
 
 
 def _line(text: str) -> str:

@@ -12,6 +12,7 @@ from tester.report.charts import Material, charts_of, repeats_chart
 from tester.report.conditions import conditions_section, drift_section, short_table, verdict
 from tester.report.inline import inline_svg
 from tester.report.layout import Chapter, FactSheet, Paragraph, Part, Picture, Report, ReportSection
+from tester.report.materials import materials_sections
 from tester.report.overview import overview_chart
 from tester.report.record import RunRecord
 from tester.report.runs import runs_chapter
@@ -92,6 +93,7 @@ def _cover(record: RunRecord, *, several: bool) -> list[Part]:
 def _chapter(record: RunRecord, key: str, showing: Showing) -> Chapter:
     sections = [
         ran_section(record, f"{key}-ran"),
+        *materials_sections(record, f"{key}-materials"),
         conditions_section(record, f"{key}-conditions"),
         _figures(record, f"{key}-figures", showing),
         budget_section(record, f"{key}-budgets"),

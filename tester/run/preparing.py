@@ -11,6 +11,7 @@ from tester.recipe.estimate import Estimate
 from tester.recipe.loader import LoadedRecipe
 from tester.run.folder import Work, work_of
 from tester.run.kinds import recipe_part
+from tester.run.materials import UsedMaterials, used_materials
 from tester.run.rigs import load_rig
 
 
@@ -22,6 +23,7 @@ class Prepared:
     recipe: LoadedRecipe
     work: Work
     expected: Estimate
+    materials: UsedMaterials
 
 
 def prepared(recipe: str, rig_name: str, overrides: tuple[str, ...], accept_risk: str = "") -> Prepared:
@@ -30,4 +32,5 @@ def prepared(recipe: str, rig_name: str, overrides: tuple[str, ...], accept_risk
     path = find(recipe)
     loaded = load_checked(path, rig, recipe_part(rig))
     work = work_of(loaded.recipe, rig)
-    return Prepared(path, loaded, work, recipe_part(rig).estimate(work.plan, rig))
+    materials = used_materials(loaded.recipe, path)
+    return Prepared(path, loaded, work, recipe_part(rig).estimate(work.plan, rig), materials)

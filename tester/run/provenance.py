@@ -7,7 +7,7 @@ import os
 import platform
 import shlex
 import subprocess
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
@@ -25,7 +25,7 @@ from tester.rig.profiles import profile_of
 from tester.rig.sensors import title_of
 from tester.run.kinds import recipe_part, run_parts, served_kind
 from tester.store.recorder import Recorder
-from tester.store.records import ACCEPTED_RISK, EXTENSION, LOOSE_KEYS, Calibration, RunInfo, SessionInfo
+from tester.store.records import ACCEPTED_RISK, EXTENSION, LOOSE_KEYS, Calibration, RunInfo, SessionInfo, StoredMaterial
 
 LIBRARIES = ("friction-tester", "numpy", "pyarrow", "pydantic", "pymodbus", "pyserial", "python-can", "pyyaml")
 """Distributions whose versions are stored with a run."""
@@ -50,6 +50,7 @@ def run_info(
     recipe_source: str = "",
     rig_source: str = "",
     risks: Mapping[str, str] | None = None,
+    materials: Sequence[StoredMaterial] = (),
 ) -> RunInfo:
     """Return what the store keeps of a run's beginning. ``risks``: as ``accepted_risks`` returns them."""
     return RunInfo(
@@ -73,6 +74,7 @@ def run_info(
         versions=library_versions(),
         terms=tuple(recipe_part(rig).terms(rig)),
         known=tuple(run_parts(rig).known_slopes(plan)),
+        materials=tuple(materials),
     )
 
 

@@ -16,8 +16,10 @@ from tester.base.source import read_tree
 from tester.machine.results import condition_records
 from tester.recipe.check import load_checked
 from tester.recipe.plan import Plan
+from tester.recipe.schema import Recipe
 from tester.rig import Rig
 from tester.run.kinds import recipe_part
+from tester.run.materials import KeptFile, kept_files, put_back, used_materials, write_materials
 from tester.run.provenance import PACKAGED, accepted_risks, calibration_of, session_info
 from tester.run.rigs import load_rig, load_rig_text
 from tester.store.files import write_text
@@ -81,6 +83,10 @@ def prepare(folder: Path, reason: str, operator: str, accept_risk: str = "") -> 
     refused = _another_plan(conditions, stored)
     if refused:
         return refused
+    restored, lost = put_back(folder, run.info.materials)
+    if lost:
+        return f"{', '.join(lost)}: not what the run was made with, and the record has its hash alone: put it back"
+    added = _added_materials(folder, run, recipe.recipe, found)
     begun = {s.info.condition for s in stored if _begun(s)}
     to_come = [c for c in conditions if c.condition not in begun]
     session = session_info(point.session, point.origin_s, operator)
@@ -93,6 +99,9 @@ def prepare(folder: Path, reason: str, operator: str, accept_risk: str = "") -> 
                 writer.replace_recipe(found.recipe_text, to_come, found.recipe_source)
         if any(change.subject != "recipe" for change in found.changes):
             writer.replace_rig(found.rig.text, calibration_of(found.rig), point.session, found.rig_source)
+        if added:
+            write_materials(folder, added)
+            writer.add_materials([one.stored for one in added])
         if found.changes:
             write_text(folder / "recipe.yaml", found.recipe_text)
             write_text(folder / "rig.yaml", found.rig.text)
@@ -110,15 +119,26 @@ def prepare(folder: Path, reason: str, operator: str, accept_risk: str = "") -> 
         seed=run.info.seed or 0,
         point=point,
         begin=begin,
-        summary=_summary(folder, point, len(conditions)),
+        summary=_summary(folder, point, len(conditions), restored),
     )
 
 
-def _summary(folder: Path, point: ResumePoint, conditions: int) -> str:
+def _added_materials(folder: Path, run: StoredRun, recipe: Recipe, found: Found) -> tuple[KeptFile, ...]:
+    """Return the files of what a changed recipe names besides; what is on record stays as it is there."""
+    if not any(change.subject == "recipe" for change in found.changes):
+        return ()
+    recorded = run.info.materials
+    source = Path(found.recipe_source) if found.recipe_source else folder / "recipe.yaml"
+    used = used_materials(recipe, source, [one.name for one in recorded if one.role != "data"])
+    return kept_files(used.files, [one.file for one in recorded])
+
+
+def _summary(folder: Path, point: ResumePoint, conditions: int, restored: Sequence[str]) -> str:
     over = len(point.stand.ended)
     at = point.next_repeat
     where = f", goes on at repeat {at[1]} of condition {at[0]}" if at is not None else ""
-    return f"{folder.name}: {over} of {conditions} conditions are over{where}"
+    back = f"; {', '.join(restored)} put back as recorded" if restored else ""
+    return f"{folder.name}: {over} of {conditions} conditions are over{where}{back}"
 
 
 # -- what changed -------------------------------------------------------------------------------------------------

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import signal
-from collections.abc import Callable, Generator
+from collections.abc import Callable, Generator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from datetime import date
@@ -33,6 +33,7 @@ from tester.run.endings import EXIT_CODES, CannotStartError, PartEnd, RunEnding,
 from tester.run.folder import Begin, Job, Work, beginning_of, make_folder, specimens_of, write_sources
 from tester.run.kinds import run_parts
 from tester.run.latch import acknowledge, open_trips
+from tester.run.materials import KeptFile, kept_files, write_materials
 from tester.run.merge_parts import put_together, recover
 from tester.run.part_run import run_part
 from tester.run.pool import WorkerPool
@@ -124,7 +125,11 @@ class Session:
             folder = make_folder(options.out, work.plan.name)
             hold_run(use, folder)
             write_sources(folder, recipe.tree.text, rig)
-            begin = self._beginning(folder, found.path, recipe, work)
+            kept = kept_files(found.materials.files)
+            write_materials(folder, kept)
+            for doubt in found.materials.doubts:
+                self.screen.message(f"doubt: {doubt}")
+            begin = self._beginning(folder, found.path, recipe, work, kept)
             return self._record(self._job(folder, options.seed, rig), work, begin)
 
     def prepare(self) -> Prepared:
@@ -245,7 +250,9 @@ class Session:
         history = self.aside(lambda: run_parts(rig).history(folder.parent, rig))
         return Job(folder, seed, o.lapse, o.bus_log, o.samples, o.faults, history)
 
-    def _beginning(self, folder: Path, path: Path, recipe: LoadedRecipe, work: Work) -> Begin:
+    def _beginning(
+        self, folder: Path, path: Path, recipe: LoadedRecipe, work: Work, kept: Sequence[KeptFile]
+    ) -> Begin:
         """Return what begins the run's record: the whole plan, and where everything comes from."""
         o = self.options
         info = run_info(
@@ -258,6 +265,7 @@ class Session:
             recipe_source=recipe_source(path),
             rig_source=rig_source(o.rig, o.overrides),
             risks=accepted_risks(work.rig, o.accept_risk),
+            materials=[one.stored for one in kept],
         )
 
         def begin(writer: RunWriter) -> None:

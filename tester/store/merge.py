@@ -72,6 +72,7 @@ HEADER = frozenset(
         "calibration",
         "budget_term",
         "known_slope",
+        "material",
         "exclusion",
         "chain",
     }

@@ -37,6 +37,7 @@ from tester.store.records import (
     StoredCondition,
     StoredEvent,
     StoredExclusion,
+    StoredMaterial,
     StoredParameter,
     StoredPrompt,
     StoredRepeat,
@@ -77,6 +78,10 @@ def _text(row: Row, name: str) -> str:
     return "" if value is None else str(value)
 
 
+def _text_or_none(row: Row, name: str) -> str | None:
+    return None if row[name] is None else _text(row, name)
+
+
 def _number(row: Row, name: str) -> float:
     value = row[name]
     return float(value) if isinstance(value, int | float) else NAN
@@ -94,7 +99,9 @@ def _optional(row: Row, name: str) -> float | None:
 
 _OF_A_TARE = ("id", "t_s", "kind", "repeat_id")
 """Columns of the table ``tare`` that are no channel's zero."""
-_READERS = {"str": _text, "float": _number, "int": _whole, "float | None": _optional}
+_READERS = {
+    "str": _text, "float": _number, "int": _whole, "float | None": _optional, "str | None": _text_or_none
+}  # fmt: skip
 
 
 def _record(record: type[T], row: Row, **given: object) -> T:
@@ -211,6 +218,7 @@ class RunReader:
                 known=tuple(_record(KnownSlope, one) for one in self._rows("SELECT * FROM known_slope")),
                 metadata=self._texts("metadata", "key", "value"),
                 versions=self._texts("version", "component", "version"),
+                materials=tuple(self.materials()),
             )
             return _record(StoredRun, row, info=info, rig_seconds=self._rig_seconds(row))
         raise NotBegunError(f"{self.path}: the run was not begun")
@@ -253,6 +261,10 @@ class RunReader:
         """Return how far the counterface has travelled under load since the run began, m; 0 where nothing says."""
         rows = self._rows("SELECT coalesce(max(counterface_m), 0.0) AS travel_m FROM travel")
         return next(_number(row, "travel_m") for row in rows)
+
+    def materials(self) -> list[StoredMaterial]:
+        """Return the files of compounds and surfaces, each before what it refers to."""
+        return [_record(StoredMaterial, row) for row in self._rows("SELECT * FROM material ORDER BY id")]
 
     def specimens(self) -> list[SpecimenInfo]:
         """Return the recipe's specimens."""

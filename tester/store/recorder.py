@@ -22,6 +22,7 @@ from tester.store.records import (
     RunInfo,
     SessionInfo,
     SpecimenInfo,
+    StoredMaterial,
     Travel,
 )
 from tester.store.schema import PIECE
@@ -49,6 +50,7 @@ _CONDITION_FIELDS = tuple(field.name for field in fields(ConditionInfo)
 _PIECE_FIELDS = tuple(field.name for field in fields(PieceInfo) if field.name != "piece")
 _CHECK_FIELDS = tuple(field.name for field in fields(WearCheck) if field.name != "piece")
 _SESSION_FIELDS = tuple(field.name for field in fields(SessionInfo))
+_MATERIAL_FIELDS = tuple(field.name for field in fields(StoredMaterial))
 _CHANGE_FIELDS = tuple(field.name for field in fields(Change))
 
 
@@ -127,7 +129,12 @@ class Recorder:
         statements += [_to_come(condition) for condition in conditions]
         statements += calibration_rows(info.calibration, 1)
         statements += budget_rows(info.terms, info.known)
+        statements += [insert("material", columns_in(one, _MATERIAL_FIELDS)) for one in info.materials]
         return self._write(*statements, urgent=True)
+
+    def add_materials(self, materials: Iterable[StoredMaterial]) -> None:
+        """Record files of materials that a changed recipe names besides those before."""
+        self._write(*(insert("material", columns_in(one, _MATERIAL_FIELDS)) for one in materials), urgent=True)
 
     def begin_session(self, session: SessionInfo) -> None:
         """Record which process works on the run from now on; rig times count from its ``origin_s``."""

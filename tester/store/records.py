@@ -58,6 +58,24 @@ class Change:
 
 
 @dataclass(frozen=True, slots=True)
+class StoredMaterial:
+    """A file of a compound or a surface that the recipe names, or (``role``: data) one that such a file refers to."""
+
+    role: str
+    name: str
+    """As the recipe says it; of data the file's own."""
+    file: str
+    """Where its copy lies in the run's folder."""
+    source: str
+    sha256: str
+    """Of its bytes, hexadecimal."""
+    text: str | None
+    """None of what is no short text: the copy alone holds it."""
+    doubts: str = ""
+    """What was doubtful in it, a line each."""
+
+
+@dataclass(frozen=True, slots=True)
 class StoredTare:
     """A zero of the load cell. ``kind``: reference, repeat or check; ``zeros``: of each channel, by its name."""
 
@@ -176,6 +194,8 @@ class RunInfo:
     """What the machine's measuring chain may be off by."""
     known: tuple[KnownSlope, ...] = ()
     """What is known of the compounds' sensitivity to temperature."""
+    materials: tuple[StoredMaterial, ...] = ()
+    """Files of the compounds and the surface that the recipe names, as far as there are any."""
 
     @property
     def extensions(self) -> Mapping[str, str]:

@@ -443,6 +443,22 @@ CREATE {temporary}TABLE travel (
 """How far the counterface had travelled under load since the run began, and how far what was mounted had slid, as each
 repeat began. With ``repeat_id`` 0: as the state of what is mounted was recorded last."""
 
+_MATERIAL = """
+CREATE {temporary}TABLE material (
+    id INTEGER PRIMARY KEY,
+    role TEXT NOT NULL,
+    name TEXT NOT NULL,
+    file TEXT NOT NULL UNIQUE,
+    source TEXT NOT NULL,
+    sha256 TEXT NOT NULL,
+    text TEXT,
+    doubts TEXT NOT NULL
+);
+"""
+"""Files of the compounds and surfaces that the recipe names: ``role`` is compound, surface, or data for a file that one
+of them refers to; ``file`` is where the copy lies in the run's folder. ``text`` is NULL of what is no short text, which
+its hash alone holds; ``doubts`` has a line for each."""
+
 _CONDITION = """
 DROP TABLE condition;
 CREATE TABLE condition (
@@ -483,6 +499,7 @@ MIGRATIONS: tuple[str, ...] = (
     _TRUTH.format(temporary=""),
     _BOTH_DIRECTIONS,
     _TRAVEL.format(temporary=""),
+    _MATERIAL.format(temporary=""),
 )
 """Migration n leads from schema n to n + 1."""
 
@@ -506,6 +523,7 @@ _ADDED: dict[int, str] = {
     10: _TRUTH,
     11: "",  # its readers take a column that is not there for NULL
     12: _TRAVEL,
+    13: _MATERIAL,
 }
 """What versions have added, by version: what a connection to an older record can have for itself."""
 

@@ -12,6 +12,7 @@ from tester.base.trouble import in_words
 from tester.export.results import TableRow, results_of
 from tester.machine.context import Progress
 from tester.machine.prompts import Prompts
+from tester.run.materials import KeptFile, write_materials
 from tester.run.pool import stop_level
 from tester.run.session import Session, SessionOptions
 from tester.store.reader import RunReader
@@ -33,6 +34,8 @@ class SweepTask:
     seed: int
     recipe_text: str
     rig_text: str
+    materials: tuple[KeptFile, ...] = ()
+    """Files of the compounds and the surface that the recipe names."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,6 +90,7 @@ def run_case(task: SweepTask) -> CaseResult:
         recipe, rig = folder / "recipe.yaml", folder / "rig.yaml"
         recipe.write_text(task.recipe_text, encoding="utf-8", newline="\n")
         rig.write_text(task.rig_text, encoding="utf-8", newline="\n")
+        write_materials(folder, task.materials)
         screen = Unseen()
         options = SessionOptions(str(recipe), str(rig), out=folder / "runs", seed=task.seed, samples=False)
         session = screen.session = Session(options, screen)

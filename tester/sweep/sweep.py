@@ -14,6 +14,7 @@ from tester.base.exits import EXIT_DONE, EXIT_INCOMPLETE, EXIT_INTERRUPTED
 from tester.recipe.check import load_checked
 from tester.run.folder import make_folder
 from tester.run.kinds import recipe_part, served_kind
+from tester.run.materials import kept_files, used_materials
 from tester.run.rigs import load_rig
 from tester.sweep.case import CaseResult, SweepTask, not_run, run_case
 from tester.sweep.executors import Submit
@@ -82,8 +83,10 @@ def prepare_sweep(options: SweepOptions) -> Sweep:
         recipe = load_checked(path, rig, recipe_part(rig))
         name, recipe_text, rig_text = recipe.recipe.recipe, recipe.tree.text, rig.text
         held = recipe.recipe.axes
+        materials = kept_files(used_materials(recipe.recipe, path).files)
         tasks += [
-            SweepTask(len(tasks) + i, point, seed, recipe_text, rig_text) for i, seed in enumerate(seeds, start=1)
+            SweepTask(len(tasks) + i, point, seed, recipe_text, rig_text, materials)
+            for i, seed in enumerate(seeds, start=1)
         ]
     assert held is not None  # a sweep has a point at least, that of no axis
     worn = served_kind(plain).machine.specimen

@@ -9,10 +9,9 @@ import pytest
 
 from sim.physics import laws
 from sim.physics.friction import FrictionModel, UnknownCompoundError
-from sim.physics.materials import Components, Rubber, Shear, Sinusoid, Surface, UnknownMaterialError
-from sim.physics.moduli import ConstantModulus
-from sim.physics.roughness import SelfAffine
+from sim.physics.materials import Components, Rubber, Surface
 from sim.physics.wlf import WlfBell
+from tests.sim.physics.materials_example import Shelf
 
 
 class Coulomb:
@@ -77,35 +76,11 @@ def test_the_papers_laws_know_their_compounds_and_take_no_figures() -> None:
         laws.make("paper", "1#", {"mu": 1.0})
 
 
-class Shelf:
-    """Materials of one compound and one surface."""
-
-    def rubber(self, name: str) -> Rubber:
-        if name != "SBR":
-            raise UnknownMaterialError(f"no compound {name!r} on the shelf")
-        return Rubber("SBR", ConstantModulus(1e6, 0.3))
-
-    def surface(self, name: str) -> Surface:
-        if name != "grit":
-            raise UnknownMaterialError(f"no surface {name!r} on the shelf")
-        return Surface("grit", SelfAffine(2.6023e-19, 2e4, 10.0**5.344, 0.8))
-
-
-class Greasy(Shelf):
-    """With what greta needs."""
-
-    def rubber(self, name: str) -> Rubber:
-        return replace(super().rubber(name), shear=Shear(1.2e4, 1.0, 0.6, 285.7))
-
-    def surface(self, name: str) -> Surface:
-        return replace(super().surface(name), coarse=Sinusoid(9.9e-3, 0.8e-3), fine=Sinusoid(9.9e-5, 8e-6))
-
-
 SETTING = laws.LawSetting(Shelf(), "grit", 100.0)
 
 
 def test_a_law_of_materials_is_made_of_what_the_setting_finds() -> None:
-    law = laws.with_parts("persson", laws.make("persson", "SBR", setting=SETTING))
+    law = laws.with_parts("persson", laws.make("persson", "plain", setting=SETTING))
     # 10 N on 100 mm2 are 1e5 Pa.
     assert law.mu(20.0, 10.0, 1.0) == pytest.approx(0.291203, rel=1e-4)
     assert law.components(20.0, 10.0, 1.0) == Components(0.0, law.mu(20.0, 10.0, 1.0))
@@ -120,9 +95,9 @@ def test_a_law_of_materials_may_come_from_elsewhere() -> None:
 
 
 def test_greta_is_given_the_area_of_the_setting() -> None:
-    setting = replace(SETTING, materials=Greasy())
-    one = laws.with_parts("greta", laws.make("greta", "SBR", setting=setting))
-    wide = laws.with_parts("greta", laws.make("greta", "SBR", setting=replace(setting, area_mm2=200.0)))
+    setting = replace(SETTING, surface="road")
+    one = laws.with_parts("greta", laws.make("greta", "demonstration", setting=setting))
+    wide = laws.with_parts("greta", laws.make("greta", "demonstration", setting=replace(setting, area_mm2=200.0)))
     assert one.components(25.0, 30.0, 1.0) == wide.components(25.0, 60.0, 1.0)
 
 
