@@ -94,7 +94,8 @@ def _draw(figure: Figure, target: BinaryIO, ending: str, dpi: float, further: di
         down = ceil(len(figure.panels) / across)
         wide, high = STRIP_INCH if stacked else PANEL_INCH
         canvas: Any = Canvas(figsize=(wide * across, high * down + 0.5), layout="constrained")
-        places: Any = canvas.subplots(down, across, squeeze=False, sharex=True, sharey=not stacked)
+        own_x = isinstance(figure, Chart) and figure.own_x
+        places: Any = canvas.subplots(down, across, squeeze=False, sharex=not own_x, sharey=not stacked)
         flat: list[Any] = [place for row in places for place in row]
         if isinstance(figure, Chart):
             _draw_chart(figure, flat)
@@ -119,7 +120,11 @@ def _draw_chart(chart: Chart, places: Sequence[Any]) -> None:
     for number, (panel, place) in enumerate(zip(chart.panels, places, strict=False)):
         _draw_panel(panel, place, number)
         if not chart.stacked or number == len(chart.panels) - 1:
-            place.set_xlabel(chart.x_label)
+            place.set_xlabel(panel.x_label or chart.x_label)
+        if chart.log_x:
+            place.set_xscale("log")
+            place.xaxis.set_major_formatter("{x:g}")  # its own is a formula, which text here is never read as
+            place.xaxis.set_minor_formatter("")
         place.set_ylabel(panel.y_label or chart.y_label)
     if chart.by_ratio:
         places[0].set_xscale("log")
@@ -141,7 +146,7 @@ def _plain_two_and_five(value: float, _: object) -> str:
 def _draw_panel(panel: ChartPanel, place: Any, number: int) -> None:
     lined = {series.style for series in panel.series if series.look == "law"}
     for turn, series in enumerate(panel.series):
-        drawn = _draw_series(series, place, joined=not series.widths and series.style not in lined)
+        drawn = _draw_series(series, place, joined=panel.joined and not series.widths and series.style not in lined)
         drawn.set_gid(f"{MARKED}-{number}-{turn}")
     if panel.title:
         place.set_title(fill(_told(panel.title), TITLE_WIDTH), fontsize=8.0)
