@@ -58,8 +58,6 @@ class Chart:
     """Whether the axis along is logarithmic."""
     stacked: bool = False
     """Whether panels stand one above the other, with the axis along in common and each with its own upright."""
-    by_ratio: bool = False
-    """Whether the axis along is logarithmic; all of it is above 0."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -20,4 +20,4 @@ def components_chart(
         "sum": tuple(sum(one) for one in found),
     }
     series = tuple(Series(name, tuple(x), y, "law", style) for style, (name, y) in enumerate(lines.items()))
-    return Chart("components", title, x_label, Y_LABEL, (ChartPanel("", series),), note, by_ratio=True)
+    return Chart("components", title, x_label, Y_LABEL, (ChartPanel("", series),), note, log_x=True)

@@ -124,22 +124,19 @@ def _draw_chart(chart: Chart, places: Sequence[Any]) -> None:
         if chart.log_x:
             place.set_xscale("log")
             place.xaxis.set_major_formatter("{x:g}")  # its own is a formula, which text here is never read as
-            place.xaxis.set_minor_formatter("")
+            place.xaxis.set_minor_formatter(_two_and_five if _narrow(panel) else "")
         place.set_ylabel(panel.y_label or chart.y_label)
-    if chart.by_ratio:
-        places[0].set_xscale("log")
-        for place in places[: len(chart.panels)]:  # matplotlib's own numbers would be formulas
-            place.xaxis.set_major_formatter(_plain)
-            place.xaxis.set_minor_formatter(_plain_two_and_five)
     if chart.from_zero:  # last: an axis that is set follows no further points, of no panel that shares it
         places[0].set_ylim(bottom=0.0)
 
 
-def _plain(value: float, _: object) -> str:
-    return f"{value:g}"
+def _narrow(panel: ChartPanel) -> bool:
+    """Tell whether a panel spans so little of a logarithmic axis that powers of ten alone would hardly mark it."""
+    every = [x for series in panel.series for x in series.x]
+    return max(every) < 100.0 * min(every)
 
 
-def _plain_two_and_five(value: float, _: object) -> str:
+def _two_and_five(value: float, _: object) -> str:
     return f"{value:g}" if f"{value:e}"[0] in "25" else ""
 
 

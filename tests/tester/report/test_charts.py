@@ -179,4 +179,4 @@ def test_the_parts_of_a_law_are_lines_with_their_sum() -> None:
     assert {one.label: one.y for one in panel.series} == {
         "adhesion": (1.0, 10.0), "hysteresis": (2.0, 20.0), "sum": (3.0, 30.0),
     }  # fmt: skip
-    assert found.by_ratio and {one.look for one in panel.series} == {"law"}
+    assert found.log_x and {one.look for one in panel.series} == {"law"}
