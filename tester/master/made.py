@@ -10,10 +10,10 @@ import numpy as np
 from sim.physics.materials import Rubber
 from sim.physics.wlf import PoleError
 from tester.master.collapse import RESAMPLES, Collapse, collapse, shifts
-from tester.master.overlap import Pair, pairs_of
+from tester.master.overlap import TemperaturePair, pairs_of
 from tester.master.peaks import Peak, Rule, peaks_of, rules_of
 from tester.master.points import MasterError, MasterPoint, set_of
-from tester.master.verdict import Judged, judge
+from tester.master.verdict import MasterJudgement, judge
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,8 +33,8 @@ class Master:
 
     reference_c: float
     collapse: Collapse
-    pairs: tuple[Pair, ...]
-    judged: Judged
+    pairs: tuple[TemperaturePair, ...]
+    judged: MasterJudgement
     peaks: tuple[Peak, ...]
     rules: tuple[Rule, ...] = ()
     glass_c: float | None = None

@@ -32,7 +32,7 @@ _PLACES: Final = 40
 
 
 @dataclass(frozen=True, slots=True)
-class Pair:
+class TemperaturePair:
     """Two neighbouring temperatures, degC; shifts of the warmer one against the colder one, decades.
 
     ``overlap``: decades of x that both have at the shift by WLF; ``rows``: conditions of the poorer one within it.
@@ -63,19 +63,21 @@ class Pair:
         return not (self.overlap >= THIN_DECADES and self.u <= THIN_SHIFT)
 
 
-def pairs_of(one: Collapse) -> tuple[Pair, ...]:
+def pairs_of(one: Collapse) -> tuple[TemperaturePair, ...]:
     """Return every two neighbouring temperatures of a collapsed set, from cold to warm."""
     of = one.of
     at = np.array([float(np.mean(of.celsius[of.block == i])) for i in range(len(of.blocks_c))])
     by_wlf = shifts(at, one.ts_c)
-    found: list[Pair] = []
+    found: list[TemperaturePair] = []
     for i in range(len(of.blocks_c) - 1):
         cold, warm = one.x[of.block == i], one.x[of.block == i + 1]
         low, high = max(cold.min(), warm.min()), min(cold.max(), warm.max())
         rows = min(int(np.sum((x >= low - 1e-9) & (x <= high + 1e-9))) for x in (cold, warm)) if high > low else 0
         free, u = _free(of, i, one.scatter)
         found.append(
-            Pair(of.blocks_c[i], of.blocks_c[i + 1], float(by_wlf[i + 1] - by_wlf[i]), float(high - low), rows, free, u)
+            TemperaturePair(
+                of.blocks_c[i], of.blocks_c[i + 1], float(by_wlf[i + 1] - by_wlf[i]), float(high - low), rows, free, u
+            )
         )
     return tuple(found)
 

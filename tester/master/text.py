@@ -7,7 +7,7 @@ from math import isfinite
 
 from sim.physics.wlf import GLASS_TO_REFERENCE_K
 from tester.master.made import Master
-from tester.master.overlap import Pair
+from tester.master.overlap import TemperaturePair
 from tester.master.verdict import TEST_WORDS
 
 Plain = str | int | float | bool | None | list["Plain"] | dict[str, "Plain"]
@@ -135,7 +135,7 @@ def plain(one: Master) -> dict[str, Plain]:
     }
 
 
-def _pair(pair: Pair) -> Plain:
+def _pair(pair: TemperaturePair) -> Plain:
     return {
         "colder_c": pair.colder_c,
         "warmer_c": pair.warmer_c,

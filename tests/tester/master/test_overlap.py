@@ -7,12 +7,12 @@ from math import isnan
 import numpy as np
 
 from tester.master.collapse import collapse
-from tester.master.overlap import Pair, pairs_of
+from tester.master.overlap import TemperaturePair, pairs_of
 from tester.master.points import MasterPoint, set_of
 from tests.campaigns.master.synthetic import SPEEDS_M_S, linear, synthetic
 
 
-def pairs(points: list[MasterPoint], ts_c: float | None = None) -> tuple[Pair, ...]:
+def pairs(points: list[MasterPoint], ts_c: float | None = None) -> tuple[TemperaturePair, ...]:
     return pairs_of(collapse(set_of(points), ts_c, resamples=2))
 
 
