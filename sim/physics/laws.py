@@ -1,18 +1,25 @@
 """Laws of friction, found by name.
 
 A law is asked for the coefficient at a temperature (degC), a load (N) and a sliding speed (m/s). ``paper`` and ``v2``
-are those of ``sim.physics.friction``, which know their compounds; ``wlf_bell`` (``sim.physics.wlf``) is given its
-figures. A law from elsewhere is registered, or looked up where this module knows no law of a name.
+are those of ``sim.physics.friction``, which know their compounds; ``wlf_bell`` (``sim.physics.wlf``), ``power`` and
+``arrhenius`` (``sim.physics.simple``) are given their figures. ``persson`` and ``greta`` (modules of these names) are
+made of a rubber and a surface, which a ``LawSetting`` says where to find. A law from elsewhere is registered, or looked
+up where this module knows no law of a name.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from functools import partial
+from math import isfinite
+from pathlib import Path
 from types import MappingProxyType
-from typing import Final, Protocol
+from typing import Final, Protocol, runtime_checkable
 
 from sim.physics.friction import MODEL_NAMES, FrictionModel
+from sim.physics.materials import Components, Materials, Rubber, Surface
+from sim.physics.simple import arrhenius, power
 from sim.physics.wlf import wlf_bell
 
 
@@ -24,15 +31,57 @@ class FrictionLaw(Protocol):
         ...
 
 
-LawMaker = Callable[[str, Mapping[str, float]], FrictionLaw]
+@runtime_checkable
+class LawOfParts(FrictionLaw, Protocol):
+    """A law that knows how much of its coefficient is adhesion and how much hysteresis."""
+
+    def components(self, temperature_c: float, load_n: float, slip_m_s: float) -> Components:
+        """Return both parts; ``mu`` is their sum."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class LawSetting:
+    """What a law is told beside compound and figures, where it is made of materials."""
+
+    materials: Materials | None = None
+    surface: str = ""
+    """Name of the track."""
+    area_mm2: float | None = None
+    """Nominal area of contact: it makes a pressure of the load."""
+    tables: Path | None = None
+    """Folder in which tables of slow laws are kept; None: they are made anew."""
+
+
+@dataclass(frozen=True, slots=True)
+class OfMaterials:
+    """Declares a law that is made of materials."""
+
+    make: Callable[[Rubber, Surface, float, Mapping[str, float]], FrictionLaw]
+    """From a rubber, a surface, the nominal area of contact in mm2, and figures; raises ValueError for what it cannot
+    do with."""
+    slow: bool = False
+    """It takes so long that a simulated rig is given a table of it (``sim.physics.tabulated``)."""
+    version: int = 1
+    """Another one for other values out of the same materials: tables of the version before are not used any more."""
+
+
+PlainMaker = Callable[[str, Mapping[str, float]], FrictionLaw]
 """From a compound's name and its figures (the law's parameters by name, in the units that the law states); raises
 UnknownCompoundError, or ValueError for figures that are missing, unknown or out of range."""
 
+LawMaker = PlainMaker | OfMaterials
+
 NO_FIGURES: Final[Mapping[str, float]] = MappingProxyType({})
+NO_SETTING: Final = LawSetting()
 
 
 class UnknownLawError(ValueError):
     """A law that nobody has registered; the message names those that are there."""
+
+
+class NoPartsError(ValueError):
+    """A law that does not know its parts; the message names it."""
 
 
 def _of_the_paper(model: str, compound: str, figures: Mapping[str, float]) -> FrictionLaw:
@@ -41,9 +90,25 @@ def _of_the_paper(model: str, compound: str, figures: Mapping[str, float]) -> Fr
     return FrictionModel(compound, model)
 
 
+def _persson(rubber: Rubber, surface: Surface, area_mm2: float, figures: Mapping[str, float]) -> LawOfParts:
+    from sim.physics.persson import persson  # numpy takes a tenth of a second to come: not before a law needs it
+
+    return persson(rubber, surface, area_mm2, figures)
+
+
+def _greta(rubber: Rubber, surface: Surface, area_mm2: float, figures: Mapping[str, float]) -> LawOfParts:
+    from sim.physics.greta import greta  # as above
+
+    return greta(rubber, surface, {**figures, "area": area_mm2})
+
+
 _LAWS: dict[str, LawMaker] = {
     **{name: partial(_of_the_paper, name) for name in MODEL_NAMES},
     "wlf_bell": wlf_bell,
+    "power": power,
+    "arrhenius": arrhenius,
+    "persson": OfMaterials(_persson, slow=True),
+    "greta": OfMaterials(_greta, slow=True),
 }
 _FINDERS: list[Callable[[str], LawMaker | None]] = []
 
@@ -79,6 +144,39 @@ def find(name: str) -> LawMaker:
     return _LAWS[name]
 
 
-def make(name: str, compound: str, figures: Mapping[str, float] = NO_FIGURES) -> FrictionLaw:
-    """Return the law of a name for a compound. Raises UnknownLawError and what its maker raises."""
-    return find(name)(compound, figures)
+def make(
+    name: str, compound: str, figures: Mapping[str, float] = NO_FIGURES, setting: LawSetting = NO_SETTING
+) -> FrictionLaw:
+    """Return the law of a name for a compound.
+
+    Raises UnknownLawError and what its maker raises; for a law of materials, UnknownMaterialError, and ValueError for a
+    setting in which something is missing.
+    """
+    maker = find(name)
+    if isinstance(maker, OfMaterials):
+        return _of_materials(name, maker, compound, figures, setting)
+    return maker(compound, figures)
+
+
+def _of_materials(
+    name: str, maker: OfMaterials, compound: str, figures: Mapping[str, float], setting: LawSetting
+) -> FrictionLaw:
+    materials, area_mm2 = setting.materials, setting.area_mm2
+    needs = {
+        f"the modulus of {compound!r}": materials is not None,
+        "a surface": bool(setting.surface),
+        "the nominal area of contact": area_mm2 is not None,
+    }
+    missing = [what for what, given in needs.items() if not given]
+    if materials is None or area_mm2 is None or missing:
+        raise ValueError(f"law {name!r} is made of materials and needs {' and '.join(missing)}")
+    if not (isfinite(area_mm2) and area_mm2 > 0.0):
+        raise ValueError(f"the nominal area of contact must be finite and above 0 mm2, not {area_mm2!r}")
+    return maker.make(materials.rubber(compound), materials.surface(setting.surface), area_mm2, figures)
+
+
+def with_parts(name: str, law: FrictionLaw) -> LawOfParts:
+    """Return the law itself, where it knows its parts. Raises NoPartsError."""
+    if isinstance(law, LawOfParts):
+        return law
+    raise NoPartsError(f"law {name!r} gives the coefficient alone: it does not know adhesion from hysteresis")

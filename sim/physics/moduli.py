@@ -92,6 +92,28 @@ class DmaRow(NamedTuple):
     """E''"""
 
 
+@dataclass(frozen=True, slots=True)
+class EvenShift:
+    """As many kelvin a decade at every temperature (paper G, Eq 9)."""
+
+    decade_k: float
+
+    def __call__(self, temperature_c: float) -> float:
+        """Return what a temperature adds to log10(f / Hz)."""
+        return -temperature_c / self.decade_k
+
+
+@dataclass(frozen=True, slots=True)
+class WlfShift:
+    """The shift of Williams, Landel and Ferry about a temperature."""
+
+    t_ref_c: float
+
+    def __call__(self, temperature_c: float) -> float:
+        """Return what a temperature adds to log10(f / Hz). Raises PoleError."""
+        return log10_shift(temperature_c, self.t_ref_c)
+
+
 class TabulatedModulus:
     """A measured modulus: log E' and log E'' by a monotone cubic over one abscissa, in decades of frequency.
 
@@ -109,6 +131,7 @@ class TabulatedModulus:
     ) -> None:
         """Take the rows with their abscissas, ascending; ``decade_of``: what a temperature adds to log10(f / Hz)."""
         self._decade_of = decade_of
+        self._rows = tuple(rows)
         self._to_shear = 0.5 / (1.0 + poisson)
         self._least, self._most = float(decades[0]), float(decades[-1])
         self._log_storage = MonotoneCubic(decades, np.log10([row.storage_pa for row in rows]))
@@ -116,6 +139,11 @@ class TabulatedModulus:
         self.hold_ends = hold_ends
         self.beyond_decades = 0.0
         """Greatest distance from the measured range that was asked for, decades of frequency; 0: none yet."""
+
+    def __repr__(self) -> str:
+        """Return its content: two of the same text are the same modulus."""
+        ends = f"{self._least!r} to {self._most!r}, {'held' if self.hold_ends else 'not held'}"
+        return f"TabulatedModulus({self._decade_of!r}, {self._to_shear!r}, {ends}, {self._rows!r})"
 
     @classmethod
     def of_sweep(
@@ -131,10 +159,7 @@ class TabulatedModulus:
         if len({row.frequency_hz for row in ordered}) > 1:
             raise ValueError("a sweep of temperature has one frequency; a table of several is a grid")
         log_f0 = math.log10(ordered[0].frequency_hz)
-
-        def decade_of(temperature_c: float) -> float:
-            return -temperature_c / decade_k
-
+        decade_of = EvenShift(decade_k)
         decades = np.array([log_f0 + decade_of(row.temperature_c) for row in ordered])
         if not np.all(np.diff(decades) > 0.0):
             raise ValueError("a sweep has every temperature once")
@@ -149,11 +174,7 @@ class TabulatedModulus:
         Points that fall within 0.1 decade are averaged (in logarithms). Raises ValueError for rows of which no curve
         can be made, PoleError for a temperature without a shift.
         """
-        t_ref_c = glass_c + GLASS_TO_REFERENCE_K
-
-        def decade_of(temperature_c: float) -> float:
-            return log10_shift(temperature_c, t_ref_c)
-
+        decade_of = WlfShift(glass_c + GLASS_TO_REFERENCE_K)
         bins: dict[int, list[tuple[float, DmaRow]]] = {}
         for row in _checked(rows, poisson):
             decade = math.log10(row.frequency_hz) + decade_of(row.temperature_c)

@@ -79,6 +79,10 @@ class TabulatedSpectrum:
         self._band = float(q[0]), float(q[-1])
         self._log_q, self._log_power = np.log(q), np.log(power)
 
+    def __repr__(self) -> str:
+        """Return its content: two of the same text are the same spectrum."""
+        return f"TabulatedSpectrum({self._log_q.tolist()}, {self._log_power.tolist()})"
+
     @property
     def band_1_m(self) -> tuple[float, float]:
         """Return q0 and q1, 1/m."""

@@ -8,11 +8,14 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from collections.abc import Set as AbstractSet
-from dataclasses import asdict, dataclass, field, fields
+from dataclasses import asdict, dataclass, field, fields, replace
+from itertools import product
 from types import MappingProxyType
 from typing import Annotated, Final, Literal
 
 from sim.physics import laws
+from sim.physics.lookup import TableSpan
+from sim.physics.materials import Components
 from sim.physics.wlf import WlfBellParameters
 
 Motion = Literal["linear", "disc"]
@@ -26,6 +29,13 @@ RUBBERS: Final[Mapping[str, WlfBellParameters]] = MappingProxyType({
 """Rubbers by the names that a recipe uses; they differ in their glass transition alone [A]."""
 
 
+TABLE_M_S: Final = (1e-6, 10.0)
+TABLE_C: Final = (-50.0, 100.0)
+TABLE_N: Final = (2.0, 200.0)
+"""Of a slow law a simulated rig has a table between these. Slower, as while a track comes to a stand, and lighter, as
+while an arm is lowered, is as at the ends."""
+
+
 @dataclass(frozen=True, slots=True)
 class TrackContact:
     """Specimen, arm and track."""
@@ -35,18 +45,60 @@ class TrackContact:
     static_length: Annotated[float, "mm"] = 0.05  # [A] ... which goes with this sliding distance
     lift_travel: Annotated[float, "mm"] = 10.0  # [A] from lowered (0) to raised
     touch: Annotated[float, "mm"] = 1.0  # [A] the arm's position at which specimen and track meet, full load at 0
-    wet: Annotated[float, "1"] = 0.6  # [A] share of the dry friction
-    talc: Annotated[float, "1"] = 0.5  # [A]
+    area: Annotated[float, "mm2"] = 100.0  # [A] nominal, of the specimen on the track: makes a pressure of the load
+    wet: Annotated[float, "1"] = 0.6  # [A] share of the dry friction, by a law that does not know adhesion
+    talc: Annotated[float, "1"] = 0.5  # [A] the same
+    wet_adhesion: Annotated[float, "1"] = 0.0  # [A] share of the adhesion, by a law that knows it; talc leaves none
 
     def __post_init__(self) -> None:
         """Raise ValueError for values out of range."""
-        _refuse(self, {"static_excess", "wet", "talc"})
+        _refuse(self, {"static_excess", "wet", "talc", "wet_adhesion"})
         if self.touch >= self.lift_travel:
             raise ValueError("TrackContact.touch must be below lift_travel: raised, nothing touches")
 
-    def share(self, interface: Interface) -> float:
-        """Return what the interface leaves of the dry friction."""
-        return {"dry": 1.0, "wet": self.wet, "talc": self.talc}[interface]
+    def through(self, law: laws.FrictionLaw, interface: Interface) -> laws.FrictionLaw:
+        """Return the law through what is between specimen and track.
+
+        Of a law that knows its parts, water and talc take adhesion and leave hysteresis; of another, a share of all.
+        """
+        if interface == "dry":
+            return law
+        if isinstance(law, laws.LawOfParts):
+            return LessAdhesion(law, {"wet": self.wet_adhesion, "talc": 0.0}[interface])
+        return LessFriction(law, {"wet": self.wet, "talc": self.talc}[interface])
+
+
+class LessFriction:
+    """A share of a law's friction."""
+
+    __slots__ = ("_law", "_share")
+
+    def __init__(self, law: laws.FrictionLaw, share: float) -> None:
+        """Take the law of dry contact."""
+        self._law, self._share = law, share
+
+    def mu(self, temperature_c: float, load_n: float, slip_m_s: float) -> float:
+        """Return the coefficient."""
+        return self._law.mu(temperature_c, load_n, slip_m_s) * self._share
+
+
+class LessAdhesion:
+    """A law's hysteresis, and a share of its adhesion."""
+
+    __slots__ = ("_law", "_share")
+
+    def __init__(self, law: laws.LawOfParts, share: float) -> None:
+        """Take the law of dry contact."""
+        self._law, self._share = law, share
+
+    def components(self, temperature_c: float, load_n: float, slip_m_s: float) -> Components:
+        """Return what is left of the parts."""
+        adhesion, hysteresis = self._law.components(temperature_c, load_n, slip_m_s)
+        return Components(self._share * adhesion, hysteresis)
+
+    def mu(self, temperature_c: float, load_n: float, slip_m_s: float) -> float:
+        """Return the coefficient."""
+        return sum(self.components(temperature_c, load_n, slip_m_s))
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,6 +148,7 @@ class TrackParameters:
     noise: Annotated[float, "1"] = 1.0  # scale of every sensor imperfection
     scatter: Annotated[float, "1"] = 1.0  # scale of the friction's scatter: specimens 3 %, repeats 2 % [A]
     law: str = "wlf_bell"  # by its name in sim.physics.laws
+    surface: str = ""  # of the track, where the law is made of materials; "": the recipe's abrasive
     ambient: Annotated[float, "degC"] = 23.0
     faults: tuple[str, ...] = ()  # a fault script (sim.faults.language)
     contact: TrackContact = field(default_factory=TrackContact)
@@ -115,17 +168,59 @@ class TrackParameters:
         except laws.UnknownLawError as error:
             raise ValueError(f"law: {error}") from None
 
-    def friction_of(self, compound: str) -> laws.FrictionLaw:
-        """Return the law of a rubber. Raises ValueError for one that ``rubbers`` lacks where the law needs it."""
+    @property
+    def of_materials(self) -> bool:
+        """Tell whether the law is made of a rubber and a surface."""
+        return isinstance(laws.find(self.law), laws.OfMaterials)
+
+    def law_of(self, compound: str, setting: laws.LawSetting = laws.NO_SETTING) -> laws.FrictionLaw:
+        """Return the law of a rubber itself.
+
+        Raises ValueError for one that ``rubbers``, or the setting's materials, lack where the law needs it.
+        """
         if self.law != "wlf_bell":
-            return laws.make(self.law, compound)
+            return laws.make(self.law, compound, setting=self._own(setting))
         if compound not in self.rubbers:
             raise ValueError(f"no rubber {compound!r} among sim.rubbers; known: {', '.join(self.rubbers)}")
         return laws.make(self.law, compound, asdict(self.rubbers[compound]))
 
+    def friction_of(self, compound: str, setting: laws.LawSetting = laws.NO_SETTING) -> laws.FrictionLaw:
+        """Return the law of a rubber as a rig rubs by it: a slow one as a table.
+
+        Raises ValueError as ``law_of``, and where a slow law is not known over all that a rig can do.
+        """
+        maker = laws.find(self.law)
+        if not (isinstance(maker, laws.OfMaterials) and maker.slow):
+            return self.law_of(compound, setting)
+        from sim.physics.tabulated import tabulated  # numpy takes a tenth of a second to come
+
+        own = self._own(setting)
+        return tabulated(self.law, compound, laws.NO_FIGURES, own, table_span(own, compound))
+
+    def known_everywhere(self, compound: str, setting: laws.LawSetting = laws.NO_SETTING) -> None:
+        """Raise ValueError where the law of a rubber cannot be made, OutsideError where it is not known over all that
+        a rig can do."""
+        law = self.law_of(compound, setting)
+        maker = laws.find(self.law)
+        if isinstance(maker, laws.OfMaterials) and maker.slow:
+            span = table_span(self._own(setting), compound)
+            for speed, temperature_c, load_n in product(span.speeds_m_s, span.temperatures_c, span.loads_n):
+                law.mu(temperature_c, load_n, speed)
+
+    def _own(self, setting: laws.LawSetting) -> laws.LawSetting:
+        """Return the setting with this rig's area, and its surface where it says one."""
+        return replace(setting, surface=self.surface or setting.surface, area_mm2=self.contact.area)
+
     def __deepcopy__(self, memo: dict[int, object]) -> TrackParameters:
         """Return itself: it never changes, and copies of a running rig share it."""
         return self
+
+
+def table_span(setting: laws.LawSetting, compound: str) -> TableSpan:
+    """Return over what a rig's table of a slow law reaches; below the glass transition the law itself is asked."""
+    glass_c = setting.materials.rubber(compound).glass_c if setting.materials is not None else None
+    low_c, high_c = TABLE_C
+    return TableSpan(TABLE_M_S, (min(max(low_c, glass_c if glass_c is not None else low_c), 0.0), high_c), TABLE_N)
 
 
 def _refuse(group: object, zero_allowed: AbstractSet[str], signed: AbstractSet[str] = frozenset()) -> None:

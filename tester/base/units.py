@@ -54,6 +54,7 @@ _KINDS: tuple[_Kind, ...] = (
     _Kind("an angular speed", "5 deg/s", {"deg/s": _ONE, "rad/s": _DEGREE_PER_RADIAN}),
     _Kind("an angular acceleration", "20 deg/s2", {"deg/s2": _ONE, "rad/s2": _DEGREE_PER_RADIAN}),
     _Kind("a length", "90 mm", {"mm": _ONE, "m": _K, "um": _MILLI}),
+    _Kind("an area", "100 mm2", {"mm2": _ONE, "cm2": Fraction(100), "m2": Fraction(10**6)}),
     _Kind("a wave number", "2e4 1/m", {"1/m": _ONE, "1/mm": _K, "1/um": Fraction(10**6)}),
     _Kind("a spectral density of heights", "2.6e-19 m4", {"m4": _ONE}),
     _Kind("a pressure", "1.2 MPa", {"Pa": _ONE, "kPa": _K, "MPa": Fraction(10**6), "GPa": Fraction(10**9)}),
@@ -97,7 +98,7 @@ _KIND_OF = _kinds_by_unit()
 _SPELLINGS: dict[str, str] = {
     "°C": "degC", "℃": "degC", "deg C": "degC", "° C": "degC", "C": "degC", "celsius": "degC",
     "Celsius": "degC", "°": "deg", "degree": "deg", "degrees": "deg", "°/s": "deg/s", "°/s2": "deg/s2",
-    "µm": "um", "micron": "um", "microns": "um", "m⁴": "m4", "N/mm2": "MPa",
+    "µm": "um", "micron": "um", "microns": "um", "m⁴": "m4", "mm²": "mm2", "cm²": "cm2", "m²": "m2", "N/mm2": "MPa",
     "1/µm": "1/um", "m⁻¹": "1/m", "mm⁻¹": "1/mm", "sec": "s", "second": "s", "seconds": "s", "minute": "min",
     "minutes": "min", "hour": "h", "hours": "h", "kelvin": "K", "newton": "N",
     "m s⁻¹": "m/s", "mm s⁻¹": "mm/s", "Nm": "N m", "Ns/m": "N s/m",

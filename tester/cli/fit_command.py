@@ -31,9 +31,16 @@ class Conditions(NamedTuple):
 @click.option(
     "--validate", "validation", multiple=True, metavar="SOURCE", help="Conditions to predict. May be given again."
 )
-@click.option("--law", "law_name", metavar="LAW", default=None, help="Which law: v2 (unless told) or paper, the Eq 6.")
+@click.option(
+    "--law", "law_name", metavar="LAW", default=None,
+    help="Of a wheel v2 (unless told) or paper, the Eq 6; of a track wlf_bell (unless told), power, persson or greta.",
+)  # fmt: skip
 @click.option(
     "--hold", "holds", multiple=True, metavar="NAMES", help="Parameters not to fit: a,beta,tm as published, or tm=70."
+)
+@click.option("--surface", default="", metavar="NAME", help="What the track is covered with, for laws of materials.")
+@click.option(
+    "--given", "givens", multiple=True, metavar="NAME=VALUE", help="A figure of a law of materials, such as area=64."
 )
 @click.option("--check", is_flag=True, help="Hold the paper's own table against what has to come out.")
 @json_option
@@ -42,15 +49,17 @@ def fit(
     validation: Sequence[str],
     law_name: str | None,
     holds: Sequence[str],
+    surface: str,
+    givens: Sequence[str],
     check: bool,
     as_json: bool,
 ) -> int:
     """Fit a law of friction to the conditions of SOURCES: runs, or the paper's appendix-a and appendix-b.
 
-    All parameters at once, a compound at a time, at the measured temperatures, loads and speeds. Prints them with 95 %
-    intervals over conditions, how far the law is off fitted, left-out and --validate conditions, and what it says:
-    peaks, exponents, trends. --check, with appendix-a --validate appendix-b: the paper's table and our verdict; exit
-    code 1 where a figure misses.
+    All parameters at once, a compound at a time (on a track, an interface and a surface, too), at the measured
+    temperatures, loads and speeds. Prints them with 95 % intervals over conditions, how far the law is off fitted,
+    left-out and --validate conditions, and what it says: peaks, exponents, trends. --check, with appendix-a --validate
+    appendix-b: the paper's table and our verdict; exit code 1 where a figure misses.
     """
     from tester.base.extras import MissingExtraError
     from tester.fit.joint import fit_group
@@ -72,7 +81,11 @@ def fit(
         groups = by_group(fitted.points)
         if not groups:
             raise FitError(f"no condition of {', '.join(sources)} can be fitted{_why(fitted.left_out)}")
-        fits = [fit_group(law, name, own, part.cells, _held(law, name, holds)) for name, own in groups.items()]
+        figures = _figures(givens)
+        fits = [
+            fit_group(part.bound(law, name, surface, figures), name, own, part.cells, _held(law, name, holds))
+            for name, own in groups.items()
+        ]
         table = part.published_table() if check else None
     except MissingExtraError as error:
         raise click.UsageError(str(error)) from error
@@ -175,7 +188,7 @@ def _held(law: Law, group: str, holds: Sequence[str]) -> dict[str, float]:
         if name not in law.names:
             raise click.UsageError(f"--hold: the law {law.name} has no parameter {name!r} ({', '.join(law.names)})")
         if equals:
-            held[name] = _number(text, value)
+            held[name] = _number("--hold", text, value)
         elif group in law.published:
             held[name] = law.published[group][law.names.index(name)]
         else:
@@ -183,7 +196,12 @@ def _held(law: Law, group: str, holds: Sequence[str]) -> dict[str, float]:
     return held
 
 
-def _number(text: str, value: str) -> float:
+def _figures(givens: Sequence[str]) -> dict[str, float]:
+    pairs = [(text, *text.partition("=")) for given in givens for text in given.split(",")]
+    return {name.strip(): _number("--given", text, value) for text, name, _, value in pairs}
+
+
+def _number(option: str, text: str, value: str) -> float:
     from math import isfinite
 
     try:
@@ -191,7 +209,7 @@ def _number(text: str, value: str) -> float:
     except ValueError:
         number = float("nan")
     if not isfinite(number):
-        raise click.UsageError(f"--hold {text}: {value!r} is no number (expected such as tm=70)")
+        raise click.UsageError(f"{option} {text}: {value!r} is no number (expected such as tm=70)")
     return number
 
 

@@ -49,6 +49,9 @@ COMMANDS: dict[str, CommandEntry] = {
     "export": CommandEntry("tester.cli.result_commands", "export", "Write a run's results as a table."),
     "fit": CommandEntry("tester.cli.fit_command", "fit", "Fit a law of friction to measured conditions."),
     "paper": CommandEntry("tester.cli.fit_command", "paper", "Hold the paper's equations against its own data."),
+    "components": CommandEntry(
+        "tester.cli.components_command", "components", "Adhesion and hysteresis: dry less wet."
+    ),
     "master": CommandEntry("tester.cli.master_command", "master", "Put friction on one curve over aT v, if it is one."),
     "figure": CommandEntry("tester.cli.figure_command", "figure", "Draw a run's results."),
     "report": CommandEntry("tester.cli.report_command", "report", "Write a run's results as a page to send and print."),

@@ -174,13 +174,13 @@ def check(file: Path, as_json: bool) -> int | None:
 def _load(file: Path) -> Loaded:
     from tester.base.source import read_tree
     from tester.materials.compound import load_compound
-    from tester.materials.schema import SurfaceModel
+    from tester.materials.schema import CompoundModel, SurfaceModel
     from tester.materials.surface import load_surface
 
     if file.parent.name in ("compounds", "surfaces"):
         return load_surface(file) if file.parent.name == "surfaces" else load_compound(file)
     data = read_tree(file)[0].data
-    own = set(SurfaceModel.model_fields) - {"name", "note", "source"}
+    own = set(SurfaceModel.model_fields) - set(CompoundModel.model_fields)
     return load_surface(file) if isinstance(data, dict) and own & set(data) else load_compound(file)
 
 

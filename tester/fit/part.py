@@ -75,6 +75,14 @@ class FitPart(Protocol):
         """Return the conditions of a run; raises StoreError where it cannot be read."""
         ...
 
+    def bound(self, law: Law, group: str, surface: str, figures: Mapping[str, float]) -> Law:
+        """Return a law as it is for a group; raises FitError.
+
+        A law that stands on moduli becomes that of the group's compound on ``surface`` ("": as the run says), with
+        ``figures`` that are not fitted, by name. Others are returned as they are, and take no figures.
+        """
+        ...
+
     def published_values(self) -> Sequence[tuple[Setpoint, float]]:
         """Return published coefficients, each with what it was held at, to be shown beside measured ones."""
         ...

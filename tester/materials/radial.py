@@ -70,7 +70,7 @@ def radial_spectrum(heights_m: Array, pixel_m: tuple[float, float]) -> RadialSpe
     """Return the spectrum of detrended heights (rows, columns) in m; ``pixel_m``: from row to row, column to column.
 
     From the longest wave that the shorter side holds to the shortest that two points show, rings of wave numbers are
-    averaged. Raises ValueError for a map that is too small, or flat.
+    averaged. The table is scaled to the mean square in its rings, a few per cent for a rough surface. Raises ValueError for a map that is too small, or flat.
     """
     rows, columns = heights_m.shape
     if min(rows, columns) < LEAST_POINTS:
@@ -96,7 +96,10 @@ def radial_spectrum(heights_m: Array, pixel_m: tuple[float, float]) -> RadialSpe
     kept = (total > 0.0) & (mean_power > 0.0)
     if np.count_nonzero(kept) < 2:
         raise ValueError("the heights are all alike: there is no spectrum")
-    return RadialSpectrum(mean_q[kept] / total[kept], mean_power[kept] / total[kept])
+    spectrum = RadialSpectrum(mean_q[kept] / total[kept], mean_power[kept] / total[kept])
+    # Lines between the points miss some of a narrow ring's power; the table is to have the mean square of the rings.
+    mean_square = mean_power.sum() * 4.0 * np.pi**2 / area_m2
+    return RadialSpectrum(spectrum.q_1_m, spectrum.power_m4 * mean_square / spectrum.rms_height_m**2)
 
 
 def _hann(points: int) -> Array:

@@ -61,7 +61,7 @@ class Chart:
 
 
 @dataclass(frozen=True, slots=True)
-class Surface:
+class ChartSurface:
     """A coefficient over two axes, a panel a table: ``values[j][i]`` belongs to ``x[i]`` and ``y[j]``, NaN for none."""
 
     name: str
@@ -73,4 +73,4 @@ class Surface:
     note: str = ""
 
 
-Figure = Chart | Surface
+Figure = Chart | ChartSurface

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, BinaryIO, Final
 
 from tester.base.extras import MissingExtraError, needs
 from tester.base.plain import harmless
-from tester.report.chart import Chart, ChartPanel, Figure, Series, Surface
+from tester.report.chart import Chart, ChartPanel, ChartSurface, Figure, Series
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -124,10 +124,20 @@ def _draw_chart(chart: Chart, places: Sequence[Any]) -> None:
         if chart.log_x:
             place.set_xscale("log")
             place.xaxis.set_major_formatter("{x:g}")  # its own is a formula, which text here is never read as
-            place.xaxis.set_minor_formatter("")
+            place.xaxis.set_minor_formatter(_two_and_five if _narrow(panel) else "")
         place.set_ylabel(panel.y_label or chart.y_label)
     if chart.from_zero:  # last: an axis that is set follows no further points, of no panel that shares it
         places[0].set_ylim(bottom=0.0)
+
+
+def _narrow(panel: ChartPanel) -> bool:
+    """Tell whether a panel spans so little of a logarithmic axis that powers of ten alone would hardly mark it."""
+    every = [x for series in panel.series for x in series.x]
+    return max(every) < 100.0 * min(every)
+
+
+def _two_and_five(value: float, _: object) -> str:
+    return f"{value:g}" if f"{value:e}"[0] in "25" else ""
 
 
 def _draw_panel(panel: ChartPanel, place: Any, number: int) -> None:
@@ -150,7 +160,7 @@ def _draw_series(series: Series, place: Any, joined: bool) -> Any:
     colour = COLOURS[i]
     label = _told(series.label, LONGEST_LABEL) or None
     if series.look == "law":
-        return place.plot(series.x, series.y, color=colour, linestyle=DASHES[i], linewidth=1.0)[0]
+        return place.plot(series.x, series.y, color=colour, linestyle=DASHES[i], linewidth=1.0, label=label)[0]
     if series.look == "limit":
         return place.plot(series.x, series.y, color="#606060", linestyle=DASHES[i], linewidth=0.9, label=label)[0]
     if series.look == "published":
@@ -174,7 +184,7 @@ def _draw_series(series: Series, place: Any, joined: bool) -> Any:
     return drawn.lines[0]
 
 
-def _draw_surface(surface: Surface, canvas: Any, places: Sequence[Any]) -> None:
+def _draw_surface(surface: ChartSurface, canvas: Any, places: Sequence[Any]) -> None:
     """Draw a field for each pair of values, at its place on both axes, its number in it; lightness alone tells the
     colours apart."""
     every = [v for _, _, _, grid in surface.panels for row in grid for v in row if v == v]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import cast
 
-from sim.physics.laws import LawMaker
+from sim.physics.laws import LawMaker, OfMaterials
 from tester.base.plugins import PluginError, plugins
 
 
@@ -16,6 +16,6 @@ def extension_law(name: str) -> LawMaker | None:
     if ":" not in name and name not in plugins().names("laws"):
         return None
     maker = plugins().load("laws", name)
-    if not callable(maker):
+    if not (callable(maker) or isinstance(maker, OfMaterials)):
         raise PluginError(f'extension "{name}" is no friction law: it cannot be called with a compound and its figures')
     return cast("LawMaker", maker)

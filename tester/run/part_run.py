@@ -157,7 +157,10 @@ def _execute(
     try:
         faults = rig.faults + job.faults
         spoilable = {"faulty": True} if faults else {}
-        ports, world, attendant = connect_ports(rig, job.seed, log, **spoilable)
+        surface = part.plan.metadata.get("abrasive", "")
+        ports, world, attendant = connect_ports(
+            rig, job.seed, log, recipe=job.folder / "recipe.yaml", surface=surface, **spoilable
+        )
         truth = truth_of(world, rig.plant) if world is not None else None
         if truth is not None:
             attendant = Witnessed(attendant, truth, part.plan, writer)
@@ -238,9 +241,17 @@ def _die() -> None:
 
 
 def connect_ports(
-    rig: Rig, seed: int, log: BusLog | None, *, faulty: bool = False
+    rig: Rig,
+    seed: int,
+    log: BusLog | None,
+    *,
+    faulty: bool = False,
+    recipe: Path | None = None,
+    surface: str = "",
 ) -> tuple[Ports, SimRig | None, Any]:
     """Open the wires to the rig: simulated in this process (its bus spoilable where ``faulty``), or real.
+
+    ``recipe`` and ``surface``: as ``simulated_ports`` takes them.
 
     Return them, the simulated rig, and the hands at the rig (tester.machine.run_parts).
     """
@@ -250,8 +261,8 @@ def connect_ports(
         if faulty:
             from sim.faults.can import FaultyCanWire
 
-            return simulated_ports(rig, seed, log, FaultyCanWire)
-        return simulated_ports(rig, seed, log)
+            return simulated_ports(rig, seed, log, FaultyCanWire, recipe=recipe, surface=surface)
+        return simulated_ports(rig, seed, log, recipe=recipe, surface=surface)
     from tester.run.hardware import hardware_ports
 
     return hardware_ports(rig, log), None, run_parts(rig).nobody()

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 from sim import machines
 from sim.nodes.profile_slave import UnknownQuantityError
-from sim.rig import DeviceSpec, LineSpec, RigSpec, SimRig
+from sim.rig import DeviceSpec, LineSpec, MadeOfMaterials, RigSpec, SimRig
 from sim.wires.can_wire import CanWire
 from tester.base.source import InvalidSource, Problem
 from tester.machine.ports import Ports
+from tester.materials.setting import law_setting
 from tester.rig import DeviceConfig, Rig
 from tester.rig.profiles import profile_of
 from tester.run.bus_log import BusLog
@@ -17,17 +19,26 @@ from tester.run.kinds import run_parts
 
 
 def simulated_ports(
-    rig: Rig, seed: int, log: BusLog | None, can_wire: type[CanWire] = CanWire
+    rig: Rig,
+    seed: int,
+    log: BusLog | None,
+    can_wire: type[CanWire] = CanWire,
+    *,
+    recipe: Path | None = None,
+    surface: str = "",
 ) -> tuple[Ports, SimRig, Any]:
     """Return the wires of a new simulated rig, the rig, and the hands at it (the same object).
 
     Raises InvalidSource where a sensor is to show what the plant does not have.
-    ``can_wire``: the kind of bus, ``sim.faults.can.FaultyCanWire`` where it is to be spoiled.
+    ``can_wire``: the kind of bus, ``sim.faults.can.FaultyCanWire`` where it is to be spoiled. ``recipe``: beside which
+    file materials are looked for first; ``surface``: the name of the track that it says.
     """
     try:
         world = machines.find(run_parts(rig).plant).world(spec_of(rig), rig.plant, seed, can_wire)
     except UnknownQuantityError as error:
         raise InvalidSource([Problem("rig file", 1, 1, f"devices: {error}")]) from error
+    if isinstance(world, MadeOfMaterials) and world.of_materials:
+        world.take(law_setting(surface, recipe))
     if log is not None:
         log.watch(world.can, world.lines)
     return Ports(world.can, dict(world.lines)), world, world

@@ -15,7 +15,7 @@ from math import copysign, exp
 from typing import Final
 
 from sim.noise import NormalStream, normal, uniforms
-from sim.physics.laws import FrictionLaw
+from sim.physics.laws import NO_SETTING, FrictionLaw, LawSetting
 from sim.physics.track import Interface, TrackParameters
 from sim.sensors import TemperatureSensor
 
@@ -34,9 +34,9 @@ class TrackPlant:
     """
 
     __slots__ = (
-        "_air", "_drift_n_k", "_law", "_noise", "_place", "_pyrometer", "_repeat", "_seed", "_share",
-        "_since_rest_m", "_specimen", "_zero_n", "air_c", "force_n", "interface", "load_n", "mu", "parameters",
-        "power_w", "slid_m", "slip_m_s", "specimen_c", "weights_n",
+        "_air", "_drift_n_k", "_dry", "_law", "_noise", "_place", "_pyrometer", "_repeat", "_seed", "_since_rest_m",
+        "_specimen", "_zero_n", "air_c", "force_n", "interface", "load_n", "mu", "parameters",
+        "power_w", "setting", "slid_m", "slip_m_s", "specimen_c", "weights_n",
     )  # fmt: skip
 
     def __init__(self, parameters: TrackParameters, seed: int) -> None:
@@ -55,10 +55,12 @@ class TrackPlant:
         self.air_c = self.specimen_c = p.ambient
         self._pyrometer.reset(p.ambient)
         self._air.reset(p.ambient)
+        self.setting: LawSetting = NO_SETTING
+        """Where a law that is made of materials finds them."""
+        self._dry: FrictionLaw | None = None
         self._law: FrictionLaw | None = None
         self._specimen = self._repeat = 1.0
         self.interface: Interface = "dry"
-        self._share = 1.0
         self.weights_n = 0.0
         self.slid_m = 0.0
         self.force_n = self.load_n = self.slip_m_s = self.power_w = self.mu = 0.0
@@ -71,9 +73,10 @@ class TrackPlant:
     def install(self, specimen: int, compound: str) -> None:
         """Put a specimen in (``specimen`` keys its scatter), at ambient temperature.
 
-        Raises ValueError for a rubber that the parameters do not have.
+        Raises ValueError for a rubber that the parameters, or the setting's materials, do not have.
         """
-        self._law = self.parameters.friction_of(compound)
+        self._dry = self.parameters.friction_of(compound, self.setting)
+        self._law = self.parameters.contact.through(self._dry, self.interface)
         self._specimen = 1.0 + self.parameters.scatter * SPECIMEN_SIGMA * normal(self._seed, "specimen", specimen)
         self._repeat = 1.0
         self.specimen_c = self.parameters.ambient
@@ -90,8 +93,9 @@ class TrackPlant:
 
     def prepare(self, interface: Interface) -> None:
         """Dry, wet or powder the track."""
-        self._share = self.parameters.contact.share(interface)
         self.interface = interface
+        if self._dry is not None:
+            self._law = self.parameters.contact.through(self._dry, interface)
 
     def begin_repeat(self, condition: int, repeat: int, attempt: int) -> None:
         """Draw the scatter of a repeat and start its streams of noise; all numbers 0 and up."""
@@ -132,7 +136,7 @@ class TrackPlant:
                 self.force_n = copysign(limit_n, self.force_n)  # the load has become less
             return
         contact, speed = self.parameters.contact, abs(track_m_s)
-        mu = law.mu(self.specimen_c, self.load_n, speed) * self._share * self._specimen * self._repeat
+        mu = law.mu(self.specimen_c, self.load_n, speed) * self._specimen * self._repeat
         stiffness_n_m = 1e3 * contact.stiffness
         moved_m = track_m_s * dt
         drawn_n = self.force_n + stiffness_n_m * moved_m

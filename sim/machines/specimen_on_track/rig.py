@@ -17,6 +17,7 @@ from sim.nodes.ir_slave import IrSlave
 from sim.nodes.modbus_slave import ModbusSlave
 from sim.nodes.motion import PositionAxis, VelocityAxis
 from sim.nodes.sensor_node import SimulatedSensorNode
+from sim.physics.laws import LawSetting
 from sim.physics.track import Interface, TrackParameters
 from sim.rig import DeviceSpec, RigSpec, World, further_sensors, lines_of
 from sim.wires.can_wire import CanWire
@@ -171,6 +172,15 @@ class TrackRig:
                 drive.set_safety_chain(not beyond)
                 if beyond:
                     drive.set_torque_off(True)
+
+    @property
+    def of_materials(self) -> bool:
+        """Tell whether friction is made of a rubber and a surface, which ``take`` says where to find."""
+        return self.plant.parameters.of_materials
+
+    def take(self, setting: LawSetting) -> None:
+        """Take where materials are found, before a specimen is put in."""
+        self.plant.setting = setting
 
     # -- the attendant's hands ------------------------------------------------------------------------------------
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Final
 from tester.kind import Kind
 
 if TYPE_CHECKING:
+    from tester.fit.part import FitPart
     from tester.machine.interlock_sheet import InterlockSheet
     from tester.machine.run_parts import KindRun
     from tester.machine.served import ServedKind
@@ -53,6 +54,12 @@ def _served() -> ServedKind:
     return SERVED
 
 
+def _fits() -> FitPart:
+    from tester.kinds.specimen_on_track.fit.part import FITS
+
+    return FITS
+
+
 KIND: Final = Kind(
     name="specimen_on_track",
     title="rubber specimen on a moving track",
@@ -69,4 +76,5 @@ KIND: Final = Kind(
     runs=_runs,
     masters=_masters,
     served=_served,
+    fits=_fits,
 )

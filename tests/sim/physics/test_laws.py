@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import pytest
 
 from sim.physics import laws
 from sim.physics.friction import FrictionModel, UnknownCompoundError
+from sim.physics.materials import Components, Rubber, Surface
 from sim.physics.wlf import WlfBell
+from tests.sim.physics.materials_example import Shelf
 
 
 class Coulomb:
@@ -61,7 +64,8 @@ def test_a_law_that_is_not_known_is_looked_up_elsewhere() -> None:
 
 
 def test_an_unknown_law_is_told_with_those_that_are_there() -> None:
-    with pytest.raises(laws.UnknownLawError, match="no friction law 'magic'; known: paper, v2, wlf_bell"):
+    known = "paper, v2, wlf_bell, power, arrhenius, persson, greta"
+    with pytest.raises(laws.UnknownLawError, match=f"no friction law 'magic'; known: {known}"):
         laws.make("magic", "1#")
 
 
@@ -70,3 +74,48 @@ def test_the_papers_laws_know_their_compounds_and_take_no_figures() -> None:
         laws.make("paper", "9#")
     with pytest.raises(ValueError, match="takes none, not mu"):
         laws.make("paper", "1#", {"mu": 1.0})
+
+
+SETTING = laws.LawSetting(Shelf(), "grit", 100.0)
+
+
+def test_a_law_of_materials_is_made_of_what_the_setting_finds() -> None:
+    law = laws.with_parts("persson", laws.make("persson", "plain", setting=SETTING))
+    # 10 N on 100 mm2 are 1e5 Pa.
+    assert law.mu(20.0, 10.0, 1.0) == pytest.approx(0.291203, rel=1e-4)
+    assert law.components(20.0, 10.0, 1.0) == Components(0.0, law.mu(20.0, 10.0, 1.0))
+
+
+def test_a_law_of_materials_may_come_from_elsewhere() -> None:
+    def made(rubber: Rubber, surface: Surface, area_mm2: float, figures: Mapping[str, float]) -> Coulomb:
+        return Coulomb(area_mm2 * figures["per_mm2"] * len(rubber.name + surface.name))
+
+    laws.register("lab", laws.OfMaterials(made))
+    assert laws.make("lab", "SBR", {"per_mm2": 1e-3}, SETTING).mu(20.0, 50.0, 1.0) == pytest.approx(0.7)
+
+
+def test_greta_is_given_the_area_of_the_setting() -> None:
+    setting = replace(SETTING, surface="road")
+    one = laws.with_parts("greta", laws.make("greta", "demonstration", setting=setting))
+    wide = laws.with_parts("greta", laws.make("greta", "demonstration", setting=replace(setting, area_mm2=200.0)))
+    assert one.components(25.0, 30.0, 1.0) == wide.components(25.0, 60.0, 1.0)
+
+
+@pytest.mark.parametrize(
+    ("setting", "message"),
+    [
+        (laws.NO_SETTING, "needs the modulus of 'SBR' and a surface and the nominal area of contact"),
+        (replace(SETTING, surface=""), "'persson' is made of materials and needs a surface$"),
+        (replace(SETTING, area_mm2=None), "needs the nominal area of contact$"),
+        (replace(SETTING, area_mm2=0.0), "must be finite and above 0 mm2"),
+        (replace(SETTING, surface="glass"), "no surface 'glass' on the shelf"),
+    ],
+)
+def test_a_setting_that_lacks_something_is_refused(setting: laws.LawSetting, message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        laws.make("persson", "SBR", setting=setting)
+
+
+def test_a_law_that_does_not_know_its_parts_says_so() -> None:
+    with pytest.raises(laws.NoPartsError, match="law 'paper' gives the coefficient alone"):
+        laws.with_parts("paper", laws.make("paper", "1#"))

@@ -32,4 +32,4 @@ def test_a_smooth_curve_is_met_with_the_square_of_the_step_at_least() -> None:
         x = np.linspace(0.0, 2.0, points)
         at = np.linspace(0.0, 2.0, 999)
         errors.append(float(np.max(np.abs(MonotoneCubic(x, np.exp(x))(at) - np.exp(at)))))
-    assert errors[0] < 2e-3 and errors[1] < errors[0] / 4.0 and errors[2] < errors[1] / 4.0
+    assert errors[0] < 3e-3 and errors[1] < errors[0] / 4.0 and errors[2] < errors[1] / 4.0

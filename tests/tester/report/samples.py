@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Final
 
 from tester.analysis.reference import ControlChart, ControlPoint
-from tester.report.chart import Chart, ChartPanel, Figure, Series, Surface
+from tester.report.chart import Chart, ChartPanel, ChartSurface, Figure, Series
 from tester.report.control import control_chart
 
 NAN = float("nan")
@@ -30,7 +30,7 @@ CHART: Final = Chart(
     ),
     "bars: expanded uncertainty U (95 %); hollow: as published; lines: law paper",
 )
-SURFACE: Final = Surface(
+SURFACE: Final = ChartSurface(
     "surface",
     "friction coefficient over load and slip velocity",
     "load (N)",

@@ -199,6 +199,7 @@ def without_channels(database: sqlite3.Connection) -> None:
     database.execute("DROP TABLE known_slope")
     database.execute("DROP TABLE truth")
     database.execute("DROP TABLE travel")
+    database.execute("DROP TABLE material")
     for column in ("kind", "worn"):
         database.execute(f"ALTER TABLE run DROP COLUMN {column}")
     database.execute("ALTER TABLE condition DROP COLUMN both_directions")

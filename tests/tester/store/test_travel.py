@@ -34,6 +34,7 @@ def test_a_record_of_before_says_nothing_of_it(tmp_path: Path) -> None:
     writer.close()
     with closing(sqlite3.connect(tmp_path / DATABASE)) as database:
         database.execute("DROP TABLE travel")
+        database.execute("DROP TABLE material")
         database.execute("PRAGMA user_version = 10")
         database.commit()
     with RunReader(tmp_path) as reader:

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import Final
 
-from sim.physics.wlf import PoleError
+from sim.physics.laws import NO_SETTING, FrictionLaw
 from tester.analysis.repeats import REPEATABILITY
 from tester.analysis.uncertainty import Budget
+from tester.base.source import InvalidSource
 from tester.kinds.specimen_on_track.axes import TrackHeld, held_by
 from tester.kinds.specimen_on_track.budget import instruments_budget
 from tester.kinds.specimen_on_track.recipe.steps import MountSpecimen, Prepare, Temper, TrackCondition
 from tester.kinds.specimen_on_track.rig import TrackConfig
+from tester.materials.setting import law_setting
 from tester.recipe.estimate import StepEstimate
 from tester.recipe.plan import ConditionStep, Plan, PromptStep, Step
 from tester.recipe.repeats import expected
@@ -33,19 +36,39 @@ SPREAD: Final = 0.3
 class TrackEstimator:
     """What is known of the time that steps take on one rig."""
 
-    def __init__(self, rig: TrackConfig, repeatability: Mapping[str, float] | None = None) -> None:
-        """``repeatability``: standard deviation between repeats, per cent of the coefficient, by compound."""
+    def __init__(
+        self,
+        rig: TrackConfig,
+        repeatability: Mapping[str, float] | None = None,
+        surface: str = "",
+        recipe: Path | None = None,
+    ) -> None:
+        """``repeatability``: standard deviation between repeats, per cent of the coefficient, by compound.
+
+        ``surface`` and ``recipe``: the track's name, and beside which file materials are looked for first.
+        """
         self.rig = rig
         self.repeatability = repeatability or {}
+        self.surface = surface
+        self.recipe = recipe
+        self._laws: dict[tuple[str, str, str], FrictionLaw] = {}
 
     def mu(self, compound: str, held: TrackHeld) -> float:
         """Return the coefficient that is expected, by the simulated rig's law where there is one."""
         try:
-            law = self.rig.sim.friction_of(compound)
-            share = self.rig.sim.contact.share(held.interface)  # type: ignore[arg-type]
-            return share * law.mu(held.temperature_c, held.load_n, held.track_m_s)
-        except (PoleError, ValueError):
+            return self.law(compound, held.interface).mu(held.temperature_c, held.load_n, held.track_m_s)
+        except (ValueError, InvalidSource):
             return LIKELY_MU
+
+    def law(self, compound: str, interface: str) -> FrictionLaw:
+        """Return the simulated rig's law of a rubber. Raises ValueError, InvalidSource where it has none."""
+        key = compound, interface, self.surface
+        if key not in self._laws:
+            sim = self.rig.sim
+            setting = law_setting(self.surface, self.recipe) if sim.of_materials else NO_SETTING
+            law = sim.law_of(compound, setting)
+            self._laws[key] = sim.contact.through(law, interface)  # type: ignore[arg-type]
+        return self._laws[key]
 
     def rise_k(self, compound: str, held: TrackHeld) -> float:
         """Return by how much friction warms the contact in the end, K."""
@@ -53,6 +76,7 @@ class TrackEstimator:
 
     def walk(self, plan: Plan) -> Sequence[StepEstimate]:
         """Return an estimate for every step of a plan."""
+        self.surface = self.surface or plan.metadata.get("abrasive", "")
         air_c = self.rig.ambient_c
         found: list[StepEstimate] = []
         for step in plan.steps:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
+from pathlib import Path
 from typing import ClassVar, Final
 
 from tester.analysis.terms import Term
@@ -14,6 +15,7 @@ from tester.base.units import show
 from tester.kinds.specimen_on_track.axes import AXES, NAME, held_by
 from tester.kinds.specimen_on_track.budget import TERMS
 from tester.kinds.specimen_on_track.recipe.estimate import TrackEstimator
+from tester.kinds.specimen_on_track.recipe.law import law_problems
 from tester.kinds.specimen_on_track.recipe.schema import TrackGrid, TrackMeasure, TrackRecipe, track_settings
 from tester.kinds.specimen_on_track.recipe.steps import INSERTED, MountSpecimen, Prepare, Temper, TrackCondition
 from tester.kinds.specimen_on_track.rig import TrackConfig
@@ -66,6 +68,8 @@ class TrackPart(RecipePart):
         """Yield what the rig cannot do, and where friction would heat the contact of a tempered specimen."""
         own = TrackConfig.of(rig)
         measure = recipe.measure
+        if own.simulated:
+            yield from law_problems(own, recipe, tree)
         if measure is None:
             return
         for number, grid in enumerate(recipe.grids):
@@ -80,7 +84,9 @@ class TrackPart(RecipePart):
         """Yield the least speed of a grid at which friction would warm a tempered contact beyond its band."""
         if not rig.chamber:
             return  # a contact in the room's air warms as it does: the plan says by how much
-        estimator, band_k = TrackEstimator(rig), track_settings(measure, grid).temperature_band_k
+        surface = recipe.abrasive.name if recipe.abrasive is not None else ""
+        estimator = TrackEstimator(rig, surface=surface, recipe=Path(tree.name))
+        band_k = track_settings(measure, grid).temperature_band_k
         found: dict[float, tuple[float, str]] = {}
         for one in conditions_of(recipe.model_copy(update={"grids": [grid]}), self.settings):
             for specimen in recipe.specimens:

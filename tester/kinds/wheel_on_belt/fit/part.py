@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Final
 
 from tester.axes import Setpoint
-from tester.fit.law import Law, Sourced
+from tester.fit.law import FitError, Law, Sourced
 from tester.fit.part import FitPart, PublishedTable
 from tester.kinds.wheel_on_belt.fit.data import APPENDICES, appendix
 from tester.kinds.wheel_on_belt.fit.laws import LAWS, LOAD, SLIP
@@ -29,6 +29,12 @@ class WheelFits:
         from tester.kinds.wheel_on_belt.fit.runs import run_points
 
         return run_points(folder)
+
+    def bound(self, law: Law, group: str, surface: str, figures: Mapping[str, float]) -> Law:
+        """Return the law as it is; raises FitError for figures: a wheel's laws are given none."""
+        if surface or figures:
+            raise FitError(f"the law {law.name} is given no surface and no figures")
+        return law
 
     def published_values(self) -> Sequence[tuple[Setpoint, float]]:
         """Return the readable rows of the appendices."""

@@ -26,9 +26,10 @@ def test_its_rows_are_the_law(done: TrackBench) -> None:
     steps = {step.condition: step for step in done.plan.conditions()}
     for condition, result in done.kept.results:
         held = held_by(steps[condition].setpoint)
-        mu = done.config.sim.friction_of("SBR").mu(23.0, held.load_n, held.track_m_s)
-        share = done.config.sim.contact.share(held.interface)  # type: ignore[arg-type]
-        assert result.valid and result.mu_resultant == pytest.approx(share * mu, rel=0.02)
+        sim = done.config.sim
+        law = sim.contact.through(sim.friction_of("SBR"), held.interface)  # type: ignore[arg-type]
+        mu = law.mu(23.0, held.load_n, held.track_m_s)
+        assert result.valid and result.mu_resultant == pytest.approx(mu, rel=0.02)
 
 
 def test_every_repeat_begins_with_a_tare_and_ends_raised(done: TrackBench) -> None:

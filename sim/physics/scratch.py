@@ -1,0 +1,107 @@
+"""Stress in rubber that slides over a wave of a track, and the energy that it takes: what hysteresis is made of.
+
+Paper G (Farroni and others, GrETA: adhesion and hysteresis of tread rubber), Eqs 20 to 22, plane strain across the
+wave. A wave of length l and amplitude Ra is met by rubber of modulus E under the mean pressure p. They touch over 2 N
+of each l (Eq 22, which is Westergaard's), under
+
+    p(x) = 2 p cos(pi x / l) / sin^2(pi N / l) sqrt(sin^2(pi N / l) - sin^2(pi x / l)),   sin^2(pi N / l) = p / p_full,
+    p_full = pi E Ra / (l (1 - nu^2)):
+
+from there on they touch everywhere, and p(x) = p + p_full cos(2 pi x / l). A harmonic P cos(kx) of this pressure, with
+the shear K P cos(kx) that friction K lays on it, makes at depth z of a half space, with u = kz,
+
+    sz = -P (1 + u) e^-u cos(kx) + K P u e^-u sin(kx)
+    sx = -P (1 - u) e^-u cos(kx) + K P (2 - u) e^-u sin(kx)
+    sy = -P (1 - u) e^-u cos(kx)
+
+sy is the stress along the crest. An asperity is as wide as it is long, so the pressure makes the same stress along it
+as across it; shear acts along x alone. Across the crest, from its middle at t = 0 to the next valley at t = +-1, all
+stresses fade as 1 - t^2, in square 8/15 in the mean. The mean pressure (k = 0) presses the rubber evenly at any depth,
+is not cycled, and dissipates nothing: it is left out. The paper prints neither its stresses nor the fade; these are
+this program's [A].
+"""
+
+from __future__ import annotations
+
+from math import pi
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from sim.physics.materials import Array
+
+FADE: Final = 8.0 / 15.0
+"""Mean of (1 - t^2)^2 over -1 to 1."""
+POINTS: Final = 200
+"""Of the pressure over a wave length."""
+DEPTHS: Final = 50
+"""Of the tread, by trapezia: the integral is 1.7 to 2.1 % above that of depths without number."""
+
+
+def normal_z(u: Array) -> Array:
+    """Return -sz over P cos(kx), of pressure."""
+    return (1.0 + u) * np.exp(-u)
+
+
+def normal_x(u: Array) -> Array:
+    """Return -sx over P cos(kx), of pressure; -sy as well."""
+    return (1.0 - u) * np.exp(-u)
+
+
+def shear_x(u: Array) -> Array:
+    """Return sx over K P sin(kx), of shear."""
+    return (2.0 - u) * np.exp(-u)
+
+
+def shear_z(u: Array) -> Array:
+    """Return sz over K P sin(kx), of shear."""
+    return u * np.exp(-u)
+
+
+def pressure(share: float, points: int = POINTS) -> Array:
+    """Return the pressure over a wave length from its crest on, in shares of its mean, which is 1.
+
+    ``share``: p / p_full, above 0; from 1 on rubber and wave touch everywhere.
+    """
+    x = np.arange(points) / points
+    if share >= 1.0:
+        return 1.0 + np.cos(2.0 * pi * x) / share
+    found: Array = np.abs(np.cos(pi * x)) * np.sqrt(np.clip(share - np.sin(pi * x) ** 2, 0.0, None))
+    return found / float(np.mean(found))
+
+
+class Scratch:
+    """Integrals of the squares of the stress under a wave of some length, down to some depth."""
+
+    __slots__ = ("_normal", "_points", "_shear")
+
+    def __init__(self, wavelength_m: float, depth_m: float, points: int = POINTS, depths: int = DEPTHS) -> None:
+        """Work out what does not depend on the pressure. ``points`` even; raises ValueError for values out of range."""
+        if not (wavelength_m > 0.0 and depth_m > 0.0):
+            raise ValueError(f"a wave length and a depth are above 0 m, not {wavelength_m!r} and {depth_m!r}")
+        if points < 2 or points % 2 or depths < 2:
+            raise ValueError(f"a grid has an even number of points and 2 depths or more, not {points} and {depths}")
+        self._points = points
+        depth = np.linspace(0.0, depth_m, depths)
+        u = 2.0 * pi / wavelength_m * np.outer(np.arange(1, points // 2 + 1), depth)
+        trapezia = np.full(depths, depth_m / (depths - 1))
+        trapezia[[0, -1]] *= 0.5
+
+        # Means over a wave length of cos^2 and sin^2 are 1/2; of the shortest harmonic the points see cos alone, as 1.
+        half = np.full(points // 2, 0.5)
+        half[-1] = 1.0
+        self._normal: Array = half * ((normal_z(u) ** 2 + 2.0 * normal_x(u) ** 2) @ trapezia)
+        half[-1] = 0.0
+        self._shear: Array = half * ((shear_x(u) ** 2 + shear_z(u) ** 2) @ trapezia)
+
+    def parts_m(self, share: float) -> tuple[float, float]:
+        """Return the mean over a square of l by l of int s1^2 dz, s1^2 = sx^2 + sy^2 + sz^2 in shares of p^2, in m.
+
+        In two parts, of pressure alone and what K^2 multiplies. ``share``: p / p_full, above 0. Products of cos and
+        sin are 0 in the mean, so that each harmonic adds by itself.
+        """
+        harmonics = np.abs(np.fft.rfft(pressure(share, self._points))[1:]) / self._points
+        harmonics[:-1] *= 2.0
+        squares = FADE * harmonics**2
+        return float(squares @ self._normal), float(squares @ self._shear)

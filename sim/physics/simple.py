@@ -1,0 +1,123 @@
+"""Two plain laws for rubber whose measured friction is not a bell over the reduced speed.
+
+    power:      mu = a (v / v0)^n (load / n0)^m
+    arrhenius:  mu = mu_0 + (mu_max - mu_0) exp(-(x / width)^2),  x = log10(aT v / v_ref)
+
+log10 aT = Ea / (R ln 10) (1 / T - 1 / T_ref), with T in K. In ``arrhenius`` the bell moves to higher speeds as it gets
+warmer, by an activated process of one energy (Arrhenius), where ``wlf_bell`` has the free volume of a rubber above its
+glass transition.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from math import exp, isfinite, log, log10
+from typing import Annotated, Any, Final, TypeVar
+
+GAS_J_MOL_K: Final = 8.314462618
+KELVIN: Final = 273.15
+SLOWEST_M_S: Final = 1e-6
+"""Slower sliding has the coefficient of this speed in ``power``, which has no end at 0 [A]."""
+
+
+@dataclass(frozen=True, slots=True)
+class PowerParameters:
+    """One rubber on one track, at any temperature."""
+
+    a: Annotated[float, "1"] = 1.0  # [A] the coefficient at v0 and n0
+    v0: Annotated[float, "m/s"] = 0.1
+    n: Annotated[float, "1"] = 0.1  # [A] of the speed
+    n0: Annotated[float, "N"] = 10.0
+    m: Annotated[float, "1"] = -1.0 / 9.0  # [A] of the load
+
+    def __post_init__(self) -> None:
+        """Raise ValueError for values out of range."""
+        _refuse(self, ("a", "v0", "n0"))
+
+
+@dataclass(frozen=True, slots=True)
+class ArrheniusParameters:
+    """One rubber on one track."""
+
+    mu_0: Annotated[float, "1"] = 0.5  # [A] far from the maximum, on either side
+    mu_max: Annotated[float, "1"] = 2.2  # [A]
+    width: Annotated[float, "1"] = 3.0  # [A] decades from the maximum to 1/e of it
+    v_ref: Annotated[float, "m/s"] = 0.0755  # [A] speed of the maximum at t_ref
+    t_ref: Annotated[float, "degC"] = 20.0
+    energy: Annotated[float, "kJ/mol"] = 90.0  # [A] Ea
+
+    def __post_init__(self) -> None:
+        """Raise ValueError for values out of range."""
+        _refuse(self, ("width", "v_ref", "energy"))
+        if not 0.0 <= self.mu_0 <= self.mu_max:
+            raise ValueError(f"ArrheniusParameters.mu_0 is 0 to mu_max ({self.mu_max:g}), not {self.mu_0!r}")
+        if not self.t_ref > -KELVIN:
+            raise ValueError(f"ArrheniusParameters.t_ref is above {-KELVIN:g} degC, not {self.t_ref!r}")
+
+
+class PowerLaw:
+    """The power law with its parameters; it does not depend on the temperature."""
+
+    __slots__ = ("parameters",)
+
+    def __init__(self, parameters: PowerParameters) -> None:
+        """Take a rubber's parameters."""
+        self.parameters = parameters
+
+    def mu(self, temperature_c: float, load_n: float, slip_m_s: float) -> float:
+        """Return the coefficient."""
+        p = self.parameters
+        return p.a * (max(slip_m_s, SLOWEST_M_S) / p.v0) ** p.n * (load_n / p.n0) ** p.m
+
+
+class Arrhenius:
+    """The bell with its parameters; it does not depend on the load."""
+
+    __slots__ = ("parameters",)
+
+    def __init__(self, parameters: ArrheniusParameters) -> None:
+        """Take a rubber's parameters."""
+        self.parameters = parameters
+
+    def mu(self, temperature_c: float, load_n: float, slip_m_s: float) -> float:
+        """Return the coefficient; at standstill mu_0. Raises ValueError at absolute zero and below."""
+        p = self.parameters
+        if not temperature_c > -KELVIN:
+            raise ValueError(f"a temperature is above {-KELVIN:g} degC, not {temperature_c!r}")
+        if not slip_m_s > 0.0:
+            return p.mu_0
+        inverse_k = 1.0 / (temperature_c + KELVIN) - 1.0 / (p.t_ref + KELVIN)
+        shift = 1e3 * p.energy / GAS_J_MOL_K * inverse_k / log(10.0)
+        x = (log10(slip_m_s / p.v_ref) + shift) / p.width
+        return p.mu_0 + (p.mu_max - p.mu_0) * exp(-x * x)
+
+
+def power(compound: str, figures: Mapping[str, float]) -> PowerLaw:
+    """Return the law of a compound with these figures (keys of PowerParameters). Raises ValueError."""
+    return PowerLaw(_made("power", PowerParameters, compound, figures))
+
+
+def arrhenius(compound: str, figures: Mapping[str, float]) -> Arrhenius:
+    """Return the law of a compound with these figures (keys of ArrheniusParameters). Raises ValueError."""
+    return Arrhenius(_made("arrhenius", ArrheniusParameters, compound, figures))
+
+
+_Made = TypeVar("_Made", PowerParameters, ArrheniusParameters)
+
+
+def _made(law: str, parameters: type[_Made], compound: str, figures: Mapping[str, float]) -> _Made:
+    known = [item.name for item in fields(parameters)]
+    unknown = [name for name in figures if name not in known]
+    if unknown:
+        raise ValueError(f"compound {compound!r}: {law} has no {', '.join(unknown)}; it has {', '.join(known)}")
+    return parameters(**figures)
+
+
+def _refuse(group: Any, above_zero: tuple[str, ...]) -> None:
+    for item in fields(group):
+        value: float = getattr(group, item.name)
+        if not isfinite(value):
+            raise ValueError(f"{type(group).__name__}.{item.name} must be finite, not {value!r}")
+        if item.name in above_zero and not value > 0.0:
+            raise ValueError(f"{type(group).__name__}.{item.name} must be above 0, not {value!r}")

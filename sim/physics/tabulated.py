@@ -1,0 +1,199 @@
+"""Tables of slow laws (``sim.physics.lookup``): made once of a law's values, kept in a folder from run to run.
+
+A table is made with 40 speeds, 20 temperatures and 5 loads. Where it is not right enough, the axis along which it is
+worst is given twice the points, up to a limit. A file has the name of what its table was made of: the law and its
+version, its figures, the materials' content, the span. Another content is another file; one that is damaged, or that
+cannot be read, is made anew.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import os
+import tempfile
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from sim.physics import laws
+from sim.physics.lookup import BELOW_C, SplineTable, TableSpan, TabulatedLaw, load_scale, scale
+
+if TYPE_CHECKING:
+    from sim.physics.laws import LawOfParts
+    from sim.physics.materials import Array
+
+Points = tuple[int, int, int]
+
+POINTS: Final[Points] = (40, 20, 5)
+"""Speeds, temperatures, loads."""
+ALLOWED: Final = 0.005
+"""Greatest relative error that is asked of a table."""
+ROUNDS: Final = 4
+"""So many times an axis is given twice the points, at most."""
+FORMAT: Final = "table 2"
+"""Another one for another way to make or to write tables."""
+_SAMPLES: Final = 200
+_MARGIN: Final = 0.6
+"""Samples do not find the worst place: they are to find this share of what is allowed, or less."""
+_LEAST_MU: Final = 1e-12
+
+
+def tabulated(
+    name: str,
+    compound: str,
+    figures: Mapping[str, float],
+    setting: laws.LawSetting,
+    span: TableSpan,
+) -> TabulatedLaw:
+    """Return the table of a law, out of the setting's folder where it is there, else made and put there.
+
+    Raises what ``laws.make`` raises, NoPartsError for a law that does not know its parts, and what the law raises
+    where the span leads out of what it knows.
+    """
+    slow = laws.with_parts(name, laws.make(name, compound, figures, setting))
+    file = None
+    if setting.tables is not None:
+        key = _key(name, compound, figures, setting, span)
+        file = setting.tables / f"{key}.table" if key else None
+    kept = _read(file) if file is not None else None
+    if kept is not None:
+        points, error, mu, share = kept
+        return _law(slow, span, points, mu, share, error)
+    made, mu, share = build(slow, span)
+    if file is not None:
+        _write(file, made, mu, share)
+    return made
+
+
+def build(slow: LawOfParts, span: TableSpan, rounds: int = ROUNDS) -> tuple[TabulatedLaw, Array, Array]:
+    """Return a table of a law, with mu and adhesion's share at its points (loads, temperatures, speeds)."""
+    points: Points = POINTS
+    while True:
+        law, mu, share = build_at(slow, span, points)
+        if law.error < _MARGIN * ALLOWED or rounds == 0:
+            return law, mu, share
+        rounds -= 1
+        errors = [_error(law, slow, points, (axis,)) for axis in range(3)]
+        worst = errors.index(max(errors))
+        speeds, temperatures, loads = (2 * n if axis == worst else n for axis, n in enumerate(points))
+        points = speeds, temperatures, loads
+
+
+def build_at(slow: LawOfParts, span: TableSpan, points: Points) -> tuple[TabulatedLaw, Array, Array]:
+    """Return a table of so many points, with mu and adhesion's share at them."""
+    speeds, temperatures, loads = _axes(span, points)
+    parts = np.array([[[slow.components(t, n, v) for v in speeds] for t in temperatures] for n in loads])
+    mu = np.maximum(parts.sum(axis=-1), _LEAST_MU)
+    share = parts[..., 0] / mu
+    law = _law(slow, span, points, mu, share, 0.0)
+    law.error = _error(law, slow, points, (0, 1, 2))
+    return law, mu, share
+
+
+def _axes(span: TableSpan, points: Points) -> tuple[list[float], list[float], list[float]]:
+    speeds = np.geomspace(*span.speeds_m_s, points[0])
+    low, high = (scale(end) for end in span.temperatures_c)
+    temperatures = -1.0 / np.linspace(low, high, points[1]) - BELOW_C
+    temperatures[0], temperatures[-1] = span.temperatures_c
+    light, heavy = (load_scale(end) for end in span.loads_n)
+    return speeds.tolist(), temperatures.tolist(), (np.linspace(light, heavy, points[2]) ** 2).tolist()
+
+
+def _law(slow: LawOfParts, span: TableSpan, points: Points, mu: Array, share: Array, error: float) -> TabulatedLaw:
+    return TabulatedLaw(slow, span, points, _spline(np.log(mu)), _spline(share), error)
+
+
+def _spline(values: Array) -> SplineTable:
+    """Return the B-spline through values at (loads, temperatures, speeds)."""
+    for axis in range(3):
+        values = np.moveaxis(_coefficients(np.moveaxis(values, axis, 0)), 0, axis)
+    return SplineTable([row.tolist() for plane in values for row in plane], values.shape[1])
+
+
+def _coefficients(values: Array) -> Array:
+    """Return coefficients along the first axis, two more than values: through each, and one cubic over two end steps.
+
+    At a point the spline is (c[i-1] + 4 c[i] + c[i+1]) / 6; its third derivative stays the same where the fourth
+    difference of the coefficients is 0.
+    """
+    n = len(values)
+    matrix = np.zeros((n + 2, n + 2))
+    matrix[0, :5] = matrix[-1, -5:] = (1.0, -4.0, 6.0, -4.0, 1.0)
+    for i in range(n):
+        matrix[i + 1, i : i + 3] = (1.0 / 6.0, 4.0 / 6.0, 1.0 / 6.0)
+    flat = np.zeros((n + 2, int(np.prod(values.shape[1:]))))
+    flat[1:-1] = values.reshape(n, -1)
+    solved = np.linalg.solve(matrix, flat).astype(np.float64, copy=False)
+    return solved.reshape(n + 2, *values.shape[1:])
+
+
+def _error(law: TabulatedLaw, slow: LawOfParts, points: Points, across: tuple[int, ...]) -> float:
+    """Return the greatest relative error at random points, midway between two along these axes and on them else."""
+    random = np.random.default_rng(1)
+    low, high = (np.array(ends) for ends in zip(*_ends(law.span), strict=True))
+    worst = 0.0
+    for _ in range(_SAMPLES):
+        steps = np.array([random.integers(n - (axis in across)) for axis, n in enumerate(points)], dtype=float)
+        steps[list(across)] += 0.5
+        speed, place, load = low + (high - low) * steps / (np.array(points) - 1)
+        at = float(-1.0 / place - BELOW_C), float(load**2), float(np.exp(speed))
+        expected = max(slow.mu(*at), _LEAST_MU)
+        worst = max(worst, abs(law.mu(*at) / expected - 1.0))
+    law.outside = 0  # rounding may have led out of the span
+    return worst
+
+
+def _ends(span: TableSpan) -> list[tuple[float, float]]:
+    (slow, fast), (cold, warm), (light, heavy) = span.speeds_m_s, span.temperatures_c, span.loads_n
+    return [
+        (float(np.log(slow)), float(np.log(fast))), (scale(cold), scale(warm)), (load_scale(light), load_scale(heavy)),
+    ]  # fmt: skip
+
+
+def _key(
+    name: str, compound: str, figures: Mapping[str, float], setting: laws.LawSetting, span: TableSpan
+) -> str | None:
+    """Return the name of a table's file: SHA-256 of all that enters; None where some of it has no content to tell."""
+    assert setting.materials is not None  # the law was made of them
+    maker = laws.find(name)
+    version = maker.version if isinstance(maker, laws.OfMaterials) else 0
+    told = (
+        FORMAT, name, version, sorted(figures.items()), setting.area_mm2, span, POINTS, ROUNDS,
+        setting.materials.rubber(compound), setting.materials.surface(setting.surface),
+    )  # fmt: skip
+    content = repr(told)
+    if " object at 0x" in content:
+        return None  # an address is no content
+    return hashlib.sha256(content.encode()).hexdigest()
+
+
+def _write(file: Path, law: TabulatedLaw, mu: Array, share: Array) -> None:
+    """Put a table into its file at once; where that cannot be done, the next run makes it again."""
+    body = np.concatenate([[*law.points, law.error], mu.ravel(), share.ravel()]).astype("<f8").tobytes()
+    with contextlib.suppress(OSError):
+        file.parent.mkdir(parents=True, exist_ok=True)
+        handle, name = tempfile.mkstemp(dir=file.parent, suffix=".part")
+        try:
+            with os.fdopen(handle, "wb") as part:
+                part.write(hashlib.sha256(body).digest() + body)
+            Path(name).replace(file)
+        finally:
+            Path(name).unlink(missing_ok=True)
+
+
+def _read(file: Path) -> tuple[Points, float, Array, Array] | None:
+    """Return what a file holds; None where there is none that is whole."""
+    try:
+        content = file.read_bytes()
+    except OSError:
+        return None
+    digest, body = content[:32], content[32:]
+    if hashlib.sha256(body).digest() != digest:
+        return None
+    numbers = np.frombuffer(body, dtype="<f8").astype(np.float64)
+    speeds, temperatures, loads = (int(n) for n in numbers[:3])
+    mu, share = numbers[4:].reshape(2, loads, temperatures, speeds)
+    return (speeds, temperatures, loads), float(numbers[3]), mu, share

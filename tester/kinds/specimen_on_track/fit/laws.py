@@ -1,0 +1,103 @@
+"""The laws that are fitted to a specimen on a track: of measurements alone, and those that moduli and a surface bear.
+
+v is the sliding speed in m/s, T in degC, the load F in N. A law of materials is bound to a compound and a surface
+before it is fitted (``tester.kinds.specimen_on_track.fit.bound``).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Final, NoReturn
+
+from sim.physics.wlf import C1, C2_K
+from tester.fit.law import FitError, Law, LawParameter, Variable
+from tester.kinds.specimen_on_track.fit.runs import LOAD, SPEED, TEMPERATURE, VARIABLES
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+
+FITTED: Final[tuple[Variable, ...]] = VARIABLES[:3]
+"""Speed, temperature, load: conditions of different interfaces are of different groups."""
+V0_M_S, N0_N = 0.1, 10.0
+"""Where the factor of the power law is told."""
+
+
+def _bell(p: Array, x: Array) -> Array:
+    import numpy as np
+
+    mu_0, mu_max, width, v_ref, t_ref = (p[..., i, None] for i in range(5))
+    off_k = x[..., TEMPERATURE] - t_ref
+    with np.errstate(divide="ignore", invalid="ignore"):  # at the pole and below it there is no law
+        shift = np.where(off_k > -C2_K, -C1 * off_k / (C2_K + off_k), np.nan)
+    decades = shift + np.log10(x[..., SPEED] / v_ref)
+    return mu_0 + (mu_max - mu_0) * np.exp(-((decades / width) ** 2))
+
+
+def _power(p: Array, x: Array) -> Array:
+    a, n, m = (p[..., i, None] for i in range(3))
+    return a * (x[..., SPEED] / V0_M_S) ** n * (x[..., LOAD] / N0_N) ** m
+
+
+WLF_BELL: Final = Law(
+    name="wlf_bell",
+    title="a bell over the reduced speed",
+    formula="mu = mu_0 + (mu_max - mu_0) exp(-(log10(aT v / v_ref) / width)^2), "
+    f"log10 aT = -{C1:g} (T - t_ref) / ({C2_K:g} + T - t_ref)",
+    variables=FITTED,
+    parameters=(
+        LawParameter("mu_0", "", 0.5, 0.1, positive=True, levels=("speed", 3)),
+        LawParameter("mu_max", "", 2.0, 0.1, positive=True, levels=("speed", 3)),
+        LawParameter("width", "", 3.0, 0.1, positive=True, levels=("speed", 3)),
+        LawParameter("v_ref", "m/s", 2e-3, 0.5, positive=True, levels=("speed", 3)),
+        LawParameter("t_ref", "degC", 0.0, 3.0, levels=("temperature", 3)),
+    ),
+    value=_bell,
+    published={},
+)
+POWER: Final = Law(
+    name="power",
+    title="powers of speed and load",
+    formula=f"mu = a (v / {V0_M_S:g})^n (F / {N0_N:g})^m",
+    variables=FITTED,
+    parameters=(
+        LawParameter("a", "", 1.0, 0.1, positive=True),
+        LawParameter("n", "", 0.1, 0.05, levels=("speed", 2)),
+        LawParameter("m", "", -0.1, 0.05, levels=("load", 2)),
+    ),
+    value=_power,
+    published={},
+)
+
+
+def _unbound(p: Array, x: Array) -> NoReturn:
+    raise FitError("a law of materials is fitted to one compound on one surface")
+
+
+GRETA: Final = Law(
+    name="greta",
+    title="adhesion and hysteresis of the compound's modulus on the surface's two waves",
+    formula="mu = (tau_s / p) (Ac / A0) + mu_hys, tau_s = tau_s0 [1 + (Einf / E0) / (1 + v_c / v)^n]",
+    variables=FITTED,
+    parameters=(
+        LawParameter("tau_s0", "Pa", 1e4, 0.2, positive=True),
+        LawParameter("v_c", "m/s", 1.0, 0.5, positive=True, levels=("speed", 3)),
+        LawParameter("n", "", 0.6, 0.2, positive=True, levels=("speed", 3)),
+    ),
+    value=_unbound,
+    published={},
+)
+PERSSON: Final = Law(
+    name="persson",
+    title="hysteresis of the compound's modulus on the surface's spectrum up to the wave number q1",
+    formula="mu = 1/2 int_q0^q1 dq q^3 C(q) P(q) int dphi cos(phi) Im[2 G(q v cos(phi), T) / (p (1 - nu))]",
+    variables=FITTED,
+    parameters=(LawParameter("q1", "1/m", 1e5, 0.3, positive=True),),
+    value=_unbound,
+    published={},
+)
+LAWS: Final[Mapping[str, Law]] = {law.name: law for law in (WLF_BELL, POWER, PERSSON, GRETA)}
+"""By name; the bell first: it needs nothing but what was measured."""
+OF_MATERIALS: Final = frozenset({PERSSON.name, GRETA.name})

@@ -1,0 +1,116 @@
+"""Compounds and surfaces that ship: each is read without a doubt, and holds what its figures say."""
+
+from __future__ import annotations
+
+import tomllib
+from math import exp, log10, pi
+from pathlib import Path
+
+import numpy as np
+import pytest
+import yaml
+
+import recipes
+from sim.physics.track import RUBBERS
+from tester.base.section import editor_text
+from tester.materials.library import Library
+from tester.materials.schema import CompoundModel, SurfaceModel
+
+LIBRARY = Library([recipes.FOLDER])
+COMPOUNDS = [one.name for one in LIBRARY.entries("compound")]
+SURFACES = [one.name for one in LIBRARY.entries("surface")]
+
+
+def test_what_ships() -> None:
+    assert sorted(COMPOUNDS) == ["1#", "2#", "3#", "NBR", "NR", "SBR", "tread", "tread soft"]
+    assert sorted(SURFACES) == ["S0", "glass", "road", "silicon carbide"]
+
+
+@pytest.mark.parametrize("name", COMPOUNDS)
+def test_a_compound_is_read_without_a_doubt(name: str) -> None:
+    one = LIBRARY.compound(name)
+    assert one.file.doubts == () and one.model.source
+
+
+@pytest.mark.parametrize("name", SURFACES)
+def test_a_surface_is_read_without_a_doubt(name: str) -> None:
+    one = LIBRARY.surface_file(name)
+    assert one.file.doubts == () and one.model.source and "[A]" in one.model.source
+
+
+@pytest.mark.parametrize("name", [name for name in COMPOUNDS if not name.endswith("#")])
+def test_an_invented_compound_says_so(name: str) -> None:
+    assert "[A]" in (LIBRARY.compound(name).model.source or "")
+
+
+@pytest.mark.parametrize("name", list(RUBBERS))
+def test_rubbers_of_the_simulated_track_have_their_glass_transition(name: str) -> None:
+    rubber = LIBRARY.rubber(name)
+    assert rubber.glass_c == RUBBERS[name].t_ref - 50.0
+
+
+def test_recipes_find_what_they_name() -> None:
+    for path in recipes.FOLDER.glob("*.yaml"):
+        recipe = yaml.safe_load(path.read_text(encoding="utf-8"))
+        for specimen in recipe["specimens"]:
+            assert LIBRARY.path("compound", specimen["compound"]) is not None
+        if recipe.get("kind") == "specimen_on_track":
+            assert LIBRARY.path("surface", recipe["abrasive"]["name"]) is not None
+
+
+def test_the_sbr_has_its_loss_maximum() -> None:
+    modulus = LIBRARY.rubber("SBR").modulus.complex_pa(np.logspace(-2, 9, 4000), 20.0)
+    assert float(np.max(modulus.imag / modulus.real)) == pytest.approx(1.240, abs=5e-4)
+
+
+@pytest.mark.parametrize(
+    ("name", "rubber_pa", "middle_c", "floor", "peak", "peak_c"),
+    [("tread", 7e6, -25.0, 0.12, 0.55, -15.0), ("tread soft", 4e6, -35.0, 0.15, 0.60, -25.0)],
+)
+def test_a_tread_is_its_formula(
+    name: str, rubber_pa: float, middle_c: float, floor: float, peak: float, peak_c: float
+) -> None:
+    glass_pa = 2e9
+    one = LIBRARY.compound(name)
+    assert one.table is not None and len(one.table.rows) == 251 and one.table.frequencies_hz == (1.0,)
+    for row in one.table.rows:
+        t = row.temperature_c
+        high = log10(glass_pa) - log10(rubber_pa)
+        storage = 10.0 ** (log10(rubber_pa) + high / (1.0 + exp((t - middle_c) / 6.0)))
+        assert row.storage_pa == pytest.approx(storage, rel=1e-8)
+        assert row.loss_pa / row.storage_pa == pytest.approx(floor + peak * exp(-(((t - peak_c) / 18.0) ** 2)), rel=1e-7)
+    shear = one.model.shear
+    assert shear is not None and shear.ratio == pytest.approx(glass_pa / rubber_pa, rel=1e-12)
+
+
+def test_the_tread_at_100_hz_is_that_of_16_k_less_at_1_hz() -> None:
+    modulus = LIBRARY.rubber("tread").modulus
+    (fast,) = modulus.complex_pa(np.array([2.0 * pi * 100.0]), 25.0)
+    (cold,) = modulus.complex_pa(np.array([2.0 * pi]), 9.0)
+    assert fast == pytest.approx(cold, rel=1e-9)
+
+
+def test_grit_and_road_have_the_lengths_they_say() -> None:
+    grit = LIBRARY.surface("silicon carbide").spectrum
+    assert grit is not None
+    assert 2.0 * pi / grit.band_1_m[0] == pytest.approx(150e-6, rel=1e-6)
+    road = LIBRARY.surface("road")
+    assert road.coarse is not None and road.fine is not None
+    assert road.fine.wavelength_m == pytest.approx(road.coarse.wavelength_m / 100.0)
+    # m2 of the fine waves, (2 pi Ra / lambda)^2 / 2
+    assert (road.fine.ra_m * 2.0 * pi / road.fine.wavelength_m) ** 2 / 2.0 == pytest.approx(0.1289, abs=5e-5)
+
+
+@pytest.mark.parametrize(("what", "model"), [("compound", CompoundModel), ("surface", SurfaceModel)])
+def test_a_schema_is_current(what: str, model: type[CompoundModel] | type[SurfaceModel]) -> None:
+    stored = (recipes.FOLDER / f"{what}.schema.json").read_text(encoding="utf-8")
+    assert stored == editor_text(model), f"write it again: tester schema --of {what} > recipes/{what}.schema.json"
+
+
+def test_the_package_takes_every_file_along() -> None:
+    project = tomllib.loads((Path(recipes.FOLDER).parent / "pyproject.toml").read_text(encoding="utf-8"))
+    patterns = project["tool"]["setuptools"]["package-data"]["recipes"]
+    for path in recipes.FOLDER.rglob("*"):
+        relative = path.relative_to(recipes.FOLDER)
+        if path.is_file() and path.suffix in (".yaml", ".csv", ".json"):
+            assert any(relative.match(one) and len(relative.parts) == one.count("/") + 1 for one in patterns), relative

@@ -1,0 +1,167 @@
+"""`tester materials` and `tester schema --of`, as users call them."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import recipes
+from tester.cli.main import invoke
+from tester.materials.compound import load_compound
+from tester.materials.surface import load_surface
+
+ROWS = "".join(f"{-60 + 5 * i};1;{2000 // (i + 1)},5;{200 // (i + 1)},25\n" for i in range(20))
+DMA = f"Instrument;X\nOperator;Li\n\nTemp./°C;Freq.;Storage Modulus;Loss Modulus\n;[Hz];[MPa];[MPa]\n{ROWS}"
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.delenv("TESTER_MATERIALS", raising=False)
+    return tmp_path
+
+
+def test_list_names_what_ships_and_says_what_is_hidden(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (folder / "compounds").mkdir()
+    (folder / "compounds" / "mine.yaml").write_text("name: SBR\n", encoding="utf-8")
+    assert invoke(["materials", "list"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0].split() == ["compound", "SBR", "compounds/mine.yaml".replace("/", str(Path("/"))[0])]
+    (hidden,) = [line for line in lines if "not used" in line]
+    assert "sbr.yaml (not used: " in hidden and "mine.yaml is nearer)" in hidden
+    assert any(line.split()[:3] == ["surface", "silicon", "carbide"] for line in lines)
+
+
+def test_list_as_json(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert invoke(["materials", "list", "--json"]) == 0
+    listed = json.loads(capsys.readouterr().out)
+    assert {"role": "surface", "name": "S0", "file": str(recipes.FOLDER / "surfaces" / "s0.yaml"),
+            "hidden": False} in listed  # fmt: skip
+
+
+def test_list_tells_a_file_without_a_name(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (folder / "surfaces").mkdir()
+    (folder / "surfaces" / "x.yaml").write_text("note: y\n", encoding="utf-8")
+    assert invoke(["materials", "list"]) == 0
+    assert "x.yaml: has no name, so no recipe can mean it" in capsys.readouterr().err
+
+
+def test_show_says_what_a_file_holds_and_its_hash(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert invoke(["materials", "show", "tread"]) == 0
+    out = capsys.readouterr().out
+    assert "holds    measured, 251 points, -100 to 150 degC, 1 Hz" in out
+    assert "data     tread.csv, sha256 " in out
+    assert invoke(["materials", "show", "tread", "--json"]) == 0
+    (one,) = json.loads(capsys.readouterr().out)
+    assert f"sha256   {one['sha256']}" in out and one["content"]["shear"]["tau_s0"] == "12000 Pa"
+
+
+def test_show_of_an_unknown_name_is_a_usage_error(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert invoke(["materials", "show", "tred"]) == 2
+    assert 'did you mean "tread"?' in capsys.readouterr().err
+
+
+def test_check_tells_doubts_and_problems(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (folder / "c.yaml").write_text("name: x\nmoduli: {constant: {G: 1 MPa}}\n", encoding="utf-8")
+    assert invoke(["materials", "check", "c.yaml"]) == 0
+    out, err = capsys.readouterr()
+    assert out == "c.yaml: valid, compound x: constant, G 1 MPa, tan delta 0\n"
+    assert err.startswith("doubt: c.yaml:2:1: a constant modulus is no rubber's")
+    (folder / "s.yaml").write_text("name: x\nspectrum: {C0: 1 m4}\n", encoding="utf-8")
+    assert invoke(["materials", "check", "s.yaml"]) == 3
+    assert "s.yaml:2:1: q0 is missing" in capsys.readouterr().err
+    assert invoke(["materials", "check", "s.yaml", "--json"]) == 3
+    assert json.loads(capsys.readouterr().out)["valid"] is False
+
+
+def test_an_import_is_said_and_can_be_read_again(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (folder / "d.csv").write_text(DMA, encoding="cp1252")
+    assert invoke(["materials", "import", "dma", "d.csv", "--name", 'my "1#"', "-o", "c.yaml"]) == 0
+    out, err = capsys.readouterr()
+    assert out == "c.yaml\n"
+    assert "noted: numbers have a decimal comma" in err
+    assert 'doubt: d.csv:4:1: "Storage Modulus" does not say of which deformation' in err
+    one = load_compound(Path("c.yaml"))
+    assert one.model.name == 'my "1#"' and one.table is not None
+    assert (one.table.rows[0].storage_pa, one.table.rows[0].loss_pa) == (2000.5e6, 200.25e6)
+    text = Path("c.yaml").read_text(encoding="utf-8")
+    assert "SHA-256" in text
+    # The doubt of the import stays with the file.
+    assert any("does not say of which deformation" in doubt.message for doubt in one.file.doubts)
+
+
+def test_an_import_replaces_no_file_unless_told(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (folder / "d.csv").write_text(DMA, encoding="utf-8")
+    (folder / "c.yaml").write_text("mine\n", encoding="utf-8")
+    arguments = ["materials", "import", "dma", "d.csv", "--name", "x", "-o", "c.yaml"]
+    assert invoke(arguments) == 2
+    assert Path("c.yaml").read_text(encoding="utf-8") == "mine\n"
+    assert invoke([*arguments, "--force"]) == 0
+
+
+def test_columns_and_units_may_be_said(folder: Path) -> None:
+    text = DMA.replace("Storage Modulus;Loss Modulus", "A;B").replace(";[Hz];[MPa];[MPa]\n", "")
+    (folder / "d.csv").write_text(text, encoding="utf-8")
+    arguments = ["materials", "import", "dma", "d.csv", "--name", "x", "-o", "c.yaml"]
+    assert invoke(arguments) == 3
+    said = ["--columns", "E'=A", "--columns", "E''=B", "--unit", "A=MPa", "--unit", "B=kPa", "--unit", "Freq.=Hz"]
+    assert invoke([*arguments, *said]) == 0
+    table = load_compound(Path("c.yaml")).table
+    assert table is not None and table.rows[0].loss_pa == pytest.approx(200.25e3)
+
+
+def test_a_quantity_that_is_none_is_a_usage_error(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (folder / "d.csv").write_text(DMA, encoding="utf-8")
+    arguments = ["materials", "import", "dma", "d.csv", "--name", "x", "-o", "c.yaml", "--columns"]
+    assert invoke([*arguments, "Q=A"]) == 2
+    assert '"Q" is none of temperature, frequency' in capsys.readouterr().err
+    assert invoke([*arguments, "E'"]) == 2
+
+
+def test_a_scan_becomes_a_surface(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    np.savetxt("m.csv", np.random.default_rng(0).normal(size=(64, 64)), delimiter=",")
+    arguments = ["materials", "import", "scan", "m.csv", "-o", "s.yaml"]
+    assert invoke(arguments) == 3
+    assert "--unit um" in capsys.readouterr().err
+    assert invoke([*arguments, "--pixel", "1um", "--unit", "um", "--name", "lab"]) == 0
+    one = load_surface(Path("s.yaml"))
+    assert one.model.name == "lab" and one.radial is not None
+    # White noise of 1 um in 1 um pixels; the corners beyond the shortest wave of both sides hold 1 - pi / 4 of it.
+    assert one.radial.rms_height_m**2 == pytest.approx(np.pi / 4.0 * 1e-12, rel=0.1)
+
+
+def test_a_scan_of_an_instrument_names_the_extra(
+    folder: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    import sys
+
+    monkeypatch.setitem(sys.modules, "SurfaceTopography", None)
+    (folder / "m.al3d").write_bytes(b"x")
+    assert invoke(["materials", "import", "scan", "m.al3d", "-o", "s.yaml"]) == 1
+    assert 'pip install "friction-tester[topography]"' in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("what", ["recipe", "compound", "surface"])
+def test_schemas_are_those_that_ship(what: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert invoke(["schema", "--of", what]) == 0
+    assert capsys.readouterr().out == (recipes.FOLDER / f"{what}.schema.json").read_text(encoding="utf-8")
+
+
+def test_check_of_a_recipe_warns_of_doubts(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    from tests.tester.recipe.texts import SMALL
+
+    (folder / "r.yaml").write_text(SMALL, encoding="utf-8")
+    (folder / "compounds").mkdir()
+    path = folder / "compounds" / "one.yaml"
+    path.write_text('name: "1#"\ndoubts: [it was old]\n', encoding="utf-8")
+    assert invoke(["check", "r.yaml", "--verbose"]) == 0
+    err = capsys.readouterr().err
+    assert "warning: " in err and "one.yaml:2:10: it was old" in err and "compound 1#: " in err
+    assert invoke(["check", "r.yaml", "--json"]) == 0
+    assert len(json.loads(capsys.readouterr().out)["doubts"]) == 1
+    path.write_text('name: "1#"\nTg: -53\n', encoding="utf-8")
+    assert invoke(["check", "r.yaml"]) == 3
+    assert "one.yaml:2:5: Tg: -53 has no unit" in capsys.readouterr().err
