@@ -54,6 +54,7 @@ HOT = (
     "sim/noise.py",
     "sim/rig.py",
     "sim/sensors.py",
+    "sim/physics/lookup.py",
     "sim/physics/slip.py",
     "sim/physics/thermal.py",
     "sim/physics/wear.py",

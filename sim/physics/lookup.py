@@ -1,13 +1,14 @@
 """A law of friction as a table: what a simulated rig is told in every step, within microseconds.
 
-ln mu, and adhesion's share of mu, are cubic B-splines over ln v, -1 / (T + 150 degC) and ln load, each in equal steps.
-The second is nearly straight in the logarithm of a rubber's shift of time by temperature.
+ln mu, and adhesion's share of mu, are cubic B-splines over ln v, -1 / (T + 150 degC) and the root of the load, each in
+equal steps. The second is nearly straight in the logarithm of a rubber's shift of time by temperature; under light
+loads friction hardly depends on them.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import exp, log
+from math import exp, log, sqrt
 from typing import TYPE_CHECKING
 
 from sim.physics.materials import Components
@@ -39,9 +40,13 @@ class TableSpan:
 
 
 class SplineTable:
-    """A cubic B-spline over three axes of equal steps 0, 1, 2 ..., from its coefficients."""
+    """A cubic B-spline over three axes of equal steps 0, 1, 2 ..., from its coefficients.
 
-    __slots__ = ("_between", "_rows")
+    The third is summed up first, and the sums are kept for the next value at the same place of it: a load stays the
+    same for thousands of steps. Both ways give the same bits.
+    """
+
+    __slots__ = ("_between", "_last", "_plane", "_rows", "_weights")
 
     def __init__(self, rows: list[list[float]], between: int) -> None:
         """Take coefficients along the first axis, row by row: all of the second axis, for each of the third.
@@ -50,51 +55,62 @@ class SplineTable:
         """
         self._rows = rows
         self._between = between
+        self._last = -1.0
+        self._weights = (0, 0.0, 0.0, 0.0, 0.0)
+        self._plane: list[list[float]] = []
 
     def value(self, x: float, y: float, z: float) -> float:
         """Return the spline at 0 to points - 1 of every axis."""
-        rows = self._rows
-        i = int(x)
-        last = len(rows[0]) - 4
-        if i > last:
-            i = last
-        t = x - i
-        s = 1.0 - t
-        a0, a3 = s * s * s, t * t * t
-        a1, a2 = 4.0 - 3.0 * t * t * (1.0 + s), 4.0 - 3.0 * s * s * (1.0 + t)
-
         j = int(y)
-        last = self._between - 4
-        if j > last:
-            j = last
+        if j > self._between - 4:
+            j = self._between - 4
+        if z != self._last:
+            self._turn_to(z)
+            four = self._summed(j, j + 4)
+        else:
+            if not self._plane:
+                self._plane = self._summed(0, self._between)
+            four = self._plane[j : j + 4]
         t = y - j
         s = 1.0 - t
-        b0, b3 = s * s * s, t * t * t
         b1, b2 = 4.0 - 3.0 * t * t * (1.0 + s), 4.0 - 3.0 * s * s * (1.0 + t)
+        b0, b3 = s * s * s, t * t * t
 
-        k = int(z)
-        last = len(rows) // self._between - 4
-        if k > last:
-            k = last
+        r0, r1, r2, r3 = four
+        i = int(x)
+        if i > len(r0) - 4:
+            i = len(r0) - 4
+        t = x - i
+        s = 1.0 - t
+        return (
+            s * s * s * (b0 * r0[i] + b1 * r1[i] + b2 * r2[i] + b3 * r3[i])
+            + (4.0 - 3.0 * t * t * (1.0 + s)) * (b0 * r0[i + 1] + b1 * r1[i + 1] + b2 * r2[i + 1] + b3 * r3[i + 1])
+            + (4.0 - 3.0 * s * s * (1.0 + t)) * (b0 * r0[i + 2] + b1 * r1[i + 2] + b2 * r2[i + 2] + b3 * r3[i + 2])
+            + t * t * t * (b0 * r0[i + 3] + b1 * r1[i + 3] + b2 * r2[i + 3] + b3 * r3[i + 3])
+        ) / 216.0
+
+    def _turn_to(self, z: float) -> None:
+        """Work out the weights of a place on the third axis."""
+        k = min(int(z), len(self._rows) // self._between - 4)
         t = z - k
         s = 1.0 - t
-        c0, c3 = s * s * s, t * t * t
-        c1, c2 = 4.0 - 3.0 * t * t * (1.0 + s), 4.0 - 3.0 * s * s * (1.0 + t)
+        self._weights = (
+            k * self._between, s * s * s, 4.0 - 3.0 * t * t * (1.0 + s), 4.0 - 3.0 * s * s * (1.0 + t), t * t * t,
+        )  # fmt: skip
+        self._last = z
+        self._plane = []
 
-        total = 0.0
-        at = k * self._between + j
-        for weight in (c0, c1, c2, c3):
-            r = rows[at]
-            inner = b0 * (a0 * r[i] + a1 * r[i + 1] + a2 * r[i + 2] + a3 * r[i + 3])
-            r = rows[at + 1]
-            inner += b1 * (a0 * r[i] + a1 * r[i + 1] + a2 * r[i + 2] + a3 * r[i + 3])
-            r = rows[at + 2]
-            inner += b2 * (a0 * r[i] + a1 * r[i + 1] + a2 * r[i + 2] + a3 * r[i + 3])
-            r = rows[at + 3]
-            inner += b3 * (a0 * r[i] + a1 * r[i + 1] + a2 * r[i + 2] + a3 * r[i + 3])
-            total += weight * inner
-            at += self._between
-        return total / 216.0
+    def _summed(self, first: int, end: int) -> list[list[float]]:
+        """Return rows of the second axis, summed up over the third."""
+        rows, n = self._rows, self._between
+        at, c0, c1, c2, c3 = self._weights
+        return [
+            [
+                c0 * p + c1 * q + c2 * r + c3 * s
+                for p, q, r, s in zip(rows[i], rows[i + n], rows[i + 2 * n], rows[i + 3 * n], strict=True)
+            ]
+            for i in range(at + first, at + end)
+        ]
 
 
 class TabulatedLaw:
@@ -103,7 +119,10 @@ class TabulatedLaw:
     Above its span, and outside its temperatures, the law that it stands for is asked, which ``outside`` counts.
     """
 
-    __slots__ = ("_adhesion", "_at", "_per", "_slow", "_total", "error", "outside", "points", "span")
+    __slots__ = (
+        "_adhesion", "_load", "_load_n", "_n", "_slow", "_t", "_total", "_v", "_x", "_y", "_z",
+        "error", "outside", "points", "span",
+    )  # fmt: skip
 
     def __init__(
         self,
@@ -123,19 +142,27 @@ class TabulatedLaw:
         self.outside = 0
         self._total = total
         self._adhesion = adhesion
-        ends = [
-            (log(span.speeds_m_s[0]), log(span.speeds_m_s[1])),
-            (scale(span.temperatures_c[0]), scale(span.temperatures_c[1])),
-            (log(span.loads_n[0]), log(span.loads_n[1])),
-        ]
-        self._at = [low for low, _ in ends]
-        self._per = [(count - 1) / (high - low) for (low, high), count in zip(ends, points, strict=True)]
+        self._v, self._t, self._n = span.speeds_m_s, span.temperatures_c, span.loads_n
+        self._x = _axis(log(self._v[0]), log(self._v[1]), points[0])
+        self._y = _axis(scale(self._t[0]), scale(self._t[1]), points[1])
+        self._z = _axis(load_scale(self._n[0]), load_scale(self._n[1]), points[2])
+        self._load_n, self._load = self._n[0], 0.0
 
     def mu(self, temperature_c: float, load_n: float, slip_m_s: float) -> float:
         """Return the coefficient; outside the table, raises what the law itself raises."""
-        if self._beyond(temperature_c, load_n, slip_m_s):
+        # In every step of a simulated rig: what ``components`` does by steps is written out.
+        low_c, high_c = self._t
+        slowest, fastest = self._v
+        if not (low_c <= temperature_c <= high_c and load_n <= self._n[1] and slip_m_s <= fastest):
+            self.outside += 1
             return self._slow.mu(temperature_c, load_n, slip_m_s)
-        return exp(self._total.value(*self._place(temperature_c, load_n, slip_m_s)))
+        x0, x_per = self._x
+        y0, y_per = self._y
+        if load_n != self._load_n:
+            self._load_n = load_n
+            self._load = (load_scale(max(load_n, self._n[0])) - self._z[0]) * self._z[1]
+        x = (log(slip_m_s if slip_m_s > slowest else slowest) - x0) * x_per
+        return exp(self._total.value(x, (-1.0 / (temperature_c + BELOW_C) - y0) * y_per, self._load))
 
     def components(self, temperature_c: float, load_n: float, slip_m_s: float) -> Components:
         """Return adhesion and hysteresis; outside the table, raises what the law itself raises."""
@@ -147,23 +174,37 @@ class TabulatedLaw:
         return Components(mu * share, mu * (1.0 - share))
 
     def _beyond(self, temperature_c: float, load_n: float, slip_m_s: float) -> bool:
-        span = self.span
-        low_c, high_c = span.temperatures_c
-        if low_c <= temperature_c <= high_c and load_n <= span.loads_n[1] and slip_m_s <= span.speeds_m_s[1]:
+        low_c, high_c = self._t
+        if low_c <= temperature_c <= high_c and load_n <= self._n[1] and slip_m_s <= self._v[1]:
             return False
         self.outside += 1
         return True
 
     def _place(self, temperature_c: float, load_n: float, slip_m_s: float) -> tuple[float, float, float]:
-        span, at, per = self.span, self._at, self._per
-        slip, load = max(slip_m_s, span.speeds_m_s[0]), max(load_n, span.loads_n[0])
-        return (log(slip) - at[0]) * per[0], (scale(temperature_c) - at[1]) * per[1], (log(load) - at[2]) * per[2]
+        x0, x_per = self._x
+        y0, y_per = self._y
+        z0, z_per = self._z
+        return (
+            (log(max(slip_m_s, self._v[0])) - x0) * x_per,
+            (scale(temperature_c) - y0) * y_per,
+            (load_scale(max(load_n, self._n[0])) - z0) * z_per,
+        )
 
     def __deepcopy__(self, memo: dict[int, object]) -> TabulatedLaw:
         """Return itself: the table never changes, and copies of a running rig share it."""
         return self
 
 
+def _axis(low: float, high: float, points: int) -> tuple[float, float]:
+    """Return where an axis begins, and points by its unit."""
+    return low, (points - 1) / (high - low)
+
+
 def scale(temperature_c: float) -> float:
     """Return the place of a temperature above -150 degC on its axis."""
     return -1.0 / (temperature_c + BELOW_C)
+
+
+def load_scale(load_n: float) -> float:
+    """Return the place of a load on its axis."""
+    return sqrt(load_n)

@@ -290,7 +290,11 @@ class SimParameters:
         if not -40.0 <= self.ambient <= 60.0:
             raise ValueError(f"ambient must be -40 to 60 degC, not {self.ambient!r}")
         try:
-            laws.find(self.friction_model)
+            if isinstance(laws.find(self.friction_model), laws.OfMaterials):
+                raise ValueError(
+                    f"friction_model: law {self.friction_model!r} is made of a compound's modulus and a surface, and is"
+                    " for a specimen on a track; a wheel's friction is known of the paper's compounds"
+                )
         except laws.UnknownLawError as error:
             raise ValueError(f"friction_model: {error}") from None
 

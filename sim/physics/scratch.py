@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 FADE: Final = 8.0 / 15.0
 """Mean of (1 - t^2)^2 over -1 to 1."""
-POINTS: Final = 200
+HARMONICS: Final = 100
 """Of the pressure over a wave length."""
 DEPTHS: Final = 50
 """Of the tread, by trapezia: the integral is 1.7 to 2.1 % above that of depths without number."""
@@ -59,41 +59,50 @@ def shear_z(u: Array) -> Array:
     return u * np.exp(-u)
 
 
-def pressure(share: float, points: int = POINTS) -> Array:
-    """Return the pressure over a wave length from its crest on, in shares of its mean, which is 1.
+def harmonics(share: float, count: int) -> Array:
+    """Return the amplitudes of cos(2 pi n x / l), n = 1 to ``count``, of the pressure in shares of its mean.
 
-    ``share``: p / p_full, above 0; from 1 on rubber and wave touch everywhere.
+    ``share``: p / p_full, above 0; from 1 on rubber and wave touch everywhere. Below, with c = 1 - 2 share and the
+    polynomials P of Legendre (P of -1 is 1), the integral of Westergaard's pressure times a cosine is closed:
+
+        a_n = [(P_(n-1) - P_(n+1)) / (2n + 1) + (P_(n-2) - P_n) / (2n - 1)](c) / (1 - c)
     """
-    x = np.arange(points) / points
+    found = np.zeros(count)
     if share >= 1.0:
-        return 1.0 + np.cos(2.0 * pi * x) / share
-    found: Array = np.abs(np.cos(pi * x)) * np.sqrt(np.clip(share - np.sin(pi * x) ** 2, 0.0, None))
-    return found / float(np.mean(found))
+        found[0] = 1.0 / share
+        return found
+    c = 1.0 - 2.0 * share
+    before, now = 1.0, 1.0  # P_-1, P_0
+    polynomials = [before, now]
+    for n in range(count + 1):
+        before, now = now, ((2 * n + 1) * c * now - n * before) / (n + 1)
+        polynomials.append(now)
+    p = np.array(polynomials)
+    n = np.arange(1, count + 1)
+    return ((p[1:-2] - p[3:]) / (2 * n + 1) + (p[:-3] - p[2:-1]) / (2 * n - 1)) / (2.0 * share)
 
 
 class Scratch:
     """Integrals of the squares of the stress under a wave of some length, down to some depth."""
 
-    __slots__ = ("_normal", "_points", "_shear")
+    __slots__ = ("_count", "_normal", "_shear")
 
-    def __init__(self, wavelength_m: float, depth_m: float, points: int = POINTS, depths: int = DEPTHS) -> None:
-        """Work out what does not depend on the pressure. ``points`` even; raises ValueError for values out of range."""
+    def __init__(self, wavelength_m: float, depth_m: float, count: int = HARMONICS, depths: int = DEPTHS) -> None:
+        """Work out what does not depend on the pressure, for so many harmonics. Raises ValueError for values out of
+        range."""
         if not (wavelength_m > 0.0 and depth_m > 0.0):
             raise ValueError(f"a wave length and a depth are above 0 m, not {wavelength_m!r} and {depth_m!r}")
-        if points < 2 or points % 2 or depths < 2:
-            raise ValueError(f"a grid has an even number of points and 2 depths or more, not {points} and {depths}")
-        self._points = points
+        if count < 1 or depths < 2:
+            raise ValueError(f"a field has 1 harmonic and 2 depths or more, not {count} and {depths}")
+        self._count = count
         depth = np.linspace(0.0, depth_m, depths)
-        u = 2.0 * pi / wavelength_m * np.outer(np.arange(1, points // 2 + 1), depth)
+        u = 2.0 * pi / wavelength_m * np.outer(np.arange(1, count + 1), depth)
         trapezia = np.full(depths, depth_m / (depths - 1))
         trapezia[[0, -1]] *= 0.5
 
-        # Means over a wave length of cos^2 and sin^2 are 1/2; of the shortest harmonic the points see cos alone, as 1.
-        half = np.full(points // 2, 0.5)
-        half[-1] = 1.0
-        self._normal: Array = half * ((normal_z(u) ** 2 + 2.0 * normal_x(u) ** 2) @ trapezia)
-        half[-1] = 0.0
-        self._shear: Array = half * ((shear_x(u) ** 2 + shear_z(u) ** 2) @ trapezia)
+        # Means over a wave length of cos^2 and sin^2 are 1/2.
+        self._normal: Array = 0.5 * ((normal_z(u) ** 2 + 2.0 * normal_x(u) ** 2) @ trapezia)
+        self._shear: Array = 0.5 * ((shear_x(u) ** 2 + shear_z(u) ** 2) @ trapezia)
 
     def parts_m(self, share: float) -> tuple[float, float]:
         """Return the mean over a square of l by l of int s1^2 dz, s1^2 = sx^2 + sy^2 + sz^2 in shares of p^2, in m.
@@ -101,7 +110,5 @@ class Scratch:
         In two parts, of pressure alone and what K^2 multiplies. ``share``: p / p_full, above 0. Products of cos and
         sin are 0 in the mean, so that each harmonic adds by itself.
         """
-        harmonics = np.abs(np.fft.rfft(pressure(share, self._points))[1:]) / self._points
-        harmonics[:-1] *= 2.0
-        squares = FADE * harmonics**2
+        squares = FADE * harmonics(share, self._count) ** 2
         return float(squares @ self._normal), float(squares @ self._shear)

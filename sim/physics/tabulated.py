@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from sim.physics import laws
-from sim.physics.lookup import BELOW_C, SplineTable, TableSpan, TabulatedLaw, scale
+from sim.physics.lookup import BELOW_C, SplineTable, TableSpan, TabulatedLaw, load_scale, scale
 
 if TYPE_CHECKING:
     from sim.physics.laws import LawOfParts
@@ -33,7 +33,7 @@ ALLOWED: Final = 0.005
 """Greatest relative error that is asked of a table."""
 ROUNDS: Final = 4
 """So many times an axis is given twice the points, at most."""
-FORMAT: Final = "table 1"
+FORMAT: Final = "table 2"
 """Another one for another way to make or to write tables."""
 _SAMPLES: Final = 200
 _MARGIN: Final = 0.6
@@ -98,7 +98,8 @@ def _axes(span: TableSpan, points: Points) -> tuple[list[float], list[float], li
     low, high = (scale(end) for end in span.temperatures_c)
     temperatures = -1.0 / np.linspace(low, high, points[1]) - BELOW_C
     temperatures[0], temperatures[-1] = span.temperatures_c
-    return speeds.tolist(), temperatures.tolist(), np.geomspace(*span.loads_n, points[2]).tolist()
+    light, heavy = (load_scale(end) for end in span.loads_n)
+    return speeds.tolist(), temperatures.tolist(), (np.linspace(light, heavy, points[2]) ** 2).tolist()
 
 
 def _law(slow: LawOfParts, span: TableSpan, points: Points, mu: Array, share: Array, error: float) -> TabulatedLaw:
@@ -138,7 +139,7 @@ def _error(law: TabulatedLaw, slow: LawOfParts, points: Points, across: tuple[in
         steps = np.array([random.integers(n - (axis in across)) for axis, n in enumerate(points)], dtype=float)
         steps[list(across)] += 0.5
         speed, place, load = low + (high - low) * steps / (np.array(points) - 1)
-        at = float(-1.0 / place - BELOW_C), float(np.exp(load)), float(np.exp(speed))
+        at = float(-1.0 / place - BELOW_C), float(load**2), float(np.exp(speed))
         expected = max(slow.mu(*at), _LEAST_MU)
         worst = max(worst, abs(law.mu(*at) / expected - 1.0))
     law.outside = 0  # rounding may have led out of the span
@@ -146,8 +147,10 @@ def _error(law: TabulatedLaw, slow: LawOfParts, points: Points, across: tuple[in
 
 
 def _ends(span: TableSpan) -> list[tuple[float, float]]:
-    logs = [(float(np.log(low)), float(np.log(high))) for low, high in (span.speeds_m_s, span.loads_n)]
-    return [logs[0], (scale(span.temperatures_c[0]), scale(span.temperatures_c[1])), logs[1]]
+    (slow, fast), (cold, warm), (light, heavy) = span.speeds_m_s, span.temperatures_c, span.loads_n
+    return [
+        (float(np.log(slow)), float(np.log(fast))), (scale(cold), scale(warm)), (load_scale(light), load_scale(heavy)),
+    ]  # fmt: skip
 
 
 def _key(

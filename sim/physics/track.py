@@ -30,7 +30,7 @@ RUBBERS: Final[Mapping[str, WlfBellParameters]] = MappingProxyType({
 
 
 TABLE_M_S: Final = (1e-6, 10.0)
-TABLE_C: Final = (-50.0, 120.0)
+TABLE_C: Final = (-50.0, 100.0)
 TABLE_N: Final = (2.0, 200.0)
 """Of a slow law a simulated rig has a table between these. Slower, as while a track comes to a stand, and lighter, as
 while an arm is lowered, is as at the ends."""

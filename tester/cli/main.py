@@ -49,6 +49,9 @@ COMMANDS: dict[str, CommandEntry] = {
     "export": CommandEntry("tester.cli.result_commands", "export", "Write a run's results as a table."),
     "fit": CommandEntry("tester.cli.fit_command", "fit", "Fit a law of friction to measured conditions."),
     "paper": CommandEntry("tester.cli.fit_command", "paper", "Hold the paper's equations against its own data."),
+    "components": CommandEntry(
+        "tester.cli.components_command", "components", "Adhesion and hysteresis: dry less wet."
+    ),
     "figure": CommandEntry("tester.cli.figure_command", "figure", "Draw a run's results."),
     "report": CommandEntry("tester.cli.report_command", "report", "Write a run's results as a page to send and print."),
     "slip-ring": CommandEntry("tester.cli.slip_ring_command", "slip_ring", "Errors of the slip ring, and their trend."),

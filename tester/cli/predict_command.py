@@ -1,4 +1,4 @@
-"""`tester predict`: the friction model's value for one condition."""
+"""`tester predict`: a friction law's value for one condition."""
 
 from __future__ import annotations
 
@@ -7,29 +7,47 @@ import click
 from sim.physics import laws
 from sim.physics.data_range import caveats
 from sim.physics.friction import MODEL_NAMES
+from sim.physics.slip import CORNERING
 from sim.physics.slip import predict as model_value
 from tester.cli.options import QuantityType, json_option, print_json
 from tester.rig.laws import extension_law
 
 
 @click.command()
-@click.option("--compound", required=True, help='Compound with a friction model: "1#", "2#" or "3#".')
+@click.option("--compound", required=True, help='Compound: "1#", "2#" or "3#", or one that the law or a file knows.')
 @click.option(
     "--slip",
     type=QuantityType("m/s"),
     required=True,
-    help='Slip velocity: wheel speed minus belt speed at sideslip 0, e.g. "300 mm/s".',
+    help='Sliding speed, of a wheel its speed minus the belt\'s at sideslip 0, e.g. "300 mm/s".',
 )
 @click.option("--load", type=QuantityType("N"), required=True, help='Normal load, e.g. "200 N".')
 @click.option("--temperature", type=QuantityType("degC"), required=True, help='Surface temperature, e.g. "25 degC".')
 @click.option("--sideslip", type=QuantityType("deg"), default="0 deg", show_default=True, help="Sideslip angle.")
 @click.option("--wheel-speed", type=QuantityType("m/s"), default="0.8 m/s", show_default=True, help="Wheel speed.")
 @click.option(
+    "--law",
     "--model",
+    "law",
     metavar="LAW",
     default="paper",
     show_default=True,
-    help="Law of friction: paper (equations 4-9), v2 (a better fit to the same data), or one of an installed package.",
+    help="Law of friction: paper (equations 4-9), v2 (a better fit to the same data), wlf_bell, power, arrhenius, "
+    "persson, greta, or one of an installed package.",
+)
+@click.option("--surface", default="", metavar="NAME", help="Surface, for persson and greta.")
+@click.option(
+    "--area",
+    type=QuantityType("mm2"),
+    default="100 mm2",
+    show_default=True,
+    help="Nominal area of contact, for persson and greta: makes a pressure of the load.",
+)
+@click.option("--components", is_flag=True, help="Print adhesion and hysteresis, too, where the law knows them.")
+@click.option(
+    "--table",
+    is_flag=True,
+    help="Make the table of persson or greta that a simulated track rubs by; exit 1 where it is off by 0.5 % or more.",
 )
 @json_option
 def predict(
@@ -39,29 +57,46 @@ def predict(
     temperature: float,
     sideslip: float,
     wheel_speed: float,
-    model: str,
+    law: str,
+    surface: str,
+    area: float,
+    components: bool,
+    table: bool,
     as_json: bool,
-) -> None:
-    """Print the friction coefficient that the model gives for one condition.
+) -> int:
+    """Print the friction coefficient that a law gives for one condition.
 
-    The model is the thermo-coupled one of Polymers 2024, 16(5), 596, doi 10.3390/polym16050596 (CC BY 4.0); with a
-    sideslip angle the slip is the vector between the wheel's plane and the belt's travel. What the value rests on,
-    where it lies outside the paper's data, is said on stderr.
+    The laws paper and v2 are the thermo-coupled model of Polymers 2024, 16(5), 596, doi 10.3390/polym16050596 (CC BY
+    4.0), of a wheel on a belt: with a sideslip angle the slip is the vector between the wheel's plane and the belt's
+    travel. The other laws of this program are of a specimen on a track; persson and greta are made of files of a
+    compound and a surface (see `tester materials`). What the value rests on, where it lies outside what is known, is
+    said on stderr.
     """
-    if slip > wheel_speed:
-        raise click.UsageError(
-            f"--slip: {1e3 * slip:g} mm/s at a wheel speed of {wheel_speed:g} m/s needs a belt that runs backwards "
-            f"(expected at most {1e3 * wheel_speed:g} mm/s, or a larger --wheel-speed)"
-        )
     laws.look_up_with(extension_law)
     try:
-        mu = model_value(compound, slip, load, temperature, sideslip, wheel_speed, model)
+        of_materials = isinstance(laws.find(law), laws.OfMaterials)
+        if of_materials or (law not in MODEL_NAMES and compound not in CORNERING):
+            from tester.cli.predict_track import TrackPoint, predict_on_track
+
+            if sideslip:
+                raise ValueError(f"--sideslip: law {law} is of a specimen on a track, which goes straight on")
+            point = TrackPoint(law, compound, surface, area, temperature, load, slip)
+            return predict_on_track(point, components=components, table=table, as_json=as_json)
+        if components or table:
+            raise ValueError(f"law {law} has neither parts nor a table (--components, --table: persson, greta)")
+        if slip > wheel_speed:
+            raise ValueError(
+                f"--slip: {1e3 * slip:g} mm/s at a wheel speed of {wheel_speed:g} m/s needs a belt that runs backwards "
+                f"(expected at most {1e3 * wheel_speed:g} mm/s, or a larger --wheel-speed)"
+            )
+        mu = model_value(compound, slip, load, temperature, sideslip, wheel_speed, law)
     except ValueError as error:
         raise click.UsageError(str(error)) from error
-    if model in MODEL_NAMES:
+    if law in MODEL_NAMES:
         for caveat in caveats(compound, slip, load, temperature, sideslip):
             click.echo(f"warning: {caveat}", err=True)
     if as_json:
         print_json({"mu": mu})
     else:
         click.echo(f"{mu:.5f}")
+    return 0

@@ -37,10 +37,11 @@ def off_law(bench: TrackBench) -> Iterator[tuple[str, float]]:
     for condition, result in bench.kept.results:
         step = steps[condition]
         held = held_by(step.setpoint)
-        law, celsius = sim.friction_of(step.setpoint.compound), result.means["contact_c"]
+        law = sim.contact.through(sim.friction_of(step.setpoint.compound), held.interface)  # type: ignore[arg-type]
+        celsius = result.means["contact_c"]
         if not bench.config.chamber:
             celsius -= sim.heat.exit_rise * result.means["friction_n"] * held.track_m_s
-        mu = sim.contact.share(held.interface) * law.mu(celsius, held.load_n, held.track_m_s)  # type: ignore[arg-type]
+        mu = law.mu(celsius, held.load_n, held.track_m_s)
         yield f"{held}", 100.0 * (result.mu_resultant / mu - 1.0)
 
 

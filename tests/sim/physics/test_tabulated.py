@@ -82,7 +82,7 @@ def test_at_its_points_and_ends_a_table_is_exact() -> None:
     table, slow = tabulated.build_at(Counted(), SPAN, (12, 9, 5))[0], Counted()
     for speed in np.geomspace(1e-6, 1.0, 12):
         for temperature_c in SPAN.temperatures_c:
-            for load_n in np.geomspace(5.0, 100.0, 5):
+            for load_n in np.linspace(5.0**0.5, 10.0, 5) ** 2:
                 at = temperature_c, min(float(load_n), 100.0), min(float(speed), 1.0)
                 assert table.mu(*at) == pytest.approx(slow.mu(*at), rel=1e-9)
 
@@ -210,6 +210,15 @@ def test_materials_without_a_content_to_tell_are_not_kept(tmp_path: Path) -> Non
 def test_a_law_without_parts_has_no_table() -> None:
     with pytest.raises(laws.NoPartsError):
         tabulated.tabulated("paper", "1#", {}, SETTING, SPAN)
+
+
+def test_a_value_does_not_depend_on_those_asked_before(counted: TabulatedLaw) -> None:
+    at = (20.0, 30.0, 1e-3)
+    others = [(20.0, 31.0, 1e-3), at, (25.0, 30.0, 1e-2), at, at, (20.0, 99.0, 1e-3)]
+    fresh = tabulated.build(Counted(), SPAN)[0].mu(*at)
+    for other in others:
+        counted.mu(*other)
+        assert counted.mu(*at) == counted.mu(*at) == fresh
 
 
 def test_a_span_that_does_not_ascend_is_refused() -> None:

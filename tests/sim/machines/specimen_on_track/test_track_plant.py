@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from dataclasses import replace
 from math import exp
+from pathlib import Path
 
 import pytest
 
 from sim.machines.specimen_on_track.plant import TrackPlant
+from sim.physics.laws import LawSetting, make, with_parts
 from sim.physics.track import TrackContact, TrackParameters
 from sim.physics.wlf import PoleError, WlfBell, WlfBellParameters
+from tests.sim.physics.materials_example import Shelf
 
 CLEAN = TrackParameters(noise=0.0, scatter=0.0)
 LAW = WlfBell(WlfBellParameters())
@@ -90,6 +93,79 @@ def test_the_interface_takes_its_share(interface: str, share: float) -> None:
     plant = lowered()
     plant.prepare(interface)  # type: ignore[arg-type]
     assert slid(plant, 1e-3, 3.0).mu == pytest.approx(share * LAW.mu(plant.specimen_c, 20.0, 1e-3), rel=1e-6)
+
+
+def on_track(law: str, tables: Path, compound: str = "SBR", **contact: float) -> TrackPlant:
+    """Return a plant whose law is made of materials, with a specimen loaded."""
+    plant = TrackPlant(replace(CLEAN, law=law, contact=TrackContact(area=50.0, **contact)), 1)
+    plant.setting = LawSetting(Shelf(), "track", tables=tables)
+    plant.install(0, compound)
+    plant.put_on(20.0)
+    plant.advance(0.01, 0.0, 0.0, 0.0)
+    return plant
+
+
+@pytest.fixture(scope="module")
+def tables(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Tables that the tests of this module share."""
+    return tmp_path_factory.mktemp("tables")
+
+
+@pytest.mark.parametrize("law", ["persson", "greta"])
+def test_a_law_of_materials_rubs_with_the_pressure_on_the_nominal_area(law: str, tables: Path) -> None:
+    plant = slid(on_track(law, tables), 1e-3, 3.0)
+    slow = make(law, "SBR", setting=LawSetting(Shelf(), "track", 50.0))
+    assert plant.mu == pytest.approx(slow.mu(plant.specimen_c, 20.0, 1e-3), rel=0.005)
+
+
+@pytest.mark.parametrize(("interface", "kept"), [("dry", 1.0), ("wet", 0.0), ("talc", 0.0)])
+def test_of_a_law_that_knows_its_parts_water_and_talc_take_the_adhesion(
+    interface: str, kept: float, tables: Path
+) -> None:
+    plant = on_track("greta", tables)
+    plant.prepare(interface)  # type: ignore[arg-type]
+    slid(plant, 1e-3, 3.0)
+    slow = with_parts("greta", make("greta", "SBR", setting=LawSetting(Shelf(), "track", 50.0)))
+    adhesion, hysteresis = slow.components(plant.specimen_c, 20.0, 1e-3)
+    assert adhesion > 0.01 * hysteresis > 0.0
+    assert plant.mu == pytest.approx(kept * adhesion + hysteresis, rel=0.01)
+
+
+def test_water_may_leave_a_share_of_the_adhesion_and_talc_leaves_none(tables: Path) -> None:
+    dry, wet, talc = (on_track("greta", tables, wet_adhesion=0.3) for _ in range(3))
+    wet.prepare("wet")
+    talc.prepare("talc")
+    for plant in (dry, wet, talc):
+        slid(plant, 1e-3, 3.0)
+    assert wet.mu == pytest.approx(0.3 * dry.mu + 0.7 * talc.mu, rel=1e-3)
+
+
+def test_an_interface_stays_when_another_specimen_is_put_in(tables: Path) -> None:
+    plant = on_track("greta", tables)
+    plant.prepare("talc")
+    before = slid(plant, 1e-3, 3.0).mu
+    plant.install(0, "SBR")
+    plant.advance(0.01, 0.0, 0.0, 0.0)
+    assert slid(plant, 1e-3, 3.0).mu == pytest.approx(before, rel=1e-3)
+
+
+def test_the_tracks_own_surface_goes_before_the_recipes(tables: Path) -> None:
+    one, other = (replace(CLEAN, law="persson", surface=name) for name in ("", "grit"))
+    setting = LawSetting(Shelf(), "road", tables=tables)
+    with pytest.raises(ValueError, match="'road' has no spectrum"):
+        one.friction_of("SBR", setting)
+    assert other.friction_of("SBR", setting).mu(20.0, 20.0, 1e-3) > 0.0
+
+
+def test_without_materials_such_a_law_says_what_it_needs() -> None:
+    with pytest.raises(ValueError, match="'persson' is made of materials and needs the modulus of 'SBR'"):
+        lowered(replace(CLEAN, law="persson"))
+
+
+@pytest.mark.parametrize("law", ["power", "arrhenius"])
+def test_plain_laws_are_found_by_their_names_too(law: str) -> None:
+    plant = slid(lowered(replace(CLEAN, law=law)), 1e-3, 3.0)
+    assert plant.mu == pytest.approx(make(law, "SBR").mu(plant.specimen_c, 20.0, 1e-3))
 
 
 def test_friction_heats_nothing_at_the_slow_tracks_speeds() -> None:

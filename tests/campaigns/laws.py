@@ -1,0 +1,129 @@
+"""`python -m tests.campaigns.laws [--sample]`: what laws of materials take, and how right their tables are.
+
+Prints a line a figure and exits 1 where one misses. Times are of this process' processor time, on this core; what is
+asked of them is asked of a core of 2.5 GHz.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from collections.abc import Callable, Iterator
+from math import exp, log
+from random import Random
+from statistics import median
+from tempfile import TemporaryDirectory
+from time import process_time
+from typing import NamedTuple
+
+from sim.physics import laws
+from sim.physics.lookup import TableSpan, TabulatedLaw
+from sim.physics.tabulated import ALLOWED, POINTS, build, build_at
+from sim.physics.track import table_span
+from tester.materials.library import Library
+from tester.materials.setting import VARIABLE
+from tests.tester.kinds.specimen_on_track.bench import GROSCH, TrackBench
+
+PAIRS = (("persson", "SBR", "S0"), ("persson", "NBR", "silicon carbide"), ("greta", "tread", "road"))
+POINT_MS, TABLE_S, SPEED = 1.0, 10.0, 0.9
+"""Asked: a value after the table, ms; a table of 40 x 20 x 5 points, s; the speed of the simulated rig with a table, in
+that with the bell."""
+OTHER = "wlf_bell"
+
+
+class LawFigure(NamedTuple):
+    """What was measured, and whether that is what is asked."""
+
+    name: str
+    value: str
+    asked: str
+    met: bool = True
+
+
+def setting_of(surface: str) -> laws.LawSetting:
+    """Return the packaged materials."""
+    return laws.LawSetting(Library.beside(), surface, 100.0)
+
+
+def at_random(span: TableSpan, number: int, seed: int) -> Iterator[tuple[float, float, float]]:
+    """Yield temperatures, loads and speeds of a table."""
+    draw = Random(seed)
+    for _ in range(number):
+        load_n, slip_m_s = (exp(draw.uniform(log(low), log(high))) for low, high in (span.loads_n, span.speeds_m_s))
+        yield draw.uniform(*span.temperatures_c), load_n, slip_m_s
+
+
+def of_table(name: str, compound: str, surface: str, points: int) -> Iterator[LawFigure]:
+    """Make a table and compare it with its law at random points."""
+    setting = setting_of(surface)
+    slow = laws.with_parts(name, laws.make(name, compound, setting=setting))
+    span = table_span(setting, compound)
+    began_s = process_time()
+    plain = build_at(slow, span, POINTS)[0]
+    plain_s = process_time() - began_s
+    size = " x ".join(map(str, POINTS))
+    yield LawFigure(f"table of {size}", f"{plain_s:.2f} s", f"< {TABLE_S:g} s", plain_s < TABLE_S)
+    began_s = process_time()
+    table = build(slow, span)[0]
+    took_s = process_time() - began_s
+    yield LawFigure(f"as the rig has it, {' x '.join(map(str, table.points))}", f"{took_s:.2f} s", "said")
+    for what, one, asked in ((f"off the law, {size}", plain, False), ("off the law, as the rig has it", table, True)):
+        errors = [abs(one.mu(*at) / slow.mu(*at) - 1.0) for at in at_random(span, points, 7)]
+        said = f"{100.0 * max(errors):.3f} %, median {100.0 * median(errors):.4f} %, told {100.0 * one.error:.3f} %"
+        met = max(errors) < ALLOWED or not asked
+        yield LawFigure(f"{what}, worst of {points}", said, f"< {100.0 * ALLOWED:g} %" if asked else "said", met)
+    yield from of_calls(table, list(at_random(span, 4000, 8)))
+
+
+def of_calls(table: TabulatedLaw, places: list[tuple[float, float, float]]) -> Iterator[LawFigure]:
+    """Time a value, and one in its parts."""
+    calls: tuple[tuple[str, Callable[..., object]], ...] = (("a value", table.mu), ("its parts", table.components))
+    for what, call in calls:
+        began_s = process_time()
+        for at in places:
+            call(*at)
+        each_ms = 1e3 * (process_time() - began_s) / len(places)
+        yield LawFigure(f"{what} after the table", f"{each_ms:.4f} ms", f"< {POINT_MS:g} ms", each_ms < POINT_MS)
+
+
+def of_rig(turns: int) -> Iterator[LawFigure]:
+    """Compare the simulated rig's speed with a table and with the bell, in turns."""
+    with TemporaryDirectory() as folder:
+        os.environ[VARIABLE] = folder
+        overrides = {"persson": ("sim.law=persson", "sim.surface=S0"), OTHER: (f"sim.law={OTHER}",)}
+        taken: dict[str, list[float]] = {name: [] for name in overrides}
+        for turn in range(turns + 1):
+            for name, asked in overrides.items():
+                bench = TrackBench("grosch", GROSCH, asked)
+                bench.until(lambda one: one.world.track_m_s != 0.0, 1e4)
+                ticks, began_s = 0, process_time()
+                while not bench.run.finished:
+                    bench.tick()
+                    ticks += 1
+                if turn:  # the first makes the table, and warms up
+                    taken[name].append((process_time() - began_s) / ticks)
+    speed = min(taken[OTHER]) / min(taken["persson"])
+    yield LawFigure(f"simulated rig with persson, speed in that with {OTHER}", f"{speed:.3f}", f">= {SPEED:g}",
+                    speed >= SPEED)  # fmt: skip
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Measure; 1 where a figure misses."""
+    parser = argparse.ArgumentParser("python -m tests.campaigns.laws", description=__doc__)
+    parser.add_argument("--sample", action="store_true", help="fewer points and turns, persson on one surface alone")
+    sample = parser.parse_args(arguments).sample
+    missed = 0
+    for name, compound, surface in PAIRS[:1] if sample else PAIRS:
+        for one in of_table(name, compound, surface, 500 if sample else 5000):
+            missed += not one.met
+            print(f"{'ok  ' if one.met else 'MISS'} {name}, {compound} on {surface}: {one.name}: {one.value}"
+                  f" (asked: {one.asked})", flush=True)  # fmt: skip
+    for one in of_rig(3 if sample else 7):
+        missed += not one.met
+        print(f"{'ok  ' if one.met else 'MISS'} {one.name}: {one.value} (asked: {one.asked})", flush=True)
+    return 1 if missed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
