@@ -76,7 +76,7 @@ def test_a_name_is_missing(tmp_path: Path) -> None:
     [
         ("{}", "nothing is said (expected exactly one of table, file, fractional_zener, constant)"),
         (
-            "{constant: {G: 1 MPa}, fractional_zener: {Gr: 1 MPa, Gg: 1 GPa, tau: 1 s, at: 0 degC, b: 0.5, Ts: 0 degC}}",
+            "{constant: {G: 1 MPa}, fractional_zener: {Gr: 1 Pa, Gg: 1 GPa, tau: 1 s, at: 0 degC, b: 0.5, Ts: 0 degC}}",
             "fractional_zener and constant is said",
         ),
         (
