@@ -12,7 +12,7 @@ from tester.cli.options import QuantityType, json_option, print_json
 
 if TYPE_CHECKING:
     from tester.materials.compound import LoadedCompound
-    from tester.materials.files import Role
+    from tester.materials.files import DataFile, Role
     from tester.materials.finding import Findings
     from tester.materials.library import Library, LibraryEntry
     from tester.materials.surface import LoadedSurface
@@ -222,8 +222,9 @@ def dma(
 
     What is converted and what is doubtful is said, and stands in the new file.
     """
-    from tester.materials.dma import MAX_BYTES, DmaOptions, read_dma
-    from tester.materials.files import decoded, read_beside
+    from tester.materials.dma import MAX_BYTES, read_dma
+    from tester.materials.dma_options import DmaOptions
+    from tester.materials.files import decoded
     from tester.materials.finding import Findings
     from tester.materials.headings import QUANTITIES, quantity_named
     from tester.materials.written import compound_text
@@ -235,7 +236,7 @@ def dma(
         named[quantity_named(quantity)] = heading
     options = DmaOptions(named, dict(_pairs(units, "--unit")), frequency, temperature, poisson)
     found = Findings(str(file))
-    data = read_beside(file, file.name, MAX_BYTES)
+    data = _read(file, MAX_BYTES)
     table = read_dma(decoded(data.content), options, found)
     _tell(found)
     _write(out, compound_text(name, table, data, found), force)
@@ -257,7 +258,6 @@ def scan(
 ) -> None:
     """Make a surface of FILE, a map of heights: a matrix as text, or a format of instruments (extra `topography`)."""
     from tester.base.extras import MissingExtraError
-    from tester.materials.files import read_beside
     from tester.materials.finding import Findings
     from tester.materials.radial import Detrend
     from tester.materials.scan import MAX_BYTES, ScanOptions, read_scan, spectrum_of
@@ -265,7 +265,7 @@ def scan(
 
     way = cast("Detrend", detrend)
     found = Findings(str(file))
-    data = read_beside(file, file.name, MAX_BYTES)
+    data = _read(file, MAX_BYTES)
     try:
         heights = read_scan(file, data.content, ScanOptions(pixel, unit, way), found)
     except MissingExtraError as error:
@@ -274,6 +274,15 @@ def scan(
     _tell(found)
     _write(out, surface_text(name or file.stem, spectrum, data, found), force)
     _check_written(out)
+
+
+def _read(file: Path, at_most: int) -> DataFile:
+    from tester.materials.files import DataFileError, read_beside
+
+    try:
+        return read_beside(file, file.name, at_most)
+    except DataFileError as error:
+        raise click.UsageError(str(error)) from error
 
 
 def _pairs(texts: Sequence[str], option: str) -> Iterable[tuple[str, str]]:
@@ -292,8 +301,12 @@ def _tell(found: Findings) -> None:
 
 
 def _write(out: Path, text: str, force: bool) -> None:
+    from tester.base.source import MAX_BYTES
     from tester.base.trouble import in_words
 
+    if len(text.encode()) > MAX_BYTES:
+        told = f"{out} would be larger than {MAX_BYTES // 1024} kB: keep the table in its file beside the compound's"
+        raise click.UsageError(f"{told} (moduli: {{file: {{name: ...}}}})")
     try:
         with out.open("w" if force else "x", encoding="utf-8", newline="\n") as stream:
             stream.write(text)

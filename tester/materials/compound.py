@@ -11,7 +11,8 @@ from pydantic import ValidationError
 
 from tester.base.source import InvalidSource, Problem, Tree, problems_from_validation, read_tree
 from tester.base.units import shown
-from tester.materials.dma import MAX_BYTES, DmaOptions, read_dma
+from tester.materials.dma import MAX_BYTES, read_dma
+from tester.materials.dma_options import DmaOptions
 from tester.materials.files import DataFile, DataFileError, MaterialFile, decoded, read_beside
 from tester.materials.finding import Findings
 from tester.materials.headings import QUANTITIES, conversion, heading, heading_problems, quantity_named

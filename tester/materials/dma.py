@@ -9,10 +9,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from difflib import get_close_matches
 from math import isfinite, nan
 
+from tester.materials.dma_options import DmaOptions
 from tester.materials.finding import Findings
 from tester.materials.headings import (
     Heading,
@@ -26,7 +27,7 @@ from tester.materials.headings import (
     unit_of,
 )
 from tester.materials.layout import DmaLayout, layout_of, without_brackets
-from tester.materials.moduli import ModuliRow, ModuliTable, judge
+from tester.materials.moduli import ALIKE, ModuliRow, ModuliTable, judge
 
 MAX_BYTES = 16 * 1024 * 1024
 TAN_PERCENT, TAN_LEAST = 2.0, 5e-4
@@ -34,21 +35,6 @@ TAN_PERCENT, TAN_LEAST = 2.0, 5e-4
 
 _WITH_COMMA = re.compile(r"[+-]?[0-9]*,[0-9]+([eE][+-]?[0-9]+)?")
 _THOUSANDS = re.compile(r"[+-]?[1-9][0-9]{0,2},[0-9]{3}")
-
-
-@dataclass(frozen=True, slots=True)
-class DmaOptions:
-    """What a person says of a file beside what is in it. ``columns``: heading by quantity; ``units``: by heading."""
-
-    columns: Mapping[str, str] = field(default_factory=dict[str, str])
-    units: Mapping[str, str] = field(default_factory=dict[str, str])
-    frequency_hz: float | None = None
-    temperature_c: float | None = None
-    poisson: float = 0.5
-    ask_column: str = '--columns "{quantity}=HEADING"'
-    ask_unit: str = '--unit "{heading}={unit}"'
-    ask_value: str = '--{quantity} "{example}"'
-    """How it is said, for messages."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,10 +74,12 @@ class _Reading:
         self.found.end()
         values, lines = self._numbers()
         self.found.end()
+        self._said_frequency(values, lines)
+        self.found.end()
         rows = [self._row(one) for one in values]
         judge(rows, lambda number: (lines[number] + 1 if lines else self.place[0], 1), self.found)
-        self._cross_check(values, lines)
         self.found.end()
+        self._cross_check(values, lines)
         return ModuliTable(tuple(rows))
 
     # -- columns ----------------------------------------------------------------------------------------------
@@ -242,7 +230,7 @@ class _Reading:
     def _number(self, cell: str, column: DmaColumn, line: int, comma: bool) -> float:
         text = cell.replace(",", ".") if comma and _WITH_COMMA.fullmatch(cell) else cell
         try:
-            value = float(text)
+            value = nan if "_" in text else float(text)  # Python's own digits in groups are no file's
         except ValueError:
             value = nan
         if not isfinite(value):
@@ -255,11 +243,26 @@ class _Reading:
         own = {name: conversion(name, self.columns[name].unit)(value) for name, value in values.items()}
         temperature = own.get("temperature", self.options.temperature_c)
         frequency = own.get("frequency", own.get("omega", self.options.frequency_hz))
+        if self.options.frequency_hz is not None:
+            frequency = self.options.frequency_hz
         assert temperature is not None and frequency is not None
         letter, factor = ("G", 2.0 * (1.0 + self.options.poisson)) if "G'" in own else ("E", 1.0)
         storage = own[f"{letter}'"]
         loss = own[f'{letter}"'] if f'{letter}"' in own else storage * own["tan"]
         return ModuliRow(temperature, frequency, factor * storage, factor * loss)
+
+    def _said_frequency(self, values: Sequence[Mapping[str, float]], lines: Sequence[int]) -> None:
+        """Hold the frequency that a person says for every point against the file's own, if it has one."""
+        said = self.options.frequency_hz
+        name = "frequency" if "frequency" in self.columns else "omega"
+        if said is None or name not in self.columns:
+            return
+        to_hz = conversion(name, self.columns[name].unit)
+        for one, line in zip(values, lines, strict=True):
+            here = to_hz(one[name])
+            if not said / ALIKE < here < said * ALIKE:
+                self.found.refuse((line + 1, 1), f"frequency: {here:g} Hz is not the {said:g} Hz that is said for all")
+        self.found.notes.append(f"frequency: {said:g} Hz, as said, for what the file has within {ALIKE:g} times of it")
 
     def _cross_check(self, values: Sequence[Mapping[str, float]], lines: Sequence[int]) -> None:
         """Hold a column of tan delta against E'' over E', and note what was made of what."""

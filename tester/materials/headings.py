@@ -18,9 +18,9 @@ QUANTITIES: Final = ("temperature", "frequency", "omega", "E'", 'E"', "G'", 'G"'
 """What a column can be; ``E"`` may be written as ``E''``, too."""
 
 _NAMES: Final[Mapping[str, frozenset[str]]] = MappingProxyType({
-    "temperature": frozenset({"temperature", "temp", "ts", "t", "sampletemperature", "sampletemp"}),
-    "frequency": frozenset({"frequency", "freq", "f"}),
-    "omega": frozenset({"omega", "ω", "w", "angularfrequency", "angfrequency", "angularfreq"}),
+    "temperature": frozenset({"temperature", "temp", "ts", "sampletemperature", "sampletemp"}),
+    "frequency": frozenset({"frequency", "freq"}),
+    "omega": frozenset({"omega", "angularfrequency", "angfrequency", "angularfreq"}),
     "E'": frozenset({"e'", "m'", "storagemodulus", "storage", "storagemodulus(e')", "tensilestoragemodulus"}),
     'E"': frozenset({'e"', 'm"', "lossmodulus", "loss", "tensilelossmodulus"}),
     "G'": frozenset({"g'", "shearstoragemodulus", "storageshearmodulus"}),
@@ -28,6 +28,8 @@ _NAMES: Final[Mapping[str, frozenset[str]]] = MappingProxyType({
     "tan": frozenset({"tan", "tandelta", "tanδ", "tand", "lossfactor", "dampingfactor", "tan(delta)", "tan(δ)"}),
 })
 
+_LETTERS: Final = {"T": "temperature", "f": "frequency", "w": "omega", "ω": "omega"}
+"""Names of one letter, in their own case: t is a time, F a force."""
 _MODULUS_UNITS = {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9}
 _UNITS: Final[Mapping[str, tuple[str, ...]]] = MappingProxyType({
     "temperature": ("degC", "K"),
@@ -82,6 +84,8 @@ def heading(text: str) -> Heading:
 
 def quantity_of(name: str) -> str:
     """Return which quantity a name means, "" for none."""
+    if name.strip() in _LETTERS:
+        return _LETTERS[name.strip()]
     tidy = re.sub(r"[\s._:\-*|]+", "", name.translate(_QUOTES).casefold()).replace("''", '"')
     return next((quantity for quantity, names in _NAMES.items() if tidy in names), "")
 

@@ -60,9 +60,14 @@ class Library:
 
     @classmethod
     def beside(cls, recipe: Path | None = None) -> Library:
-        """Return what a recipe sees: its own folder, that of ``TESTER_MATERIALS``, the packaged one."""
+        """Return what a recipe sees: its own folder, that of ``TESTER_MATERIALS``, the packaged one.
+
+        Raises InvalidSource where the variable names no folder: another compound of a name would be taken.
+        """
         own = [recipe.parent] if recipe is not None else []
         said = os.environ.get(VARIABLE, "")
+        if said and not Path(said).is_dir():
+            raise InvalidSource([Problem(VARIABLE, 1, 1, f"{shown(said)} is no folder (expected the laboratory's)")])
         return cls([*own, *([Path(said)] if said else []), recipes.FOLDER])
 
     def entries(self, role: Role) -> list[LibraryEntry]:

@@ -21,6 +21,10 @@ SLOWEST_HZ, FASTEST_HZ = 1e-4, 1e4
 """What instruments reach by themselves [A]: beyond, a frequency is another quantity or was shifted already."""
 SOFTEST_PA, STIFFEST_PA = 1e4, 2e10
 """Storage moduli of rubber and its glass lie within [A]."""
+NOISE_K = 1.0
+"""Temperatures of a sweep go back by less than this [A]."""
+ALIKE = 1.05
+"""Frequencies within this ratio are told apart by an instrument's noise alone [A]."""
 WLF_SPAN_K = 100.0
 """From the glass transition on, over which the WLF shift holds (Williams, Landel, Ferry 1955)."""
 POLE_K = 51.5
@@ -151,18 +155,26 @@ def _swapped_doubt(rows: Sequence[ModuliRow], place: Place, found: Findings) -> 
 
 def _order_doubt(rows: Sequence[ModuliRow], place: Place, found: Findings) -> None:
     """Doubt a grid that goes up and down again: temperatures at a frequency, as of heating and then cooling."""
-    for frequency in dict.fromkeys(one.frequency_hz for one in rows):
-        own = [number for number, row in enumerate(rows) if row.frequency_hz == frequency]
-        turns = [
-            number for before, number in pairwise(own)
-            if (rows[number].temperature_c > rows[before].temperature_c)
-            != (rows[own[1]].temperature_c > rows[own[0]].temperature_c)
-        ]
-        if turns:
-            at = rows[turns[0]]
-            told = f"the grid is not monotone: at {frequency:g} Hz temperatures turn at {at.temperature_c:g} degC"
-            found.doubt(place(turns[0]), f"{told}: are two sweeps in one table?")
+    sweeps: dict[int, list[int]] = {}
+    for number, row in enumerate(rows):
+        sweeps.setdefault(round(log10(row.frequency_hz) / log10(ALIKE)), []).append(number)
+    for own in sweeps.values():
+        turn = _turn([rows[number].temperature_c for number in own])
+        if turn is not None:
+            at = rows[own[turn]]
+            told = f"the grid is not monotone: at {at.frequency_hz:g} Hz temperatures turn at {at.temperature_c:g} degC"
+            found.doubt(place(own[turn]), f"{told}: are two sweeps in one table?")
             return
+
+
+def _turn(temperatures_c: Sequence[float]) -> int | None:
+    """Return where temperatures have gone back by more than a chamber's noise; None where they do not."""
+    lowest = highest = temperatures_c[0]
+    for number, here in enumerate(temperatures_c):
+        lowest, highest = min(lowest, here), max(highest, here)
+        if here - lowest > NOISE_K and highest - here > NOISE_K:
+            return number
+    return None
 
 
 def shift_doubts(table: ModuliTable, glass_c: float | None, decade_k: float | None) -> Iterator[str]:
@@ -179,6 +191,9 @@ def shift_doubts(table: ModuliTable, glass_c: float | None, decade_k: float | No
         if high - low < 2.0 * (decade_k or 8.0):
             yield f"{high - low:g} K at one frequency stand for less than two decades"
         return
+    if frequencies[-1] < ALIKE * frequencies[0]:
+        span = f"{frequencies[0]:g} to {frequencies[-1]:g} Hz"
+        yield f"frequencies of {span} are taken for several: say the one that they stand for, if it is one sweep"
     if glass_c is None:
         yield "Tg is not said: without it several frequencies are not put on one curve, and no law can use them"
     elif low <= glass_c - POLE_K:

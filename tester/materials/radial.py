@@ -70,7 +70,8 @@ def radial_spectrum(heights_m: Array, pixel_m: tuple[float, float]) -> RadialSpe
     """Return the spectrum of detrended heights (rows, columns) in m; ``pixel_m``: from row to row, column to column.
 
     From the longest wave that the shorter side holds to the shortest that two points show, rings of wave numbers are
-    averaged. The table is scaled to the mean square in its rings, a few per cent for a rough surface. Raises ValueError for a map that is too small, or flat.
+    averaged. The table is scaled to the mean square in its rings, a few per cent for a rough surface. Raises ValueError
+    for a map that is too small, or flat.
     """
     rows, columns = heights_m.shape
     if min(rows, columns) < LEAST_POINTS:

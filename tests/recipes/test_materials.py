@@ -11,6 +11,9 @@ import pytest
 import yaml
 
 import recipes
+from sim.physics import laws
+from sim.physics.laws import LawSetting
+from sim.physics.persson import PerssonLaw
 from sim.physics.track import RUBBERS
 from tester.base.section import editor_text
 from tester.materials.library import Library
@@ -78,7 +81,8 @@ def test_a_tread_is_its_formula(
         high = log10(glass_pa) - log10(rubber_pa)
         storage = 10.0 ** (log10(rubber_pa) + high / (1.0 + exp((t - middle_c) / 6.0)))
         assert row.storage_pa == pytest.approx(storage, rel=1e-8)
-        assert row.loss_pa / row.storage_pa == pytest.approx(floor + peak * exp(-(((t - peak_c) / 18.0) ** 2)), rel=1e-7)
+        tan_delta = floor + peak * exp(-(((t - peak_c) / 18.0) ** 2))
+        assert row.loss_pa / row.storage_pa == pytest.approx(tan_delta, rel=1e-7)
     shear = one.model.shear
     assert shear is not None and shear.ratio == pytest.approx(glass_pa / rubber_pa, rel=1e-12)
 
@@ -114,3 +118,16 @@ def test_the_package_takes_every_file_along() -> None:
         relative = path.relative_to(recipes.FOLDER)
         if path.is_file() and path.suffix in (".yaml", ".csv", ".json"):
             assert any(relative.match(one) and len(relative.parts) == one.count("/") + 1 for one in patterns), relative
+
+
+def test_sbr_on_s0_has_the_coefficient_of_the_example() -> None:
+    rubber, surface = LIBRARY.rubber("SBR"), LIBRARY.surface("S0")
+    assert surface.spectrum is not None
+    law = PerssonLaw(rubber.modulus, rubber.poisson, surface.spectrum)
+    assert law.contact(20.0, 4e5, 1e-2).mu == pytest.approx(1.0469, rel=5e-3)
+
+
+def test_the_tread_on_the_road_has_the_coefficient_of_the_example() -> None:
+    # 100 mm2 at 300 kPa carry 30 N.
+    found = laws.make("greta", "tread", {}, LawSetting(LIBRARY, "road", area_mm2=100.0))
+    assert found.mu(25.0, 30.0, 1.0) == pytest.approx(0.6919, rel=2e-3)

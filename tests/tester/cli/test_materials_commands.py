@@ -102,6 +102,15 @@ def test_an_import_replaces_no_file_unless_told(folder: Path, capsys: pytest.Cap
     assert invoke([*arguments, "--force"]) == 0
 
 
+def test_a_table_that_is_too_long_for_a_file_of_ours_is_not_written(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    rows = "".join(f"{-60 + 0.01 * i:.2f};1;{2e9 / (i + 1)};{2e8 / (i + 1)}\n" for i in range(9000))
+    (folder / "d.csv").write_text(f"T [degC];f [Hz];E' [Pa];E'' [Pa]\n{rows}", encoding="utf-8")
+    assert invoke(["materials", "import", "dma", "d.csv", "--name", "x", "-o", "c.yaml"]) == 2
+    assert "would be larger than 256 kB" in capsys.readouterr().err and not Path("c.yaml").exists()
+
+
 def test_columns_and_units_may_be_said(folder: Path) -> None:
     text = DMA.replace("Storage Modulus;Loss Modulus", "A;B").replace(";[Hz];[MPa];[MPa]\n", "")
     (folder / "d.csv").write_text(text, encoding="utf-8")

@@ -7,7 +7,8 @@ from math import pi
 import pytest
 
 from tester.base.source import InvalidSource
-from tester.materials.dma import DmaOptions, read_dma
+from tester.materials.dma import read_dma
+from tester.materials.dma_options import DmaOptions
 from tester.materials.finding import Findings
 from tester.materials.moduli import ModuliTable
 
@@ -203,3 +204,25 @@ def test_cells_that_are_no_numbers_are_refused_each_with_its_line() -> None:
         "E'' [MPa]: nothing is there",
     ]
     assert [one.split(":")[1] for one in problems] == ["3", "4"]
+
+
+def test_letters_are_told_apart_by_their_case() -> None:
+    heads = "t [s];F [N];T [degC];f [Hz];E' [MPa];E'' [MPa]"
+    table, found = read(text(heads, "0;9;{t};1;{e};{l}"))
+    assert table.rows[0].temperature_c == -60.0 and table.rows[0].frequency_hz == 1.0 and found.doubts == []
+
+
+def test_a_frequency_with_noise_may_be_said() -> None:
+    content = text(row="{t};1.00{e};{e};{l}")
+    table, _ = read(content)
+    assert len(table.frequencies_hz) > 1
+    table, found = read(content, DmaOptions(frequency_hz=1.0))
+    assert table.frequencies_hz == (1.0,) and any("frequency: 1 Hz, as said" in note for note in found.notes)
+    problems = refused(content, DmaOptions(frequency_hz=2.0))
+    assert len(problems) == 15 and "is not the 2 Hz that is said for all" in problems[0]
+
+
+def test_digits_in_groups_and_zeros_are_refused() -> None:
+    assert refused(text().replace("1400;", "1_400;", 1)) == ['dma.csv:3:1: E\' [MPa]: "1_400" is not a number']
+    with_tan = text("T [degC];f [Hz];E' [MPa];E'' [MPa];tan", "{t};1;{e};{l};{tan}")
+    assert refused(with_tan.replace(";1400;", ";0;", 1)) == ["dma.csv:3:1: E': 0 Pa is not above 0"]

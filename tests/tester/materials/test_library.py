@@ -25,6 +25,7 @@ def compound(folder: Path, file: str, name: str, rest: str = "") -> Path:
 
 def test_the_nearer_file_of_a_name_counts(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     own, shared = tmp_path / "own", tmp_path / "shared"
+    shared.mkdir()
     monkeypatch.setenv(VARIABLE, str(shared))
     library = Library.beside(own / "r.yaml")
     assert library.path("compound", "SBR") == recipes.FOLDER / "compounds" / "sbr.yaml"
@@ -136,3 +137,9 @@ def test_surfaces_arrive_as_classes_of_the_physics(tmp_path: Path) -> None:
 def test_files_of_a_folder_below_are_found(tmp_path: Path) -> None:
     compound(tmp_path, "2/a.yaml", "deep")
     assert Library([tmp_path]).compound("deep").model.name == "deep"
+
+
+def test_a_laboratory_s_folder_that_is_not_there_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(VARIABLE, str(tmp_path / "absent"))
+    with pytest.raises(InvalidSource, match=r"TESTER_MATERIALS:1:1: .* is no folder"):
+        Library.beside(tmp_path / "r.yaml")

@@ -21,10 +21,10 @@ from tester.run.materials import KeptFile, kept_files, put_back, used_materials
 from tester.run.session import CannotStartError, Session, SessionOptions
 from tester.store.reader import RunReader
 from tester.store.records import StoredMaterial
-from tests.tester.recipe.texts import SMALL, recipe
-from tests.tester.run.test_resume import SETS, StoppedError, TEXT
-from tests.tester.run.test_session import Screen
 from tester.store.writer import RunWriter
+from tests.tester.recipe.texts import SMALL, recipe
+from tests.tester.run.test_resume import SETS, TEXT, StoppedError
+from tests.tester.run.test_session import Screen
 
 OWN = """\
 name: "1#"
