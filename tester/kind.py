@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from tester.machine.interlock_sheet import InterlockSheet
     from tester.machine.run_parts import KindRun
     from tester.machine.served import ServedKind
+    from tester.master.part import MasterPart
     from tester.recipe.part import RecipePart
     from tester.rig import Rig
 
@@ -51,5 +52,7 @@ class Kind:
     """What it says about recipes; None: none can be read for it."""
     fits: Callable[[], FitPart] | None = None
     """Which laws can be fitted to its conditions; None: none."""
+    masters: Callable[[], MasterPart] | None = None
+    """How its conditions stand on a master curve, and when not; None: they have no speed and temperature."""
     commissions: Callable[[], CommissionPart] | None = None
     """How a rig of it is commissioned; None: nobody is guided."""

@@ -1,23 +1,23 @@
 """Adhesion and hysteresis of a specimen from its coefficients dry and with the contact kept apart by a film.
 
-With a film, of water or of powder, that leaves no adhesion and all of the hysteresis (and nothing else: neither lifts the
-specimen nor cools it), at one speed, load and temperature
+With a film, of water or of powder, that takes all adhesion away, leaves all hysteresis and does nothing else, at one
+speed, load and temperature
 
     hysteresis = mu_film,  adhesion = mu_dry - mu_film,  share = mu_film / mu_dry  (of hysteresis).
 
-Both coefficients are of one specimen on one rig. What they have in common (the terms of the budget that are the rig's or
-the piece's, ``Contribution.common``) moves both the same way, and only what it moves a component by is left; what is
-each one's own adds in squares. The contact is warmer dry than with a film. mu_film is taken to the temperature of the
-dry contact with the sensitivity c = d ln mu / dT that is known of it, mu_film exp(c (T_dry - T_film)); what is not
-known of c adds its uncertainty times that difference. The expanded uncertainty is of 95 %, with Welch and
-Satterthwaite's degrees of freedom.
+Both coefficients are of one specimen on one rig. What they have in common (the terms of the budget that are the
+rig's or the piece's, ``Contribution.common``) moves both the same way, and only what it moves a component by is left;
+what is each one's own adds in squares. The contact is warmer dry than with a film. mu_film is taken to the temperature
+of the dry contact with the sensitivity c = d ln mu / dT that is known of it, mu_film exp(c (T_dry - T_film)). What is
+not known of c adds its uncertainty times that difference, which is itself not known better than ``RUBBER_K``. The
+expanded uncertainty is of 95 %, with Welch and Satterthwaite's degrees of freedom.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from math import exp, inf, isfinite, sqrt
+from math import exp, hypot, inf, isfinite, sqrt
 from typing import Final
 
 from tester.analysis.kelvin import Slope
@@ -28,6 +28,9 @@ from tester.analysis.uncertainty import CONFIDENCE, Contribution, effective_df
 
 SENSITIVITY: Final = "sensitivity to temperature"
 """Name of what the difference of the contact's temperatures contributes."""
+RUBBER_K: Final = 1.0
+"""Standard uncertainty of the difference between the rubber's temperatures, K, beside what the thermometer shows of it
+[A]: that sees the track where it leaves the contact, and the rubber is warm from what was measured before."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,22 +83,22 @@ def by_film(dry: ConditionResult, film: ConditionResult, slope: Slope) -> ByFilm
     apart_k = warmer_k if isfinite(warmer_k) else 0.0
     factor = exp(slope.per_kelvin * apart_k)
     mu_d, mu_f = dry.mu_resultant, film.mu_resultant * factor
-    unknown = mu_f * apart_k * slope.u_per_kelvin
+    unknown = mu_f * hypot(apart_k, RUBBER_K) * slope.u_per_kelvin
     both = (dry.budget.contributions, film.budget.contributions)
 
     def combined(value: float, to_dry: float, to_film: float) -> PartValue:
         """Return a component by its derivatives to both coefficients."""
         scales = (to_dry, to_film * factor)
         known = [(one, scale) for found, scale in zip(both, scales, strict=True) for one in found]
-        own = tuple((abs(scale) * one.standard, one.df) for one, scale in known if not one.common)
+        own = [(abs(scale) * one.standard, one.df) for one, scale in known if not one.common]
         common: dict[str, tuple[float, float]] = {SENSITIVITY: (to_film * unknown, inf)}
         for one, scale in known:
             if one.common:
                 so_far, df = common.get(one.name, (0.0, inf))
                 common[one.name] = so_far + scale * _error(one), min(df, one.df)
         if not all(both):
-            own = (*own, (NAN, inf))
-        return PartValue(value, own, common)
+            own.append((NAN, inf))
+        return PartValue(value, tuple(own), common)
 
     return ByFilm(
         adhesion=combined(mu_d - mu_f, 1.0, -1.0),
@@ -111,15 +114,15 @@ def _error(one: Contribution) -> float:
 
 
 def mean_of(values: Sequence[PartValue]) -> PartValue:
-    """Return the mean of values of one rig and compound, weighted by 1 / u^2; NaN of none that is certain to some
-    degree. What they have in common does not average out.
+    """Return the mean of values of one rig and compound, weighted by 1 / u^2; NaN where none is certain to some degree.
+
+    What they have in common does not average out.
     """
     kept = [one for one in values if isfinite(one.value) and one.standard > 0.0]
     if not kept:
         return PartValue(NAN, ((NAN, inf),))
     weights = [1.0 / one.standard**2 for one in kept]
-    total = sum(weights)
-    shares = [weight / total for weight in weights]
+    shares = [weight / sum(weights) for weight in weights]
     common: dict[str, tuple[float, float]] = {}
     for one, share in zip(kept, shares, strict=True):
         for name, (u, df) in one.common.items():

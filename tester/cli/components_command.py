@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 ASSUMED = (
     "assumed: the film takes all adhesion away, leaves all hysteresis, and does not lift the specimen",
     "U (95 %): of this specimen; what dry and film have in common counts as far as it moves the component",
-    "warmer: dry contact over the other; the film's coefficient is taken to the dry contact's temperature, with what is "
+    "warmer: dry contact over the other; the film's coefficient is taken to the dry one's temperature, with what is "
     "known of its sensitivity (0 +- 2.6 %/K where the run has one temperature)",
 )
 

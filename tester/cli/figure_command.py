@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
 from tester.cli.formatting import shown
+from tester.cli.law_parts import OVERS, At, parts_chart
+from tester.cli.options import QuantityType
 from tester.cli.run_lookup import run_folder
 
 if TYPE_CHECKING:
@@ -20,7 +23,7 @@ TOGETHER = "several-runs"
 
 
 @click.command()
-@click.argument("runs", metavar="RUN...", nargs=-1, required=True)
+@click.argument("runs", metavar="[RUN...]", nargs=-1)
 @click.option("--name", "names", multiple=True, metavar="NAME", help="Only this figure (--list). May be given again.")
 @click.option("--list", "only_list", is_flag=True, help="Name the figures that there are, draw none.")
 @click.option("--format", "ending", type=click.Choice(["png", "svg", "pdf"]), default="png", show_default=True)
@@ -30,14 +33,41 @@ TOGETHER = "several-runs"
 )  # fmt: skip
 @click.option("--law", default="", metavar="LAW", help="Draw a published law too: paper or v2.")
 @click.option("--published/--no-published", default=True, show_default=True, help="Points of the paper beside.")
+@click.option("--components", is_flag=True, help="No run: adhesion and hysteresis of a law of materials.")
+@click.option("--over", type=click.Choice(OVERS), default="ra", show_default=True, help="What --components goes over.")
+@click.option("--compound", default="tread", show_default=True, help="Of --components.")
+@click.option("--surface", default="road", show_default=True, help="Of --components.")
+@click.option("--temperature", type=QuantityType("degC"), default="25 degC", show_default=True, help="Of --components.")
+@click.option("--pressure", type=QuantityType("Pa"), default="300 kPa", show_default=True, help="Of --components.")
+@click.option("--speed", type=QuantityType("m/s"), default="1 m/s", show_default=True, help="Of --components.")
 def figure(
-    runs: Sequence[str], names: Sequence[str], only_list: bool, ending: str, out: Path, law: str, published: bool
+    runs: Sequence[str],
+    names: Sequence[str],
+    only_list: bool,
+    ending: str,
+    out: Path,
+    law: str,
+    published: bool,
+    components: bool,
+    over: str,
+    compound: str,
+    surface: str,
+    temperature: float,
+    pressure: float,
+    speed: float,
 ) -> None:
     """Draw the results of each RUN: coefficient over every axis that was varied, as a surface, the run in order of
     time, and the repeats; several runs also together, in a folder of its own.
 
     Bars are the expanded uncertainty U (95 %). The names of the files are printed, a line each.
+
+    --components draws a law (greta unless --law names another) of a compound's moduli on a surface, without a run.
     """
+    if components:
+        _draw_law(runs, law or "greta", compound, surface, over, At(temperature, pressure, speed), out, ending)
+        return
+    if not runs:
+        raise click.UsageError("no run is named (expected RUN..., or --components)")
     read = [_results(name) for name in dict.fromkeys(runs)]
     sets = {folder: _figures(results, law, published) for folder, results in read}
     if len(sets) > 1:
@@ -52,6 +82,18 @@ def figure(
             click.echo(f"{one.name}: {shown(one.title)}")
         if not only_list:
             _draw(figures, names, out / folder, ending)
+
+
+def _draw_law(
+    runs: Sequence[str], law: str, compound: str, surface: str, over: str, at: At, out: Path, ending: str
+) -> None:
+    """Draw the parts of a law over one quantity."""
+    if runs:
+        raise click.UsageError("--components draws a law and takes no run")
+    if min(at.pressure_pa, at.speed_m_s) <= 0.0:
+        raise click.UsageError("--components: pressure and speed are above 0")
+    chart = parts_chart(law, compound, surface, over, at)
+    _draw([replace(chart, name=f"components-over-{over}")], (), out / f"{law}-{compound}-{surface}", ending)
 
 
 def _draw(figures: Sequence[Figure], names: Sequence[str], target: Path, ending: str) -> None:

@@ -58,8 +58,8 @@ def fit(
 
     All parameters at once, a compound at a time (on a track, an interface and a surface, too), at the measured
     temperatures, loads and speeds. Prints them with 95 % intervals over conditions, how far the law is off fitted,
-    left-out and --validate conditions, and what it says: peaks, exponents, trends. --check, with appendix-a --validate appendix-b: the paper's table and our verdict; exit
-    code 1 where a figure misses.
+    left-out and --validate conditions, and what it says: peaks, exponents, trends. --check, with appendix-a --validate
+    appendix-b: the paper's table and our verdict; exit code 1 where a figure misses.
     """
     from tester.base.extras import MissingExtraError
     from tester.fit.joint import fit_group

@@ -52,6 +52,7 @@ COMMANDS: dict[str, CommandEntry] = {
     "components": CommandEntry(
         "tester.cli.components_command", "components", "Adhesion and hysteresis: dry less wet."
     ),
+    "master": CommandEntry("tester.cli.master_command", "master", "Put friction on one curve over aT v, if it is one."),
     "figure": CommandEntry("tester.cli.figure_command", "figure", "Draw a run's results."),
     "report": CommandEntry("tester.cli.report_command", "report", "Write a run's results as a page to send and print."),
     "slip-ring": CommandEntry("tester.cli.slip_ring_command", "slip_ring", "Errors of the slip ring, and their trend."),

@@ -25,9 +25,10 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     Array = NDArray[np.float64]
+    Places = NDArray[np.intp]
 
 BELOW_K: Final = 100.0
-"""Ts is looked for from this far below the lowest temperature, K [A]: a rubber at Ts + 100 K has long ceased to creep."""
+"""Ts is looked for from this far below the lowest temperature, K [A]; the constants are said to hold to Ts + 50 K."""
 POLE_K: Final = 1.0
 """... to this far from where the lowest temperature would be at the pole of the shift, K."""
 GRID_K: Final = 4.0
@@ -48,7 +49,7 @@ _STEP_K: Final = 0.01
 
 @dataclass(frozen=True, slots=True)
 class Curve:
-    """A spline through a collapsed set: ``knots`` over x at Ts, ``weights`` of its B-splines; ``factors`` of sources."""
+    """A spline through a collapsed set: ``knots`` over x at Ts, ``weights`` of its B-splines, ``factors`` of runs."""
 
     knots: Array
     weights: Array
@@ -163,7 +164,7 @@ def collapse(of: MasterSet, ts_c: float | None = None, resamples: int = RESAMPLE
         best_c = _golden(lambda at: left(at, interior), *within)
     x = of.log_v + shifts(of.celsius, best_c)
     columns = _columns(of, x, interior)
-    weights = np.linalg.lstsq(columns, y, rcond=None)[0]
+    weights: Array = np.asarray(np.linalg.lstsq(columns, y, rcond=None)[0], dtype=np.float64)
     knots = quantile_knots(x, interior)
     splines = knots.size - 4
     curve = Curve(knots, weights[:splines], weights[splines:])
@@ -229,7 +230,7 @@ def _length(values: Array) -> float:
 
 
 def _between(residual: Array, of: MasterSet) -> float:
-    """Return the standard deviation of ln mu that the conditions of a temperature have in common (analysis of variance)."""
+    """Return the standard deviation of ln mu that conditions of a temperature have in common (analysis of variance)."""
     inside = of.in_block
     counts = np.sum(inside, axis=0)
     blocks, n = counts.size, residual.size
@@ -249,7 +250,7 @@ def _left_of(of: MasterSet, ts_c: float, interior: int, y: Array) -> Array:
 def _lowest(at: Array, values: Array) -> Array:
     """Return where each column of ``values`` (m, B) is least, by a parabola through three of the places ``at`` (m,)."""
     place = np.clip(np.argmin(values, axis=0), 1, at.size - 2)
-    column = np.arange(values.shape[1])
+    column: Places = np.arange(values.shape[1], dtype=np.intp)
     before, here, after = values[place - 1, column], values[place, column], values[place + 1, column]
     bend = before - 2.0 * here + after
     share = np.where(bend > 0.0, 0.5 * (before - after) / np.where(bend > 0.0, bend, 1.0), 0.0)

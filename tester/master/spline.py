@@ -25,7 +25,7 @@ def quantile_knots(x: Array, interior: int) -> Array:
 
 
 def basis(x: Array, knots: Array) -> Array:
-    """Return the B-splines of order 4 at ``x`` (within the knots), shape (n, knots - 4), by the Cox-de Boor recursion."""
+    """Return the B-splines of order 4 at ``x`` (within the knots), shape (n, knots - 4), by Cox and de Boor."""
     return _basis(x, knots, ORDER)
 
 
@@ -56,7 +56,7 @@ def _above_zero(width: Array) -> Array:
 
 
 def orthonormal(columns: Array) -> Array:
-    """Return an orthonormal basis of what columns (n, k) span, shape (n, rank): columns that say nothing new drop out."""
+    """Return an orthonormal basis of what columns (n, k) span, (n, rank): columns that say nothing new drop out."""
     u, s, _ = np.linalg.svd(columns, full_matrices=False)
     kept = s > _RANK * s[0] if s.size and s[0] > 0.0 else np.zeros(s.shape, dtype=bool)
     return np.asarray(u[:, kept], dtype=np.float64)

@@ -20,7 +20,7 @@ import numpy as np
 
 from tester.analysis.quantiles import f_quantile
 from tester.master.collapse import Collapse, padded
-from tester.master.overlap import Pair
+from tester.master.overlap import TemperaturePair
 from tester.master.spline import left_over, orthonormal
 
 if TYPE_CHECKING:
@@ -64,7 +64,7 @@ class CollapseTest:
 
 
 @dataclass(frozen=True, slots=True)
-class Judged:
+class MasterJudgement:
     """The verdict, the reasons in words, and the tests."""
 
     verdict: Verdict
@@ -72,20 +72,20 @@ class Judged:
     tests: tuple[CollapseTest, ...]
 
 
-def judge(one: Collapse, pairs: Sequence[Pair]) -> Judged:
+def judge(one: Collapse, pairs: Sequence[TemperaturePair]) -> MasterJudgement:
     """Return whether a set is one curve, by its collapse and its pairs of neighbouring temperatures."""
     unknown = tuple(_unknown(one, pairs))
     if unknown:
-        return Judged(Verdict.OPEN, unknown, ())
+        return MasterJudgement(Verdict.OPEN, unknown, ())
     tests = tests_of(one)
     failed = sorted((test for test in tests if test.failed), key=lambda test: -test.f / test.critical)
     if failed:
-        return Judged(Verdict.DOES_NOT, tuple(_WORDS[test.name] for test in failed), tests)
+        return MasterJudgement(Verdict.DOES_NOT, tuple(_WORDS[test.name] for test in failed), tests)
     vague = tuple(_vague(one))
-    return Judged(Verdict.OPEN if vague else Verdict.COLLAPSES, vague, tests)
+    return MasterJudgement(Verdict.OPEN if vague else Verdict.COLLAPSES, vague, tests)
 
 
-def _unknown(one: Collapse, pairs: Sequence[Pair]) -> list[str]:
+def _unknown(one: Collapse, pairs: Sequence[TemperaturePair]) -> list[str]:
     of = one.of
     if len(of.blocks_c) < LEAST_TEMPERATURES:
         return [f"{len(of.blocks_c)} temperatures (expected at least {LEAST_TEMPERATURES})"]

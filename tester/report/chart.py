@@ -34,6 +34,10 @@ class ChartPanel:
     series: tuple[Series, ...]
     y_label: str = ""
     """Of its upright axis, where it is not the chart's."""
+    x_label: str = ""
+    """Of its axis along, where it is not the chart's."""
+    joined: bool = True
+    """Whether measured points that no law goes through are joined by a line."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,6 +52,10 @@ class Chart:
     note: str = ""
     from_zero: bool = True
     """Whether the upright axis begins at 0."""
+    own_x: bool = False
+    """Whether each panel has an axis along of its own."""
+    log_x: bool = False
+    """Whether the axis along is logarithmic."""
     stacked: bool = False
     """Whether panels stand one above the other, with the axis along in common and each with its own upright."""
 

@@ -120,7 +120,8 @@ def _varied(values: Sequence[ChartValue]) -> list[Axis]:
 
 def _chart(material: Material, along: Axis, across: Axis | None) -> Chart | None:
     """Return the chart of the coefficient over ``along``, a series for each value of ``across``."""
-    panels = [panel for name in _compounds(material.measured) if (panel := _panel(material, name, along, across))]
+    kinds = _panelled(material.measured)
+    panels = [panel for own in kinds if (panel := _panel(material, own, along, across))]
     if not panels or (across is not None and not any(_styles(panel) > 1 for panel in panels)):
         return None
     notes = [BARS]
@@ -136,12 +137,20 @@ def _styles(panel: ChartPanel) -> int:
     return len({series.style for series in panel.series})
 
 
-def _compounds(values: Iterable[ChartValue]) -> list[str]:
-    return sorted({one.held.compound for one in values})
+def _panelled(values: Iterable[ChartValue]) -> list[list[ChartValue]]:
+    """Return the values of each panel: of one compound, and of one choice where an axis is of choices (dry, wet)."""
+    found: dict[tuple[str, ...], list[ChartValue]] = {}
+    for one in values:
+        choices = (axis.choices.index(str(axis.of(one.held))) for axis in one.held.axes if axis.choices)
+        found.setdefault((one.held.compound, *map(str, choices)), []).append(one)
+    return [found[key] for key in sorted(found)]
 
 
-def _panel(material: Material, compound: str, along: Axis, across: Axis | None) -> ChartPanel | None:
-    own = [one for one in material.measured if one.held.compound == compound]
+def _panel(
+    material: Material, own: Sequence[ChartValue], along: Axis, across: Axis | None
+) -> ChartPanel | None:
+    """Return the panel of values of a kind (``_panelled``)."""
+    compound = own[0].held.compound
     free = {along.name, *([across.name] if across is not None else [])}
     fixed = _usual(own, free)
     own = _fixed(own, fixed)
@@ -198,9 +207,8 @@ def _curve(law: Law, values: Sequence[ChartValue], along: Axis, style: int) -> S
 def _surfaces(values: Sequence[ChartValue], along: Axis, upward: Axis) -> Iterator[ChartSurface]:
     """Yield the coefficient over two axes, for each compound at what most of its conditions share."""
     panels: list[tuple[str, tuple[float, ...], tuple[float, ...], tuple[tuple[float, ...], ...]]] = []
-    for compound in _compounds(values):
-        own = [one for one in values if one.held.compound == compound]
-        own = _fixed(own, _usual(own, {along.name, upward.name}))
+    for kind in _panelled(values):
+        own = _fixed(kind, _usual(kind, {along.name, upward.name}))
         x, y = (tuple(sorted({axis.number(one.held) for one in own})) for axis in (along, upward))
         if len(x) < 2 or len(y) < 2:
             continue

@@ -94,7 +94,8 @@ def _draw(figure: Figure, target: BinaryIO, ending: str, dpi: float, further: di
         down = ceil(len(figure.panels) / across)
         wide, high = STRIP_INCH if stacked else PANEL_INCH
         canvas: Any = Canvas(figsize=(wide * across, high * down + 0.5), layout="constrained")
-        places: Any = canvas.subplots(down, across, squeeze=False, sharex=True, sharey=not stacked)
+        own_x = isinstance(figure, Chart) and figure.own_x
+        places: Any = canvas.subplots(down, across, squeeze=False, sharex=not own_x, sharey=not stacked)
         flat: list[Any] = [place for row in places for place in row]
         if isinstance(figure, Chart):
             _draw_chart(figure, flat)
@@ -119,16 +120,30 @@ def _draw_chart(chart: Chart, places: Sequence[Any]) -> None:
     for number, (panel, place) in enumerate(zip(chart.panels, places, strict=False)):
         _draw_panel(panel, place, number)
         if not chart.stacked or number == len(chart.panels) - 1:
-            place.set_xlabel(chart.x_label)
+            place.set_xlabel(panel.x_label or chart.x_label)
+        if chart.log_x:
+            place.set_xscale("log")
+            place.xaxis.set_major_formatter("{x:g}")  # its own is a formula, which text here is never read as
+            place.xaxis.set_minor_formatter(_two_and_five if _narrow(panel) else "")
         place.set_ylabel(panel.y_label or chart.y_label)
     if chart.from_zero:  # last: an axis that is set follows no further points, of no panel that shares it
         places[0].set_ylim(bottom=0.0)
 
 
+def _narrow(panel: ChartPanel) -> bool:
+    """Tell whether a panel spans so little of a logarithmic axis that powers of ten alone would hardly mark it."""
+    every = [x for series in panel.series for x in series.x]
+    return max(every) < 100.0 * min(every)
+
+
+def _two_and_five(value: float, _: object) -> str:
+    return f"{value:g}" if f"{value:e}"[0] in "25" else ""
+
+
 def _draw_panel(panel: ChartPanel, place: Any, number: int) -> None:
     lined = {series.style for series in panel.series if series.look == "law"}
     for turn, series in enumerate(panel.series):
-        drawn = _draw_series(series, place, joined=not series.widths and series.style not in lined)
+        drawn = _draw_series(series, place, joined=panel.joined and not series.widths and series.style not in lined)
         drawn.set_gid(f"{MARKED}-{number}-{turn}")
     if panel.title:
         place.set_title(fill(_told(panel.title), TITLE_WIDTH), fontsize=8.0)
@@ -145,7 +160,7 @@ def _draw_series(series: Series, place: Any, joined: bool) -> Any:
     colour = COLOURS[i]
     label = _told(series.label, LONGEST_LABEL) or None
     if series.look == "law":
-        return place.plot(series.x, series.y, color=colour, linestyle=DASHES[i], linewidth=1.0)[0]
+        return place.plot(series.x, series.y, color=colour, linestyle=DASHES[i], linewidth=1.0, label=label)[0]
     if series.look == "limit":
         return place.plot(series.x, series.y, color="#606060", linestyle=DASHES[i], linewidth=0.9, label=label)[0]
     if series.look == "published":

@@ -9,19 +9,21 @@ import pytest
 
 import recipes
 from tester.kinds import load_rig
+from tester.kinds.specimen_on_track.axes import held_by
 from tester.kinds.wheel_on_belt.recipe.part import PART
 from tester.recipe.check import check
 from tester.recipe.loader import load_recipe
 from tester.recipe.schema import schema_text
 from tester.run.kinds import recipe_part
 
-RIGS = {"grosch": "grosch", "pin-on-disc": "pin-on-disc"}
+MASTERS = ["grosch", "grosch-glass", "grosch-talc"]
+RIGS = {**dict.fromkeys(MASTERS, "grosch"), "pin-on-disc": "pin-on-disc"}
 """Rigs of the recipes that are not for the first one."""
 
 
 def test_these_recipes_are_packaged() -> None:
     table2 = ["table2", "table2-load", "table2-sideslip", "table2-slip"]
-    assert recipes.names() == ["grosch", "pin-on-disc", "pre-grind", "quickstart", *table2, "wear"]
+    assert recipes.names() == [*MASTERS, "pin-on-disc", "pre-grind", "quickstart", *table2, "wear"]
 
 
 @pytest.mark.parametrize("name", ["quickstart", "quickstart.yaml", "recipes/quickstart.yaml"])
@@ -44,7 +46,7 @@ def test_what_is_neither_file_nor_name_is_refused_naming_what_there_is(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    with pytest.raises(recipes.UnknownRecipe, match=r"packaged are grosch, pin-on-disc, pre-grind, quickstart"):
+    with pytest.raises(recipes.UnknownRecipe, match=r"packaged are grosch, grosch-glass, grosch-talc, pin-on-disc, "):
         recipes.find(name)
 
 
@@ -54,11 +56,22 @@ def test_every_packaged_recipe_is_valid_on_its_rig(name: str) -> None:
     assert check(recipes.find(name), rig, recipe_part(rig)) == []
 
 
-def test_the_master_curve_has_99_rows_and_friction_heats_none() -> None:
+@pytest.mark.parametrize(("name", "track", "interface"), [
+    ("grosch", "silicon carbide", "dry"), ("grosch-glass", "glass", "dry"), ("grosch-talc", "silicon carbide", "talc"),
+])  # fmt: skip
+def test_a_master_curve_has_11_temperatures_and_9_speeds_on_each_track_and_friction_heats_none(
+    name: str, track: str, interface: str
+) -> None:
     rig = load_rig("grosch")
     part = recipe_part(rig)
-    plan = part.expand(load_recipe(recipes.find("grosch"), part).recipe, rig)
-    assert sum(1 for _ in plan.conditions()) == 99 and part.estimate(plan, rig).not_held == ()
+    plan = part.expand(load_recipe(recipes.find(name), part).recipe, rig)
+    held = [held_by(step.setpoint) for step in plan.conditions()]
+    assert {(one.temperature_c, one.track_m_s) for one in held} == {
+        (celsius, speed) for celsius in {one.temperature_c for one in held} for speed in {one.track_m_s for one in held}
+    }
+    assert (len({one.temperature_c for one in held}), len({one.track_m_s for one in held}), len(held)) == (11, 9, 99)
+    assert {one.interface for one in held} == {interface} and plan.metadata["abrasive"] == track
+    assert part.estimate(plan, rig).not_held == ()
 
 
 def test_the_packaged_schema_is_what_tester_schema_prints() -> None:

@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from tester.machine.interlock_sheet import InterlockSheet
     from tester.machine.run_parts import KindRun
     from tester.machine.served import ServedKind
+    from tester.master.part import MasterPart
     from tester.recipe.part import RecipePart
     from tester.rig import Rig
 
@@ -41,6 +42,12 @@ def _runs() -> KindRun:
     return RUNS
 
 
+def _masters() -> MasterPart:
+    from tester.kinds.specimen_on_track.fit.master import MASTERS
+
+    return MASTERS
+
+
 def _served() -> ServedKind:
     from tester.kinds.specimen_on_track.served import SERVED
 
@@ -67,6 +74,7 @@ KIND: Final = Kind(
     page="docs/track-safety.md",
     recipe=_recipe,
     runs=_runs,
+    masters=_masters,
     served=_served,
     fits=_fits,
 )

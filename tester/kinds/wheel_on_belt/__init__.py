@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from tester.machine.interlock_sheet import InterlockSheet
     from tester.machine.run_parts import KindRun
     from tester.machine.served import ServedKind
+    from tester.master.part import MasterPart
     from tester.recipe.part import RecipePart
     from tester.rig import Rig
 
@@ -54,6 +55,12 @@ def _fits() -> FitPart:
     return FITS
 
 
+def _masters() -> MasterPart:
+    from tester.kinds.wheel_on_belt.fit.master import MASTERS
+
+    return MASTERS
+
+
 def _commissions() -> CommissionPart:
     from tester.kinds.wheel_on_belt.commission.steps import COMMISSIONS
 
@@ -73,5 +80,6 @@ KIND: Final = Kind(
     runs=_runs,
     served=_served,
     fits=_fits,
+    masters=_masters,
     commissions=_commissions,
 )

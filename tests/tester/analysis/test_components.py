@@ -8,7 +8,7 @@ from math import exp, hypot, inf, isnan, sqrt
 import numpy as np
 import pytest
 
-from tester.analysis.components import SENSITIVITY, PartValue, by_film, mean_of
+from tester.analysis.components import RUBBER_K, SENSITIVITY, PartValue, by_film, mean_of
 from tester.analysis.kelvin import UNKNOWN, Slope
 from tester.analysis.repeats import ConditionResult
 from tester.analysis.results import ConditionStatus
@@ -66,13 +66,16 @@ def test_the_film_is_taken_to_the_temperature_of_the_dry_contact() -> None:
     parts = by_film(result(2.0, at_c=33.0), result(1.2, at_c=23.0), Slope(-0.01, 0.002, "known"))
     assert parts.warmer_k == 10.0
     assert parts.hysteresis.value == pytest.approx(1.2 * exp(-0.1), rel=1e-12)
-    assert parts.hysteresis.common[SENSITIVITY][0] == pytest.approx(1.2 * exp(-0.1) * 10.0 * 0.002, rel=1e-12)
+    expected = 1.2 * exp(-0.1) * hypot(10.0, RUBBER_K) * 0.002
+    assert parts.hysteresis.common[SENSITIVITY][0] == pytest.approx(expected, rel=1e-12)
 
 
 def test_an_unknown_sensitivity_widens_what_differs_in_temperature() -> None:
-    same, apart = (by_film(result(2.0, 0.02, at), result(1.2, 0.02), UNKNOWN) for at in (23.0, 33.0))
-    assert same.share.value == apart.share.value
-    assert apart.share.standard > hypot(0.6 * 10.0 * UNKNOWN.u_per_kelvin, 0.0) > 5.0 * same.share.standard
+    colder, same, warmer = (by_film(result(2.0, 0.02, at), result(1.2, 0.02), UNKNOWN) for at in (13.0, 23.0, 33.0))
+    assert colder.share.value == same.share.value == warmer.share.value
+    assert warmer.share.standard > 0.6 * 10.0 * UNKNOWN.u_per_kelvin > 5.0 * same.share.standard
+    assert same.share.common[SENSITIVITY][0] == pytest.approx(0.6 * RUBBER_K * UNKNOWN.u_per_kelvin, rel=1e-12)
+    assert colder.share.common[SENSITIVITY] == warmer.share.common[SENSITIVITY]
 
 
 def test_few_degrees_of_freedom_widen_the_expanded_uncertainty() -> None:

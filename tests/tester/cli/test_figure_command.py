@@ -82,3 +82,28 @@ def test_without_matplotlib_the_line_that_installs_it_is_named(
 ) -> None:
     monkeypatch.setitem(sys.modules, "matplotlib", None)
     assert "pip install" in out(capsys, "one", code=2)
+
+
+@pytest.mark.parametrize("over", ["ra", "speed", "pressure"])
+def test_the_parts_of_a_law_are_drawn_without_a_run(home: Path, capsys: pytest.CaptureFixture[str], over: str) -> None:
+    pytest.importorskip("matplotlib", reason="needs the extra `report`")
+    told = out(capsys, "--components", "--over", over, "--format", "svg")
+    path = home / "figures" / "greta-tread-road" / f"components-over-{over}.svg"
+    assert told.splitlines() == [str(path.relative_to(home))] and path.stat().st_size > 5000
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ([], "no run is named"),
+        (["one", "--components"], "takes no run"),
+        (["--components", "--compound", "treat"], "did you mean"),
+        (["--components", "--surface", "S0"], "has no waves, whose roughness"),
+        (["--components", "--law", "power"], "not made of materials"),
+        (["--components", "--speed", "0 m/s"], "above 0"),
+    ],
+)
+def test_what_cannot_be_drawn_of_a_law_is_said(
+    home: Path, capsys: pytest.CaptureFixture[str], arguments: list[str], message: str
+) -> None:
+    assert message in " ".join(out(capsys, *arguments, code=2).split())

@@ -9,9 +9,12 @@ from typing import Any
 
 import pytest
 
+from sim.physics.greta import greta
 from tester.cli.main import invoke
 from tester.kinds.wheel_on_belt.fit import published
+from tester.materials.library import Library
 from tests.campaigns.fit import DESIGN
+from tests.tester.kinds.specimen_on_track.fit.made import made_track_run
 from tests.tester.kinds.wheel_on_belt.fit.made import made_run
 
 pytest.importorskip("scipy", reason="needs the extra `report`")
@@ -159,3 +162,48 @@ def _lawless() -> object:
 
 
 LAWLESS = _lawless()
+
+
+def test_a_run_on_a_track_is_fitted_by_interface(home: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    made_track_run(home / "one", (0.0, 10.0, 20.0), interfaces=("dry", "wet"), scatter=0.0)
+    found = data(capsys, "fit", "one")
+    assert (found["law"], [one["group"] for one in found["groups"]]) == ("wlf_bell", ["SBR, dry", "SBR, wet"])
+    parameters = found["groups"][0]["parameters"]
+    assert {name: parameters[name]["value"] for name in ("mu_max", "width", "t_ref")} == pytest.approx(
+        {"mu_max": 2.2, "width": 3.0, "t_ref": -3.0}, rel=1e-3
+    )
+
+
+def test_a_law_of_materials_is_fitted_on_the_surface_that_is_named(
+    home: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    made_track_run(home / "one", (10.0, 25.0), (0.05, 0.2, 1.0), compounds=("tread",), mu=tread, scatter=0.0)
+    found = data(capsys, "fit", "one", "--law", "greta", "--surface", "road", "--given", "area=50")
+    parameters = found["groups"][0]["parameters"]
+    assert {name: one["value"] for name, one in parameters.items()} == pytest.approx(
+        {"tau_s0": 12e3, "v_c": 1.0, "n": 0.6}, rel=0.02
+    )
+    assert "does not say on what surface" in out(capsys, "fit", "one", "--law", "greta", code=1)
+
+
+def tread(temperature_c: float, speed_m_s: float) -> float:
+    library = Library.beside()
+    law = greta(library.rubber("tread"), library.surface("road"), {"area": 50.0})
+    return law.mu(temperature_c, 20.0, speed_m_s)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["--law", "power", "--given", "area=50"], "is given no figures"),
+        (["--law", "greta", "--surface", "road", "--given", "area=wide"], "--given area=wide: 'wide' is no number"),
+        (["--law", "greta", "--surface", "rod"], "did you mean"),
+        (["--law", "persson", "--surface", "road"], "no spectrum of heights"),
+    ],
+)
+def test_what_makes_no_law_of_a_track_is_refused(
+    home: Path, capsys: pytest.CaptureFixture[str], arguments: list[str], message: str
+) -> None:
+    made_track_run(home / "one", (10.0, 25.0), (0.05, 0.2, 1.0), compounds=("tread",))
+    assert invoke(["fit", "one", *arguments]) in (1, 2)
+    assert message in capsys.readouterr().err

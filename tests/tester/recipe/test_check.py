@@ -244,7 +244,7 @@ def test_limits_are_found_in_a_grid_whose_other_values_are_wrong() -> None:
 
 
 def test_every_packaged_recipe_can_be_run_on_the_simulated_rig() -> None:
-    names = [name for name in recipes.names() if name not in ("grosch", "pin-on-disc")]  # those are for other rigs
+    names = [name for name in recipes.names() if not name.startswith(("grosch", "pin-on-disc"))]  # for other rigs
     assert {name: check(recipes.find(name), rig(), PART) for name in names} == {name: [] for name in names}
 
 

@@ -8,11 +8,14 @@ from pathlib import Path
 
 import pytest
 
+from sim.physics.materials import Components
 from tester.export.results import RunResults, results_of
 from tester.kinds.wheel_on_belt.fit.setpoints import law_at, published_values
 from tester.report.chart import Chart, ChartSurface, Figure, Series
 from tester.report.charts import ChartValue, Material, charts_of, repeats_chart, values_of
+from tester.report.components import components_chart
 from tester.store.reader import RunReader
+from tests.tester.kinds.specimen_on_track.fit.made import made_track_run
 from tests.tester.kinds.wheel_on_belt.fit.made import made_run
 from tests.tester.store.build import CONDITION
 
@@ -157,3 +160,23 @@ def test_published_values_have_the_rows_with_an_angle_but_no_suspect_ones() -> N
     angles = [one for one in PUBLISHED if one.held.number("sideslip")]
     assert sorted({one.held.compound for one in angles}) == ["1#", "2#"] and len(angles) == 6
     assert len(PUBLISHED) == 36 + 79 + 6
+
+
+def test_dry_and_wet_have_panels_and_surfaces_of_their_own(tmp_path: Path) -> None:
+    run = made_track_run(tmp_path / "one", (0.0, 20.0), (1e-4, 1e-3), interfaces=("dry", "wet"))
+    with RunReader(run) as reader:
+        found = {one.name: one for one in charts_of(Material(values_of(results_of(reader))))}
+    over_speed, surface = found["track_speed-by-temperature"], found["surface"]
+    assert isinstance(over_speed, Chart) and isinstance(surface, ChartSurface)
+    assert [panel.title for panel in over_speed.panels] == ["SBR, 20 N", "SBR, wet, 20 N"]
+    assert all(len(panel.series) == 2 for panel in over_speed.panels)
+    assert [title for title, *_ in surface.panels] == ["SBR, 20 N", "SBR, wet, 20 N"]
+
+
+def test_the_parts_of_a_law_are_lines_with_their_sum() -> None:
+    found = components_chart(lambda x: Components(x, 2.0 * x), (1.0, 10.0), "roughness (mm)", "a law", "at 25 degC")
+    (panel,) = found.panels
+    assert {one.label: one.y for one in panel.series} == {
+        "adhesion": (1.0, 10.0), "hysteresis": (2.0, 20.0), "sum": (3.0, 30.0),
+    }  # fmt: skip
+    assert found.log_x and {one.look for one in panel.series} == {"law"}

@@ -32,8 +32,8 @@ AREA_MM2: Final = 100.0
 BEYOND: Final = 30.0
 """A self-affine spectrum may go on so many times beyond the q1 of its file; a measured one ends where it ends."""
 _AXES: Final = (GridAxis(-150.0, 250.0, 1.0), GridAxis(-9.0, 4.0, 0.1), GridAxis(2.0, 9.0, 0.2))
-"""Temperature in degC, decades of the speed in m/s and of the pressure in Pa. Coefficients are taken as straight between
-them, which is right within 0.3 % over a bell of three decades."""
+"""Temperature in degC, decades of the speed in m/s and of the pressure in Pa. Coefficients are taken as straight
+between them, which is right within 0.3 % over a bell of three decades."""
 _PANELS, _NODES = 100, 16
 
 

@@ -1,0 +1,244 @@
+"""`tester master`: friction over speeds and temperatures on one curve over aT v, if it is one."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from tester.base.exits import EXIT_DONE, EXIT_FAILED, EXIT_INCOMPLETE
+from tester.cli.formatting import dump, shown
+from tester.cli.options import QuantityType, json_option
+
+if TYPE_CHECKING:
+    from sim.physics.materials import Rubber
+    from tester.kind import Kind
+    from tester.master.made import Master
+    from tester.master.points import MasterPoint, MasterRun
+    from tester.materials.compound import LoadedCompound
+
+FORMATS = ("csv", "png", "svg", "pdf")
+GLASS = "glass"
+"""Asks for Ts = Tg + 50 K."""
+
+
+@click.command()
+@click.argument("runs", metavar="RUN...", nargs=-1, required=True)
+@click.option(
+    "--reference", "reference_c", type=QuantityType("degC"), default=20.0, metavar="20degC",
+    help="Temperature at which the curve stands.  [default: 20degC]",
+)
+@click.option(
+    "--ts", "ts_words", metavar="TS",
+    help="Ts of the shift: such as -3degC, or glass, which is Tg + 50 K of the compound's file. Else it is looked for.",
+)
+@click.option("--compound", metavar="NAME", help="Which compound, where there are several.")
+@click.option("--interface", metavar="NAME", help="Which interface, where there are several: dry, wet, talc.")
+@click.option("--load", metavar="LOAD", help="Which load, where there are several, such as 20N.")
+@click.option("--format", "ending", type=click.Choice(FORMATS), default=None, help="As the ending of the file says.")
+@click.option(
+    "-o", "--out", type=click.Path(dir_okay=False, path_type=Path), default=None,
+    help="File that gets the table (csv) or the figure (png, svg, pdf).",
+)
+@json_option
+def master(
+    runs: Sequence[str],
+    reference_c: float,
+    ts_words: str | None,
+    compound: str | None,
+    interface: str | None,
+    load: str | None,
+    ending: str | None,
+    out: Path | None,
+    as_json: bool,
+) -> int:
+    """Put the conditions of RUNS on one curve over aT v, and say whether they are one.
+
+    log10 aT = -8.86 (T - Ts) / (101.5 K + T - Ts) after Williams, Landel and Ferry. The table goes to stdout: x =
+    log10(aT v) at the reference temperature, mu, measured temperature and speed, and how far mu is off the curve. The
+    rest goes to stderr: the verdict, Ts with its 95 % interval, the scatter, the maxima, and the shifts between
+    neighbouring temperatures by themselves. Runs in which friction heats the contact are refused.
+
+    Exit code 0: it collapses; 1: it does not, or is refused; 6: these conditions cannot tell.
+    """
+    from tester.master.made import master_of
+    from tester.master.points import MasterError
+    from tester.master.verdict import Verdict
+
+    kind_of_file = _ending(ending, out)
+    found = _runs(runs)
+    points = [point for one in found for point in one.points]
+    points = _chosen(points, compound, interface, _quantity("--load", load, "N"))
+    name = points[0].compound
+    file = _compound_file(runs[0], name)
+    glass_c = file.model.Tg if file is not None else None
+    try:
+        made = master_of(points, reference_c, _ts(ts_words, name, glass_c), _rubber(file), glass_c)
+    except MasterError as error:
+        raise click.ClickException(shown(str(error))) from error
+    _tell(made, [entry for one in found for entry in one.left_out], as_json)
+    if out is not None:
+        _write(made, out, kind_of_file)
+    codes = {Verdict.COLLAPSES: EXIT_DONE, Verdict.DOES_NOT: EXIT_FAILED, Verdict.OPEN: EXIT_INCOMPLETE}
+    return codes[made.judged.verdict]
+
+
+def _ending(given: str | None, out: Path | None) -> str:
+    """Return the format of the file; a usage error where there is a format and no file, or no format."""
+    if out is None:
+        if given is not None:
+            raise click.UsageError(f"--format {given}: which file? (expected -o FILE.{given})")
+        return ""
+    told = out.suffix.removeprefix(".").lower()
+    if told not in FORMATS:
+        raise click.UsageError(f"-o {out}: the ending says no format (expected {', '.join(FORMATS)})")
+    if given not in (None, told):
+        raise click.UsageError(f"-o {out}: the ending says {told}, --format {given}")
+    return told
+
+
+def _quantity(option: str, text: str | None, unit: str) -> float | None:
+    from tester.base.units import UnitError, parse
+
+    try:
+        return None if text is None else parse(text, unit)
+    except UnitError as error:
+        raise click.UsageError(f"{option}: {error}") from error
+
+
+def _ts(words: str | None, compound: str, glass_c: float | None) -> float | None:
+    """Return the Ts that was asked for, degC, None where it is to be looked for."""
+    from sim.physics.wlf import GLASS_TO_REFERENCE_K
+
+    if words != GLASS:
+        return _quantity("--ts", words, "degC")
+    if glass_c is None:
+        raise click.UsageError(f"--ts {GLASS}: no file says the Tg of {shown(compound)} (expected such as --ts=-3degC)")
+    return glass_c + GLASS_TO_REFERENCE_K
+
+
+def _compound_file(run: str, compound: str) -> LoadedCompound | None:
+    """Return a compound's file: the run's copy, else the laboratory's or the packaged one; None where there is none."""
+    from sim.physics.materials import UnknownMaterialError
+    from tester.base.source import InvalidSource
+    from tester.cli.run_lookup import run_folder
+    from tester.materials.library import Library
+
+    try:
+        return Library.beside(run_folder(run) / "recipe.yaml").compound(compound)
+    except UnknownMaterialError:
+        return None
+    except InvalidSource as error:
+        raise click.ClickException(shown(str(error))) from error
+
+
+def _rubber(file: LoadedCompound | None) -> Rubber | None:
+    from tester.materials.library import MissingModuliError, rubber_of
+
+    try:
+        return rubber_of(file) if file is not None else None
+    except MissingModuliError:
+        return None
+
+
+def _runs(names: Sequence[str]) -> list[MasterRun]:
+    """Return the conditions of all runs; raises ClickException for a run that is refused."""
+    doubled = sorted({name for name in names if names.count(name) > 1})
+    if doubled:
+        raise click.UsageError(f"{', '.join(doubled)}: named twice, and its conditions would count twice")
+    read = [(name, *_run(name)) for name in names]
+    kinds = {kind.name for _, kind, _ in read}
+    if len(kinds) > 1:
+        raise click.UsageError(f"conditions of different kinds of rigs: {', '.join(sorted(kinds))}")
+    refused = [f"{name} is refused: {one.refusal}" for name, _, one in read if one.refusal]
+    if refused:
+        raise click.ClickException(shown("\n".join(refused)))
+    return [one for _, _, one in read]
+
+
+def _run(name: str) -> tuple[Kind, MasterRun]:
+    from tester.base.source import InvalidSource
+    from tester.cli.run_lookup import run_folder
+    from tester.kinds import UnknownKindError, find, packaged_conditions
+    from tester.store.reader import RunReader
+    from tester.store.schema import StoreError
+
+    kind = packaged_conditions().get(name)
+    if kind is not None and kind.masters is not None:
+        return kind, kind.masters().packaged(name)
+    folder = run_folder(name)
+    try:
+        with RunReader(folder) as reader:
+            kind = find(reader.run().info.kind)
+        if kind.masters is None:
+            raise click.ClickException(f"{name}: the kind {kind.name} says nothing of master curves")
+        return kind, kind.masters().run(folder)
+    except (StoreError, UnknownKindError, InvalidSource) as error:
+        raise click.ClickException(f"{name}: {error}") from error
+
+
+def _chosen(
+    points: Iterable[MasterPoint], compound: str | None, interface: str | None, load_n: float | None
+) -> list[MasterPoint]:
+    """Return the conditions that were asked for; a usage error where they differ in more than speed and temperature."""
+    left = [*points]
+    load = None if load_n is None else f"{load_n:g} N"
+    wanted = {"compound": compound, "interface": interface, "load": load}
+    for name, value in wanted.items():
+        there = sorted({_held(one, name) for one in left} - {""})
+        if value is not None:
+            if value not in there:
+                raise click.UsageError(f"--{name}: no condition of {value!r} (there are {', '.join(there) or 'none'})")
+            left = [one for one in left if _held(one, name) == value]
+        elif len(there) > 1:
+            raise click.UsageError(f"conditions of several values of {name}: {', '.join(there)}; choose with --{name}")
+    if not left:
+        raise click.ClickException("no condition has a value to rely on")
+    return left
+
+
+def _held(point: MasterPoint, name: str) -> str:
+    return point.compound if name == "compound" else point.held.get(name, "")
+
+
+def _tell(made: Master, left_out: Sequence[tuple[str, str]], as_json: bool) -> None:
+    from tester.master.text import plain, summary_lines, table_lines
+
+    if as_json:
+        dump({**plain(made), "left_out": [{"condition": label, "reason": reason} for label, reason in left_out]})
+        return
+    for line in table_lines(made):
+        click.echo(line)
+    for line in summary_lines(made):
+        click.echo(_shown_lines(line), err=True)
+    reasons: dict[str, list[str]] = {}
+    for label, reason in left_out:
+        reasons.setdefault(reason, []).append(label)
+    for reason, labels in reasons.items():
+        click.echo(f"left out ({shown(reason)}): {shown(', '.join(labels))}", err=True)
+
+
+def _shown_lines(text: str) -> str:
+    """Return lines harmless for a terminal."""
+    return "\n".join(shown(line) for line in text.split("\n"))
+
+
+def _write(made: Master, path: Path, ending: str) -> None:
+    """Write the table or the figure."""
+    from tester.base.extras import MissingExtraError
+    from tester.master.chart import master_chart
+    from tester.master.text import csv_text
+    from tester.report.draw import draw
+
+    try:
+        if ending == "csv":
+            path.write_text(csv_text(made), encoding="utf-8", newline="")
+        else:
+            draw(master_chart(made), path)
+    except MissingExtraError as error:
+        raise click.UsageError(str(error)) from error
+    except OSError as error:
+        raise click.ClickException(f"{path}: {error.strerror or error}") from error
+    click.echo(f"written: {path}", err=True)

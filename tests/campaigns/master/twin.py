@@ -1,0 +1,81 @@
+"""The simulated slow track end to end: the packaged recipe, run in process, and its rows on a master curve.
+
+The rig is ticked without a record, and with half the scans while drives are enabled (10 Hz instead of 20: most of the
+time goes into soaking and into the slowest speed): 20 s of processor time a run instead of 60.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import hypot, nan
+from pathlib import Path
+from typing import Final
+
+import recipes
+from sim.physics.track import RUBBERS
+from tester.analysis.terms import Acts
+from tester.kinds.specimen_on_track.axes import held_by
+from tester.kinds.specimen_on_track.budget import TERMS
+from tester.machine.run import Outcome
+from tester.master.made import master_of
+from tester.master.points import MasterPoint, MasterSource
+from tests.tester.kinds.specimen_on_track.bench import TrackBench
+
+TRUTH_C: Final = RUBBERS["SBR"].t_ref
+PLAIN: Final = ("scan.enabled=10 Hz",)
+UNBIASED: Final = (*PLAIN, "sim.sensors.air_bias=0")
+
+
+@dataclass(frozen=True, slots=True)
+class Found:
+    """What came out of a run."""
+
+    seed: int
+    unbiased: bool
+    ts_c: float
+    low_c: float
+    high_c: float
+    verdict: str
+    rows: int
+
+    @property
+    def off_k(self) -> float:
+        """Return how far Ts is off the truth, K."""
+        return self.ts_c - TRUTH_C
+
+    @property
+    def inside(self) -> bool:
+        """Tell whether the interval holds the truth."""
+        return self.low_c <= TRUTH_C <= self.high_c
+
+
+def points_of(bench: TrackBench) -> list[MasterPoint]:
+    """Return the rows of a run that is over, with the uncertainty that the machine's budget gives the thermometer."""
+    thermometer = hypot(*(one.standard for one in TERMS if one.acts is Acts.TEMPERATURE))
+    source = MasterSource("twin", 0.0, thermometer)
+    steps = {step.condition: step for step in bench.plan.conditions()}
+    points: list[MasterPoint] = []
+    for condition, result in bench.kept.results:
+        held = held_by(steps[condition].setpoint)
+        means = result.means
+        if result.valid:
+            points.append(
+                MasterPoint(
+                    f"{condition}", steps[condition].setpoint.compound, abs(means["sliding_m_s"]), means["contact_c"],
+                    held.temperature_c, result.mu_resultant, source,
+                )
+            )  # fmt: skip
+    return points
+
+
+def measured(which: tuple[int, bool]) -> Found:
+    """Return what a run gives: of which seed, and whether with a thermometer that is right."""
+    seed, unbiased = which
+    text = Path(recipes.find("grosch")).read_text(encoding="utf-8")
+    bench = TrackBench("grosch", text, UNBIASED if unbiased else PLAIN, seed).to_the_end()
+    if bench.run.outcome is not Outcome.DONE or bench.kept.trips:
+        return Found(seed, unbiased, nan, nan, nan, f"{bench.run.outcome.value}: {bench.run.reason}", 0)
+    points = points_of(bench)
+    one = master_of(points, 20.0)
+    low, high = one.collapse.interval
+    return Found(seed, unbiased, one.collapse.ts_c, low, high, one.judged.verdict.value, len(points))
