@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from tester.kinds import load_rig
 from tests.tester.recipe.texts import rig
 
 ROOT = Path(__file__).parents[1]
@@ -78,8 +79,11 @@ def is_named(dotted: str) -> bool:
 
 
 def is_key(parts: list[str]) -> bool:
-    """Tell whether a name is that of a key of the packaged rig file, such as ``sim.growth``."""
-    place: object = rig()
+    """Tell whether a name is that of a key of a packaged rig file, such as ``sim.growth``."""
+    return any(_is_key_of(place, parts) for place in (rig(), load_rig("grosch")))
+
+
+def _is_key_of(place: object, parts: list[str]) -> bool:
     for part in parts:
         if not hasattr(place, part):
             return False

@@ -78,8 +78,8 @@ class _Reading:
         self.found.end()
         rows = [self._row(one) for one in values]
         judge(rows, lambda number: (lines[number] + 1 if lines else self.place[0], 1), self.found)
-        self._cross_check(values, lines)
         self.found.end()
+        self._cross_check(values, lines)
         return ModuliTable(tuple(rows))
 
     # -- columns ----------------------------------------------------------------------------------------------
@@ -230,7 +230,7 @@ class _Reading:
     def _number(self, cell: str, column: DmaColumn, line: int, comma: bool) -> float:
         text = cell.replace(",", ".") if comma and _WITH_COMMA.fullmatch(cell) else cell
         try:
-            value = float(text)
+            value = nan if "_" in text else float(text)  # Python's own digits in groups are no file's
         except ValueError:
             value = nan
         if not isfinite(value):

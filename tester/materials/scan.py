@@ -150,9 +150,11 @@ def _number(cell: str, delimiter: str | None) -> float:
     if delimiter != "," and _DECIMAL_COMMA.fullmatch(cell):
         cell = cell.replace(",", ".")
     try:
-        return float(cell)
+        if "_" not in cell:  # Python's own digits in groups are no file's
+            return float(cell)
     except ValueError:
-        raise ValueError(f'"{cell[:40]}" is not a height (expected a number)') from None
+        pass
+    raise ValueError(f'"{cell[:40]}" is not a height (expected a number)')
 
 
 def _instrument(path: Path, found: Findings) -> tuple[Array, tuple[float, float] | None, str | None]:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
 
 from tester.base.source import InvalidSource
 from tester.materials.compound import LoadedCompound, load_compound
+from tester.materials.surface import load_surface
 
 ROWS = "".join(f"      - [{-60 + 5 * i}, 1, {2000 / (i + 1):.3f}, {200 / (i + 1):.3f}]\n" for i in range(20))
 TABLE = f"moduli:\n  table:\n    columns: [temperature degC, frequency Hz, E' MPa, E'' MPa]\n    rows:\n{ROWS}"
@@ -165,3 +167,14 @@ def test_a_shift_that_is_not_that_of_the_glass_transition_is_doubted(tmp_path: P
 
 def test_doubts_of_an_import_stay(tmp_path: Path) -> None:
     assert doubts(tmp_path, "name: x\ndoubts:\n  - one\n  - two\n") == ["c.yaml:3:5: one", "c.yaml:4:5: two"]
+
+
+def test_the_examples_of_the_page_are_valid(tmp_path: Path) -> None:
+    page = Path(__file__).parents[3] / "docs" / "how-to" / "describe-a-compound.md"
+    blocks = re.findall(r"^```yaml\n(.*?)^```", page.read_text(encoding="utf-8"), re.DOTALL | re.MULTILINE)
+    lines = "".join(f"{-60 + 5 * i};1;{2000 / (i + 1)};{200 / (i + 1)}\n" for i in range(20))
+    (tmp_path / "tread-a.csv").write_text(f"T [degC];f [Hz];E' [MPa];E'' [MPa]\n{lines}", encoding="utf-8")
+    one = loaded(tmp_path, blocks[0])
+    assert one.model.name == "tread A" and one.file.doubts == ()
+    (tmp_path / "s.yaml").write_text(blocks[1], encoding="utf-8")
+    assert load_surface(tmp_path / "s.yaml").model.name == "my abrasive"

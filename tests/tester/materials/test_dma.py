@@ -220,3 +220,9 @@ def test_a_frequency_with_noise_may_be_said() -> None:
     assert table.frequencies_hz == (1.0,) and any("frequency: 1 Hz, as said" in note for note in found.notes)
     problems = refused(content, DmaOptions(frequency_hz=2.0))
     assert len(problems) == 15 and "is not the 2 Hz that is said for all" in problems[0]
+
+
+def test_digits_in_groups_and_zeros_are_refused() -> None:
+    assert refused(text().replace("1400;", "1_400;", 1)) == ['dma.csv:3:1: E\' [MPa]: "1_400" is not a number']
+    with_tan = text("T [degC];f [Hz];E' [MPa];E'' [MPa];tan", "{t};1;{e};{l};{tan}")
+    assert refused(with_tan.replace(";1400;", ";0;", 1)) == ["dma.csv:3:1: E': 0 Pa is not above 0"]

@@ -56,11 +56,11 @@ def test_holes_are_refused_with_how_many_and_where() -> None:
 
 def test_rows_of_another_length_and_words_are_refused_with_their_lines() -> None:
     lines = written(";").splitlines()
-    lines[3], lines[5] = lines[3] + ";1", lines[5].replace("99.00", "high")
+    lines[3], lines[5] = lines[3] + ";1", lines[5].replace("99.00", "9_9")
     problems = refused("\n".join(lines))
     assert problems == [
         "m.csv:4:1: 21 heights (expected 20, as in the first row)",
-        'm.csv:6:1: "high" is not a height (expected a number)',
+        'm.csv:6:1: "9_9" is not a height (expected a number)',
     ]
 
 
