@@ -94,12 +94,21 @@ def _unknown(one: Collapse, pairs: Sequence[TemperaturePair]) -> list[str]:
     apart = [f"{pair.colder_c:g} and {pair.warmer_c:g} degC" for pair in pairs if not pair.tied]
     if apart:
         return [f"too little overlap: on the curve nothing of {', '.join(apart)} lies side by side"]
-    if one.u_factors_k > OPEN_K:
+    if one.u_factors_k > OPEN_K or not _bends(one):
         return [
             "mu has no bend that a shift could be told by: a power law in v collapses at any shift, for moving it along"
             " and multiplying it are the same"
         ]
     return []
+
+
+def _bends(one: Collapse) -> bool:
+    """Tell whether the curve shows more than a straight line does that every temperature lays where it likes."""
+    of, curve = one.of, one.design()
+    factors_of_runs = curve[:, one.interior + 4 :]
+    straight = np.column_stack([padded(of, np.column_stack([of.in_block, one.x])), factors_of_runs])
+    test = _test("bend", straight, curve, padded(of, of.log_mu))
+    return test is not None and test.failed
 
 
 def _vague(one: Collapse) -> list[str]:
