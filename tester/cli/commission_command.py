@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 def commission(
     rig: str, overrides: tuple[str, ...], accept_risk: str, seed: int, out: Path, operator: str,
     compound: str, yes: bool, only_list: bool,
-) -> None:  # fmt: skip
+) -> int:  # fmt: skip
     """Guide a person through commissioning RIG (a rig file, or sim), step by step, each on record.
 
     What stands on record is not done again, unless the rig file has changed under it. Exit codes: 0 everything stands,
@@ -57,7 +57,7 @@ def commission(
     try:
         if only_list:
             _list(record_path(out, found), part.steps, found)
-            return
+            return EXIT_DONE
         options = CommissionOptions(rig, overrides, accept_risk, out, seed, operator, compound)
         if yes:
             twin = part.twin(lambda text: click.echo(text, err=True))
@@ -75,7 +75,7 @@ def commission(
         Ended.DONE: EXIT_DONE, Ended.REFUSED: EXIT_INVALID, Ended.FAILED: EXIT_FAILED, Ended.STOPPED: EXIT_TRIPPED,
         Ended.LEFT: EXIT_INCOMPLETE,
     }  # fmt: skip
-    raise SystemExit(codes[outcome.ended])
+    return codes[outcome.ended]
 
 
 def _at_terminal(
