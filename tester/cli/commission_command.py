@@ -39,9 +39,9 @@ if TYPE_CHECKING:
 @click.option("--ascii", "plain", is_flag=True, help="--tui: draw with ASCII characters only.")
 @click.option("--list", "only_list", is_flag=True, help="Say which steps stand, and do nothing.")
 def commission(
-    rig: str, overrides: tuple[str, ...], accept_risk: str, seed: int, out: Path, operator: str, compound: str, yes: bool,
-    tui: bool, speed: float | None, theme: str | None, plain: bool, only_list: bool,
-) -> None:  # fmt: skip
+    rig: str, overrides: tuple[str, ...], accept_risk: str, seed: int, out: Path, operator: str,
+    compound: str, yes: bool, tui: bool, speed: float | None, theme: str | None, plain: bool, only_list: bool,
+) -> int:  # fmt: skip
     """Guide a person through commissioning RIG (a rig file, or sim), step by step, each on record.
 
     What stands on record is not done again, unless the rig file has changed under it. Exit codes: 0 everything stands,
@@ -67,7 +67,7 @@ def commission(
     try:
         if only_list:
             _list(record_path(out, found), part.steps, found)
-            return
+            return EXIT_DONE
         if tui:
             outcome = _on_screen(lambda: load_rig(rig, overrides, accept_risk), options, theme or "", plain=plain)
         elif yes:
@@ -86,7 +86,7 @@ def commission(
         Ended.DONE: EXIT_DONE, Ended.REFUSED: EXIT_INVALID, Ended.FAILED: EXIT_FAILED, Ended.STOPPED: EXIT_TRIPPED,
         Ended.LEFT: EXIT_INCOMPLETE,
     }  # fmt: skip
-    raise SystemExit(codes[outcome.ended])
+    return codes[outcome.ended]
 
 
 def _at_terminal(

@@ -8,18 +8,14 @@ of the inputs, a second master; and here that the load cell does not change. Two
 
 from __future__ import annotations
 
-from collections import deque
-from collections.abc import Generator
 from dataclasses import dataclass, replace
-from math import hypot, inf, isfinite, sqrt
-from statistics import fmean, stdev
+from math import hypot, inf
 from typing import Any, Final
 
 from drivers.axis import AxisConfig
 from drivers.cia402 import Goal, State
 from drivers.ports import BusLost
 from drivers.servo import ServoDrive
-from tester.commission.person import StepRefused, Waits
 from tester.kinds.wheel_on_belt.build import build_devices
 from tester.kinds.wheel_on_belt.devices import Devices
 from tester.kinds.wheel_on_belt.procedures.connection import WheelArming
@@ -37,10 +33,6 @@ TORQUE_SHARE: Final = 0.3
 """Of the rated torque, for a jog [A]: bearings and inertia of this machine's axes take a tenth of it."""
 PRESS_LOAD_N: Final = 60.0
 """The press gets the torque that surely brings this about, N [A]: its spring pulls back with 40 N."""
-
-
-LEAST_READINGS: Final = 20
-"""Readings of the cell from which it is told whether they have settled [A]: ten a half."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -333,43 +325,3 @@ class QuietSeat:
         """Send zero and power off once."""
         self.moving.stop()
         self.devices.transmit(self.moving.stepped_s, scan=True)
-
-
-def settled_cell(
-    seat: QuietSeat, least_s: float, at_most_s: float, still_n: float
-) -> Generator[Waits, str, list[float]]:
-    """Yield until the cell's readings have settled; return the means of Fx, Fy, Fz, raw, N.
-
-    Settled: the halves of the last ``least_s`` of readings are the same within ``still_n`` and three standard
-    deviations of their difference. Raises StepRefused for what still swings after ``at_most_s``.
-    """
-    rows: deque[tuple[float, float, float, float]] = deque()
-    began_s = inf
-
-    def settled() -> bool:
-        half = len(rows) // 2
-        first, second = list(rows)[:half], list(rows)[half:]
-        for i in range(1, 4):
-            one, two = [row[i] for row in first], [row[i] for row in second]
-            noise = hypot(stdev(one), stdev(two)) / sqrt(half)
-            if abs(fmean(one) - fmean(two)) > still_n + 3.0 * noise:
-                return False
-        return True
-
-    def enough(now_s: float) -> bool:
-        nonlocal began_s
-        began_s = min(began_s, now_s)
-        cell = seat.devices.cell
-        if cell.valid and (not rows or cell.stamp_s > rows[-1][0]) and all(isfinite(one) for one in cell.raw[:3]):
-            rows.append((cell.stamp_s, cell.raw[0], cell.raw[1], cell.raw[2]))
-            while rows[-1][0] - rows[0][0] > least_s:
-                rows.popleft()
-        if now_s - began_s > at_most_s:
-            raise StepRefused(
-                f"the load cell's readings have not settled within {still_n:g} N in {at_most_s:g} s: the weight swings,"
-                " or the cell drifts"
-            )
-        return now_s - began_s >= least_s and len(rows) >= LEAST_READINGS and settled()
-
-    yield enough
-    return [fmean(row[i] for row in rows) for i in range(1, 4)]

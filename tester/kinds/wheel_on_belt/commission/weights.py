@@ -20,7 +20,8 @@ from typing import Final
 
 from tester.commission.person import Dialogue, StepRefused, Waits, line, measure
 from tester.commission.step import Notes
-from tester.kinds.wheel_on_belt.commission.quiet import QuietSeat, settled_cell
+from tester.kinds.wheel_on_belt.commission.cell_readings import settled_cell
+from tester.kinds.wheel_on_belt.commission.quiet import QuietSeat
 
 CHANNELS: Final = ("x", "y", "z")
 PLAN: Final = {"z": (50.0, 100.0, 200.0, 300.0, 200.0), "x": (50.0, 100.0, 200.0, 100.0), "y": (50.0, 100.0, 200.0)}
@@ -28,7 +29,7 @@ PLAN: Final = {"z": (50.0, 100.0, 200.0, 300.0, 200.0), "x": (50.0, 100.0, 200.0
 AVERAGE_S: Final = 1.0
 """Each point is averaged this long once it has settled, s [A]: 0.25 N of noise, 100 readings a second: 0.025 N."""
 STILL_N: Final = 0.1
-"""Settled: the halves of that time are the same within this and their noise [A]: 0.2 % of the least weight."""
+"""Settled: the quarters of that time are the same within this and their noise [A]: 0.2 % of the least weight."""
 SWINGS_S: Final = 30.0
 """A weight swings for so long at most, s [A]."""
 TYPED_SHARE: Final = 0.05
