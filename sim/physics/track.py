@@ -208,8 +208,11 @@ class TrackParameters:
                 law.mu(temperature_c, load_n, speed)
 
     def _own(self, setting: laws.LawSetting) -> laws.LawSetting:
-        """Return the setting with this rig's area, and its surface where it says one."""
-        return replace(setting, surface=self.surface or setting.surface, area_mm2=self.contact.area)
+        """Return the setting with this rig's area, and its surface where it says one; raises ValueError for none."""
+        own = replace(setting, surface=self.surface or setting.surface, area_mm2=self.contact.area)
+        if own.materials is not None and not own.surface:
+            raise ValueError(f"law {self.law!r} needs a surface (expected the recipe's abrasive, or sim.surface)")
+        return own
 
     def __deepcopy__(self, memo: dict[int, object]) -> TrackParameters:
         """Return itself: it never changes, and copies of a running rig share it."""

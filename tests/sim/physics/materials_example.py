@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from sim.physics.materials import Rubber, Surface, UnknownMaterialError
+from collections.abc import Mapping
+
+from sim.physics.laws import OfMaterials
+from sim.physics.materials import Components, Rubber, Surface, UnknownMaterialError
 from sim.physics.moduli import ConstantModulus, FractionalZener
 from sim.physics.roughness import SelfAffine
 from tests.sim.physics.greta_example import SHEAR, road, rubber
@@ -37,3 +40,22 @@ class Shelf:
         if name not in known:
             raise UnknownMaterialError(f"no surface {name!r} on the shelf")
         return known[name]
+
+
+class Hard:
+    """A law of materials from elsewhere."""
+
+    def __init__(self, rubber: Rubber, surface: Surface, area_mm2: float, figures: Mapping[str, float]) -> None:
+        """Take the materials."""
+        self.area_mm2 = area_mm2
+
+    def components(self, temperature_c: float, load_n: float, slip_m_s: float) -> Components:
+        """Return adhesion by the area under each newton, and a hysteresis that is always the same."""
+        return Components(0.01 * self.area_mm2 / load_n, 0.25)
+
+    def mu(self, temperature_c: float, load_n: float, slip_m_s: float) -> float:
+        """Return their sum."""
+        return sum(self.components(temperature_c, load_n, slip_m_s))
+
+
+HARD = OfMaterials(Hard)

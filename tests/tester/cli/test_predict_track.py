@@ -52,6 +52,11 @@ def test_the_area_makes_the_pressure(capsys: pytest.CaptureFixture[str]) -> None
     assert printed(capsys, *wide) == printed(capsys, *ON_S0)
 
 
+def test_a_law_of_materials_of_an_installed_package(capsys: pytest.CaptureFixture[str]) -> None:
+    words = [*POINT, "--law", "tests.sim.physics.materials_example:HARD", "--surface", "S0", "--components"]
+    assert printed(capsys, *words) == "0.27500\nadhesion 0.02500\nhysteresis 0.25000\n"
+
+
 def test_model_is_another_word_for_law(capsys: pytest.CaptureFixture[str]) -> None:
     other = [word.replace("--law", "--model") for word in ON_S0]
     assert printed(capsys, *other) == printed(capsys, *ON_S0)
