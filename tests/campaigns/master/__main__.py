@@ -25,8 +25,8 @@ from tests.campaigns.master.twin import Found, measured
 SEEDS: Final = 20
 NEAR_K: Final = {0.0: 0.1, 0.02: 1.0, 0.05: 2.0}
 """Most that Ts of a synthetic set may be off, K, by noise of ln mu."""
-SETS, SAMPLE_SETS = 100, 8
-COVERED_SETS, SAMPLE_COVERED = 200, 20
+SETS, SAMPLE_SETS = 100, 5
+COVERED_SETS, SAMPLE_COVERED = 200, 16
 COVERED: Final = (0.90, 0.99)
 COVERED_NOISE, COVERED_BIAS_K = 0.02, 0.5
 """Noise, and standard deviation of the thermometer's bias, of the sets whose intervals are counted."""
@@ -96,7 +96,7 @@ def made_up(sets: int, covered_sets: int) -> Iterator[Figure]:
 
 def twin(seeds: int, jobs: int, *, sample: bool) -> Iterator[Figure]:
     """Yield what simulated runs give, with a right thermometer and with everything that is wrong."""
-    wanted = [(seed, unbiased) for unbiased in ((True,) if sample else (True, False)) for seed in range(seeds)]
+    wanted = [(seed, unbiased, sample) for unbiased in ((True,) if sample else (True, False)) for seed in range(seeds)]
     found: list[Found] = []
     with ProcessPoolExecutor(jobs, mp_context=get_context("spawn")) as pool:
         for one in pool.map(measured, wanted):
