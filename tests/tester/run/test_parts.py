@@ -152,7 +152,7 @@ def when_mounted(monkeypatch: pytest.MonkeyPatch) -> Callable[[int, Callable[[Ti
     """Have something done to the simulated rig when a wheel is mounted."""
 
     def arrange(wheel: int, act: Callable[[TickedWorld], object]) -> None:
-        def connect(rig: RigConfig, seed: int, log: object) -> tuple[Ports, TickedWorld, Attendant]:
+        def connect(rig: RigConfig, seed: int, log: object, **_: object) -> tuple[Ports, TickedWorld, Attendant]:
             ports, world, hands = simulated_ports(rig, seed, None)
             return ports, world, Acting(hands, wheel, lambda: act(world))
 

@@ -129,7 +129,7 @@ def at_the_rig(monkeypatch: pytest.MonkeyPatch) -> Callable[[Prepare], None]:
     """Have something done at the simulated rig before the run begins; it returns whose hands the rig gets."""
 
     def arrange(prepare: Prepare) -> None:
-        def connect(rig: RigConfig, seed: int, log: BusLog | None) -> tuple[Ports, TickedWorld, Attendant]:
+        def connect(rig: RigConfig, seed: int, log: BusLog | None, **_: object) -> tuple[Ports, TickedWorld, Attendant]:
             ports, world, attendant = simulated_ports(rig, seed, log)
             return ports, world, prepare(world, attendant)
 
