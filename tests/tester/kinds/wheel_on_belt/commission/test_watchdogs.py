@@ -56,28 +56,20 @@ def test_the_lease_of_the_heat_runs_out(clean: Bench) -> None:
     assert isinstance(after_s, float) and 2.0 <= after_s <= 4.0
 
 
-class Creeps(TwinPerson):
-    """Looks how fast belt and wheel are while the watchdogs run out."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.moved: dict[str, float] = {}
-
-    def poll(self) -> list[str]:
-        if self.hands is not None and self.asked:
-            key = self.asked[-1].key
-            self.moved[key] = max(self.moved.get(key, 0.0), abs(self.hands.belt_m_s))
-        return []
-
-
 def test_the_belt_creeps_at_each_proof_and_nothing_moves_before_go(tmp_path: Path) -> None:
-    person = Creeps()
-    bench = Bench(tmp_path / "r.jsonl", steps=STEPS, person=person)
+    person = TwinPerson()
+    moved: dict[str, float] = {}
+
+    def look(world: WheelRig) -> None:
+        key = person.asked[-1].key if person.asked else ""
+        moved[key] = max(moved.get(key, 0.0), abs(world.belt_m_s))
+
+    bench = Bench(tmp_path / "r.jsonl", steps=STEPS, person=person, look=look)
     assert bench.run().ended is Ended.DONE
     creep = bench.rig.arming.creep_m_s
-    assert person.moved["watchdog heartbeat"] == pytest.approx(creep, rel=0.1)
-    assert person.moved["watchdog setpoints"] == pytest.approx(creep, rel=0.1)
-    assert person.moved["watchdog heat"] < 1e-6
+    assert moved["watchdog heartbeat"] == pytest.approx(creep, rel=0.1)
+    assert moved["watchdog setpoints"] == pytest.approx(creep, rel=0.1)
+    assert moved["watchdog heat"] < 1e-6
     assert bench.world is not None and not any(drive.energised for drive in bench.world.axes.values())
 
 
@@ -139,13 +131,10 @@ def test_a_rig_file_that_leaves_the_proof_out_is_refused(tmp_path: Path) -> None
 
 
 def test_a_guard_opened_in_the_proof_stops_it(tmp_path: Path) -> None:
-    class Opens(TwinPerson):
-        def poll(self) -> list[str]:
-            world = self.hands
-            if isinstance(world, WheelRig) and abs(world.belt_m_s) > 0.01:
-                world.axes["press"].set_guard(False)
-            return []
+    def look(world: WheelRig) -> None:
+        if abs(world.belt_m_s) > 0.01:
+            world.axes["press"].set_guard(False)
 
-    outcome = Bench(tmp_path / "r.jsonl", steps=STEPS, person=Opens()).run()
+    outcome = Bench(tmp_path / "r.jsonl", steps=STEPS, look=look).run()
     assert outcome.ended is Ended.FAILED
     assert "guard open" in outcome.text

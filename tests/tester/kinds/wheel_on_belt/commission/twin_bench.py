@@ -42,6 +42,22 @@ class Clock:
         return f"2026-11-23T10:{self.seconds // 60:02d}:{self.seconds % 60:02d}Z"
 
 
+class Watched:
+    """A simulated rig that is looked at in each of its ticks: other than polls, such looks do not hang on wall time."""
+
+    def __init__(self, rig: WheelRig, look: Callable[[WheelRig], None]) -> None:
+        self._rig = rig
+        self._look = look
+
+    def advance(self, now: float) -> None:
+        self._rig.advance(now)
+        self._look(self._rig)
+
+    @property
+    def urgent_s(self) -> float:
+        return self._rig.urgent_s
+
+
 class Bench:
     """A rig file, a machine and a person."""
 
@@ -57,8 +73,10 @@ class Bench:
         steps: tuple[CommissionStep, ...] = STEPS,
         run_recipe: Callable[[str, str], Mapping[str, Any]] = no_recipe,
         given: Mapping[str, str] | None = None,
+        look: Callable[[WheelRig], None] = nothing,
     ) -> None:
-        """``machine``: what it is really like, ``rig`` unless it says; ``built``: what was done to it."""
+        """``machine``: what it is really like, ``rig`` unless it says; ``built``: what was done to it; ``look``: what
+        is looked at, or done, in each of its ticks."""
         self.rig = rig or believed()
         self.machine = machine or self.rig
         self.said: list[str] = []
@@ -70,6 +88,7 @@ class Bench:
         self.steps = steps
         self.run_recipe = run_recipe
         self.given = given
+        self.look = look
         self.world: WheelRig | None = None
 
     def connect(self) -> tuple[Any, Any, Any]:
@@ -79,7 +98,7 @@ class Bench:
         self.built(world)
         self.world = world
         self.person.at(hands)
-        return ports, world, hands
+        return ports, Watched(world, self.look), hands
 
     def run(self) -> CommissionOutcome:
         """Commission."""
