@@ -57,7 +57,8 @@ def figure(
     speed: float,
 ) -> None:
     """Draw the results of each RUN: coefficient over every axis that was varied, as a surface, the run in order of
-    time, and the repeats; several runs also together, in a folder of its own.
+    time, and the repeats; of speeds and temperatures where friction heats nothing the master curve (tester master says
+    more of it); several runs also together, in a folder of its own.
 
     Bars are the expanded uncertainty U (95 %). The names of the files are printed, a line each.
 
@@ -68,8 +69,11 @@ def figure(
         return
     if not runs:
         raise click.UsageError("no run is named (expected RUN..., or --components)")
-    read = [_results(name) for name in dict.fromkeys(runs)]
+    named = list(dict.fromkeys(runs))
+    read = [_results(name) for name in named]
     sets = {folder: _figures(results, law, published) for folder, results in read}
+    for name, (folder, _) in zip(named, read, strict=True):
+        sets[folder] += _masters(name)
     if len(sets) > 1:
         sets[TOGETHER] = _of_several(read)
     known = list(dict.fromkeys(one.name for figures in sets.values() for one in figures))
@@ -140,6 +144,21 @@ def _figures(results: RunResults, law: str, published: bool) -> list[Figure]:
     measured = [one for one in results.conditions() if any(r.result.mu_resultant > 0.0 for r in one.repeats)]
     overview = overview_chart([("", results)]) if measured else None
     return [*found, *([overview] if overview is not None else []), *map(repeats_chart, measured)]
+
+
+def _masters(name: str) -> list[Figure]:
+    """Return a run's master curves."""
+    from tester.cli.master_figures import master_charts
+    from tester.kinds import UnknownKindError, find
+    from tester.store.reader import RunReader
+
+    folder = run_folder(name)
+    with RunReader(folder) as reader:
+        kind = reader.run().info.kind
+    try:
+        return [*master_charts(find(kind), folder)]
+    except UnknownKindError:
+        return []
 
 
 def _of_several(read: Sequence[tuple[str, RunResults]]) -> list[Figure]:

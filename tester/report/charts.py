@@ -20,6 +20,8 @@ HOLLOW = "hollow: as published"
 CURVE_POINTS = 61
 OVERLAID = 6
 """Panels of a chart of several runs."""
+LOGARITHMIC = 100.0
+"""From this ratio of the greatest to the least value on an axis is logarithmic [A]: two decades."""
 
 Law = Callable[[Setpoint], float]
 
@@ -96,7 +98,8 @@ def overlay_charts(values: Sequence[ChartValue]) -> Iterator[Chart]:
         ]
         if panels:
             title = f"{Y_LABEL} over {name_of(along)}, of each run"
-            yield Chart(f"{along.name}-of-runs", title, labelled(along), Y_LABEL, tuple(panels), BARS)
+            log_x = _logarithmic(values, along)
+            yield Chart(f"{along.name}-of-runs", title, labelled(along), Y_LABEL, tuple(panels), BARS, log_x=log_x)
 
 
 def _overlaid(own: Sequence[ChartValue], along: Axis, runs: Sequence[str]) -> ChartPanel | None:
@@ -130,7 +133,14 @@ def _chart(material: Material, along: Axis, across: Axis | None) -> Chart | None
     notes += [f"lines: {material.law_name}"] if "law" in looks else []
     by = f"-by-{across.name}" if across is not None else ""
     title = f"{Y_LABEL} over {name_of(along)}" + (f" at each {name_of(across)}" if across is not None else "")
-    return Chart(f"{along.name}{by}", title, labelled(along), Y_LABEL, tuple(panels), "; ".join(notes))
+    log_x = _logarithmic(material.measured, along)
+    return Chart(f"{along.name}{by}", title, labelled(along), Y_LABEL, tuple(panels), "; ".join(notes), log_x=log_x)
+
+
+def _logarithmic(values: Iterable[ChartValue], along: Axis) -> bool:
+    """Tell whether an axis goes over decades, as speeds of a master curve do."""
+    numbers = [along.number(one.held) for one in values]
+    return min(numbers) > 0.0 and max(numbers) >= LOGARITHMIC * min(numbers)
 
 
 def _styles(panel: ChartPanel) -> int:
@@ -199,7 +209,11 @@ def _points(label: str, values: Sequence[ChartValue], along: Axis, look: str, st
 def _curve(law: Law, values: Sequence[ChartValue], along: Axis, style: int) -> Series:
     found = [along.number(one.held) for one in values]
     low, high = min(found), max(found)
-    x = [low + (high - low) * i / (CURVE_POINTS - 1) for i in range(CURVE_POINTS)]
+    shares = [i / (CURVE_POINTS - 1) for i in range(CURVE_POINTS)]
+    if _logarithmic(values, along):
+        x = [low * (high / low) ** share for share in shares]
+    else:
+        x = [low + (high - low) * share for share in shares]
     y = [law(values[0].held.but(**{along.name: value / along.scale})) for value in x]
     return Series("", tuple(x), tuple(y), "law", style)
 

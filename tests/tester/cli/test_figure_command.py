@@ -107,3 +107,24 @@ def test_what_cannot_be_drawn_of_a_law_is_said(
     home: Path, capsys: pytest.CaptureFixture[str], arguments: list[str], message: str
 ) -> None:
     assert message in " ".join(out(capsys, *arguments, code=2).split())
+
+
+def test_a_run_on_a_track_has_its_master_curve_and_logarithmic_speeds(
+    home: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    from tester.cli.figure_command import _figures, _results
+    from tests.tester.kinds.specimen_on_track.fit.made import made_track_run
+
+    folder = str(made_track_run(home / "track"))
+    assert invoke(["figure", folder, "--list"]) == 0
+    assert "master: SBR, dry, 20 N: collapses" in capsys.readouterr().out.splitlines()
+    charts = {one.name: one for one in _figures(_results(folder)[1], "", published=False)}
+    assert getattr(charts["track_speed-by-temperature"], "log_x", None) is True
+    assert getattr(charts["temperature-by-track_speed"], "log_x", None) is False
+
+
+def test_a_run_that_friction_heats_has_no_master_curve(home: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    from tests.tester.kinds.wheel_on_belt.fit.made import made_run
+
+    assert invoke(["figure", str(made_run(home / "wheel")), "--list"]) == 0
+    assert "master" not in capsys.readouterr().out
