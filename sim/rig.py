@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Container, Mapping, Sequence
 from dataclasses import dataclass, field
 from math import floor, inf
-from typing import Final, Literal, Protocol, runtime_checkable
+from typing import Final, Literal, Protocol
 
 from drivers.axis import AxisConfig
 from drivers.canopen.node_config import NodeConfig
@@ -19,7 +19,6 @@ from sim.nodes.cia402_slave import Cia402Slave
 from sim.nodes.modbus_slave import ModbusSlave
 from sim.nodes.profile_slave import PlantQuantity, ProfileSlave, Quantity
 from sim.nodes.sensor_node import SimulatedSensorNode
-from sim.physics.laws import LawSetting
 from sim.wires.can_wire import CanWire
 from sim.wires.modbus_wire import ModbusWire
 
@@ -71,20 +70,6 @@ class Machine(Protocol):
 
     def follow(self, t1: float, still: bool) -> None:
         """Move on to ``t1`` s with the drives where they are then, and load their shafts; ``still``: none moves."""
-        ...
-
-
-@runtime_checkable
-class MadeOfMaterials(Protocol):
-    """A rig whose friction may be made of a rubber and a surface (``sim.physics.materials``)."""
-
-    @property
-    def of_materials(self) -> bool:
-        """Tell whether it is, on this one."""
-        ...
-
-    def take(self, setting: LawSetting) -> None:
-        """Take where they are found, before anything is put on."""
         ...
 
 

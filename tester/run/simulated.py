@@ -6,8 +6,9 @@ from pathlib import Path
 from typing import Any
 
 from sim import machines
+from sim.made_of_materials import MadeOfMaterials
 from sim.nodes.profile_slave import UnknownQuantityError
-from sim.rig import DeviceSpec, LineSpec, MadeOfMaterials, RigSpec, SimRig
+from sim.rig import DeviceSpec, LineSpec, RigSpec, SimRig
 from sim.wires.can_wire import CanWire
 from tester.base.source import InvalidSource, Problem
 from tester.machine.ports import Ports
