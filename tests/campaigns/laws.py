@@ -28,8 +28,10 @@ from tests.tester.kinds.specimen_on_track.bench import GROSCH, TrackBench
 PAIRS = (("persson", "SBR", "S0"), ("persson", "NBR", "silicon carbide"), ("greta", "tread", "road"))
 POINT_MS, TABLE_S, SPEED = 1.0, 10.0, 0.9
 """Asked: a value after the table, ms; a table of 40 x 20 x 5 points, s; the speed of the simulated rig with a table, in
-that with the bell."""
-OTHER = "wlf_bell"
+that with the wheel paper's law."""
+TABLED = "persson"
+OTHERS = {"paper": "1#", "wlf_bell": "SBR"}
+"""Laws to compare with, by a compound that they know; the first is asked for."""
 
 
 class LawFigure(NamedTuple):
@@ -88,14 +90,15 @@ def of_calls(table: TabulatedLaw, places: list[tuple[float, float, float]]) -> I
 
 
 def of_rig(turns: int) -> Iterator[LawFigure]:
-    """Compare the simulated rig's speed with a table and with the bell, in turns."""
+    """Compare the simulated rig's speed with a table and with other laws, in turns."""
     with TemporaryDirectory() as folder:
         os.environ[VARIABLE] = folder
-        overrides = {"persson": ("sim.law=persson", "sim.surface=S0"), OTHER: (f"sim.law={OTHER}",)}
-        taken: dict[str, list[float]] = {name: [] for name in overrides}
+        rigs = {TABLED: ("SBR", ("sim.law=persson", "sim.surface=S0"))}
+        rigs |= {name: (compound, (f"sim.law={name}",)) for name, compound in OTHERS.items()}
+        taken: dict[str, list[float]] = {name: [] for name in rigs}
         for turn in range(turns + 1):
-            for name, asked in overrides.items():
-                bench = TrackBench("grosch", GROSCH, asked)
+            for name, (compound, asked) in rigs.items():
+                bench = TrackBench("grosch", GROSCH.replace("compound: SBR", f'compound: "{compound}"'), asked)
                 bench.until(lambda one: one.world.track_m_s != 0.0, 1e4)
                 ticks, began_s = 0, process_time()
                 while not bench.run.finished:
@@ -103,9 +106,11 @@ def of_rig(turns: int) -> Iterator[LawFigure]:
                     ticks += 1
                 if turn:  # the first makes the table, and warms up
                     taken[name].append((process_time() - began_s) / ticks)
-    speed = min(taken[OTHER]) / min(taken["persson"])
-    yield LawFigure(f"simulated rig with persson, speed in that with {OTHER}", f"{speed:.3f}", f">= {SPEED:g}",
-                    speed >= SPEED)  # fmt: skip
+    for name in OTHERS:
+        speed = min(taken[name]) / min(taken[TABLED])
+        asked_for = name == next(iter(OTHERS))
+        yield LawFigure(f"simulated rig with {TABLED}, speed in that with {name}", f"{speed:.3f}",
+                        f">= {SPEED:g}" if asked_for else "said", speed >= SPEED or not asked_for)  # fmt: skip
 
 
 def main(arguments: list[str] | None = None) -> int:
