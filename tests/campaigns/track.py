@@ -1,9 +1,9 @@
 """`python -m tests.campaigns.track [--sample] [--seeds N]`: a specimen on a track against its law, over seeds.
 
 The friction's scatter from specimen to specimen and the biases of air sensor and pyrometer are switched off, the noise
-of the sensors is on: what a row is off the law is then the doing of procedures, reduction and sensors. On the slow track the
-law is asked at the air's measured temperature, on the disc at that of the pyrometer less what the track is warmer than
-the specimen there.
+of the sensors is on: what a row is off the law is then the doing of procedures, reduction and sensors. On the slow
+track the law is asked at the air's measured temperature, on the disc at that of the pyrometer less what the track is
+warmer than the specimen there.
 """
 
 from __future__ import annotations
