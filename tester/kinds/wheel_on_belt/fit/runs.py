@@ -17,9 +17,6 @@ from tester.kinds.wheel_on_belt.axes import Held, held_by
 from tester.kinds.wheel_on_belt.fit.laws import TEMPERATURE
 from tester.store.reader import RunReader
 
-"""Standard uncertainty of a value known to lie within +-1 (GUM 4.3.7)."""
-
-
 _KNOWN = frozenset({"temperature", "load", "slip_velocity", "wheel_speed"})
 """Axes that a law knows; of the wheel's speed only the slip counts. Any other has to be at its default."""
 
