@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from math import isfinite, sqrt
+from math import isfinite
 from pathlib import Path
 from statistics import median
 
 from tester.analysis.measurand import REPEATABILITY
-from tester.analysis.reference import NAME
-from tester.analysis.results import DOUBTS, flags_in
 from tester.analysis.terms import Acts, with_settings
-from tester.axes import condition_words
+from tester.export.fit_points import point_of, sorted_out, standard_of, systematic_of
 from tester.export.results import Measured, results_of
-from tester.fit.law import NAN, Common, FitPoint, Source, Sourced
-from tester.kinds.wheel_on_belt.axes import Held, held_by
+from tester.fit.law import Common, Source, Sourced
+from tester.kinds.wheel_on_belt.axes import held_by
 from tester.kinds.wheel_on_belt.fit.laws import TEMPERATURE
 from tester.store.reader import RunReader
 
@@ -32,34 +30,20 @@ def run_points(folder: Path) -> Sourced:
         results = results_of(reader)
         info = results.run.info
         terms = with_settings(info.terms, info.metadata)
-    left_out: list[tuple[str, str]] = []
-    kept: list[tuple[str, Measured]] = []
-    for one in results.conditions():
-        label = f"{folder.name}/{one.info.condition}"
-        reason = _reason(one)
-        if reason:
-            left_out.append((f"{label} ({condition_words(one.info.setpoint)})", reason))
-        else:
-            kept.append((label, one))
-    systematic = [_systematic(one) for _, one in kept]
-    thermometer = sqrt(sum(one.standard**2 for one in terms if one.acts is Acts.TEMPERATURE))
+    kept, left_out = sorted_out(folder.name, results, _reason)
+    systematic = [systematic_of(one, {REPEATABILITY}) for _, one in kept]
     common = (
         Common("calibration and alignment", median(systematic) if systematic else 0.0),
-        Common("thermometer", thermometer, TEMPERATURE),
+        Common("thermometer", standard_of(terms, Acts.TEMPERATURE), TEMPERATURE),
     )
     source = Source(folder.name, common)
-    return Sourced(tuple(_point(label, one, source) for label, one in kept), tuple(left_out))
+    points = (point_of(label, one, source, _nominal(one), _measured(one)) for label, one in kept)
+    return Sourced(tuple(points), left_out)
 
 
 def _reason(one: Measured) -> str:
-    """Return why a condition is left out, "" where it is not."""
+    """Return why a condition that has a value is left out, "" where it is not."""
     result, held = one.result, one.info.setpoint
-    if not result.ok:
-        return result.status.value
-    if NAME in flags_in(result.flags):
-        return "a reference condition: one setpoint many times over"
-    if result.doubts:
-        return ", ".join(flag for flag in result.doubts if flag in DOUBTS)
     unknown = [axis.name for axis in held.axes if axis.name not in _KNOWN and not axis.at_default(held)]
     if unknown:
         return f"{', '.join(unknown)}: the laws know none"
@@ -73,27 +57,6 @@ def _measured(one: Measured) -> tuple[float, float, float]:
     return means.temperature, means.normal, abs(means.sliding)
 
 
-def _systematic(one: Measured) -> float:
-    """Return what repeating does not average out, as a share of the coefficient."""
-    result = one.result
-    squares = sum(one.standard**2 for one in result.budget.contributions if one.name != REPEATABILITY)
-    return sqrt(squares) / result.mu_resultant if isfinite(squares) else 0.0
-
-
-def _point(label: str, one: Measured, source: Source) -> FitPoint:
-    result, held = one.result, held_by(one.info.setpoint)
-    repeated = result.n_valid > 1 and result.type_a > 0.0
-    return FitPoint(
-        label=label,
-        group=held.compound,
-        nominal=_nominal(held),
-        measured=_measured(one),
-        value=result.mu_resultant,
-        source=source,
-        type_a=result.type_a / result.mu_resultant if repeated else NAN,
-        df=float(result.n_valid - 1) if repeated else 0.0,
-    )
-
-
-def _nominal(held: Held) -> tuple[float, float, float]:
+def _nominal(one: Measured) -> tuple[float, float, float]:
+    held = held_by(one.info.setpoint)
     return held.temperature_c, held.load_n, abs(held.slip_velocity_m_s)
