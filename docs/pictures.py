@@ -20,7 +20,7 @@ from textual.pilot import Pilot
 
 from tester.base import clock
 from tester.cli.main import invoke
-from tester.export.exclude import Word, record_word
+from tester.results.exclude import Word, record_word
 from tester.tui.playback import Playback, load
 from tester.tui.replay import ReplayApp
 from tester.tui.stored import read

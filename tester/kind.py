@@ -13,13 +13,13 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from tester.commission.part import CommissionPart
-    from tester.export.ring_part import RingPart
     from tester.fit.part import FitPart
     from tester.machine.interlock_sheet import InterlockSheet
     from tester.machine.run_parts import KindRun
     from tester.machine.served import ServedKind
     from tester.master.part import MasterPart
     from tester.recipe.part import RecipePart
+    from tester.results.ring_part import RingPart
     from tester.rig import Rig
 
 

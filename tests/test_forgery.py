@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from tester.cli.main import invoke
-from tester.export.verify import verify
+from tester.results.verify import verify
 from tests.campaigns.forgery.forge import FORGERIES, Forgery, remake_all, told
 from tests.campaigns.forgery.run import finished_run
 

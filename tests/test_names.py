@@ -20,7 +20,7 @@ CHANNELS = frozenset(QUANTITIES.names) - EVERY_KIND_S
 """The others are read off the table, or by their roles in it."""
 KINDLESS = (
     "tester/catalogue",
-    "tester/export",
+    "tester/results",
     "tester/fit",
     "tester/machine",
     "tester/recipe",

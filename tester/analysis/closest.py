@@ -16,7 +16,6 @@ KEY: Final = "combine"
 """Of a run's metadata, where its recipe says it."""
 OF: Final = 3
 """Repeats of which two are taken; with any other number the mean is that of all."""
-FLAG: Final = "closest two of three"
 STANDARD: Final = 0.798
 """Standard deviation of the mean of the closest two of three normal values, where that of one is 1 (400,000 draws); of
 the mean of all three it is 0.577."""

@@ -17,8 +17,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from math import hypot, isfinite
 
+from tester.analysis.flags import flags_in, joined
 from tester.analysis.reduce import standard_deviation, without_value
-from tester.analysis.results import RepeatResult, RepeatStatus, flags_in, joined
+from tester.analysis.results import RepeatResult, RepeatStatus
 from tester.quantities import Means, mean_of
 
 

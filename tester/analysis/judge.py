@@ -16,19 +16,10 @@ from math import inf, isfinite, sqrt
 
 from tester.analysis.blocks import Block
 from tester.analysis.drift import CONFIDENCE, LOOK_CONFIDENCE, Drift, fit_drift, refusals
+from tester.analysis.flags import CARRY_OVER, NOT_SHOWN, flags_in, joined
 from tester.analysis.quantiles import t_quantile
 from tester.analysis.repeats import REPEATABILITY, counting
-from tester.analysis.results import (
-    CARRY_OVER,
-    NAN,
-    NOT_JUDGED,
-    NOT_SHOWN,
-    Judgement,
-    RepeatResult,
-    RepeatStatus,
-    flags_in,
-    joined,
-)
+from tester.analysis.results import NAN, NOT_JUDGED, Judgement, RepeatResult, RepeatStatus
 from tester.analysis.stability import seconds_of
 from tester.quantities import temperatures
 

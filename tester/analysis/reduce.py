@@ -21,7 +21,8 @@ from math import isfinite, sqrt
 
 from tester.analysis.blocks import Block, resultant
 from tester.analysis.drift import Drift, fit_drift
-from tester.analysis.results import NAN, NOT_SHOWN, Burst, RepeatResult, RepeatStatus, joined
+from tester.analysis.flags import EXTENDED, NOT_SHOWN, ROLLING, TRUNCATED, joined
+from tester.analysis.results import NAN, Burst, RepeatResult, RepeatStatus
 from tester.analysis.stability import REPEAT_WINDOWS, enough, left_out
 from tester.quantities import mean_of
 
@@ -153,9 +154,9 @@ def _flags(
     rolling: bool,
 ) -> list[str]:
     wanted = revolutions and REPEAT_WINDOWS * revolutions, seconds and REPEAT_WINDOWS * seconds
-    flags = ["rolling"] if rolling else []
+    flags = [ROLLING] if rolling else []
     if any(wanted) and len(used) > 1 and enough(used[:-1], *wanted):
-        flags.append("extended")
+        flags.append(EXTENDED)
     if len(used) < len(blocks):
-        flags.append("truncated")
+        flags.append(TRUNCATED)
     return flags

@@ -18,21 +18,10 @@ from types import MappingProxyType
 from tester.analysis import closest
 from tester.analysis.closest import Combining, taken
 from tester.analysis.directions import BothWays, mean_of_both_ways
+from tester.analysis.flags import CLOSEST_TWO, DOUBTS, EXCLUDED, OUTLIER, SHORT, flags_in, joined
 from tester.analysis.quantiles import f_quantile, t_quantile
 from tester.analysis.reduce import standard_deviation
-from tester.analysis.results import (
-    DOUBTS,
-    NAN,
-    NO_MEANS,
-    NOT_JUDGED,
-    SHORT,
-    ConditionStatus,
-    Judgement,
-    RepeatResult,
-    RepeatStatus,
-    flags_in,
-    joined,
-)
+from tester.analysis.results import NAN, NO_MEANS, NOT_JUDGED, ConditionStatus, Judgement, RepeatResult, RepeatStatus
 from tester.analysis.uncertainty import CONFIDENCE, NO_BUDGET, STEADY, Budget, Unsteadiness, unsteadiness
 from tester.quantities import Means, mean_of
 
@@ -47,9 +36,6 @@ EXCESS_PERCENT = 1.0
 
 BY_HAND = "excluded by hand"
 """Begins the reason of an exclusion that a person has made."""
-
-EXCLUDED = "excluded"
-"""Flag of a condition of which a person has left something out."""
 
 _NOTHING: Mapping[int, str] = MappingProxyType({})
 
@@ -231,7 +217,7 @@ def combine_repeats(
     flags = {flag for i in kept for flag in flags_in(results[i].flags)} | set(flags_in(judged.flags))
     used = taken(values, combining)
     fewer = len(used) < len(values)
-    marks = (("outlier", flagged), (EXCLUDED, by_hand), (SHORT, short), (closest.FLAG, fewer))
+    marks = ((OUTLIER, flagged), (EXCLUDED, by_hand), (SHORT, short), (CLOSEST_TWO, fewer))
     flags |= {word for word, on in marks if on}
     in_mean = [results[kept[i]] for i in used]
     shell = ConditionResult(

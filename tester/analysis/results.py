@@ -5,51 +5,16 @@ Units are in the names. NaN stands for a value that does not exist; the store ke
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import StrEnum
 from math import isfinite
-from typing import Final, Literal
+from typing import Final
 
 from tester.quantities import Means
 
 NAN = float("nan")
 NO_MEANS: Final = Means()
 """Of a repeat in which nothing was measured."""
-
-Flag = Literal["rolling", "extended", "truncated", "drift not shown"]
-
-NOT_SHOWN: Final = "drift not shown"
-"""Flag: the coefficient has a value, but that it stands still could not be shown."""
-SHORT: Final = "short"
-"""Flag of a condition with a value of fewer repeats than were asked for, make-ups and all; where a person left some
-out, of fewer than its least (``min_valid``)."""
-CARRY_OVER: Final = "carry-over"
-"""Flag of a condition whose coefficient was still settling over its repeats: refused and made-up repeats, or their
-means, tell of a run-in."""
-IMPRECISE: Final = "precision not reached"
-"""Flag of a condition that was to be repeated until its repeatability, and was not within its most repeats."""
-
-OUT_OF_LIMITS: Final = "reference out of limits"
-"""Flag of a condition that was measured between a reference condition outside the limits of its control chart and the
-last good one before it."""
-
-DOUBTS: Final = (NOT_SHOWN, SHORT, CARRY_OVER, IMPRECISE, OUT_OF_LIMITS)
-"""Flags that say that a value is to be taken with care."""
-
-_OLD_WORDS = frozenset({"rolling", "extended", "truncated"})
-
-
-def joined(flags: Iterable[str]) -> str:
-    """Return flags as one text, sorted."""
-    return "; ".join(sorted(set(flags)))
-
-
-def flags_in(text: str) -> list[str]:
-    """Return the flags in a text that ``joined`` made; records of before had single words with spaces between."""
-    if ";" not in text and _OLD_WORDS.issuperset(words := text.split()):
-        return words
-    return [flag.strip() for flag in text.split(";") if flag.strip()]
 
 
 class RepeatStatus(StrEnum):
@@ -97,7 +62,7 @@ class RepeatResult:
     status: RepeatStatus
     reason: str = ""
     flags: str = ""
-    """Words of ``Flag`` (``joined``)."""
+    """Words of ``tester.analysis.flags`` (``joined``)."""
     mu_resultant: float = NAN
     mu_longitudinal: float = NAN
     mu_lateral: float = NAN

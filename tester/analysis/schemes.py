@@ -13,9 +13,10 @@ from typing import Final, Protocol
 from tester.analysis.blocks import Block
 from tester.analysis.closest import Combining
 from tester.analysis.directions import as_pairs, both_ways, halves, is_reversed
+from tester.analysis.flags import flags_in, joined
 from tester.analysis.judge import judge
 from tester.analysis.repeats import BY_HAND, ConditionResult, Exclusion, combine_repeats, counting
-from tester.analysis.results import NOT_JUDGED, ConditionStatus, Judgement, RepeatResult, flags_in, joined
+from tester.analysis.results import NOT_JUDGED, ConditionStatus, Judgement, RepeatResult
 
 _NOTHING: Final[Mapping[int, str]] = {}
 OTHER_HALF: Final = "the other repeat of its pair does not count"

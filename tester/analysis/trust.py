@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import Final
 
-from tester.analysis.results import DOUBTS, ConditionStatus, flags_in
+from tester.analysis.flags import DOUBTS, flags_in
+from tester.analysis.results import ConditionStatus
 
 NOT_TRUSTED: Final = "!"
 """Mark of a number that is no value to be trusted."""

@@ -10,8 +10,9 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from math import inf, isfinite, sqrt
 
+from tester.analysis.flags import CARRY_OVER, flags_in
 from tester.analysis.quantiles import t_quantile
-from tester.analysis.results import CARRY_OVER, NAN, Judgement, flags_in
+from tester.analysis.results import NAN, Judgement
 
 CONFIDENCE = 0.95
 

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Protocol
 
 from tester.axes import Axes, AxisValue, Setpoint, axes_from
-from tester.export.results import Measured, results_of
+from tester.results.run_results import Measured, results_of
 from tester.store import older
 from tester.store.catalogue import run_folders, under_way
 from tester.store.reader import DATABASE, RunReader

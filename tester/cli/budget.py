@@ -7,8 +7,8 @@ from math import isfinite
 
 from tester.axes import condition_words
 from tester.cli.formatting import shown
-from tester.export.budget import share_of, terms_of
-from tester.export.results import RunResults, TableRow
+from tester.results.budget import share_of, terms_of
+from tester.results.run_results import RunResults, TableRow
 
 
 def budget_lines(results: RunResults) -> Iterator[str]:

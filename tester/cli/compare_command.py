@@ -12,8 +12,8 @@ from tester.cli.formatting import Json, dump, number, shown
 from tester.cli.run_lookup import run_folder
 
 if TYPE_CHECKING:
-    from tester.export.compared import Pair
-    from tester.export.results import RunResults, TableRow
+    from tester.results.compared import Pair
+    from tester.results.run_results import RunResults, TableRow
 
 
 @click.command()
@@ -30,7 +30,7 @@ def compare(run1: str, run2: str, compounds: tuple[str, str] | None, as_json: bo
     Replicates are compared by their mean. Behind a coefficient ! says that it is not to be trusted, ? that it carries a
     doubt (`tester show` says which).
     """
-    from tester.export.compared import pairs, same_rig
+    from tester.results.compared import pairs, same_rig
 
     results = [_results(name) for name in (run1, run2)]
     kinds = [one.run.info.kind for one in results]
@@ -66,7 +66,7 @@ _FIGURES = (("mu_1", 4), ("mu_2", 4), ("difference", 4), ("u_difference", 4), ("
 
 
 def _results(name: str) -> RunResults:
-    from tester.export.results import results_of
+    from tester.results.run_results import results_of
     from tester.store.reader import RunReader
     from tester.store.schema import StoreError
 

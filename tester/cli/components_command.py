@@ -14,7 +14,7 @@ from tester.cli.run_lookup import run_folder
 
 if TYPE_CHECKING:
     from tester.analysis.components import PartValue
-    from tester.export.components import FilmPair, SharesMean
+    from tester.results.components import FilmPair, SharesMean
 
 ASSUMED = (
     "assumed: the film takes all adhesion away, leaves all hysteresis, and does not lift the specimen",
@@ -37,8 +37,8 @@ def components(run: str, as_json: bool) -> None:
     hysteresis is the coefficient with the film, adhesion the dry one less that, each with its expanded uncertainty;
     share is that of hysteresis in the dry coefficient. Ends with the mean share of each compound.
     """
-    from tester.export.components import film_pairs, has_interfaces, means_of
-    from tester.export.results import results_of
+    from tester.results.components import film_pairs, has_interfaces, means_of
+    from tester.results.run_results import results_of
     from tester.store.reader import RunReader
     from tester.store.schema import StoreError
 

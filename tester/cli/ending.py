@@ -15,7 +15,7 @@ from tester.analysis.trust import mark_of
 from tester.axes import Axis, plain
 from tester.cli.formatting import shown
 from tester.cli.watch import watch_lines
-from tester.export.results import RunResults, TableRow, results_of
+from tester.results.run_results import RunResults, TableRow, results_of
 from tester.store.reader import RunReader
 from tester.store.schema import StoreError
 

@@ -40,8 +40,8 @@ def include(run: str, repeat: str, reason: str, operator: str | None) -> None:
 
 def _say(run: str, repeat: str, reason: str, operator: str | None, *, excluded: bool) -> None:
     from tester.base.lock import user
-    from tester.export.exclude import CannotExcludeError, Word, parse_target, record_word
-    from tester.export.results import results_of
+    from tester.results.exclude import CannotExcludeError, Word, parse_target, record_word
+    from tester.results.run_results import results_of
     from tester.store.reader import RunReader
     from tester.store.schema import StoreError
 

@@ -15,8 +15,8 @@ from tester.cli.options import QuantityType
 from tester.cli.run_lookup import run_folder
 
 if TYPE_CHECKING:
-    from tester.export.results import RunResults
     from tester.report.chart import Figure
+    from tester.results.run_results import RunResults
 
 TOGETHER = "several-runs"
 """Folder of the figures that show several runs together."""
@@ -119,7 +119,7 @@ def _draw(figures: Sequence[Figure], names: Sequence[str], target: Path, ending:
 
 def _results(name: str) -> tuple[str, RunResults]:
     """Return the name of a run's folder and its results; raises ClickException where it cannot be read."""
-    from tester.export.results import results_of
+    from tester.results.run_results import results_of
     from tester.store.reader import RunReader
     from tester.store.schema import StoreError
 

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 import click
 
 if TYPE_CHECKING:
-    from tester.export.results import RunResults
     from tester.kind import Kind
     from tester.report.charts import Material
     from tester.report.record import MachineWords
+    from tester.results.run_results import RunResults
     from tester.store.records import RunInfo
 
 

@@ -32,9 +32,9 @@ def report(runs: Sequence[str], out: Path | None, law: str, published: bool) -> 
     """
     from tester.base.extras import MissingExtraError
     from tester.cli.kind_words import material_of
-    from tester.export import write_file
     from tester.report.build import report_of
     from tester.report.page import page_of
+    from tester.results import write_file
 
     records = [_record(run_folder(name)) for name in dict.fromkeys(runs)]
 

@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     from tester.analysis.repeats import ConditionResult
     from tester.analysis.uncertainty import Contribution
     from tester.analysis.wear import WearRate
-    from tester.export.formats import Format
-    from tester.export.results import Measured, RunResults, TableRow
+    from tester.results.formats import Format
+    from tester.results.run_results import Measured, RunResults, TableRow
     from tester.store.records import PieceInfo, StoredTrip
 
 
@@ -40,7 +40,7 @@ def show(run: str, as_json: bool, with_budget: bool) -> None:
     Behind a coefficient stand two expanded uncertainties (95 %): of what was mounted, in this condition, and of the
     compound, which any other piece of it comes with.
     """
-    from tester.export.results import results_of
+    from tester.results.run_results import results_of
     from tester.store.reader import RunReader
     from tester.store.schema import StoreError
 
@@ -154,9 +154,9 @@ def _wheel(wheel: PieceInfo, results: RunResults) -> Json:
 
 
 def _condition(measured: Measured, results: RunResults) -> Json:
-    from tester.analysis.results import flags_in
+    from tester.analysis.flags import flags_in
     from tester.analysis.trust import mark_of
-    from tester.export.budget import terms_of
+    from tester.results.budget import terms_of
 
     i, r = measured.info, measured.result
     worn = results.condition_wear(i.condition)
@@ -197,7 +197,7 @@ def _condition(measured: Measured, results: RunResults) -> Json:
 
 
 def _term(one: Contribution, r: ConditionResult) -> Json:
-    from tester.export.budget import share_of
+    from tester.results.budget import share_of
 
     return {
         "term": one.name,
@@ -279,14 +279,14 @@ class FormatName(click.ParamType["Format"]):
 
     def get_metavar(self, param: click.Parameter, ctx: click.Context) -> str:
         """Return the names there are; nothing is loaded for it."""
-        from tester.export.formats import format_names
+        from tester.results.formats import format_names
 
         return f"[{'|'.join(format_names())}]"
 
     def convert(self, value: str | Format, param: click.Parameter | None, ctx: click.Context | None) -> Format:
         """Return the format, loaded."""
         from tester.base.plugins import PluginError
-        from tester.export.formats import FORMATS, Format, format_of
+        from tester.results.formats import FORMATS, Format, format_of
 
         if isinstance(value, Format):
             return value
@@ -310,7 +310,7 @@ def export(run: str, kind: Format, out: Path | None, decimals: int) -> None:
     are to be taken with care.
     """
     from tester.base.extras import MissingExtraError
-    from tester.export import Record, write_format
+    from tester.results import Record, write_format
     from tester.store.reader import RunReader
     from tester.store.schema import StoreError
 

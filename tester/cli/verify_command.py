@@ -12,7 +12,7 @@ from tester.cli.options import json_option, print_json
 from tester.cli.run_lookup import run_folder
 
 if TYPE_CHECKING:
-    from tester.export.verify import Verification
+    from tester.results.verify import Verification
 
 
 def _hash(_context: click.Context, _parameter: click.Parameter, value: str) -> str:
@@ -35,7 +35,7 @@ def verify(run: str, head: str, as_json: bool) -> int:
     Exit code 0: as it was left, and its plan was gone through. 1: something differs, each named on stderr. 6: as it
     was left, and its plan was not gone through.
     """
-    from tester.export.verify import verify as check
+    from tester.results.verify import verify as check
 
     folder = run_folder(run)
     found = check(folder, head)

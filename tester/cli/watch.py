@@ -7,7 +7,7 @@ from dataclasses import asdict
 
 from tester.analysis.reference import ControlChart, CounterfaceDrift
 from tester.cli.formatting import Json, number
-from tester.export.results import RunResults
+from tester.results.run_results import RunResults
 
 
 def watch_lines(results: RunResults) -> Iterator[str]:

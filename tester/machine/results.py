@@ -9,20 +9,12 @@ from typing import Generic, Protocol, TypeVar
 
 from tester.analysis.blocks import Block
 from tester.analysis.closest import Combining
+from tester.analysis.flags import IMPRECISE, NOT_SHOWN, flags_in, joined
 from tester.analysis.judge import ALONE
 from tester.analysis.reduce import bursts_of, counted, reduce_repeat, without_value
 from tester.analysis.repeatability import Pool
 from tester.analysis.repeats import ConditionResult
-from tester.analysis.results import (
-    IMPRECISE,
-    NOT_JUDGED,
-    NOT_SHOWN,
-    ConditionStatus,
-    RepeatResult,
-    RepeatStatus,
-    flags_in,
-    joined,
-)
+from tester.analysis.results import NOT_JUDGED, ConditionStatus, RepeatResult, RepeatStatus
 from tester.axes import condition_words
 from tester.machine.context import AnyContext
 from tester.machine.measured import ConditionEnd, Ending, RepeatOutcome

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import cast
 
 from tester.base.source import InvalidSource, load_tree
-from tester.export.results import RunResults
+from tester.results.run_results import RunResults
 
 MARK = "[A]"
 

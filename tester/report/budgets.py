@@ -11,11 +11,11 @@ from math import isfinite
 from tester.analysis.repeats import ConditionResult
 from tester.analysis.uncertainty import Contribution
 from tester.axes import condition_words
-from tester.export.budget import share_of, terms_of
-from tester.export.results import RunResults, TableRow
 from tester.report.layout import Columns, Paragraph, Part, ReportRow, ReportSection, ReportTable, heads
 from tester.report.record import RunRecord
 from tester.report.words import NONE, number, percent, relative, short
+from tester.results.budget import share_of, terms_of
+from tester.results.run_results import RunResults, TableRow
 
 _Told = tuple[str, str, str, str]
 """What is told of a term once: name, source, distribution, what else has the same error."""

@@ -6,7 +6,6 @@ from collections.abc import Callable, Sequence
 from math import isfinite
 
 from tester import __version__
-from tester.export.results import Measured
 from tester.report.budgets import budget_section
 from tester.report.charts import Material, charts_of, repeats_chart
 from tester.report.conditions import conditions_section, drift_section, short_table, verdict
@@ -27,6 +26,7 @@ from tester.report.sections import (
     trips_section,
 )
 from tester.report.words import counted, day
+from tester.results.run_results import Measured
 
 Showing = Callable[[RunRecord], Material]
 """What the figures of a run may show: its values, and published ones and a law beside them."""

@@ -9,9 +9,9 @@ from itertools import permutations
 from math import isfinite
 
 from tester.axes import Axis, AxisValue, Setpoint, condition_words, plain
-from tester.export.results import Measured, RunResults
 from tester.report.chart import Chart, ChartPanel, ChartSurface, Figure, Series
 from tester.report.words import labelled, name_of, unit_of
+from tester.results.run_results import Measured, RunResults
 
 NAN = float("nan")
 Y_LABEL = "friction coefficient"

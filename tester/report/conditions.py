@@ -7,7 +7,6 @@ from math import isfinite
 
 from tester.analysis.trust import NOT_TRUSTED, WITH_CARE, mark_of
 from tester.axes import Axis, condition_words, plain
-from tester.export.results import RunResults, TableRow, remedy
 from tester.report.layout import (
     Listing,
     Paragraph,
@@ -22,6 +21,7 @@ from tester.report.layout import (
 from tester.report.overview import made_up_of
 from tester.report.record import RunRecord
 from tester.report.words import NONE, counted, labelled, number, percent, relative, short
+from tester.results.run_results import RunResults, TableRow, remedy
 
 SHORT_ROWS = 20
 """A table of more conditions than these is told by its compounds on the first page."""

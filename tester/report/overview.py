@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from math import isfinite
 
 from tester.axes import condition_words
-from tester.export.results import Measured, RunResults
 from tester.report.chart import Chart, ChartPanel, Series
 from tester.report.words import labelled
+from tester.results.run_results import Measured, RunResults
 from tester.store.records import StoredRepeat
 
 MINUTES = 1.0 / 60.0

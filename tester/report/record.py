@@ -9,10 +9,10 @@ from pathlib import Path
 
 from tester.analysis.results import RepeatStatus
 from tester.analysis.ring_runs import RingRun
-from tester.export.manifest import MANIFEST
-from tester.export.results import Measured, RunResults, results_of
-from tester.export.ring_part import RingPart
-from tester.export.verify import Verification, verify
+from tester.results.manifest import MANIFEST
+from tester.results.ring_part import RingPart
+from tester.results.run_results import Measured, RunResults, results_of
+from tester.results.verify import Verification, verify
 from tester.store.reader import RunReader
 from tester.store.records import (
     Change,

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from tester.analysis.difference import at_nominal
-from tester.export.compared import Pair, pairs, same_rig
 from tester.report.charts import ChartValue, overlay_charts, values_of
 from tester.report.conditions import axis_cells, axis_heads
 from tester.report.inline import inline_svg
@@ -23,6 +22,7 @@ from tester.report.overview import overview_chart
 from tester.report.record import RunRecord
 from tester.report.ring import ring_trend_sections
 from tester.report.words import NONE, counted, number
+from tester.results.compared import Pair, pairs, same_rig
 
 
 def runs_chapter(records: Sequence[RunRecord]) -> Chapter:

@@ -11,9 +11,9 @@ from typing import Any, Final
 from tester.analysis.misalignment import misalignment
 from tester.base.keys import FAST_STOP, MEANINGS, STOP
 from tester.commission.person import Asks, Person, Question, StepRefused
-from tester.export.results import results_of
 from tester.machine.context import Progress
 from tester.machine.prompts import DONE, Prompt, Prompts
+from tester.results.run_results import results_of
 from tester.run.session import Session, SessionOptions
 from tester.store.reader import RunReader
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from tester.analysis.ring_runs import RingRun
-from tester.export.ring_part import RingPart
 from tester.kinds import UnknownKindError, find
+from tester.results.ring_part import RingPart
 from tester.store.reader import RunReader
 
 

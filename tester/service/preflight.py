@@ -14,8 +14,8 @@ from dataclasses import dataclass
 from datetime import date, timedelta
 from pathlib import Path
 
-from tester.export.results import results_of
 from tester.machine.served import History, Left, ServedKind
+from tester.results.run_results import results_of
 from tester.rig import CalibrationConfig, Rig
 from tester.screen import Check
 from tester.service.state import Alarm, DiskView

@@ -9,9 +9,9 @@ from tempfile import TemporaryDirectory
 from tester.analysis.trust import WITH_CARE, mark_of
 from tester.axes import Setpoint
 from tester.base.trouble import in_words
-from tester.export.results import TableRow, results_of
 from tester.machine.context import Progress
 from tester.machine.prompts import Prompts
+from tester.results.run_results import TableRow, results_of
 from tester.run.materials import KeptFile, write_materials
 from tester.run.pool import stop_level
 from tester.run.session import Session, SessionOptions

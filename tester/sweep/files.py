@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import TextIO
 
 from tester.axes import Axes
-from tester.export import write_file
-from tester.export.cells import encode, line
+from tester.results import write_file
+from tester.results.cells import encode, line
 from tester.sweep import tables
 from tester.sweep.case import CaseResult
 from tester.sweep.grid import SweepAxis

@@ -11,7 +11,7 @@ from statistics import fmean, stdev
 
 from tester.analysis.trust import WITH_CARE, mark_of
 from tester.axes import Axes
-from tester.export.cells import Cell, nominal
+from tester.results.cells import Cell, nominal
 from tester.sweep.case import CaseResult, RowResult
 from tester.sweep.grid import SweepAxis
 

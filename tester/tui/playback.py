@@ -11,9 +11,9 @@ from pathlib import Path
 
 from tester.analysis.results import Burst
 from tester.axes import ListWords, condition_words
-from tester.export.results import results_of
 from tester.machine.served import Wanted
 from tester.quantities import Channel, Quantities
+from tester.results.run_results import results_of
 from tester.run.kinds import served_kind
 from tester.run.rigs import load_rig_text
 from tester.screen import MachineView, PlotView, Value, trend_columns

@@ -10,8 +10,8 @@ from pathlib import Path
 from tester.analysis.repeats import ConditionResult
 from tester.analysis.trust import mark_of
 from tester.axes import Axes, Axis, ListWords, Setpoint, condition_words, plain
-from tester.export.results import Measured, RunResults, results_of
 from tester.quantities import GATE
+from tester.results.run_results import Measured, RunResults, results_of
 from tester.store.catalogue import find_run
 from tester.store.reader import RunReader
 from tester.store.records import StoredExclusion

@@ -24,9 +24,9 @@ from typing import NamedTuple
 import recipes
 from sim.physics.greta import greta
 from tester.cli.main import invoke
-from tester.export.components import FilmPair, SharesMean, film_pairs, means_of
-from tester.export.results import results_of
 from tester.materials.library import Library
+from tester.results.components import FilmPair, SharesMean, film_pairs, means_of
+from tester.results.run_results import results_of
 from tester.store.reader import RunReader
 
 SEEDS, SAMPLE_SEEDS = 20, 3

@@ -6,8 +6,8 @@ from typing import Final
 
 from tester.analysis.ring_errors import RingSegment
 from tester.analysis.ring_runs import RingRun
-from tester.export.ring_part import RingPart
 from tester.kinds.wheel_on_belt.ring_watch import BUS
+from tester.results.ring_part import RingPart
 from tester.store.reader import RunReader
 
 

@@ -10,7 +10,7 @@ from textual.widget import Widget
 from textual.widgets import Input, OptionList
 from textual.widgets.option_list import Option
 
-from tester.export.formats import FORMATS, format_names
+from tester.results.formats import FORMATS, format_names
 from tester.tui.calling import call
 from tester.tui.dialogs.dialog import Dialog, entry, field, line
 

@@ -13,7 +13,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from tester.analysis.reference import CounterfaceDrift
-from tester.export.results import results_of
+from tester.results.run_results import results_of
 from tester.run.session import Session, SessionOptions
 from tester.store.reader import RunReader
 from tests.campaigns.belt.sets import LOSS, OVER_M

@@ -18,7 +18,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Final, NamedTuple
 
-from tester.export.results import Measured, results_of
+from tester.results.run_results import Measured, results_of
 from tester.run.session import Session, SessionOptions
 from tester.store.reader import RunReader
 from tester.sweep.case import Unseen

@@ -21,7 +21,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from tester.analysis.difference import difference
-from tester.export.results import results_of
+from tester.results.run_results import results_of
 from tester.run.session import Session, SessionOptions
 from tester.store.reader import RunReader
 from tester.sweep.case import Unseen

@@ -21,8 +21,8 @@ from typing import Any
 from tester.analysis.results import Burst, RepeatResult
 from tester.base import clock
 from tester.cli.console import Console
-from tester.export.verify import verify
 from tester.machine.tickers import collector_at_rest
+from tester.results.verify import verify
 from tester.run.merge_parts import recover
 from tester.run.session import Session, SessionOptions
 from tester.store.reader import RunReader

@@ -8,7 +8,7 @@ from io import StringIO
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from tester.export.verify import verify
+from tester.results.verify import verify
 from tests.campaigns.forgery.forge import FORGERIES, told
 from tests.campaigns.forgery.run import finished_run
 

@@ -12,10 +12,10 @@ from pathlib import Path
 
 import numpy as np
 
-from tester import export
-from tester.export.manifest import MANIFEST, manifest_text
-from tester.export.verify import verify
 from tester.kinds.wheel_on_belt.quantities import QUANTITIES
+from tester.results import write_all
+from tester.results.manifest import MANIFEST, manifest_text
+from tester.results.verify import verify
 from tester.store.chain import add_entries, hashes_of, tables_in
 from tester.store.reader import RunReader
 from tester.store.sample_blocks import unpack_array
@@ -111,7 +111,7 @@ def remake_all(folder: Path) -> None:
         database.execute("DELETE FROM chain")
         rows = ((table, key, row) for table in tables_in(database) for key, row in hashes_of(database, table))
         add_entries(database, rows)
-    export.write_all(folder)
+    write_all(folder)
 
 
 def told(run: Path, other: Path, forgery: Forgery, scratch: Path) -> tuple[bool, bool, bool, bool]:

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from tester import export
 from tester.analysis.wear_check import WearCheck
 from tester.base import clock
 from tester.cli.console import Console
-from tester.export.exclude import Word, record_word
 from tester.kinds.wheel_on_belt.quantities import QUANTITIES
+from tester.results import write_all
+from tester.results.exclude import Word, record_word
 from tester.run.session import Session, SessionOptions
 from tester.store.writer import RunWriter
 from tests.tester.kinds.wheel_on_belt.bench import QUIET, SHORT
@@ -28,7 +28,7 @@ def finished_run(home: Path, seed: int) -> Path:
     figures = (89.9, 0.01, 25.0, 0.001, 12.0, 50.0, 10.0, 2e3, 18.0, 5.0)  # diameter to rate, in the fields' order
     writer.wear_check(WearCheck(1, "roll", 40.0, 40.0, 0, 1, *figures, 1))
     writer.close()
-    export.write_all(folder)
+    write_all(folder)
     record_word(folder, Word(1, 1, True, "dust on the belt", "ada"))
     record_word(folder, Word(1, 1, False, "it was none", "ben"))
     return folder

@@ -13,8 +13,8 @@ from math import sqrt
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from tester.analysis.results import CARRY_OVER, NOT_SHOWN
-from tester.export.results import results_of
+from tester.analysis.flags import CARRY_OVER, NOT_SHOWN
+from tester.results.run_results import results_of
 from tester.store.reader import RunReader
 from tests.campaigns.acceptance.figure import Figure, at_least, at_most, holds
 from tests.campaigns.repeats.rig import run

@@ -16,10 +16,11 @@ from random import Random
 from tempfile import TemporaryDirectory
 
 from tester.analysis.blocks import Block, blocks_from_samples
+from tester.analysis.flags import CARRY_OVER, NOT_SHOWN, flags_in
 from tester.analysis.judge import judge
 from tester.analysis.reduce import counted, reduce_repeat
 from tester.analysis.repeats import counting
-from tester.analysis.results import CARRY_OVER, NOT_JUDGED, NOT_SHOWN, Judgement, RepeatResult, flags_in
+from tester.analysis.results import NOT_JUDGED, Judgement, RepeatResult
 from tester.kinds.wheel_on_belt.quantities import QUANTITIES
 from tester.quantities import Means
 from tester.store.reader import RunReader

@@ -10,8 +10,8 @@ import pytest
 
 from tester.analysis import closest
 from tester.analysis.closest import combining_of, taken
+from tester.analysis.flags import CLOSEST_TWO, flags_in
 from tester.analysis.repeats import ConditionResult, combine_repeats
-from tester.analysis.results import flags_in
 from tests.tester.store.build import result
 
 THREE = (0.80, 0.70, 0.72)
@@ -25,12 +25,12 @@ def combined(*values: float, by_hand: dict[int, str] | None = None) -> Condition
 def test_the_mean_is_that_of_the_closest_two() -> None:
     assert combined(*THREE).mu_resultant == pytest.approx(0.71)
     assert combined(*THREE).mu_longitudinal == pytest.approx(0.71)
-    assert closest.FLAG in flags_in(combined(*THREE).flags)
+    assert CLOSEST_TWO in flags_in(combined(*THREE).flags)
 
 
 def test_without_its_name_nothing_changes() -> None:
     plain = combine_repeats([result(value) for value in THREE], 3)
-    assert plain.mu_resultant == pytest.approx(0.74) and closest.FLAG not in flags_in(plain.flags)
+    assert plain.mu_resultant == pytest.approx(0.74) and CLOSEST_TWO not in flags_in(plain.flags)
 
 
 def test_the_scatter_stays_that_of_all_and_the_mean_is_less_certain() -> None:

@@ -11,9 +11,10 @@ import pytest
 
 from tester.analysis.blocks import Block
 from tester.analysis.drift import fit_drift
+from tester.analysis.flags import CARRY_OVER, NOT_SHOWN, flags_in
 from tester.analysis.judge import judge, trend_of
 from tester.analysis.reduce import counted, reduce_repeat
-from tester.analysis.results import CARRY_OVER, NOT_SHOWN, Judgement, RepeatResult, RepeatStatus, flags_in
+from tester.analysis.results import Judgement, RepeatResult, RepeatStatus
 from tester.analysis.stability import filled
 from tests.tester.analysis.series import blocks, correlated
 

@@ -7,6 +7,7 @@ from math import hypot, isnan, nan, sqrt
 
 import pytest
 
+from tester.analysis.flags import CARRY_OVER
 from tester.analysis.kelvin import Slope, SurfaceWarmth
 from tester.analysis.measurand import (
     BETWEEN,
@@ -20,7 +21,7 @@ from tester.analysis.measurand import (
 from tester.analysis.reference import COUNTERFACE, CounterfaceDrift
 from tester.analysis.repeatability import Pool
 from tester.analysis.repeats import ConditionResult, combine_repeats, combine_replicates
-from tester.analysis.results import CARRY_OVER, Judgement, RepeatResult, RepeatStatus
+from tester.analysis.results import Judgement, RepeatResult, RepeatStatus
 from tester.analysis.terms import Size
 from tester.analysis.uncertainty import Budget
 from tester.kinds.wheel_on_belt.budget import TERMS

@@ -7,6 +7,7 @@ from math import isnan, sqrt
 
 import pytest
 
+from tester.analysis.flags import NOT_SHOWN, SHORT
 from tester.analysis.repeats import (
     ConditionResult,
     cochran_critical,
@@ -15,14 +16,7 @@ from tester.analysis.repeats import (
     excess_fluctuation,
     outliers,
 )
-from tester.analysis.results import (
-    NOT_SHOWN,
-    SHORT,
-    ConditionStatus,
-    Judgement,
-    RepeatResult,
-    RepeatStatus,
-)
+from tester.analysis.results import ConditionStatus, Judgement, RepeatResult, RepeatStatus
 from tests.tester.analysis.series import means_of
 
 

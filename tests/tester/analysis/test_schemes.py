@@ -10,10 +10,11 @@ from statistics import stdev
 import pytest
 
 from tester.analysis.blocks import Block
+from tester.analysis.flags import NOT_SHOWN, flags_in
 from tester.analysis.kelvin import Slope, SurfaceWarmth
 from tester.analysis.measurand import Surroundings, pooled, with_budget
 from tester.analysis.repeats import combine_replicates
-from tester.analysis.results import NOT_SHOWN, ConditionStatus, RepeatResult, flags_in
+from tester.analysis.results import ConditionStatus, RepeatResult
 from tester.analysis.schemes import EACH, OTHER_HALF, PAIRS, scheme_of
 from tester.analysis.terms import Size
 from tester.analysis.uncertainty import Contribution

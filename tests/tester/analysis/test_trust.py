@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from tester.analysis.results import DOUBTS, ConditionStatus
+from tester.analysis.flags import DOUBTS
+from tester.analysis.results import ConditionStatus
 from tester.analysis.trust import mark_of
 
 

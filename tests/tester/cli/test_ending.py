@@ -10,7 +10,8 @@ from pathlib import Path
 import pytest
 from rich.cells import cell_len
 
-from tester.analysis.results import CARRY_OVER, ConditionStatus
+from tester.analysis.flags import CARRY_OVER
+from tester.analysis.results import ConditionStatus
 from tester.cli.console import Console
 from tester.cli.ending import ROWS_AT_MOST, ending_lines
 from tests.tester.store.build import CONDITION, RUN, SPECIMENS, open_writer, record, small_run

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner, Result
 
-from tester.analysis.results import CARRY_OVER
+from tester.analysis.flags import CARRY_OVER
 from tester.cli.result_commands import export, show
 from tester.cli.runs_command import runs
 from tests.tester.store.build import CONDITIONS, RUN, SPECIMENS, open_writer, record, small_run
@@ -111,7 +111,7 @@ def test_a_doubt_about_a_value_of_the_appendix_is_told(stopped: str) -> None:
 
 
 def test_export_writes_to_stdout_what_the_run_folder_holds(home: Path) -> None:
-    from tester.export import write_all
+    from tester.results import write_all
 
     write_all(home / "runs" / "one")
     for kind in ("appendix", "conditions", "repeats"):

@@ -15,12 +15,12 @@ import pytest
 from tester.analysis.reference import ControlChart, ControlPoint
 from tester.base.extras import MissingExtraError
 from tester.base.plain import FORBIDDEN
-from tester.export.results import ReferenceWatch
 from tester.report.build import report_of
 from tester.report.charts import Material, values_of
 from tester.report.layout import Paragraph, Report, ReportSection
 from tester.report.page import LONGEST, POLICY, page_of, told
 from tester.report.record import MachineWords, RunRecord, read_record
+from tester.results.run_results import ReferenceWatch
 from tests.tester.kinds.wheel_on_belt.fit.made import made_run
 from tests.tester.store.build import CONDITION, PIECE, RUN, SPECIMENS, open_writer, record
 

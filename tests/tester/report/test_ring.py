@@ -8,13 +8,13 @@ import pytest
 
 from tester.analysis.ring_errors import RingSegment
 from tester.analysis.ring_runs import RingRun
-from tester.export.ring_part import RingPart
 from tester.report.build import report_of
 from tester.report.charts import Material, values_of
 from tester.report.layout import Paragraph, Picture, ReportSection, ReportTable
 from tester.report.page import page_of
 from tester.report.record import MachineWords, RunRecord, read_record
 from tester.report.ring import angle_chart, ring_sections, ring_trend_sections, trend_chart
+from tester.results.ring_part import RingPart
 from tests.tester.kinds.wheel_on_belt.fit.made import made_run
 
 pytest.importorskip("matplotlib", reason="needs the extra `report`")

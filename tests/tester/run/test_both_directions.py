@@ -14,7 +14,7 @@ from sim.physics.parameters import SensorParameters
 from tester.analysis.directions import is_reversed
 from tester.analysis.results import RepeatStatus
 from tester.cli.main import invoke
-from tester.export.results import results_of
+from tester.results.run_results import results_of
 from tester.run.session import Session, SessionOptions
 from tester.store.reader import RunReader
 from tester.store.writer import RunWriter

@@ -8,10 +8,10 @@ from pathlib import Path
 import pytest
 
 from tester.base.lock import RUN_LOCK, ExclusiveUse
-from tester.export import write_all
-from tester.export.verify import verify
 from tester.kinds import load_rig
 from tester.kinds.wheel_on_belt.rig import RigConfig
+from tester.results import write_all
+from tester.results.verify import verify
 from tester.run.latch import MANUAL_RUNS, acknowledge, open_trips
 from tester.service.commands import Acknowledge, RunRecipe
 from tester.store.reader import RunReader

@@ -13,10 +13,10 @@ import pytest
 import recipes
 from tester.base.source import InvalidSource
 from tester.cli.main import invoke
-from tester.export.verify import verify
 from tester.materials.files import DataFile, MaterialFile
 from tester.report.materials import materials_sections
 from tester.report.record import MachineWords, read_record
+from tester.results.verify import verify
 from tester.run.materials import KeptFile, kept_files, put_back, used_materials
 from tester.run.session import CannotStartError, Session, SessionOptions
 from tester.store.reader import RunReader

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from tester.cli.main import invoke
-from tester.export.results import results_of
+from tester.results.run_results import results_of
 from tester.run.session import Session, SessionOptions
 from tester.store.reader import DATABASE, RunReader
 from tester.store.resume import resume_point

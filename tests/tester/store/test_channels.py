@@ -13,16 +13,16 @@ from tester.analysis.blocks import BlockCounter
 from tester.analysis.reduce import reduce_repeat
 from tester.analysis.results import ConditionStatus
 from tester.base import clock
-from tester.export.recomputed import coefficient_problems
 from tester.kinds.wheel_on_belt.quantities import QUANTITIES
 from tester.quantities import BURST, GATE, KEY, TIME, Channel, Quantities, Roles
+from tester.results.recomputed import coefficient_problems
 from tester.store.channels import channel_rows, channels_before_8, quantities_of
 from tester.store.merge import Merge
 from tester.store.reader import RunReader
 from tester.store.resume import resume_point
 from tester.store.writer import RunWriter
 from tester.tui.stored import condition
-from tests.tester.export.made import made
+from tests.tester.results.made import made
 from tests.tester.store.build import CONDITIONS, RUN, SPECIMENS
 
 FORCES = (

@@ -11,10 +11,10 @@ import pytest
 
 from tester.axes import condition_words
 from tester.catalogue.entries import read_entries
-from tester.export import results_of
-from tester.export.budget import budget_rows
-from tester.export.tables import appendix_rows
 from tester.kinds.wheel_on_belt.axes import AXES, KIND
+from tester.results import results_of
+from tester.results.budget import budget_rows
+from tester.results.tables import appendix_rows
 from tester.store import older
 from tester.store.exclusions import add_exclusion
 from tester.store.reader import RunReader

@@ -8,8 +8,8 @@ from math import sqrt
 
 import pytest
 
-from tester.export.cells import Cell
 from tester.kinds.wheel_on_belt.axes import AXES as HELD
+from tester.results.cells import Cell
 from tester.sweep import tables
 from tester.sweep.grid import SweepAxis
 from tests.tester.sweep.results import result, row

@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 from textual.widgets import Input
 
-from tester import export
-from tester.export.results import results_of
 from tester.kinds.wheel_on_belt.axes import AXES
+from tester.results import write_all
+from tester.results.run_results import results_of
 from tester.service.commands import Stop
 from tester.service.state import ProgressView
 from tester.store.reader import RunReader
@@ -38,7 +38,7 @@ STORED = Stored("run", Path(), "some recipe", "finished", (), "", ROWS, AXES)
 def a_run(folder: Path) -> Path:
     """Write a run of two loads below the folder of runs and return its folder."""
     run = small_run(folder / "runs" / "one", ([0.90, 0.91, 0.89, 0.90], [0.70, 0.74, 0.72, 0.73]))
-    export.write_all(run)
+    write_all(run)
     return run
 
 

@@ -12,13 +12,13 @@ from pathlib import Path
 from typing import Final
 
 from tester.base.source import load_tree
-from tester.export.results import RunResults, results_of
 from tester.fit.law import FitPoint
 from tester.kinds.specimen_on_track.axes import INTERFACES, held_by
 from tester.kinds.specimen_on_track.fit.runs import INTERFACE, LOAD, SPEED, TEMPERATURE, points_of
 from tester.kinds.specimen_on_track.rig import TrackConfig
 from tester.master.part import MasterPart
 from tester.master.points import MasterPoint, MasterRun, MasterSource
+from tester.results.run_results import RunResults, results_of
 from tester.rig.load import checked
 from tester.store.reader import RunReader
 

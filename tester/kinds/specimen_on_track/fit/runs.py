@@ -9,10 +9,10 @@ from typing import Final
 
 from tester.analysis.measurand import REPEATABILITY
 from tester.analysis.terms import Acts, with_settings
-from tester.export.fit_points import point_of, sorted_out, standard_of, systematic_of
-from tester.export.results import Measured, RunResults, results_of
 from tester.fit.law import Common, Source, Sourced, Variable
 from tester.kinds.specimen_on_track.axes import INTERFACES, held_by
+from tester.results.fit_points import point_of, sorted_out, standard_of, systematic_of
+from tester.results.run_results import Measured, RunResults, results_of
 from tester.store.reader import RunReader
 
 SPEED, TEMPERATURE, LOAD, INTERFACE = range(4)

@@ -8,11 +8,11 @@ from statistics import median
 
 from tester.analysis.measurand import REPEATABILITY
 from tester.analysis.terms import Acts, with_settings
-from tester.export.fit_points import point_of, sorted_out, standard_of, systematic_of
-from tester.export.results import Measured, results_of
 from tester.fit.law import Common, Source, Sourced
 from tester.kinds.wheel_on_belt.axes import held_by
 from tester.kinds.wheel_on_belt.fit.laws import TEMPERATURE
+from tester.results.fit_points import point_of, sorted_out, standard_of, systematic_of
+from tester.results.run_results import Measured, results_of
 from tester.store.reader import RunReader
 
 _KNOWN = frozenset({"temperature", "load", "slip_velocity", "wheel_speed"})

@@ -4,7 +4,7 @@ import json
 from typing import BinaryIO
 
 from tester.axes import condition_words
-from tester.export.formats import Format, Record
+from tester.results.formats import Format, Record
 
 
 def write(record: Record, file: BinaryIO) -> None:

@@ -16,8 +16,8 @@ from tester.machine.sampler import Sampler
 from tester.quantities import LAST, Channel, Figure, Means, Quantities, Screen
 from tester.store.reader import RunReader
 from tester.store.writer import RunWriter
-from tests.tester.export.made import made
 from tests.tester.kinds.wheel_on_belt.bench import make_bench
+from tests.tester.results.made import made
 from tests.tester.store.build import CONDITIONS, RUN, SPECIMENS, result
 
 PAGE = Path(__file__).parents[4] / "docs" / "how-to" / "record-a-channel.md"

@@ -9,7 +9,8 @@ from pathlib import Path
 import numpy as np
 
 from sim.physics.wlf import WlfBell, WlfBellParameters
-from tester.analysis.results import CARRY_OVER, ConditionStatus, Judgement, RepeatResult, RepeatStatus
+from tester.analysis.flags import CARRY_OVER
+from tester.analysis.results import ConditionStatus, Judgement, RepeatResult, RepeatStatus
 from tester.kinds.specimen_on_track import KIND
 from tester.kinds.specimen_on_track.axes import AXES
 from tester.kinds.specimen_on_track.budget import TERMS

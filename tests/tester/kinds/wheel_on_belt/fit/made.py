@@ -8,7 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
-from tester.analysis.results import CARRY_OVER, ConditionStatus, Judgement
+from tester.analysis.flags import CARRY_OVER
+from tester.analysis.results import ConditionStatus, Judgement
 from tester.kinds.wheel_on_belt.fit.laws import V2_LAW
 from tester.store.statements import Judged
 from tests.campaigns.fit import DESIGN

@@ -10,11 +10,11 @@ from pathlib import Path
 from tester import __version__
 from tester.base.source import InvalidSource, read_tree
 from tester.base.trouble import in_words
-from tester.export.exclude import is_unfinished
-from tester.export.formats import Record
-from tester.export.manifest import MANIFEST, manifest_head, manifest_problems
-from tester.export.recomputed import coefficient_problems, table_problems
-from tester.export.results import RunResults
+from tester.results.exclude import is_unfinished
+from tester.results.formats import Record
+from tester.results.manifest import MANIFEST, manifest_head, manifest_problems
+from tester.results.recomputed import coefficient_problems, table_problems
+from tester.results.run_results import RunResults
 from tester.store.catalogue import under_way
 from tester.store.chain import ChainFound
 from tester.store.exclusions import problems as exclusion_problems

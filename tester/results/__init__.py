@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 from pathlib import Path
 
-from tester.export.formats import FORMATS, Format, Record
-from tester.export.manifest import MANIFEST, manifest_text
-from tester.export.results import TableRow, results_of
+from tester.results.formats import FORMATS, Format, Record
+from tester.results.manifest import MANIFEST, manifest_text
+from tester.results.run_results import TableRow, results_of
 from tester.store.files import write_whole
 from tester.store.reader import RunReader
 

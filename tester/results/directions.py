@@ -6,9 +6,9 @@ from collections.abc import Iterator
 
 from tester.analysis.directions import BothWays, SlidingWay
 from tester.analysis.misalignment import Misalignment, misalignment
-from tester.export.cells import Cell
-from tester.export.results import RunResults
-from tester.export.tables import setpoint_header, setpoints
+from tester.results.cells import Cell
+from tester.results.run_results import RunResults
+from tester.results.tables import setpoint_header, setpoints
 
 _WAY = ("n", "mu", "s", "mu_longitudinal", "drift_percent", "load_n", "sliding_m_s", "surface_c")
 _SIDES = ("as_asked", "reversed")

@@ -7,7 +7,7 @@ from typing import NamedTuple, TypeAlias
 
 from tester.analysis.difference import Difference, difference
 from tester.axes import AxisValue
-from tester.export.results import RunResults, TableRow
+from tester.results.run_results import RunResults, TableRow
 from tester.store.records import StoredRun
 
 Held: TypeAlias = tuple[str, tuple[AxisValue, ...]]

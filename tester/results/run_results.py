@@ -8,10 +8,10 @@ from itertools import groupby
 from math import isfinite
 
 from tester.analysis.closest import Combining, combining_of
+from tester.analysis.flags import OUT_OF_LIMITS, REFERENCE, flags_in, joined, remedy_of
 from tester.analysis.measurand import pooled, with_budget, with_budget_of_replicates
 from tester.analysis.misalignment import Misalignment, misalignment
 from tester.analysis.reference import (
-    NAME,
     RESERVED,
     ControlChart,
     CounterfaceDrift,
@@ -22,21 +22,12 @@ from tester.analysis.reference import (
     is_reference,
 )
 from tester.analysis.repeats import ConditionResult, combine_replicates
-from tester.analysis.results import (
-    CARRY_OVER,
-    IMPRECISE,
-    NOT_SHOWN,
-    OUT_OF_LIMITS,
-    SHORT,
-    ConditionStatus,
-    flags_in,
-    joined,
-)
+from tester.analysis.results import ConditionStatus
 from tester.analysis.wear import ConditionWear, WearRate, condition_wear, wear_rate
 from tester.analysis.wear_check import WearCheck
 from tester.axes import Axes, condition_words
-from tester.export.surroundings import Reduced, SurroundingsOf
 from tester.quantities import Quantities
+from tester.results.surroundings import Reduced, SurroundingsOf
 from tester.store import older
 from tester.store.catalogue import under_way
 from tester.store.exclusions import standing
@@ -131,20 +122,13 @@ _WHAT_TO_DO: Mapping[ConditionStatus, str] = {
     ConditionStatus.INSUFFICIENT: "a wider temperature_band or more max_bursts would help",
     ConditionStatus.PENDING: "tester resume goes on with the run",
 }
-_WHAT_OF_FLAGS: Mapping[str, str] = {
-    CARRY_OVER: "the rubber was still running in: grind it longer before (pre_grind), then measure the condition again",
-    NOT_SHOWN: "allow more repeats (repeats: at_most), or look for what drifts",
-    SHORT: "allow more repeats (repeats: at_most)",
-    OUT_OF_LIMITS: "change or clean the counterface, then measure the condition again",
-    IMPRECISE: "allow more repeats (repeats: at_most), or ask for less (until)",
-}
 
 
 def remedy(result: ConditionResult) -> str:
     """Return what to do about a condition without a value, or with one to be taken with care; "" where nothing is."""
     if not result.ok:
         return _WHAT_TO_DO.get(result.status, "")
-    return next((text for flag, text in _WHAT_OF_FLAGS.items() if flag in result.doubts), "")
+    return remedy_of(result.doubts)
 
 
 @dataclass(frozen=True, slots=True)
@@ -263,7 +247,7 @@ def results_of(reader: RunReader) -> RunResults:
         own = [one.info.condition for one, watches in zip(found, watching, strict=True) if not watches]
         doubts = doubted(watch.charts, own)
         found = [
-            _flagged(one, NAME if watches else OUT_OF_LIMITS)
+            _flagged(one, REFERENCE if watches else OUT_OF_LIMITS)
             if watches or one.info.condition in doubts else one
             for one, watches in zip(found, watching, strict=True)
         ]

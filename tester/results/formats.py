@@ -13,12 +13,12 @@ from functools import cached_property
 from typing import BinaryIO
 
 from tester.base.plugins import PluginError, plugins
-from tester.export.budget import budget_rows
-from tester.export.cells import Cell, encode
-from tester.export.directions import direction_rows
-from tester.export.parquet import write_parquet
-from tester.export.results import RunResults, results_of
-from tester.export.tables import (
+from tester.results.budget import budget_rows
+from tester.results.cells import Cell, encode
+from tester.results.directions import direction_rows
+from tester.results.parquet import write_parquet
+from tester.results.run_results import RunResults, results_of
+from tester.results.tables import (
     appendix_rows,
     check_rows,
     condition_rows,
@@ -134,6 +134,6 @@ def format_of(name: str) -> Format:
         return FORMATS[name]
     found = plugins().load("formats", name)
     if not isinstance(found, Format):
-        expected = "a tester.export.formats.Format"
+        expected = "a tester.results.formats.Format"
         raise PluginError(f'extension "{name}" is no format (expected {expected}, not {found!r:.80})')
     return found

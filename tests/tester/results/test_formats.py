@@ -8,15 +8,15 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
-from tester import export
 from tester.base.plugins import ALLOW_VARIABLE, PluginError, plugins
 from tester.cli.result_commands import export as export_command
-from tester.export.formats import FORMATS, format_names, format_of
+from tester.results import write_all
+from tester.results.formats import FORMATS, format_names, format_of
 from tests.tester.base.test_plugins import install
 from tests.tester.store.build import small_run
 
 MODULE = """
-from tester.export.formats import Format
+from tester.results.formats import Format
 
 def write(record, file):
     for row in record.results.rows:
@@ -42,7 +42,7 @@ def laboratory(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path
 
 
 def test_a_runs_folder_keeps_what_the_table_says(tmp_path: Path) -> None:
-    export.write_all(small_run(tmp_path))
+    write_all(small_run(tmp_path))
     made = {path.name for path in tmp_path.iterdir()}
     tables = {"appendix.csv", "budget.csv", "conditions.csv", "repeats.csv", "wheel.csv"}
     assert made == {"run.db", "manifest.json", *tables}

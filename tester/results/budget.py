@@ -7,9 +7,9 @@ from math import isfinite
 
 from tester.analysis.repeats import ConditionResult
 from tester.analysis.uncertainty import Budget, Contribution
-from tester.export.cells import Cell
-from tester.export.results import RunResults
-from tester.export.tables import setpoint_header, setpoints
+from tester.results.cells import Cell
+from tester.results.run_results import RunResults
+from tester.results.tables import setpoint_header, setpoints
 
 _BUDGET = (
     "level",

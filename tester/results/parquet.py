@@ -7,8 +7,8 @@ from itertools import islice
 from math import isfinite
 from typing import BinaryIO, Protocol, cast
 
-from tester.export.tables import OWNER, RISK_COLUMN
 from tester.quantities import Channel
+from tester.results.tables import OWNER, RISK_COLUMN
 from tester.store.arrow import arrow_module
 from tester.store.reader import RunReader, SampleBlock
 from tester.store.records import StoredRepeat

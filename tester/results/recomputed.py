@@ -10,9 +10,10 @@ from math import isclose, isfinite
 from pathlib import Path
 
 from tester.analysis.blocks import blocks_from_samples
+from tester.analysis.flags import ROLLING, flags_in
 from tester.analysis.reduce import reduce_repeat
-from tester.analysis.results import RepeatResult, RepeatStatus, flags_in
-from tester.export.formats import FORMATS, Record
+from tester.analysis.results import RepeatResult, RepeatStatus
+from tester.results.formats import FORMATS, Record
 from tester.store.reader import RunReader
 from tester.store.records import ConditionInfo, StoredRepeat
 
@@ -40,7 +41,7 @@ def coefficient_problems(reader: RunReader) -> tuple[int, list[str]]:
 
 def _recomputed(reader: RunReader, one: StoredRepeat, info: ConditionInfo) -> RepeatResult:
     samples = reader.samples(one.condition, one.repeat, one.attempt)
-    rolling = "rolling" in flags_in(one.result.flags)
+    rolling = ROLLING in flags_in(one.result.flags)
     blocks = blocks_from_samples(samples, reader.quantities())
     return reduce_repeat(blocks, info.window_revolutions, info.window_s, rolling=rolling)
 

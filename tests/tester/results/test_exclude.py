@@ -7,13 +7,12 @@ from pathlib import Path
 
 import pytest
 
-from tester import export
-from tester.analysis.results import SHORT
+from tester.analysis.flags import SHORT
 from tester.base.lock import RUN_LOCK, ExclusiveUse
-from tester.export import exclude
-from tester.export.exclude import CannotExcludeError, Word, parse_target, record_word
-from tester.export.results import RunResults, results_of
-from tester.export.verify import verify
+from tester.results import TableRow, exclude, write_all
+from tester.results.exclude import CannotExcludeError, Word, parse_target, record_word
+from tester.results.run_results import RunResults, results_of
+from tester.results.verify import verify
 from tester.store.reader import RunReader
 from tests.tester.store.build import RUN, small_run
 
@@ -29,7 +28,7 @@ def run(tmp_path: Path) -> Path:
     folder = small_run(tmp_path / "run", FOUR, rows=0)
     (folder / "recipe.yaml").write_text(RUN.recipe_text, encoding="utf-8")
     (folder / "rig.yaml").write_text(RUN.rig_text, encoding="utf-8")
-    export.write_all(folder)
+    write_all(folder)
     return folder
 
 
@@ -147,7 +146,7 @@ def test_a_row_that_was_taken_out_all_the_same_is_found(run: Path) -> None:
 def test_cut_off_before_the_tables_it_is_found_and_the_same_again_finishes_it(
     run: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def killed(folder: Path) -> list[export.TableRow]:
+    def killed(folder: Path) -> list[TableRow]:
         raise OSError("killed here")
 
     with monkeypatch.context() as patch, pytest.raises(OSError, match="killed here"):

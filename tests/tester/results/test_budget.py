@@ -9,14 +9,14 @@ from pathlib import Path
 import pytest
 
 from tester.analysis.kelvin import KnownSlope
-from tester.export.results import RunResults, results_of
 from tester.kinds.wheel_on_belt.budget import TERMS
 from tester.kinds.wheel_on_belt.quantities import QUANTITIES
 from tester.quantities import Means
+from tester.results.run_results import RunResults, results_of
 from tester.store.reader import RunReader
 from tester.store.records import PieceInfo
-from tests.tester.export.made import made
-from tests.tester.export.test_tables import table
+from tests.tester.results.made import made
+from tests.tester.results.test_tables import table
 from tests.tester.store.build import CONDITION, PIECE, RUN, SPECIMENS, open_writer, record, result, small_run
 
 

@@ -10,14 +10,14 @@ from pathlib import Path
 
 import pytest
 
-from tester.analysis.results import OUT_OF_LIMITS, flags_in
+from tester.analysis.flags import OUT_OF_LIMITS, flags_in
 from tester.cli.ending import table_lines
 from tester.cli.main import invoke
-from tester.export import write_all
-from tester.export.results import RunResults, results_of
+from tester.results import write_all
+from tester.results.run_results import RunResults, results_of
 from tester.store.reader import RunReader
 from tester.store.records import Travel
-from tests.tester.export.made import made
+from tests.tester.results.made import made
 from tests.tester.store.build import CONDITION, PIECE, RUN, SPECIMENS, open_writer, record
 
 WATCHED = replace(RUN, metadata={"reference_every": "1"})

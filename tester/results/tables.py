@@ -14,9 +14,9 @@ from tester.analysis.directions import is_reversed
 from tester.analysis.repeats import ConditionResult
 from tester.analysis.wear import ConditionWear
 from tester.analysis.wear_check import WearCheck
-from tester.export.cells import Cell, Number, exact, nominal
-from tester.export.results import Measured, RunResults
 from tester.quantities import Means, Quantities
+from tester.results.cells import Cell, Number, exact, nominal
+from tester.results.run_results import Measured, RunResults
 from tester.store.reader import RunReader
 from tester.store.records import ConditionInfo, RunInfo, StoredRepeat
 

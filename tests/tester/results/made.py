@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from io import BytesIO
 
-from tester.export.formats import FORMATS, Record
+from tester.results.formats import FORMATS, Record
 from tester.store.reader import RunReader
 
 

@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Set
 from math import isfinite, sqrt
 
-from tester.analysis.reference import NAME
-from tester.analysis.results import DOUBTS, flags_in
+from tester.analysis.flags import REFERENCE, flags_in
 from tester.analysis.terms import Acts, Term
 from tester.axes import condition_words
-from tester.export.results import Measured, RunResults
 from tester.fit.law import NAN, FitPoint, Source
+from tester.results.run_results import Measured, RunResults
 
 Labelled = list[tuple[str, Measured]]
 LeftOut = tuple[tuple[str, str], ...]
@@ -37,9 +36,9 @@ def _doubt(one: Measured) -> str:
     result = one.result
     if not result.ok:
         return result.status.value
-    if NAME in flags_in(result.flags):
+    if REFERENCE in flags_in(result.flags):
         return "a reference condition: one setpoint many times over"
-    return ", ".join(flag for flag in result.doubts if flag in DOUBTS)
+    return ", ".join(result.doubts)
 
 
 def standard_of(terms: Iterable[Term], acts: Acts) -> float:

@@ -16,18 +16,18 @@ from random import Random
 import pytest
 
 from tester.base.source import InvalidSource
-from tester.export.cells import unescaped
 from tester.kinds.wheel_on_belt.quantities import QUANTITIES
 from tester.kinds.wheel_on_belt.recipe.expand import expand
 from tester.kinds.wheel_on_belt.recipe.part import PART
 from tester.machine.results import condition_records
 from tester.recipe.check import load_checked
 from tester.recipe.plan import Plan
+from tester.results.cells import unescaped
 from tester.store.reader import RunReader
 from tester.store.records import SpecimenInfo
 from tester.store.writer import RunWriter
-from tests.tester.export.made import made
 from tests.tester.recipe.texts import real_rig
+from tests.tester.results.made import made
 from tests.tester.store.build import RUN, Clock, result, row, small_run
 
 SEEDS = (
@@ -166,7 +166,7 @@ def test_every_seed_in_the_note(tmp_path: Path, text: str) -> None:
 def test_numbers_are_numbers_for_pandas(tmp_path: Path) -> None:
     import pandas
 
-    from tester.export import write_all
+    from tester.results import write_all
 
     folder = small_run(tmp_path / "run")
     write_all(folder)

@@ -10,7 +10,7 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from tester.base.plain import harmless
-from tester.export.cells import Number, encode, exact, line, nominal, number, text, unescaped
+from tester.results.cells import Number, encode, exact, line, nominal, number, text, unescaped
 
 TEXTS = st.text(st.characters(exclude_categories=("Cs",)), max_size=30)
 

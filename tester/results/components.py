@@ -8,7 +8,7 @@ from typing import Final, NamedTuple, TypeAlias
 from tester.analysis.components import ByFilm, PartValue, by_film, mean_of
 from tester.analysis.kelvin import UNKNOWN, Slope, slope_of_pairs
 from tester.axes import AxisValue, Setpoint
-from tester.export.results import Measured, RunResults
+from tester.results.run_results import Measured, RunResults
 
 AXIS: Final = "interface"
 """Of the conditions; a machine that has it not has nothing to be told apart."""

@@ -17,7 +17,7 @@ import pytest
         "tester.analysis.blocks",
         "tester.analysis.reduce",
         "tester.analysis.repeats",
-        "tester.export",
+        "tester.results",
         "tester.cli.result_commands",
     ],
 )

@@ -7,8 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from tester.analysis.results import SHORT, ConditionStatus, RepeatStatus
-from tester.export.results import RunResults, results_of
+from tester.analysis.flags import SHORT
+from tester.analysis.results import ConditionStatus, RepeatStatus
+from tester.results.run_results import RunResults, results_of
 from tester.store.reader import RunReader
 from tester.store.schema import StoreError
 from tests.tester.store.build import CONDITION, RUN, SPECIMENS, open_writer, record, result, small_run

@@ -11,9 +11,9 @@ from tester.base import clock
 from tester.base.lock import RUN_LOCK, ExclusiveUse, RigInUseError
 from tester.base.plain import plain_text
 from tester.base.trouble import in_words
-from tester.export import write_all
-from tester.export.formats import FORMATS
-from tester.export.manifest import MANIFEST, manifest_problems
+from tester.results import write_all
+from tester.results.formats import FORMATS
+from tester.results.manifest import MANIFEST, manifest_problems
 from tester.store.exclusions import add_exclusion, standing
 from tester.store.reader import DATABASE, RunReader
 from tester.store.records import StoredExclusion, StoredRepeat

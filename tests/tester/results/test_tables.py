@@ -13,13 +13,13 @@ from pathlib import Path
 import pyarrow.parquet as pq
 import pytest
 
-from tester import export
 from tester.analysis.results import RepeatStatus
-from tester.export.manifest import manifest_problems
 from tester.kinds.wheel_on_belt.quantities import QUANTITIES
+from tester.results import write_all, write_file
+from tester.results.manifest import manifest_problems
 from tester.store.reader import RunReader
 from tester.store.records import PieceInfo
-from tests.tester.export.made import made
+from tests.tester.results.made import made
 from tests.tester.store.build import CONDITION, RUN, SPECIMENS, Clock, open_writer, record, result, row, small_run
 
 HEADER = "Formula,Slip Velocity /mm·s⁻¹,Load /N,Sideslip Angle /°,Temperature /°C,Friction Coefficient"
@@ -36,7 +36,7 @@ def tables(folder: Path) -> tuple[list[dict[str, str]], list[dict[str, str]], li
 
 
 def test_the_appendix_is_the_papers_table(tmp_path: Path) -> None:
-    export.write_all(small_run(tmp_path))
+    write_all(small_run(tmp_path))
     data = (tmp_path / "appendix.csv").read_bytes()
     assert data.startswith(b"\xef\xbb\xbf")
     assert data.decode("utf-8-sig") == f"{HEADER}\n1#,300,100,0,25,0.90\n1#,300,200,0,25,0.73\n"
@@ -49,7 +49,7 @@ def test_the_appendix_has_as_many_decimals_as_asked(tmp_path: Path) -> None:
 
 
 def test_a_condition_without_a_value_is_not_in_the_appendix_but_returned(tmp_path: Path) -> None:
-    missing = export.write_all(small_run(tmp_path, ([], [0.73, 0.74, 0.72])))
+    missing = write_all(small_run(tmp_path, ([], [0.73, 0.74, 0.72])))
     appendix, conditions, _ = tables(tmp_path)
     assert [line["Load /N"] for line in appendix] == ["200"]
     assert [missed.info.setpoint.value("load") for missed in missing] == [100.0]
@@ -143,7 +143,7 @@ def test_the_same_data_gives_the_same_bytes_whenever_and_wherever(tmp_path: Path
         record(writer, 1, [0.7, 0.71, 0.72])
         writer.finish("finished", ended_utc=started)
         writer.close()
-        export.write_all(tmp_path / folder)
+        write_all(tmp_path / folder)
     for name in names:
         assert (tmp_path / "a" / name).read_bytes() == (tmp_path / "b" / name).read_bytes()
 
@@ -239,7 +239,7 @@ def test_a_run_without_samples_exports_an_empty_parquet_file(tmp_path: Path) -> 
 def test_the_manifest_lists_every_file_with_its_hash(tmp_path: Path) -> None:
     small_run(tmp_path)
     (tmp_path / "recipe.yaml").write_text("recipe: x\n", "utf-8")
-    export.write_all(tmp_path)
+    write_all(tmp_path)
     files = json.loads((tmp_path / "manifest.json").read_text("utf-8"))["files"]
     tables = ["appendix.csv", "budget.csv", "conditions.csv"]
     assert sorted(files) == [*tables, "recipe.yaml", "repeats.csv", "run.db", "wheel.csv"]
@@ -248,7 +248,7 @@ def test_the_manifest_lists_every_file_with_its_hash(tmp_path: Path) -> None:
 
 
 def test_a_changed_missing_or_added_file_shows(tmp_path: Path) -> None:
-    export.write_all(small_run(tmp_path))
+    write_all(small_run(tmp_path))
     (tmp_path / "appendix.csv").write_text("0.99", "utf-8")
     (tmp_path / "repeats.csv").unlink()
     (tmp_path / "extra").touch()
@@ -267,7 +267,7 @@ def test_a_file_is_written_whole_or_not_at_all(tmp_path: Path) -> None:
     target = tmp_path / "t.csv"
     target.write_bytes(b"old")
     with pytest.raises(OSError, match="full"):
-        export.write_file(target, chunks())
+        write_file(target, chunks())
     assert target.read_bytes() == b"old"
     assert [path.name for path in tmp_path.iterdir()] == ["t.csv"]
 

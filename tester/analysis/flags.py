@@ -1,0 +1,106 @@
+"""The flags a repeat or a condition can carry: word, meaning, remedy, and whether a flag is a doubt.
+
+This is the one list. A record stores the words; the end of a run, ``tester show``, the tables, the report, the screens
+and the glossary take sentence and remedy from here. A new flag is one entry.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Final
+
+
+@dataclass(frozen=True, slots=True)
+class Flag:
+    """A flag: the ``word`` that records and tables hold, its meaning and remedy in words, and its weight."""
+
+    word: str
+    meaning: str
+    """What the flag says of the value, a sentence."""
+    remedy: str = ""
+    """What to do about it, an instruction without a full stop; "" where nothing needs doing."""
+    doubt: bool = False
+    """Whether the value is to be taken with care. The others are notes."""
+
+
+NOT_SHOWN: Final = "drift not shown"
+SHORT: Final = "short"
+CARRY_OVER: Final = "carry-over"
+IMPRECISE: Final = "precision not reached"
+OUT_OF_LIMITS: Final = "reference out of limits"
+REFERENCE: Final = "reference"
+ROLLING: Final = "rolling"
+EXTENDED: Final = "extended"
+TRUNCATED: Final = "truncated"
+OUTLIER: Final = "outlier"
+EXCLUDED: Final = "excluded"
+CLOSEST_TWO: Final = "closest two of three"
+
+FLAGS: Final[Mapping[str, Flag]] = {
+    flag.word: flag
+    for flag in (
+        # The order is that of remedies: of several doubts the first one is what to mend first.
+        Flag(
+            CARRY_OVER,
+            "The coefficient was still settling from repeat to repeat: the rubber was running in.",
+            "grind the rubber longer before (pre_grind), then measure the condition again",
+            doubt=True,
+        ),
+        Flag(
+            NOT_SHOWN,
+            "The repeats do not show that the coefficient is steady.",
+            "allow more repeats (repeats: at_most), or look for what drifts",
+            doubt=True,
+        ),
+        Flag(
+            SHORT,
+            "Fewer repeats count than the recipe asks for, make-up repeats included.",
+            "allow more repeats (repeats: at_most)",
+            doubt=True,
+        ),
+        Flag(
+            OUT_OF_LIMITS,
+            "A reference condition before or after it lies outside the limits of its control chart.",
+            "change or clean the counterface, then measure the condition again",
+            doubt=True,
+        ),
+        Flag(
+            IMPRECISE,
+            "The repeatability that the recipe asks for (until) was not reached within the most repeats.",
+            "allow more repeats (repeats: at_most), or ask for less (until)",
+            doubt=True,
+        ),
+        Flag(REFERENCE, "A reference condition: it watches the counterface and is none of the recipe's conditions."),
+        Flag(ROLLING, "Measured without slip: the coefficient is the rolling resistance."),
+        Flag(EXTENDED, "A repeat collected more revolutions than its window before its drift was known."),
+        Flag(TRUNCATED, "The first revolutions of a repeat are left out of its mean as a transient."),
+        Flag(OUTLIER, "A repeat lies more than 3.5 standard deviations from the median. It stays in the mean."),
+        Flag(EXCLUDED, "A person left a repeat out of the mean; who, when and why are on record."),
+        Flag(CLOSEST_TWO, "The mean is that of the closest two of three repeats, as the recipe asks (combine: paper)."),
+    )
+}
+"""Every flag by its word."""
+
+DOUBTS: Final = tuple(flag.word for flag in FLAGS.values() if flag.doubt)
+"""The words of the flags that are doubts."""
+
+_OLD_WORDS = frozenset({ROLLING, EXTENDED, TRUNCATED})
+
+
+def joined(flags: Iterable[str]) -> str:
+    """Return flags as one text, sorted."""
+    return "; ".join(sorted(set(flags)))
+
+
+def flags_in(text: str) -> list[str]:
+    """Return the flags in a text that ``joined`` made; older records have single words with spaces between."""
+    if ";" not in text and _OLD_WORDS.issuperset(words := text.split()):
+        return words
+    return [flag.strip() for flag in text.split(";") if flag.strip()]
+
+
+def remedy_of(flags: Iterable[str]) -> str:
+    """Return what to do about the first doubt among ``flags``; "" where there is none."""
+    held = set(flags)
+    return next((flag.remedy for flag in FLAGS.values() if flag.doubt and flag.word in held), "")
