@@ -96,6 +96,10 @@ class Setpoint(NamedTuple):
         """Return what an axis of numbers is held at; raises KeyError, and TypeError for an axis of choices."""
         return _number(self.value(name), name)
 
+    def numbers(self) -> dict[str, float]:
+        """Return what the axes of numbers are held at, in their ``recipe_unit``, by name."""
+        return {one.name: self.number(one.name) for one in self.axes if not one.choices}
+
     def but(self, compound: str | None = None, /, **values: AxisValue) -> Setpoint:
         """Return the setpoint with other values, by axis name; raises KeyError."""
         mine = list(self.values)

@@ -35,10 +35,9 @@ class Witnessed:
         """Return what else hands do."""
         return getattr(self._attendant, name)
 
-    def begin_repeat(self, row: int, repeat: int, attempt: int, **more: int) -> None:
+    def begin_repeat(self, row: int, repeat: int, attempt: int, *more: Mapping[str, float]) -> None:
         """Begin a repeat at the rig, and put on record what that is; ``more``: what a kind tells its rig of it."""
-        self._attendant.begin_repeat(row, repeat, attempt, **more)
+        self._attendant.begin_repeat(row, repeat, attempt, *more)
         step = self._steps.get(row)
         if step is not None:
-            held = {axis.name: step.setpoint.number(axis.name) for axis in step.setpoint.axes if not axis.choices}
-            self._recorder.truth(step.condition, repeat, attempt, self._truth(held))
+            self._recorder.truth(step.condition, repeat, attempt, self._truth(step.setpoint.numbers()))

@@ -14,7 +14,7 @@ from math import cos, exp, inf, pi, radians, sin, sqrt
 from typing import Final
 
 from sim.machines.wheel_on_belt.heat_flow import SAME_STEP_S, HeatFlow
-from sim.machines.wheel_on_belt.scatter import condition_factor, run_factor, wheel_factor
+from sim.machines.wheel_on_belt.scatter import WheelSetting, condition_factor, run_factor, wheel_factor
 from sim.machines.wheel_on_belt.sensors import LoadCellSensor
 from sim.noise import Autoregressive, NormalStream, uniforms
 from sim.physics import laws
@@ -215,17 +215,16 @@ class Plant:
         self._place = (specimen, wheel)
         self._key_streams()
 
-    def begin_repeat(self, condition: int, repeat: int, attempt: int, same_as: int = 0) -> None:
-        """Draw the scatter of a repeat and start its streams of noise; all numbers 0 and up.
+    def begin_repeat(self, condition: int, repeat: int, attempt: int, setting: WheelSetting) -> None:
+        """Draw the scatter of a setting and of a repeat, and start its streams of noise; all numbers 0 and up.
 
-        ``same_as``: the condition that this one is once more, and whose scatter it has; 0: it is one of its own.
         Raises RuntimeError when no wheel is installed.
         """
         if not self._compound:
             raise RuntimeError("a repeat needs a wheel: install one first")
         specimen, wheel = self._place[:2]
         place = (specimen, wheel, condition, repeat, attempt)
-        self.condition_factor = condition_factor(self.parameters, self._seed, self._compound, same_as or condition)
+        self.condition_factor = condition_factor(self.parameters, self._seed, self._compound, setting)
         self.run_factor = run_factor(self.parameters, self._seed, *place)
         self._scatter = self.wheel_factor * self.condition_factor * self.run_factor * self._grip
         self._place = place

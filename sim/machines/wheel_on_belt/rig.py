@@ -13,6 +13,7 @@ from typing import Final
 
 from drivers.axis import AxisConfig
 from sim.machines.wheel_on_belt.plant import Plant
+from sim.machines.wheel_on_belt.scatter import WheelSetting
 from sim.machines.wheel_on_belt.torque import PressScrew, capstan_n, shafts
 from sim.nodes.cell_slave import CellSlave
 from sim.nodes.cia402_slave import Cia402Slave
@@ -276,9 +277,12 @@ class WheelRig:
         slip_m_s = slip_velocity(held["wheel_speed"], belt_m_s, held["sideslip"])[2]
         return self.plant.truth(held["temperature"], held["load"], slip_m_s, held["sideslip"])
 
-    def begin_repeat(self, condition: int, repeat: int, attempt: int, same_as: int = 0) -> None:
-        """Begin a repeat: the random streams, and the sensors' dither, start anew with it."""
-        self.plant.begin_repeat(condition, repeat, attempt, same_as)
+    def begin_repeat(self, condition: int, repeat: int, attempt: int, held: Mapping[str, float]) -> None:
+        """Begin a repeat at setpoints by axis: the random streams, and the sensors' dither, start anew with it."""
+        setting = WheelSetting(
+            held["slip_velocity"], held["load"], held["sideslip"], held["camber"], held["temperature"]
+        )
+        self.plant.begin_repeat(condition, repeat, attempt, setting)
         self.ir.dither = 0
         for cell in self.cells.values():
             cell.dither = 0

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from math import inf
 from typing import Final, Protocol
 
@@ -44,11 +44,8 @@ class Attendant(Protocol):
         """Have the belt on that an interrupted run has used, m of travel under load."""
         ...
 
-    def begin_repeat(self, condition: int, repeat: int, attempt: int, same_as: int = 0) -> None:
-        """Mark the start of a repeat (keys of the simulator's random streams).
-
-        ``same_as``: the condition that this one is once more; 0: none.
-        """
+    def begin_repeat(self, condition: int, repeat: int, attempt: int, held: Mapping[str, float]) -> None:
+        """Mark the start of a repeat at setpoints by axis (keys of the simulator's random streams)."""
         ...
 
 
@@ -67,7 +64,7 @@ class Nobody:
     def belt_travelled(self, travel_m: float) -> None:
         """Do nothing: the belt is still on."""
 
-    def begin_repeat(self, condition: int, repeat: int, attempt: int, same_as: int = 0) -> None:
+    def begin_repeat(self, condition: int, repeat: int, attempt: int, held: Mapping[str, float]) -> None:
         """Do nothing."""
 
 

@@ -9,7 +9,7 @@ import signal
 import sqlite3
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from contextlib import closing
 from pathlib import Path
 
@@ -140,8 +140,8 @@ class Acting:
     def remount(self, specimen: int, wheel: int, compound: str, diameter_mm: float, sliding_m: float) -> None:
         self.hands.remount(specimen, wheel, compound, diameter_mm, sliding_m)
 
-    def begin_repeat(self, condition: int, repeat: int, attempt: int) -> None:
-        self.hands.begin_repeat(condition, repeat, attempt)
+    def begin_repeat(self, condition: int, repeat: int, attempt: int, held: Mapping[str, float]) -> None:
+        self.hands.begin_repeat(condition, repeat, attempt, held)
 
     def belt_travelled(self, travel_m: float) -> None:
         self.hands.belt_travelled(travel_m)

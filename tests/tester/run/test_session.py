@@ -8,7 +8,7 @@ import re
 import shutil
 import signal
 import sqlite3
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
 
@@ -150,8 +150,8 @@ class Interrupting:
     def remount(self, specimen: int, wheel: int, compound: str, diameter_mm: float, sliding_m: float) -> None:
         self.hands.remount(specimen, wheel, compound, diameter_mm, sliding_m)
 
-    def begin_repeat(self, condition: int, repeat: int, attempt: int) -> None:
-        self.hands.begin_repeat(condition, repeat, attempt)
+    def begin_repeat(self, condition: int, repeat: int, attempt: int, held: Mapping[str, float]) -> None:
+        self.hands.begin_repeat(condition, repeat, attempt, held)
         for number in self.signals:
             signal.raise_signal(number)
 
@@ -281,7 +281,7 @@ def test_a_trip_exits_5_with_its_cause(tmp_path: Path, at_the_rig: Callable[[Pre
             self.world = world
             self.install, self.remount = hands.install, hands.remount
 
-        def begin_repeat(self, condition: int, repeat: int, attempt: int) -> None:
+        def begin_repeat(self, condition: int, repeat: int, attempt: int, held: Mapping[str, float]) -> None:
             self.world.axes["press"].set_guard(False)  # type: ignore[attr-defined]
 
     at_the_rig(OpensTheGuard)

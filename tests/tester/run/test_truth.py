@@ -11,7 +11,9 @@ from pathlib import Path
 
 import pytest
 
+from sim.machines.wheel_on_belt.scatter import WheelSetting, condition_factor
 from sim.physics.friction import coefficient
+from sim.physics.parameters import SimParameters
 from sim.physics.slip import slip_velocity
 from tester.run.session import Session, SessionOptions
 from tester.store.reader import RunReader
@@ -71,6 +73,11 @@ def test_repeats_share_condition_and_wheel_and_have_runs_of_their_own(told: Path
     first, second = (truth(told)[repeat] for repeat in (1, 2))
     assert (first["condition"], first["wheel"]) == (second["condition"], second["wheel"])
     assert first["run"] != second["run"]
+
+
+def test_the_condition_has_the_factor_of_its_setting(told: Path) -> None:
+    of_setting = condition_factor(SimParameters(), 3, "1#", WheelSetting(0.3, 200.0, 0.0, 0.0, 30.0))
+    assert {one["condition"] for one in truth(told).values()} == {of_setting}
 
 
 def test_nothing_is_recorded_where_nobody_asked_and_the_tables_are_the_same(told: Path, tmp_path: Path) -> None:

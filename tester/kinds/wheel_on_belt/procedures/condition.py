@@ -149,7 +149,7 @@ class MeasureCondition:
     def _begin(self, ctx: Context) -> None:
         self.repeat += 1
         attempt = self.results.attempt(self.condition, self.repeat) + self.voided
-        ctx.attendant.begin_repeat(self.condition.row, self.repeat, attempt, **self._same())
+        ctx.attendant.begin_repeat(self.condition.row, self.repeat, attempt, self.condition.setpoint.numbers())
         self.key = self.results.begin_repeat(ctx, self.condition, self.repeat, attempt)
         ctx.repeat_key = self.key
         self.measuring = MeasureRepeat(
@@ -161,10 +161,6 @@ class MeasureCondition:
             run_in_m=run_in_m(self.condition, self.repeat),
         )
         ctx.progress.revolutions_wanted = REPEAT_WINDOWS * (self.condition.window.revolutions or 0.0)
-
-    def _same(self) -> dict[str, int]:
-        """Return what a rig is told of a condition that is measured again and again."""
-        return {"same_as": self.condition.same_as} if self.condition.same_as else {}
 
     def _finish(self, ctx: Context, measured: MeasureRepeat) -> None:
         self.offset_k = measured.offset_k

@@ -43,7 +43,7 @@ def words(step: Step, one: StepEstimate) -> str:
             held = condition_words(step.setpoint, compound=False)
             bursts = f", {one.bursts} bursts" if one.bursts > 1 else ""
             run_in = f", run-in {step.run_in_m:g} m" if step.both_directions and step.run_in_m else ""
-            mark = "  reference" if step.same_as else ""
+            mark = "  reference" if step.reference else ""
             told = f"{repeats_words(step)} x {window_words(step.window)}{bursts}{run_in}{mark}"
             return f"{step.condition:>4}  {held}  {told}"
         case Cool():
@@ -94,7 +94,7 @@ TOLD_APART_PERCENT = (10.0, 5.0)
 
 def _telling(plan: WheelPlan) -> Iterator[str]:
     """Yield how many wheels of each compound tell a difference; repeats and wheels scatter as they are assumed to."""
-    fewest = min((step.repeats for step in plan.conditions() if not step.same_as), default=0)
+    fewest = min((step.repeats for step in plan.conditions() if not step.reference), default=0)
     if not fewest:
         return
     each = min(step.scheme.repeats_each for step in plan.conditions())
@@ -116,7 +116,7 @@ def _both_directions(plan: WheelPlan) -> Iterator[str]:
 
 def _references(plan: WheelPlan) -> Iterator[str]:
     """Yield how often the reference condition is measured, and at what: its axes may be defaults."""
-    first = next((step for step in plan.conditions() if step.same_as), None)
+    first = next((step for step in plan.conditions() if step.reference), None)
     if first is not None:
         held = condition_words(first.setpoint, compound=False)
         reserved = plan.metadata.get(RESERVED)

@@ -247,9 +247,8 @@ class _Expansion:
         wheel.loss_mm += cost.loss_mm
         wheel.sliding_m += cost.sliding_m
         self.count += 1
-        same_as = 0
         if reference:
-            row, same_as = self.references.next_row()
+            row = self.references.next_row()
         else:
             row += (wheel.specimen - 1) * len(self.conditions)
             self.references.since += 1
@@ -274,7 +273,7 @@ class _Expansion:
                 how.max_bursts,
                 how.wear_check,
                 how.run_in_m,
-                same_as,
+                reference,
                 **(_BOTH if how.both_directions else _ONE),
             )
         )

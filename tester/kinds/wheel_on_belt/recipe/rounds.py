@@ -84,11 +84,11 @@ class ReferenceRounds:
             found[-1].append(self.condition)
         return found
 
-    def next_row(self) -> tuple[int, int]:
-        """Return the row of the next reference, behind all of the recipe's own, and that of the first."""
+    def next_row(self) -> int:
+        """Return the row of the next reference, behind all of the recipe's own."""
         self.since = 0
         self.made += 1
-        return self._first_row + self.made - 1, self._first_row
+        return self._first_row + self.made - 1
 
     def heating(self, index: int, from_c: float | None, to_c: float) -> list[WheelStep]:
         """Return the steps to the temperature of a condition, degC; ``from_c`` None: on a new wheel.

@@ -81,7 +81,7 @@ class Heat(Step):
 class WheelCondition(ConditionStep):
     """A condition on a wheel: each repeat is collected in up to ``max_bursts`` contacts.
 
-    ``same_as``: of a reference condition the row of the first, for all are the same condition; 0 of any other.
+    ``reference``: it watches the belt and is none of the recipe's own conditions.
     """
 
     wheel: int
@@ -89,7 +89,7 @@ class WheelCondition(ConditionStep):
     wear_check: WearCheck
     run_in_m: float = 0.0
     """Sliding after a reversal of the slip that does not count, m."""
-    same_as: int = 0
+    reference: bool = False
 
 
 @dataclass(frozen=True, slots=True)

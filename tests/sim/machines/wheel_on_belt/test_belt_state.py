@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from sim.machines.wheel_on_belt.plant import Plant
-from sim.physics.parameters import CounterfaceParameters, SimParameters
+from sim.physics.parameters import CounterfaceParameters
 from tests.sim.machines.wheel_on_belt.test_plant import ROUND, mounted, run
 
 SHORT_LIVED = CounterfaceParameters(loss=0.1, loss_travel=5.0)
@@ -48,15 +48,3 @@ def test_without_a_loss_it_is_as_it_was() -> None:
     plant = mounted()
     run(plant, 10.0, 200.0)
     assert plant.belt_grip == 1.0
-
-
-def test_a_condition_that_is_another_once_more_has_its_scatter_and_repeats_of_its_own() -> None:
-    plant = Plant(SimParameters(), 3)
-    plant.install(1, 1, "1#", True)
-    plant.begin_repeat(7, 1, 1)
-    first = plant.condition_factor, plant.run_factor
-    plant.begin_repeat(8, 1, 1)
-    other = plant.condition_factor, plant.run_factor
-    plant.begin_repeat(8, 1, 1, same_as=7)
-    assert plant.condition_factor == first[0] != other[0]
-    assert plant.run_factor == other[1] != first[1]

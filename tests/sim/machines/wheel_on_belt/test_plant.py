@@ -10,6 +10,7 @@ from itertools import pairwise
 import pytest
 
 from sim.machines.wheel_on_belt.plant import Plant
+from sim.machines.wheel_on_belt.scatter import WheelSetting
 from sim.physics.contact import ContactModel
 from sim.physics.friction import KNOWN, FrictionModel, UnknownCompoundError
 from sim.physics.parameters import ContactParameters, DriveParameters, SimParameters
@@ -19,6 +20,7 @@ from sim.physics.wear import radius_loss_mm, running_in_factor
 EXACT = SimParameters(noise=0.0, scatter=0.0, running_in=0.0, growth=0.0, ambient=25.0)
 ROUND = replace(EXACT, contact=ContactParameters(runout=0.0))
 WHEEL_RAD_S = 0.8 / 0.045
+MIDDLE = WheelSetting(0.3, 200.0, 0.0, 0.0, 40.0)
 
 
 def mounted(parameters: SimParameters = ROUND, compound: str = "1#", seed: int = 1) -> Plant:
@@ -93,7 +95,7 @@ def test_rubbing_is_what_the_formulas_say(
     model: str, belt_m_s: float, sideslip_deg: float, load_n: float
 ) -> None:
     plant = mounted(replace(SimParameters(noise=0.0, friction_model=model), contact=ROUND.contact))
-    plant.begin_repeat(1, 1, 1)
+    plant.begin_repeat(1, 1, 1, MIDDLE)
     run(plant, 0.02, load_n, belt_m_s, sideslip_deg)
     for _ in range(3):
         surface_c, diameter_mm, sliding_m, touched_s = plant.surface_c, plant.diameter_mm, plant.sliding_m, 0.02
@@ -144,7 +146,7 @@ def test_a_belt_that_does_not_grip_carries_no_friction_and_loads_no_drive() -> N
     run(plant, 0.1, 200.0)
     assert rubbing_n > 50.0 and plant.force_z_n > 150.0
     assert plant.force_x_n == plant.force_y_n == plant.drive_torque_nm == 0.0
-    plant.begin_repeat(1, 1, 1)
+    plant.begin_repeat(1, 1, 1, MIDDLE)
     run(plant, 0.1, 200.0)
     assert plant.force_x_n == 0.0
     plant.set_grip(1.0)
@@ -319,7 +321,7 @@ def test_installing_an_unknown_compound_is_refused_and_changes_nothing() -> None
 
 def test_repeat_without_a_wheel_is_refused() -> None:
     with pytest.raises(RuntimeError, match="install"):
-        Plant(ROUND, 1).begin_repeat(1, 1, 1)
+        Plant(ROUND, 1).begin_repeat(1, 1, 1, MIDDLE)
 
 
 def test_without_noise_the_sensors_read_the_truth() -> None:
@@ -358,7 +360,7 @@ def test_same_seed_gives_the_same_readings_and_another_gives_others() -> None:
     readings: list[list[tuple[float, ...]]] = []
     for seed in (1, 1, 2):
         plant = mounted(SimParameters(), seed=seed)
-        plant.begin_repeat(1, 1, 1)
+        plant.begin_repeat(1, 1, 1, MIDDLE)
         readings.append(measured(plant))
     assert readings[0] == readings[1]
     assert readings[0] != readings[2]
@@ -367,29 +369,34 @@ def test_same_seed_gives_the_same_readings_and_another_gives_others() -> None:
 def test_random_numbers_of_a_repeat_do_not_depend_on_what_was_before() -> None:
     direct, late = mounted(SimParameters()), mounted(SimParameters())
     measured(late)
-    late.begin_repeat(1, 1, 1)
+    late.begin_repeat(1, 1, 1, MIDDLE)
     measured(late)
     late.install(1, 1, "1#", True)
     for plant in (direct, late):
-        plant.begin_repeat(2, 3, 1)
+        plant.begin_repeat(2, 3, 1, MIDDLE)
     assert measured(direct) == measured(late)
 
 
 @pytest.mark.parametrize("place", [(2, 1, 1), (1, 2, 1), (1, 1, 2)])
-def test_condition_repeat_and_attempt_each_draw_anew(place: tuple[int, int, int]) -> None:
+def test_condition_repeat_and_attempt_each_draw_a_repeat_anew(place: tuple[int, int, int]) -> None:
     plant = mounted(SimParameters())
-    plant.begin_repeat(1, 1, 1)
-    first = plant.condition_factor * plant.run_factor
-    plant.begin_repeat(*place)
-    assert plant.condition_factor * plant.run_factor != first
+    plant.begin_repeat(1, 1, 1, MIDDLE)
+    first = plant.run_factor
+    plant.begin_repeat(*place, MIDDLE)
+    assert plant.run_factor != first
 
 
-def test_redone_repeat_keeps_its_wheel_and_its_condition() -> None:
+def test_a_setting_has_one_factor_in_every_place_and_on_every_wheel() -> None:
     plant = mounted(SimParameters())
-    plant.begin_repeat(4, 1, 1)
-    wheel, condition = plant.wheel_factor, plant.condition_factor
-    plant.begin_repeat(4, 2, 3)
-    assert (plant.wheel_factor, plant.condition_factor) == (wheel, condition)
+    plant.begin_repeat(4, 1, 1, MIDDLE)
+    wheel, setting = plant.wheel_factor, plant.condition_factor
+    plant.begin_repeat(9, 2, 3, MIDDLE)
+    assert (plant.wheel_factor, plant.condition_factor) == (wheel, setting)
+    plant.install(1, 2, "1#", False)
+    plant.begin_repeat(12, 1, 1, MIDDLE)
+    assert plant.condition_factor == setting and plant.wheel_factor != wheel
+    plant.begin_repeat(12, 1, 1, MIDDLE._replace(load_n=100.0))
+    assert plant.condition_factor != setting
 
 
 def test_resumed_wheel_has_its_scatter_diameter_and_distance_again() -> None:
@@ -482,7 +489,7 @@ def test_press_stands_where_the_contact_says_whatever_it_has_been_through() -> N
 
 def test_scatter_multiplies_the_friction() -> None:
     plant = mounted(replace(SimParameters(noise=0.0, running_in=0.0, ambient=25.0), contact=ROUND.contact))
-    plant.begin_repeat(1, 1, 1)
+    plant.begin_repeat(1, 1, 1, MIDDLE)
     ratios: list[float] = []
     for _ in range(6000):
         plant.advance(0.01, WHEEL_RAD_S, 0.5, press_for(200.0), 0.0, 0.0, 0.0)
@@ -494,7 +501,7 @@ def test_scatter_multiplies_the_friction() -> None:
 
 def test_copy_goes_on_alike_and_by_itself() -> None:
     plant = mounted(SimParameters())
-    plant.begin_repeat(1, 1, 1)
+    plant.begin_repeat(1, 1, 1, MIDDLE)
     measured(plant)
     twin = copy.deepcopy(plant)
     before = (twin.surface_c, twin.diameter_mm, twin.wheel_angle_rev)

@@ -8,11 +8,12 @@ from dataclasses import replace
 
 import pytest
 
-from sim.machines.wheel_on_belt.scatter import condition_factor, run_factor, stated_sigma, wheel_factor
+from sim.machines.wheel_on_belt.scatter import WheelSetting, condition_factor, run_factor, stated_sigma, wheel_factor
 from sim.noise import Autoregressive, NormalStream
 from sim.physics.parameters import SimParameters
 
 QUIET = replace(SimParameters(), scatter=0.0)
+MIDDLE = WheelSetting(0.3, 200.0, 0.0, 0.0, 40.0)
 
 
 def test_wheels_scatter_by_their_sigma() -> None:
@@ -22,8 +23,36 @@ def test_wheels_scatter_by_their_sigma() -> None:
 
 @pytest.mark.parametrize(("compound", "sigma"), [("1#", 0.032), ("2#", 0.042), ("3#", 0.059)])
 def test_conditions_scatter_by_the_sigma_of_the_compound(compound: str, sigma: float) -> None:
-    factors = [condition_factor(SimParameters(), 1, compound, condition) for condition in range(1500)]
+    factors = [
+        condition_factor(SimParameters(), 1, compound, MIDDLE._replace(load_n=50.0 + 0.1 * i)) for i in range(1500)
+    ]
     assert statistics.stdev(factors) == pytest.approx(sigma, rel=0.06)
+
+
+def factor(setting: WheelSetting, compound: str = "1#", seed: int = 1) -> float:
+    return condition_factor(SimParameters(), seed, compound, setting)
+
+
+def test_a_setting_has_one_factor_of_its_compound_and_seed() -> None:
+    assert factor(MIDDLE) == factor(WheelSetting(0.3, 200.0, 0.0, 0.0, 40.0))
+    assert len({factor(MIDDLE), factor(MIDDLE, "2#"), factor(MIDDLE, seed=2)}) == 3
+
+
+@pytest.mark.parametrize("other", [
+    {"slip_m_s": 0.2}, {"load_n": 100.0}, {"sideslip_deg": 5.0}, {"camber_deg": 2.0}, {"temperature_c": 55.0},
+])  # fmt: skip
+def test_each_of_its_values_tells_a_setting_from_another(other: dict[str, float]) -> None:
+    assert factor(MIDDLE._replace(**other)) != factor(MIDDLE)
+
+
+def test_the_last_digits_of_a_float_and_the_way_of_sliding_make_no_other_setting() -> None:
+    assert factor(WheelSetting(0.1 + 0.2, 200.0 + 1e-9, 0.0, -0.0, 40.0 - 1e-12)) == factor(MIDDLE)
+    turned = MIDDLE._replace(sideslip_deg=5.0)
+    assert factor(turned._replace(slip_m_s=-0.3, sideslip_deg=-5.0)) == factor(turned)
+
+
+def test_the_coldest_setting_that_a_recipe_may_ask_for_has_a_factor() -> None:
+    assert factor(MIDDLE._replace(temperature_c=-50.0)) > 0.5
 
 
 def test_repeats_scatter_by_their_sigma() -> None:
@@ -32,7 +61,7 @@ def test_repeats_scatter_by_their_sigma() -> None:
 
 
 def test_scatter_scaled_to_nothing_is_exactly_one() -> None:
-    assert wheel_factor(QUIET, 1, 1, 1) == condition_factor(QUIET, 1, "1#", 1) == 1.0
+    assert wheel_factor(QUIET, 1, 1, 1) == condition_factor(QUIET, 1, "1#", MIDDLE) == 1.0
     assert run_factor(QUIET, 1, 1, 1, 1, 1, 1) == 1.0
 
 
@@ -41,7 +70,7 @@ def test_stated_sigma_is_what_the_means_of_repeats_scatter_by() -> None:
     process.retime(0.1)
     means: list[float] = []
     for seed in range(250):
-        fixed = wheel_factor(parameters, seed, 1, 1) * condition_factor(parameters, seed, "1#", 1)
+        fixed = wheel_factor(parameters, seed, 1, 1) * condition_factor(parameters, seed, "1#", MIDDLE)
         repeats: list[float] = []
         for repeat in range(3):
             stream = NormalStream(seed, "within", 1, 1, 1, repeat, 1)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from math import isnan
 
 import pytest
@@ -28,7 +29,7 @@ class Hands:
     def install(self, specimen: int, wheel: int, compound: str, *, new_specimen: bool) -> None:
         self.installed.append((specimen, wheel, compound, new_specimen))
 
-    def begin_repeat(self, condition: int, repeat: int, attempt: int) -> None:
+    def begin_repeat(self, condition: int, repeat: int, attempt: int, held: Mapping[str, float]) -> None:
         raise AssertionError
 
 

@@ -25,7 +25,7 @@ def plan_of(extra: str, text: str = SMALL) -> WheelPlan:
 
 def marks(plan: WheelPlan) -> str:
     """Return a letter for each condition: R for a reference, else c."""
-    return "".join("R" if one.same_as else "c" for one in plan.conditions())
+    return "".join("R" if one.reference else "c" for one in plan.conditions())
 
 
 def problems(extra: str, text: str = SMALL) -> list[str]:
@@ -45,8 +45,8 @@ def test_it_counts_on_over_specimens_and_replicates() -> None:
 
 
 def test_references_are_one_condition_with_rows_of_their_own() -> None:
-    found = [one for one in plan_of(EVERY_2).conditions() if one.same_as]
-    assert [one.row for one in found] == [5, 6, 7] and {one.same_as for one in found} == {5}
+    found = [one for one in plan_of(EVERY_2).conditions() if one.reference]
+    assert [one.row for one in found] == [5, 6, 7]
     assert {one.grid for one in found} == {"reference"} and len({one.setpoint for one in found}) == 1
 
 
@@ -105,8 +105,8 @@ def test_its_key_is_in_the_schema_for_editors() -> None:
 def test_a_reserved_wheel_measures_references_and_nothing_else() -> None:
     plan = plan_of(RESERVED, PREPARED)
     assert marks(plan) == "RcccRcR"
-    assert {one.wheel for one in plan.conditions() if one.same_as} == {1}
-    assert {one.wheel for one in plan.conditions() if not one.same_as} == {2}
+    assert {one.wheel for one in plan.conditions() if one.reference} == {1}
+    assert {one.wheel for one in plan.conditions() if not one.reference} == {2}
     assert plan.specimen(2).compound == "2#" and plan.specimen(2).note == "reserved: ref-1"
     assert plan.metadata["reference_reserved"] == "ref-1"
 
