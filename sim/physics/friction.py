@@ -48,8 +48,8 @@ class PaperParameters:
 class V2Parameters:
     """mu = (1 + alpha_n (g(t) - g(25))) exp(k (p - 200) / 200) (c (v / 0.3)^b2 + a2).
 
-    g(t) = exp(-beta (t - tm)^2); t in degC, p in N, v in m/s. Fitted to both of the paper's appendices:
-    mean error 4.0 % where Eqs 4-9 have 10.6 %.
+    g(t) = exp(-beta (t - tm)^2); t in degC, p in N, v in m/s. Fitted to the 113 readable rows of both of the paper's
+    appendices (`tester fit appendix-a appendix-b`; none whose value is inferred): mean error 4.0 %.
     """
 
     alpha_n: float
@@ -69,9 +69,9 @@ COMPOUNDS: Final[dict[str, PaperParameters]] = {
 """The paper's three compounds, coefficients verbatim (Eqs 7-9)."""
 
 V2: Final[dict[str, V2Parameters]] = {
-    "1#": V2Parameters(0.234637, 0.001839, 66.478, 0.344942, -0.341934, 1.136499, 0.396179),
-    "2#": V2Parameters(0.597188, 0.002186, 69.231, 0.197275, -0.419724, 1.470303, 0.314343),
-    "3#": V2Parameters(0.845325, 0.002587, 72.263, 0.510386, -0.567485, 1.322839, 0.552537),
+    "1#": V2Parameters(0.224424, 0.002105, 66.701, 0.348869, -0.343363, 1.105863, 0.398528),
+    "2#": V2Parameters(0.593770, 0.002206, 69.238, 0.197902, -0.420332, 1.480220, 0.314958),
+    "3#": V2Parameters(0.845325, 0.002587, 72.263, 0.510386, -0.567486, 1.322839, 0.552537),
 }
 
 KNOWN: Final[list[str]] = list(COMPOUNDS)

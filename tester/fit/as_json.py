@@ -7,7 +7,7 @@ from math import isfinite
 
 from tester.fit.check import Errors
 from tester.fit.joint import GroupFit
-from tester.fit.part import PublishedTable
+from tester.fit.part import PublishedTable, TableLine
 from tester.fit.trends import Interval
 
 Json = str | int | float | bool | None | list["Json"] | dict[str, "Json"]
@@ -86,16 +86,18 @@ def table(given: PublishedTable) -> dict[str, Json]:
     """Return a publication's table with the verdict."""
     return {
         "title": given.title,
-        "lines": [
-            {
-                "way": line.way,
-                "fitted": errors(line.fitted),
-                "validation": errors(line.validation),
-                "asked": line.asked or None,
-                "met": line.met,
-            }
-            for line in given.lines
-        ],
+        "lines": [_line(line) for line in given.lines],
+        "compared": {how: [_line(line) for line in lines] for how, lines in given.compared.items()},
         "claims": [{"said": one.said, "found": one.found} for one in given.claims],
         "missed": [*given.missed],
+    }
+
+
+def _line(line: TableLine) -> dict[str, Json]:
+    return {
+        "way": line.way,
+        "fitted": errors(line.fitted),
+        "validation": errors(line.validation),
+        "asked": line.asked or None,
+        "met": line.met,
     }

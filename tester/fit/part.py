@@ -36,10 +36,14 @@ class Claim:
 
 @dataclass(frozen=True, slots=True)
 class PublishedTable:
-    """A publication's claims held against its own data."""
+    """A publication's claims held against its own data.
+
+    ``compared``: lines with rows that are no evidence taken in, by what was done with them; nothing is asked of these.
+    """
 
     title: str
     lines: tuple[TableLine, ...]
+    compared: Mapping[str, tuple[TableLine, ...]]
     claims: tuple[Claim, ...]
     remarks: tuple[str, ...]
 

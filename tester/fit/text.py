@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from tester.fit.check import Errors
 from tester.fit.joint import GroupFit, Overall
 from tester.fit.law import Law, Variable
-from tester.fit.part import PublishedTable
+from tester.fit.part import PublishedTable, TableLine
 from tester.fit.trends import Interval, Trend
 
 _HEADER = f"{'errors':<34} rows  mean %  median %   max %  within 5 %  within 10 %"
@@ -131,11 +131,12 @@ def table_lines(table: PublishedTable) -> Iterator[str]:
     """Yield the table of a publication with the verdict."""
     yield table.title
     for name in ("validation", "fitted"):
-        rows: Iterable[tuple[str, Errors]] = [(line.way, getattr(line, name)) for line in table.lines]
-        counted = [(way, errors) for way, errors in rows if errors.rows]
         yield "on rows that were not fitted:" if name == "validation" else "on the rows that were fitted:"
         yield _HEADER.replace("errors", "      ")
-        yield from (error_row(way, errors) for way, errors in counted)
+        yield from _table_rows(table.lines, name)
+        for how, lines in table.compared.items():
+            yield f"  {how}, for comparison:"
+            yield from _table_rows(lines, name)
     yield "asked:"
     for line in table.lines:
         if line.asked:
@@ -144,3 +145,10 @@ def table_lines(table: PublishedTable) -> Iterator[str]:
     for claim in table.claims:
         yield f"  {claim.said}: {claim.found}"
     yield from table.remarks
+
+
+def _table_rows(lines: Iterable[TableLine], name: str) -> Iterator[str]:
+    for line in lines:
+        errors: Errors = getattr(line, name)
+        if errors.rows:
+            yield error_row(line.way, errors)

@@ -56,8 +56,8 @@ def test_a_fit_to_appendix_a_is_seen_on_b(capsys: pytest.CaptureFixture[str]) ->
     found = data(capsys, "fit", "appendix-a", "--validate", "appendix-b")
     assert [one["group"] for one in found["groups"]] == ["1#", "2#", "3#"]
     seen = found["all"]["validation"]
-    assert (seen["rows"], seen["near"], seen["far"]) == (79, 37, 64)
-    assert seen["mean"] == pytest.approx(0.0636, abs=1e-4)
+    assert (seen["rows"], seen["near"], seen["far"]) == (79, 35, 63)
+    assert seen["mean"] == pytest.approx(0.0645, abs=1e-4)
     tm = found["groups"][1]["parameters"]["tm"]
     assert tm["interval"][0] < tm["value"] < tm["interval"][1]
 
@@ -79,7 +79,7 @@ def test_a_run_is_fitted_with_what_its_repeats_say(home: Path, capsys: pytest.Ca
     made_run(home / "one")
     (group,) = data(capsys, "fit", "one", "--validate", "appendix-b")["groups"]
     assert group["conditions"] == len(DESIGN)
-    assert group["parameters"]["tm"]["value"] == pytest.approx(66.478, abs=0.05)
+    assert group["parameters"]["tm"]["value"] == pytest.approx(66.701, abs=0.05)
     assert group["lack_of_fit"]["repeats"] == pytest.approx(0.01 / 3.0**0.5, rel=1e-3)
     assert group["validation"]["rows"] == 26
 
@@ -106,7 +106,7 @@ def test_one_temperature_is_refused_and_held_parameters_do(home: Path, capsys: p
     assert "--hold a,beta,tm" in message
     parameters = data(capsys, "fit", "cold", "--hold", "a,beta,tm=70")["groups"][0]["parameters"]
     assert parameters["tm"] == {"value": 70.0, "unit": "degC", "interval": [70.0, 70.0], "held": True}
-    assert parameters["a"]["value"] == 0.234637 and not parameters["c"]["held"]
+    assert parameters["a"]["value"] == 0.224424 and not parameters["c"]["held"]
 
 
 def test_an_unknown_compound_has_nothing_published_to_hold(home: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -2,13 +2,16 @@
 
 Polymers 2024, 16(5), 596, doi 10.3390/polym16050596 (CC BY 4.0). The printed tables cannot be read everywhere; ``ok``
 rows can, ``reconstructed`` ones follow from others (the column ``note`` says from which), ``suspect`` ones contradict
-others, ``missing`` ones are not to be read. Nothing is filled in.
+others, ``missing`` ones are not to be read. ``inferred`` ones carry a value that was chosen because the paper's own
+results want it; the column ``printed`` has what stands there. They are evidence for nothing, and are left out unless a
+reading asks for them.
 """
 
 from __future__ import annotations
 
 import csv
 from collections.abc import Mapping
+from enum import Enum
 from importlib.resources import files
 from typing import Final
 
@@ -17,8 +20,19 @@ from tester.fit.law import FitPoint, Source, Sourced
 APPENDICES: Final[Mapping[str, str]] = {"appendix-a": "appendix_a.csv", "appendix-b": "appendix_b.csv"}
 """Names of the packaged sources, and their files."""
 READABLE: Final = frozenset({"ok", "reconstructed"})
+INFERRED: Final = "inferred"
 _AGAIN: Final = "_dupT"
 """Ends the group of rows that the paper prints a second time."""
+
+
+class Reading(Enum):
+    """What is done with inferred rows."""
+
+    WITHOUT = "without"
+    """They are left out. Every verdict is of this reading."""
+    PRINTED = "as printed"
+    INFERRED = "as inferred"
+    """They have the value that the paper's own results want: for comparison, never as evidence."""
 
 
 def rows(name: str) -> list[dict[str, str]]:
@@ -27,7 +41,12 @@ def rows(name: str) -> list[dict[str, str]]:
     return list(csv.DictReader(place.read_text(encoding="utf-8").splitlines()))
 
 
-def appendix(name: str) -> Sourced:
+def inferred_rows() -> list[dict[str, str]]:
+    """Return the rows whose value is inferred, of both appendices."""
+    return [row for name in APPENDICES for row in rows(name) if row["quality"] == INFERRED]
+
+
+def appendix(name: str, reading: Reading = Reading.WITHOUT) -> Sourced:
     """Return the conditions of an appendix that a law can be fitted to, and why others are left out.
 
     Laws know no sideslip; rows that the paper repeats count once. Raises KeyError for a name that is none.
@@ -36,18 +55,23 @@ def appendix(name: str) -> Sourced:
     points: list[FitPoint] = []
     left_out: list[tuple[str, str]] = []
     for row in rows(name):
-        reason = _reason(row)
+        reason = _reason(row, reading)
         if reason:
             left_out.append((row["row_id"], reason))
             continue
         held = (float(row["temp_C"]), float(row["load_N"]), 1e-3 * float(row["slip_mm_s"]))
-        points.append(FitPoint(row["row_id"], row["formula"], held, held, float(row["mu"]), source))
+        points.append(FitPoint(row["row_id"], row["formula"], held, held, _value(row, reading), source))
     return Sourced(tuple(points), tuple(left_out))
 
 
-def _reason(row: Mapping[str, str]) -> str:
+def _value(row: Mapping[str, str], reading: Reading) -> float:
+    return float(row["printed"] if row["quality"] == INFERRED and reading is Reading.PRINTED else row["mu"])
+
+
+def _reason(row: Mapping[str, str], reading: Reading) -> str:
     """Return why a row is left out, "" where it is not."""
-    if row["quality"] not in READABLE:
+    taken = row["quality"] in READABLE or (row["quality"] == INFERRED and reading is not Reading.WITHOUT)
+    if not taken:
         return f"quality: {row['quality']}"
     if float(row["angle_deg"]) != 0.0:
         return "sideslip: the laws know none"

@@ -1,20 +1,21 @@
 """The paper's claims held against its own data: Eqs 7 to 9 with Table 3, and fits to appendix A seen on appendix B.
 
 Polymers 2024, 16(5), 596, doi 10.3390/polym16050596 (CC BY 4.0), section 4.2 and appendices.
+Rows whose value is inferred are left out; what they would change is shown beside.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from math import exp
-from typing import Final
+from typing import Final, NamedTuple
 
 from sim.physics.friction import COMPOUNDS, V2_TEMPERATURE_C, PaperParameters
 from tester.fit.check import Errors, errors_of
 from tester.fit.joint import fit_only, predict
 from tester.fit.law import FitPoint, Law, by_group
 from tester.fit.part import Claim, PublishedTable, TableLine
-from tester.kinds.wheel_on_belt.fit.data import appendix
+from tester.kinds.wheel_on_belt.fit.data import Reading, appendix, inferred_rows
 from tester.kinds.wheel_on_belt.fit.laws import LOAD, PAPER, SLIP, TEMPERATURE, V2_LAW, joint_of
 from tester.kinds.wheel_on_belt.fit.staged import staged
 
@@ -24,29 +25,62 @@ ROWS: Final = 79
 TABLE_3_MEAN, TABLE_3_WITHIN, TABLE_3_NEAR = 0.1062, 0.0005, 36
 """Mean error of Eqs 7 to 9 with Table 3 on those rows, how near ours has to come, and rows within 5 %: what was found
 by an independent calculation."""
-V2_MEAN, V2_NEAR = 0.066, 36
-"""What v2, fitted to appendix A alone, has to reach on them: mean error at most, rows within 5 % at least."""
+V2_MEAN: Final = 0.066
+"""What v2, fitted to appendix A alone, has to reach on them: mean error at most; and more rows within 5 % than Eq 6."""
 
 Predicted = Callable[[Sequence[FitPoint]], list[float]]
 
 
+class Quoted(NamedTuple):
+    """An error that the paper quotes (section 4.2), of one condition."""
+
+    temperature_c: float
+    load_n: float
+    slip_m_s: float
+    printed: str
+    """In per cent, as it stands there."""
+
+    @property
+    def nominal(self) -> tuple[float, float, float]:
+        """Return the condition, in the order of the variables."""
+        return self.temperature_c, self.load_n, self.slip_m_s
+
+
+QUOTED_COMPOUND: Final = "1#"
+QUOTED: Final[Mapping[str, tuple[Quoted, ...]]] = {
+    "55 degC and 100, 200, 300, 400 N": (
+        Quoted(55.0, 100.0, 0.3, "1.5"), Quoted(55.0, 200.0, 0.3, "1.0"), Quoted(55.0, 300.0, 0.3, "2.5"),
+        Quoted(55.0, 400.0, 0.3, "2.4"),
+    ),
+    "200 mm/s and 40, 55, 70, 85 degC": (
+        Quoted(40.0, 200.0, 0.2, "0.8"), Quoted(55.0, 200.0, 0.2, "2.1"), Quoted(70.0, 200.0, 0.2, "1.1"),
+        Quoted(85.0, 200.0, 0.2, "2.47"),
+    ),
+}  # fmt: skip
+"""The eight errors that the paper quotes, all of 1# (sections 4.2.1 and 4.2.2)."""
+
+
 def of_table_3(points: Sequence[FitPoint]) -> list[float]:
     """Return Eqs 7 to 9 with Table 3, at the measured conditions."""
-    return _by_compound(PAPER, {name: joint_of(one) for name, one in COMPOUNDS.items()})(points)
+    return by_compound(PAPER, {name: joint_of(one) for name, one in COMPOUNDS.items()})(points)
 
 
-def scaled(points: Sequence[FitPoint]) -> list[float]:
-    """Return the coefficient measured at 25 degC, load and slip alike, times Table 3's f(T): no Eq 7 to 9 at all."""
+def scaled(points: Sequence[FitPoint], reading: Reading = Reading.WITHOUT) -> dict[str, float]:
+    """Return the coefficient measured at 25 degC, load and slip alike, times Table 3's f(T), by label of the condition.
+
+    No Eq 7 to 9 at all. A condition whose value at 25 degC cannot be read has none.
+    """
     cold = {
         (one.group, one.nominal[LOAD], one.nominal[SLIP]): one.value
-        for one in appendix(FIT).points
+        for one in appendix(FIT, reading).points
         if one.nominal[TEMPERATURE] == V2_TEMPERATURE_C
     }
-    return [
-        cold[one.group, one.nominal[LOAD], one.nominal[SLIP]]
-        * _thermal(COMPOUNDS[one.group], one.nominal[TEMPERATURE])
+    places = {one.label: (one.group, one.nominal[LOAD], one.nominal[SLIP]) for one in points}
+    return {
+        one.label: cold[places[one.label]] * _thermal(COMPOUNDS[one.group], one.nominal[TEMPERATURE])
         for one in points
-    ]  # fmt: skip
+        if places[one.label] in cold
+    }
 
 
 def _thermal(given: PaperParameters, temperature_c: float) -> float:
@@ -56,28 +90,48 @@ def _thermal(given: PaperParameters, temperature_c: float) -> float:
 def published_table() -> PublishedTable:
     """Return the table; raises MissingExtraError without what fits need."""
     a, b = appendix(FIT).points, appendix(VALIDATION).points
-    both = (*a, *b)
     table_3 = _on("Eqs 7 to 9 with Table 3", of_table_3, a, b)
-    v2 = _on("v2, fitted to appendix A", _fitted(V2_LAW, a), a, b)
-    lines = (
-        _judged_table_3(table_3),
-        _on("the paper's staged way", _by_compound(PAPER, staged(a)), a, b),
-        _on("Eq 6, all parameters at once", _fitted(PAPER, a), a, b),
-        _judged_v2(v2),
-        _on("v2, fitted to A and B (*)", _fitted(V2_LAW, both), both, b),
-        TableLine("measured at 25 degC, times f(T) (*)", errors_of([], []), _errors(scaled, b)),
-    )
+    staged_way, eq_6, v2, *others = _ways(Reading.WITHOUT, b)
+    inferred = " and ".join(row["row_id"] for row in inferred_rows())
     title = (
         f"{len(b)} rows of appendix B of doi 10.3390/polym16050596, "
-        f"{len(a)} of appendix A (rows not readable, suspect, printed twice or with sideslip left out)"
+        f"{len(a)} of appendix A (rows not readable, inferred, suspect, printed twice or with sideslip left out)"
     )
-    return PublishedTable(title, lines, _claims(table_3.validation, b), _REMARKS)
+    return PublishedTable(
+        title,
+        (_judged_table_3(table_3), staged_way, eq_6, _judged_v2(v2, eq_6), *others),
+        {
+            f"with {inferred} {reading.value}": tuple(_ways(reading, b))
+            for reading in Reading
+            if reading is not Reading.WITHOUT
+        },
+        _claims(table_3.validation),
+        _REMARKS,
+    )
 
 
 _REMARKS: Final = (
     "(*) no prediction: it has seen these rows, or needs a value measured at their load and slip.",
+    "Rows as inferred have the value that Table 3 and the quoted errors want: what agrees then shows nothing.",
     "The simulated rig follows the paper's model unless told, and so has its misfit: sim.friction_model: v2 is nearer.",
 )
+
+
+def _ways(reading: Reading, b: Sequence[FitPoint]) -> list[TableLine]:
+    """Return the lines that depend on what is done with inferred rows."""
+    a = appendix(FIT, reading).points
+    both, times_f = (*a, *b), scaled(b, reading)
+    seen = [one for one in b if one.label in times_f]
+    return [
+        _on("the paper's staged way", by_compound(PAPER, staged(a)), a, b),
+        _on("Eq 6, all parameters at once", fitted(PAPER, a), a, b),
+        _on("v2, fitted to appendix A", fitted(V2_LAW, a), a, b),
+        _on("v2, fitted to A and B (*)", fitted(V2_LAW, both), both, b),
+        TableLine(
+            "measured at 25 degC, times f(T) (*)", errors_of([], []),
+            errors_of([times_f[one.label] for one in seen], [one.value for one in seen]),
+        ),
+    ]  # fmt: skip
 
 
 def _judged_table_3(line: TableLine) -> TableLine:
@@ -92,46 +146,62 @@ def _judged_table_3(line: TableLine) -> TableLine:
     return TableLine(line.way, line.fitted, found, asked, met)
 
 
-def _judged_v2(line: TableLine) -> TableLine:
-    found = line.validation
-    met = found.rows == ROWS and found.mean <= V2_MEAN and found.near >= V2_NEAR
+def _judged_v2(line: TableLine, eq_6: TableLine) -> TableLine:
+    found, other = line.validation, eq_6.validation
+    met = found.rows == ROWS and found.mean <= V2_MEAN and found.near > other.near
     asked = (
-        f"mean at most {100.0 * V2_MEAN:.1f} %, at least {V2_NEAR} rows within 5 %; "
-        f"found {100.0 * found.mean:.2f} %, {found.near}"
+        f"mean at most {100.0 * V2_MEAN:.1f} %, more rows within 5 % than Eq 6; "
+        f"found {100.0 * found.mean:.2f} %, {found.near} against {other.near}"
     )
     return TableLine(line.way, line.fitted, found, asked, met)
 
 
-def _claims(found: Errors, b: Sequence[FitPoint]) -> tuple[Claim, ...]:
-    quoted = {
-        "0.8 %, 2.1 % and 2.47 % (1#, 200 mm/s at 40, 55 and 85 degC)": [(40.0, 200.0, 0.2), (55.0, 200.0, 0.2),
-                                                                     (85.0, 200.0, 0.2)],
-        "2.4 % (1#, 400 N at 55 degC)": [(55.0, 400.0, 0.3)],
-    }  # fmt: skip
+def _claims(found: Errors) -> tuple[Claim, ...]:
     claims = [
         Claim(
             "errors within 5 %",
             f"{found.near} of {found.rows} rows within 5 %, {found.far} within 10 %, largest {found.largest:.0%}",
         )
     ]
-    for said, places in quoted.items():
-        rows = [one for place in places for one in b if one.group == "1#" and one.nominal == place]
-        equations, shifted = (_list(predicted(rows), rows) for predicted in (of_table_3, scaled))
-        claims.append(
-            Claim(said, f"{equations} by Eqs 7 to 9; {shifted} by the value measured at 25 degC times f(T)")
-        )  # fmt: skip
+    for where, quoted in QUOTED.items():
+        said = ", ".join(one.printed for one in quoted)
+        claims.append(Claim(f"{said} % ({QUOTED_COMPOUND} at {where})", _answer(quoted)))
     return tuple(claims)
 
 
-def _list(predicted: Iterable[float], rows: Sequence[FitPoint]) -> str:
-    return ", ".join(f"{abs(p / one.value - 1.0):.1%}" for p, one in zip(predicted, rows, strict=True))
+def quoted_rows(quoted: Sequence[Quoted]) -> list[FitPoint]:
+    """Return the rows of the appendices that errors are quoted of, in their order."""
+    rows = (*appendix(FIT).points, *appendix(VALIDATION).points)
+    at = {one.nominal: one for one in rows if one.group == QUOTED_COMPOUND}
+    return [at[one.nominal] for one in quoted]
 
 
-def _fitted(law: Law, points: Sequence[FitPoint]) -> Predicted:
-    return _by_compound(law, {group: fit_only(law, group, own) for group, own in by_group(points).items()})
+def _answer(quoted: Sequence[Quoted]) -> str:
+    """Return the errors of Eqs 7 to 9 and those of a measured value times f(T), by every reading that matters."""
+    rows = quoted_rows(quoted)
+    told = [f"{_list(dict(zip((one.label for one in rows), of_table_3(rows), strict=True)), rows)} by Eqs 7 to 9"]
+    way = "by the value measured at 25 degC times f(T)"
+    ways = {reading: scaled(rows, reading) for reading in Reading}
+    if ways[Reading.WITHOUT]:
+        told.append(f"{_list(ways[Reading.WITHOUT], rows)} {way}")
+    else:
+        told.append(f"none {way}, which is not read")
+        told += [f"{_list(ways[reading], rows)} with it {reading.value}" for reading in Reading if ways[reading]]
+    return "; ".join(told)
 
 
-def _by_compound(law: Law, parameters: Mapping[str, Sequence[float]]) -> Predicted:
+def _list(predicted: Mapping[str, float], rows: Sequence[FitPoint]) -> str:
+    return ", ".join(f"{abs(predicted[one.label] / one.value - 1.0):.1%}" for one in rows)
+
+
+def fitted(law: Law, points: Sequence[FitPoint]) -> Predicted:
+    """Return what a law predicts that is fitted to some conditions; raises MissingExtraError."""
+    return by_compound(law, {group: fit_only(law, group, own) for group, own in by_group(points).items()})
+
+
+def by_compound(law: Law, parameters: Mapping[str, Sequence[float]]) -> Predicted:
+    """Return what a law predicts with the parameters of each compound."""
+
     def predicted(points: Sequence[FitPoint]) -> list[float]:
         return [predict(law, parameters[one.group], [one])[0] for one in points]
 

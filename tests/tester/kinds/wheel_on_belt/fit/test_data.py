@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from setuptools import Distribution
 
-from tester.kinds.wheel_on_belt.fit.data import APPENDICES, appendix, rows
+from tester.kinds.wheel_on_belt.fit.data import APPENDICES, Reading, appendix, rows
 
 ROOT = Path(__file__).parents[5]
 
@@ -19,7 +19,9 @@ def test_every_row_of_both_appendices_is_there() -> None:
 
 def test_rows_have_a_quality_and_doubtful_ones_a_reason() -> None:
     every = [row for name in APPENDICES for row in rows(name)]
-    assert Counter(row["quality"] for row in every).keys() == {"ok", "reconstructed", "suspect", "missing"}
+    assert Counter(row["quality"] for row in every).keys() == {
+        "ok", "reconstructed", "inferred", "suspect", "missing",
+    }  # fmt: skip
     assert all(row["note"] for row in every if row["quality"] != "ok")
 
 
@@ -30,7 +32,7 @@ def test_a_missing_value_is_not_filled_in() -> None:
 
 def test_fits_get_the_readable_rows_each_once() -> None:
     a, b = appendix("appendix-a"), appendix("appendix-b")
-    assert (len(a.points), len(a.left_out)) == (36, 21)
+    assert (len(a.points), len(a.left_out)) == (34, 23)
     assert (len(b.points), len(b.left_out)) == (79, 5)
     for one in (a, b):
         assert len({(point.group, point.nominal) for point in one.points}) == len(one.points)
@@ -42,8 +44,18 @@ def test_what_is_left_out_says_why() -> None:
         "printed twice": 12,
         "sideslip: the laws know none": 6,
         "quality: suspect": 6,
+        "quality: inferred": 2,
         "quality: missing": 2,
     }
+
+
+@pytest.mark.parametrize(
+    ("reading", "values"), [(Reading.PRINTED, [0.51, 0.52]), (Reading.INFERRED, [0.58, 0.61])], ids=lambda one: str(one)
+)
+def test_inferred_rows_come_as_printed_or_as_inferred_when_asked_for(reading: Reading, values: list[float]) -> None:
+    usual, found = appendix("appendix-a"), appendix("appendix-a", reading)
+    added = [one for one in found.points if one.label not in {known.label for known in usual.points}]
+    assert [(one.label, one.value) for one in added] == [("A027", values[0]), ("A036", values[1])]
 
 
 def test_speeds_are_in_metres_a_second() -> None:
