@@ -187,7 +187,7 @@ def shift_doubts(table: ModuliTable, glass_c: float | None, decade_k: float | No
     frequencies = table.frequencies_hz
     if len(frequencies) == 1:
         if decade_k is None:
-            yield f"measured at {frequencies[0]:g} Hz alone, and decade_k is not said: 8 K a decade [A] counts"
+            yield f"measured at {frequencies[0]:g} Hz alone, and decade_k is not said: 8 K a decade (paper G) counts"
         if high - low < 2.0 * (decade_k or 8.0):
             yield f"{high - low:g} K at one frequency stand for less than two decades"
         return

@@ -26,7 +26,7 @@ SURFACES = [one.name for one in LIBRARY.entries("surface")]
 
 def test_what_ships() -> None:
     assert sorted(COMPOUNDS) == ["1#", "2#", "3#", "NBR", "NR", "SBR", "tread", "tread soft"]
-    assert sorted(SURFACES) == ["S0", "glass", "road", "silicon carbide"]
+    assert sorted(SURFACES) == ["S0", "anti-slip tape", "glass", "road", "silicon carbide"]
 
 
 @pytest.mark.parametrize("name", COMPOUNDS)
@@ -38,12 +38,27 @@ def test_a_compound_is_read_without_a_doubt(name: str) -> None:
 @pytest.mark.parametrize("name", SURFACES)
 def test_a_surface_is_read_without_a_doubt(name: str) -> None:
     one = LIBRARY.surface_file(name)
-    assert one.file.doubts == () and one.model.source and "[A]" in one.model.source
+    assert one.file.doubts == () and one.model.source and ("[A]" in one.model.source or "doi " in one.model.source)
 
 
 @pytest.mark.parametrize("name", [name for name in COMPOUNDS if not name.endswith("#")])
 def test_an_invented_compound_says_so(name: str) -> None:
     assert "[A]" in (LIBRARY.compound(name).model.source or "")
+
+
+@pytest.mark.parametrize(
+    ("name", "rubber", "filler", "sulphur", "sum_phr"),
+    [("1#", 100.0, 60.0, 1.1, 171.3), ("2#", 100.0, 60.0, 1.2, 177.3), ("3#", 100.0, 55.0, 1.4, 169.07)],
+)
+def test_the_papers_compounds_are_those_of_its_table_1(
+    name: str, rubber: float, filler: float, sulphur: float, sum_phr: float
+) -> None:
+    model = LIBRARY.compound(name).model
+    parts = model.formulation
+    assert sum(parts.get(one, 0.0) for one in ("NR", "3#RSS", "STR20", "BR")) == rubber
+    assert sum(parts.get(one, 0.0) for one in ("N234", "N115", "175GR")) == filler
+    assert (parts["S"], parts["ZnO"], sum(parts.values())) == (sulphur, 3.5, pytest.approx(sum_phr))
+    assert model.cure is not None and (model.cure.temperature, model.cure.time) == (150.0, 1500.0)
 
 
 @pytest.mark.parametrize("name", list(RUBBERS))

@@ -16,8 +16,8 @@ _COLD: Final = Figure("ambient_c", offset=-10.0)
 """Low end of a temperature's bar, degC [A]."""
 _TOP: Final = 1.1
 """A bar ends this much beyond its limit [A]."""
-_FRICTION_TOP: Final = Figure(offset=2.0)
-"""Top of the coefficient's bar [A]: rubber on abrasive cloth stays below 1.6 (doi 10.3390/polym16050596, Table 2)."""
+_FRICTION_TOP: Final = Figure(offset=3.0)
+"""Top of the coefficient's bar: the largest that is printed is 2.59 (doi 10.3390/polym16050596, appendix B)."""
 _FORCE: Final = 600.0
 """End of the load cell, N [A], and of the bars of its horizontal forces."""
 _MOMENT: Final = 20.0

@@ -105,7 +105,7 @@ def doubts_of(rows: Sequence[ModuliRow], glass_c: float | None, decade_k: float 
 def test_one_frequency_without_a_decade_is_doubted() -> None:
     assert doubts_of(sweep(), None, 8.0) == []
     (doubt,) = doubts_of(sweep(), None, None)
-    assert doubt == "measured at 1 Hz alone, and decade_k is not said: 8 K a decade [A] counts"
+    assert doubt == "measured at 1 Hz alone, and decade_k is not said: 8 K a decade (paper G) counts"
 
 
 def test_a_narrow_sweep_at_one_frequency_is_doubted() -> None:

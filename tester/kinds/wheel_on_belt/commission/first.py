@@ -48,8 +48,8 @@ TOLD_SHARE: Final = 0.25
 REFUSED_SHARE: Final = 0.5
 """A first coefficient this far off its compound's model is told of, or refused [A]: the paper's compounds are
 a quarter to a third apart."""
-LEAST_MU, MOST_MU = 0.1, 2.5
-"""Of rubber on an abrasive, whatever it is made of [A]."""
+LEAST_MU, MOST_MU = 0.1, 3.0
+"""Of rubber on an abrasive, whatever it is made of [A]: the paper has 0.31 to 2.59."""
 ANGLE_DEG: Final = 1.5
 """An apparent angle is refused beyond this and its uncertainty [A]: 0.5 degrees of mounting, 0.5 % of crosstalk."""
 
