@@ -24,6 +24,7 @@ from tester.base.plain import FORBIDDEN, harmless
 from tester.base.trouble import in_words
 from tester.base.units import shown
 from tester.base.yaml_events import Events
+from tester.base.yaml_trouble import plainer
 
 if TYPE_CHECKING:
     from pydantic import BaseModel, ValidationError
@@ -194,7 +195,7 @@ class _Builder:
         except MarkedYAMLError as error:
             mark = error.problem_mark or error.context_mark
             line, column = (mark.line + 1, mark.column + 1) if mark else (1, 1)
-            message = f"not YAML: {_plainer(error)}"
+            message = f"not YAML: {plainer(error, self.tree.text, line)}"
             raise InvalidSource([*self.problems, Problem(self.tree.name, line, column, message)]) from error
         except (ValueError, OverflowError) as error:
             # chr() and int() inside the scanner, of an escape or a directive beyond their range.
@@ -301,14 +302,3 @@ class _Builder:
 
     def _refuse(self, event: ev.Event, message: str) -> None:
         self.problems.append(Problem(self.tree.name, *self.events.place(event), message))
-
-
-def _plainer(error: MarkedYAMLError) -> str:
-    """Return PyYAML's message in one line, in plain words where its own are hard to understand."""
-    message = " ".join(f"{error.problem or ''}".split())
-    if "'\\t'" in message:
-        return "a tab where spaces are due (indent with spaces)"
-    if "mapping values are not allowed" in message:
-        return "a colon is not expected here (a text that holds ': ' needs quotes)"
-    context = " ".join(f"{error.context or ''}".split())
-    return printable(f"{message} {context}".strip())
