@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from itertools import islice
 from typing import TYPE_CHECKING, get_args
 
@@ -16,6 +16,11 @@ if TYPE_CHECKING:
     from pydantic import ValidationError
     from pydantic.fields import FieldInfo
     from pydantic_core import ErrorDetails
+
+NEARLY, SOMEWHAT = 0.75, 0.6
+"""How like a key has to be to one that it is taken for (difflib), before and after what its words mean."""
+SHORTEST = 3
+"""A word of fewer letters says too little."""
 
 _EXPECTED = {
     "int_type": "a whole number",
@@ -52,8 +57,10 @@ def _misspelt(
     for detail in details:
         if detail["type"] == "extra_forbidden":
             at, _ = _locate(detail["loc"], tree.data)
-            for near in _nearest(str(detail["loc"][-1]), list(_fields(model, at[:-1]))):
-                yield at, near
+            key = str(detail["loc"][-1])
+            near = _meant(key, model, at, tree)
+            for name in near if not _elsewhere(key, near, model) else ():
+                yield at, name
 
 
 def _is_meant(detail: ErrorDetails, tree: Tree, meant: set[tuple[Location, str]]) -> bool:
@@ -67,7 +74,7 @@ def _problem(detail: ErrorDetails, tree: Tree, model: type[BaseModel] | None, mi
     at, value = _locate(detail["loc"], tree.data)
     kind, key = detail["type"], str(detail["loc"][-1]) if detail["loc"] else ""
     if kind == "extra_forbidden":
-        return Problem(tree.name, *tree.key_position(at), _unknown(key, list(_fields(model, at[:-1]))))
+        return Problem(tree.name, *tree.key_position(at), _unknown(key, model, at, tree))
     if kind == "missing":
         said = _missing(key, _fields(model, at).get(key)) + (f"; {missing}" if missing else "")
         return Problem(tree.name, *tree.key_position(at), said)
@@ -111,15 +118,76 @@ def _models_in(annotation: object) -> Iterator[type[BaseModel]]:
         yield from _models_in(inner)
 
 
-def _nearest(key: str, valid: list[str]) -> list[str]:
-    """Return the valid key that is nearest to one, none where none is near."""
-    tidy = key.strip().casefold().replace("-", "_").replace(" ", "_")
-    return difflib.get_close_matches(tidy[:40], valid, n=1, cutoff=0.6)
+def _meant(key: str, model: type[BaseModel] | None, at: Location, tree: Tree) -> list[str]:
+    """Return the keys that an unknown one at a location was probably meant to be; none where none is like it.
+
+    Keys that are not written yet come before those that are, and of them those that have to be there.
+    """
+    valid = _fields(model, at[:-1])
+    free = {name: info for name, info in valid.items() if (*at[:-1], name) not in tree.keys}
+    return _nearest(key, free) or difflib.get_close_matches(_tidy(key), list(valid), n=1, cutoff=NEARLY)
 
 
-def _unknown(key: str, valid: list[str]) -> str:
-    near = _nearest(key, valid)
-    meant = f", did you mean {near[0]}?" if near else ""
+def _nearest(key: str, free: Mapping[str, FieldInfo]) -> list[str]:
+    """Return the keys of ``free`` that are most like one; required ones come first.
+
+    One that is spelt nearly so; else those whose name, or whose quantity's, has all of its words: ``slip_speed`` is a
+    slip velocity, which is a speed, and ``angle`` the sideslip or the camber; else one that is spelt somewhat so.
+    """
+    due = {name: info for name, info in free.items() if info.is_required()}
+    for like in (_spelt_nearly, _of_the_words, _spelt_somewhat):
+        if found := like(key, due) or like(key, free):
+            return found
+    return []
+
+
+def _spelt_nearly(key: str, fields: Mapping[str, FieldInfo]) -> list[str]:
+    return difflib.get_close_matches(_tidy(key), list(fields), n=1, cutoff=NEARLY)
+
+
+def _spelt_somewhat(key: str, fields: Mapping[str, FieldInfo]) -> list[str]:
+    return difflib.get_close_matches(_tidy(key), list(fields), n=1, cutoff=SOMEWHAT)
+
+
+def _of_the_words(key: str, fields: Mapping[str, FieldInfo]) -> list[str]:
+    """Return the keys that have all words of one, or the beginnings of theirs, in their name or their quantity's."""
+    words = tuple(word for word in _tidy(key).split("_") if word)
+    if not words or any(len(word) < SHORTEST for word in words):
+        return []
+    found: list[str] = []
+    for name, info in fields.items():
+        known = [*name.split("_"), *_quantity_in(info).partition(" such as")[0].split()]
+        if all(any(one.startswith(word) for one in known) for word in words):
+            found.append(name)
+    return found[:2]
+
+
+def _tidy(key: str) -> str:
+    return key.strip().casefold().replace("-", "_").replace(" ", "_")[:40]
+
+
+def _elsewhere(key: str, near: list[str], model: type[BaseModel] | None) -> list[str]:
+    """Return the sections that have the very key, where none is nearly spelt so here."""
+    if model is None or difflib.get_close_matches(_tidy(key), near, cutoff=NEARLY):
+        return []
+    return list(dict.fromkeys(_sections_with(key, model)))
+
+
+def _sections_with(key: str, model: type[BaseModel], section: str = "") -> Iterator[str]:
+    """Yield the names of the sections of a file, itself left out, that have a key."""
+    for name, info in model.model_fields.items():
+        if section and (info.alias or name) == key:
+            yield section
+        for below in dict.fromkeys(_models_in(info.annotation)):
+            yield from _sections_with(key, below, info.alias or name)
+
+
+def _unknown(key: str, model: type[BaseModel] | None, at: Location, tree: Tree) -> str:
+    near, valid = _meant(key, model, at, tree), list(_fields(model, at[:-1]))
+    elsewhere = _elsewhere(key, near, model)
+    meant = f", did you mean {' or '.join(near)}?" if near else ""
+    if elsewhere:
+        meant = f" here: it goes into {' or '.join(elsewhere)}"
     listed = f" (expected one of {', '.join(valid)})" if valid else ""
     return f"unknown key {shown(key)}{meant}{listed}"
 

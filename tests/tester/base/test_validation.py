@@ -28,3 +28,35 @@ def test_a_key_that_is_missing_besides_stays_a_problem() -> None:
 def test_a_number_beyond_every_range_says_so(text: str, how: str) -> None:
     with pytest.raises(UnitError, match=f"is too {how} "):
         parse(text, "N")
+
+
+def _unknown_of(text: str) -> list[str]:
+    """Return what is said of unknown keys, up to the list of the known ones."""
+    with pytest.raises(InvalidSource) as caught:
+        load_recipe(text, PART)
+    return [one.message.partition(" (")[0] for one in caught.value.problems]
+
+
+def test_a_missing_key_is_suggested_before_one_that_is_nearer_in_spelling() -> None:
+    assert _unknown_of(SMALL.replace("slip_velocity:", "slip_speed:")) == [
+        'unknown key "slip_speed", did you mean slip_velocity?'
+    ]
+
+
+@pytest.mark.parametrize(
+    ("key", "meant"),
+    [("angle: 5 deg", "sideslip or camber"), ("repeat: 3", "repeats"), ("sidesilp: 5 deg", "sideslip")],
+)
+def test_a_key_is_known_by_its_spelling_or_by_what_its_quantity_is_called(key: str, meant: str) -> None:
+    said = _unknown_of(SMALL.replace("    slip_velocity:", f"    {key}\n    slip_velocity:"))
+    assert said == [f'unknown key "{key.partition(":")[0]}", did you mean {meant}?']
+
+
+def test_a_key_of_another_section_is_told_where_it_goes() -> None:
+    assert _unknown_of(f"sideslip: 5 deg\n{SMALL}") == ['unknown key "sideslip" here: it goes into grids']
+
+
+def test_a_key_that_is_there_is_not_suggested_for_another() -> None:
+    assert _unknown_of(SMALL.replace("    slip_velocity:", "    slip_speed: 1 m/s\n    slip_velocity:")) == [
+        'unknown key "slip_speed", did you mean wheel_speed?'
+    ]
