@@ -19,6 +19,8 @@ MANIFEST = "manifest.json"
 """Written at a run's end, whatever the end: a run without one was cut off, or is under way."""
 
 
+NAMED = 4
+"""Runs that a message names at most."""
 LATEST = "latest"
 """In place of a run's name: the newest run."""
 _STAMPED = re.compile(r"\d{4}-\d{2}-\d{2}T\d{2}-\d{2}-\d{2}(?=-)")
@@ -28,8 +30,9 @@ _STAMPED = re.compile(r"\d{4}-\d{2}-\d{2}T\d{2}-\d{2}-\d{2}(?=-)")
 def find_run(name: str, under: Path = RUNS) -> Path:
     """Return the folder of a run, given as a folder, its ``run.db`` or a name under ``under``.
 
-    ``latest`` is the newest run under ``under``, ``FOLDER/latest`` the newest under another folder; a folder of that
-    very name comes first. Raises StoreError naming where it was looked for, and the nearest name there is.
+    The beginning of a name does where one run alone begins so. ``latest`` is the newest run under ``under``,
+    ``FOLDER/latest`` the newest under another folder; a folder of that very name comes first. Raises StoreError naming
+    where it was looked for, and the runs that begin so, or the nearest name there is.
     """
     for folder in (Path(name), under / name):
         if (folder / DATABASE).is_file():
@@ -42,9 +45,25 @@ def find_run(name: str, under: Path = RUNS) -> Path:
         if found is not None:
             return found
         raise StoreError(f"no run {name}: there is no run under {there}")
+    begin_so = _beginning_with(name, under)
+    if len(begin_so) == 1:
+        return begin_so[0]
+    if begin_so:
+        listed = ", ".join(folder.name for folder in begin_so[:NAMED])
+        more = f" and {len(begin_so) - NAMED} more" if len(begin_so) > NAMED else ""
+        raise StoreError(f"no run {name}: {len(begin_so)} runs begin so: {listed}{more}")
     near = get_close_matches(name, [folder.name for folder in run_folders(under)], 1)
     hint = f", did you mean {near[0]}?" if near else ""
     raise StoreError(f"no run {name}: neither a run folder nor a name under {under}{hint}")
+
+
+def _beginning_with(name: str, under: Path) -> list[Path]:
+    """Return the runs whose names begin like the last part of ``name``, in the folder that it names or ``under``."""
+    path = Path(name)
+    if not path.name or path.name.startswith("."):
+        return []
+    there = under if path.parent == Path() else path.parent
+    return [folder for folder in run_folders(there) if folder.name.startswith(path.name)]
 
 
 def newest_run(under: Path = RUNS) -> Path | None:

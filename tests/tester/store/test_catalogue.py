@@ -20,6 +20,15 @@ def test_a_run_is_found_by_folder_file_or_name(tmp_path: Path) -> None:
     assert find_run("one", tmp_path / "runs") == folder
 
 
+def test_a_beginning_names_the_run_that_alone_begins_so(tmp_path: Path) -> None:
+    first = small_run(tmp_path / "2024-02-22T10-00-00-a")
+    second = small_run(tmp_path / "2024-02-22T10-30-00-b")
+    assert find_run("2024-02-22T10-3", tmp_path) == second
+    assert find_run(str(tmp_path / "2024-02-22T10-00")) == first
+    with pytest.raises(StoreError, match="2 runs begin so: 2024-02-22T10-00-00-a, 2024-02-22T10-30-00-b"):
+        find_run("2024-02-22", tmp_path)
+
+
 def test_what_is_no_run_is_refused(tmp_path: Path) -> None:
     (tmp_path / "empty").mkdir()
     with pytest.raises(StoreError, match="no run empty"):
