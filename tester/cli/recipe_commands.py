@@ -57,10 +57,9 @@ def check(
     and its surface is said as a warning.
     """
     from tester.base.source import InvalidSource
-    from tester.recipe.check import load_checked
     from tester.recipe.conditions import conditions_of
     from tester.recipe.reference import REFERENCE, ReferenceSection
-    from tester.run.kinds import recipe_part
+    from tester.run.kinds import checked_recipe, recipe_part
     from tester.run.materials import used_materials
     from tester.run.rigs import load_rig
 
@@ -68,7 +67,7 @@ def check(
     rig = load_rig(rig_name, overrides, accept_risk)
     part = recipe_part(rig)
     try:
-        loaded = load_checked(path, rig, part, name)
+        loaded = checked_recipe(path, rig, name)
         used = used_materials(loaded.recipe, path)
     except InvalidSource as error:
         if not as_json:
@@ -131,12 +130,11 @@ def plan(
     out: Path | None,
 ) -> None:
     """List the steps of RECIPE (a file, or the name of a packaged recipe) with durations and totals."""
-    from tester.recipe.check import load_checked
     from tester.recipe.describe import lines
     from tester.recipe.estimate import estimate
     from tester.recipe.plan_json import json_chunks
     from tester.recipe.precision import PrecisionError, precision_lines, s_percents, until_for_total, with_precision
-    from tester.run.kinds import recipe_part
+    from tester.run.kinds import checked_recipe, recipe_part
     from tester.run.rigs import load_rig
 
     if precision is not None and total is not None:
@@ -147,7 +145,7 @@ def plan(
     path, name = recipe_file(recipe)
     rig = load_rig(rig_name, overrides, accept_risk)
     part = recipe_part(rig)
-    wanted = load_checked(path, rig, part, name).recipe
+    wanted = checked_recipe(path, rig, name).recipe
     if total is not None:
         try:
             precision = until_for_total(total, part.expand(wanted, rig), part.estimator(rig))

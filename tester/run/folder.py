@@ -11,12 +11,11 @@ from tester.base import clock
 from tester.machine.results import condition_records
 from tester.machine.run_parts import Part
 from tester.machine.served import History
-from tester.recipe.check import load_checked
 from tester.recipe.plan import Plan
 from tester.recipe.schema import Recipe
 from tester.rig import Rig
 from tester.run.endings import CannotStartError
-from tester.run.kinds import recipe_part, run_parts
+from tester.run.kinds import checked_recipe, recipe_part, run_parts
 from tester.run.rigs import load_rig_text
 from tester.run.set_up import GoodRun
 from tester.store.files import write_text
@@ -79,7 +78,7 @@ def write_sources(folder: Path, recipe_text: str, rig: Rig) -> None:
 def read_work(folder: Path) -> Work:
     """Return the work of a run's folder; raises InvalidSource where its files are not as they were written."""
     rig = load_rig_text(folder / "rig.yaml")
-    return work_of(load_checked(folder / "recipe.yaml", rig, recipe_part(rig)).recipe, rig)
+    return work_of(checked_recipe(folder / "recipe.yaml", rig).recipe, rig)
 
 
 def make_folder(out: Path, name: str) -> Path:

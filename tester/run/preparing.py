@@ -6,11 +6,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from recipes import find
-from tester.recipe.check import load_checked
 from tester.recipe.estimate import Estimate
 from tester.recipe.loader import LoadedRecipe
 from tester.run.folder import Work, work_of
-from tester.run.kinds import recipe_part
+from tester.run.kinds import checked_recipe, recipe_part
 from tester.run.materials import UsedMaterials, used_materials
 from tester.run.rigs import load_rig
 
@@ -30,7 +29,7 @@ def prepared(recipe: str, rig_name: str, overrides: tuple[str, ...], accept_risk
     """Read and plan a recipe. Raises InvalidSource, UnknownRecipe."""
     rig = load_rig(rig_name, overrides, accept_risk)
     path = find(recipe)
-    loaded = load_checked(path, rig, recipe_part(rig))
+    loaded = checked_recipe(path, rig)
     work = work_of(loaded.recipe, rig)
     materials = used_materials(loaded.recipe, path)
     return Prepared(path, loaded, work, recipe_part(rig).estimate(work.plan, rig), materials)

@@ -14,11 +14,10 @@ from pathlib import Path
 from tester.base import clock
 from tester.base.source import read_tree
 from tester.machine.results import condition_records
-from tester.recipe.check import load_checked
 from tester.recipe.plan import Plan
 from tester.recipe.schema import Recipe
 from tester.rig import Rig
-from tester.run.kinds import recipe_part
+from tester.run.kinds import checked_recipe, recipe_part
 from tester.run.materials import KeptFile, kept_files, put_back, used_materials, write_materials
 from tester.run.provenance import PACKAGED, accepted_risks, calibration_of, session_info
 from tester.run.rigs import load_rig, load_rig_text
@@ -77,7 +76,7 @@ def prepare(folder: Path, reason: str, operator: str, accept_risk: str = "") -> 
     if risks and not accept_risk:
         return f"{risks[LOOSE_KEYS]}: --accept-risk REASON goes on all the same"
     part = recipe_part(found.rig)
-    recipe = load_checked(found.recipe_text, found.rig, part, str(folder / "recipe.yaml"))
+    recipe = checked_recipe(found.recipe_text, found.rig, str(folder / "recipe.yaml"))
     plan = part.expand(recipe.recipe, found.rig)
     conditions = list(condition_records(plan))
     refused = _another_plan(conditions, stored)

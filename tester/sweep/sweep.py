@@ -11,9 +11,8 @@ from typing import Protocol
 from recipes import find
 from tester.axes import Axes
 from tester.base.exits import EXIT_DONE, EXIT_INCOMPLETE, EXIT_INTERRUPTED
-from tester.recipe.check import load_checked
 from tester.run.folder import make_folder
-from tester.run.kinds import recipe_part, served_kind
+from tester.run.kinds import checked_recipe, served_kind
 from tester.run.materials import kept_files, used_materials
 from tester.run.rigs import load_rig
 from tester.sweep.case import CaseResult, SweepTask, not_run, run_case
@@ -80,7 +79,7 @@ def prepare_sweep(options: SweepOptions) -> Sweep:
     held: Axes | None = None
     for point in points_of(options.axes):
         rig = load_rig(options.rig, overrides_of(options.axes, point))
-        recipe = load_checked(path, rig, recipe_part(rig))
+        recipe = checked_recipe(path, rig)
         name, recipe_text, rig_text = recipe.recipe.recipe, recipe.tree.text, rig.text
         held = recipe.recipe.axes
         materials = kept_files(used_materials(recipe.recipe, path).files)

@@ -6,10 +6,11 @@ from dataclasses import replace
 
 import pytest
 
+from recipes import find
 from tester import kinds
 from tester.base.source import InvalidSource
 from tester.kinds.wheel_on_belt import KIND
-from tester.run.kinds import run_parts, served_kind
+from tester.run.kinds import checked_recipe, run_parts, served_kind
 from tester.run.rigs import load_rig, load_rig_text
 
 
@@ -27,3 +28,17 @@ def test_a_rig_of_a_kind_without_runs_is_refused_with_what_is_missing(monkeypatc
         load_rig("sim")
     with pytest.raises(InvalidSource, match="brings no runs"):
         load_rig_text(text)
+
+
+def test_a_recipe_without_a_kind_that_is_written_for_another_one_is_refused_for_that_alone() -> None:
+    text = find("quickstart").read_text(encoding="utf-8")
+    with pytest.raises(InvalidSource) as caught:
+        checked_recipe(text, load_rig("grosch"), "q.yaml")
+    (problem,) = caught.value.problems
+    assert "the keys are of a recipe for a rig of kind wheel_on_belt (such as --rig sim), rig" in problem.message
+
+
+def test_a_recipe_with_one_mistake_is_not_taken_for_one_of_another_kind() -> None:
+    text = find("quickstart").read_text(encoding="utf-8").replace("pre_grind:", "pregrind:")
+    with pytest.raises(InvalidSource, match=r'unknown key "pregrind", did you mean pre_grind\?'):
+        checked_recipe(text, load_rig("sim"), "q.yaml")
