@@ -8,6 +8,7 @@ import click
 from click.core import ParameterSource
 
 from tester.cli.options import json_option, rig_option, risk_option, seed_option, set_option
+from tester.cli.recipe_commands import recipe_file
 
 NOT_DETACHED = {
     "out": "--out", "bus_log": "--bus-log", "faults": "--fault", "jobs": "--jobs", "as_json": "--json",
@@ -82,6 +83,7 @@ def run(
     if take:
         raise click.UsageError("--take: a run in the foreground needs nobody's control; it goes with --detach")
 
+    recipe_file(recipe)
     if not as_json:
         # What the run needs takes a moment to load: say what has been begun before that.
         click.echo(f"{recipe} on rig {rig_name}", err=True)
