@@ -16,6 +16,7 @@ from rich.progress import BarColumn, Progress, TaskID, TextColumn
 from rich.text import Text
 
 from tester.base.keys import FAST_STOP, HELP, HOLD, STOP, commands_of, pieces_of
+from tester.base.words import duration
 from tester.cli.ending import ending_lines
 from tester.cli.keys import keys_of
 from tester.machine.context import Progress as RunProgress
@@ -141,9 +142,9 @@ class Console:
             self._titles[run.part] = run.title
             self.emit({"event": "step", **of_part, "t_s": round(now_s, 3), "step": run.step, "title": run.title})
             if self._progress is None:
-                self.message(f"{label}{_hours(now_s)}  {run.title}")
+                self.message(f"{label}{duration(now_s)}  {run.title}")
         if self._progress is not None:
-            text = f"{label}{_hours(now_s)}  "
+            text = f"{label}{duration(now_s)}  "
             if run.repeats:
                 text += f"{run.condition}/{run.conditions} repeat {run.repeat}/{run.repeats}  "
             self._show_line(self._progress, run.part, min(share, 1.0), text + run.title)
@@ -227,9 +228,3 @@ class Console:
 def _is_terminal(stream: TextIO | None) -> bool:
     """Tell whether a person sits at a stream; a process may be started without it (None)."""
     return stream is not None and stream.isatty()
-
-
-def _hours(seconds: float) -> str:
-    """Return rig time as h:mm:ss."""
-    whole = int(seconds)
-    return f"{whole // 3600}:{whole // 60 % 60:02d}:{whole % 60:02d}"

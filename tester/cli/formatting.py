@@ -23,9 +23,3 @@ def shown(text: str) -> str:
 def dump(value: Json) -> None:
     """Print JSON, indented."""
     click.echo(json.dumps(value, ensure_ascii=False, allow_nan=False, indent=1))
-
-
-def duration(seconds: float) -> str:
-    """Return h:mm:ss."""
-    minutes, s = divmod(round(seconds), 60)
-    return f"{minutes // 60}:{minutes % 60:02d}:{s:02d}"

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from tester.cli.formatting import Json, dump, duration, number, shown
+from tester.base.words import duration
+from tester.cli.formatting import Json, dump, number, shown
 from tester.cli.run_lookup import run_folder
 
 if TYPE_CHECKING:

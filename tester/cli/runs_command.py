@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from tester.cli.formatting import Json, dump, duration, shown
+from tester.base.words import duration
+from tester.cli.formatting import Json, dump, shown
 from tester.store.status import RunStatus
 
 if TYPE_CHECKING:

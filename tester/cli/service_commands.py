@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from tester.base.exits import EXIT_FAILED, EXIT_UNREACHABLE
+from tester.base.words import duration
 from tester.cli.options import json_option, print_json, rig_option, risk_option, set_option
 
 if TYPE_CHECKING:
@@ -218,7 +219,7 @@ def _lines(state: StateView) -> list[str]:
     if progress.steps:
         where = f"step     {progress.step}/{progress.steps}  {progress.title}"
         lines.append(where + (f"  repeat {progress.repeat}/{progress.repeats}" if progress.repeats else ""))
-        left = f", {_hours(progress.left_s)} of rig time left" if progress.left_s is not None else ""
+        left = f", {duration(progress.left_s)} of rig time left" if progress.left_s is not None else ""
         lines.append(f"done     {100 * progress.share:.0f} %{left}")
     if state.prompt is not None:
         lines.append(f"prompt   {state.prompt.number}: {state.prompt.text}")
@@ -228,7 +229,3 @@ def _lines(state: StateView) -> list[str]:
     control = state.clients.controller or "nobody"
     lines.append(f"control  {control}; {state.clients.viewers} watching")
     return lines
-
-
-def _hours(seconds: float) -> str:
-    return f"{int(seconds) // 3600}:{int(seconds) // 60 % 60:02d}:{int(seconds) % 60:02d}"

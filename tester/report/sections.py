@@ -8,6 +8,7 @@ from itertools import pairwise
 from math import isfinite
 
 from tester.analysis.reference import ControlPoint
+from tester.base.words import duration
 from tester.report.assumptions import assumed_keys, assumed_terms
 from tester.report.control import control_chart
 from tester.report.inline import inline_svg
@@ -23,7 +24,7 @@ from tester.report.layout import (
     heads,
 )
 from tester.report.record import ALARMING, RunRecord
-from tester.report.words import NONE, counted, day, hours, number
+from tester.report.words import NONE, counted, day, number
 
 EVENTS_AT_MOST = 200
 """Alarms of a run that are listed; of more, the first."""
@@ -40,7 +41,7 @@ def ran_section(record: RunRecord, key: str) -> ReportSection:
         ("recipe", f"{info.recipe_name}{_from(info.recipe_source)}"),
         ("rig", f"{record.machine.title or info.kind}{_from(info.rig_source)}, {_simulated(record)}"),
         ("operator", info.operator or "not named"),
-        ("time", f"started {day(info.started_utc)}{ended}, rig time {hours(run.rig_seconds)}"),
+        ("time", f"started {day(info.started_utc)}{ended}, rig time {duration(run.rig_seconds)}"),
         ("software", f"friction-tester {info.software_version}{_revision(info.git_revision)}"),
         *((name.replace("_", " "), value) for name, value in info.metadata.items()),
     ]
@@ -57,7 +58,7 @@ def ran_section(record: RunRecord, key: str) -> ReportSection:
                     number(one.installed_diameter_mm, 2),
                     number(one.diameter_mm, 3),
                     number(one.sliding_m, 0),
-                    hours(one.installed_s),
+                    duration(one.installed_s),
                 )
             )
             for one in results.pieces
@@ -69,7 +70,7 @@ def ran_section(record: RunRecord, key: str) -> ReportSection:
         parts.append(ReportTable(f"What was mounted ({results.worn})", titles, rows))
     asked = [one for one in record.prompts if one.answer]
     if asked:
-        lines = [f"{hours(one.asked_s)}: {one.text}: {one.answer} ({one.answered_by or 'unnamed'})" for one in asked]
+        lines = [f"{duration(one.asked_s)}: {one.text}: {one.answer} ({one.answered_by or 'unnamed'})" for one in asked]
         parts += [Paragraph("What people were asked, and answered:"), Listing(lines)]
     return ReportSection(key, "What ran on what", parts)
 
@@ -103,7 +104,8 @@ def tare_section(record: RunRecord, key: str) -> ReportSection:
                 rows.append(ReportRow((kind, name, str(cells[0]), *(number(value, 3) for value in cells[1:]))))
     titles = heads("kind", "channel", "zeros", "first", "last", "least", "most", "largest step", text=(0, 1))
     first, last = record.tares[0], record.tares[-1]
-    note = f"{counted(len(record.tares), 'zero')} from {hours(first.t_s)} to {hours(last.t_s)} of rig time, in the "
+    zeros, when = counted(len(record.tares), "zero"), f"from {duration(first.t_s)} to {duration(last.t_s)}"
+    note = f"{zeros} {when} of rig time, in the "
     table = ReportTable("Zeros (tares) by channel", titles, rows, f"{note}unit that the channel's name ends with")
     return ReportSection(key, "Zeros of the load cell", [table])
 
@@ -125,7 +127,8 @@ def trips_section(record: RunRecord, key: str) -> ReportSection:
     if record.trips:
         rows = [
             ReportRow(
-                (hours(one.t_s), day(one.utc), one.interlock, one.text, one.compared or NONE, one.acknowledged), "bad"
+                (duration(one.t_s), day(one.utc), one.interlock, one.text, one.compared or NONE, one.acknowledged),
+                "bad",
             )
             for one in record.trips
         ]
@@ -136,7 +139,7 @@ def trips_section(record: RunRecord, key: str) -> ReportSection:
     alarms = [one for one in record.events if one.severity in ALARMING]
     if alarms:
         rows = [
-            ReportRow((hours(one.t_s), day(one.utc), one.kind, one.severity, one.text))
+            ReportRow((duration(one.t_s), day(one.utc), one.kind, one.severity, one.text))
             for one in alarms[:EVENTS_AT_MOST]
         ]
         titles = heads("rig time", "time", "kind", "severity", "text", text=range(5))
@@ -252,6 +255,6 @@ def _hashes(record: RunRecord) -> Iterator[tuple[str, str]]:
 
 def _went_on(record: RunRecord) -> Iterator[str]:
     for one in record.sessions[1:]:
-        yield f"{hours(one.origin_s)} of rig time, {day(one.started_utc)}, version {one.software_version or NONE}"
+        yield f"{duration(one.origin_s)} of rig time, {day(one.started_utc)}, version {one.software_version or NONE}"
     for change in record.changes:
         yield f"{change.subject} changed before stretch {change.session}: {change.reason}"

@@ -31,14 +31,6 @@ def relative(u: float, mu: float) -> float:
     return u / abs(mu) if mu else NAN
 
 
-def hours(seconds: float) -> str:
-    """Return a duration as h:mm:ss."""
-    if not isfinite(seconds):
-        return NONE
-    minutes, s = divmod(round(seconds), 60)
-    return f"{minutes // 60}:{minutes % 60:02d}:{s:02d}"
-
-
 def day(utc: str) -> str:
     """Return the day and the minute of a wall-clock text, in UTC."""
     return f"{utc[:10]} {utc[11:16]} UTC" if len(utc) > 15 and utc[10:11] == "T" else utc or NONE

@@ -39,24 +39,6 @@ def count(much: float, thing: str) -> str:
     return f"{much:.0f} {thing}{'' if round(much) == 1 else 's'}"
 
 
-def hours(seconds: float | None) -> str:
-    """Return a time left as h:mm."""
-    if seconds is None:
-        return "?"
-    minutes = int(max(seconds, 0.0) + 30.0) // 60
-    return f"{minutes // 60}:{minutes % 60:02d}"
-
-
-def minutes(seconds: float | None) -> str:
-    """Return a duration as m:ss, from an hour on as h:mm:ss."""
-    if seconds is None:
-        return "?"
-    whole = int(max(seconds, 0.0) + 0.5)
-    if whole < 3600:
-        return f"{whole // 60}:{whole % 60:02d}"
-    return f"{whole // 3600}:{whole // 60 % 60:02d}:{whole % 60:02d}"
-
-
 def clock_text(utc: str, *, seconds: bool = False) -> str:
     """Return the local time of day of an ISO 8601 text in UTC; the text itself where it is none."""
     try:

@@ -10,8 +10,8 @@ from pydantic import JsonValue
 from textual.binding import Binding, BindingType
 from textual.widget import Widget
 
+from tester.base.words import duration
 from tester.tui.app import TesterApp
-from tester.tui.formatting import minutes
 from tester.tui.host import TuiOptions
 from tester.tui.pages.results import ResultsView
 from tester.tui.pages.ring import RingPage
@@ -44,7 +44,7 @@ class TimeLine(Panel):
 
     def picture(self, scene: ScreenScene, width: int, height: int) -> Parts:
         """Return the slider."""
-        words = f" {'▶' if self.playing else '‖'} {minutes(self.at_s)} / {minutes(self.length_s)}  x{self.speed:g} "
+        words = f" {'▶' if self.playing else '‖'} {duration(self.at_s)} / {duration(self.length_s)}  x{self.speed:g} "
         keys = " Home End PgUp PgDn "
         room = width - len(words) - len(keys)
         if room < 5:

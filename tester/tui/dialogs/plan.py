@@ -9,10 +9,11 @@ from textual.widget import Widget
 from textual.widgets import Static
 
 from tester.axes import Axes, AxisValue, axes_from, condition_words
+from tester.base.words import duration
 from tester.service.commands import ShowPlan
 from tester.tui.dialogs.dialog import Dialog, line
 from tester.tui.dialogs.start import totals
-from tester.tui.formatting import clean, minutes
+from tester.tui.formatting import clean
 from tester.tui.recipe_library import ListedRecipe
 
 MOST_STEPS = 2000
@@ -53,7 +54,7 @@ def plan_text(plan: dict[str, JsonValue], part: str) -> str:
     lines = [totals(plan, part), ""]
     for number, step in enumerate(listed[:MOST_STEPS], 1):
         if isinstance(step, dict):
-            lines.append(f"{number:5}  {minutes(_number(step, 'seconds')):>9}  {_words(step, axes, part)}")
+            lines.append(f"{number:5}  {duration(_number(step, 'seconds')):>9}  {_words(step, axes, part)}")
     if len(listed) > MOST_STEPS:
         lines.append(f"and {len(listed) - MOST_STEPS} more: `tester plan` lists them all")
     return "\n".join(lines)

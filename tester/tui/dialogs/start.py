@@ -9,11 +9,12 @@ from textual.containers import Horizontal
 from textual.widget import Widget
 from textual.widgets import Button, Checkbox, Input, Static
 
+from tester.base.words import duration
 from tester.service.commands import RunRecipe, ShowPlan
 from tester.service.state import Check
 from tester.tui.dialogs.confirm import preflight_rows
 from tester.tui.dialogs.dialog import Dialog, entry, field, line
-from tester.tui.formatting import clean, count, hours
+from tester.tui.formatting import clean, count
 from tester.tui.recipe_library import ListedRecipe
 
 LATER = ("guard and safety chain", "zero of the load cell", "watchdogs of the drives")
@@ -145,6 +146,6 @@ def totals(plan: dict[str, JsonValue], part: str) -> str:
 
     conditions, parts = count(figure("conditions"), "condition"), count(figure(f"{part}s"), part)
     return (
-        f"{conditions}, {parts}, {hours(figure('rig_seconds'))} h of rig time, "
+        f"{conditions}, {parts}, {duration(figure('rig_seconds'))} of rig time, "
         f"{figure('sliding_m'):.0f} m sliding, {figure('loss_mm'):.2f} mm wear"
     )

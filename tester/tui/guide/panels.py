@@ -6,10 +6,11 @@ from math import isfinite
 from textwrap import wrap
 from typing import Final
 
+from tester.base.words import duration
 from tester.commission.engine import Ended
 from tester.commission.standing import StepStanding
 from tester.commission.step import StepReading
-from tester.tui.formatting import NOTHING, clean, fit, minutes, number
+from tester.tui.formatting import NOTHING, clean, fit, number
 from tester.tui.guide.guide import ENDINGS, GuideView
 from tester.tui.scene import ScreenScene
 from tester.tui.widgets.panel import ABNORMAL, FAINT, NOTICE, WARNING, Panel, Part, Parts, rows
@@ -47,7 +48,7 @@ class GuideLine(GuidePanel):
         """Return the line."""
         total = sum(seen.rig_s.values()) + (seen.live.now_s if seen.live is not None else 0.0)
         simulated = ", simulated" if seen.simulated else ""
-        text = f"  {seen.stand} of {len(seen.steps)} steps stand   rig time {minutes(total)}   {clean(seen.rig, 40)}"
+        text = f"  {seen.stand} of {len(seen.steps)} steps stand   rig time {duration(total)}   {clean(seen.rig, 40)}"
         title = " COMMISSIONING "
         return [(title, "bold reverse"), fit(f"{text}{simulated}", width - len(title))]
 
@@ -82,9 +83,9 @@ def step_row(one: StepStanding, seen: GuideView, width: int) -> Part:
     """Return a step: sign, name, its rig time or what becomes of it."""
     name, style, sign, word = one.step.name, "", "·", ""
     if name == seen.now:
-        sign, style, word = "▶", "bold", f"now {minutes(seen.live.now_s)}" if seen.live is not None else "now"
+        sign, style, word = "▶", "bold", f"now {duration(seen.live.now_s)}" if seen.live is not None else "now"
     elif one.stands is not None:
-        sign, style, word = "✔", FAINT, minutes(seen.rig_s.get(name, 0.0))
+        sign, style, word = "✔", FAINT, duration(seen.rig_s.get(name, 0.0))
     elif name == seen.next:
         sign, style, word = "▸", "bold", "next"
         sign = "✘" if one.last is not None else sign

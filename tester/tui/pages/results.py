@@ -16,12 +16,13 @@ from textual.binding import Binding, BindingType
 from textual.widgets import DataTable
 
 from tester.base.trouble import in_words
+from tester.base.words import duration
 from tester.service.commands import ListRuns
 from tester.store.schema import StoreError
 from tester.tui.dialogs.export import ExportDialog
 from tester.tui.dialogs.plot import PlotDialog
 from tester.tui.dialogs.repeats import RepeatsDialog
-from tester.tui.formatting import clean, minutes
+from tester.tui.formatting import clean
 from tester.tui.pages.view import Keys, View
 from tester.tui.stored import FIGURES, Row, Stored, read
 from tester.tui.widgets.scatter import PlotPanel
@@ -216,7 +217,7 @@ class ResultsView(View):
 def run_cells(run: dict[str, JsonValue]) -> tuple[str, ...]:
     """Return a run's cells of RUN_HEADER."""
     seconds = run.get("rig_seconds")
-    time = minutes(seconds) if isinstance(seconds, int | float) else "—"
+    time = duration(seconds if isinstance(seconds, int | float) else None)
     values = f"{run.get('values', '?')}/{run.get('conditions', '?')}"
     texts = (run.get("run", ""), run.get("recipe", ""), run.get("status", ""), values, time, run.get("started_utc", ""))
     return tuple(clean(str(text), 60) for text in texts)

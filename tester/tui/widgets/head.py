@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import Final
 
+from tester.base.words import duration
 from tester.service.state import Alarm, StateView
-from tester.tui.formatting import clean, clock_text, fit, hours, number
+from tester.tui.formatting import clean, clock_text, fit, number
 from tester.tui.gone import gone_line
 from tester.tui.scene import STALE_S, UNDER_WAY, ScreenScene
 from tester.tui.widgets.panel import ABNORMAL, FAINT, NOTICE, WARNING, Panel, Part, Parts
@@ -75,14 +76,14 @@ def _where(scene: ScreenScene, state: StateView, width: int) -> list[str]:
         pieces.append(f"  rep {progress.repeat}/{progress.repeats}")
     if progress.steps and progress.left_s is not None:
         end = f" → {clock_text(progress.finish_utc)}" if progress.finish_utc else ""
-        pieces.append(f"  left {hours(progress.left_s)}{end}")
-    if run is not None and run.compound and run.outcome == UNDER_WAY:
-        pieces.append(f"  {clean(run.compound, 20)} {clean(run.note, 30)}".rstrip())
+        pieces.append(f"  left {duration(progress.left_s)}{end}")
     if scene.view_only:
         pieces.append("  view only")
     elif not scene.controls and not scene.replayed:
         who = clean(state.clients.controller, 30)
         pieces.append(f"  watching, {who} controls" if who else "  watching")
+    if run is not None and run.compound and run.outcome == UNDER_WAY:
+        pieces.append(f"  {clean(run.compound, 20)} {clean(run.note, 30)}".rstrip())
     return pieces
 
 

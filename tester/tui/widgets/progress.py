@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from tester.base.words import duration
 from tester.service.state import Gate, ProgressView, SoakView
-from tester.tui.formatting import clean, fit, hours, minutes, number
+from tester.tui.formatting import clean, fit, number
 from tester.tui.scene import UNDER_WAY, ScreenScene
 from tester.tui.widgets.panel import FAINT, NOTICE, Panel, Parts, rows
 
@@ -23,7 +24,7 @@ class ProgressPanel(Panel):
         if not progress.steps:
             return idle_words(scene, width)
         share = min(max(progress.share, 0.0), 1.0)
-        left = f"   {hours(progress.left_s)} h left" if progress.left_s is not None else ""
+        left = f"   {duration(progress.left_s)} left" if progress.left_s is not None else ""
         whole = _line("Campaign", share, f"{100 * share:3.0f} %{left}", width)
         return rows([whole, _repeat(progress, width), _step(progress, state.soak, state.gates, width)])
 
@@ -82,6 +83,6 @@ def soak_words(soak: SoakView, *, short: bool = False) -> str:
     """Return a soak in words: 39.6 of 40.0 ± 1.0 °C, in band 3:10 of 10:00; ``short``: 39.6 of 40.0 °C 3:10/10:00."""
     if short:
         at = f"{number(soak.surface_c, 1)} of {soak.target_c:.1f} °C"
-        return f"{at} {minutes(soak.in_band_s)}/{minutes(soak.for_s)}"
+        return f"{at} {duration(soak.in_band_s)}/{duration(soak.for_s)}"
     band = f"{number(soak.surface_c, 1)} of {soak.target_c:.1f} ± {soak.within_k:.1f} °C"
-    return f"{band}, in band {minutes(soak.in_band_s)} of {minutes(soak.for_s)}"
+    return f"{band}, in band {duration(soak.in_band_s)} of {duration(soak.for_s)}"

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from tester.base.words import duration
 from tester.service.state import PlanStep
-from tester.tui.formatting import clean, fit, minutes
+from tester.tui.formatting import clean, fit
 from tester.tui.scene import ScreenScene
 from tester.tui.widgets.panel import FAINT, Panel, Parts, rows
 
@@ -27,7 +28,7 @@ class StepsPanel(Panel):
 def step_row(step: PlanStep, width: int) -> Parts:
     """Return a step: sign, title, measured or estimated duration."""
     seconds = step.measured_s if step.measured_s is not None else step.estimated_s
-    time = minutes(seconds) if step.measured_s is not None else f"~{minutes(seconds)}"
+    time = duration(seconds) if step.measured_s is not None else f"~{duration(seconds)}"
     title = fit(clean(step.title), max(width - TIME - 3, 4))
     text = f"{SIGNS[step.state]} {title.ljust(max(width - TIME - 3, 4))} {time:>{TIME}}"
     return [(text, {"done": FAINT, "now": "bold", "later": ""}[step.state])]

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-import pytest
-
 from tester.tui.bar import bar, beyond
 from tester.tui.filters import ascii_text
-from tester.tui.formatting import clean, count, fit, hours, minutes, number, reflow
+from tester.tui.formatting import clean, count, fit, number, reflow
 from tester.tui.plot import Canvas, PlotRange, Point, round_step, scatter
 from tester.tui.scene import ScreenScene
 from tests.tester.service.views import HOSTILE, value
@@ -17,16 +15,6 @@ from tests.tester.service.views import HOSTILE, value
 def test_what_cannot_be_seen_is_replaced_one_for_one() -> None:
     assert clean(HOSTILE) == "[/x] [bold]�[31m�$(rm) ' \" <b> �"
     assert len(clean("a\x1b\u202eb\tc")) == 6
-
-
-@pytest.mark.parametrize(("seconds", "text"), [(22440.0, "6:14"), (0.0, "0:00"), (29.0, "0:00"), (31.0, "0:01")])
-def test_hours(seconds: float, text: str) -> None:
-    assert hours(seconds) == text
-
-
-@pytest.mark.parametrize(("seconds", "text"), [(190.0, "3:10"), (3599.6, "1:00:00"), (None, "?")])
-def test_minutes(seconds: float | None, text: str) -> None:
-    assert minutes(seconds) == text
 
 
 def test_a_help_text_fills_its_lines_and_hangs_what_a_key_does_beside_it() -> None:

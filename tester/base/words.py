@@ -1,0 +1,37 @@
+"""Numbers and durations as people read them: on a terminal, on screens and in a report alike."""
+
+from __future__ import annotations
+
+from math import isfinite
+from typing import Final
+
+NONE: Final = "–"
+"""Stands where there is no value."""
+
+
+def decimal(value: float | None, decimals: int) -> str:
+    """Return a number with so many decimals, never as -0; a dash where there is none."""
+    return f"{round(value, decimals) + 0.0:.{decimals}f}" if value is not None and isfinite(value) else NONE
+
+
+def significant(value: float | None, digits: int = 3) -> str:
+    """Return a number with so many significant digits; a dash where there is none."""
+    return f"{value + 0.0:.{digits}g}" if value is not None and isfinite(value) else NONE
+
+
+def percent(share: float, decimals: int = 1) -> str:
+    """Return a share of 1 in per cent; a dash where there is none."""
+    return f"{decimal(100.0 * share, decimals)}\u00a0%" if isfinite(share) else NONE
+
+
+def duration(seconds: float | None) -> str:
+    """Return seconds as h:mm:ss; a dash where there are none."""
+    if seconds is None or not isfinite(seconds):
+        return NONE
+    minutes, s = divmod(round(max(seconds, 0.0)), 60)
+    return f"{minutes // 60}:{minutes % 60:02d}:{s:02d}"
+
+
+def counted(n: int, noun: str, plural: str = "") -> str:
+    """Return a number of things in words: ``1 condition``, ``3 conditions``."""
+    return f"{n} {noun if n == 1 else plural or f'{noun}s'}"
