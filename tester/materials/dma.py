@@ -14,6 +14,7 @@ from difflib import get_close_matches
 from math import isfinite, nan
 
 from tester.materials.dma_options import DmaOptions
+from tester.materials.dma_unused import tell_unused
 from tester.materials.finding import Findings
 from tester.materials.headings import (
     Heading,
@@ -80,6 +81,7 @@ class _Reading:
         judge(rows, lambda number: (lines[number] + 1 if lines else self.place[0], 1), self.found)
         self.found.end()
         self._cross_check(values, lines)
+        tell_unused(self.layout, {one.index for one in self.columns.values()}, self.found)
         return ModuliTable(tuple(rows))
 
     # -- columns ----------------------------------------------------------------------------------------------

@@ -44,7 +44,7 @@ _SPELLINGS: Final = {
     "°c": "degC", "℃": "degC", "c": "degC", "degc": "degC", "deg c": "degC", "celsius": "degC", "k": "K",
     "kelvin": "K", "hz": "Hz", "khz": "kHz", "rad/s": "rad/s", "rad/sec": "rad/s", "rad s-1": "rad/s",
     "rad·s⁻¹": "rad/s", "pa": "Pa", "kpa": "kPa", "n/mm2": "MPa", "n/mm²": "MPa", "gpa": "GPa",
-    "-": "1", "1": "1", "": "1", "--": "1",
+    "-": "1", "1": "1", "": "1", "--": "1", "%": "%",
 }  # fmt: skip
 """Units as makers write them, in small letters; MPa stands apart, for mPa is none of ours."""
 _BRACKETED = re.compile(r"^(?P<name>.*?)\s*[\[({](?P<unit>[^\[\](){}]*)[\])}]\s*$")

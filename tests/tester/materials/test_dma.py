@@ -226,3 +226,43 @@ def test_digits_in_groups_and_zeros_are_refused() -> None:
     assert refused(text().replace("1400;", "1_400;", 1)) == ['dma.csv:3:1: E\' [MPa]: "1_400" is not a number']
     with_tan = text("T [degC];f [Hz];E' [MPa];E'' [MPa];tan", "{t};1;{e};{l};{tan}")
     assert refused(with_tan.replace(";1400;", ";0;", 1)) == ["dma.csv:3:1: E': 0 Pa is not above 0"]
+
+
+def with_strain(*percent: float, heading: str = "Strain [%]") -> str:
+    heads = f"Temperature [degC];Frequency [Hz];E' [MPa];E'' [MPa];{heading}"
+    lines = text(heads, "{t};1;{e};{l};STRAIN").splitlines()
+    strained = [line.replace("STRAIN", f"{percent[i % len(percent)]:g}") for i, line in enumerate(lines)]
+    return "\n".join(strained) + "\n"
+
+
+@pytest.mark.parametrize(
+    ("heading", "told"),
+    [
+        ("Strain [%]", 'strain: 0.1 %, from "Strain [%]"'),
+        ("Dynamic strain / %", 'strain: 0.1 %, from "Dynamic strain / %"'),
+        ("Strain", 'strain: 0.1, from "Strain", whose unit is not said'),
+    ],
+)
+def test_the_strain_of_a_measurement_is_kept(heading: str, told: str) -> None:
+    _, found = read(with_strain(0.1, heading=heading))
+    assert told in found.notes and found.doubts == []
+    assert f'columns not used: "{heading}"' in found.notes
+
+
+def test_moduli_at_several_strains_are_doubted_for_good() -> None:
+    _, found = read(with_strain(0.1, 3.0))
+    assert "strain: 0.1 to 3 %" in " ".join(found.notes)
+    (doubt,) = found.lasting
+    assert "measured at strains of 0.1 to 3 %" in doubt
+
+
+def test_a_unit_row_may_have_a_strain_in_per_cent() -> None:
+    content = with_strain(0.1, heading="Strain").replace("\n", "\n[degC];[Hz];[MPa];[MPa];[%]\n", 1)
+    content = content.replace("Temperature [degC];Frequency [Hz];E' [MPa];E'' [MPa]", "Temperature;Frequency;E';E''")
+    _, found = read(content)
+    assert 'strain: 0.1 %, from "Strain"' in found.notes
+
+
+def test_a_strain_rate_is_no_strain() -> None:
+    _, found = read(with_strain(0.1, heading="Strain rate [%/s]"))
+    assert not any(note.startswith("strain:") for note in found.notes)
