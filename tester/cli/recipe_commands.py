@@ -54,7 +54,7 @@ def check(
     """Validate RECIPE (a file, or the name of a packaged recipe) against the schema and the rig.
 
     Every problem at once, as file:line:col: message, and exit code 3. What is doubtful in the files of its compounds
-    and its surface is said as a warning.
+    and its surface, or is not expected to end well on the rig, is a warning.
     """
     from tester.base.source import InvalidSource
     from tester.recipe.conditions import conditions_of
@@ -74,12 +74,12 @@ def check(
             raise
         print_json({"valid": False, "problems": [_fields(problem) for problem in error.problems]})
         return EXIT_INVALID
-    valid = loaded.recipe
+    valid, doubts = loaded.recipe, [*used.doubts, *map(str, loaded.doubts)]
     count = len(conditions_of(valid, part.settings)) * len(valid.specimens) * valid.replicates
     if as_json:
-        print_json({"valid": True, "problems": [], "conditions": count, "doubts": used.doubts})
+        print_json({"valid": True, "problems": [], "conditions": count, "doubts": doubts})
     else:
-        for doubt in used.doubts:
+        for doubt in doubts:
             click.echo(f"warning: {doubt}", err=True)
         for line in _materials(used) if verbose else ():
             click.echo(line, err=True)

@@ -41,7 +41,7 @@ def load_checked(source: Path | str, rig: Rig, part: RecipePart, name: str | Non
         problems += part.outlasted(recipe, tree, rig)
     if recipe is None or problems:
         raise InvalidSource(problems)
-    return LoadedRecipe(recipe, tree)
+    return LoadedRecipe(recipe, tree, tuple(part.doubts(recipe, tree, rig)))
 
 
 def _settings(recipe: Recipe, tree: Tree, terms: Sequence[Term]) -> Iterator[Problem]:

@@ -15,10 +15,14 @@ from tester.recipe.semantics import semantic_problems
 
 @dataclass(frozen=True, slots=True)
 class LoadedRecipe:
-    """A recipe with the tree it came from: ``tree.text`` is its text, ``tree.position`` where something stands."""
+    """A recipe with the tree it came from: ``tree.text`` is its text, ``tree.position`` where something stands.
+
+    ``doubts``: what a rig is not expected to bring to its end, where it was held against one.
+    """
 
     recipe: Recipe
     tree: Tree
+    doubts: tuple[Problem, ...] = ()
 
 
 def load_recipe(source: Path | str, part: RecipePart, name: str | None = None) -> LoadedRecipe:

@@ -96,6 +96,10 @@ class RecipePart(ABC):
         """Yield what a rig could do and a specimen would not outlast, of a recipe that is valid otherwise."""
         yield from ()
 
+    def doubts(self, recipe: Recipe, tree: Tree, rig: Rig) -> Iterator[Problem]:
+        """Yield what a rig can do and is not expected to bring to its end; a run goes on all the same."""
+        yield from ()
+
     @abstractmethod
     def estimator(self, rig: Rig, repeatability: Mapping[str, float] | None = None) -> Estimator:
         """Return what tells how long steps take on a rig.

@@ -128,7 +128,7 @@ class Session:
             write_sources(folder, recipe.tree.text, rig)
             kept = kept_files(found.materials.files)
             write_materials(folder, kept)
-            for doubt in found.materials.doubts:
+            for doubt in (*found.materials.doubts, *found.recipe.doubts):
                 self.screen.message(f"doubt: {doubt}")
             begin = self._beginning(folder, found.path, recipe, work, kept)
             return self._record(self._job(folder, options.seed, rig), work, begin)

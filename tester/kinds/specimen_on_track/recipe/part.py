@@ -15,6 +15,7 @@ from tester.base.units import show
 from tester.kinds.specimen_on_track.axes import AXES, NAME, held_by
 from tester.kinds.specimen_on_track.budget import TERMS
 from tester.kinds.specimen_on_track.recipe.estimate import TrackEstimator
+from tester.kinds.specimen_on_track.recipe.feasible import low_friction, out_of_reach
 from tester.kinds.specimen_on_track.recipe.law import law_problems
 from tester.kinds.specimen_on_track.recipe.schema import TrackGrid, TrackMeasure, TrackRecipe, track_settings
 from tester.kinds.specimen_on_track.recipe.steps import INSERTED, MountSpecimen, Prepare, Temper, TrackCondition
@@ -76,7 +77,13 @@ class TrackPart(RecipePart):
             at: Location = ("grids", number)
             values = axis_values(measure, grid)
             yield from _limits(own, {name: numbers(values[name]) for name in values if name != "interface"}, at, tree)
+            within_k = track_settings(measure, grid).soak.within_k
+            yield from out_of_reach(own, numbers(values["temperature"]), within_k, at, tree)
             yield from self._heat(own, recipe, measure, grid, at, tree)
+
+    def doubts(self, recipe: Recipe, tree: Tree, rig: Rig) -> Iterator[Problem]:
+        """Yield conditions at which the contact is expected to count as lost."""
+        yield from low_friction(TrackConfig.of(rig), recipe, tree)
 
     def _heat(
         self, rig: TrackConfig, recipe: Recipe, measure: MeasureModel, grid: GridModel, at: Location, tree: Tree

@@ -7,7 +7,7 @@ import pytest
 from tester.kinds import load_rig
 from tester.kinds.specimen_on_track.recipe.part import PART
 from tester.kinds.specimen_on_track.recipe.steps import MountSpecimen, Prepare, Temper, TrackCondition
-from tester.recipe.check import check
+from tester.recipe.check import check, load_checked
 from tester.recipe.describe import lines
 from tester.recipe.loader import load_recipe
 from tester.recipe.plan import Plan
@@ -42,6 +42,31 @@ def test_a_check_says_where_friction_heat_would_matter() -> None:
     text = text.replace("repeats: 1", "repeats: 1, temperature_band: 0.2 K").replace("within: 1 K", "within: 0.2 K")
     (said,) = problems(text, "grosch")
     assert "friction warms the contact by 0.4 K at SBR, 40 N, 23 degC, 10 mm/s, more than its band of 0.2 K" in said
+
+
+def test_air_that_no_heater_brings_about_is_refused_with_the_reason() -> None:
+    (said,) = problems(DISC.replace("temperature: 23 degC", "temperature: 40 degC"), "pin-on-disc")
+    assert said == (
+        'temperature: 40 degC cannot be reached: rig "simulated pin on disc" has no chamber, and its room is at 23 degC'
+        " (sim.ambient; expected within 3 K of that, soak.within, or a chamber in devices)"
+    )
+    assert problems(DISC.replace("temperature: 23 degC", "temperature: 25 degC"), "pin-on-disc") == []
+
+
+def doubts(text: str, *overrides: str) -> list[str]:
+    loaded = load_checked(text, load_rig("pin-on-disc", overrides), PART, "r.yaml")
+    return [one.message for one in loaded.doubts]
+
+
+def test_friction_that_counts_as_a_lost_contact_is_foretold() -> None:
+    text = DISC.replace("compound: SBR", "compound: tread") + "abrasive: {name: road}\n"
+    (said,) = doubts(text, "sim.law=greta")
+    assert "sim.law greta expects friction of 0." in said and "at tread, wet, 10 N" in said
+    assert "below 5 % the contact counts as lost and the run trips (interlocks.lost_share)" in said
+
+
+def test_friction_well_above_a_lost_contact_is_no_doubt() -> None:
+    assert doubts(DISC) == []
 
 
 def test_on_a_disc_the_plan_says_how_much_friction_warms() -> None:

@@ -1,0 +1,64 @@
+"""What a rig cannot do of a recipe, or is not expected to do: air without a heater, friction that is too low."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Final
+
+from tester.axes import Setpoint, condition_words
+from tester.base.source import Location, Problem, Tree
+from tester.kinds.specimen_on_track.axes import AXES, held_by
+from tester.kinds.specimen_on_track.recipe.estimate import TrackEstimator
+from tester.kinds.specimen_on_track.recipe.schema import track_settings
+from tester.kinds.specimen_on_track.rig import TrackConfig
+from tester.recipe.conditions import conditions_of
+from tester.recipe.schema import Recipe
+
+LOW: Final = 0.9
+"""Share of the expected friction that a specimen may have [A]: specimens scatter by 3 %, repeats by 2 %, thrice."""
+
+
+def out_of_reach(
+    rig: TrackConfig, temperatures_c: Sequence[float], within_k: float, at: Location, tree: Tree
+) -> Iterator[Problem]:
+    """Yield temperatures that the air of a room cannot have, on a rig that nothing heats or cools.
+
+    ``within_k``: how near the air has to come before a condition begins (soak.within).
+    """
+    if rig.chamber:
+        return
+    room_c = rig.ambient_c
+    for index, air_c in enumerate(temperatures_c):
+        if not abs(air_c - room_c) <= within_k:
+            key = "sim.ambient" if rig.simulated else "ambient"
+            yield tree.problem(
+                (*at, "temperature", index),
+                f'temperature: {air_c:g} degC cannot be reached: rig "{rig.name}" has no chamber, and its room is at'
+                f" {room_c:g} degC ({key}; expected within {within_k:g} K of that, soak.within, or a chamber in"
+                " devices)",
+            )
+
+
+def low_friction(rig: TrackConfig, recipe: Recipe, tree: Tree) -> Iterator[Problem]:
+    """Yield the conditions of each compound whose expected friction counts as a lost contact, the lowest told."""
+    if not rig.simulated:
+        return  # nobody knows the friction that is to be measured
+    surface = recipe.abrasive.name if recipe.abrasive is not None else ""
+    estimator = TrackEstimator(rig, surface=surface, recipe=Path(tree.name))
+    lost = rig.interlocks.lost_share
+    for number, specimen in enumerate(recipe.specimens):
+        found: list[tuple[float, str]] = []
+        for one in conditions_of(recipe, track_settings):
+            setpoint = Setpoint(specimen.compound, one.values, AXES)
+            mu = estimator.mu(specimen.compound, held_by(setpoint))
+            if not LOW * mu >= lost:
+                found.append((mu, condition_words(setpoint)))
+        if found:
+            mu, words = min(found)
+            yield tree.problem(
+                ("specimens", number, "compound"),
+                f"sim.law {rig.sim.law} expects friction of {100.0 * mu:.2g} % of the load at {words}, and too little"
+                f" in {len(found)} conditions: below {100.0 * lost:g} % the contact counts as lost and the run trips"
+                " (interlocks.lost_share)",
+            )
