@@ -57,7 +57,7 @@ def check(
     and its surface, or is not expected to end well on the rig, is a warning.
     """
     from tester.base.source import InvalidSource
-    from tester.recipe.conditions import conditions_of
+    from tester.recipe.conditions import conditions_of, merged_of
     from tester.recipe.reference import REFERENCE, ReferenceSection
     from tester.run.kinds import checked_recipe, recipe_part
     from tester.run.materials import used_materials
@@ -76,8 +76,10 @@ def check(
         return EXIT_INVALID
     valid, doubts = loaded.recipe, [*used.doubts, *map(str, loaded.doubts)]
     count = len(conditions_of(valid, part.settings)) * len(valid.specimens) * valid.replicates
+    merged = list(merged_of(valid))
     if as_json:
-        print_json({"valid": True, "problems": [], "conditions": count, "doubts": doubts})
+        shared = [one.as_data() for one in merged]
+        print_json({"valid": True, "problems": [], "conditions": count, "merged": shared, "doubts": doubts})
     else:
         for doubt in doubts:
             click.echo(f"warning: {doubt}", err=True)
@@ -86,6 +88,8 @@ def check(
         watched = isinstance(section := getattr(valid, REFERENCE, None), ReferenceSection)
         every = f", a reference condition after every {section.every}" if watched else ""
         click.echo(f'{name}: valid on rig "{rig.name}", {count} conditions{every}')
+        for one in merged:
+            click.echo(one.sentence())
     say_packaged_keys(rig_name, overrides)
     say_other_settings(rig_name, rig)
     return 0
@@ -130,6 +134,7 @@ def plan(
     out: Path | None,
 ) -> None:
     """List the steps of RECIPE (a file, or the name of a packaged recipe) with durations and totals."""
+    from tester.recipe.conditions import merged_of
     from tester.recipe.describe import lines
     from tester.recipe.estimate import estimate
     from tester.recipe.plan_json import json_chunks
@@ -164,10 +169,12 @@ def plan(
     with _nothing_collected():
         steps = part.expand(wanted, rig, estimator)
         figures = estimate(steps, estimator)
+        merged = list(merged_of(wanted))
         if as_json:
-            sys.stdout.writelines(json_chunks(steps, figures, part))
+            sys.stdout.writelines(json_chunks(steps, figures, part, merged))
             return
         sys.stdout.writelines(f"{line}\n" for line in lines(steps, figures, part))
+        sys.stdout.writelines(f"{one.sentence()}\n" for one in merged)
         sys.stdout.writelines(f"{line}\n" for line in precision_lines(steps, figures, estimator, pools))
 
 

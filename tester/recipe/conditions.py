@@ -1,22 +1,24 @@
 """Grids to conditions: what a specimen is measured at, in which order, and what is said of the experiment.
 
-A condition that several grids share is measured once. Blocks of one temperature ascend, because cooling takes far
-longer than heating.
+A condition that several grids share is measured once, unless a grid is to measure its conditions again. Blocks of one
+temperature ascend, because cooling takes far longer than heating.
 """
 
 from __future__ import annotations
 
 import random
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from itertools import product
-from typing import Generic, NamedTuple, TypeAlias, TypeVar
+from typing import Final, Generic, NamedTuple, TypeAlias, TypeVar
 
 from tester.analysis import closest, terms
-from tester.axes import AxisValue
+from tester.axes import AxisValue, Setpoint, condition_words
 from tester.recipe.schema import GridModel, MeasureModel, OrderModel, Recipe
 from tester.recipe.semantics import axis_values
 from tester.recipe.settings import Settings
 
+MERGED_SHOWN: Final = 3
+"""MergedConditions conditions of two grids that a sentence lists; it counts the rest."""
 Procedure = TypeVar("Procedure", bound=Settings)
 """How a condition is measured, as a kind says it."""
 BlockValue: TypeAlias = Callable[[tuple[AxisValue, ...]], float]
@@ -36,19 +38,65 @@ class Condition(NamedTuple, Generic[Procedure]):
 def conditions_of(
     recipe: Recipe, settings: Callable[[MeasureModel, GridModel], Procedure]
 ) -> list[Condition[Procedure]]:
-    """Return a specimen's distinct conditions in the recipe's order: grid after grid, the axis of blocks innermost.
+    """Return a specimen's conditions in the recipe's order: grid after grid, the axis of blocks innermost.
 
-    ``settings``: of the recipe's kind (``RecipePart.settings``), how a grid is measured.
+    Each setpoint once, but for those of a grid with ``measure_again``. ``settings``: of the recipe's kind
+    (``RecipePart.settings``), how a grid is measured.
     """
     measure = recipe.measure
     if measure is None:
         return []
-    found: dict[tuple[AxisValue, ...], tuple[str, Procedure]] = {}
+    found: list[Condition[Procedure]] = []
+    once: set[tuple[AxisValue, ...]] = set()
     for grid in recipe.grids:
-        entry = (grid.name, settings(measure, grid))
+        how = settings(measure, grid)
         for values in product(*axis_values(measure, grid).values()):
-            found.setdefault(values, entry)
-    return [Condition(values, row, grid, how) for row, (values, (grid, how)) in enumerate(found.items(), start=1)]
+            if not grid.measure_again:
+                if values in once:
+                    continue
+                once.add(values)
+            found.append(Condition(values, len(found) + 1, grid.name, how))
+    return found
+
+
+class MergedConditions(NamedTuple):
+    """Conditions of a grid that an earlier one, ``measured_in``, has too: they are measured there, and only there."""
+
+    grid: str
+    measured_in: str
+    conditions: tuple[Setpoint, ...]
+    """Of any compound."""
+
+    def sentence(self) -> str:
+        """Return what is merged and which key measures it again, for people."""
+        count = len(self.conditions)
+        what, them = ("1 condition", "it") if count == 1 else (f"{count} conditions", "them")
+        listed = [condition_words(one, compound=False) for one in self.conditions[:MERGED_SHOWN]]
+        more = [f"{count - MERGED_SHOWN} more"] if count > MERGED_SHOWN else []
+        return (
+            f"grid {self.grid} shares {what} with grid {self.measured_in}, which alone measures {them}: "
+            f"{'; '.join([*listed, *more])} (measure_again: true in the grid measures {them} again)"
+        )
+
+    def as_data(self) -> dict[str, object]:
+        """Return the same as plain data: names of the grids, and what the axes are held at, by field."""
+        held = [{axis.field: one.value(axis.name) for axis in one.axes} for one in self.conditions]
+        return {"grid": self.grid, "measured_in": self.measured_in, "conditions": held}
+
+
+def merged_of(recipe: Recipe) -> Iterator[MergedConditions]:
+    """Yield which conditions of which grid are measured in an earlier one."""
+    measure, grids = recipe.measure, [grid for grid in recipe.grids if not grid.measure_again]
+    if measure is None or len(grids) < 2:
+        return
+    first: dict[tuple[AxisValue, ...], str] = {}
+    for grid in grids:
+        shared: dict[str, list[Setpoint]] = {}
+        for values in product(*axis_values(measure, grid).values()):
+            measured_in = first.setdefault(values, grid.name)
+            if measured_in != grid.name:
+                shared.setdefault(measured_in, []).append(Setpoint("", values, recipe.axes))
+        yield from (MergedConditions(grid.name, name, tuple(listed)) for name, listed in shared.items())
 
 
 def ordered(

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from tester.axes import Axes, AxisValue
+from tester.recipe.conditions import MergedConditions
 from tester.recipe.describe import window_words
 from tester.recipe.estimate import Estimate, StepEstimate
 from tester.recipe.plan import ConditionStep, Plan, Window
@@ -21,8 +22,13 @@ quoted = lru_cache(maxsize=1024)(encode)
 """Names of grids and compounds come again and again."""
 
 
-def json_chunks(plan: Plan, estimate: Estimate, part: RecipePart) -> Iterator[str]:
-    """Yield the plan as JSON text, piece by piece, a step a line: a plan may have hundreds of thousands."""
+def json_chunks(
+    plan: Plan, estimate: Estimate, part: RecipePart, merged: Sequence[MergedConditions] = ()
+) -> Iterator[str]:
+    """Yield the plan as JSON text, piece by piece, a step a line: a plan may have hundreds of thousands.
+
+    ``merged``: conditions that are steps of the plan once, and stand in several grids of its recipe.
+    """
     head: dict[str, object] = {
         "recipe": plan.name,
         "conditions": sum(1 for _ in plan.conditions()),
@@ -32,6 +38,7 @@ def json_chunks(plan: Plan, estimate: Estimate, part: RecipePart) -> Iterator[st
         "sliding_m": round(estimate.sliding_m, 2),
         **part.plan_fields(plan, estimate),
         "not_held": list(estimate.not_held),
+        "merged": [one.as_data() for one in merged],
         "specimens": [{"index": one.index, "compound": one.compound, "note": one.note} for one in plan.specimens],
         "metadata": dict(plan.metadata),
         "kind": plan.kind,

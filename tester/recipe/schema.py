@@ -232,6 +232,8 @@ class GridModel(GridName, frozen=True):
     extend_to: Extent | None = None
     temperature_band: Band | None = None
     soak: SoakModel | None = None
+    measure_again: bool = False
+    """conditions that another grid has too are measured in this one again (default: once, in the first of them)"""
 
 
 @lru_cache

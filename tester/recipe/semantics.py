@@ -175,6 +175,7 @@ def _shared(
     measure: MeasureModel, grids: list[tuple[int, GridModel]], tree: Tree, part: RecipePart
 ) -> Iterator[Problem]:
     """Refuse two grids that share a condition and measure it differently: it is measured once."""
+    grids = [one for one in grids if not one[1].measure_again]
     settings = [part.settings(measure, grid) for _, grid in grids]
     if len(set(settings)) < 2:
         return
@@ -183,5 +184,5 @@ def _shared(
         shared = all(values & axes[second][name] for name, values in axes[first].items())
         if shared and settings[first] != settings[second]:
             message = f"shares conditions with grid {shown(grids[first][1].name)} but measures them differently"
-            problem = f"{message}; a shared condition is measured once"
+            problem = f"{message}; a shared condition is measured once, unless a grid says measure_again: true"
             yield tree.problem(("grids", grids[second][0]), problem)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections import Counter
+from collections.abc import Iterable, Iterator
 from typing import NamedTuple, TypeAlias
 
 from tester.analysis.difference import Difference, difference
@@ -10,8 +11,8 @@ from tester.axes import AxisValue
 from tester.results.run_results import RunResults, TableRow
 from tester.store.records import StoredRun
 
-Held: TypeAlias = tuple[str, tuple[AxisValue, ...]]
-"""What is compared: compound, values of the axes as people read them."""
+Held: TypeAlias = tuple[str, tuple[AxisValue, ...], int]
+"""What is compared: compound, values of the axes as people read them, which measurement of them it is (from 1)."""
 
 
 class Pair(NamedTuple):
@@ -46,9 +47,10 @@ def pairs(first: RunResults, second: RunResults, compounds: tuple[str, str] | No
     """Yield the conditions of two runs of one kind, each of the first with the same of the second, then the others.
 
     ``compounds``: compare these two, the first of the first run and the second of the second, at the same setpoints.
+    Where a run measures a setting several times, the first measurement goes with the first, the second with the second.
     """
     one, other = (
-        {_held(row, compounds): row for row in results.rows if compounds is None or row.info.compound == compounds[i]}
+        _by_setting((r for r in results.rows if compounds is None or r.info.compound == compounds[i]), compounds)
         for i, results in enumerate((first, second))
     )
     shared = same_rig(first.run, second.run)
@@ -58,6 +60,12 @@ def pairs(first: RunResults, second: RunResults, compounds: tuple[str, str] | No
         yield Pair(a, b, found)
 
 
-def _held(row: TableRow, compounds: tuple[str, str] | None) -> Held:
-    held = row.info.setpoint
-    return "" if compounds else held.compound, tuple(axis.of(held) for axis in held.axes)
+def _by_setting(rows: Iterable[TableRow], compounds: tuple[str, str] | None) -> dict[Held, TableRow]:
+    found: dict[Held, TableRow] = {}
+    count: Counter[tuple[str, tuple[AxisValue, ...]]] = Counter()
+    for row in rows:
+        held = row.info.setpoint
+        setting = "" if compounds else held.compound, tuple(axis.of(held) for axis in held.axes)
+        count[setting] += 1
+        found[(*setting, count[setting])] = row
+    return found

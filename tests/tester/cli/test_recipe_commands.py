@@ -53,6 +53,30 @@ def test_check_holds_the_recipe_against_the_rig_as_it_is_set(folder: Path, capsy
     assert "limit 150 N: limits.load" in capsys.readouterr().err
 
 
+SHARED = SMALL + "  - {name: b, slip_velocity: 300 mm/s, load: 100 N, temperature: 40 degC}\n"
+MERGED = [{
+    "grid": "b", "measured_in": "load",
+    "conditions": [{"slip_velocity_m_s": 0.3, "load_n": 100.0, "sideslip_deg": 0.0, "camber_deg": 0.0,
+                    "temperature_c": 40.0, "wheel_speed_m_s": 0.8}],
+}]  # fmt: skip
+
+
+@pytest.mark.parametrize("command", ["check", "plan"])
+def test_what_two_grids_share_is_reported(command: str, folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    name = write(folder, SHARED)
+    assert invoke([command, name]) == 0
+    assert "grid b shares 1 condition with grid load" in capsys.readouterr().out
+    assert invoke([command, name, "--json"]) == 0
+    data = json.loads(capsys.readouterr().out)
+    assert (data["merged"], data["conditions"]) == (MERGED, 4)
+
+
+def test_what_is_measured_again_is_not(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert invoke(["check", write(folder, SHARED.replace("name: b", "name: b, measure_again: true"))]) == 0
+    out = capsys.readouterr().out
+    assert "5 conditions" in out and "shares" not in out
+
+
 def test_an_unknown_recipe_is_a_usage_error(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert invoke(["check", "nosuch"]) == 2
     assert "packaged are grosch, grosch-glass, grosch-talc, pin-on-disc, pre-grind" in capsys.readouterr().err

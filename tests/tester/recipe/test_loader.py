@@ -86,7 +86,7 @@ def test_a_file_is_read_like_a_text(tmp_path: Path) -> None:
             "slip_velocty",
             'r.yaml:8:5: unknown key "slip_velocty", did you mean slip_velocity? (expected one of name, slip_velocity, '
             "load, temperature, sideslip, camber, wheel_speed, repeats, until, min_valid, window, extend_to, "
-            "temperature_band, soak, max_bursts, wear_check, both_directions, run_in_after_reversal)",
+            "temperature_band, soak, measure_again, max_bursts, wear_check, both_directions, run_in_after_reversal)",
         ),
         (
             "wheel_speed: 0.8 m/s",
@@ -225,6 +225,15 @@ def test_two_grids_that_measure_a_shared_condition_differently_are_refused() -> 
     second = "  - {name: b, slip_velocity: 0.3 m/s, load: 100 N, temperature: 25 degC, repeats: 7}\n"
     (problem,) = refused(SMALL + second)
     assert problem.startswith('r.yaml:11:5: shares conditions with grid "load" but measures them differently')
+
+
+@pytest.mark.parametrize("again", ["name: b, measure_again: true,", "name: b,"])
+def test_a_grid_that_measures_its_conditions_again_may_measure_them_differently(again: str) -> None:
+    second = f"  - {{{again} slip_velocity: 0.3 m/s, load: 100 N, temperature: 25 degC, repeats: 7}}\n"
+    text = SMALL + second
+    if "measure_again" not in again:  # the first of the two says it
+        text = text.replace("name: load", "name: load\n    measure_again: true")
+    assert len(recipe(text).grids) == 2
 
 
 def test_grids_that_share_nothing_may_be_measured_differently() -> None:
