@@ -4,6 +4,9 @@
     at scan 1200: operator stop
     step measure: load cell frozen
     step heat + 20 s: thermometer offset -15 K for 1 min
+    condition 3/2 + 5 s: friction 115 %
+
+The last one begins 5 s after the second repeat of condition 3 has begun.
 
 When, a colon, the fault's phrase, its value where it has one, and how long it lasts (else to the end of the run). Which
 phrases and which steps there are, a kind of machine says.
@@ -40,6 +43,9 @@ _DURATION = re.compile(rf"^(?P<rest>.*\S)\s+for\s+(?P<number>{_NUMBER})\s*(?P<un
 _VALUE = re.compile(rf"^(?P<phrase>.*\S)\s+(?P<number>{_NUMBER})\s*(?P<unit>[A-Za-z%/]*)$")
 _AT_TIME = re.compile(rf"^t\s*=\s*(?P<number>{_NUMBER})\s*(?P<unit>[a-z]*)$")
 _AT_SCAN = re.compile(r"^at scan (?P<number>\d+)$")
+_AT_CONDITION = re.compile(
+    rf"^(?P<name>condition [1-9]\d*(?:/[1-9]\d*)?)(?:\s*\+\s*(?P<number>{_NUMBER})\s*(?P<unit>[a-z]*))?$"
+)
 _AT_STEP = re.compile(rf"^step (?P<name>[a-z-]+)(?:\s*\+\s*(?P<number>{_NUMBER})\s*(?P<unit>[a-z]*))?$")
 
 
@@ -49,7 +55,8 @@ class FaultTextError(ValueError):
 
 @dataclass(frozen=True, slots=True)
 class FaultTime:
-    """When a fault begins: at a time (s), a scan (from 1), or some time (s) after a step has begun."""
+    """When a fault begins: at a time (s), a scan (from 1), or some time (s) after a step, a condition or a repeat has
+    begun (``step`` is its name then: ``condition 3``, ``condition 3/2``)."""
 
     at_s: float = inf
     scan: int = 0
@@ -122,14 +129,16 @@ class FaultLanguage:
             if int(at_scan["number"]) < 1:
                 raise _error(text, "scans count from 1")
             return FaultTime(scan=int(at_scan["number"]))
-        at_step = _AT_STEP.match(when)
+        at_condition = _AT_CONDITION.match(when)
+        at_step = at_condition or _AT_STEP.match(when)
         if at_step is not None:
-            if at_step["name"] not in self.steps:
+            if at_condition is None and at_step["name"] not in self.steps:
                 near = _nearest(at_step["name"], self.steps)
                 raise _error(text, f"unknown step {at_step['name']!r}{near}; {_listed(self.steps)}")
             after_s = _seconds(text, at_step["number"], at_step["unit"]) if at_step["number"] else 0.0
             return FaultTime(step=at_step["name"], after_s=after_s)
-        raise _error(text, f'{when!r} is no time: expected "t=130 s", "at scan 1200" or "step measure + 2 s"')
+        raise _error(text, f'{when!r} is no time: expected "t=130 s", "at scan 1200", "step measure + 2 s" or'
+                     ' "condition 3/2 + 5 s"')
 
     def _what(self, text: str, what: str) -> tuple[FaultKind, float | None]:
         kind = self.catalogue.get(what)

@@ -20,7 +20,7 @@ PowerLoss = Literal["retract", "hold"]
 
 _NOT_NEGATIVE = (
     "noise", "scatter", "running_in", "wear", "relaxation", "softening", "growth", "belt_conductance",
-    "latency_timer",
+    "latency_timer", "stick_slip",
 )  # fmt: skip
 
 
@@ -265,6 +265,8 @@ class SimParameters:
     ambient: Annotated[float, "degC"] = 23.0
     press_on_power_loss: PowerLoss = "retract"
     mirrored: bool = False  # errors of a session's sensors with the other sign: two runs of a seed are off both ways
+    stick_slip: Annotated[float, "1"] = 0.0  # friction swings by this share of it to either side ...
+    stick_slip_frequency: Annotated[float, "Hz"] = 4.0  # ... so often a second [A]
     record_truth: bool = False  # keep what the plant knows beside what was measured
     latency_timer: Annotated[float, "s"] = 0.0  # the adapters of the Modbus lines hold replies back for this long
     faults: tuple[str, ...] = ()  # a fault script (sim.faults.language)
@@ -287,6 +289,10 @@ class SimParameters:
         if not 0.0 <= self.friction_heat_fraction <= 1.0:
             share = self.friction_heat_fraction
             raise ValueError(f"friction_heat_fraction is a share, 0 to 1, not {share!r}")
+        if self.stick_slip >= 1.0:
+            raise ValueError(f"stick_slip is a share of friction, 0 to below 1, not {self.stick_slip!r}")
+        if not 0.0 < self.stick_slip_frequency < math.inf:
+            raise ValueError(f"stick_slip_frequency must be finite and above 0, not {self.stick_slip_frequency!r}")
         if not -40.0 <= self.ambient <= 60.0:
             raise ValueError(f"ambient must be -40 to 60 degC, not {self.ambient!r}")
         try:

@@ -148,6 +148,8 @@ class TrackParameters:
     noise: Annotated[float, "1"] = 1.0  # scale of every sensor imperfection
     scatter: Annotated[float, "1"] = 1.0  # scale of the friction's scatter: specimens 3 %, repeats 2 % [A]
     law: str = "wlf_bell"  # by its name in sim.physics.laws
+    stick_slip: Annotated[float, "1"] = 0.0  # friction swings by this share of it to either side ...
+    stick_slip_frequency: Annotated[float, "Hz"] = 4.0  # ... so often a second [A], as far as the arm's spring follows
     surface: str = ""  # of the track, where the law is made of materials; "": the recipe's abrasive
     ambient: Annotated[float, "degC"] = 23.0
     faults: tuple[str, ...] = ()  # a fault script (sim.faults.language)
@@ -158,7 +160,9 @@ class TrackParameters:
 
     def __post_init__(self) -> None:
         """Raise ValueError for values out of range."""
-        _refuse(self, {"noise", "scatter"}, signed={"ambient"})
+        _refuse(self, {"noise", "scatter", "stick_slip"}, signed={"ambient"})
+        if self.stick_slip >= 1.0:
+            raise ValueError(f"stick_slip is a share of friction, 0 to below 1, not {self.stick_slip!r}")
         if not -40.0 <= self.ambient <= 60.0:
             raise ValueError(f"ambient must be -40 to 60 degC, not {self.ambient!r}")
         if 2.0 * self.switches >= self.travel:

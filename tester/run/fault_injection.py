@@ -90,6 +90,7 @@ class FaultyRun:
         self._now_s = 0.0
         self._step = -1
         self._phase = ""
+        self._measured = (0, 0)
         self._on_kill = on_kill
 
     # the ticker's side ---------------------------------------------------------------------------------------
@@ -156,6 +157,12 @@ class FaultyRun:
         if phase != self._phase:
             self._phase = phase
             names.append(phase)
+        measured = (progress.condition, progress.repeat)
+        if measured != self._measured:
+            if measured[0] != self._measured[0]:
+                names.append(f"condition {measured[0]}")
+            names.append(f"condition {measured[0]}/{measured[1]}")
+            self._measured = measured
         self.script.notice(now, engine.scans, names)
 
     def _tell(self, now: float) -> None:

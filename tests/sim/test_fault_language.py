@@ -31,6 +31,14 @@ def test_a_fault_at_a_step_and_some_time_after_it():
     assert (found.when.step, found.when.after_s, found.value, found.lasts_s) == ("heat", 20.0, -15.0, 60.0)
 
 
+@pytest.mark.parametrize(
+    ("when", "name", "after_s"), [("3", "condition 3", 0.0), ("12/2 + 5 s", "condition 12/2", 5.0)],
+)
+def test_a_fault_at_a_condition_or_a_repeat_of_one(when: str, name: str, after_s: float):
+    found = parse(f"condition {when}: friction 115 %")
+    assert (found.when.step, found.when.after_s, found.value) == (name, after_s, 115.0)
+
+
 def test_a_value_that_is_a_time_becomes_seconds():
     assert parse("t=1 s: scan stalled 250 ms").value == 0.25
 

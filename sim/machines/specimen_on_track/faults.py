@@ -189,6 +189,24 @@ class TrackOverspeeds(drives.Runaway):
             axis.aim(1e-3 * self.speed / rig.metres)
 
 
+class TrackRubsOtherwise(Effect):
+    """The track rubs otherwise than at first: another place of it, dust."""
+
+    __slots__ = ("share",)
+
+    def __init__(self, percent: float) -> None:
+        """With ``percent`` of the friction."""
+        self.share = max(0.01 * percent, 0.0)
+
+    def begin(self, scene: Scene, now: float) -> None:
+        """Change."""
+        track_rig(scene).plant.grip = self.share
+
+    def end(self, scene: Scene, now: float) -> None:
+        """Rub as at first."""
+        track_rig(scene).plant.grip = 1.0
+
+
 class EndSwitchDead(Effect):
     """The end switches open nothing any more."""
 
@@ -277,6 +295,8 @@ def _device_rows() -> Iterator[FaultKind]:
                     "N/s", 0.01, note="seen by the next tare")
     yield FaultKind("load cell gain", partial(SpoiledSensor, "load cell", "gain"), Onset.SLIDING, Expected.MAY, 0.0,
                     "%", 70.0, note="one channel alone: nothing on the rig contradicts it")
+    yield FaultKind("friction", TrackRubsOtherwise, Onset.SLIDING, Expected.MAY, 0.0, "%", 115.0,
+                    note="rubber and track, no fault of the machine: results carry a doubt")
     for name in ("pyrometer", "thermometer"):
         yield FaultKind(f"{name} silent", partial(modbus.Impaired, name, "silence"), Onset.ALWAYS, Expected.TRIP,
                         3.0, note="on a rig that has one")

@@ -16,6 +16,7 @@ from typing import Final
 
 from sim.noise import NormalStream, normal, uniforms
 from sim.physics.laws import NO_SETTING, FrictionLaw, LawSetting
+from sim.physics.stick_slip import StickSlip
 from sim.physics.track import Interface, TrackParameters
 from sim.sensors import TemperatureSensor
 
@@ -35,7 +36,7 @@ class TrackPlant:
 
     __slots__ = (
         "_air", "_drift_n_k", "_dry", "_law", "_noise", "_place", "_pyrometer", "_repeat", "_seed", "_since_rest_m",
-        "_specimen", "_zero_n", "air_c", "force_n", "interface", "load_n", "mu", "parameters",
+        "_specimen", "_stick_slip", "_zero_n", "air_c", "force_n", "grip", "interface", "load_n", "mu", "parameters",
         "power_w", "setting", "slid_m", "slip_m_s", "specimen_c", "weights_n",
     )  # fmt: skip
 
@@ -60,6 +61,11 @@ class TrackPlant:
         self._dry: FrictionLaw | None = None
         self._law: FrictionLaw | None = None
         self._specimen = self._repeat = 1.0
+        self.grip = 1.0
+        """What the track has of the friction that it had at first."""
+        self._stick_slip: StickSlip | None = None
+        if p.stick_slip > 0.0:
+            self._stick_slip = StickSlip(p.stick_slip, p.stick_slip_frequency, unused)
         self.interface: Interface = "dry"
         self.weights_n = 0.0
         self.slid_m = 0.0
@@ -109,6 +115,8 @@ class TrackPlant:
         self._noise = NormalStream(self._seed, "track cell", *self._place)
         self._pyrometer.noise = NormalStream(self._seed, "track pyrometer", *self._place)
         self._air.noise = NormalStream(self._seed, "track air", *self._place)
+        if self._stick_slip is not None:
+            self._stick_slip.restart(NormalStream(self._seed, "track stick-slip", *self._place))
 
     # time ----------------------------------------------------------------------------------------------------
 
@@ -136,7 +144,9 @@ class TrackPlant:
                 self.force_n = copysign(limit_n, self.force_n)  # the load has become less
             return
         contact, speed = self.parameters.contact, abs(track_m_s)
-        mu = law.mu(self.specimen_c, self.load_n, speed) * self._specimen * self._repeat
+        mu = law.mu(self.specimen_c, self.load_n, speed) * self._specimen * self._repeat * self.grip
+        if self._stick_slip is not None:
+            mu *= self._stick_slip.factor(dt)
         stiffness_n_m = 1e3 * contact.stiffness
         moved_m = track_m_s * dt
         drawn_n = self.force_n + stiffness_n_m * moved_m

@@ -21,6 +21,7 @@ from sim.physics import laws
 from sim.physics.contact import ContactModel, Relaxation, Warmth
 from sim.physics.parameters import SimParameters
 from sim.physics.slip import cornering_factor, traction_direction
+from sim.physics.stick_slip import StickSlip
 from sim.physics.thermal import ThermalModel, ThermalState
 from sim.physics.wear import grip_kept
 from sim.sensors import SpeedSensor, TemperatureSensor
@@ -60,6 +61,7 @@ class Plant:
         "_seed",
         "_sideslip_deg",
         "_sin",
+        "_stick_slip",
         "_stiffness",
         "_swing_mm",
         "_touch_mm",
@@ -108,6 +110,9 @@ class Plant:
         self._arm_m = 0.001 * p.friction.aligning_arm
         self._rotating_above = p.thermal.rotating_above
         self._within = Autoregressive(p.scatter * p.variability.within, p.variability.within_time)
+        self._stick_slip: StickSlip | None = None
+        if p.stick_slip > 0.0:
+            self._stick_slip = StickSlip(p.stick_slip, p.stick_slip_frequency, NormalStream(seed, "unused"))
         self._grip = 1.0
         self._blunts = p.counterface.loss > 0.0
         self.belt_grip = 1.0
@@ -160,6 +165,8 @@ class Plant:
         self.wheel_speed.noise = NormalStream(seed, "wheel speed", *place)
         self.belt_speed.noise = NormalStream(seed, "belt speed", *place)
         self._within.restart(self._noise.next())
+        if self._stick_slip is not None:
+            self._stick_slip.restart(NormalStream(seed, "stick-slip", *place))
 
     def _mount(self, diameter_mm: float, sliding_m: float) -> None:
         """Put a wheel of ambient temperature on, out of contact."""
@@ -249,7 +256,7 @@ class Plant:
         }
 
     def set_grip(self, share: float) -> None:
-        """Let the belt transmit this share of the friction from now on: 1 in one piece, 0 torn."""
+        """Let the belt transmit this share of the friction from now on: 1 as at first, 0 torn, above 1 sharper."""
         self._grip = share
         self._scatter = self.wheel_factor * self.condition_factor * self.run_factor * share
 
@@ -371,6 +378,8 @@ class Plant:
             mu *= 1.0 + self._excess * exp(-sliding_m / self._run_in_scale_m)
         if self._blunts:
             mu *= self.belt_grip
+        if self._stick_slip is not None and slip_m_s > friction.creep:
+            mu *= self._stick_slip.factor(dt)
         mu *= 1.0 - self._deficit
         self._deficit *= self._deficit_keep
 

@@ -318,6 +318,7 @@ def _machine_rows() -> Iterator[FaultKind]:
     yield _may("wheel diameter", k.DiameterOff, "%", 110.0, slow=True)
     yield _may("rubber detached", k.RubberDetached, "mm", 0.3)
     yield _may("rubber relaxation", k.RubberRelaxes, "%", 10.0)
+    yield _may("friction", k.BeltRubsOtherwise, "%", 115.0)
 
 
 def _rows() -> Iterator[FaultKind]:

@@ -232,3 +232,21 @@ class WheelSlipsOnShaft(Effect):
         rolling = belt_m_s / (0.0005 * plant.diameter_mm)
         loose = plant.force_z_n > 0.0 and shaft != 0.0 and rolling != 0.0
         plant.wheel_speed.factor = shaft / rolling if loose else self._factor
+
+
+class BeltRubsOtherwise(Effect):
+    """The belt rubs otherwise than at first: another lot, a joint, dust."""
+
+    __slots__ = ("share",)
+
+    def __init__(self, percent: float) -> None:
+        """With ``percent`` of the friction."""
+        self.share = max(0.01 * percent, 0.0)
+
+    def begin(self, scene: Scene, now: float) -> None:
+        """Change."""
+        wheel_rig(scene).plant.set_grip(self.share)
+
+    def end(self, scene: Scene, now: float) -> None:
+        """Rub as at first."""
+        wheel_rig(scene).plant.set_grip(1.0)

@@ -532,3 +532,23 @@ def test_group_parameters_out_of_range_are_refused_by_name() -> None:
         ContactParameters(relaxation=0.2)
     with pytest.raises(ValueError, match=r"DriveParameters\.screw_efficiency"):
         DriveParameters(screw_efficiency=0.52)
+
+
+def test_stick_slip_swings_friction_about_its_mean() -> None:
+    steady, sticking = mounted(), mounted(replace(ROUND, stick_slip=0.1, stick_slip_frequency=5.0))
+    run(steady, 2.0, 200.0)
+    run(sticking, 2.0, 200.0)
+    shares: list[float] = []
+    for _ in range(200):
+        run(steady, 0.01, 200.0)
+        run(sticking, 0.01, 200.0)
+        shares.append(sticking.mu / steady.mu)
+    assert min(shares) == pytest.approx(0.9, abs=0.02) and max(shares) == pytest.approx(1.1, abs=0.02)
+    assert sum(shares) / len(shares) == pytest.approx(1.0, abs=0.02)
+
+
+def test_stick_slip_needs_slip() -> None:
+    steady, sticking = mounted(), mounted(replace(ROUND, stick_slip=0.1))
+    run(steady, 2.0, 200.0, belt_m_s=0.8)
+    run(sticking, 2.0, 200.0, belt_m_s=0.8)
+    assert sticking.mu == steady.mu
