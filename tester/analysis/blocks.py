@@ -21,6 +21,7 @@ from dataclasses import dataclass
 from math import hypot
 from typing import TYPE_CHECKING, Final
 
+from tester.analysis.trace import Trace, columns_of
 from tester.quantities import BURST, GATE, KEY, TIME, Means, Quantities
 
 if TYPE_CHECKING:
@@ -67,7 +68,7 @@ class BlockCounter:
 
     __slots__ = (
         "_at", "_averaged", "_block", "_burst", "_burst_at", "_counted_at", "_gate_at", "_key", "_key_at", "_limit",
-        "_origin", "_rows", "_step", "_table", "_time_at", "blocks", "seconds",
+        "_origin", "_rows", "_step", "_table", "_time_at", "_traced", "blocks", "seconds", "trace",
     )  # fmt: skip
 
     def __init__(self, quantities: Quantities) -> None:
@@ -75,6 +76,9 @@ class BlockCounter:
         self.blocks: list[Block] = []
         self.seconds = 0.0
         """Accepted seconds in ``blocks``."""
+        self.trace = Trace(quantities)
+        """The samples in ``blocks``."""
+        self._traced = [quantities.index(name) if name else -1 for name in columns_of(quantities)]
         self._table = quantities
         self._time_at = quantities.index(TIME)
         self._gate_at = quantities.index(GATE)
@@ -132,13 +136,31 @@ class BlockCounter:
         block = _block(int(self._burst), count, started_s, ended_s, columns[self._counted_at][0], means)
         self.blocks.append(block)
         self.seconds += block.ended_s - block.started_s
+        self._keep(columns, self._limit <= 2.0)
         rows.clear()
         rows.append(sample)
         return block
 
+    def _keep(self, columns: list[tuple[float, ...]], begins: bool) -> None:
+        """Keep a block's samples; ``begins``: it is the first of its stretch."""
+        trace = self.trace
+        if begins:
+            trace.starts.append(len(trace.time_s))
+        time_at, position_at, along_at, across_at, normal_at = self._traced
+        trace.time_s.extend(columns[time_at])
+        trace.position.extend(columns[position_at])
+        trace.along.extend(columns[along_at])
+        trace.across.extend(columns[across_at] if across_at >= 0 else (0.0,) * len(columns[0]))
+        trace.normal.extend(columns[normal_at])
 
-def blocks_from_samples(columns: Mapping[str, NDArray[np.float64]], quantities: Quantities) -> list[Block]:
-    """Return the blocks in stored samples, arrays of equal length by channel, in order of time."""
+
+def blocks_from_samples(
+    columns: Mapping[str, NDArray[np.float64]], quantities: Quantities, trace: Trace | None = None
+) -> list[Block]:
+    """Return the blocks in stored samples, arrays of equal length by channel, in order of time.
+
+    ``trace``, where one is given, takes in the samples of the blocks.
+    """
     import numpy as np
 
     size = quantities.roles.block
@@ -163,7 +185,19 @@ def blocks_from_samples(columns: Mapping[str, NDArray[np.float64]], quantities: 
         # A reading that steps back over a boundary does not reopen the block behind it.
         turn = np.maximum.accumulate(np.floor(np.abs(at[first:stop] - at[first]) / size))
         edges = first + np.flatnonzero(np.diff(turn, prepend=-1.0))
+        if trace is not None and len(edges) > 1:
+            _take_in(trace, columns, quantities, int(edges[0]), int(edges[-1]))
         for a, b in zip(edges[:-1].tolist(), edges[1:].tolist(), strict=True):
             means = Means(quantities, averaged[:, a:b].mean(axis=1).tolist())
             blocks.append(_block(int(burst[a]), b - a, float(times[a]), float(times[b]), float(at[a]), means))
     return blocks
+
+
+def _take_in(
+    trace: Trace, columns: Mapping[str, NDArray[np.float64]], quantities: Quantities, first: int, end: int
+) -> None:
+    """Let a trace take in a stretch of samples."""
+    trace.starts.append(len(trace.time_s))
+    into = (trace.time_s, trace.position, trace.along, trace.across, trace.normal)
+    for column, name in zip(into, columns_of(quantities), strict=True):
+        column.extend(columns[name][first:end].tolist() if name else [0.0] * (end - first))

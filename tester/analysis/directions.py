@@ -17,9 +17,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from math import hypot, isfinite
 
+from tester.analysis.change import greatest
 from tester.analysis.flags import flags_in, joined
 from tester.analysis.reduce import standard_deviation, without_value
-from tester.analysis.results import RepeatResult, RepeatStatus
+from tester.analysis.results import RepeatResult, RepeatStatus, most_swinging
 from tester.quantities import Means, mean_of
 
 
@@ -129,6 +130,7 @@ def _as_one(results: Sequence[RepeatResult], pair: int) -> RepeatResult:
     forward, backward = there
     along = 0.5 * (forward.mu_longitudinal - backward.mu_longitudinal)
     across = 0.5 * (forward.mu_lateral - backward.mu_lateral)
+    swings = most_swinging((forward, backward))
     return RepeatResult(
         status=status,
         reason=reason,
@@ -141,6 +143,9 @@ def _as_one(results: Sequence[RepeatResult], pair: int) -> RepeatResult:
         batches=min(forward.batches, backward.batches),
         drift_percent=0.5 * (forward.drift_percent + backward.drift_percent),
         bound_percent=max(forward.bound_percent, backward.bound_percent),
+        change_percent=greatest((forward.change_percent, backward.change_percent)),
+        swing_percent=swings.swing_percent,
+        swing_hz=swings.swing_hz,
         revolutions=forward.revolutions + backward.revolutions,
         truncated=forward.truncated + backward.truncated,
         window_s=forward.window_s + backward.window_s,

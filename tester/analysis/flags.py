@@ -25,6 +25,9 @@ class Flag:
 
 
 NOT_SHOWN: Final = "drift not shown"
+CHANGED: Final = "friction changed"
+STICK_SLIP: Final = "stick-slip"
+STICK_SLIP_UNKNOWN: Final = "stick-slip not known"
 SHORT: Final = "short"
 CARRY_OVER: Final = "carry-over"
 IMPRECISE: Final = "precision not reached"
@@ -45,6 +48,20 @@ FLAGS: Final[Mapping[str, Flag]] = {
             CARRY_OVER,
             "The coefficient was still settling from repeat to repeat: the rubber was running in.",
             "grind the rubber longer before (pre_grind), then measure the condition again",
+            doubt=True,
+        ),
+        Flag(
+            CHANGED,
+            "Friction changed by more than 5 % at once, within a repeat or from one repeat to the next.",
+            "see which repeat changed (repeats.csv: change_percent), clean or change the counterface, then measure the"
+            " condition again",
+            doubt=True,
+        ),
+        Flag(
+            STICK_SLIP,
+            "Friction swings by more than 5 % to either side within a revolution: the contact sticks and slips, or the"
+            " machine vibrates.",
+            "look at the samples (tester export --format samples), then try another speed or load, or a stiffer rig",
             doubt=True,
         ),
         Flag(
@@ -73,6 +90,11 @@ FLAGS: Final[Mapping[str, Flag]] = {
         ),
         Flag(REFERENCE, "A reference condition: it watches the counterface and is none of the recipe's conditions."),
         Flag(ROLLING, "Measured without slip: the coefficient is the rolling resistance."),
+        Flag(
+            STICK_SLIP_UNKNOWN,
+            "Whether the contact sticks and slips cannot be told: contacts are too short, samples too slow, or friction"
+            " swings with the wheel's turning.",
+        ),
         Flag(EXTENDED, "A repeat collected more revolutions than its window before its drift was known."),
         Flag(TRUNCATED, "The first revolutions of a repeat are left out of its mean as a transient."),
         Flag(OUTLIER, "A repeat lies more than 3.5 standard deviations from the median. It stays in the mean."),

@@ -17,13 +17,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import pairwise
-from math import isfinite, sqrt
+from math import isfinite, isnan, sqrt
 
 from tester.analysis.blocks import Block, resultant
+from tester.analysis.change import change_within
 from tester.analysis.drift import Drift, fit_drift
-from tester.analysis.flags import EXTENDED, NOT_SHOWN, ROLLING, TRUNCATED, joined
-from tester.analysis.results import NAN, Burst, RepeatResult, RepeatStatus
+from tester.analysis.flags import EXTENDED, NOT_SHOWN, ROLLING, STICK_SLIP, STICK_SLIP_UNKNOWN, TRUNCATED, joined
+from tester.analysis.results import NAN, Burst, RepeatResult, RepeatStatus, Swing
 from tester.analysis.stability import REPEAT_WINDOWS, enough, left_out
+from tester.analysis.swing import LIMIT_PERCENT
 from tester.quantities import mean_of
 
 BATCHES = 10
@@ -81,12 +83,14 @@ def reduce_repeat(
     *,
     rolling: bool = False,
     alone: bool = False,
+    swing: Swing | None = None,
 ) -> RepeatResult:
     """Return a repeat's result from its blocks, in order of time.
 
     ``revolutions`` or ``seconds`` is the nominal window of accepted samples (both None: any length will do).
     ``rolling`` marks a condition of 0 mm/s, whose drift is not judged: its coefficient is rolling resistance, next to
     nothing. ``alone``: no siblings to be judged with, so a drift that is not shown to be small is flagged here.
+    ``swing``: what the samples say of friction within a revolution; None where nothing looked at them.
     Status: VALID, TOO_FEW when the window is not full, REFUSED without a coefficient; the latter carry their figures.
     """
     if not blocks:
@@ -103,6 +107,9 @@ def reduce_repeat(
     flags = _flags(blocks, used, revolutions, seconds, rolling)
     if alone and not rolling and not drift.stable:
         flags.append(NOT_SHOWN)
+    seen = swing if swing is not None and not rolling else Swing()
+    if seen is swing:
+        flags += _swing_flags(seen)
     return RepeatResult(
         status=status,
         reason=reason,
@@ -115,6 +122,10 @@ def reduce_repeat(
         batches=len(batches),
         drift_percent=NAN if rolling else drift.drift_percent,
         bound_percent=NAN if rolling else drift.bound_percent,
+        change_percent=NAN if rolling else change_within(blocks),
+        swing_percent=seen.percent,
+        swing_hz=seen.hz,
+        swing_skewness=seen.skewness,
         revolutions=n,
         truncated=len(blocks) - n,
         window_s=sum(block.ended_s - block.started_s for block in used),
@@ -123,6 +134,12 @@ def reduce_repeat(
         ended_s=blocks[-1].ended_s,
         means=means,
     )
+
+
+def _swing_flags(swing: Swing) -> list[str]:
+    if isnan(swing.percent):
+        return [STICK_SLIP_UNKNOWN]
+    return [STICK_SLIP] if swing.percent > LIMIT_PERCENT else []
 
 
 def _uncertainty(used: Sequence[Block], batches: Sequence[float], drift: Drift) -> float:

@@ -16,12 +16,22 @@ from statistics import median
 from types import MappingProxyType
 
 from tester.analysis import closest
+from tester.analysis.change import LIMIT_PERCENT, change_of, greatest
 from tester.analysis.closest import Combining, taken
 from tester.analysis.directions import BothWays, mean_of_both_ways
-from tester.analysis.flags import CLOSEST_TWO, DOUBTS, EXCLUDED, OUTLIER, SHORT, flags_in, joined
+from tester.analysis.flags import CHANGED, CLOSEST_TWO, DOUBTS, EXCLUDED, OUTLIER, SHORT, flags_in, joined
 from tester.analysis.quantiles import f_quantile, t_quantile
 from tester.analysis.reduce import standard_deviation
-from tester.analysis.results import NAN, NO_MEANS, NOT_JUDGED, ConditionStatus, Judgement, RepeatResult, RepeatStatus
+from tester.analysis.results import (
+    NAN,
+    NO_MEANS,
+    NOT_JUDGED,
+    ConditionStatus,
+    Judgement,
+    RepeatResult,
+    RepeatStatus,
+    most_swinging,
+)
 from tester.analysis.uncertainty import CONFIDENCE, NO_BUDGET, STEADY, Budget, Unsteadiness, unsteadiness
 from tester.quantities import Means, mean_of
 
@@ -61,7 +71,9 @@ class ConditionResult:
     ``standard``, ``coverage`` and ``expanded`` (95 %) are the former's. ``mu_corrected`` is the resultant at the
     temperature that was asked for, which the budgets are of. Drift and its bound (one-sided, 98.75 %;
     of repeats judged alone 95 %) are per window, the trend over the repeats, all per cent of the coefficient
-    (``Judgement``); ``unsteady`` is what they add to the budget. ``measured`` holds the means over
+    (``Judgement``); ``unsteady`` is what they add to the budget. ``change_percent`` is the greatest change of level at
+    once, within a repeat or from one to the next, ``swing_percent`` and ``swing_hz`` those of the repeat that swings
+    most (``RepeatResult``). ``measured`` holds the means over
     the valid repeats of what a block averages. ``mu_without_flagged`` leaves
     out flagged outliers.
     """
@@ -84,6 +96,9 @@ class ConditionResult:
     drift_percent: float = NAN
     drift_bound_percent: float = NAN
     trend_percent: float = NAN
+    change_percent: float = NAN
+    swing_percent: float = NAN
+    swing_hz: float = NAN
     unsteady: Unsteadiness = STEADY
     mu_corrected: float = NAN
     budget: Budget = NO_BUDGET
@@ -189,6 +204,7 @@ def combine_repeats(
     by_hand: Mapping[int, str] = _NOTHING,
     repeatability: float = REPEATABILITY,
     combining: Combining = "mean",
+    changed_percent: float | None = None,
 ) -> ConditionResult:
     """Return a condition's result from its repeats (one result per repeat: its last attempt; none void).
 
@@ -198,7 +214,8 @@ def combine_repeats(
     are what the run said when it left the condition (None: it has not), ``judged`` what its repeats say of its drift.
     ``by_hand``: positions that a person has left
     out, each with the reason. ``repeatability`` is the historic standard deviation between repeats as a share of mu.
-    ``combining``: the mean of all that count, or the paper's way (``tester.analysis.closest``).
+    ``combining``: the mean of all that count, or the paper's way (``tester.analysis.closest``). ``changed_percent``:
+    the greatest change at once, where it is not that between ``results`` (pairs of repeats).
     """
     excluded = _exclusions(results, by_hand)
     left_out = {exclusion.position for exclusion in excluded}
@@ -217,7 +234,10 @@ def combine_repeats(
     flags = {flag for i in kept for flag in flags_in(results[i].flags)} | set(flags_in(judged.flags))
     used = taken(values, combining)
     fewer = len(used) < len(values)
-    marks = ((OUTLIER, flagged), (EXCLUDED, by_hand), (SHORT, short), (CLOSEST_TWO, fewer))
+    if changed_percent is None:
+        changed_percent = change_of(with_coefficient(results, by_hand), repeatability)
+    changed = abs(changed_percent) > LIMIT_PERCENT
+    marks = ((OUTLIER, flagged), (EXCLUDED, by_hand), (SHORT, short), (CLOSEST_TWO, fewer), (CHANGED, changed))
     flags |= {word for word, on in marks if on}
     in_mean = [results[kept[i]] for i in used]
     shell = ConditionResult(
@@ -233,9 +253,17 @@ def combine_repeats(
         drift_percent=judged.drift_percent,
         drift_bound_percent=judged.drift_bound_percent,
         trend_percent=judged.trend_percent,
+        change_percent=changed_percent,
     )
     shell = replace(shell, unsteady=unsteadiness(judged))
+    swings = most_swinging(results[i] for i in kept)
+    shell = replace(shell, swing_percent=swings.swing_percent, swing_hz=swings.swing_hz)
     return _with_statistics(shell, values, flagged, used)
+
+
+def with_coefficient(results: Sequence[RepeatResult], by_hand: Mapping[int, str] = _NOTHING) -> list[RepeatResult]:
+    """Return the repeats that show friction: those that count, and those refused for their drift."""
+    return [one for i, one in enumerate(results) if (one.valid or one.drifts) and i not in by_hand]
 
 
 def combine_replicates(results: Sequence[ConditionResult]) -> ConditionResult:
@@ -265,7 +293,10 @@ def combine_replicates(results: Sequence[ConditionResult]) -> ConditionResult:
         # Wheels run in alike: what drifts on one drifts on the others, the same way.
         unsteady=Unsteadiness(*(_mean(values) for values in zip(*(astuple(r.unsteady) for r in kept), strict=True))),
         both_ways=_both_ways(kept),
+        change_percent=greatest(result.change_percent for result in kept),
     )
+    swings = most_swinging(kept)
+    shell = replace(shell, swing_percent=swings.swing_percent, swing_hz=swings.swing_hz)
     return _with_statistics(shell, [result.mu_resultant for result in kept], [])
 
 

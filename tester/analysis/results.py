@@ -5,10 +5,11 @@ Units are in the names. NaN stands for a value that does not exist; the store ke
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import StrEnum
 from math import isfinite
-from typing import Final
+from typing import Final, Protocol, TypeVar
 
 from tester.quantities import Means
 
@@ -49,6 +50,19 @@ class ConditionStatus(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
+class Swing:
+    """How friction swings within a revolution, off the wheel's orders (``tester.analysis.swing``).
+
+    ``percent``: to either side of the mean, in per cent of it, 0 where it does not; at ``hz``; ``skewness`` of the
+    differences between neighbouring samples. NaN where that is not known.
+    """
+
+    percent: float = NAN
+    hz: float = NAN
+    skewness: float = NAN
+
+
+@dataclass(frozen=True, slots=True)
 class RepeatResult:
     """One repeat's coefficient and what was measured with it.
 
@@ -56,7 +70,8 @@ class RepeatResult:
     uncertainty of ``mu_resultant`` from ``batches`` batch means, ``fluctuation_percent`` the batch means'
     standard deviation in per cent of it. ``drift_percent`` and ``bound_percent`` (90 %) are per window, in
     per cent of the coefficient: of the repeat alone until its condition is judged, then with the condition's
-    sensitivity to temperature.
+    sensitivity to temperature. ``change_percent`` is the greatest change of level within it, in per cent of the
+    coefficient, with the revolutions that are left out as transient.
     """
 
     status: RepeatStatus
@@ -71,6 +86,13 @@ class RepeatResult:
     batches: int = 0
     drift_percent: float = NAN
     bound_percent: float = NAN
+    change_percent: float = NAN
+    swing_percent: float = NAN
+    """Friction swings by so much to either side within a revolution, in per cent of it (``Swing``), ..."""
+    swing_hz: float = NAN
+    """... so often a second, ..."""
+    swing_skewness: float = NAN
+    """... with differences between neighbouring samples as skew as this."""
     revolutions: int = 0
     """Whole accepted revolutions that the coefficient rests on."""
     truncated: int = 0
@@ -92,6 +114,28 @@ class RepeatResult:
     def drifts(self) -> bool:
         """Return whether it was refused for its drift; it has a coefficient then."""
         return self.status is RepeatStatus.REFUSED and isfinite(self.drift_percent) and self.mu_resultant > 0.0
+
+
+class Swings(Protocol):
+    """What has a swing of friction: a repeat, or a condition."""
+
+    @property
+    def swing_percent(self) -> float:
+        """To either side of the mean, per cent."""
+        ...
+
+    @property
+    def swing_hz(self) -> float:
+        """So often a second."""
+        ...
+
+
+SwingsT = TypeVar("SwingsT", bound=Swings)
+
+
+def most_swinging(given: Iterable[SwingsT]) -> SwingsT:
+    """Return that whose friction swings most; one of which it is not known comes last. At least one is given."""
+    return max(given, key=lambda one: one.swing_percent if one.swing_percent >= 0.0 else -1.0)
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,11 +11,20 @@ from math import hypot
 from typing import Final, Protocol
 
 from tester.analysis.blocks import Block
+from tester.analysis.change import change_of, greatest
 from tester.analysis.closest import Combining
 from tester.analysis.directions import as_pairs, both_ways, halves, is_reversed
 from tester.analysis.flags import flags_in, joined
 from tester.analysis.judge import judge
-from tester.analysis.repeats import BY_HAND, ConditionResult, Exclusion, combine_repeats, counting
+from tester.analysis.repeats import (
+    BY_HAND,
+    REPEATABILITY,
+    ConditionResult,
+    Exclusion,
+    combine_repeats,
+    counting,
+    with_coefficient,
+)
 from tester.analysis.results import NOT_JUDGED, ConditionStatus, Judgement, RepeatResult
 
 _NOTHING: Final[Mapping[int, str]] = {}
@@ -135,7 +144,7 @@ class OppositePairs:
         pairs = as_pairs(results, whole=ended is None)
         hands = {place // 2: why for place, why in by_hand.items() if place // 2 < len(pairs)}
         found = combine_repeats(pairs, planned, min_valid, ended, reason, judged=judged, by_hand=hands,
-                                combining=combining)  # fmt: skip
+                                combining=combining, changed_percent=_changed(results, by_hand))  # fmt: skip
         out = {one.position: one.reason for one in found.excluded}
         kept = [halves(results, pair) for pair in range(len(pairs)) if pair not in out]
         kept = [(a, b) for a, b in kept if max(a, b) < len(results)]
@@ -151,6 +160,15 @@ class OppositePairs:
             flagged=tuple(place for pair in found.flagged for place in sorted(halves(results, pair))),
             both_ways=both_ways([(results[a], results[b]) for a, b in kept]) if kept else None,
         )
+
+
+def _changed(results: Sequence[RepeatResult], by_hand: Mapping[int, str]) -> float:
+    """Return the greatest change at once within one direction: misaligned axes part the two, whatever friction does."""
+    ways = (
+        [one for i, one in enumerate(results) if is_reversed(i + 1) == backward and i not in by_hand]
+        for backward in (False, True)
+    )
+    return greatest(change_of(with_coefficient(way), REPEATABILITY) for way in ways)
 
 
 def _why(results: Sequence[RepeatResult], place: int, of_pair: str, by_hand: Mapping[int, str]) -> str:

@@ -15,6 +15,8 @@ from tester.analysis.reduce import bursts_of, counted, reduce_repeat, without_va
 from tester.analysis.repeatability import Pool
 from tester.analysis.repeats import ConditionResult
 from tester.analysis.results import NOT_JUDGED, ConditionStatus, RepeatResult, RepeatStatus
+from tester.analysis.swing import swing_of
+from tester.analysis.trace import Trace
 from tester.axes import condition_words
 from tester.machine.context import AnyContext
 from tester.machine.measured import ConditionEnd, Ending, RepeatOutcome
@@ -45,6 +47,11 @@ class CountedBlocks(Protocol):
     @property
     def blocks(self) -> Sequence[Block]:
         """The blocks, in order."""
+        ...
+
+    @property
+    def trace(self) -> Trace:
+        """Their samples."""
         ...
 
 
@@ -164,6 +171,7 @@ class StoredResults(Generic[ContextT]):
                 window.seconds,
                 rolling=measured.rolling_only,
                 alone=step.repeats <= ALONE,
+                swing=None if measured.rolling_only else swing_of(measured.counter.trace),
             )
         self.repeats.append(result)
         self.keys.append(key)

@@ -6,13 +6,15 @@ import csv
 from collections.abc import Iterable, Iterator
 from io import BytesIO, StringIO
 from itertools import zip_longest
-from math import isclose, isfinite
+from math import isclose, isfinite, isnan
 from pathlib import Path
 
 from tester.analysis.blocks import blocks_from_samples
 from tester.analysis.flags import ROLLING, flags_in
 from tester.analysis.reduce import reduce_repeat
 from tester.analysis.results import RepeatResult, RepeatStatus
+from tester.analysis.swing import swing_of
+from tester.analysis.trace import Trace
 from tester.results.formats import FORMATS, Record
 from tester.store.reader import RunReader
 from tester.store.records import ConditionInfo, StoredRepeat
@@ -21,6 +23,9 @@ TOLERANCE = 1e-9
 """Relative. Stored are doubles, bit by bit; a mean over a revolution is summed in another order, and merged parts have
 their times put back on a grid of a microsecond."""
 
+LOOSER = 1e-3
+"""Relative, of what is told from the samples' times: those of merged parts, on their grid, move it so little."""
+_LOOKED_AT = ("change_percent", "swing_percent", "swing_hz", "swing_skewness")
 _FIGURES = ("mu_resultant", "mu_longitudinal", "mu_lateral")
 
 
@@ -42,8 +47,10 @@ def coefficient_problems(reader: RunReader) -> tuple[int, list[str]]:
 def _recomputed(reader: RunReader, one: StoredRepeat, info: ConditionInfo) -> RepeatResult:
     samples = reader.samples(one.condition, one.repeat, one.attempt)
     rolling = ROLLING in flags_in(one.result.flags)
-    blocks = blocks_from_samples(samples, reader.quantities())
-    return reduce_repeat(blocks, info.window_revolutions, info.window_s, rolling=rolling)
+    trace = Trace(reader.quantities())
+    blocks = blocks_from_samples(samples, reader.quantities(), trace)
+    swing = swing_of(trace) if _looked_at(one.result) and not rolling else None
+    return reduce_repeat(blocks, info.window_revolutions, info.window_s, rolling=rolling, swing=swing)
 
 
 def _differing(one: StoredRepeat, again: RepeatResult) -> Iterator[str]:
@@ -56,6 +63,10 @@ def _differing(one: StoredRepeat, again: RepeatResult) -> Iterator[str]:
         found = by_samples[name]
         if not isclose(stored, found, rel_tol=TOLERANCE, abs_tol=TOLERANCE) and (isfinite(stored) or isfinite(found)):
             yield f"{place}: {name} is {found:.6g} by its samples, on record is {stored:.6g}"
+    for name in _LOOKED_AT if _looked_at(one.result) else ():
+        stored, found = getattr(one.result, name), getattr(again, name)
+        if not isclose(stored, found, rel_tol=LOOSER, abs_tol=LOOSER) and not (isnan(stored) and isnan(found)):
+            yield f"{place}: {name} is {found:.6g} by its samples, on record is {stored:.6g}"
     if one.result.revolutions != again.revolutions:
         yield f"{place}: {again.revolutions} revolutions by its samples, on record are {one.result.revolutions}"
     if one.result.status is RepeatStatus.VALID and again.status is not RepeatStatus.VALID:
@@ -64,6 +75,11 @@ def _differing(one: StoredRepeat, again: RepeatResult) -> Iterator[str]:
 
 def _figures(result: RepeatResult) -> dict[str, float]:
     return {name: getattr(result, name) for name in _FIGURES} | dict(result.means)
+
+
+def _looked_at(result: RepeatResult) -> bool:
+    """Return whether the record says how friction changed and swung; older ones do not."""
+    return isfinite(result.change_percent) or isfinite(result.swing_percent)
 
 
 def table_problems(folder: Path, record: Record) -> Iterator[tuple[str, str]]:

@@ -459,6 +459,14 @@ CREATE {temporary}TABLE material (
 of them refers to; ``file`` is where the copy lies in the run's folder. ``text`` is NULL of what is no short text, which
 its hash alone holds; ``doubts`` has a line for each."""
 
+_LOOKED_AT = ("change_percent", "swing_percent", "swing_hz", "swing_skewness")
+_CHANGE = "".join(f"ALTER TABLE repeat ADD COLUMN {name} REAL;\n" for name in _LOOKED_AT)
+"""By how much friction changed at once within a repeat, and how it swung within a revolution: NULL of repeats recorded
+before, which nothing looked at that way."""
+_AS_VERSION_13 = (
+    "CREATE TEMP VIEW repeat AS SELECT *, " + ", ".join(f"NULL AS {name}" for name in _LOOKED_AT) + " FROM main.repeat;"
+)
+
 _CONDITION = """
 DROP TABLE condition;
 CREATE TABLE condition (
@@ -500,6 +508,7 @@ MIGRATIONS: tuple[str, ...] = (
     _BOTH_DIRECTIONS,
     _TRAVEL.format(temporary=""),
     _MATERIAL.format(temporary=""),
+    _CHANGE,
 )
 """Migration n leads from schema n to n + 1."""
 
@@ -524,6 +533,7 @@ _ADDED: dict[int, str] = {
     11: "",  # its readers take a column that is not there for NULL
     12: _TRAVEL,
     13: _MATERIAL,
+    14: _AS_VERSION_13,
 }
 """What versions have added, by version: what a connection to an older record can have for itself."""
 

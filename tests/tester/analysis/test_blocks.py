@@ -11,6 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tester.analysis.blocks import Block, BlockCounter, blocks_from_samples, resultant
+from tester.analysis.trace import Trace
 from tester.kinds.wheel_on_belt.process import GATE_LOAD, GATE_TEMPERATURE
 from tester.kinds.wheel_on_belt.quantities import QUANTITIES
 from tests.tester.analysis.series import sample
@@ -192,3 +193,16 @@ def test_an_angle_without_a_value_ends_the_stretch_in_both() -> None:
     samples[50] = sample(time_s=100.5, wheel_angle_rev=float("nan"))
     assert len(live(samples)) == 2
     assert_same(live(samples), stored(samples))
+
+
+def test_live_and_stored_samples_give_the_same_trace() -> None:
+    rows = [*turning(100), *turning(120, start_rev=40.0, burst=2.0)]
+    counter, table = BlockCounter(QUANTITIES), np.array(rows, dtype=np.float64)
+    for row in rows:
+        counter.add(row)
+    again = Trace(QUANTITIES)
+    blocks_from_samples({name: table[:, i] for i, name in enumerate(QUANTITIES.names)}, QUANTITIES, again)
+    assert counter.trace.starts == again.starts == [0, 71]
+    assert counter.trace.turns and len(again) == sum(block.samples for block in counter.blocks)
+    for name in ("time_s", "position", "along", "across", "normal"):
+        assert getattr(counter.trace, name) == getattr(again, name)

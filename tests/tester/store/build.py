@@ -84,6 +84,10 @@ def result(mu: float = 0.73, status: RepeatStatus = RepeatStatus.VALID, reason: 
         batches=10,
         drift_percent=-0.4,
         bound_percent=1.5,
+        change_percent=0.7,
+        swing_percent=6.5,
+        swing_hz=4.1,
+        swing_skewness=-1.8,
         revolutions=30,
         truncated=2,
         window_s=10.6,
@@ -203,4 +207,11 @@ def without_channels(database: sqlite3.Connection) -> None:
     for column in ("kind", "worn"):
         database.execute(f"ALTER TABLE run DROP COLUMN {column}")
     database.execute("ALTER TABLE condition DROP COLUMN both_directions")
+    without_looks(database)
     database.execute("PRAGMA user_version = 7")
+
+
+def without_looks(database: sqlite3.Connection) -> None:
+    """Make a record one of version 13: it does not say how friction changed and swung within a repeat."""
+    for column in ("change_percent", "swing_percent", "swing_hz", "swing_skewness"):
+        database.execute(f"ALTER TABLE repeat DROP COLUMN {column}")

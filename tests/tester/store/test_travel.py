@@ -9,7 +9,7 @@ from pathlib import Path
 from tester.store.reader import DATABASE, RunReader
 from tester.store.records import Travel
 from tester.store.resume import resume_point
-from tests.tester.store.build import CONDITIONS, PIECE, RUN, SPECIMENS, open_writer
+from tests.tester.store.build import CONDITIONS, PIECE, RUN, SPECIMENS, open_writer, without_looks
 
 
 def test_it_is_known_of_each_repeat_and_of_the_last_state(tmp_path: Path) -> None:
@@ -35,6 +35,7 @@ def test_a_record_of_before_says_nothing_of_it(tmp_path: Path) -> None:
     with closing(sqlite3.connect(tmp_path / DATABASE)) as database:
         database.execute("DROP TABLE travel")
         database.execute("DROP TABLE material")
+        without_looks(database)
         database.execute("PRAGMA user_version = 10")
         database.commit()
     with RunReader(tmp_path) as reader:

@@ -1,0 +1,212 @@
+"""Whether friction swings within a revolution, as it does where the contact sticks and slips.
+
+The coefficient of every accepted sample is taken as a share of the mean. What goes with the turning of the wheel (its
+orders, a sine and a cosine of each) and a slow trend of each contact are fitted and taken out. What is left has a
+spectrum, averaged over stretches of up to ``LONGEST_S``. Where its level within an octave is exceeded ``PROMINENCE``
+times, between ``LOWEST_HZ`` and a tenth of the rate of samples, friction swings: with the frequency of the highest of
+these peaks, and an amplitude of sqrt(2) times the root mean square of that peak and its multiples. So a sine's is as it
+is, and that of a saw-tooth reads 18 % low.
+
+The skewness of the differences between neighbouring samples says what kind of swing it is: friction that rises slowly
+and falls fast has one far below 0, a vibration none.
+
+What is not known is NaN and never 0: no contact is long enough, samples come too slowly, or what goes with the wheel's
+turning swings so much that it may be stick-slip beside an order.
+"""
+
+from __future__ import annotations
+
+from math import inf, sqrt
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+from tester.analysis.results import NAN, Swing
+from tester.analysis.trace import Trace
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+
+LOWEST_HZ: Final = 0.8
+"""Slower than this is drift, which other tests judge [A]."""
+PER_PERIOD: Final = 10.0
+"""Samples in a period of the fastest swing that has an amplitude: 10 Hz of 100 Hz. Load cell and polling take more of a
+faster one than is known [A]."""
+SHORTEST_S: Final = 2.5
+"""A shorter contact has less than two periods of the slowest swing, and tells nothing from an order of the wheel that
+is 0.3 Hz away [A]."""
+LONGEST_S: Final = 8.0
+"""Length of the stretches that spectra are averaged over, s [A]: their frequencies are 0.25 Hz apart."""
+MOST_STRETCHES: Final = 40
+"""More of them are not looked at: they say no more, and take time in which the rig is not scanned [A]."""
+PROMINENCE: Final = 12.0
+"""Power of a peak over the median of what lies within an octave of it [A]. Of a single stretch of noise one frequency
+in 4,000 has that much (exp(-12 ln 2)); of the mean of two, one in 100,000."""
+LEAST_PERCENT: Final = 1.0
+"""A swing of less is noise to whoever reads it [A]."""
+LIMIT_PERCENT: Final = 5.0
+"""Friction that swings by more than this to either side carries a doubt [A]."""
+_ORDERS_UP_TO: Final = 1.5
+"""Orders of the wheel are taken out up to this times the highest frequency looked at."""
+_LOBE: Final = 0.1
+"""Half the width of a peak, as a share of its frequency: the periods of stick-slip are not alike [A]."""
+_MULTIPLES: Final = 4
+_LEVELS: Final = 16
+"""Frequencies at which the level around is worked out; between them it is a straight line."""
+_POINTS: Final = 2048
+"""Of a Fourier transform: frequencies 0.05 Hz apart at 100 Hz."""
+
+UNKNOWN: Final = Swing(NAN, NAN, NAN)
+NO_SWING: Final = Swing(0.0, NAN, NAN)
+
+
+class _Stretch(NamedTuple):
+    """A stretch of samples at equal times: friction as a share of its mean, less its trend; the wheel's orders."""
+
+    friction: Array
+    orders: Array
+
+
+class _Spectrum(NamedTuple):
+    """Power, 1/Hz, over frequency, Hz; ``width_hz``: what the stretches tell apart."""
+
+    frequency_hz: Array
+    power: Array
+    width_hz: float
+
+
+def swing_of(trace: Trace) -> Swing:
+    """Return how friction swings: 0 where it does not, NaN where that is not known."""
+    import numpy as np
+
+    contacts = [one for one in trace.contacts() if len(one["time_s"]) > 1]
+    steps = np.concatenate([np.diff(one["time_s"]) for one in contacts]) if contacts else np.array([])
+    step_s = float(np.median(steps)) if len(steps) else inf
+    if not (step_s > 0.0 and 1.0 / (PER_PERIOD * step_s) > LOWEST_HZ):
+        return UNKNOWN
+    highest_hz = 1.0 / (PER_PERIOD * step_s)
+    stretches = _stretches(contacts, step_s, _orders(contacts, highest_hz) if trace.turns else 0)
+    if not stretches:
+        return UNKNOWN
+    rests, ordered_percent = _without_orders(stretches)
+    found = _swing(_spectrum(rests, step_s), highest_hz)
+    if found is None:
+        return UNKNOWN if ordered_percent > LIMIT_PERCENT else NO_SWING
+    return Swing(*found, _skewness(rests))
+
+
+def _orders(contacts: list[dict[str, Array]], highest_hz: float) -> int:
+    """Return how many orders of the wheel are taken out."""
+    import numpy as np
+
+    slopes = [abs(np.ptp(one["position"]) / np.ptp(one["time_s"])) for one in contacts]
+    turn_hz = float(np.median(slopes))
+    return int(_ORDERS_UP_TO * highest_hz / turn_hz) if turn_hz > 0.0 else 0
+
+
+def _stretches(contacts: list[dict[str, Array]], step_s: float, orders: int) -> list[_Stretch]:
+    """Return the stretches that are long enough, evenly spread where there are more than are looked at."""
+    import numpy as np
+
+    cut: list[dict[str, Array]] = []
+    for one in contacts:
+        pieces = max(1, round((one["time_s"][-1] - one["time_s"][0]) / LONGEST_S))
+        for part in np.array_split(np.arange(len(one["time_s"])), pieces):
+            piece = {name: column[part] for name, column in one.items()}
+            if len(part) and float(np.ptp(piece["time_s"])) >= SHORTEST_S and float(np.min(piece["normal"])) > 0.0:
+                cut.append(piece)
+    if len(cut) > MOST_STRETCHES:
+        cut = [cut[i * len(cut) // MOST_STRETCHES] for i in range(MOST_STRETCHES)]
+    return [_stretch(one, step_s, orders) for one in cut]
+
+
+def _stretch(one: dict[str, Array], step_s: float, orders: int) -> _Stretch:
+    """Return a stretch at equal times, without a trend of second degree."""
+    import numpy as np
+
+    mu: Array = np.hypot(one["along"], one["across"]) / one["normal"]
+    begins, ends = float(one["time_s"][0]), float(one["time_s"][-1])
+    times: Array = begins + step_s * np.arange(int((ends - begins) / step_s + 1.5), dtype=np.float64)
+    turned = 2.0 * np.pi * _at(times, one["time_s"], one["position"])
+    friction = _at(times, one["time_s"], mu)
+    waves: list[Array] = []
+    for order in range(1, orders + 1):
+        waves += [np.cos(order * turned), np.sin(order * turned)]
+    held: Array = np.column_stack([friction / float(np.mean(friction)), *waves])
+    trend = np.linalg.qr(np.vander(np.linspace(-1.0, 1.0, len(times)), 3))[0]
+    held -= trend @ (trend.T @ held)
+    return _Stretch(held[:, 0], held[:, 1:])
+
+
+def _at(times: Array, there: Array, values: Array) -> Array:
+    """Return values at other times, by straight lines between those where they are known."""
+    import numpy as np
+
+    found: Array = np.asarray(np.interp(times, there, values), dtype=np.float64)  # pyright: ignore[reportUnknownMemberType]
+    return found
+
+
+def _without_orders(stretches: list[_Stretch]) -> tuple[list[Array], float]:
+    """Return the stretches without what goes with the wheel's turning, and by how much that swings, per cent."""
+    import numpy as np
+
+    orders = np.vstack([one.orders for one in stretches])
+    friction = np.concatenate([one.friction for one in stretches])
+    if not orders.shape[1]:
+        return [one.friction for one in stretches], 0.0
+    found = np.linalg.lstsq(orders, friction, rcond=None)[0]
+    swing = 100.0 * sqrt(2.0 * float(np.mean((orders @ found) ** 2)))
+    return [one.friction - one.orders @ found for one in stretches], swing
+
+
+def _spectrum(rests: list[Array], step_s: float) -> _Spectrum:
+    """Return the mean spectrum of the stretches, each through a Hann window."""
+    import numpy as np
+
+    points = max(_POINTS, 1 << (max(map(len, rests)) - 1).bit_length())
+    power = np.zeros(points // 2 + 1)
+    for rest in rests:
+        window = np.hanning(len(rest))
+        power += len(rest) * 2.0 * step_s * np.abs(np.fft.rfft(window * rest, points)) ** 2 / (window @ window)
+    count = sum(map(len, rests))
+    frequency: Array = np.arange(points // 2 + 1) / (points * step_s)
+    return _Spectrum(frequency, power / count, 2.0 * len(rests) / (count * step_s))
+
+
+def _swing(spectrum: _Spectrum, highest_hz: float) -> tuple[float, float] | None:
+    """Return amplitude (per cent) and frequency (Hz) of the highest peak that stands out; None where none does."""
+    import numpy as np
+
+    frequency, power = spectrum.frequency_hz, spectrum.power
+    marks = np.geomspace(LOWEST_HZ, highest_hz, _LEVELS)
+    level = np.interp(frequency, marks, [_level(spectrum, float(mark)) for mark in marks])
+    stands_out = (frequency >= LOWEST_HZ) & (frequency <= highest_hz) & (power > PROMINENCE * level)
+    if not stands_out.any():
+        return None
+    at_hz = float(frequency[np.argmax(np.where(stands_out, power, 0.0))])
+    variance = 0.0
+    for multiple in range(1, _MULTIPLES + 1):
+        middle = multiple * at_hz
+        half = min(max(spectrum.width_hz, _LOBE * middle), 0.5 * at_hz)
+        lobe = (frequency > middle - half) & (frequency <= middle + half)
+        variance += max(float(np.sum(power[lobe] - _level(spectrum, middle))) * float(frequency[1]), 0.0)
+    amplitude = 100.0 * sqrt(2.0 * variance)
+    return (amplitude, at_hz) if amplitude >= LEAST_PERCENT else None
+
+
+def _level(spectrum: _Spectrum, at_hz: float) -> float:
+    """Return the median of the power within an octave of a frequency."""
+    import numpy as np
+
+    frequency = spectrum.frequency_hz
+    return float(np.median(spectrum.power[(frequency >= at_hz / 2.0) & (frequency <= at_hz * 2.0)]))
+
+
+def _skewness(rests: list[Array]) -> float:
+    """Return the skewness of the differences between neighbouring samples."""
+    import numpy as np
+
+    steps: Array = np.concatenate([rest[1:] - rest[:-1] for rest in rests])
+    steps = steps - float(np.mean(steps))
+    return float(np.mean(steps**3) / np.mean(steps**2) ** 1.5)

@@ -1,0 +1,61 @@
+"""The samples that the blocks of a repeat are made of: what friction did within a revolution."""
+
+from __future__ import annotations
+
+from array import array
+from itertools import pairwise
+from typing import TYPE_CHECKING, Final
+
+from tester.quantities import TIME, Quantities
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+REVOLUTIONS: Final = "rev"
+"""Unit of the position that blocks are counted by where it is the angle of something that turns."""
+
+
+class Trace:
+    """Accepted samples of whole blocks, contact by contact, in order of time.
+
+    Columns of equal length: time (s), position (in units of the channel by which blocks are counted), forces along,
+    across (0 where it is not measured) and normal (N). ``starts`` has the index at which each contact begins.
+    """
+
+    __slots__ = ("across", "along", "normal", "position", "starts", "time_s", "turns")
+
+    def __init__(self, quantities: Quantities) -> None:
+        """Take in nothing yet; ``turns``: the position is the angle of something that turns, in revolutions."""
+        self.turns = quantities[quantities.roles.turn].unit == REVOLUTIONS
+        self.starts: list[int] = []
+        self.time_s = array("d")
+        self.position = array("d")
+        self.along = array("d")
+        self.across = array("d")
+        self.normal = array("d")
+
+    def __len__(self) -> int:
+        """Return the number of samples."""
+        return len(self.time_s)
+
+    def contacts(self) -> list[dict[str, NDArray[np.float64]]]:
+        """Return the columns of each contact as arrays, by name."""
+        import numpy as np
+
+        columns: dict[str, NDArray[np.float64]] = {
+            "time_s": np.array(self.time_s, dtype=np.float64),
+            "position": np.array(self.position, dtype=np.float64),
+            "along": np.array(self.along, dtype=np.float64),
+            "across": np.array(self.across, dtype=np.float64),
+            "normal": np.array(self.normal, dtype=np.float64),
+        }
+        edges = [*self.starts, len(self)]
+        return [{name: column[a:b] for name, column in columns.items()} for a, b in pairwise(edges)]
+
+
+def columns_of(quantities: Quantities) -> tuple[str, str, str, str, str]:
+    """Return the channels of a trace's columns, in order; "" for a force across that is not measured."""
+    roles = quantities.roles
+    along, *across = roles.friction
+    return TIME, roles.turn, along, "".join(across), roles.normal
