@@ -57,7 +57,7 @@ HOT = (
     "sim/sensors.py",
     "sim/physics/lookup.py",
     "sim/physics/slip.py",
-    "sim/physics/stick_slip.py",
+    "sim/stick_slip.py",
     "sim/physics/thermal.py",
     "sim/physics/wear.py",
     "tester/analysis/blocks.py",

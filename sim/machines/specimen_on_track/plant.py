@@ -16,9 +16,9 @@ from typing import Final
 
 from sim.noise import NormalStream, normal, uniforms
 from sim.physics.laws import NO_SETTING, FrictionLaw, LawSetting
-from sim.physics.stick_slip import StickSlip
 from sim.physics.track import Interface, TrackParameters
 from sim.sensors import TemperatureSensor
+from sim.stick_slip import StickSlip
 
 SPECIMEN_SIGMA: Final = 0.03
 REPEAT_SIGMA: Final = 0.02

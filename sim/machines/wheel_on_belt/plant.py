@@ -21,10 +21,10 @@ from sim.physics import laws
 from sim.physics.contact import ContactModel, Relaxation, Warmth
 from sim.physics.parameters import SimParameters
 from sim.physics.slip import cornering_factor, traction_direction
-from sim.physics.stick_slip import StickSlip
 from sim.physics.thermal import ThermalModel, ThermalState
 from sim.physics.wear import grip_kept
 from sim.sensors import SpeedSensor, TemperatureSensor
+from sim.stick_slip import StickSlip
 
 _TURN: Final = 2.0 * pi
 _SAME_SIZE_K: Final = 0.005

@@ -8,7 +8,7 @@ from copy import deepcopy
 import pytest
 
 from sim.noise import NormalStream
-from sim.physics.stick_slip import SLIP_SHARE, StickSlip
+from sim.stick_slip import SLIP_SHARE, StickSlip
 
 STEPS = 20_000
 
