@@ -52,7 +52,7 @@ def difference(first: ConditionResult, second: ConditionResult, *, same_rig: boo
 
     ``same_rig``: measured on one rig, with one calibration. NaN where one has no coefficient or no budget.
     """
-    value = at_nominal(second) - at_nominal(first)
+    value = second.mu - first.mu
     budgets = first.compound_budget.contributions, second.compound_budget.contributions
     if not (all(budgets) and isfinite(value)):
         return Difference(value)
@@ -72,11 +72,6 @@ def _error(one: Contribution | None) -> float:
 
 def _df(one: Contribution | None) -> float:
     return one.df if one is not None else inf
-
-
-def at_nominal(result: ConditionResult) -> float:
-    """Return the coefficient at the temperature that was asked for; as measured where that is not known."""
-    return result.mu_corrected if isfinite(result.mu_corrected) else result.mu_resultant
 
 
 def pieces_needed(percent: float, between_percent: float, repeats_percent: float) -> int:

@@ -105,9 +105,10 @@ class SurfaceWarmth:
         offset = self.shown_c + lag_s * self.rate_k_s - self.nominal_c
         return offset if isfinite(offset) else 0.0
 
-    def corrected(self, mu: float, terms: Sequence[Term]) -> float:
-        """Return the coefficient at the temperature that was asked for; as it is where no sensitivity is known."""
-        return mu * exp(-self.slope.per_kelvin * self.offset_k(terms)) if self.slope.known else mu
+    def correction(self, terms: Sequence[Term]) -> float:
+        """Return what a coefficient as measured is multiplied by to be at the temperature that was asked for; 1 where
+        no sensitivity is known."""
+        return exp(-self.slope.per_kelvin * self.offset_k(terms)) if self.slope.known else 1.0
 
     def contribution(self, mu: float, terms: Sequence[Term]) -> Contribution:
         """Return what the uncertainty of the sensitivity contributes: over the offset, and what the thermometer is off

@@ -114,7 +114,7 @@ def with_budget(result: ConditionResult, by: Surroundings) -> ConditionResult:
     this = [*found, *_unsteady(mu, result.unsteady), repeatability(result, by.pool)]
     return replace(
         result,
-        mu_corrected=by.warmth.corrected(mu, by.terms),
+        correction=by.warmth.correction(by.terms),
         budget=budget(this),
         compound_budget=budget([*this, *between, *by.counterface(mu)]),
     )
@@ -148,7 +148,7 @@ def with_budget_of_replicates(
         between = [own, *stated]
     return replace(
         result,
-        mu_corrected=sum(one.mu_corrected for one in kept) / n,
+        correction=sum(one.mu for one in kept) / (n * mu),
         budget=budget([*found, own]),
         compound_budget=budget([*found, *between, *by.counterface(mu)]),
     )

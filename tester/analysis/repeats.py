@@ -18,6 +18,7 @@ from types import MappingProxyType
 from tester.analysis import closest
 from tester.analysis.change import LIMIT_PERCENT, change_of, greatest
 from tester.analysis.closest import Combining, taken
+from tester.analysis.counts import NO_COUNTS, REPEATS, REPLICATES, Counts, make_ups_of
 from tester.analysis.directions import BothWays, mean_of_both_ways
 from tester.analysis.flags import CHANGED, CLOSEST_TWO, DOUBTS, EXCLUDED, OUTLIER, SHORT, flags_in, joined
 from tester.analysis.quantiles import f_quantile, t_quantile
@@ -46,6 +47,8 @@ EXCESS_PERCENT = 1.0
 
 BY_HAND = "excluded by hand"
 """Begins the reason of an exclusion that a person has made."""
+NOT_CLOSEST = "not one of the closest two of three"
+"""Why a valid repeat is in no mean where the recipe combines the paper's way."""
 
 _NOTHING: Mapping[int, str] = MappingProxyType({})
 
@@ -64,12 +67,15 @@ class Exclusion:
 
 @dataclass(frozen=True, slots=True)
 class ConditionResult:
-    """A condition's coefficient. ``s``: standard deviation between its ``n_valid`` values of ``n``.
+    """A condition's coefficient. ``s``: standard deviation between its ``n_valid`` values.
+
+    ``mu`` is the coefficient: at the temperature that was asked for, as its components ``longitudinal`` and
+    ``lateral`` are, and as both budgets. ``mu_resultant``, ``mu_longitudinal`` and ``mu_lateral`` are as measured, at
+    the mean temperature that was measured; ``correction`` leads from these to those.
 
     ``interval`` is half the 95 % t interval of the mean, ``type_a`` s / sqrt(n). ``budget`` is that of what was
     mounted, in this condition, ``compound_budget`` that of the compound (module ``measurand``, which makes both);
-    ``standard``, ``coverage`` and ``expanded`` (95 %) are the former's. ``mu_corrected`` is the resultant at the
-    temperature that was asked for, which the budgets are of. Drift and its bound (one-sided, 98.75 %;
+    ``standard``, ``coverage`` and ``expanded`` (95 %) are the former's. Drift and its bound (one-sided, 98.75 %;
     of repeats judged alone 95 %) are per window, the trend over the repeats, all per cent of the coefficient
     (``Judgement``); ``unsteady`` is what they add to the budget. ``change_percent`` is the greatest change of level at
     once, within a repeat or from one to the next, ``swing_percent`` and ``swing_hz`` those of the repeat that swings
@@ -87,7 +93,7 @@ class ConditionResult:
     mu_without_flagged: float = NAN
     s: float = NAN
     n_valid: int = 0
-    n: int = 0
+    counts: Counts = NO_COUNTS
     interval: float = NAN
     type_a: float = NAN
     measured: Means = NO_MEANS
@@ -100,11 +106,32 @@ class ConditionResult:
     swing_percent: float = NAN
     swing_hz: float = NAN
     unsteady: Unsteadiness = STEADY
-    mu_corrected: float = NAN
+    correction: float = 1.0
+    """The coefficient at the temperature that was asked for, over that as measured; 1 where none is made."""
     budget: Budget = NO_BUDGET
     compound_budget: Budget = NO_BUDGET
     both_ways: BothWays | None = None
     """What each direction of sliding shows, where it was measured in both; values are then those of pairs."""
+
+    @property
+    def mu(self) -> float:
+        """Return the coefficient at the temperature that was asked for: the one that every output calls mu."""
+        return self.correction * self.mu_resultant
+
+    @property
+    def longitudinal(self) -> float:
+        """Return its component along the sliding."""
+        return self.correction * self.mu_longitudinal
+
+    @property
+    def lateral(self) -> float:
+        """Return its component across the sliding."""
+        return self.correction * self.mu_lateral
+
+    @property
+    def without_flagged(self) -> float:
+        """Return the coefficient without outliers."""
+        return self.correction * self.mu_without_flagged
 
     @property
     def repeats_each(self) -> int:
@@ -205,6 +232,7 @@ def combine_repeats(
     repeatability: float = REPEATABILITY,
     combining: Combining = "mean",
     changed_percent: float | None = None,
+    counted: str = REPEATS,
 ) -> ConditionResult:
     """Return a condition's result from its repeats (one result per repeat: its last attempt; none void).
 
@@ -215,8 +243,11 @@ def combine_repeats(
     ``by_hand``: positions that a person has left
     out, each with the reason. ``repeatability`` is the historic standard deviation between repeats as a share of mu.
     ``combining``: the mean of all that count, or the paper's way (``tester.analysis.closest``). ``changed_percent``:
-    the greatest change at once, where it is not that between ``results`` (pairs of repeats).
+    the greatest change at once, where it is not that between ``results`` (pairs of repeats). ``counted``: what
+    ``results`` are, of ``tester.analysis.counts``.
     """
+    refused = {exclusion.position for exclusion in _exclusions(results, _NOTHING)}
+    counts = Counts(planned, len(results), make_ups=make_ups_of(planned, len(results), refused), of=counted)
     excluded = _exclusions(results, by_hand)
     left_out = {exclusion.position for exclusion in excluded}
     kept = [i for i in range(len(results)) if i not in left_out]
@@ -224,9 +255,9 @@ def combine_repeats(
         # Nothing that stands still: what there is, flagged, rather than nothing.
         kept = [i for i, result in enumerate(results) if result.drifts and i not in by_hand]
         excluded = [exclusion for exclusion in excluded if exclusion.position not in kept]
-    status, why = _condition_status(results, excluded, planned, ended, reason)
+    status, why = _condition_status(results, excluded, counts, ended, reason)
     if not kept:
-        return ConditionResult(status, why, EXCLUDED if by_hand else "", n=planned, excluded=tuple(excluded))
+        return ConditionResult(status, why, EXCLUDED if by_hand else "", counts=counts, excluded=tuple(excluded))
     asked = planned - sum(results[i].valid for i in by_hand if i < len(results))
     short = status is ConditionStatus.OK and len(kept) < max(asked, min_valid)
     values = [results[i].mu_resultant for i in kept]
@@ -240,15 +271,16 @@ def combine_repeats(
     marks = ((OUTLIER, flagged), (EXCLUDED, by_hand), (SHORT, short), (CLOSEST_TWO, fewer), (CHANGED, changed))
     flags |= {word for word, on in marks if on}
     in_mean = [results[kept[i]] for i in used]
+    excluded += [Exclusion(place, NOT_CLOSEST) for i, place in enumerate(kept) if i not in used]
     shell = ConditionResult(
         status=status,
         reason=why,
         flags=joined(flags),
         mu_longitudinal=_mean([one.mu_longitudinal for one in in_mean]),
         mu_lateral=_mean([one.mu_lateral for one in in_mean]),
-        n=planned,
+        counts=replace(counts, valid=len(in_mean)),
         measured=mean_of(one.means for one in in_mean),
-        excluded=tuple(excluded),
+        excluded=tuple(sorted(excluded, key=lambda exclusion: exclusion.position)),
         flagged=tuple(kept[i] for i in flagged),
         drift_percent=judged.drift_percent,
         drift_bound_percent=judged.drift_bound_percent,
@@ -280,15 +312,17 @@ def combine_replicates(results: Sequence[ConditionResult]) -> ConditionResult:
         status = ConditionStatus.PENDING
     else:
         status = ConditionStatus.INSUFFICIENT
+    tried = sum(bool(result.counts.made) or result.status is not ConditionStatus.PENDING for result in results)
+    counts = Counts(len(results), tried, len(kept), of=REPLICATES)
     if not kept:
-        return ConditionResult(status, reason, n=len(results))
+        return ConditionResult(status, reason, counts=counts)
     shell = ConditionResult(
         status=status,
         reason=reason,
         flags=joined(flag for result in kept for flag in flags_in(result.flags)),
         mu_longitudinal=_mean([result.mu_longitudinal for result in kept]),
         mu_lateral=_mean([result.mu_lateral for result in kept]),
-        n=len(results),
+        counts=counts,
         measured=mean_of(result.measured for result in kept),
         # Wheels run in alike: what drifts on one drifts on the others, the same way.
         unsteady=Unsteadiness(*(_mean(values) for values in zip(*(astuple(r.unsteady) for r in kept), strict=True))),
@@ -336,13 +370,13 @@ def _with_statistics(
 def _condition_status(
     results: Sequence[RepeatResult],
     excluded: Sequence[Exclusion],
-    planned: int,
+    counts: Counts,
     ended: ConditionStatus | None,
     reason: str,
 ) -> tuple[ConditionStatus, str]:
     n_valid = len(results) - len(excluded)
-    if ended is None and len(results) < planned:
-        return ConditionStatus.PENDING, f"{len(results)} of {planned} repeats committed"
+    if ended is None and counts.made < counts.asked:
+        return ConditionStatus.PENDING, f"{counts.made} of {counts.asked} {counts.of} committed"
     if n_valid > 0:
         return ConditionStatus.OK, reason
     if ended not in (None, ConditionStatus.OK, ConditionStatus.PENDING, ConditionStatus.INSUFFICIENT):
@@ -354,6 +388,6 @@ def _condition_status(
         found = [result.reason for result in results if result.status is repeat_status]
         if found and len(found) == len(results):
             return status, reason or found[0]
-    causes = "; ".join(f"repeat {e.position + 1} {e.reason}" for e in excluded)
-    counted = f"none of {len(results)} repeats is valid"
+    causes = "; ".join(f"{counts.of.removesuffix('s')} {e.position + 1} {e.reason}" for e in excluded)
+    counted = f"none of {len(results)} {counts.of} is valid"
     return ConditionStatus.INSUFFICIENT, f"{counted}: {causes}" if causes else counted

@@ -13,6 +13,7 @@ from typing import Final, Protocol
 from tester.analysis.blocks import Block
 from tester.analysis.change import change_of, greatest
 from tester.analysis.closest import Combining
+from tester.analysis.counts import PAIRS as COUNTED
 from tester.analysis.directions import as_pairs, both_ways, halves, is_reversed
 from tester.analysis.flags import flags_in, joined
 from tester.analysis.judge import judge
@@ -29,6 +30,7 @@ from tester.analysis.results import NOT_JUDGED, ConditionStatus, Judgement, Repe
 
 _NOTHING: Final[Mapping[int, str]] = {}
 OTHER_HALF: Final = "the other repeat of its pair does not count"
+HALF: Final = "the other repeat of its pair is not made"
 
 
 class Scheme(Protocol):
@@ -144,7 +146,8 @@ class OppositePairs:
         pairs = as_pairs(results, whole=ended is None)
         hands = {place // 2: why for place, why in by_hand.items() if place // 2 < len(pairs)}
         found = combine_repeats(pairs, planned, min_valid, ended, reason, judged=judged, by_hand=hands,
-                                combining=combining, changed_percent=_changed(results, by_hand))  # fmt: skip
+                                combining=combining, changed_percent=_changed(results, by_hand),
+                                counted=COUNTED)  # fmt: skip
         out = {one.position: one.reason for one in found.excluded}
         kept = [halves(results, pair) for pair in range(len(pairs)) if pair not in out]
         kept = [(a, b) for a, b in kept if max(a, b) < len(results)]
@@ -154,6 +157,8 @@ class OppositePairs:
             for place in sorted(halves(results, pair))
             if place < len(results)
         ]
+        half = range(2 * len(pairs), len(results))
+        excluded += [Exclusion(place, _why(results, place, HALF, by_hand)) for place in half]
         return replace(
             found,
             excluded=tuple(excluded),

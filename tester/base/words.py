@@ -9,6 +9,15 @@ NONE: Final = "–"
 """Stands where there is no value."""
 
 
+COEFFICIENT: Final = 3
+"""Decimals of a friction coefficient and of its uncertainties: U has two significant digits at 1 % and more."""
+
+
+def coefficient(value: float | None) -> str:
+    """Return a friction coefficient, or an uncertainty or difference of it, to ``COEFFICIENT`` decimals."""
+    return decimal(value, COEFFICIENT)
+
+
 def decimal(value: float | None, decimals: int) -> str:
     """Return a number with so many decimals, never as -0; a dash where there is none."""
     return f"{round(value, decimals) + 0.0:.{decimals}f}" if value is not None and isfinite(value) else NONE

@@ -18,7 +18,7 @@ from tester.store.reader import DATABASE, RunReader
 from tester.store.schema import StoreError
 from tester.store.status import RunStatus
 
-_MADE_BY = "4"
+_MADE_BY = "5"
 """Raised when the same record gives other entries than before: then all are made anew."""
 
 
@@ -182,10 +182,10 @@ def read_entries(folder: Path, origin: str, print_: str) -> tuple[RunEntry, list
         ended_utc=run.ended_utc,
         rig_seconds=_number(run.rig_seconds),
         software_version=run.info.software_version,
-        conditions=len(conditions),
+        conditions=len(results.rows),
         repeats=sum(len(measured.repeats) for measured in conditions),
         repeats_planned=sum(measured.info.repeats_planned for measured in conditions),
-        trusted=sum(measured.result.ok for measured in conditions),
+        trusted=results.valued(),
         kind=run.info.kind,
         axes=json.dumps(results.axes.as_data(), ensure_ascii=False),
     )
@@ -205,12 +205,12 @@ def _condition(measured: Measured) -> ConditionEntry:
         compound=i.compound,
         held=held_text(i.setpoint),
         status=r.status.value,
-        mu=_number(r.mu_resultant),
+        mu=_number(r.mu),
         s=_number(r.s),
         u_standard=_number(r.standard),
         u_expanded=_number(r.expanded),
         n_valid=r.n_valid,
-        n=r.n,
+        n=r.counts.asked,
         flags=r.flags,
     )
 

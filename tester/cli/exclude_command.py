@@ -57,6 +57,6 @@ def _say(run: str, repeat: str, reason: str, operator: str | None, *, excluded: 
     except (CannotExcludeError, StoreError) as error:
         raise click.ClickException(str(error)) from error
     row = next(row for row in results.rows if any(one.info.condition == condition for one in row.replicates))
-    n = f"n {row.result.n_valid} of {row.result.n}"
+    n = f"valid {row.result.counts.words}"
     click.echo(f"{condition}/{number} {'excluded' if excluded else 'included'}: {shown(row.describe())}, {n}", err=True)
     click.echo(f"record head: {results.record_head}", err=True)

@@ -7,7 +7,7 @@ from math import isfinite
 
 import click
 
-Json = str | int | float | bool | None | list["Json"] | dict[str, "Json"]
+from tester.base.as_json import Json as Json
 
 
 def number(value: float) -> float | None:

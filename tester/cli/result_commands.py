@@ -15,16 +15,15 @@ from tester.cli.formatting import Json, dump, number, shown
 from tester.cli.run_lookup import run_folder
 
 if TYPE_CHECKING:
-    from tester.analysis.repeats import ConditionResult
-    from tester.analysis.uncertainty import Contribution
-    from tester.analysis.wear import WearRate
     from tester.results.formats import Format
-    from tester.results.run_results import Measured, RunResults, TableRow
-    from tester.store.records import PieceInfo, StoredTrip
+    from tester.results.run_results import RunResults, TableRow
+    from tester.store.records import StoredTrip
 
 
 # tester show
 
+SHOW_WIDTH = 120
+"""Columns within which flags stand behind a row of `tester show`."""
 _SESSION = "session origin_s started_utc host operator software_version git_revision"
 _CHANGE = "session utc subject before_sha256 after_sha256 reason"
 _MATERIAL = "role name file source sha256 doubts"
@@ -109,6 +108,7 @@ def _trip(trip: StoredTrip) -> Json:
 
 def _summary(name: str, results: RunResults) -> dict[str, Json]:
     from tester.cli.watch import watch_json
+    from tester.results.pieces_table import pieces_table
 
     run = results.run
     return {
@@ -133,85 +133,23 @@ def _summary(name: str, results: RunResults) -> dict[str, Json]:
         "metadata": dict(run.info.metadata),
         "rows": results.valued(),
         "missing": [row.describe() for row in results.missing()],
-        "conditions": [_condition(measured, results) for measured in results.conditions()],
-        "wheels": [_wheel(wheel, results) for wheel in results.pieces],
+        "conditions": [*_conditions(results)],
+        "wheels": [*pieces_table(results).records()],
         **watch_json(results),
     }
 
 
-def _rate(found: WearRate) -> dict[str, Json]:
-    return {"wear_mm3_n_m": number(found.rate), "wear_u_expanded": number(found.expanded), "checks": found.checks}
+def _conditions(results: RunResults) -> Iterator[Json]:
+    """Yield the rows of the table of conditions, each with its budget and, but for a combined one, its repeats."""
+    from tester.results.budget import terms_table
+    from tester.results.conditions_table import conditions_table
+    from tester.results.repeats_table import repeats_table
 
-
-def _wheel(wheel: PieceInfo, results: RunResults) -> Json:
-    return {
-        "wheel": wheel.piece,
-        "compound": wheel.compound,
-        "installed_diameter_mm": number(wheel.installed_diameter_mm),
-        "diameter_mm": number(wheel.diameter_mm),
-        "sliding_m": number(wheel.sliding_m),
-        **_rate(results.wear_of(wheel.piece)),
-    }
-
-
-def _condition(measured: Measured, results: RunResults) -> Json:
-    from tester.analysis.flags import flags_in
-    from tester.analysis.trust import mark_of
-    from tester.results.budget import terms_of
-
-    i, r = measured.info, measured.result
-    worn = results.condition_wear(i.condition)
-    return {
-        "condition": i.condition,
-        "specimen": i.specimen,
-        "replicate": i.replicate,
-        "compound": i.compound,
-        **{axis.column: axis.of(i.setpoint) for axis in i.setpoint.axes},
-        "status": r.status.value,
-        "reason": r.reason,
-        "mu": number(r.mu_resultant),
-        "mark": mark_of(r.status, r.flags) if isfinite(r.mu_resultant) else "",
-        "flags": [*flags_in(r.flags)],
-        "s": number(r.s),
-        "mu_corrected": number(r.mu_corrected),
-        "u_expanded": number(r.expanded),
-        "u_expanded_compound": number(r.compound_budget.expanded),
-        "budget": [_term(one, r) for one in terms_of(r)],
-        "n_valid": r.n_valid,
-        "n": r.n,
-        "diameter_before_mm": number(worn.before_mm) if worn is not None else None,
-        "diameter_after_mm": number(worn.after_mm) if worn is not None else None,
-        "wear": _rate(worn.rate) if worn is not None else None,
-        "measured": {name: number(value) for name, value in r.measured.items()},
-        "repeats": [
-            {
-                "repeat": repeat.repeat,
-                "attempt": repeat.attempt,
-                "status": repeat.result.status.value,
-                "reason": repeat.result.reason,
-                "mu": number(repeat.result.mu_resultant),
-                "exclusion": measured.exclusion(repeat),
-            }
-            for repeat in measured.repeats
-        ],
-    }
-
-
-def _term(one: Contribution, r: ConditionResult) -> Json:
-    from tester.results.budget import share_of
-
-    return {
-        "term": one.name,
-        "source": one.source,
-        "distribution": one.distribution,
-        "standard_uncertainty": number(one.input_u),
-        "unit": one.unit,
-        "degrees_of_freedom": number(one.df),
-        "sensitivity": number(one.sensitivity),
-        "u_mu": number(one.standard),
-        "share_this": number(share_of(one, r.budget)),
-        "share_compound": number(share_of(one, r.compound_budget)),
-    }
+    table, repeats = conditions_table(results), repeats_table(results)
+    for row, record in zip(table.rows, table.records(), strict=True):
+        own = repeats.of(one for one in repeats.rows if one.measured is row.measured)
+        budget = terms_table(row, results.worn)
+        yield {**record, "budget": [*budget.records()], "repeats": [*own.records()]}
 
 
 def _lines(name: str, results: RunResults) -> Iterator[str]:
@@ -232,16 +170,10 @@ def _lines(name: str, results: RunResults) -> Iterator[str]:
     if run.overruns:
         yield f"overruns {run.overruns} samples dropped"
     yield f"values   {results.valued()} of {len(results.rows)} conditions"
-    for row in results.rows:
-        if row.tried:
-            yield shown(_row(row, results.worn))
-            yield from _worn(row, results)
+    yield from _table(results)
     left = sum(not row.tried for row in results.rows)
     if left:
-        yield f"  {left} of {len(results.rows)} conditions not measured"
-    for row in results.references:
-        if row.tried:
-            yield shown(_row(row, results.worn))
+        yield f"{left} of {len(results.rows)} conditions not measured"
     for line in (*watch_lines(results), *results.angle_lines(), *results.wear_lines()):
         yield shown(line)
 
@@ -256,18 +188,21 @@ def _worn(row: TableRow, results: RunResults) -> Iterator[str]:
             yield f"    {found.before_mm:.3f} mm to {found.after_mm:.3f} mm, wear {rate}{below}"
 
 
-def _row(row: TableRow, worn: str) -> str:
-    from tester.analysis.trust import mark_of
+def _table(results: RunResults) -> Iterator[str]:
+    """Yield the table of conditions, references behind them, then why some have no value, and what wore off."""
+    from tester.cli.text_table import table_lines
+    from tester.results.columns import Output
+    from tester.results.conditions_table import axis_keys, conditions_table
 
-    r = row.result
-    if not r.ok:
-        return f"  {row.describe()}"
-    setpoints = row.describe().removesuffix(f": {r.reason}").removesuffix(f": {r.status.value}")
-    compound = r.compound_budget.expanded
-    spread = f" ± {r.expanded:.3f} (this {worn})" if isfinite(r.expanded) else ""
-    spread += f", ± {compound:.3f} (compound)" if isfinite(compound) else ""
-    mu = f"{r.mu_resultant:.3f}{mark_of(r.status, r.flags)}"
-    return f"  {setpoints}: {mu}{spread} (n {r.n_valid} of {r.n}) {r.flags}".rstrip()
+    table = conditions_table(results)
+    tried = [one for one in table.rows if one.whole and one.row.tried]
+    if tried:
+        axes = results.axes.columns(one.info.setpoint for one in tried)
+        yield from table_lines(table.of(tried).view(Output.SHOW, axis_keys(axes)), "remarks", width=SHOW_WIDTH)
+    for one in tried:
+        if not one.result.ok:
+            yield shown(one.row.describe())
+        yield from _worn(one.row, results)
 
 
 # tester export

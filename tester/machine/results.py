@@ -18,6 +18,7 @@ from tester.analysis.results import NOT_JUDGED, ConditionStatus, RepeatResult, R
 from tester.analysis.swing import swing_of
 from tester.analysis.trace import Trace
 from tester.axes import condition_words
+from tester.base.words import coefficient, decimal
 from tester.machine.context import AnyContext
 from tester.machine.measured import ConditionEnd, Ending, RepeatOutcome
 from tester.recipe.plan import ConditionStep, Plan
@@ -190,7 +191,11 @@ class StoredResults(Generic[ContextT]):
         self.recorder.void_repeat(key, reason, ctx.now)
 
     def finish_condition(self, ctx: ContextT, step: ConditionStep, end: ConditionEnd) -> str:
-        """Sum a condition up from its repeats and commit it; return a line for people."""
+        """Sum a condition up from its repeats and commit it; return a line for people.
+
+        The line has the coefficient as measured: the one at the temperature that was asked for may rest on conditions
+        that are still to be measured.
+        """
         self._turn_to(step)
         if not self.repeats:
             self.recorder.begin_condition(step.condition, ctx.now)
@@ -220,8 +225,9 @@ class StoredResults(Generic[ContextT]):
         name = f"condition {step.condition} ({condition_words(step.setpoint)})"
         if not found.ok:
             return f"{name}: {left.value}: {found.reason}"
-        flags = f" ({found.flags})" if found.doubts else ""
-        return f"{name}: mu {found.mu_resultant:.4f}, s {found.s:.4f}, {found.n_valid} of {found.n}{flags}"
+        flags = f" ({found.flags})" if found.flags else ""
+        mu = f"mu as measured {coefficient(found.mu_resultant)}, s {decimal(found.s, 4)}"
+        return f"{name}: {mu}, valid {found.counts.words}{flags}"
 
     # -- of the present condition -------------------------------------------------------------------------------
 
@@ -304,5 +310,6 @@ def condition_records(plan: Plan) -> Iterator[ConditionInfo]:
 
 def _line(result: RepeatResult) -> str:
     if result.status is RepeatStatus.VALID:
-        return f"mu {result.mu_resultant:.4f}, {result.revolutions} revolutions, {result.bursts} bursts"
+        mu = f"mu as measured {coefficient(result.mu_resultant)}"
+        return f"{mu}, {result.revolutions} revolutions, {result.bursts} bursts"
     return f"{result.status.value}: {result.reason}"

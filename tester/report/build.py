@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from math import isfinite
 
 from tester import __version__
+from tester.base.words import counted
 from tester.report.budgets import budget_section
 from tester.report.charts import Material, charts_of, repeats_chart
 from tester.report.conditions import conditions_section, drift_section, short_table, verdict
@@ -25,7 +26,7 @@ from tester.report.sections import (
     tare_section,
     trips_section,
 )
-from tester.report.words import counted, day
+from tester.report.words import day
 from tester.results.run_results import Measured
 
 Showing = Callable[[RunRecord], Material]

@@ -9,12 +9,16 @@ from itertools import permutations
 from math import isfinite
 
 from tester.axes import Axis, AxisValue, Setpoint, condition_words, plain
+from tester.base.words import coefficient
 from tester.report.chart import Chart, ChartPanel, ChartSurface, Figure, Series
-from tester.report.words import labelled, name_of, unit_of
+from tester.report.words import labelled, name_of
+from tester.results.columns import unit_of
 from tester.results.run_results import Measured, RunResults
 
 NAN = float("nan")
 Y_LABEL = "friction coefficient"
+AS_MEASURED = "friction coefficient as measured"
+"""Of single repeats, each at the temperature that was measured in it."""
 BARS = "bars: expanded uncertainty U (95 %)"
 HOLLOW = "hollow: as published"
 CURVE_POINTS = 61
@@ -39,9 +43,9 @@ class ChartValue:
     @property
     def named(self) -> str:
         """Return the value with what it was held at, and its run, in words."""
-        spread = f"\u00a0±\u00a0{self.u:.3f}" if isfinite(self.u) else ""
+        spread = f"\u00a0±\u00a0{coefficient(self.u)}" if isfinite(self.u) else ""
         of = f"{self.run}: " if self.run else ""
-        return f"{of}{condition_words(self.held)}: {self.mu:.3f}{spread}"
+        return f"{of}{condition_words(self.held)}: {coefficient(self.mu)}{spread}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,7 +61,7 @@ class Material:
 def values_of(results: RunResults, run: str = "") -> list[ChartValue]:
     """Return the rows of a run that have a value; ``run``: what it is called among others."""
     return [
-        ChartValue(row.info.setpoint, row.result.mu_resultant, row.result.expanded, run)
+        ChartValue(row.info.setpoint, row.result.mu, row.result.expanded, run)
         for row in results.rows
         if row.result.ok
     ]
@@ -253,10 +257,10 @@ def repeats_chart(measured: Measured) -> Chart:
     ]
     result = measured.result
     title = f"repeats of {condition_words(measured.info.setpoint)}"
-    if isfinite(result.mu_resultant):
-        title += f": {result.mu_resultant:.3f} ± {result.expanded:.3f}"
+    if isfinite(result.mu):
+        title += f": mu {coefficient(result.mu)} ± {coefficient(result.expanded)}"
     note = "along: from begin to end of each repeat; bars: standard deviation of its batch means"
-    return Chart(f"repeats-{measured.info.condition}", title, "rig time (min)", Y_LABEL,
+    return Chart(f"repeats-{measured.info.condition}", title, "rig time (min)", AS_MEASURED,
                  (ChartPanel("", tuple(series)),), note, from_zero=False)  # fmt: skip
 
 

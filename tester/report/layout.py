@@ -5,9 +5,11 @@ All text is as people and devices wrote it; what makes it harmless is the page (
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
+
+from tester.results.columns import R, Table
 
 Tone = Literal["", "good", "care", "bad", "small"]
 """What a paragraph or a row is: a plain one, a good word, one to be taken with care, a bad one, a remark."""
@@ -123,3 +125,15 @@ class Report:
 def heads(*texts: str, text: Sequence[int] = (0,)) -> tuple[ReportHead, ...]:
     """Return heads of columns; those at the places ``text`` hold words, the others numbers."""
     return tuple(ReportHead(one, number=i not in text) for i, one in enumerate(texts))
+
+
+def rendered(
+    table: Table[R], caption: str, note: str = "", *, tone: Callable[[R], Tone] | None = None, cards: bool = False
+) -> ReportTable:
+    """Return a table of results as a report sets it; ``tone``: how a row is set."""
+    titles = tuple(ReportHead(one.head, number=one.numeric) for one in table.columns)
+    rows = [
+        ReportRow(cells, tone(row) if tone is not None else "")
+        for row, cells in zip(table.rows, table.texts(), strict=True)
+    ]
+    return ReportTable(caption, titles, rows, note, cards)

@@ -6,12 +6,12 @@ from collections.abc import Iterator, Mapping
 
 from tester.base.source import InvalidSource
 from tester.base.units import show
+from tester.base.words import NONE, decimal
 from tester.materials.compound import compound_model
 from tester.materials.schema import CompoundModel, SurfaceModel
 from tester.materials.surface import surface_model
 from tester.report.layout import FactSheet, Listing, Paragraph, Part, ReportRow, ReportSection, ReportTable, heads
 from tester.report.record import RunRecord
-from tester.report.words import NONE, number
 from tester.store.records import StoredMaterial
 
 
@@ -54,7 +54,7 @@ def _formulations(compounds: Mapping[str, CompoundModel]) -> ReportTable:
     told = [(name, model) for name, model in compounds.items() if model.formulation]
     ingredients = dict.fromkeys(one for _, model in told for one in model.formulation)
     rows = [
-        ReportRow((one, *(number(phr, 1) if (phr := model.formulation.get(one)) is not None else NONE
+        ReportRow((one, *(decimal(phr, 1) if (phr := model.formulation.get(one)) is not None else NONE
                           for _, model in told)))
         for one in ingredients
     ]  # fmt: skip

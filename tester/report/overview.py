@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from math import isfinite
 
 from tester.axes import condition_words
+from tester.base.words import coefficient
 from tester.report.chart import Chart, ChartPanel, Series
 from tester.report.words import labelled
 from tester.results.run_results import Measured, RunResults
@@ -71,7 +72,7 @@ def _words(one: _Placed, several: bool) -> str:
     result = one.measured.result
     of = f"{one.run}: " if several else ""
     told = f"{of}condition {one.measured.info.condition}, {condition_words(one.measured.info.setpoint)}"
-    return f"{told}: {result.mu_resultant:.3f}\u00a0±\u00a0{result.expanded:.3f}" if result.ok else told
+    return f"{told}: {coefficient(result.mu)}\u00a0±\u00a0{coefficient(result.expanded)}" if result.ok else told
 
 
 def _coefficients(placed: Sequence[_Placed], several: bool) -> Iterator[Series]:
@@ -83,7 +84,7 @@ def _coefficients(placed: Sequence[_Placed], several: bool) -> Iterator[Series]:
             yield Series(
                 compound,
                 tuple(one.at for one in own),
-                tuple(one.measured.result.mu_resultant for one in own),
+                tuple(one.measured.result.mu for one in own),
                 "measured",
                 style,
                 tuple(one.measured.result.expanded for one in own),
@@ -95,7 +96,7 @@ def _coefficients(placed: Sequence[_Placed], several: bool) -> Iterator[Series]:
     made_up = [
         (one, repeat)
         for one in placed
-        for repeat in made_up_of(one.measured)
+        for repeat in one.measured.make_ups
         if not one.measured.exclusion(repeat)
     ]  # fmt: skip
     for label, listed, look in (("make-up repeat", made_up, "published"), ("repeat left out", out, "left out")):
@@ -112,13 +113,7 @@ def _coefficients(placed: Sequence[_Placed], several: bool) -> Iterator[Series]:
             style += 1
 
 
-def made_up_of(measured: Measured) -> list[StoredRepeat]:
-    """Return the repeats of a condition beyond those that were asked for at first: made in place of others, or to
-    reach a precision."""
-    return [one for one in measured.repeats if one.repeat > measured.info.repeats]
-
-
 def _of_repeat(measured: Measured, repeat: StoredRepeat) -> str:
     reason = measured.exclusion(repeat)
-    told = f"repeat {repeat.condition}/{repeat.repeat}: {repeat.result.mu_resultant:.3f}"
+    told = f"repeat {repeat.condition}/{repeat.repeat}: {coefficient(repeat.result.mu_resultant)} as measured"
     return f"{told}, {reason}" if reason else f"{told}, a make-up"

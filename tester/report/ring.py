@@ -7,11 +7,11 @@ from math import isfinite, sqrt
 
 from tester.analysis.ring_errors import RingSector
 from tester.analysis.ring_runs import RingRun, ages_of, trend_of
+from tester.base.words import NONE, counted, decimal
 from tester.report.chart import Chart, ChartPanel, Series
 from tester.report.inline import inline_svg
 from tester.report.layout import Paragraph, Part, Picture, ReportRow, ReportSection, ReportTable, heads
 from tester.report.record import RunRecord
-from tester.report.words import NONE, counted, number
 
 SECTOR_DEG = 30.0
 COVERAGE = 1.96
@@ -25,8 +25,8 @@ def ring_sections(record: RunRecord, key: str) -> list[ReportSection]:
     if part is None or ring is None or not ring.requests:
         return []
     told = (
-        f"{ring.errors} of {ring.requests} {part.counted} had no good reply ({number(ring.per_thousand, 2)} of 1000),"
-        f" in {number(ring.turns, 0)} turns of {part.turns}."
+        f"{ring.errors} of {ring.requests} {part.counted} had no good reply ({decimal(ring.per_thousand, 2)} of 1000),"
+        f" in {decimal(ring.turns, 0)} turns of {part.turns}."
     )
     parts: list[Part] = [Paragraph(told, "care" if ring.errors else "good")]
     sectors, worn = ring.sectors(), record.results.worn
@@ -34,7 +34,7 @@ def ring_sections(record: RunRecord, key: str) -> list[ReportSection]:
     if any(sum(one.sectors) for one in sectors):
         parts.append(Picture(inline_svg(angle_chart(sectors, part.turns, worn), key)))
     rows = [
-        ReportRow((words, str(requests), str(errors), number(1e3 * errors / requests, 2) if requests else NONE))
+        ReportRow((words, str(requests), str(errors), decimal(1e3 * errors / requests, 2) if requests else NONE))
         for words, requests, errors in ring.by_speed()
     ]
     titles = heads(f"speed of {part.turns}", "requests", "errors", "of 1000")
@@ -91,7 +91,7 @@ def ring_trend_sections(records: Sequence[RunRecord], key: str) -> list[ReportSe
     trend = trend_of([(age, ring.requests, ring.errors) for age, (_, ring) in zip(ages, rung, strict=True)])
     told = trend.words or "too few errors, or turns, to say whether they grow"
     rows = [
-        ReportRow((record.name, number(age, 0), str(ring.requests), str(ring.errors), number(ring.per_thousand, 2)))
+        ReportRow((record.name, decimal(age, 0), str(ring.requests), str(ring.errors), decimal(ring.per_thousand, 2)))
         for age, (record, ring) in zip(ages, rung, strict=True)
     ]
     titles = heads("run", "turns until its end", "requests", "errors", "of 1000")
@@ -113,7 +113,7 @@ def trend_chart(rung: Sequence[Rung], ages: Sequence[float]) -> Chart:
         "measured",
         0,
         tuple(_half(ring) for _, ring in rung),
-        names=tuple(f"{record.name}: {number(ring.per_thousand, 2)} of 1000" for record, ring in rung),
+        names=tuple(f"{record.name}: {decimal(ring.per_thousand, 2)} of 1000" for record, ring in rung),
     )
     return Chart("ring-trend", "errors over the age of the ring", "turns of the ring", "errors of 1000 requests",
                  (ChartPanel("", (points,)),), "bars: what chance makes of a share (95 %)")  # fmt: skip

@@ -4,25 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from tester.analysis.difference import at_nominal
+from tester.base.words import counted
 from tester.report.charts import ChartValue, overlay_charts, values_of
-from tester.report.conditions import axis_cells, axis_heads
 from tester.report.inline import inline_svg
 from tester.report.layout import (
     Chapter,
     Paragraph,
     Part,
     Picture,
-    ReportRow,
     ReportSection,
-    ReportTable,
-    heads,
+    rendered,
 )
 from tester.report.overview import overview_chart
 from tester.report.record import RunRecord
 from tester.report.ring import ring_trend_sections
-from tester.report.words import NONE, counted, number
-from tester.results.compared import Pair, pairs, same_rig
+from tester.results.columns import Output
+from tester.results.compared import comparison, same_rig
+from tester.results.conditions_table import axis_keys
 
 
 def runs_chapter(records: Sequence[RunRecord]) -> Chapter:
@@ -55,8 +53,8 @@ def _pictures(records: Sequence[RunRecord]) -> list[Part]:
 
 
 def _compared(first: RunRecord, other: RunRecord, key: str) -> ReportSection:
-    found = [*pairs(first.results, other.results)]
-    both = [one for one in found if one.first is not None and one.second is not None]
+    compared = comparison(first.results, other.results)
+    both = [one for one in compared.rows if one.first is not None and one.second is not None]
     differing = sum(one.found.told_apart for one in both)
     shared = (
         "The runs have one rig and one calibration: errors in common drop out of the difference."
@@ -68,20 +66,8 @@ def _compared(first: RunRecord, other: RunRecord, key: str) -> ReportSection:
         f"explains (95 %). {shared} Coefficients are at the temperatures asked for; u is the standard uncertainty of "
         "the difference of the compounds, z the difference over u, k what chance explains."
     )
-    axes = first.results.axes.columns(one.either.info.setpoint for one in found)
-    titles = (*axis_heads(axes), *heads("μ 1", "μ 2", "difference", "u", "z", "k", "verdict", text=(6,)))
-    rows = [ReportRow((*axis_cells(one.either, axes), *_cells(one))) for one in found]
+    axes = first.results.axes.columns(one.either.info.setpoint for one in compared.rows)
     note = f"1: {first.name}, 2: {other.name}"
-    table = ReportTable(f"{first.name} and {other.name}", titles, rows, note)
+    shown = compared.view(Output.COMPARE, axis_keys(axes))
+    table = rendered(shown, f"{first.name} and {other.name}", note)
     return ReportSection(key, f"{first.name} and {other.name}", [Paragraph(told), table])
-
-
-def _cells(pair: Pair) -> tuple[str, ...]:
-    first, second, found = pair
-    if first is None or second is None:
-        verdict = f"only in {'1' if second is None else '2'}"
-    else:
-        verdict = "differ" if found.told_apart else "not told apart" if found.standard > 0.0 else NONE
-    mus = (number(at_nominal(one.result)) if one is not None else NONE for one in (first, second))
-    z = number(found.value / found.standard, 2) if found.standard > 0.0 else NONE
-    return (*mus, number(found.value), number(found.standard), z, number(found.coverage, 2), verdict)

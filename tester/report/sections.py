@@ -5,10 +5,8 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator
 from itertools import pairwise
-from math import isfinite
 
-from tester.analysis.reference import ControlPoint
-from tester.base.words import duration
+from tester.base.words import NONE, counted, decimal, duration
 from tester.report.assumptions import assumed_keys, assumed_terms
 from tester.report.control import control_chart
 from tester.report.inline import inline_svg
@@ -21,10 +19,15 @@ from tester.report.layout import (
     ReportRow,
     ReportSection,
     ReportTable,
+    Tone,
     heads,
+    rendered,
 )
 from tester.report.record import ALARMING, RunRecord
-from tester.report.words import NONE, counted, day, number
+from tester.report.words import day
+from tester.results.columns import Output
+from tester.results.pieces_table import pieces_table
+from tester.results.references_table import ReferenceRow, references_table
 
 EVENTS_AT_MOST = 200
 """Alarms of a run that are listed; of more, the first."""
@@ -49,25 +52,7 @@ def ran_section(record: RunRecord, key: str) -> ReportSection:
     if info.risk:
         parts.insert(0, Paragraph(f"Risk accepted: {info.risk}", "bad"))
     if results.pieces:
-        rows = [
-            ReportRow(
-                (
-                    str(one.piece),
-                    one.compound,
-                    str(one.replicate),
-                    number(one.installed_diameter_mm, 2),
-                    number(one.diameter_mm, 3),
-                    number(one.sliding_m, 0),
-                    duration(one.installed_s),
-                )
-            )
-            for one in results.pieces
-        ]
-        titles = heads(
-            results.worn, "compound", "replicate", "diameter installed (mm)", "diameter at the end (mm)", "slid (m)",
-            "mounted at", text=(0, 1),
-        )  # fmt: skip
-        parts.append(ReportTable(f"What was mounted ({results.worn})", titles, rows))
+        parts.append(rendered(pieces_table(results).view(Output.REPORT), f"What was mounted ({results.worn})"))
     asked = [one for one in record.prompts if one.answer]
     if asked:
         lines = [f"{duration(one.asked_s)}: {one.text}: {one.answer} ({one.answered_by or 'unnamed'})" for one in asked]
@@ -101,12 +86,12 @@ def tare_section(record: RunRecord, key: str) -> ReportSection:
             if values:
                 steps = [abs(b - a) for a, b in pairwise(values)]
                 cells = (len(values), values[0], values[-1], min(values), max(values), max(steps, default=0.0))
-                rows.append(ReportRow((kind, name, str(cells[0]), *(number(value, 3) for value in cells[1:]))))
+                rows.append(ReportRow((kind, name, str(cells[0]), *(decimal(value, 3) for value in cells[1:]))))
     titles = heads("kind", "channel", "zeros", "first", "last", "least", "most", "largest step", text=(0, 1))
     first, last = record.tares[0], record.tares[-1]
-    zeros, when = counted(len(record.tares), "zero"), f"from {duration(first.t_s)} to {duration(last.t_s)}"
-    note = f"{zeros} {when} of rig time, in the "
-    table = ReportTable("Zeros (tares) by channel", titles, rows, f"{note}unit that the channel's name ends with")
+    when = f"{counted(len(record.tares), 'zero')} from {duration(first.t_s)} to {duration(last.t_s)} of rig time"
+    note = f"{when}, in the unit that the channel's name ends with"
+    table = ReportTable("Zeros (tares) by channel", titles, rows, note)
     return ReportSection(key, "Zeros of the load cell", [table])
 
 
@@ -156,30 +141,14 @@ def trips_section(record: RunRecord, key: str) -> ReportSection:
     return ReportSection(key, "Alarms and trips", parts)
 
 
-def _verdict(point: ControlPoint) -> str:
-    """Return what a reference says in a word; one without a value says nothing of the machine."""
-    if not isfinite(point.mu):
-        return "no value"
-    return "in control" if point.within else "out of control"
-
-
 def control_section(record: RunRecord, key: str) -> ReportSection:
     """Return what the reference conditions say, with their control chart, where there were any."""
     title, watch = "Control chart", record.results.watch
     if watch is None or not watch.charts:
         return ReportSection(key, title, [Paragraph("No reference condition was measured.")])
-    points = [(chart, point) for chart in watch.charts for point in chart.points]
-    valued = [point for _, point in points if isfinite(point.mu)]
-    outside = sum(not point.within for point in valued)
-    rows = [
-        ReportRow(
-            (str(point.number), chart.compound, number(point.mu), number(point.expanded), number(chart.low),
-             number(chart.high), _verdict(point)),
-            "bad" if isfinite(point.mu) and not point.within else "",
-        )
-        for chart, point in points
-    ]  # fmt: skip
-    titles = heads("turn", "compound", "μ", "repeatability", "lower limit", "upper limit", "verdict", text=(0, 1, 6))
+    table = references_table(record.results)
+    valued = [one for one in table.rows if one.within is not None]
+    outside = sum(not one.within for one in valued)
     return ReportSection(
         key,
         title,
@@ -189,10 +158,14 @@ def control_section(record: RunRecord, key: str) -> ReportSection:
             else Paragraph(f"All {len(valued)} values are in control.", "good"),
             *(Paragraph(f"{line}.") for line in watch.lines(record.results.worn)),
             Picture(inline_svg(control_chart(watch.charts), key), wide=True),
-            ReportTable("Reference condition", titles, rows),
+            rendered(table.view(Output.REPORT), "Reference condition", tone=_tone),
         ],
     )
 
+
+
+def _tone(one: ReferenceRow) -> Tone:
+    return "bad" if one.within is False else ""
 
 
 def assumption_section(record: RunRecord, key: str) -> ReportSection:

@@ -2,58 +2,116 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Sequence
+from dataclasses import dataclass
 from math import isfinite
+from typing import Final
 
 from tester.analysis.repeats import ConditionResult
+from tester.analysis.results import NAN
 from tester.analysis.uncertainty import Budget, Contribution
-from tester.results.cells import Cell
+from tester.results.columns import Column, Output, Table, axis_column
+from tester.results.conditions_table import ConditionRow, conditions_table, recipe_rows
 from tester.results.run_results import RunResults
-from tester.results.tables import setpoint_header, setpoints
-
-_BUDGET = (
-    "level",
-    "condition",
-    "term",
-    "source",
-    "distribution",
-    "standard_uncertainty",
-    "unit",
-    "degrees_of_freedom",
-    "sensitivity",
-    "u_mu",
-)
+from tester.store.records import ConditionInfo
 
 
-def budget_rows(results: RunResults) -> Iterator[tuple[Cell, ...]]:
-    """Yield one row for each term of each condition's budget, and of the value that stands for replicates.
+@dataclass(frozen=True, slots=True)
+class TermRow:
+    """A term of a condition's budgets."""
 
-    ``standard_uncertainty`` is the input's, in ``unit``, ``sensitivity`` the change of the coefficient per unit,
-    ``u_mu`` their product. The shares are of the variance of each measurand. Degrees of freedom are empty where a
-    limit is taken as known.
-    """
-    held = setpoint_header(results)
-    yield (*_BUDGET[:2], *held, *_BUDGET[2:], f"share_this_{results.worn}", "share_compound")
-    for row in results.all_rows():
-        for measured in row.replicates:
-            own = ("condition", measured.info.condition, *setpoints(measured.info, measured.info.replicate))
-            yield from _budget(own, measured.result)
-        if len(row.replicates) > 1:
-            yield from _budget(("combined", None, *setpoints(row.info, None)), row.result)
+    of: ConditionRow
+    term: Contribution
+
+    @property
+    def percent(self) -> float:
+        """Return its standard uncertainty in per cent of the coefficient."""
+        mu = abs(self.of.result.mu)
+        return 100.0 * self.term.standard / mu if mu else NAN
+
+    def share(self, budget: Budget) -> float:
+        """Return its share of a budget's variance, per cent; 0 for one that is none of it."""
+        return 100.0 * budget.share(self.term) if self.term in budget.contributions else 0.0
+
+
+def budget_table(results: RunResults) -> Table[TermRow]:
+    """Return a row for each term of each condition's budgets, and of the value that stands for replicates."""
+    conditions = conditions_table(results)
+    which = tuple(_of_condition(conditions[key]) for key in _WHICH)
+    axes = (axis_column(one, _info) for one in results.axes)
+    rows = (TermRow(one, term) for one in conditions.rows for term in terms_of(one.result))
+    return Table((*which, *axes, *_columns(results.worn)), tuple(rows))
+
+
+def terms_table(one: ConditionRow, worn: str) -> Table[TermRow]:
+    """Return a row for each term of a condition's budgets, the largest first; ``worn``: what people call a piece."""
+    return Table(_columns(worn), tuple(TermRow(one, term) for term in terms_of(one.result)))
 
 
 def terms_of(r: ConditionResult) -> list[Contribution]:
-    """Return the terms of both budgets of a result, each once."""
-    return list(dict.fromkeys((*r.budget.contributions, *r.compound_budget.contributions)))
+    """Return the terms of both budgets of a result, each once, the largest first."""
+    found = dict.fromkeys((*r.budget.contributions, *r.compound_budget.contributions))
+    return sorted(found, key=lambda one: -one.standard)
 
 
-def share_of(one: Contribution, budget: Budget) -> float:
-    """Return a term's share of a budget's variance; 0 for one that is none of it."""
-    return budget.share(one) if one in budget.contributions else 0.0
+def budgeted_rows(conditions: Table[ConditionRow]) -> list[ConditionRow]:
+    """Return the recipe's rows that have a budget."""
+    return [one for one in recipe_rows(conditions).rows if isfinite(one.result.standard)]
 
 
-def _budget(own: tuple[Cell, ...], r: ConditionResult) -> Iterator[tuple[Cell, ...]]:
-    for one in terms_of(r):
-        df = one.df if isfinite(one.df) else None
-        told = (one.name, one.source, one.distribution, one.input_u, one.unit, df, one.sensitivity, one.standard)
-        yield (*own, *told, share_of(one, r.budget), share_of(one, r.compound_budget))
+def sums(conditions: Table[ConditionRow], one: ConditionRow) -> tuple[str, str, str]:
+    """Return what a budget is of, in words: the coefficient, then both expanded uncertainties."""
+    first, this, compound = (_in_words([conditions[key] for key in keys], one) for keys in _SUMS)
+    return first, this, compound
+
+
+def _in_words(columns: Sequence[Column[ConditionRow]], one: ConditionRow) -> str:
+    """Return headings with values; a heading that two neighbours share stands once."""
+    before = ("", *(column.heading for column in columns))
+    return ", ".join(
+        f"{'' if column.heading == other else column.heading} {column.text(one)} {column.unit}".strip()
+        for column, other in zip(columns, before, strict=False)
+    )
+
+
+_SUMS: Final = (
+    ("mu", "mu_as_measured"),
+    ("u_expanded", "u_expanded_percent", "coverage_factor"),
+    ("u_expanded_compound", "u_expanded_compound_percent", "coverage_factor_compound"),
+)
+_WHICH: Final = ("level", "condition", "specimen", "replicate", "grid", "compound", "note")
+_BOTH: Final = frozenset({Output.SHOW, Output.REPORT})
+
+
+def _info(row: TermRow) -> ConditionInfo:
+    return row.of.info
+
+
+def _of_condition(column: Column[ConditionRow]) -> Column[TermRow]:
+    return Column(column.key, column.heading, lambda row: column.value(row.of))
+
+
+def _columns(worn: str) -> tuple[Column[TermRow], ...]:
+    """Return the columns of a term.
+
+    ``standard_uncertainty`` is the input's, in ``unit``, ``sensitivity`` the change of the coefficient per unit,
+    ``u_mu`` their product. Shares are of the variance of each measurand. Degrees of freedom are none where a limit is
+    taken as known.
+    """
+    return (
+        Column("term", "term", lambda row: row.term.name, views=_BOTH),
+        Column("distribution", "distribution", lambda row: row.term.distribution),
+        Column("standard_uncertainty", "u", lambda row: row.term.input_u, digits=2, views=_BOTH - {Output.SHOW}),
+        Column("unit", "unit", lambda row: row.term.unit, views=_BOTH - {Output.SHOW}),
+        Column("degrees_of_freedom", "df", lambda row: row.term.df, "", 0, _BOTH),
+        Column("sensitivity", "c", lambda row: row.term.sensitivity, digits=2, views=_BOTH - {Output.SHOW}),
+        Column("u_mu", "u(mu)", lambda row: row.term.standard),
+        Column("percent", "u(mu)", lambda row: row.percent, "%", 2, _BOTH, stored=False),
+        Column(f"share_this_{worn}", f"share this {worn}", lambda row: 0.01 * row.share(row.of.result.budget)),
+        Column("share_compound", "share compound", lambda row: 0.01 * row.share(row.of.result.compound_budget)),
+        Column("percent_this", f"this {worn}", lambda row: row.share(row.of.result.budget), "%", 0, _BOTH,
+               stored=False),
+        Column("percent_compound", "compound", lambda row: row.share(row.of.result.compound_budget), "%", 0, _BOTH,
+               stored=False),
+        Column("source", "source", lambda row: row.term.source, views=_BOTH - {Output.REPORT}),
+    )  # fmt: skip

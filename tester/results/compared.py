@@ -4,12 +4,16 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Iterator
-from typing import NamedTuple, TypeAlias
+from math import isfinite
+from typing import Final, NamedTuple, TypeAlias
 
 from tester.analysis.difference import Difference, difference
+from tester.analysis.results import NAN
+from tester.analysis.trust import mark_of
 from tester.axes import AxisValue
+from tester.results.columns import Column, Output, Table, axis_column
 from tester.results.run_results import RunResults, TableRow
-from tester.store.records import StoredRun
+from tester.store.records import ConditionInfo, StoredRun
 
 Held: TypeAlias = tuple[str, tuple[AxisValue, ...], int]
 """What is compared: compound, values of the axes as people read them, which measurement of them it is (from 1)."""
@@ -28,6 +32,20 @@ class Pair(NamedTuple):
         found = self.first or self.second
         assert found is not None
         return found
+
+    @property
+    def z(self) -> float:
+        """Return the difference over its standard uncertainty; NaN without one."""
+        return self.found.value / self.found.standard if self.found.standard > 0.0 else NAN
+
+    @property
+    def verdict(self) -> str:
+        """Return in words whether the compounds differ."""
+        if self.first is None or self.second is None:
+            return f"only in {'1' if self.second is None else '2'}"
+        if not self.found.standard > 0.0:
+            return ""
+        return "differ" if self.found.told_apart else "not told apart"
 
 
 def same_rig(one: StoredRun, other: StoredRun) -> bool:
@@ -58,6 +76,49 @@ def pairs(first: RunResults, second: RunResults, compounds: tuple[str, str] | No
         a, b = one.get(key), other.get(key)
         found = difference(a.result, b.result, same_rig=shared) if a is not None and b is not None else Difference()
         yield Pair(a, b, found)
+
+
+def comparison(first: RunResults, second: RunResults, compounds: tuple[str, str] | None = None) -> Table[Pair]:
+    """Return the table of ``pairs``: coefficients, their difference, its standard uncertainty u, z and what chance
+    explains, k."""
+    axes = [axis_column(one, _info) for one in first.axes]
+    return Table((*_WHICH, *axes, *_FOUND), tuple(pairs(first, second, compounds)))
+
+
+def _info(pair: Pair) -> ConditionInfo:
+    return pair.either.info
+
+
+def _mu(row: TableRow | None) -> float:
+    return row.result.mu if row is not None else NAN
+
+
+def _mark(row: TableRow | None) -> str:
+    return mark_of(row.result.status, row.result.flags) if row is not None and isfinite(row.result.mu) else ""
+
+
+def _pieces(row: TableRow | None) -> int:
+    return row.result.n_valid if row is not None and len(row.replicates) > 1 else 1
+
+
+_WHICH: tuple[Column[Pair], ...] = (
+    Column("compound", "compound", lambda pair: pair.either.info.compound),
+    Column("pieces_1", "pieces 1", lambda pair: _pieces(pair.first), "", 0),
+    Column("pieces_2", "pieces 2", lambda pair: _pieces(pair.second), "", 0),
+)
+_SHOWN: Final = frozenset({Output.COMPARE})
+_FOUND: tuple[Column[Pair], ...] = (
+    Column("mu_1", "mu 1", lambda pair: _mu(pair.first), "", 3, _SHOWN, lambda pair: _mark(pair.first)),
+    Column("mu_2", "mu 2", lambda pair: _mu(pair.second), "", 3, _SHOWN, lambda pair: _mark(pair.second)),
+    Column("mark_1", "mark 1", lambda pair: _mark(pair.first)),
+    Column("mark_2", "mark 2", lambda pair: _mark(pair.second)),
+    Column("difference", "difference", lambda pair: pair.found.value, "", 3, _SHOWN),
+    Column("u_difference", "u", lambda pair: pair.found.standard, "", 3, _SHOWN),
+    Column("z", "z", lambda pair: pair.z, "", 2, _SHOWN),
+    Column("k", "k", lambda pair: pair.found.coverage, "", 2, _SHOWN),
+    Column("differs", "differs", lambda pair: pair.found.told_apart),
+    Column("verdict", "verdict", lambda pair: pair.verdict, views=_SHOWN),
+)
 
 
 def _by_setting(rows: Iterable[TableRow], compounds: tuple[str, str] | None) -> dict[Held, TableRow]:

@@ -2,46 +2,80 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Final
 
 from tester.analysis.directions import BothWays, SlidingWay
 from tester.analysis.misalignment import Misalignment, misalignment
-from tester.results.cells import Cell
+from tester.results.columns import Column, Table, Value
+from tester.results.conditions_table import conditions_table
 from tester.results.run_results import RunResults
-from tester.results.tables import setpoint_header, setpoints
-
-_WAY = ("n", "mu", "s", "mu_longitudinal", "drift_percent", "load_n", "sliding_m_s", "surface_c")
-_SIDES = ("as_asked", "reversed")
-_ANGLE = ("misalignment_deg", "misalignment_u_standard_deg", "misalignment_u_expanded_deg", "degrees_of_freedom")
 
 
-def direction_rows(results: RunResults) -> Iterator[tuple[Cell, ...]]:
-    """Yield one row for each condition that was measured in both directions, and last one for the whole run.
+@dataclass(frozen=True, slots=True)
+class DirectionRow:
+    """A condition in both directions; or the whole run, whose pairs tell the angle together."""
+
+    setting: tuple[Value, ...]
+    """Cells of the columns that say which condition it is, in order."""
+    pairs: int
+    ways: BothWays | None
+    angle: Misalignment
+
+
+def directions_table(results: RunResults) -> Table[DirectionRow]:
+    """Return a row for each condition that was measured in both directions, and last one for the whole run.
 
     ``mu_difference_percent``: by how much the direction that was asked for shows more. The angle is that of the cell's
     axes with crosstalk of load and friction in it (``tester.analysis.misalignment``); the row ``run`` has it pooled
     over all conditions.
     """
-    sides = (f"{name}_{side}" for side in _SIDES for name in _WAY)
-    yield ("level", "condition", *setpoint_header(results), "pairs", *sides, "mu_difference_percent", *_ANGLE)
-    empty: tuple[Cell, ...] = (None,) * (2 * len(_WAY) + 1)
-    for measured in results.conditions():
-        ways = measured.result.both_ways
-        if ways is not None:
-            own = ("condition", measured.info.condition, *setpoints(measured.info, measured.info.replicate))
-            yield (*own, *_ways(ways), *_angle(misalignment([measured.result])))
+    conditions = conditions_table(results)
+    keys = ("level", "condition", *_SETTING, *(axis.column for axis in results.axes))
+    rows: list[DirectionRow] = []
+    for one in conditions.rows:
+        if one.measured is not None and one.result.both_ways is not None:
+            ways, angle = one.result.both_ways, misalignment([one.result])
+            rows.append(DirectionRow(tuple(conditions[key].value(one) for key in keys), ways.pairs, ways, angle))
     found = results.misalignment()
-    yield ("run", None, *(None for _ in setpoint_header(results)), found.pairs, *empty, *_angle(found))
+    rows.append(DirectionRow(("run", *(None for _ in keys[1:])), found.pairs, None, found))
+    setting = (_cell_of(key, place) for place, key in enumerate(keys))
+    sides = (_of_way(side, name, read) for side in _SIDES for name, read in _WAY.items())
+    return Table[DirectionRow]((*setting, _PAIRS, *sides, *_ANGLE), tuple(rows))
 
 
-def _ways(ways: BothWays) -> tuple[Cell, ...]:
-    return (ways.pairs, *_way(ways.forward), *_way(ways.backward), ways.difference_percent)
+def _cell_of(key: str, place: int) -> Column[DirectionRow]:
+    return Column(key, key, lambda row: row.setting[place])
 
 
-def _way(one: SlidingWay) -> tuple[Cell, ...]:
-    means = one.means
-    return one.n, one.mu, one.s, one.along, one.drift_percent, means.normal, means.sliding, means.temperature
+def _of_way(side: str, name: str, read: Callable[[SlidingWay], Value]) -> Column[DirectionRow]:
+    def value(row: DirectionRow) -> Value:
+        return read(_SIDES[side](row.ways)) if row.ways is not None else None
+
+    return Column(f"{name}_{side}", f"{name} {side}", value)
 
 
-def _angle(found: Misalignment) -> tuple[Cell, ...]:
-    return found.deg, found.standard_deg, found.expanded_deg, found.df
+_SETTING: Final = ("specimen", "replicate", "grid", "compound", "note")
+_SIDES: dict[str, Callable[[BothWays], SlidingWay]] = {
+    "as_asked": lambda ways: ways.forward,
+    "reversed": lambda ways: ways.backward,
+}
+_WAY: dict[str, Callable[[SlidingWay], Value]] = {
+    "n": lambda one: one.n,
+    "mu_as_measured": lambda one: one.mu,
+    "s": lambda one: one.s,
+    "mu_longitudinal_as_measured": lambda one: one.along,
+    "drift_percent": lambda one: one.drift_percent,
+    "load_n": lambda one: one.means.normal,
+    "sliding_m_s": lambda one: one.means.sliding,
+    "surface_c": lambda one: one.means.temperature,
+}
+_PAIRS: Column[DirectionRow] = Column("pairs", "pairs", lambda row: row.pairs, "", 0)
+_ANGLE: tuple[Column[DirectionRow], ...] = (
+    Column("mu_difference_percent", "difference of mu", lambda row: row.ways and row.ways.difference_percent, "%", 2),
+    Column("misalignment_deg", "angle", lambda row: row.angle.deg, "°", 2),
+    Column("misalignment_u_standard_deg", "u of the angle", lambda row: row.angle.standard_deg, "°", 2),
+    Column("misalignment_u_expanded_deg", "U of the angle", lambda row: row.angle.expanded_deg, "°", 2),
+    Column("degrees_of_freedom", "df", lambda row: row.angle.df, "", 0),
+)

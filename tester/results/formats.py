@@ -13,21 +13,15 @@ from functools import cached_property
 from typing import BinaryIO
 
 from tester.base.plugins import PluginError, plugins
-from tester.results.budget import budget_rows
+from tester.results.budget import budget_table
 from tester.results.cells import Cell, encode
-from tester.results.directions import direction_rows
+from tester.results.directions import directions_table
 from tester.results.parquet import write_parquet
+from tester.results.pieces_table import checks_table, pieces_table
+from tester.results.references_table import references_table
+from tester.results.repeats_table import repeats_table
 from tester.results.run_results import RunResults, results_of
-from tester.results.tables import (
-    appendix_rows,
-    check_rows,
-    condition_rows,
-    marked,
-    piece_rows,
-    reference_rows,
-    repeat_rows,
-    sample_rows,
-)
+from tester.results.tables import appendix_rows, condition_rows, marked, sample_rows
 from tester.store.reader import RunReader
 from tester.store.schema import PIECE
 
@@ -103,18 +97,19 @@ FORMATS: dict[str, Format] = {
         Format("conditions", "conditions.csv", "conditions with uncertainty",
                _csv(lambda record: condition_rows(record.results), risk=False), _always),
         Format("budget", "budget.csv", "what each uncertainty is made of",
-               _csv(lambda record: budget_rows(record.results)), _always),
+               _csv(lambda record: budget_table(record.results).csv()), _always),
         Format("directions", "directions.csv", "what each direction of sliding shows, and the cell's angle",
-               _csv(lambda record: direction_rows(record.results)), lambda results: results.both_directions),
-        Format("repeats", "repeats.csv", "every repeat", _csv(lambda record: repeat_rows(record.results)), _always),
-        Format(PIECE, f"{PIECE}.csv", f"{PIECE}s and their wear", _csv(lambda record: piece_rows(record.results)),
-               lambda results: results.worn == PIECE),
+               _csv(lambda record: directions_table(record.results).csv()), lambda results: results.both_directions),
+        Format("repeats", "repeats.csv", "every repeat",
+               _csv(lambda record: repeats_table(record.results).csv()), _always),
+        Format(PIECE, f"{PIECE}.csv", f"{PIECE}s and their wear",
+               _csv(lambda record: pieces_table(record.results).csv()), lambda results: results.worn == PIECE),
         Format("pieces", "pieces.csv", "what was mounted, and its wear",
-               _csv(lambda record: piece_rows(record.results)), lambda results: results.worn != PIECE),
-        Format("wear", "wear.csv", "checks of diameters", _csv(lambda record: check_rows(record.results)),
+               _csv(lambda record: pieces_table(record.results).csv()), lambda results: results.worn != PIECE),
+        Format("wear", "wear.csv", "checks of diameters", _csv(lambda record: checks_table(record.results).csv()),
                lambda results: bool(results.checks)),
         Format("reference", "reference.csv", "reference conditions, with limits and drift",
-               _csv(lambda record: reference_rows(record.results)), lambda results: results.watch is not None),
+               _csv(lambda record: references_table(record.results).csv()), lambda results: results.watch is not None),
         Format("samples", "samples.csv", "every sample", _csv(lambda record: sample_rows(record.reader))),
         Format("parquet", "samples.parquet", "every sample, for programs",
                lambda record, file: write_parquet(record.reader, file), is_text=False),

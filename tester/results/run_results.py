@@ -56,6 +56,12 @@ class Measured:
         position = self.repeats.index(repeat)
         return next((e.reason for e in self.result.excluded if e.position == position), "")
 
+    @property
+    def make_ups(self) -> list[StoredRepeat]:
+        """Return the repeats that were made in place of refused ones; of pairs, both repeats of each."""
+        each = self.result.repeats_each
+        return [one for i, one in enumerate(self.repeats) if i // each in self.result.counts.make_ups]
+
     def left_out_by(self, repeat: StoredRepeat) -> StoredExclusion | None:
         """Return who has left a repeat out, None where nobody has."""
         return self.by_hand.get(self.repeats.index(repeat))

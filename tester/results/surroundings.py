@@ -84,7 +84,7 @@ class SurroundingsOf:
             at.started_s,
             info.compound,
             kept[-1] if kept else 0,
-            result.mu_corrected if result.ok else NAN,
+            result.mu if result.ok else NAN,
             self._share() / sqrt(n),
             travel.counterface_m,
             travel.piece_m,

@@ -104,7 +104,7 @@ def run_recipe(options: SessionOptions, folder: Path, person: Person, name: str,
     angle = misalignment(found)
     conditions = [
         {
-            "mu": one.mu_resultant, "s": _number(one.s), "n": one.n_valid, "expanded": _number(one.expanded),
+            "mu": one.mu, "s": _number(one.s), "n": one.n_valid, "expanded": _number(one.expanded),
             "difference_percent": _number(one.both_ways.difference_percent) if one.both_ways is not None else None,
         }
         for one in found

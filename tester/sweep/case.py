@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from tester.analysis.trust import WITH_CARE, mark_of
+from tester.analysis.results import ConditionStatus
+from tester.analysis.trust import WITH_CARE
 from tester.axes import Setpoint
 from tester.base.trouble import in_words
 from tester.machine.context import Progress
 from tester.machine.prompts import Prompts
-from tester.results.run_results import TableRow, results_of
+from tester.results.cells import Cell
+from tester.results.conditions_table import ConditionRow, conditions_table, recipe_rows, sweep_columns
+from tester.results.run_results import results_of
 from tester.run.materials import KeptFile, write_materials
 from tester.run.pool import stop_level
 from tester.run.session import Session, SessionOptions
@@ -40,21 +44,26 @@ class SweepTask:
 
 @dataclass(frozen=True, slots=True)
 class RowResult:
-    """One row of the recipe's table: its nominal setpoints, its status, and what was measured (NaN without a value).
-
-    ``s`` is the standard deviation between repeats, ``u_standard`` the stated standard uncertainty of ``mu``;
-    ``reason`` says why there is no value.
-    """
+    """One row of the recipe's table: its nominal setpoints, and its cells of the table of conditions by their keys."""
 
     row: int
     setpoint: Setpoint
-    status: str
-    mu: float
-    s: float
-    n_valid: int
-    u_standard: float
-    flags: str
-    reason: str
+    cells: Mapping[str, Cell]
+
+    @property
+    def ok(self) -> bool:
+        """Return whether it has a value to be trusted."""
+        return self.cells["status"] == ConditionStatus.OK
+
+    @property
+    def with_care(self) -> bool:
+        """Return whether it has a value that carries a doubt."""
+        return self.cells["mark"] == WITH_CARE
+
+    def number(self, key: str) -> float:
+        """Return a number of a row that has a value to be trusted; NaN for any other row."""
+        value = self.cells[key]
+        return value if self.ok and isinstance(value, int | float) else NAN
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,12 +84,12 @@ class CaseResult:
     @property
     def missing(self) -> int:
         """Rows without a value to be trusted."""
-        return sum(1 for row in self.rows if row.status != "ok")
+        return sum(not row.ok for row in self.rows)
 
     @property
     def with_care(self) -> int:
         """Rows whose value carries a doubt."""
-        return sum(mark_of(row.status, row.flags) == WITH_CARE for row in self.rows)
+        return sum(row.with_care for row in self.rows)
 
 
 def run_case(task: SweepTask) -> CaseResult:
@@ -101,7 +110,7 @@ def run_case(task: SweepTask) -> CaseResult:
         with RunReader(session.folder) as reader:
             results = results_of(reader)
             mounted = len(reader.pieces())
-        rows = tuple(_row(row) for row in results.rows)
+        rows = tuple(_row(row) for row in recipe_rows(conditions_table(results)).rows)
         rig_s = results.run.rig_seconds
         return CaseResult(
             task.case, task.point, task.seed, ending.outcome.value, ending.reason, code, rig_s, mounted, rows
@@ -114,13 +123,8 @@ def not_run(task: SweepTask, error: BaseException) -> CaseResult:
     return CaseResult(task.case, task.point, task.seed, NOT_RUN, reason, 1)
 
 
-def _row(row: TableRow) -> RowResult:
-    i, r = row.info, row.result
-    mu, s, u = (r.mu_resultant, r.s, r.standard) if r.ok else (NAN, NAN, NAN)
-    return RowResult(
-        i.row, i.setpoint, status=r.status.value, mu=mu, s=s, n_valid=r.n_valid, u_standard=u, flags=r.flags,
-        reason=r.reason,
-    )  # fmt: skip
+def _row(one: ConditionRow) -> RowResult:
+    return RowResult(one.info.row, one.info.setpoint, {column.key: column.cell(one) for column in sweep_columns()})
 
 
 class Unseen:

@@ -9,15 +9,14 @@ from collections.abc import Iterator, Sequence
 from math import isfinite, sqrt
 from statistics import fmean, stdev
 
-from tester.analysis.trust import WITH_CARE, mark_of
 from tester.axes import Axes
 from tester.results.cells import Cell, nominal
+from tester.results.conditions_table import sweep_columns
 from tester.sweep.case import CaseResult, RowResult
 from tester.sweep.grid import SweepAxis
 
 Row = tuple[Cell, ...]
 
-_MEASURED = ("status", "mu", "s", "n_valid", "u_standard", "flags", "reason")
 _STATISTICS = ("n", "mean", "sd", "min", "max")
 
 
@@ -43,14 +42,13 @@ def run_row(result: CaseResult) -> Row:
 
 def condition_header(axes: Sequence[SweepAxis], held: Axes) -> Row:
     """Return the columns of ``conditions.csv``; ``held``: the axes of the recipe's conditions."""
-    return (*head_of(axes), "seed", *_setpoint_header(held), *_MEASURED)
+    return (*head_of(axes), "seed", *_setpoint_header(held), *(one.key for one in sweep_columns()))
 
 
 def condition_rows(result: CaseResult) -> Iterator[Row]:
     """Yield a run's rows of ``conditions.csv``: one for each row of the recipe's table, also one without a value."""
     for row in result.rows:
-        measured = tuple(getattr(row, name) for name in _MEASURED)
-        yield (*result.point, result.seed, *_setpoints(row), *measured)
+        yield (*result.point, result.seed, *_setpoints(row), *row.cells.values())
 
 
 # -- what they are together ---------------------------------------------------------------------------------------
@@ -75,11 +73,11 @@ def summary_rows(results: Sequence[CaseResult]) -> Iterator[Row]:
             for row in result.rows:
                 by_row.setdefault(row.row, []).append(row)
         for _, rows in sorted(by_row.items()):
-            n, mean, sd, least, greatest = _statistics([row.mu for row in rows])
-            stated = [row.u_standard for row in rows if isfinite(row.u_standard)]
+            n, mean, sd, least, greatest = _statistics([row.number("mu") for row in rows])
+            stated = [u for row in rows if isfinite(u := row.number("u_standard"))]
             u = sqrt(fmean(x * x for x in stated)) if stated else None
             over = sd / u if sd is not None and u else None
-            doubts = sum(mark_of(row.status, row.flags) == WITH_CARE for row in rows)
+            doubts = sum(row.with_care for row in rows)
             yield (*point, *_setpoints(rows[0]), len(rows), n, mean, sd, least, greatest, u, over, doubts)
 
 
@@ -118,12 +116,11 @@ def _setpoints(row: RowResult) -> Row:
     return (row.row, held.compound, *(nominal(axis.of(held)) for axis in held.axes))
 
 
-def row_record(row: RowResult) -> dict[str, float | str]:
+def row_record(row: RowResult) -> dict[str, Cell]:
     """Return a row's cells by their columns, as numbers and texts."""
     held = row.setpoint
     setpoints = {axis.column: axis.of(held) for axis in held.axes}
-    measured = {name: getattr(row, name) for name in _MEASURED}
-    return {"row": row.row, "compound": held.compound} | setpoints | measured
+    return {"row": row.row, "compound": held.compound, **setpoints, **row.cells}
 
 
 def _by_point(results: Sequence[CaseResult]) -> Iterator[tuple[tuple[str, ...], list[CaseResult]]]:

@@ -2,22 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from math import isfinite
 from pathlib import Path
 
-from tester.analysis.repeats import ConditionResult
-from tester.analysis.trust import mark_of
-from tester.axes import Axes, Axis, ListWords, Setpoint, condition_words, plain
+from tester.analysis.flags import FLAGS, flags_in
+from tester.axes import Axes, Axis, ListWords, Setpoint, condition_words
 from tester.quantities import GATE
-from tester.results.run_results import Measured, RunResults, results_of
+from tester.results.columns import Output, Table
+from tester.results.conditions_table import ConditionRow, axis_keys, conditions_table
+from tester.results.repeats_table import repeats_table
+from tester.results.run_results import RunResults, results_of
+from tester.results.tally import flag_words
 from tester.store.catalogue import find_run
 from tester.store.reader import RunReader
 from tester.store.records import StoredExclusion
 from tester.tui.plot import OTHER, SERIES, Bin, Point
-
-FIGURES = ("mu", "s", "n", "Status")
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,8 +31,10 @@ class Row:
     condition: int
     mark: str = ""
     """Of mu (tester.analysis.trust): "" where it is trusted."""
-    uncertainty: str = ""
-    """Of mu, in two lines: both expanded ones, and mu at the temperature that was asked for; "" where there is none."""
+    figures: str = ""
+    """What the columns behind the setpoints say, with their headings."""
+    flags: tuple[str, ...] = ()
+    """What each of its flags means, and what to do about it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,7 +42,8 @@ class RepeatRow:
     """One repeat of a condition: number, coefficient, status, why it is not in the mean, its trace of mu."""
 
     repeat: int
-    mu: float | None
+    figures: str
+    """Its coefficient with its heading."""
     status: str
     exclusion: str
     by_hand: str
@@ -57,8 +60,8 @@ class Stored:
     recipe: str
     status: str
     header: tuple[str, ...]
-    """The paper's columns, one for each further axis that is off its default, mu, s, n, status; what all rows share is
-    in ``common`` instead where there are more axes than the paper's."""
+    """The paper's axes, one for each further axis that is off its default, and the columns that a screen shows; what
+    all rows share is in ``common`` instead where there are more axes than the paper's."""
     common: str
     rows: tuple[Row, ...]
     axes: Axes
@@ -90,8 +93,11 @@ def stored_of(folder: Path, results: RunResults) -> Stored:
         # A narrow screen has room for the axes that differ; what all conditions share is told once, above.
         words = ListWords(held)
         shown, common = words.axes, words.common
-    header = ("Formula", *(one.title for one in shown), *FIGURES)
-    rows = tuple(_row(measured, shown, results.worn) for measured in conditions)
+    table = conditions_table(results)
+    table = table.of(one for one in table.rows if one.measured is not None)
+    view = table.view(Output.SCREEN, axis_keys(shown))
+    header = tuple(one.narrow_head for one in view.columns)
+    rows = tuple(_row(one, view) for one in table.rows)
     run = results.run
     if run.info.risk:
         common = f"RISK ACCEPTED: {run.info.risk}{'; ' + common if common else ''}"
@@ -99,45 +105,38 @@ def stored_of(folder: Path, results: RunResults) -> Stored:
     return Stored(folder.name, folder, run.info.recipe_name, status, header, common, rows, results.axes, head)
 
 
-def _row(measured: Measured, shown: Sequence[Axis], worn: str) -> Row:
-    i, r = measured.info, measured.result
-    setpoints = [plain(one.of(i.setpoint)) for one in shown]
-    mark = mark_of(r.status, r.flags) if isfinite(r.mu_resultant) else ""
-    found = (_number(r.mu_resultant, 3) + mark, _number(r.s, 4), f"{r.n_valid}/{r.n}")
-    status = f"{r.status.value}{': ' + r.reason if r.reason else ''} {r.flags}".strip()
-    mu = r.mu_resultant if isfinite(r.mu_resultant) else None
-    cells = (i.compound, *setpoints, *found, status)
-    return Row(cells, i.setpoint, i.compound, mu, i.condition, mark, _uncertainty(r, worn))
-
-
-def _uncertainty(result: ConditionResult, worn: str) -> str:
-    """Return the coefficient's two expanded uncertainties in words, and the coefficient at its own temperature."""
-    this, compound = result.budget.expanded, result.compound_budget.expanded
-    if not isfinite(this):
-        return ""
-    told = f"U (95 %) {this:.4f} of this {worn}, {_number(compound, 4)} of the compound"
-    return f"{told}\nmu at the temperature asked for: {_number(result.mu_corrected, 4)}"
-
-
-def _number(value: float, decimals: int) -> str:
-    return f"{value:.{decimals}f}" if isfinite(value) else "—"
+def _row(one: ConditionRow, view: Table[ConditionRow]) -> Row:
+    """Return a condition with its cells of ``view``."""
+    held, result = one.info.setpoint, one.result
+    figures = "  ".join(
+        f"{column.heading} {column.text(one)} {column.unit}".rstrip()
+        for column in view.columns
+        if Output.SCREEN in column.views
+    )
+    mu = result.mu if isfinite(result.mu) else None
+    flags = tuple(flag_words(FLAGS[word]) for word in flags_in(result.flags) if word in FLAGS)
+    cells = tuple(column.text(one) for column in view.columns)
+    return Row(cells, held, held.compound, mu, one.info.condition, one.mark, figures, flags)
 
 
 def condition(folder: Path, number: int, columns: int) -> tuple[Row, tuple[RepeatRow, ...]]:
     """Read a condition and its repeats with traces of ``columns`` columns; raises StoreError, sqlite3.Error."""
     with RunReader(folder) as reader:
         results = results_of(reader)
-        measured = next(one for one in results.conditions() if one.info.condition == number)
-        return _row(measured, (), results.worn), tuple(
+        conditions, repeats = conditions_table(results), repeats_table(results)
+        row = next(one for one in conditions.rows if one.measured is not None and one.info.condition == number)
+        mu = repeats["mu_as_measured"]
+        return _row(row, conditions.view(Output.SCREEN)), tuple(
             RepeatRow(
-                one.repeat,
-                one.result.mu_resultant if isfinite(one.result.mu_resultant) else None,
+                one.repeat.repeat,
+                f"{mu.heading} {mu.text(one)}",
                 one.result.status.value,
-                measured.exclusion(one),
-                _who(measured.left_out_by(one)),
-                _trace(reader, number, one.repeat, columns),
+                one.exclusion,
+                _who(one.measured.left_out_by(one.repeat)),
+                _trace(reader, number, one.repeat.repeat, columns),
             )
-            for one in measured.repeats
+            for one in repeats.rows
+            if one.measured is row.measured
         )
 
 

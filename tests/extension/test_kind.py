@@ -78,7 +78,7 @@ def test_its_recipe_runs_to_a_table_with_a_row_for_every_condition(folder: Path)
     ]
     for row in rows:
         law = make("paper", row["compound"]).mu(23.0, 20.0, 1e-3 * float(row["speed_mm_s"]))
-        assert float(row["mu_resultant"]) == pytest.approx(law, rel=0.01)
+        assert float(row["mu"]) == pytest.approx(law, rel=0.01)
         assert float(row["measured_load_n"]) == 20.0
     assert invoke(["verify", str(run_of(folder))]) == 0
 
@@ -153,7 +153,7 @@ def test_a_run_that_was_stopped_is_resumed_to_the_same_conditions(folder: Path) 
         if invoke(["resume", "latest", "--yes"]) == 0:
             break
     rows = table(run_of(folder))
-    assert [row["condition"] for row in rows] == whole and all(row["mu_resultant"] for row in rows)
+    assert [row["condition"] for row in rows] == whole and all(row["mu"] for row in rows)
 
 
 def test_a_recipe_beyond_the_rig_is_refused_with_the_place_of_the_limit(capfd: pytest.CaptureFixture[str]) -> None:
@@ -188,5 +188,5 @@ def test_it_is_known_by_package_version_and_hash_and_by_its_name_alone() -> None
 def test_its_zero_is_taken_when_the_sledge_is_put_down(folder: Path) -> None:
     assert invoke(["run", "quick.yaml", *RIG, "--set", "sim.cell_zero=3 N", "--set", "sim.scatter=0"]) == 0
     (row,) = table(run_of(folder))
-    assert not isnan(float(row["mu_resultant"]))
-    assert float(row["mu_resultant"]) == pytest.approx(0.434, abs=0.005)
+    assert not isnan(float(row["mu"]))
+    assert float(row["mu"]) == pytest.approx(0.434, abs=0.005)

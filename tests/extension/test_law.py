@@ -34,7 +34,7 @@ def test_the_simulated_rig_rubs_by_it(folder: Path) -> None:
     (table,) = folder.glob("runs/*/conditions.csv")
     with table.open(encoding="utf-8", newline="") as file:
         (row,) = csv.DictReader(file)
-    assert float(row["mu_resultant"]) == pytest.approx(MU_200_N, rel=0.01)
+    assert float(row["mu"]) == pytest.approx(MU_200_N, rel=0.01)
 
 
 def test_it_is_predicted_with(capfd: pytest.CaptureFixture[str]) -> None:

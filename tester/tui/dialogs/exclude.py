@@ -10,7 +10,7 @@ from textual.widgets import Input
 from tester.base.lock import user
 from tester.tui.calling import call
 from tester.tui.dialogs.dialog import Dialog, entry, field, line
-from tester.tui.formatting import clean, number
+from tester.tui.formatting import clean
 from tester.tui.host import HostApp
 from tester.tui.stored import RepeatRow, Row, Stored, row_words
 
@@ -34,7 +34,7 @@ class ExcludeDialog(Dialog):
     def content(self) -> Iterable[Widget]:
         """Return what it is about, and the fields."""
         yield line([(clean(row_words(self.row)), "bold")])
-        yield line(f"Repeat {self.repeat.repeat}: mu {number(self.repeat.mu, 3)}, {clean(self.repeat.status)}")
+        yield line(f"Repeat {self.repeat.repeat}: {self.repeat.figures}, {clean(self.repeat.status)}")
         if self.repeat.by_hand:
             yield line(f"Left out by {clean(self.repeat.by_hand)}. It enters the mean again, if it is valid.")
         else:

@@ -16,9 +16,9 @@ from tester.base.trouble import in_words
 from tester.store.schema import StoreError
 from tester.tui.dialogs.dialog import Dialog, line
 from tester.tui.dialogs.exclude import ExcludeDialog
-from tester.tui.formatting import clean, fit, number
+from tester.tui.formatting import clean, fit
 from tester.tui.plot import Canvas, PlotRange
-from tester.tui.stored import FIGURES, RepeatRow, Row, Stored, condition, row_words
+from tester.tui.stored import RepeatRow, Row, Stored, condition, row_words
 from tester.tui.widgets.panel import FAINT, Parts, rows
 
 HEIGHT = 5
@@ -49,9 +49,8 @@ class RepeatsDialog(Dialog):
             yield line("reading …", id="repeats")
 
     def _heading(self) -> Parts:
-        mu, s, n, status = self.row.cells[-len(FIGURES) :]
-        heading: Parts = [(clean(f"{row_words(self.row)}  mu {mu}  s {s}  n {n}  {status}"), "bold")]
-        return [*heading, *(f"\n{clean(told)}" for told in self.row.uncertainty.splitlines())]
+        heading: Parts = [(clean(f"{row_words(self.row)}  {self.row.figures}"), "bold")]
+        return [*heading, *(f"\n{clean(line)}" for line in self.row.flags)]
 
     def on_mount(self) -> None:
         """Have them read."""
@@ -105,7 +104,7 @@ def repeat_words(one: RepeatRow) -> str:
     """Return a repeat in a line: its coefficient, its status, why it is not in the mean and who says so."""
     out = f"  ✘ not in the mean: {clean(one.exclusion)}" if one.exclusion else ""
     who = f" ({clean(one.by_hand)})" if one.by_hand else ""
-    return fit(f"repeat {one.repeat}: mu {number(one.mu, 3)}  {clean(one.status)}{out}{who}", LONGEST)
+    return fit(f"repeat {one.repeat}: {one.figures}  {clean(one.status)}{out}{who}", LONGEST)
 
 
 def trace_parts(found: Iterable[RepeatRow], width: int = WIDTH, *, plain: bool = False) -> Parts:
@@ -119,7 +118,7 @@ def trace_parts(found: Iterable[RepeatRow], width: int = WIDTH, *, plain: bool =
         scale.cover(min(known), max(known))
     lines: list[Parts] = []
     for one in listed:
-        lines.append([(f"repeat {one.repeat}: mu {number(one.mu, 3)}", FAINT if one.exclusion else "bold")])
+        lines.append([(f"repeat {one.repeat}: {one.figures}", FAINT if one.exclusion else "bold")])
         if one.trace:
             canvas = Canvas(width, HEIGHT, plain=plain)
             canvas.bins(one.trace, scale)

@@ -24,18 +24,19 @@ from tester.tui.dialogs.plot import PlotDialog
 from tester.tui.dialogs.repeats import RepeatsDialog
 from tester.tui.formatting import clean
 from tester.tui.pages.view import Keys, View
-from tester.tui.stored import FIGURES, Row, Stored, read
+from tester.tui.stored import Row, Stored, read
 from tester.tui.widgets.scatter import PlotPanel
 
 RUN_HEADER = ("Run", "Recipe", "Status", "Values", "Rig time", "Started")
-EMPTY = ("Formula", *FIGURES)
+EMPTY = ("compound", "mu")
 """Columns of the conditions while no run is chosen."""
 MISSING = (StoreError, OSError, sqlite3.Error)
 HELP = """\
-Above the stored runs, below the conditions of the chosen one in the export's columns, with s (between repeats) and
-n (valid of planned). Behind mu, and as a point's sign, ! is a number that is not to be trusted, ? one with a doubt that
-its status names. The plot is mu against one setpoint; a point's sign is its compound, + is several. What differs
-from the chosen condition in more than that setpoint is a faint dot.
+Above the stored runs, below the conditions of the chosen one: mu at the temperature asked for, both expanded
+uncertainties U (95 %), s (between repeats), valid (of those asked for), the means of further sensors, flags. Behind mu,
+and as a point's sign, ! is a number that is not to be trusted, ? one with a doubt among its flags. The plot is mu
+against one setpoint; a point's sign is its compound, + is several. What differs from the chosen condition in more than
+that setpoint is a faint dot.
 
 Enter   on a run: read it. On a condition: its repeats, with traces, and why one is not in the mean; Enter there
         leaves a repeat out, or takes it in again, with a reason that goes on record. Nothing is ever deleted.

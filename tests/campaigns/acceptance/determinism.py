@@ -68,7 +68,7 @@ class Trials:
                 yield equal(f"two specimens, --jobs 2 against --jobs 1: {name}", two, one)
         ours, theirs = (_digest(run.bytes_of("repeats.csv")) for run in (first, other))
         yield holds("another seed: repeats.csv", ours != theirs, theirs, f"not {ours}")
-        ours_mu, theirs_mu = ([row["mu_resultant"] for row in run.rows("repeats.csv")] for run in (first, other))
+        ours_mu, theirs_mu = ([row["mu_as_measured"] for row in run.rows("repeats.csv")] for run in (first, other))
         yield holds("repeats with a coefficient", all(ours_mu) and bool(ours_mu), " ".join(ours_mu), "all")
         same = sum(a == b for a, b in zip(ours_mu, theirs_mu, strict=False))
         yield equal("another seed: repeats with the same coefficient", same, 0)

@@ -58,7 +58,7 @@ def _measured(run: Run) -> Iterator[tuple[dict[str, str], float]]:
     for row in run.rows("conditions.csv"):
         surface, load, slip = _means(row)
         expected = coefficient(row["compound"], surface, load, slip / 1000.0)
-        yield row, 100.0 * (float(row["mu_resultant"] or "nan") / expected - 1.0)
+        yield row, 100.0 * (float(row["mu_as_measured"] or "nan") / expected - 1.0)
 
 
 def _means(row: dict[str, str]) -> tuple[float, float, float]:
@@ -84,7 +84,7 @@ def _within(run: Run, kind: str, limit_percent: float) -> Iterator[Figure]:
     for row, error in measured:
         surface, load, slip = _means(row)
         at = f"{surface:.2f} degC, {load:.2f} N, {slip:.2f} mm/s"
-        name = f"{_name(row, kind)}: {row['mu_resultant']} at {at}: error"
+        name = f"{_name(row, kind)}: {row['mu_as_measured']} at {at}: error"
         yield holds(name, abs(error) <= limit_percent, f"{error:+.3f} %", f"within {limit_percent:g} %")
 
 
@@ -99,7 +99,7 @@ def _within_sigmas(run: Run, kind: str) -> Iterator[Figure]:
             yield holds(f"{_name(row, kind)}: repeats in the mean", False, "none", "some")
             continue
         sigma = 100.0 * stated_sigma(SimParameters(), row["compound"], len(windows), fmean(windows))
-        name = f"{_name(row, kind)}: {row['mu_resultant']} is {error:+.2f} % off, stated sigma {sigma:.2f} %"
+        name = f"{_name(row, kind)}: {row['mu_as_measured']} is {error:+.2f} % off, stated sigma {sigma:.2f} %"
         yield at_most(name, abs(error) / sigma, 3.0, "sigma", 2)
 
 

@@ -111,4 +111,4 @@ def _judged(case: Case, measured: list[Measured], record: Path) -> Iterator[Off]
         true = sum(t["model"] * t["condition"] * t["wheel"] * t["run"] for t in truths) / len(truths)
         chain = [term for term in r.budget.contributions if term.common]
         largest = max(chain, key=lambda term: term.standard).name
-        yield Off(cell, case.seed, 100.0 * (r.mu_corrected / true - 1.0), largest, "ok")
+        yield Off(cell, case.seed, 100.0 * (r.mu / true - 1.0), largest, "ok")

@@ -52,15 +52,15 @@ def coverage(draws: int) -> Iterator[Figure]:
         for _ in range(draws):
             mu = cell.mu * (1.0 + random.gauss(0.0, BETWEEN))
             found = measured(cell, mu, rig(random), random, random.gauss(0.0, 1.0))
-            this += abs(found.mu_corrected - mu) <= found.budget.expanded
-            compound += abs(found.mu_corrected - cell.mu) <= found.compound_budget.expanded
+            this += abs(found.mu - mu) <= found.budget.expanded
+            compound += abs(found.mu - cell.mu) <= found.compound_budget.expanded
         exact = draws >= DRAWS
         yield _within(f"{cell.name}: this wheel covered", this, draws, *COVERED, exact=exact)
         yield _within(f"{cell.name}: the compound covered", compound, draws, *COVERED, exact=exact)
         if number == 0:
             for _ in range(draws // 4):
                 found = replicates(cell, cell.mu, rig(random), random, random.gauss(0.0, 1.0), 3)
-                whole += abs(found.mu_corrected - cell.mu) <= found.compound_budget.expanded
+                whole += abs(found.mu - cell.mu) <= found.compound_budget.expanded
             name = f"{cell.name}: the compound covered by 3 replicates"
             yield _within(name, whole, draws // 4, *COVERED, exact=exact)
 

@@ -94,10 +94,10 @@ def _run(folder: Path, seed: int, condition: tuple[str, int, int, int]) -> Held 
     return Held(
         seed,
         condition,
-        100.0 * (first.mu_corrected / this - 1.0),
+        100.0 * (first.mu / this - 1.0),
         100.0 * first.expanded / this,
-        abs(first.mu_corrected - this) <= first.expanded,
-        abs(first.mu_corrected - compound) <= first.compound_budget.expanded,
-        abs(row.result.mu_corrected - compound) <= row.result.compound_budget.expanded,
+        abs(first.mu - this) <= first.expanded,
+        abs(first.mu - compound) <= first.compound_budget.expanded,
+        abs(row.result.mu - compound) <= row.result.compound_budget.expanded,
         difference(first, second, same_rig=True).told_apart,
     )

@@ -94,7 +94,7 @@ def conditions(place: Path) -> list[tuple[str, float, float]]:
     """Return each condition's name, coefficient and expanded uncertainty of this wheel."""
     with (place / "conditions.csv").open(encoding="utf-8-sig", newline="") as file:
         return [
-            (f"{row['slip_velocity_mm_s']} mm/s", float(row["mu_corrected"]), float(row["u_expanded_this_wheel"]))
+            (f"{row['slip_velocity_mm_s']} mm/s", float(row["mu"]), float(row["u_expanded"]))
             for row in csv.DictReader(file)
             if row["level"] == "condition"
         ]

@@ -109,8 +109,8 @@ def coefficient(job: Path, name: str) -> tuple[float, float]:
     for path in (job / name).glob("*/conditions.csv"):
         with path.open(encoding="utf-8-sig", newline="") as file:
             for row in csv.DictReader(file):
-                if row["level"] == "condition" and row["mu_corrected"]:
-                    return float(row["mu_corrected"]), float(row["u_expanded_this_wheel"])
+                if row["level"] == "condition" and row["mu"]:
+                    return float(row["mu"]), float(row["u_expanded"])
     return math.nan, math.nan
 
 

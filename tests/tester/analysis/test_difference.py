@@ -13,7 +13,7 @@ from tester.analysis.uncertainty import Contribution, budget, contribution
 
 
 def result(mu: float, *terms: Contribution) -> ConditionResult:
-    return ConditionResult(ConditionStatus.OK, mu_resultant=mu, mu_corrected=mu, compound_budget=budget(terms))
+    return ConditionResult(ConditionStatus.OK, mu_resultant=mu, compound_budget=budget(terms))
 
 
 def repeats(u: float, df: float = inf) -> Contribution:

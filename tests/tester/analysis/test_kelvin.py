@@ -46,11 +46,11 @@ def test_temperatures_close_together_are_no_pair() -> None:
 
 def test_the_coefficient_is_brought_back_by_offset_and_lag() -> None:
     warm = SurfaceWarmth(55.0, 56.0, 2.0, STEEP)
-    assert warm.corrected(0.8, TERMS) == pytest.approx(0.8 * exp(-0.02 * (1.0 + LAG_S * 2.0)))
+    assert warm.correction(TERMS) == pytest.approx(exp(-0.02 * (1.0 + LAG_S * 2.0)))
 
 
 def test_without_a_known_sensitivity_nothing_is_corrected() -> None:
-    assert SurfaceWarmth(55.0, 56.0, 2.0, UNKNOWN).corrected(0.8, TERMS) == 0.8
+    assert SurfaceWarmth(55.0, 56.0, 2.0, UNKNOWN).correction(TERMS) == 1.0
 
 
 def test_the_sensitivity_s_own_uncertainty_counts_over_offset_and_thermometer() -> None:
@@ -64,4 +64,4 @@ def test_an_unknown_sensitivity_is_named_with_its_2_6_percent_a_kelvin() -> None
 
 
 def test_a_temperature_that_was_not_measured_moves_nothing() -> None:
-    assert SurfaceWarmth(slope=STEEP).corrected(0.8, TERMS) == 0.8
+    assert SurfaceWarmth(slope=STEEP).correction(TERMS) == 1.0

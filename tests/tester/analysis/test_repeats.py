@@ -52,7 +52,7 @@ FIVE = [repeat(mu) for mu in (0.70, 0.71, 0.69, 0.72, 0.70)]
 def test_mean_scatter_and_interval_of_valid_repeats() -> None:
     result = combine(*FIVE)
     assert result.ok
-    assert (result.n_valid, result.n) == (5, 5)
+    assert (result.counts.valid, result.counts.asked) == (5, 5)
     assert result.mu_resultant == pytest.approx(0.704)
     assert result.s == pytest.approx(0.0114018, rel=1e-5)
     assert result.type_a == pytest.approx(result.s / sqrt(5))
@@ -197,7 +197,7 @@ def test_replicates_combine_as_means_of_wheels() -> None:
     wheels = [combine(*[repeat(mu)] * 5) for mu in (0.70, 0.72, 0.76)]
     result = combine_replicates(wheels)
     assert result.ok
-    assert (result.n_valid, result.n) == (3, 3)
+    assert (result.counts.valid, result.counts.asked) == (3, 3)
     assert result.mu_resultant == pytest.approx(0.72667, rel=1e-4)
     assert result.s == pytest.approx(0.030551, rel=1e-4)
 

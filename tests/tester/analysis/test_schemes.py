@@ -32,7 +32,7 @@ def test_the_scheme_follows_from_the_recipe() -> None:
 def test_a_condition_s_value_is_the_mean_of_its_pairs_with_their_scatter() -> None:
     found = PAIRS.combine(series(VALUES, 0.5), 3)
     pairs = [0.71, 0.72, 0.705]
-    assert found.ok and (found.n_valid, found.n) == (3, 3)
+    assert found.ok and (found.counts.valid, found.counts.asked) == (3, 3)
     assert found.mu_resultant == pytest.approx(sum(pairs) / 3, rel=3e-4)
     assert found.s == pytest.approx(stdev(pairs), rel=0.03)
 

@@ -19,22 +19,22 @@ from tests.tester.store.build import CONDITION, RUN, SPECIMENS, open_writer, rec
 
 def test_every_condition_has_its_coefficient_and_its_uncertainty(tmp_path: Path) -> None:
     header, units, first, second = ending_lines(small_run(tmp_path))[1:5]
-    assert header.split() == ["compound", "Slip", "Load", "Angle", "Temp", "mu", "U", "valid"]
-    assert units.split() == ["mm/s", "N", "°", "°C", "(95", "%)"]
+    assert header.split() == ["compound", "Slip", "Load", "Angle", "Temp", "mu", "U", "this", "valid"]
+    assert units.split() == ["mm/s", "N", "°", "°C", "wheel"]
     assert first.split()[:6] == ["1#", "300", "100", "0", "25", "0.900"] and first.endswith("3 of 3  extended")
     assert second.split()[2] == "200" and float(second.split()[6]) > 0.0
 
 
 def test_numbers_stand_below_each_other(tmp_path: Path) -> None:
     header, _, first, second = ending_lines(small_run(tmp_path))[1:5]
-    for column in ("Slip", "Load", "Angle", "Temp", "mu", "U"):
+    for column in ("Slip", "Load", "Angle", "Temp", "mu", "U this"):
         end = header.index(f" {column} ") + len(column) + 1
         assert all(line[end - 1] != " " and line[end] == " " for line in (first, second))
 
 
 def test_a_condition_without_a_value_has_a_dash_and_its_status(tmp_path: Path) -> None:
     row = ending_lines(small_run(tmp_path, ([nan] * 3, [0.73, 0.74, 0.72])))[3]
-    assert row.split()[5:] == ["-", "-", "0", "of", "3", "insufficient"]
+    assert row.split()[5:] == ["–", "–", "0", "of", "3", "insufficient"]
 
 
 def test_camber_is_a_column_where_a_condition_has_it(tmp_path: Path) -> None:
@@ -131,6 +131,6 @@ def test_with_json_there_is_no_table(tmp_path: Path, capsys: pytest.CaptureFixtu
 
 
 def test_the_table_says_of_what_its_uncertainty_is(tmp_path: Path) -> None:
-    assert "U: of this wheel in this condition; conditions.csv has the compound's, too" in ending_lines(
+    assert "U: expanded uncertainty (95 %) of this wheel; conditions.csv has the compound's" in ending_lines(
         small_run(tmp_path)
     )

@@ -35,8 +35,11 @@ def test_show_tells_status_rig_time_and_values(home: Path) -> None:
     assert lines[1] == "status   done"
     assert lines[2].startswith("rig time 0:45:00")
     assert lines[3] == "values   2 of 2 conditions"
-    assert lines[4].startswith("  1#, 300 mm/s, 100 N, 25 degC: 0.900 ± ")
-    assert lines[4].endswith("(n 3 of 3) extended")
+    heads = "compound  Slip  Load  Angle  Temp     mu     mu as  U this         U       s   valid"
+    assert lines[4] == heads
+    assert lines[5].split() == ["mm/s", "N", "°", "°C", "measured", "wheel", "compound"]
+    assert lines[6].split()[:7] == ["1#", "300", "100", "0", "25", "0.900", "0.900"]
+    assert lines[6].endswith("3 of 3  extended")
 
 
 def test_show_tells_which_extensions_a_run_had_loaded(home: Path) -> None:
@@ -78,7 +81,7 @@ def test_show_names_what_has_no_value(home: Path) -> None:
     small_run(home / "runs" / "two", ([nan] * 3, [0.73, 0.74, 0.72]))
     shown = invoke(show, "two").stdout
     assert "values   1 of 2 conditions" in shown
-    assert "  1#, 300 mm/s, 100 N, 25 degC: insufficient: none of 3 repeats is valid" in shown
+    assert "1#, 300 mm/s, 100 N, 25 degC: insufficient: none of 3 repeats is valid" in shown
     assert json.loads(invoke(show, "two", "--json").stdout)["conditions"][0]["s"] is None
 
 
@@ -97,7 +100,7 @@ def stopped(home: Path) -> str:
 
 def test_conditions_that_a_run_did_not_come_to_are_one_line(stopped: str) -> None:
     lines = invoke(show, stopped).stdout.splitlines()
-    assert lines[-1] == "  4 of 5 conditions not measured" and len(lines) == 6
+    assert lines[-1] == "4 of 5 conditions not measured" and len(lines) == 8
 
 
 def test_a_doubt_is_in_json(stopped: str) -> None:
@@ -195,13 +198,15 @@ def test_text_of_a_recipe_cannot_drive_the_terminal(home: Path) -> None:
 
 
 def test_show_tells_both_uncertainties_and_of_what_they_are(home: Path) -> None:
-    shown = invoke(show, "one").stdout
-    assert "(this wheel), ± " in shown and "(compound)" in shown
+    (measured,) = (line for line in invoke(show, "one").stdout.splitlines() if line.startswith("1#         300   100"))
+    first, _ = json.loads(invoke(show, "one", "--json").stdout)["conditions"]
+    assert measured.split()[7:9] == [f"{first[key]:.3f}" for key in ("u_expanded", "u_expanded_compound")]
 
 
 def test_show_tells_the_budget_the_largest_term_first(home: Path) -> None:
     lines = invoke(show, "one", "--budget").stdout.splitlines()
-    assert "U (95 %) of this wheel in this condition" in lines[1] and "U (95 %) of the compound" in lines[2]
-    assert lines[4].split()[:3] == ["wheel", "to", "wheel"]
-    percents = [float(line[28:35]) for line in lines[4:10]]
+    assert lines[1].startswith("  U this wheel 0.0") and lines[2].startswith("  U compound 0.0")
+    assert lines[3].split()[:3] == ["term", "df", "u(mu)"] and lines[4].split()[:3] == ["wheel", "to", "wheel"]
+    end = lines[3].index("u(mu) (%)") + len("u(mu) (%)")
+    percents = [float(line[:end].split()[-1]) for line in lines[4:10]]
     assert percents == sorted(percents, reverse=True)

@@ -114,7 +114,8 @@ def test_enough_valid_repeats_make_a_value(door: Door) -> None:
         door.repeat(number, Ending.COMPLETE)
     line, written = door.end()
     assert written[0] == ConditionStatus.OK.value
-    assert line.startswith("condition 1 (1#, 300 mm/s, 200 N, 25 degC): mu 0.6999") and line.endswith("3 of 3")
+    assert line.startswith("condition 1 (1#, 300 mm/s, 200 N, 25 degC): mu as measured 0.700,")
+    assert line.endswith("3 of 3")
 
 
 def test_too_few_valid_repeats_make_a_flagged_value(door: Door) -> None:

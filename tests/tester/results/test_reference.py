@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from tester.analysis.flags import OUT_OF_LIMITS, flags_in
-from tester.cli.ending import table_lines
+from tester.cli.ending import ending_table
 from tester.cli.main import invoke
 from tester.results import write_all
 from tester.results.run_results import RunResults, results_of
@@ -92,7 +92,7 @@ def test_a_condition_before_a_reference_out_of_its_limits_is_to_be_taken_with_ca
 def test_no_coefficient_is_changed_by_them(tmp_path: Path) -> None:
     with_marks = results(watched_run(tmp_path / "a")).rows
     without = [row for row in results(watched_run(tmp_path / "b", marked=False)).rows if row.info.grid != "reference"]
-    assert [one.result.mu_corrected for one in with_marks] == [one.result.mu_corrected for one in without]
+    assert [one.result.mu for one in with_marks] == [one.result.mu for one in without]
     assert [one.result.budget for one in with_marks] == [one.result.budget for one in without]
 
 
@@ -117,7 +117,7 @@ def test_a_reference_without_a_value_is_missing_and_leaves_the_others(tmp_path: 
 
 
 def test_the_end_of_a_run_says_a_sentence(tmp_path: Path) -> None:
-    told = list(table_lines(results(watched_run(tmp_path)), tmp_path))
+    told = list(ending_table(results(watched_run(tmp_path)), tmp_path))
     assert any("counterface and wheel cannot be told apart" in line for line in told)
     assert any(line.endswith("outside: 3") for line in told)
 

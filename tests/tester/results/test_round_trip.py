@@ -171,7 +171,7 @@ def test_numbers_are_numbers_for_pandas(tmp_path: Path) -> None:
     folder = small_run(tmp_path / "run")
     write_all(folder)
     frame = pandas.read_csv(folder / "repeats.csv")
-    assert str(frame["mu_resultant"].dtype) == "float64" and frame["mu_resultant"].iloc[0] == 0.9
+    assert str(frame["mu_as_measured"].dtype) == "float64" and frame["mu_as_measured"].iloc[0] == 0.9
     assert str(frame["load_n"].dtype) == "int64" and next(iter(frame["measured_force_z_n"])) == 200
 
 

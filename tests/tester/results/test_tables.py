@@ -65,9 +65,9 @@ def test_conditions_carry_setpoints_means_scatter_and_metadata(tmp_path: Path) -
         "200",
         "0.8",
     )
-    assert float(line["mu_resultant"]) == pytest.approx(0.73)
+    assert float(line["mu"]) == pytest.approx(0.73)
     assert float(line["s"]) == pytest.approx(0.01)
-    assert (line["n_valid"], line["n"]) == ("3", "3")
+    assert (line["valid"], line["asked"]) == ("3", "3")
     assert float(line["u_expanded"]) > float(line["u_standard"]) > float(line["u_type_a"]) > 0
     assert float(line["measured_slip_mm_s"]) == pytest.approx(300.1)
     assert float(line["measured_surface_c"]) == pytest.approx(25.1)
@@ -111,7 +111,7 @@ def test_replicates_have_a_row_each_and_a_combined_one(tmp_path: Path) -> None:
         record(writer, condition.condition, [mu] * 3)
     writer.close()
     appendix, lines, _ = tables(tmp_path)
-    assert [(line["level"], line["replicate"], line["mu_resultant"]) for line in lines] == [
+    assert [(line["level"], line["replicate"], line["mu"]) for line in lines] == [
         ("condition", "1", "0.7"),
         ("condition", "2", "0.72"),
         ("combined", "", "0.71"),

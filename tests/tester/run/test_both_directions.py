@@ -89,17 +89,17 @@ def test_repeats_alternate_and_each_has_a_tare_of_its_own(whole: Path) -> None:
     said = ["reversed" if is_reversed(repeat) else "as asked" for repeat in range(1, 7)]
     assert [row["direction"] for row in rows] == said
     assert [round(float(row["measured_belt_speed_m_s"]), 1) for row in rows] == [0.5, 1.1, 1.1, 0.5, 0.5, 1.1]
-    assert [float(row["mu_longitudinal"]) > 0.0 for row in rows] == [one == "as asked" for one in said]
+    assert [float(row["mu_longitudinal_as_measured"]) > 0.0 for row in rows] == [one == "as asked" for one in said]
     with RunReader(whole) as reader:
         assert len([one for one in reader.tares() if one.kind == "repeat"]) >= 5
 
 
 def test_the_value_is_half_the_difference_and_free_of_the_cell_s_angle(whole: Path) -> None:
     (row,) = table(whole, "directions.csv")[:1]
-    as_asked, back = float(row["mu_as_asked"]), float(row["mu_reversed"])
+    as_asked, back = float(row["mu_as_measured_as_asked"]), float(row["mu_as_measured_reversed"])
     (condition,) = table(whole, "conditions.csv")
-    mu, mean = float(condition["mu_resultant"]), 0.5 * (as_asked + back)
-    assert mu == pytest.approx(mean, rel=1e-3) and (condition["n_valid"], condition["n"]) == ("3", "3")
+    mu, mean = float(condition["mu_as_measured"]), 0.5 * (as_asked + back)
+    assert mu == pytest.approx(mean, rel=1e-3) and (condition["valid"], condition["asked"]) == ("3", "3")
     assert abs(as_asked / mu - 1.0) > 0.004 and abs(back / mu - 1.0) > 0.004
     with RunReader(whole) as reader:
         assert results_of(reader).rows[0].result.both_ways is not None
@@ -107,7 +107,7 @@ def test_the_value_is_half_the_difference_and_free_of_the_cell_s_angle(whole: Pa
 
 def test_the_run_tells_the_cell_s_angle(whole: Path) -> None:
     run = table(whole, "directions.csv")[-1]
-    mu = float(table(whole, "conditions.csv")[0]["mu_resultant"])
+    mu = float(table(whole, "conditions.csv")[0]["mu"])
     assert run["level"] == "run" and float(run["misalignment_u_standard_deg"]) > 0.0
     assert float(run["misalignment_deg"]) == pytest.approx(turned_deg(mu), abs=0.1)
 
@@ -119,9 +119,10 @@ def test_a_run_that_was_killed_within_a_pair_goes_on_in_the_same_direction(whole
     rows, again = table(whole, "repeats.csv"), table(resumed, "repeats.csv")
     assert [row["direction"] for row in again] == [row["direction"] for row in rows]
     for one, other in zip(rows, again, strict=True):
-        assert float(other["mu_longitudinal"]) == pytest.approx(float(one["mu_longitudinal"]), rel=0.01)
+        along, before = (float(row["mu_longitudinal_as_measured"]) for row in (other, one))
+        assert along == pytest.approx(before, rel=0.01)
     (condition,) = table(resumed, "conditions.csv")
-    assert condition["status"] == "ok" and condition["n_valid"] == "3"
+    assert condition["status"] == "ok" and condition["valid"] == "3"
 
 
 def test_the_record_bears_out_its_tables(whole: Path, resumed: Path) -> None:
@@ -131,7 +132,7 @@ def test_the_record_bears_out_its_tables(whole: Path, resumed: Path) -> None:
 def test_show_tells_the_angle_and_the_pairs(whole: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert invoke(["show", str(whole)]) == 0
     out = capsys.readouterr().out
-    assert "both directions: the cell's axes seem to be off by" in out and "(n 3 of 3)" in out
+    assert "both directions: the cell's axes seem to be off by" in out and "3 of 3" in out
 
 
 def test_a_repeat_that_is_excluded_takes_its_pair_out_of_the_mean(whole: Path, tmp_path: Path) -> None:
@@ -141,7 +142,7 @@ def test_a_repeat_that_is_excluded_takes_its_pair_out_of_the_mean(whole: Path, t
     rows = table(folder, "repeats.csv")
     assert [row["in_mean"] for row in rows] == ["0", "0", "1", "1", "1", "1"]
     assert rows[0]["exclusion"] == "the other repeat of its pair does not count"
-    assert table(folder, "conditions.csv")[0]["n_valid"] == "2"
+    assert table(folder, "conditions.csv")[0]["valid"] == "2"
 
 
 def test_a_run_in_one_direction_has_no_table_of_directions_and_no_such_column(tmp_path: Path) -> None:

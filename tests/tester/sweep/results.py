@@ -6,11 +6,13 @@ from tester.kinds.wheel_on_belt.axes import AXES
 from tester.sweep.case import NAN, CaseResult, RowResult
 
 
-def row(number: int = 1, mu: float = 0.73, u: float = 0.01, status: str = "ok") -> RowResult:
+def row(number: int = 1, mu: float = 0.73, u: float = 0.01, status: str = "ok", care: str = "") -> RowResult:
     """Return one row of a run's table."""
-    value = (mu, 0.005, 3, u, "", "") if status == "ok" else (NAN, NAN, 0, NAN, "", "because")
     held = AXES.setpoint("1#", slip_velocity=0.3, load=100.0 * number, temperature=40.0)
-    return RowResult(number, held, status, *value)
+    values = {"mu": mu, "u_standard": u, "s": 0.005, "valid": 3, "mark": care, "flags": "carry-over" if care else ""}
+    if status != "ok":
+        values |= {"mu": NAN, "u_standard": NAN, "s": NAN, "valid": 0, "mark": "", "reason": "because"}
+    return RowResult(number, held, {"status": status, "reason": "", **values})
 
 
 def result(case: int, *rows: RowResult, point: tuple[str, ...] = (), outcome: str = "done") -> CaseResult:

@@ -130,9 +130,9 @@ def test_a_case_gives_what_tester_run_gives_in_whatever_process(tmp_path: Path) 
     found = run_case(sweep.tasks[0])
     (one,) = found.rows
     assert (found.outcome, found.exit_code, found.mounted, found.missing) == ("done", 0, 1, 0)
-    assert found.rig_seconds > 60.0 and one.mu == pytest.approx(0.73, abs=0.01)
+    assert found.rig_seconds > 60.0 and one.number("mu") == pytest.approx(0.73, abs=0.01)
     held = one.setpoint
-    assert (held.compound, held.value("slip_velocity"), held.value("load"), one.n_valid) == ("1#", 0.3, 200.0, 1)
+    assert (held.compound, held.value("slip_velocity"), held.value("load"), one.cells["valid"]) == ("1#", 0.3, 200.0, 1)
     with local(1) as submit:
         there = submit(run_case, sweep.tasks[0]).result()
     assert repr(there) == repr(found)  # not-a-number is not equal to itself

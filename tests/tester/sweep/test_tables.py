@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import replace
 from math import sqrt
 
 import pytest
@@ -44,7 +43,7 @@ def test_a_condition_without_a_value_counts_as_a_run_and_not_as_a_value() -> Non
 
 
 def test_values_to_be_taken_with_care_are_counted() -> None:
-    doubtful = replace(row(1), flags="extended; carry-over")
+    doubtful = row(1, care="?")
     results = [result(1, row(1)), result(2, doubtful), result(3, row(1, status="insufficient"))]
     (found,) = named(tables.summary_header((), HELD), tables.summary_rows(results))
     assert (found["n"], found["with_care"]) == (2, 1)

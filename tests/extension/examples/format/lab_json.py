@@ -12,7 +12,7 @@ def write(record: Record, file: BinaryIO) -> None:
     for row in record.results.rows:
         if row.result.ok:
             found = {"condition": condition_words(row.info.setpoint), "compound": row.info.compound,
-                     "mu": round(row.result.mu_resultant, 4)}
+                     "mu": round(row.result.mu, 4)}
             file.write(json.dumps(found).encode() + b"\n")
 
 

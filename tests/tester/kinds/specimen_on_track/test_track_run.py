@@ -57,7 +57,7 @@ def test_it_leaves_as_a_table_with_its_interface(run: Path, capfd: pytest.Captur
     assert invoke(["export", str(run), "--format", "conditions"]) == 0
     rows = list(csv.DictReader(capfd.readouterr().out.splitlines()))
     assert [row["interface"] for row in rows] == ["dry", "wet"]
-    dry, wet = (float(row["mu_resultant"]) for row in rows)
+    dry, wet = (float(row["mu"]) for row in rows)
     assert 0.5 < wet / dry < 0.7  # 0.6 and two repeats' scatter of 2 %
     assert all(float(row["measured_sliding_mm_s"]) == pytest.approx(200.0, rel=0.01) for row in rows)
 

@@ -1,0 +1,79 @@
+"""A table of results on a terminal: headings in two lines, numbers at the right, flags behind a row or below it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from textwrap import wrap
+
+from rich.cells import cell_len
+
+from tester.base.words import NONE
+from tester.cli.formatting import shown
+from tester.results.columns import R, Table
+
+WIDTH = 80
+"""Columns of a terminal; remarks that do not fit get a line of their own."""
+NAME_AT_MOST = 12
+"""Cells of a row's name; what is longer is cut and ends in an ellipsis."""
+
+
+def table_lines(table: Table[R], remarks: str, width: int = WIDTH) -> Iterator[str]:
+    """Yield headings and rows; the first column names a row, the column ``remarks`` stands behind it or below."""
+    behind = table[remarks]
+    columns = [one for one in table.columns if one.key != remarks]
+    marked = [any(one.mark_at(row) for row in table.rows) for one in columns]
+    top, bottom = zip(*(_two_lines(one.narrow_head, one.unit) for one in columns), strict=True)
+    cells = [
+        [_cut(shown(columns[0].text(row))),
+         *(one.text(row) + (" " if has and not one.mark_at(row) else "")
+           for one, has in zip(columns[1:], marked[1:], strict=True))]
+        for row in table.rows
+    ]  # fmt: skip
+    pads = [" " if has else "" for has in marked]
+    lines = [[text + pad for text, pad in zip(head, pads, strict=True)] for head in (top, bottom)] + cells
+    widths = [max(map(cell_len, column)) for column in zip(*lines, strict=True)]
+    told = ["", "", *(text if (text := shown(behind.text(row))) != NONE else "" for row in table.rows)]
+    for line, remark in zip(lines, told, strict=True):
+        yield from _line(line, widths, remark, width)
+
+
+def plain_lines(table: Table[R]) -> Iterator[str]:
+    """Yield headings and rows, words at the left and numbers at the right."""
+    texts = [tuple(one.head for one in table.columns), *table.texts()]
+    lines = [[shown(text) for text in cells] for cells in texts]
+    widths = [max(map(cell_len, column)) for column in zip(*lines, strict=True)]
+    for cells in lines:
+        padded: list[str] = []
+        for column, text, width in zip(table.columns, cells, widths, strict=True):
+            space = " " * (width - cell_len(text))
+            padded.append(space + text if column.numeric else text + space)
+        yield "  ".join(padded).rstrip()
+
+
+def _two_lines(head: str, unit: str) -> tuple[str, str]:
+    """Return a heading in two lines: its unit below it, or what does not fit into half of it."""
+    name = head.removesuffix(f"({unit})").removesuffix(unit).rstrip()
+    if name != head:
+        return name, unit
+    words = head.split()
+    return " ".join(words[: len(words) - len(words) // 2]), " ".join(words[len(words) - len(words) // 2 :])
+
+
+def _line(cells: Sequence[str], widths: Sequence[int], remarks: str, width: int) -> Iterator[str]:
+    """Yield a row: the name at the left, numbers at the right, remarks behind them or below."""
+    room = [" " * (one - cell_len(cell)) for cell, one in zip(cells, widths, strict=True)]
+    line = "  ".join([cells[0] + room[0], *(space + cell for space, cell in zip(room[1:], cells[1:], strict=True))])
+    if not remarks or cell_len(line) + 2 + cell_len(remarks) <= width:
+        yield f"{line}  {remarks}".rstrip()
+        return
+    yield line.rstrip()
+    yield from wrap(remarks, width, initial_indent="    ", subsequent_indent="    ")
+
+
+def _cut(name: str) -> str:
+    """Return a name of at most NAME_AT_MOST cells."""
+    if cell_len(name) <= NAME_AT_MOST:
+        return name
+    while cell_len(name) >= NAME_AT_MOST:
+        name = name[:-1]
+    return f"{name}…"

@@ -1,0 +1,187 @@
+"""A table of results as data: columns with key, heading, unit and decimals, and the rows that they read.
+
+Files, terminal, report and screens pick columns and render them; what a column holds, what it is called and to how many
+digits people read it stands in the column alone. A table's columns stand in its own module, and a column there is in
+every output that its ``views`` name, in the CSV file and in JSON.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, replace
+from enum import StrEnum
+from math import isfinite
+from typing import Generic, TypeAlias, TypeVar
+
+from tester.axes import Axes, Axis
+from tester.base.as_json import Json
+from tester.base.words import NONE, decimal, significant
+from tester.quantities import Channel, Means
+from tester.results.cells import Cell, nominal
+from tester.store.records import ConditionInfo
+
+Value: TypeAlias = str | int | float | tuple[str, ...] | None
+"""What a column holds of a row: NaN and None are no value, a tuple is a list of words."""
+R = TypeVar("R")
+
+
+class Output(StrEnum):
+    """An output that has room for some of a table's columns."""
+
+    END = "end of a run"
+    SHOW = "tester show"
+    COVER = "first page of a report"
+    REPORT = "table of a report"
+    REPEATS = "counts and drift in a report"
+    SCREEN = "screen"
+    SWEEP = "tables of a sweep"
+    COMPARE = "comparison of runs"
+
+
+@dataclass(frozen=True)  # a generic with slots cannot be made by its parameters (Column[Row](...)) in Python 3.11
+class Column(Generic[R]):
+    """One column. ``key`` is its name in CSV files and JSON, ``heading`` what people read, with ``unit``.
+
+    ``value`` reads it off a row, in full. People read numbers with so many ``decimals``; None: as setpoints and counts.
+    """
+
+    key: str
+    heading: str
+    value: Callable[[R], Value]
+    unit: str = ""
+    decimals: int | None = None
+    views: frozenset[Output] = frozenset()
+    """The outputs that show it."""
+    mark: Callable[[R], str] | None = None
+    """What stands behind the number for people (``tester.analysis.trust``)."""
+    digits: int | None = None
+    """Significant ones, of numbers that range over decades; in place of ``decimals``."""
+    stored: bool = True
+    """Whether CSV and JSON have it; what says the same as other columns in a shorter way is for people only."""
+    narrow: str = ""
+    """Heading with unit where there is little room; "" the same as elsewhere."""
+
+    @property
+    def head(self) -> str:
+        """Return the heading with its unit in brackets."""
+        return f"{self.heading} ({self.unit})" if self.unit else self.heading
+
+    @property
+    def narrow_head(self) -> str:
+        """Return the heading for a place with little room."""
+        return self.narrow or self.head
+
+    @property
+    def numeric(self) -> bool:
+        """Return whether people read numbers in it."""
+        return self.decimals is not None or self.digits is not None
+
+    def mark_at(self, row: R) -> str:
+        """Return what stands behind the number."""
+        return self.mark(row) if self.mark is not None else ""
+
+    def text(self, row: R) -> str:
+        """Return what people read; a dash where there is no value."""
+        value = self.value(row)
+        if value is None or value == "" or value == () or (isinstance(value, float) and not isfinite(value)):
+            return NONE
+        if isinstance(value, tuple):
+            return ", ".join(value)
+        if isinstance(value, bool):
+            return "yes" if value else "no"
+        if isinstance(value, str):
+            return value
+        if self.digits is not None:
+            return significant(value, self.digits)
+        return (decimal(value, self.decimals) if self.decimals is not None else nominal(value)) + self.mark_at(row)
+
+    def cell(self, row: R) -> Cell:
+        """Return what a CSV file holds."""
+        value = self.value(row)
+        if isinstance(value, tuple):
+            return "; ".join(value)
+        return int(value) if isinstance(value, bool) else value
+
+    def as_json(self, row: R) -> Json:
+        """Return what JSON holds; null for no value."""
+        value = self.value(row)
+        if isinstance(value, tuple):
+            return [*value]
+        return None if isinstance(value, float) and not isfinite(value) else value
+
+
+def axis_column(axis: Axis, info: Callable[[R], ConditionInfo]) -> Column[R]:
+    """Return the column of an axis of conditions; ``info`` reads a row's setpoints off it."""
+    return Column(
+        axis.column, axis.name.replace("_", " "), lambda row: axis.of(info(row).setpoint), unit_of(axis),
+        narrow=axis.title,
+    )  # fmt: skip
+
+
+def setting_columns(
+    axes: Axes, info: Callable[[R], ConditionInfo], replicate: Callable[[R], Value]
+) -> tuple[Column[R], ...]:
+    """Return the columns that say which condition a row is of."""
+    return (
+        Column("specimen", "specimen", lambda row: info(row).specimen),
+        Column("replicate", "replicate", replicate),
+        Column("grid", "grid", lambda row: info(row).grid),
+        Column("compound", "compound", lambda row: info(row).compound),
+        Column("note", "note", lambda row: info(row).note),
+        *(axis_column(one, info) for one in axes),
+    )
+
+
+def mean_column(channel: Channel, means: Callable[[R], Means], views: frozenset[Output] = frozenset()) -> Column[R]:
+    """Return the column of a channel's mean; ``means`` reads a row's off it."""
+    return Column(
+        channel.measured_column, channel.label.lower(), lambda row: channel.scaled(means(row).get(channel.name)),
+        channel.read_as, channel.decimals, views,
+    )  # fmt: skip
+
+
+def unit_of(axis: Axis) -> str:
+    """Return the unit of an axis as people write it."""
+    return {"degC": "°C", "deg": "°"}.get(axis.unit, axis.unit)
+
+
+@dataclass(frozen=True)
+class Table(Generic[R]):
+    """Columns, and the rows that they read."""
+
+    columns: tuple[Column[R], ...]
+    rows: tuple[R, ...]
+
+    def __getitem__(self, key: str) -> Column[R]:
+        """Return the column of a key; raises KeyError."""
+        for one in self.columns:
+            if one.key == key:
+                return one
+        raise KeyError(key)
+
+    def of(self, rows: Iterable[R]) -> Table[R]:
+        """Return the table of other rows."""
+        return replace(self, rows=tuple(rows))
+
+    def view(self, output: Output, first: Iterable[str] = ()) -> Table[R]:
+        """Return the table with the columns of an output, behind those of the keys ``first``; raises KeyError."""
+        leading = tuple(self[key] for key in first)
+        return replace(self, columns=leading + tuple(one for one in self.columns if output in one.views))
+
+    def csv(self) -> Iterator[tuple[Cell, ...]]:
+        """Yield keys, then the cells of each row."""
+        stored = [one for one in self.columns if one.stored]
+        yield tuple(one.key for one in stored)
+        for row in self.rows:
+            yield tuple(one.cell(row) for one in stored)
+
+    def records(self) -> Iterator[dict[str, Json]]:
+        """Yield each row as JSON, by keys."""
+        stored = [one for one in self.columns if one.stored]
+        for row in self.rows:
+            yield {one.key: one.as_json(row) for one in stored}
+
+    def texts(self) -> Iterator[tuple[str, ...]]:
+        """Yield what people read, row by row."""
+        for row in self.rows:
+            yield tuple(one.text(row) for one in self.columns)

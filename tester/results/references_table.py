@@ -1,0 +1,90 @@
+"""The table of reference conditions: the points of their control charts, and what they say of the counterface."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from math import isfinite
+from typing import Final
+
+from tester.analysis.reference import ControlChart, ControlPoint, CounterfaceDrift, Reference
+from tester.results.columns import Column, Output, Table, Value, axis_column
+from tester.results.run_results import RunResults, TableRow
+from tester.store.records import ConditionInfo
+
+
+@dataclass(frozen=True, slots=True)
+class ReferenceRow:
+    """A reference condition with its point on its compound's chart; ``drift`` is the whole run's."""
+
+    row: TableRow
+    reference: Reference
+    chart: ControlChart | None
+    point: ControlPoint | None
+    drift: CounterfaceDrift | None
+
+    @property
+    def within(self) -> bool | None:
+        """Return whether it is inside the limits; None where it has no value."""
+        return self.point.within if self.point is not None and isfinite(self.point.mu) else None
+
+    @property
+    def verdict(self) -> str:
+        """Return the same in words."""
+        return "no value" if self.within is None else "in control" if self.within else "out of control"
+
+    def change(self, part: int) -> Value:
+        """Return the counterface's change over its travel, per cent, and the ends of its interval (95 %)."""
+        return self.drift.changed_percent(self.drift.over_m)[part] if self.drift is not None else None
+
+
+def references_table(results: RunResults) -> Table[ReferenceRow]:
+    """Return a row for each reference condition, in the order of measurement.
+
+    ``mu`` is at the temperature asked for, ``u_expanded`` its expanded repeatability (95 %). What is found of the
+    counterface is the same in every row.
+    """
+    piece = Column[ReferenceRow](results.worn, results.worn, lambda row: row.reference.piece or None)
+    axes = (axis_column(one, _info) for one in results.axes)
+    return Table[ReferenceRow]((*_WHICH, piece, _COMPOUND, *axes, *_FOUND), tuple(_rows(results)))
+
+
+def _rows(results: RunResults) -> Iterator[ReferenceRow]:
+    watch = results.watch
+    if watch is None:
+        return
+    points = {point.condition: (chart, point) for chart in watch.charts for point in chart.points}
+    rows = {row.info.condition: row for row in results.references}
+    for one in watch.references:
+        yield ReferenceRow(rows[one.condition], one, *points.get(one.condition, (None, None)), watch.drift)
+
+
+def _info(row: ReferenceRow) -> ConditionInfo:
+    return row.row.info
+
+
+_SHOWN: Final = frozenset({Output.REPORT})
+
+_WHICH: tuple[Column[ReferenceRow], ...] = (
+    Column("reference", "turn", lambda row: row.reference.number, "", 0, _SHOWN),
+    Column("condition", "condition", lambda row: row.reference.condition),
+)
+_COMPOUND: Column[ReferenceRow] = Column("compound", "compound", lambda row: row.reference.compound, views=_SHOWN)
+_FOUND: tuple[Column[ReferenceRow], ...] = (
+    Column("status", "status", lambda row: row.row.result.status.value),
+    Column("started_s", "began at", lambda row: row.reference.t_s, "s", 0),
+    Column("counterface_travel_m", "travel of the counterface", lambda row: row.reference.counterface_m, "m", 0),
+    Column("piece_sliding_m", "slid", lambda row: row.reference.piece_m, "m", 0),
+    Column("mu", "mu", lambda row: row.reference.mu, "", 3, _SHOWN),
+    Column("u_expanded", "repeatability", lambda row: None if row.point is None else row.point.expanded, "", 3, _SHOWN),
+    Column("centre", "centre", lambda row: None if row.chart is None else row.chart.centre, "", 3),
+    Column("limit_low", "lower limit", lambda row: None if row.chart is None else row.chart.low, "", 3, _SHOWN),
+    Column("limit_high", "upper limit", lambda row: None if row.chart is None else row.chart.high, "", 3, _SHOWN),
+    Column("within", "inside", lambda row: row.within),
+    Column("verdict", "verdict", lambda row: row.verdict, views=_SHOWN, stored=False),
+    Column("change_percent", "change", lambda row: row.change(0), "%", 1),
+    Column("change_low_percent", "change at least", lambda row: row.change(1), "%", 1),
+    Column("change_high_percent", "change at most", lambda row: row.change(2), "%", 1),
+    Column("change_over_m", "over", lambda row: None if row.drift is None else row.drift.over_m, "m", 0),
+    Column("told_apart", "told apart", lambda row: None if row.drift is None else row.drift.apart),
+)

@@ -1,0 +1,97 @@
+"""The table of repeats: each with its own coefficient, as measured, and why it is in no mean where it is in none."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+from tester.analysis.directions import is_reversed
+from tester.analysis.flags import flags_in
+from tester.analysis.results import RepeatResult
+from tester.quantities import Means
+from tester.results.columns import Column, Output, Table, mean_column, setting_columns
+from tester.results.run_results import Measured, RunResults
+from tester.store.records import ConditionInfo, StoredRepeat
+
+AS_ASKED: Final = "as asked"
+REVERSED: Final = "reversed"
+"""Directions of sliding."""
+
+
+@dataclass(frozen=True, slots=True)
+class CommittedRepeat:
+    """A committed repeat, its last attempt, and the condition that it is of."""
+
+    measured: Measured
+    repeat: StoredRepeat
+
+    @property
+    def result(self) -> RepeatResult:
+        """Return what it shows."""
+        return self.repeat.result
+
+    @property
+    def exclusion(self) -> str:
+        """Return why it is in no mean; "" where it is in one."""
+        return self.measured.exclusion(self.repeat)
+
+    @property
+    def direction(self) -> str:
+        """Return which way it slid."""
+        turned = self.measured.info.both_directions and is_reversed(self.repeat.repeat)
+        return REVERSED if turned else AS_ASKED
+
+
+def repeats_table(results: RunResults) -> Table[CommittedRepeat]:
+    """Return the table of all committed repeats, condition by condition."""
+    which = (*_WHICH, Column[CommittedRepeat](results.worn, results.worn, lambda row: row.repeat.piece))
+    settings = setting_columns(results.axes, _info, lambda row: row.measured.info.replicate)
+    means = (mean_column(one, _means) for one in results.quantities.averaged)
+    ways = (_DIRECTION,) if results.both_directions else ()
+    rows = (CommittedRepeat(one, repeat) for one in results.conditions() for repeat in one.repeats)
+    return Table[CommittedRepeat]((*which, *settings, *_FOUND, *means, *ways), tuple(rows))
+
+
+def _info(row: CommittedRepeat) -> ConditionInfo:
+    return row.measured.info
+
+
+def _means(row: CommittedRepeat) -> Means:
+    return row.result.means
+
+
+_SHOWN: Final = frozenset({Output.REPORT, Output.SCREEN})
+
+_WHICH: tuple[Column[CommittedRepeat], ...] = (
+    Column("condition", "condition", lambda row: row.repeat.condition),
+    Column("repeat", "repeat", lambda row: row.repeat.repeat),
+    Column("attempt", "attempt", lambda row: row.repeat.attempt),
+)
+
+_FOUND: tuple[Column[CommittedRepeat], ...] = (
+    Column("status", "status", lambda row: row.result.status.value, views=_SHOWN),
+    Column("reason", "reason", lambda row: row.result.reason),
+    Column("flags", "flags", lambda row: tuple(flags_in(row.result.flags))),
+    Column("in_mean", "in the mean", lambda row: not row.exclusion),
+    Column("exclusion", "why it is in no mean", lambda row: row.exclusion, views=_SHOWN),
+    Column("make_up", "make-up", lambda row: row.repeat in row.measured.make_ups),
+    Column("mu_as_measured", "mu as measured", lambda row: row.result.mu_resultant, "", 3, _SHOWN),
+    Column("mu_longitudinal_as_measured", "mu along as measured", lambda row: row.result.mu_longitudinal, "", 3),
+    Column("mu_lateral_as_measured", "mu across as measured", lambda row: row.result.mu_lateral, "", 3),
+    Column("u_window", "u of the window", lambda row: row.result.uncertainty, "", 4),
+    Column("fluctuation_percent", "fluctuation", lambda row: row.result.fluctuation_percent, "%", 2),
+    Column("drift_percent", "drift", lambda row: row.result.drift_percent, "%", 2),
+    Column("drift_bound_percent", "drift bound", lambda row: row.result.bound_percent, "%", 2),
+    Column("change_percent", "change at once", lambda row: row.result.change_percent, "%", 2),
+    Column("swing_percent", "swing", lambda row: row.result.swing_percent, "%", 1),
+    Column("swing_hz", "swing at", lambda row: row.result.swing_hz, "Hz", 1),
+    Column("swing_skewness", "skewness of the swing", lambda row: row.result.swing_skewness, "", 2),
+    Column("revolutions", "revolutions", lambda row: row.result.revolutions, "", 0),
+    Column("truncated_revolutions", "revolutions left out", lambda row: row.result.truncated, "", 0),
+    Column("window_s", "window", lambda row: row.result.window_s, "s", 1),
+    Column("bursts", "bursts", lambda row: row.result.bursts, "", 0),
+    Column("started_s", "began at", lambda row: row.result.started_s, "s", 0),
+    Column("ended_s", "ended at", lambda row: row.result.ended_s, "s", 0),
+)
+
+_DIRECTION: Column[CommittedRepeat] = Column("direction", "direction", lambda row: row.direction)

@@ -1,0 +1,82 @@
+"""The table of conditions: one column is in every output that shows it, under one heading and to the same digits."""
+
+from __future__ import annotations
+
+import csv
+import json
+from pathlib import Path
+
+import pytest
+
+from tester.cli.main import invoke
+from tester.results import conditions_table as module
+from tester.results.columns import Column, Output
+from tester.results.conditions_table import ConditionRow, conditions_table
+from tester.results.run_results import results_of
+from tester.store.reader import RunReader
+from tester.tui.stored import read
+from tests.tester.results.made import made
+from tests.tester.store.build import small_run
+
+
+@pytest.fixture
+def more(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Add one column to the table, as one entry of its module."""
+    outputs = frozenset(Output)
+    column = Column[ConditionRow]("grip", "grip", lambda row: 2.0 * row.result.mu, "dB", 2, outputs)
+    monkeypatch.setattr(module, "_FOUND", (*module._FOUND, column))
+
+
+def test_a_column_is_in_the_files(more: None, tmp_path: Path) -> None:
+    with RunReader(small_run(tmp_path)) as reader:
+        header, first, *_ = csv.reader(made("conditions", reader).decode().splitlines())
+    assert first[header.index("grip")] == "1.8"
+
+
+def test_a_column_is_in_show_and_its_json(more: None, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    small_run(tmp_path)
+    assert invoke(["show", str(tmp_path)]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert any("grip" in line for line in lines) and any("1.80" in line for line in lines)
+    assert invoke(["show", str(tmp_path), "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["conditions"][0]["grip"] == pytest.approx(1.8)
+
+
+def test_a_column_is_at_the_end_of_a_run(more: None, tmp_path: Path) -> None:
+    from tester.cli.ending import ending_lines
+
+    text = "\n".join(ending_lines(small_run(tmp_path)))
+    assert "grip" in text and "1.80" in text
+
+
+def test_a_column_is_on_the_screen(more: None, tmp_path: Path) -> None:
+    stored = read(str(small_run(tmp_path / "one")), tmp_path)
+    assert stored.rows[0].cells[stored.header.index("grip (dB)")] == "1.80"
+
+
+def test_a_column_is_in_the_report(more: None, tmp_path: Path) -> None:
+    from tester.report.conditions import conditions_section, drift_section, short_table
+    from tester.report.layout import ReportTable
+    from tester.report.record import MachineWords, read_record
+
+    record = read_record(small_run(tmp_path), MachineWords("a rig", "a coefficient"))
+    tables = [short_table(record.results)]
+    for section in (conditions_section(record, "a"), drift_section(record, "b")):
+        tables += [part for part in section.parts if isinstance(part, ReportTable)]
+    assert len(tables) == 3
+    for table in tables:
+        place = [head.text for head in table.heads].index("grip (dB)")
+        assert table.rows[0].cells[place] == "1.80"
+
+
+def test_a_column_is_in_the_tables_of_a_sweep(more: None) -> None:
+    from tester.kinds.wheel_on_belt.axes import AXES
+    from tester.sweep.tables import condition_header
+
+    assert "grip" in condition_header((), AXES)
+
+
+def test_keys_stand_once(tmp_path: Path) -> None:
+    with RunReader(small_run(tmp_path)) as reader:
+        keys = [one.key for one in conditions_table(results_of(reader)).columns]
+    assert len(keys) == len(set(keys))
