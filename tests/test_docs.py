@@ -191,8 +191,7 @@ def test_every_page_is_linked_from_the_first() -> None:
                      "8.1%, 2.9%, 4.4%, 21.2% by Eqs 7 to 9; 0.9%, 1.4%, 2.2%, 2.1% by the value measured at 25 degC",
                      "11.3%, 13.9%, 14.8%, 9.9% with it as printed; 0.8%, 2.0%, 3.1%, 2.5% with it as inferred"]),
         (["fit", "appendix-a", "appendix-b"],
-         ["-0.343 (-0.376 to -0.291)", "-0.420 (-0.471 to -0.367)", "-0.567 (-0.622 to -0.531)",
-          "+0.516 (+0.412 to +0.618)", "+0.571 (+0.464 to +0.638)", "+0.635 (+0.487 to +0.779)"]),
+         ["-0.343", "-0.420", "-0.567", "+0.516", "+0.571", "+0.635"]),
     ],
     ids=["table", "claims", "trends"],
 )  # fmt: skip

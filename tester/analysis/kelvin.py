@@ -24,6 +24,8 @@ from tester.analysis.uncertainty import Contribution, contribution
 CONDITION_SCATTER: Final = 0.044
 """Relative scatter of a condition about any smooth law of temperature: the middle of 3.2, 4.2 and 5.9 %, residual
 standard deviations of the best separable law for the three compounds of doi 10.3390/polym16050596 [A]."""
+TEMPERATURE_SENSITIVITY: Final = "temperature sensitivity"
+"""Name of the contribution of what is not known of it."""
 LEAST_STEP_K: Final = 5.0
 """Closer temperatures say more of scatter than of a sensitivity [A]."""
 
@@ -115,7 +117,7 @@ class SurfaceWarmth:
         by."""
         thermometer_k = sqrt(sum(one.standard**2 for one in terms if one.acts is Acts.TEMPERATURE))
         over_k = hypot(self.offset_k(terms), thermometer_k)
-        return contribution("temperature sensitivity", self.slope.u_per_kelvin, mu * over_k, unit="1/K",
+        return contribution(TEMPERATURE_SENSITIVITY, self.slope.u_per_kelvin, mu * over_k, unit="1/K",
                             source=self.slope.source)  # fmt: skip
 
 

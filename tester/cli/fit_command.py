@@ -42,6 +42,7 @@ class Conditions(NamedTuple):
 @click.option(
     "--given", "givens", multiple=True, metavar="NAME=VALUE", help="A figure of a law of materials, such as area=64."
 )
+@click.option("--force", is_flag=True, help="Print intervals and trends that are not to be relied on, too.")
 @click.option("--check", is_flag=True, help="Hold the paper's own table against what has to come out.")
 @json_option
 def fit(
@@ -51,15 +52,22 @@ def fit(
     holds: Sequence[str],
     surface: str,
     givens: Sequence[str],
+    force: bool,
     check: bool,
     as_json: bool,
 ) -> int:
     """Fit a law of friction to the conditions of SOURCES: runs, or the paper's appendix-a and appendix-b.
 
     All parameters at once, a compound at a time (on a track, an interface and a surface, too), at the measured
-    temperatures, loads and speeds. Prints them with 95 % intervals over conditions, how far the law is off fitted,
-    left-out and --validate conditions, and what it says: peaks, exponents, trends. --check, with appendix-a --validate
-    appendix-b: the paper's table and our verdict; exit code 1 where a figure misses.
+    temperatures, loads and speeds. Prints first whether the law describes the conditions: its residuals beside their
+    repeatability and the scatter between them, and their signs along every variable. Then the parameters with 95 %
+    intervals, how far the law is off fitted, left-out and --validate conditions, and what it says: peaks, exponents,
+    trends. Of a law that does not describe them, of a parameter that has no meaning for a rubber, and where nothing is
+    known of the repeatability there are no intervals.
+
+    --check, with appendix-a --validate appendix-b: the paper's table and our verdict.
+
+    Exit code 1: a law does not describe the conditions, a parameter has no meaning, or a figure of --check misses.
     """
     from tester.base.extras import MissingExtraError
     from tester.fit.joint import fit_group
@@ -92,9 +100,9 @@ def fit(
     except FitError as error:
         raise click.ClickException(shown(str(error))) from error
     rows = by_group(others.points) if others is not None else None
-    told = _as_json(law, fits, rows, fitted) if as_json else {}
+    told = _as_json(law, fits, rows, fitted, force) if as_json else {}
     if not as_json:
-        _print(law, fits, rows, fitted, others)
+        _print(law, fits, rows, fitted, others, force)
     if table is not None:
         from tester.fit import as_json as plain
         from tester.fit.text import table_lines
@@ -106,7 +114,8 @@ def fit(
                 click.echo(line)
     if as_json:
         dump(told)
-    return EXIT_FAILED if table is not None and table.missed else EXIT_DONE
+    missed = table is not None and bool(table.missed)
+    return EXIT_FAILED if missed or not all(one.sound for one in fits) else EXIT_DONE
 
 
 @click.command()
@@ -163,6 +172,7 @@ def _conditions(names: Sequence[str]) -> Conditions:
 
 
 def _source(name: str) -> tuple[Kind, Sourced]:
+    from tester.base.source import InvalidSource
     from tester.cli.run_lookup import run_folder
     from tester.kinds import UnknownKindError, find, packaged_conditions
     from tester.store.reader import RunReader
@@ -176,7 +186,7 @@ def _source(name: str) -> tuple[Kind, Sourced]:
         with RunReader(folder) as reader:
             kind = find(reader.run().info.kind)
         return kind, _part(kind).run_points(folder)
-    except (StoreError, UnknownKindError) as error:
+    except (StoreError, UnknownKindError, InvalidSource) as error:
         raise click.ClickException(str(error)) from error
 
 
@@ -224,20 +234,27 @@ def _print(
     rows: dict[str, list[FitPoint]] | None,
     fitted: Conditions,
     others: Conditions | None,
+    force: bool,
 ) -> None:
     from tester.fit.joint import overall
-    from tester.fit.text import all_lines, group_lines, law_line, trend_lines
+    from tester.fit.text import all_lines, group_lines, law_line, trend_lines, verdict_lines
 
     click.echo(law_line(law))
     for one in fits:
+        for line in verdict_lines(one):
+            click.echo(shown(line))
+    if not force and not all(one.sound for one in fits):
+        click.echo("--force prints the intervals and trends that are not to be relied on")
+    click.echo()
+    for one in fits:
         validation = one.errors_on(rows.get(one.group, [])) if rows is not None else None
-        for line in group_lines(one, validation):
+        for line in group_lines(one, validation, force=force):
             click.echo(shown(line))
     click.echo("\nall:")
     for line in all_lines(overall(fits, rows)):
         click.echo(line)
     click.echo("\nwhat it says:")
-    for line in trend_lines(fits):
+    for line in trend_lines(fits, force=force):
         click.echo(shown(line))
     reasons: dict[str, list[str]] = {}
     for label, reason in [*fitted.left_out, *(others.left_out if others is not None else [])]:
@@ -250,7 +267,7 @@ def _print(
 
 
 def _as_json(
-    law: Law, fits: Sequence[GroupFit], rows: dict[str, list[FitPoint]] | None, fitted: Conditions
+    law: Law, fits: Sequence[GroupFit], rows: dict[str, list[FitPoint]] | None, fitted: Conditions, force: bool
 ) -> dict[str, Json]:
     from tester.fit import as_json as plain
     from tester.fit.joint import overall
@@ -258,7 +275,8 @@ def _as_json(
     every = overall(fits, rows)
     groups: list[Json] = []
     for one in fits:
-        groups.append(plain.group(one, one.errors_on(rows.get(one.group, [])) if rows is not None else None))
+        validation = one.errors_on(rows.get(one.group, [])) if rows is not None else None
+        groups.append(plain.group(one, validation, force=force))
     return {
         "law": law.name,
         "formula": law.formula,

@@ -30,21 +30,26 @@ def errors(given: Errors | None) -> Json:
     return {name: number(value) if isinstance(value, float) else value for name, value in asdict(given).items()}
 
 
-def group(fit: GroupFit, validation: Errors | None) -> dict[str, Json]:
-    """Return what is known of the fit of a group."""
-    law = fit.law
+def group(fit: GroupFit, validation: Errors | None, *, force: bool = False) -> dict[str, Json]:
+    """Return what is known of the fit of a group; ``force``: with intervals that are not to be relied on."""
+    law, sure = fit.law, force or not fit.silent
     table: Json = dict(law.table(fit.parameters)) if law.table is not None else None
     return {
         "group": fit.group,
         "conditions": len(fit.points),
         "parameters": {
-            one.name: {"value": value, "unit": one.unit, "interval": interval(pair), "held": one.name in fit.held}
+            one.name: {
+                "value": value,
+                "unit": one.unit,
+                "interval": None if not force and fit.why_no_interval(one.name) else interval(pair),
+                "no_interval": fit.why_no_interval(one.name),
+                "held": one.name in fit.held,
+            }
             for one, value, pair in zip(law.parameters, fit.parameters, fit.intervals, strict=True)
         },
         "table": table,
         "condition_number": number(fit.condition_number),
-        "resamples": {"fitted": len(fit.resamples.parameters), "drawn": fit.resamples.drawn, "few": fit.few},
-        "scatter": number(fit.scatter),
+        "resamples": {"fitted": len(fit.resamples.parameters), "drawn": fit.resamples.drawn},
         "errors": errors(fit.errors),
         "left_out": errors(fit.left_out),
         "cells_kept": fit.cells_kept,
@@ -56,13 +61,8 @@ def group(fit: GroupFit, validation: Errors | None) -> dict[str, Json]:
             ]
             for variable, found in zip(law.variables, fit.residuals, strict=True)
         },
-        "lack_of_fit": {
-            "residual": fit.lack.residual,
-            "repeats": number(fit.lack.repeats),
-            "f": number(fit.lack.f),
-            "critical": number(fit.lack.critical),
-            "shown": fit.lack.shown,
-        },
+        "lack_of_fit": _lack(fit),
+        "beyond": [*fit.beyond],
         "trends": {
             "at": {v.name: v.scale * x for v, x in zip(law.variables, fit.trends.at, strict=True)},
             "each": [
@@ -70,15 +70,29 @@ def group(fit: GroupFit, validation: Errors | None) -> dict[str, Json]:
                     "variable": one.variable.name,
                     "trend": one.word,
                     "peak": number(one.variable.scale * one.peak),
-                    "peak_interval": [number(one.variable.scale * end) for end in one.peak_interval],
+                    "peak_interval": [number(one.variable.scale * end) for end in one.peak_interval] if sure else None,
                     "inside": one.inside,
                     "exponent" if one.variable.ratio else "per_unit": one.exponent,
-                    "interval": interval(one.exponent_interval),
+                    "interval": interval(one.exponent_interval) if sure and not one.own_heat else None,
                     "agree": number(one.agree),
                 }
-                for one in fit.trends.each
+                for one in (fit.trends.each if sure or not fit.lack.shown else ())
             ],
         },
+    }
+
+
+def _lack(fit: GroupFit) -> dict[str, Json]:
+    lack, below = fit.lack, fit.lack.denominator
+    return {
+        "shown": lack.shown,
+        "residual": lack.residual,
+        "independent": number(below.standard) if below is not None else None,
+        "repeats": number(below.repeats) if below is not None else None,
+        "own": number(below.own) if below is not None else None,
+        "between_conditions": number(below.between) if below is not None else None,
+        "tests": [{"name": one.name, "p": one.p, "failed": one.failed} for one in lack.tests],
+        "visible": number(lack.visible),
     }
 
 

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
-from math import sqrt
 from statistics import fmean
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from tester.analysis.quantiles import f_quantile
 from tester.fit.check import Errors, errors_of, levels, refuse
-from tester.fit.law import NAN, FitError, FitPoint, Law
+from tester.fit.lack import Lack, lack_of
+from tester.fit.law import FitError, FitPoint, Law
 from tester.fit.problem import FitProblem
 from tester.fit.resample import RESAMPLES, SEED, Resamples, resample, without_cells
 from tester.fit.solve import solve
@@ -23,31 +22,8 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
-SCATTER: Final = 0.04
-"""Standard deviation of ln mu between conditions, to begin with [A]; the residuals then tell it."""
-_ROUNDS: Final = 3
-"""Further fits after which the scatter does not change any more."""
 OPEN: Final = 1e6
 """Condition number from which on the data leave a combination of parameters open [A]: they are given to six digits."""
-CONFIDENCE: Final = 0.95
-
-
-@dataclass(frozen=True, slots=True)
-class LackOfFit:
-    """Residuals of a fit beside the scatter of repeats, both standard deviations of ln mu.
-
-    ``f`` compares their squares, ``critical`` is its 95 % quantile; NaN where no condition was repeated.
-    """
-
-    residual: float
-    repeats: float = NAN
-    f: float = NAN
-    critical: float = NAN
-
-    @property
-    def shown(self) -> bool | None:
-        """Tell whether the law does not fit within the scatter of repeats; None where that cannot be told."""
-        return self.f > self.critical if self.f == self.f else None
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,8 +39,9 @@ class Level:
 class GroupFit:
     """A fit: parameters (natural, in the law's order) with their 95 % intervals, and how good it is.
 
-    ``scatter``: standard deviation of ln mu between conditions beyond that of their repeats, which the weights have;
-    NaN where all conditions count alike. ``cells_kept``: how many cells could not be left out.
+    By the name of a parameter: ``impossible`` is why it cannot be what was fitted, ``heated`` why its effect is not
+    distinguishable from that of the contact's own heat. ``silent`` is why no interval is to be relied on.
+    ``cells_kept``: how many cells could not be left out.
     """
 
     law: Law
@@ -75,7 +52,8 @@ class GroupFit:
     held: tuple[str, ...]
     parameters: tuple[float, ...]
     intervals: tuple[Interval, ...]
-    scatter: float
+    impossible: Mapping[str, str]
+    heated: Mapping[str, str]
     condition_number: float
     resamples: Resamples
     errors: Errors
@@ -83,8 +61,31 @@ class GroupFit:
     """Coefficient predicted without its cell, and measured."""
     cells_kept: int
     residuals: tuple[tuple[Level, ...], ...]
-    lack: LackOfFit
+    lack: Lack
     trends: Trends
+
+    @property
+    def silent(self) -> str:
+        """Return why no interval of this fit is to be relied on, "" where some are."""
+        if self.lack.shown is None:
+            return "nothing is known of the repeatability: no repeats, and none declared"
+        return "the law does not describe the conditions" if self.lack.shown else ""
+
+    @property
+    def sound(self) -> bool:
+        """Return whether the law describes the conditions, as far as they can tell, with parameters that a rubber on a
+        surface can have."""
+        return not self.lack.shown and not self.impossible
+
+    def why_no_interval(self, name: str) -> str:
+        """Return why the interval of a parameter is not to be relied on, "" where it is."""
+        return self.silent or self.impossible.get(name, "") or self.heated.get(name, "")
+
+    @property
+    def beyond(self) -> list[str]:
+        """Return why the law does not hold at some of the conditions."""
+        found = self.law.beyond
+        return [*found(self.parameters, [one.measured for one in self.points])] if found is not None else []
 
     @property
     def left_out(self) -> Errors:
@@ -98,14 +99,6 @@ class GroupFit:
     def errors_on(self, points: Sequence[FitPoint]) -> Errors:
         """Return how far the fit is off other conditions."""
         return errors_of(self.predict(points), [one.value for one in points])
-
-    @property
-    def few(self) -> bool:
-        """Tell whether there are too few conditions for intervals that hold what they say: under three a parameter.
-
-        On 12 conditions for 7 parameters they held the truth in 84 to 99 % of 100 synthetic sets.
-        """
-        return len(self.points) < 3 * (len(self.parameters) - len(self.held))
 
 
 @dataclass(frozen=True, slots=True)
@@ -156,12 +149,16 @@ def fit_group(
     ``cells``: places of the variables that make a cell (``without_cells``). ``held``: parameters that are not fitted.
     """
     held = held or {}
-    problem, fitted, scatter = _searched(law, group, points, held)
+    problem, fitted = _searched(law, group, points, held)
     parameters = tuple(float(value) for value in problem.natural(fitted))
     resamples = resample(problem, fitted, count, seed)
+    intervals = tuple(resamples.interval(resamples.parameters[:, i]) for i in range(len(parameters)))
     left_out, kept = without_cells(problem, fitted, cells)
     residual = problem.y - np.log(problem.law.value(problem.natural(fitted), problem.x))
     measured = [one.value for one in points]
+    trends = trends_of(law, points, parameters, resamples)
+    lack = lack_of(problem, fitted)
+    known = intervals if lack.denominator is not None else ()
     return GroupFit(
         law=law,
         group=group,
@@ -169,54 +166,58 @@ def fit_group(
         cells=tuple(cells),
         held=tuple(name for name in law.names if name in held),
         parameters=parameters,
-        intervals=tuple(resamples.interval(resamples.parameters[:, i]) for i in range(len(parameters))),
-        scatter=scatter,
+        intervals=intervals,
+        impossible=_impossible(law, held, parameters, known),
+        heated=_heated(law, trends),
         condition_number=_condition_number(group, problem, fitted),
         resamples=resamples,
         errors=errors_of(predict(law, parameters, points), measured),
         left_out_pairs=tuple((value, measured[i]) for i, value in left_out),
         cells_kept=kept,
         residuals=tuple(_by_level(points, residual, i) for i in range(len(law.variables))),
-        lack=_lack(points, residual, len(problem.free)),
-        trends=trends_of(law, points, parameters, resamples),
+        lack=lack,
+        trends=trends,
     )
+
+
+def _impossible(
+    law: Law, held: Collection[str], parameters: Sequence[float], intervals: Sequence[Interval]
+) -> dict[str, str]:
+    """Return, by name, why parameters cannot be what was fitted: they, or an end of their interval where there is one,
+    leave the band.
+    """
+    found: dict[str, str] = {}
+    for i, (one, value) in enumerate(zip(law.parameters, parameters, strict=True)):
+        band = f"{one.band.low:.4g} to {one.band.high:.4g} {one.unit}".rstrip()
+        if one.name in held:
+            continue
+        if not one.band.holds(value):
+            found[one.name] = f"outside {band} ({one.band.source})"
+        elif intervals and not all(map(one.band.holds, intervals[i])):
+            found[one.name] = f"open beyond {band} ({one.band.source})"
+    return found
+
+
+def _heated(law: Law, trends: Trends) -> dict[str, str]:
+    """Return, by name, why the effects that parameters stand for are not told from that of the contact's own heat."""
+    by = {one.variable.name: one.own_heat for one in trends.each if one.own_heat}
+    named = [(one.name, one.levels[0]) for one in law.parameters if one.levels is not None]
+    return {name: f"{variable}: {by[variable]}" for name, variable in named if variable in by}
 
 
 def fit_only(law: Law, group: str, points: Sequence[FitPoint]) -> tuple[float, ...]:
     """Return the parameters of ``fit_group`` alone, without resamples; raises as that does."""
-    problem, fitted, _ = _searched(law, group, points, {})
+    problem, fitted = _searched(law, group, points, {})
     return tuple(float(value) for value in problem.natural(fitted))
 
 
 def _searched(
     law: Law, group: str, points: Sequence[FitPoint], held: Mapping[str, float]
-) -> tuple[FitProblem, Array, float]:
-    """Return the problem with its weights, what fits best, and the scatter between conditions."""
-    FitProblem(law, points, held)  # refuses names that are none
+) -> tuple[FitProblem, Array]:
+    """Return the problem with its weights, and what fits best."""
+    problem = FitProblem(law, points, held)
     refuse(law, group, points, held)
-    starts = [*law.published.values(), [one.start for one in law.parameters]]
-    repeats = _pooled(points)
-    if repeats != repeats:
-        problem = FitProblem(law, points, held)
-        return problem, solve(problem, starts), NAN
-    scatter = SCATTER
-    problem = FitProblem(law, points, held, scatter)
-    fitted = solve(problem, starts)
-    for _ in range(_ROUNDS):
-        residual = problem.y - problem.logarithms(fitted)
-        spread = float(residual @ residual) / (len(points) - len(problem.free))
-        scatter = sqrt(max(spread - repeats**2, 0.0))
-        starts = [problem.natural(fitted).tolist()]
-        problem = FitProblem(law, points, held, scatter)
-        fitted = solve(problem, starts)
-    return problem, fitted, scatter
-
-
-def _pooled(points: Sequence[FitPoint]) -> float:
-    """Return the standard uncertainty of ln mu from repeats, pooled over the conditions that have some, else NaN."""
-    known = [one for one in points if one.type_a == one.type_a and one.df > 0.0]
-    total = sum(one.df for one in known)
-    return sqrt(sum(one.df * one.type_a**2 for one in known) / total) if total else NAN
+    return problem, solve(problem, [*law.published.values(), [one.start for one in law.parameters]])
 
 
 def _condition_number(group: str, problem: FitProblem, fitted: Array) -> float:
@@ -246,14 +247,3 @@ def _by_level(points: Sequence[FitPoint], residual: Array, variable: int) -> tup
         own = [float(r) for one, r in zip(points, residual, strict=True) if one.nominal[variable] == value]
         found.append(Level(value, fmean(own), len(own)))
     return tuple(found)
-
-
-def _lack(points: Sequence[FitPoint], residual: Array, free: int) -> LackOfFit:
-    df = len(points) - free
-    spread = sqrt(float(residual @ residual) / df)
-    repeats = _pooled(points)
-    if not repeats > 0.0:
-        return LackOfFit(spread)
-    of_repeats = sum(one.df for one in points if one.type_a == one.type_a)
-    critical = f_quantile(CONFIDENCE, float(df), of_repeats)
-    return LackOfFit(spread, repeats, (spread / repeats) ** 2, critical)

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from math import inf
+from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
     import numpy as np
@@ -32,12 +33,28 @@ class Variable:
         return f"{round(self.scale * value, 6) + 0.0:g} {self.unit}"
 
 
+class Band(NamedTuple):
+    """Values that a parameter can have for a rubber on a surface, in its unit, and the source of both ends."""
+
+    low: float = -inf
+    high: float = inf
+    source: str = ""
+
+    def holds(self, value: float) -> bool:
+        """Return whether a value is strictly between both ends."""
+        return self.low < value < self.high
+
+
+ANY = Band()
+
+
 @dataclass(frozen=True, slots=True)
 class LawParameter:
     """A parameter of a law: ``start`` of the search, ``positive`` (its logarithm is searched), ``step`` of the search.
 
     ``step`` is in units of what is searched. ``levels``: name of a variable, and of how many of its values a fit of
-    this parameter needs at least.
+    this parameter needs at least; it is the variable whose effect the parameter describes. ``band``: outside it the
+    parameter has no meaning for a rubber.
     """
 
     name: str
@@ -46,6 +63,7 @@ class LawParameter:
     step: float
     positive: bool = False
     levels: tuple[str, int] | None = None
+    band: Band = ANY
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,6 +85,8 @@ class Law:
     table: Callable[[Sequence[float]], Mapping[str, float]] | None = None
     table_title: str = ""
     caution: str = ""
+    beyond: Callable[[Sequence[float], Sequence[tuple[float, ...]]], Iterator[str]] | None = None
+    """Yields, from parameters and the measured values of conditions, why the law does not hold at some of them."""
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -76,23 +96,30 @@ class Law:
 
 @dataclass(frozen=True, slots=True)
 class Common:
-    """An error that all conditions of a source share: its name and standard uncertainty.
+    """An error that conditions of a source share: its name and standard uncertainty.
 
     ``variable``: place of the variable that it shifts (in the law's unit); None: it multiplies the coefficient, and
-    ``standard`` is relative.
+    ``standard`` is relative. ``piece``: the one that was mounted whose conditions share it, 0: all of the source.
     """
 
     name: str
     standard: float
     variable: int | None = None
+    piece: int = 0
 
 
 @dataclass(frozen=True, slots=True)
 class Source:
-    """Where conditions come from: a table, or a run with the errors that its conditions share."""
+    """Where conditions come from: a table, or a run with the errors that its conditions share.
+
+    ``repeats`` and ``between``: from what it is known how repeats and how conditions scatter, for people; "" where that
+    is not known.
+    """
 
     name: str
     common: tuple[Common, ...] = ()
+    repeats: str = ""
+    between: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,8 +127,11 @@ class FitPoint:
     """One measured condition, in the law's own units.
 
     ``nominal`` values of the variables tell which conditions are of one cell, ``measured`` ones are fitted. ``value``:
-    the coefficient, above 0. ``type_a``: its standard uncertainty from repeats as a share of it, with ``df`` degrees of
-    freedom; NaN where there were no repeats to tell.
+    the coefficient, above 0. ``type_a``: its standard uncertainty from repeats as a share of it, from an estimate with
+    ``df`` degrees of freedom (infinite: declared); NaN where nothing is known of repeats. ``own``: standard
+    uncertainty, as a share, of what else differs from condition to condition. ``between``: standard deviation by which
+    a condition misses any smooth law, as a share; 0 where none is declared. ``piece``: what was mounted.
+    ``own_heat_k``: by how much friction warms the contact above the measured temperature, as the rig believes.
     """
 
     label: str
@@ -112,6 +142,10 @@ class FitPoint:
     source: Source
     type_a: float = NAN
     df: float = 0.0
+    own: float = 0.0
+    between: float = 0.0
+    piece: int = 0
+    own_heat_k: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from tester.fit.law import FitError, FitPoint, Law
+from tester.fit.law import FitError, FitPoint, Law, Source
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -43,10 +43,8 @@ class FitProblem:
     the errors common to a source, in units of their standard uncertainty. All is evaluated for many ``z`` at once.
     """
 
-    def __init__(self, law: Law, points: Sequence[FitPoint], held: Mapping[str, float], scatter: float = 0.0) -> None:
-        """``held``: parameters that are not fitted, by name. ``scatter``: standard deviation of ln mu between
-        conditions beyond that of their repeats. Raises FitError for a held name that is none, or out of range.
-        """
+    def __init__(self, law: Law, points: Sequence[FitPoint], held: Mapping[str, float]) -> None:
+        """``held``: parameters that are not fitted, by name. Raises FitError for one that is none, or out of range."""
         self.law, self.points = law, tuple(points)
         unknown = sorted(set(held) - set(law.names))
         if unknown:
@@ -59,8 +57,11 @@ class FitProblem:
         self._held = np.array([held.get(one.name, 1.0) for one in law.parameters])
         self.x: Array = np.array([one.measured for one in points], dtype=np.float64)
         self.y: Array = np.log(np.array([one.value for one in points], dtype=np.float64))
-        sigma, self.reference = _sigmas(points, scatter)
-        self.weight: Array = self.reference / sigma
+        self.sigma: Array = _sigmas(points)
+        """Standard deviation of each condition's ln mu from what is independent between conditions; 1 where unknown."""
+        self.reference = sqrt(1.0 / float(np.mean(1.0 / self.sigma**2)))
+        """The one that stands for all."""
+        self.weight: Array = self.reference / self.sigma
         self._shared = _shared(points)
         self.steps: Array = np.array([*(law.parameters[i].step for i in self.free), *(1.0 for _ in self._shared)])
 
@@ -114,25 +115,29 @@ class FitProblem:
         return np.stack(columns, axis=-1)
 
 
-def _sigmas(points: Sequence[FitPoint], scatter: float) -> tuple[Array, float]:
-    """Return the standard deviation of each condition's ln mu, and the one that stands for all.
+def _sigmas(points: Sequence[FitPoint]) -> Array:
+    """Return the standard deviation of each condition's ln mu.
 
     Of conditions without repeats, where others have some, the mean of those. Without any, all count 1.
     """
     known = [one.type_a**2 for one in points if one.type_a == one.type_a]
     if not known:
-        return np.ones(len(points)), 1.0
+        return np.ones(len(points))
     mean = sum(known) / len(known)
-    squares = np.array([(one.type_a**2 if one.type_a == one.type_a else mean) + scatter**2 for one in points])
-    squares = np.maximum(squares, 1e-12)
-    return np.sqrt(squares), sqrt(1.0 / float(np.mean(1.0 / squares)))
+    squares = [(one.type_a**2 if one.type_a == one.type_a else mean) + one.own**2 + one.between**2 for one in points]
+    return np.sqrt(np.maximum(squares, 1e-12))
 
 
 def _shared(points: Sequence[FitPoint]) -> tuple[_Shared, ...]:
     sources = dict.fromkeys(one.source for one in points)
     return tuple(
-        _Shared(np.array([float(one.source is source) for one in points]), common.standard, common.variable)
+        _Shared(_rows(points, source, common.piece), common.standard, common.variable)
         for source in sources
         for common in source.common
         if common.standard > 0.0
     )
+
+
+def _rows(points: Sequence[FitPoint], source: Source, piece: int) -> Array:
+    """Return 1 for each condition of a source and, unless that is 0, of a piece, else 0."""
+    return np.array([float(one.source == source and piece in (0, one.piece)) for one in points])

@@ -1,4 +1,4 @@
-"""What the fit of other conditions would have been: resamples of them, and fits without one cell."""
+"""What the fit of the same conditions measured again would have been, and fits without one cell."""
 
 from __future__ import annotations
 
@@ -46,16 +46,20 @@ class Resamples:
 
 
 def resample(problem: FitProblem, fitted: Array, count: int = RESAMPLES, seed: int = SEED) -> Resamples:
-    """Return fits to conditions drawn with replacement; errors common to a source are drawn from their priors.
+    """Return fits to conditions drawn anew from the fit: each with an error of its own, and errors in common.
 
-    A resample that lacks what its parameters need, or whose search does not end, is left out.
+    Own errors are normal, in proportion to ``problem.sigma`` and as large as the residuals are; how well so many
+    residuals tell that is drawn, too, which makes of percentiles what Student's t makes of standard deviations.
+    Resamples whose search does not end are left out.
     """
     random = np.random.default_rng(seed)
-    n = len(problem.points)
-    counts = random.multinomial(n, np.full(n, 1.0 / n), size=count).astype(np.float64)
-    prior = random.standard_normal((count, problem.priors))
-    able = _able(problem, counts)
-    found, ended = solve_many(problem, fitted, problem.y, prior[able], counts[able])
+    n, free = len(problem.points), len(problem.free)
+    df = n - free
+    residuals = problem.residuals(fitted, problem.y, np.zeros(problem.priors)) / problem.reference
+    spread = np.sqrt(residuals @ residuals / random.chisquare(df, (count, 1)))
+    y = problem.logarithms(fitted) + spread * problem.sigma * random.standard_normal((count, n))
+    prior = fitted[free:] + random.standard_normal((count, problem.priors))
+    found, ended = solve_many(problem, fitted, y, prior, np.ones((count, n)))
     return Resamples(problem.natural(found[ended]), count)
 
 

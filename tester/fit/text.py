@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from tester.fit.check import Errors
 from tester.fit.joint import GroupFit, Overall
+from tester.fit.lack import LEVEL, SEEN, Denominator
 from tester.fit.law import Law, Variable
 from tester.fit.part import PublishedTable, TableLine
 from tester.fit.trends import Interval, Trend
@@ -24,11 +25,56 @@ def error_row(title: str, errors: Errors) -> str:
     )
 
 
-def group_lines(fit: GroupFit, validation: Errors | None) -> Iterator[str]:
-    """Yield what is known of the fit of a group; ``validation``: its errors on other conditions."""
+def verdict_lines(fit: GroupFit) -> Iterator[str]:
+    """Yield whether the law describes the conditions of a group, and what that rests on."""
+    lack = fit.lack
+    residual = f"residual standard deviation {100.0 * lack.residual:.1f} %"
+    if lack.denominator is None:
+        yield f"{fit.group}: whether the law describes these data cannot be told"
+        yield f"  {residual}; {fit.silent}: no intervals"
+    else:
+        yield f"{fit.group}: {verdict_words(fit)}"
+        yield f"  {residual}, of what is independent between conditions {_independent(lack.denominator)}"
+        told = (f"{one.name} {'more than chance' if one.failed else 'chance'} (p {one.p:.2g})" for one in lack.tests)
+        yield f"  {', '.join(told)}; judged together at {100.0 * LEVEL:g} %"
+        if not lack.shown:
+            yield (
+                f"  a departure of {100.0 * lack.visible:.1f} % (root mean square, beyond what the parameters take up)"
+                f" is seen in {100.0 * SEEN:g} % of such records"
+            )
+    for name, reason in {**fit.heated, **fit.impossible}.items():
+        yield f"  {name} {fit.parameters[fit.law.names.index(name)]:.3g}: {reason}: no interval"
+    yield from (f"  warning: {one}" for one in fit.beyond)
+
+
+def verdict_words(fit: GroupFit) -> str:
+    """Return the verdict on a fit whose denominator is known."""
+    if fit.lack.shown:
+        return "this law does not describe these data"
+    if fit.impossible:
+        return f"this law describes these data only at what no such rubber has: {', '.join(fit.impossible)}"
+    return "no departure from the law is seen"
+
+
+def _independent(found: Denominator) -> str:
+    repeats = dict.fromkeys(one.repeats for one in found.sources if one.repeats)
+    between = dict.fromkeys(one.between for one in found.sources if one.between)
+    parts = [f"repeats {100.0 * found.repeats:.1f} %: {'; '.join(repeats) or 'as stated'}"]
+    parts += [f"terms of the budget of each condition by itself {100.0 * found.own:.1f} %"] if found.own else []
+    if found.between:
+        parts.append(f"scatter between conditions {100.0 * found.between:.1f} %: {'; '.join(between) or 'as stated'}")
+    else:
+        parts.append("no scatter between conditions is declared")
+    return f"{100.0 * found.standard:.1f} % ({', '.join(parts)})"
+
+
+def group_lines(fit: GroupFit, validation: Errors | None, *, force: bool = False) -> Iterator[str]:
+    """Yield what is known of the fit of a group; ``validation``: its errors on other conditions; ``force``: with
+    intervals that are not to be relied on.
+    """
     sources = ", ".join(dict.fromkeys(one.source.name for one in fit.points))
     yield f"{fit.group}: {len(fit.points)} conditions of {sources}"
-    yield from _parameter_lines(fit)
+    yield from _parameter_lines(fit, force)
     yield f"  {_HEADER}"
     yield f"  {error_row('conditions that were fitted', fit.errors)}"
     kept = f", {fit.cells_kept} kept" if fit.cells_kept else ""
@@ -39,65 +85,60 @@ def group_lines(fit: GroupFit, validation: Errors | None) -> Iterator[str]:
     for variable, found in zip(fit.law.variables, fit.residuals, strict=True):
         told = ", ".join(f"{variable.words(one.value)} {100.0 * one.mean:+.1f} % ({one.count})" for one in found)
         yield f"    {told}"
-    yield f"  {_lack_words(fit)}"
 
 
-def _parameter_lines(fit: GroupFit) -> Iterator[str]:
-    yield "  parameter        value  95 % interval over conditions"
+def _parameter_lines(fit: GroupFit, force: bool) -> Iterator[str]:
+    yield "  parameter        value  95 % interval"
     for one, value, interval in zip(fit.law.parameters, fit.parameters, fit.intervals, strict=True):
-        told = "held" if one.name in fit.held else _interval(interval)
-        yield f"  {one.name:<6} {value:>15.6g}  {told} {one.unit}".rstrip()
+        shown = "held" if one.name in fit.held else _interval(interval)
+        if one.name not in fit.held and fit.why_no_interval(one.name) and not force:
+            shown = "none"
+        yield f"  {one.name:<6} {value:>15.6g}  {shown} {one.unit}".rstrip()
     if fit.law.table is not None:
-        told = ", ".join(f"{name} {value:.5g}" for name, value in fit.law.table(fit.parameters).items())
-        yield f"  {fit.law.table_title}: {told}"
+        values = ", ".join(f"{name} {value:.5g}" for name, value in fit.law.table(fit.parameters).items())
+        yield f"  {fit.law.table_title}: {values}"
         yield f"  {fit.law.caution}"
     drawn = f"{len(fit.resamples.parameters)} of {fit.resamples.drawn} resamples could be fitted"
     yield f"  condition number {fit.condition_number:.3g}; {drawn}"
-    if fit.few:
-        yield "  few conditions for so many parameters: the intervals are rather too narrow"
 
 
 def _cell_words(fit: GroupFit) -> str:
     return f"one ({', '.join(fit.law.variables[i].name for i in fit.cells)})"
 
 
-def _lack_words(fit: GroupFit) -> str:
-    lack = fit.lack
-    residual = f"residual standard deviation {100.0 * lack.residual:.1f} %"
-    if lack.shown is None:
-        return f"lack of fit: {residual}; no repeats are known, so how much of it is scatter cannot be told"
-    compared = f"F {lack.f:.1f}, 95 % of chance below {lack.critical:.1f}"
-    verdict = "the law leaves more than repeats scatter" if lack.shown else "no more than repeats scatter"
-    between = f"; between conditions {100.0 * fit.scatter:.1f} %" if lack.shown else ""
-    return f"lack of fit: {residual}, of means of repeats {100.0 * lack.repeats:.1f} %: {compared}: {verdict}{between}"
-
-
-def trend_lines(fits: Sequence[GroupFit]) -> Iterator[str]:
-    """Yield peaks, exponents and signs of the trends of all groups."""
+def trend_lines(fits: Sequence[GroupFit], *, force: bool = False) -> Iterator[str]:
+    """Yield peaks, exponents and signs of the trends of all groups; ``force``: of a law that does not describe, too."""
     for fit in fits:
         at = ", ".join(v.words(x) for v, x in zip(fit.law.variables, fit.trends.at, strict=True))
-        yield f"{fit.group}, at {at} but for what is varied (95 % intervals):"
+        if fit.lack.shown and not force:
+            yield f"{fit.group}: nothing, for the law does not describe these data"
+            continue
+        sure = not fit.silent or force
+        yield f"{fit.group}, at {at} but for what is varied ({'95 % intervals' if sure else 'no intervals'}):"
         for trend in fit.trends.each:
             yield f"  {trend.variable.name:<12} {trend.word}"
-            yield f"  {'':<12} {_peak_words(trend)}; {_slope_words(trend)}"
+            yield f"  {'':<12} {_peak_words(trend, sure)}; {_slope_words(trend, sure and not trend.own_heat)}"
 
 
-def _peak_words(trend: Trend) -> str:
+def _peak_words(trend: Trend, sure: bool) -> str:
     v = trend.variable
     between = f"between {v.words(trend.low)} and {v.words(trend.high)}"
     if trend.peak != trend.peak:
         return f"no peak {between}" + (f" (in {trend.inside:.0%} of resamples)" if trend.inside else "")
     low, high = trend.peak_interval
-    told = f"peak at {v.scale * trend.peak:.4g} {v.unit} ({v.scale * low:.4g} to {v.scale * high:.4g})"
-    return told if trend.inside >= 1.0 else f"{told}, inside the range in {trend.inside:.0%} of resamples"
+    peak = f"peak at {v.scale * trend.peak:.4g} {v.unit}"
+    if sure:
+        peak += f" ({v.scale * low:.4g} to {v.scale * high:.4g})"
+    return peak if trend.inside >= 1.0 else f"{peak}, inside the range in {trend.inside:.0%} of resamples"
 
 
-def _slope_words(trend: Trend) -> str:
+def _slope_words(trend: Trend, sure: bool) -> str:
     if trend.variable.ratio:
-        return f"exponent {trend.exponent:+.3f} {_paired(trend.exponent_interval, 1.0, '.3f')}"
+        interval = f" {_paired(trend.exponent_interval, 1.0, '.3f')}" if sure else ""
+        return f"exponent {trend.exponent:+.3f}{interval}"
     per_cent = 100.0 / trend.variable.scale
-    interval = _paired(trend.exponent_interval, per_cent, ".2f")
-    return f"{per_cent * trend.exponent:+.2f} %/{_difference(trend.variable)} {interval}"
+    interval = f" {_paired(trend.exponent_interval, per_cent, '.2f')}" if sure else ""
+    return f"{per_cent * trend.exponent:+.2f} %/{_difference(trend.variable)}{interval}"
 
 
 def _difference(variable: Variable) -> str:

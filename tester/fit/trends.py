@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from tester.analysis.drift import PER_KELVIN_PERCENT
 from tester.fit.check import levels
 from tester.fit.law import NAN, FitPoint, Law, Variable
 from tester.fit.resample import Resamples
@@ -40,6 +41,7 @@ class Trend:
     ``peak`` is where it is largest, NaN where that is at an end of the range; ``inside``: share of resamples with a
     peak inside. ``exponent``: d ln mu / d ln x there, or d ln mu / dx for a variable without a true zero. ``change``:
     ln of the coefficient at the upper end over the lower, ``agree``: share of resamples in which it has that sign.
+    ``own_heat``: why the change is not told from one by the contact's own heat, "" where it is.
     """
 
     variable: Variable
@@ -52,10 +54,13 @@ class Trend:
     exponent_interval: Interval
     change: float
     agree: float
+    own_heat: str = ""
 
     @property
     def word(self) -> str:
         """Tell the sign of the trend over the range of the data."""
+        if self.own_heat:
+            return f"not resolved: {self.own_heat}"
         if self.inside > _SURE:
             return "rises to a peak, then falls"
         if self.inside >= 1.0 - _SURE:
@@ -113,6 +118,22 @@ def _trend(
         exponent_interval=resamples.interval(slopes[1:]),
         change=changes[0],
         agree=fmean(agreeing) if agreeing else NAN,
+        own_heat=_own_heat(points, i, float(np.ptp(np.log(curves[0])))),
+    )
+
+
+def _own_heat(points: Sequence[FitPoint], variable: int, change: float) -> str:
+    """Return why a change of ln mu along a variable may be that of the contact's own heat, "" where it cannot be."""
+    found = levels(points, variable)
+    warmed = [[one.own_heat_k for one in points if one.nominal[variable] == level] for level in found]
+    means = [fmean(own) for own in warmed]
+    more_k = max(means) - min(means)
+    could = 0.01 * PER_KELVIN_PERCENT * more_k
+    if not more_k > 0.0 or change > could:
+        return ""
+    return (
+        f"friction warms the contact by up to {more_k:.1f} K more at some, which can change it by {100.0 * could:.0f} %"
+        f" ({PER_KELVIN_PERCENT:g} %/K [A])"
     )
 
 

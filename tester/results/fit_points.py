@@ -2,14 +2,33 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Set
-from math import isfinite, sqrt
+from collections.abc import Callable, Iterable, Mapping, Set
+from math import inf, isfinite, sqrt
+from statistics import median
+from typing import Final, NamedTuple
 
 from tester.analysis.flags import REFERENCE, flags_in
-from tester.analysis.terms import Acts, Term
+from tester.analysis.kelvin import TEMPERATURE_SENSITIVITY
+from tester.analysis.measurand import REPEATABILITY
+from tester.analysis.repeats import REPEATABILITY as STATED
+from tester.analysis.terms import PREFIX, Acts, Term, setting_of, with_settings
 from tester.axes import condition_words
-from tester.fit.law import NAN, FitPoint, Source
+from tester.fit.law import Common, FitPoint, Source
 from tester.results.run_results import Measured, RunResults
+from tester.store.records import RunInfo
+
+REPEATS: Final = "repeatability"
+BETWEEN: Final = "between_conditions"
+"""Settings of a recipe's metadata: standard deviations between repeats, and between conditions, as shares."""
+
+
+class Scatter(NamedTuple):
+    """A standard deviation as a share of the coefficient, its source, "" for none, and its degrees of freedom."""
+
+    standard: float
+    source: str
+    df: float = inf
+
 
 Labelled = list[tuple[str, Measured]]
 LeftOut = tuple[tuple[str, str], ...]
@@ -46,19 +65,37 @@ def standard_of(terms: Iterable[Term], acts: Acts) -> float:
     return sqrt(sum(one.standard**2 for one in terms if one.acts is acts))
 
 
-def systematic_of(one: Measured, apart: Set[str]) -> float:
-    """Return what repeating does not average out and no name of ``apart`` stands for, as a share of the coefficient."""
-    result = one.result
-    squares = sum(part.standard**2 for part in result.budget.contributions if part.name not in apart)
-    return sqrt(squares) / result.mu_resultant if isfinite(squares) else 0.0
+def source_of(
+    name: str, info: RunInfo, kept: Labelled, *, temperature: int, worn: str, scatter: Callable[[str], Scatter]
+) -> Source:
+    """Return a run as a source of conditions, with the errors that they share.
+
+    These are a factor of all, which is the budget without what repeats and the temperature contribute (the median over
+    the conditions); the difference from one piece to the next, called ``worn``; and the thermometer's bias, which moves
+    the variable ``temperature``. ``scatter``: what is declared of a compound's scatter between conditions.
+    """
+    terms = with_settings(info.terms, info.metadata)
+    factors = [_rest(one, _apart(terms), own=False) for _, one in kept]
+    between = standard_of(terms, Acts.PIECE)
+    pieces = sorted({_piece(one) for _, one in kept})
+    common = (
+        Common("calibration and alignment", median(factors) if factors else 0.0),
+        *(Common(f"{worn} to {worn}", between, piece=piece) for piece in pieces),
+        Common("thermometer", standard_of(terms, Acts.TEMPERATURE), temperature),
+    )
+    repeats = next((_repeatability(one, info.metadata).source for _, one in kept), "")
+    compounds = dict.fromkeys(one.info.compound for _, one in kept)
+    declared = dict.fromkeys(scatter(one).source for one in compounds)
+    return Source(name, common, repeats, "; ".join(one for one in declared if one))
 
 
 def point_of(
-    label: str, one: Measured, source: Source, nominal: tuple[float, ...], measured: tuple[float, ...]
-) -> FitPoint:
-    """Return a condition with what its repeats scatter, as a share of the coefficient."""
+    label: str, one: Measured, source: Source, nominal: tuple[float, ...], measured: tuple[float, ...], between: float,
+    info: RunInfo,
+) -> FitPoint:  # fmt: skip
+    """Return a condition with what repeats of it scatter; ``between``: what conditions scatter, as a share."""
     result = one.result
-    repeated = result.n_valid > 1 and result.type_a > 0.0
+    known = _repeatability(one, info.metadata)
     return FitPoint(
         label=label,
         group=one.info.setpoint.compound,
@@ -66,6 +103,53 @@ def point_of(
         measured=measured,
         value=result.mu_resultant,
         source=source,
-        type_a=result.type_a / result.mu_resultant if repeated else NAN,
-        df=float(result.n_valid - 1) if repeated else 0.0,
+        type_a=known.standard,
+        df=known.df,
+        own=_rest(one, _apart(info.terms), own=True),
+        between=between,
+        piece=_piece(one),
     )
+
+
+def declared_scatter(compound: str, metadata: Mapping[str, str], declared: Mapping[str, Scatter]) -> Scatter:
+    """Return the standard deviation by which conditions of a compound miss any smooth law: the recipe's, or what the
+    kind of rig declares of the compound, else of any ("").
+    """
+    text = metadata.get(PREFIX + BETWEEN)
+    if text is not None:
+        return Scatter(setting_of(PREFIX + BETWEEN, text), f"the recipe's {PREFIX}{BETWEEN}")
+    return declared.get(compound, declared.get("", Scatter(0.0, "")))
+
+
+def _repeatability(one: Measured, metadata: Mapping[str, str]) -> Scatter:
+    """Return the standard uncertainty of a condition's mean from repeats, as a share: pooled over the run, else what
+    the recipe or the rig declares.
+    """
+    result = one.result
+    pooled = next((part for part in result.budget.contributions if part.name == REPEATABILITY), None)
+    if pooled is not None and isfinite(pooled.standard) and pooled.standard > 0.0:
+        return Scatter(pooled.standard / result.mu_resultant, "repeats of the run", pooled.df)
+    text = metadata.get(PREFIX + REPEATS)
+    share = STATED if text is None else setting_of(PREFIX + REPEATS, text)
+    source = f"{100.0 * share:g} % a repeat, declared by the {'rig [A]' if text is None else 'recipe'}"
+    return Scatter(share / sqrt(max(result.n_valid, 1)), source)
+
+
+def _rest(one: Measured, apart: Set[str], *, own: bool) -> float:
+    """Return what the budget has beside the names of ``apart``, as a share of the coefficient: ``own``: what is each
+    condition's own, else what conditions share.
+    """
+    result = one.result
+    parts = [part for part in result.budget.contributions if part.name not in apart and own is not bool(part.common)]
+    squares = sum(part.standard**2 for part in parts)
+    return sqrt(squares) / result.mu_resultant if isfinite(squares) else 0.0
+
+
+def _apart(terms: Iterable[Term]) -> Set[str]:
+    """Return the names of what a fit has unknowns or a denominator of its own for."""
+    return {REPEATABILITY, TEMPERATURE_SENSITIVITY, *(one.name for one in terms if one.acts is Acts.TEMPERATURE)}
+
+
+def _piece(one: Measured) -> int:
+    """Return the piece on which a condition was measured, of several the last one."""
+    return max((repeat.piece for repeat in one.repeats if repeat.result.valid), default=0)

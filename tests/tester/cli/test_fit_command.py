@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import sys
 from pathlib import Path
 from typing import Any
@@ -14,7 +15,7 @@ from tester.cli.main import invoke
 from tester.kinds.wheel_on_belt.fit import published
 from tester.materials.library import Library
 from tests.campaigns.fit import DESIGN
-from tests.tester.kinds.specimen_on_track.fit.made import made_track_run
+from tests.tester.kinds.specimen_on_track.fit.made import law, made_track_run
 from tests.tester.kinds.wheel_on_belt.fit.made import made_run
 
 pytest.importorskip("scipy", reason="needs the extra `report`")
@@ -59,7 +60,7 @@ def test_a_fit_to_appendix_a_is_seen_on_b(capsys: pytest.CaptureFixture[str]) ->
     assert (seen["rows"], seen["near"], seen["far"]) == (79, 35, 63)
     assert seen["mean"] == pytest.approx(0.0645, abs=1e-4)
     tm = found["groups"][1]["parameters"]["tm"]
-    assert tm["interval"][0] < tm["value"] < tm["interval"][1]
+    assert tm["interval"] is None and "nothing is known of the repeatability" in tm["no_interval"]
 
 
 def test_it_ends_with_peaks_exponents_and_signs(capsys: pytest.CaptureFixture[str]) -> None:
@@ -81,7 +82,50 @@ def test_a_run_is_fitted_with_what_its_repeats_say(home: Path, capsys: pytest.Ca
     assert group["conditions"] == len(DESIGN)
     assert group["parameters"]["tm"]["value"] == pytest.approx(66.701, abs=0.05)
     assert group["lack_of_fit"]["repeats"] == pytest.approx(0.01 / 3.0**0.5, rel=1e-3)
+    assert group["lack_of_fit"]["between_conditions"] == pytest.approx(0.032) and group["lack_of_fit"]["shown"] is False
     assert group["validation"]["rows"] == 26
+
+
+def falling(temperature_c: float, speed_m_s: float) -> float:
+    return law(temperature_c, speed_m_s) * (1.0 - 0.003 * (temperature_c - 10.0))
+
+
+def test_a_law_that_does_not_describe_is_refused_first_and_force_shows_the_rest(
+    home: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    made_track_run(home / "one", mu=falling)
+    printed = out(capsys, "fit", "one", code=1)
+    assert printed.splitlines()[1] == "SBR, dry: this law does not describe these data"
+    assert "size of the residuals more than chance" in printed and "judged together at 1 %" in printed
+    assert "t_ref" in printed and " to " not in next(one for one in printed.splitlines() if one.startswith("  t_ref "))
+    assert "nothing, for the law does not describe these data" in printed
+    forced = out(capsys, "fit", "one", "--force", code=1)
+    assert " to " in next(one for one in forced.splitlines() if one.startswith("  t_ref ") and "degC" in one)
+    assert "rises to a peak" in forced
+
+
+def test_the_right_law_is_told_with_the_departure_that_would_be_seen(
+    home: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    made_track_run(home / "one")
+    printed = out(capsys, "fit", "one")
+    assert printed.splitlines()[1] == "SBR, dry: no departure from the law is seen"
+    assert re.search(r"a departure of 1\.[6-9] % \(root mean square, beyond what .* is seen in 95 % of", printed)
+    assert "2 % a repeat, declared by the rig [A]" in printed
+    assert "no scatter between conditions is declared" in printed
+    assert "18 conditions are outside" in printed
+
+
+def test_a_load_that_friction_warms_is_no_load_dependence(home: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for name, load_n in (("light", 10.0), ("heavy", 40.0)):  # twice the load, and 3 % of its own heat more
+        speeds = (0.05, 0.1, 0.2)
+
+        def warmed(temperature_c: float, speed_m_s: float, load_n: float = load_n) -> float:
+            return law(temperature_c, speed_m_s) * (1.0 + 0.01 * speed_m_s * load_n)
+
+        made_track_run(home / name, (20.0,), speeds, warmed, scatter=0.01, load_n=load_n, band_k=20.0)
+    printed = out(capsys, "fit", "light", "heavy", "--law", "power", "--force", code=0)
+    assert "load         not resolved: friction warms the contact by up to" in printed
 
 
 def test_several_runs_are_fitted_together(home: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -105,7 +149,8 @@ def test_one_temperature_is_refused_and_held_parameters_do(home: Path, capsys: p
     assert "one temperature only (25 degC), and a, beta, tm need at least 4" in message
     assert "--hold a,beta,tm" in message
     parameters = data(capsys, "fit", "cold", "--hold", "a,beta,tm=70")["groups"][0]["parameters"]
-    assert parameters["tm"] == {"value": 70.0, "unit": "degC", "interval": [70.0, 70.0], "held": True}
+    held = {"value": 70.0, "unit": "degC", "interval": [70.0, 70.0], "no_interval": "", "held": True}
+    assert parameters["tm"] == held
     assert parameters["a"]["value"] == 0.224424 and not parameters["c"]["held"]
 
 
@@ -177,7 +222,8 @@ def test_a_run_on_a_track_is_fitted_by_interface(home: Path, capsys: pytest.Capt
 def test_a_law_of_materials_is_fitted_on_the_surface_that_is_named(
     home: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    made_track_run(home / "one", (10.0, 25.0), (0.05, 0.2, 1.0), compounds=("tread",), mu=tread, scatter=0.0)
+    speeds = (0.05, 0.2, 1.0)
+    made_track_run(home / "one", (10.0, 25.0), speeds, compounds=("tread",), mu=tread, scatter=0.0, band_k=50.0)
     found = data(capsys, "fit", "one", "--law", "greta", "--surface", "road", "--given", "area=50")
     parameters = found["groups"][0]["parameters"]
     assert {name: one["value"] for name, one in parameters.items()} == pytest.approx(
@@ -204,6 +250,6 @@ def tread(temperature_c: float, speed_m_s: float) -> float:
 def test_what_makes_no_law_of_a_track_is_refused(
     home: Path, capsys: pytest.CaptureFixture[str], arguments: list[str], message: str
 ) -> None:
-    made_track_run(home / "one", (10.0, 25.0), (0.05, 0.2, 1.0), compounds=("tread",))
+    made_track_run(home / "one", (10.0, 25.0), (0.05, 0.2, 1.0), compounds=("tread",), band_k=50.0)
     assert invoke(["fit", "one", *arguments]) in (1, 2)
     assert message in capsys.readouterr().err

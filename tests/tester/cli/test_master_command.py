@@ -86,7 +86,7 @@ def test_a_wheels_run_is_refused_with_the_reason(home: Path, capsys: pytest.Capt
 
 def test_a_run_that_heated_itself_is_refused(home: Path, capsys: pytest.CaptureFixture[str]) -> None:
     _, error = said(capsys, str(made_track_run(home / "one", band_k=0.05)), code=1)
-    assert "one is refused: friction warms the contact in" in error.replace(str(home / "one"), "one")
+    assert "one is refused: friction warms the contact beyond its band" in error.replace(str(home / "one"), "one")
 
 
 def test_conditions_that_differ_in_more_have_to_be_chosen(home: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from math import pi
 from typing import TYPE_CHECKING, Final
 
@@ -13,7 +14,7 @@ from sim.physics.greta import Greta, contact_slope, greta
 from sim.physics.materials import OutsideError, Rubber, Surface
 from sim.physics.wlf import PoleError
 from tester.fit.law import FitError, Law
-from tester.kinds.specimen_on_track.fit.laws import GRETA
+from tester.kinds.specimen_on_track.fit.laws import GRETA, below_glass
 from tester.kinds.specimen_on_track.fit.nodes import GridAxis, GridNodes
 from tester.kinds.specimen_on_track.fit.runs import LOAD, SPEED, TEMPERATURE
 
@@ -38,7 +39,12 @@ def bound(rubber: Rubber, surface: Surface, figures: Mapping[str, float]) -> Law
     """
     law = greta(rubber, surface, figures)
     assert rubber.shear is not None  # a law has been made of it
-    return replace(GRETA, value=_ManyGreta(law, rubber.shear.ratio).value)
+    beyond = partial(_beyond, rubber.glass_c)
+    return replace(GRETA, value=_ManyGreta(law, rubber.shear.ratio).value, beyond=beyond)
+
+
+def _beyond(glass_c: float | None, _: Sequence[float], measured: Sequence[tuple[float, ...]]) -> Iterator[str]:
+    yield from below_glass(glass_c, measured)
 
 
 class _ManyGreta:

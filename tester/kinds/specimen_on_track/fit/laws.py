@@ -6,11 +6,11 @@ before it is fitted (``tester.kinds.specimen_on_track.fit.bound``).
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Final, NoReturn
 
-from sim.physics.wlf import C1, C2_K
-from tester.fit.law import FitError, Law, LawParameter, Variable
+from sim.physics.wlf import C1, C2_K, FITTED_K, GLASS_TO_REFERENCE_K
+from tester.fit.law import Band, FitError, Law, LawParameter, Variable
 from tester.kinds.specimen_on_track.fit.runs import LOAD, SPEED, TEMPERATURE, VARIABLES
 
 if TYPE_CHECKING:
@@ -41,6 +41,38 @@ def _power(p: Array, x: Array) -> Array:
     return a * (x[..., SPEED] / V0_M_S) ** n * (x[..., LOAD] / N0_N) ** m
 
 
+_GLASS_C: Final = (-110.0, 10.0)
+"""Between these temperatures lie the glass transitions of rubbers, of butadiene at the lower end [A]."""
+NEAR_K: Final = 15.0
+"""Most that the t_ref of a bell is off Tg + 50 K of the compound's file [A]: Tg by two methods differs by 5 to 10 K."""
+_RUBBER: Final = "[A] rubber on a hard track"
+
+
+def _generic(low: float, high: float) -> Band:
+    return Band(low, high, _RUBBER)
+
+
+def reference_band(glass_c: float | None) -> Band:
+    """Return between which temperatures the t_ref of a bell lies, of a compound with this glass transition, degC."""
+    if glass_c is not None:
+        middle_c = glass_c + GLASS_TO_REFERENCE_K
+        source = f"Tg {glass_c:g} degC of the compound's file + 50 +- {NEAR_K:g} K [A]"
+        return Band(middle_c - NEAR_K, middle_c + NEAR_K, source)
+    low, high = (one + GLASS_TO_REFERENCE_K for one in _GLASS_C)
+    return Band(low, high, "Tg + 50 K of any rubber [A]")
+
+
+def _beyond_shift(parameters: Sequence[float], measured: Sequence[tuple[float, ...]]) -> Iterator[str]:
+    """Yield at which conditions the shift of the bell does not hold."""
+    glass_c = parameters[4] - GLASS_TO_REFERENCE_K
+    beyond = sum(not glass_c <= one[TEMPERATURE] <= glass_c + FITTED_K for one in measured)
+    if beyond:
+        yield (
+            f"{beyond} conditions are outside {glass_c:.0f} to {glass_c + FITTED_K:.0f} degC: the shift of WLF holds"
+            f" from the glass transition to {FITTED_K:g} K above it"
+        )
+
+
 WLF_BELL: Final = Law(
     name="wlf_bell",
     title="a bell over the reduced speed",
@@ -48,14 +80,15 @@ WLF_BELL: Final = Law(
     f"log10 aT = -{C1:g} (T - t_ref) / ({C2_K:g} + T - t_ref)",
     variables=FITTED,
     parameters=(
-        LawParameter("mu_0", "", 0.5, 0.1, positive=True, levels=("speed", 3)),
-        LawParameter("mu_max", "", 2.0, 0.1, positive=True, levels=("speed", 3)),
-        LawParameter("width", "", 3.0, 0.1, positive=True, levels=("speed", 3)),
-        LawParameter("v_ref", "m/s", 2e-3, 0.5, positive=True, levels=("speed", 3)),
-        LawParameter("t_ref", "degC", 0.0, 3.0, levels=("temperature", 3)),
+        LawParameter("mu_0", "", 0.5, 0.1, positive=True, levels=("speed", 3), band=_generic(0.02, 3.0)),
+        LawParameter("mu_max", "", 2.0, 0.1, positive=True, levels=("speed", 3), band=_generic(0.1, 6.0)),
+        LawParameter("width", "", 3.0, 0.1, positive=True, levels=("speed", 3), band=_generic(0.5, 8.0)),
+        LawParameter("v_ref", "m/s", 2e-3, 0.5, positive=True, levels=("speed", 3), band=_generic(1e-9, 10.0)),
+        LawParameter("t_ref", "degC", 0.0, 3.0, levels=("temperature", 3), band=reference_band(None)),
     ),
     value=_bell,
     published={},
+    beyond=_beyond_shift,
 )
 POWER: Final = Law(
     name="power",
@@ -63,9 +96,9 @@ POWER: Final = Law(
     formula=f"mu = a (v / {V0_M_S:g})^n (F / {N0_N:g})^m",
     variables=FITTED,
     parameters=(
-        LawParameter("a", "", 1.0, 0.1, positive=True),
-        LawParameter("n", "", 0.1, 0.05, levels=("speed", 2)),
-        LawParameter("m", "", -0.1, 0.05, levels=("load", 2)),
+        LawParameter("a", "", 1.0, 0.1, positive=True, band=_generic(0.02, 6.0)),
+        LawParameter("n", "", 0.1, 0.05, levels=("speed", 2), band=_generic(-1.0, 1.0)),
+        LawParameter("m", "", -0.1, 0.05, levels=("load", 2), band=_generic(-1.0, 1.0)),
     ),
     value=_power,
     published={},
@@ -82,9 +115,9 @@ GRETA: Final = Law(
     formula="mu = (tau_s / p) (Ac / A0) + mu_hys, tau_s = tau_s0 [1 + (Einf / E0) / (1 + v_c / v)^n]",
     variables=FITTED,
     parameters=(
-        LawParameter("tau_s0", "Pa", 1e4, 0.2, positive=True),
-        LawParameter("v_c", "m/s", 1.0, 0.5, positive=True, levels=("speed", 3)),
-        LawParameter("n", "", 0.6, 0.2, positive=True, levels=("speed", 3)),
+        LawParameter("tau_s0", "Pa", 1e4, 0.2, positive=True, band=_generic(1e2, 1e8)),
+        LawParameter("v_c", "m/s", 1.0, 0.5, positive=True, levels=("speed", 3), band=_generic(1e-6, 1e3)),
+        LawParameter("n", "", 0.6, 0.2, positive=True, levels=("speed", 3), band=_generic(0.05, 5.0)),
     ),
     value=_unbound,
     published={},
@@ -98,6 +131,15 @@ PERSSON: Final = Law(
     value=_unbound,
     published={},
 )
+
+
+def below_glass(glass_c: float | None, measured: Sequence[tuple[float, ...]]) -> Iterator[str]:
+    """Yield how many conditions of a law of moduli are below the compound's glass transition, degC."""
+    below = sum(one[TEMPERATURE] < glass_c for one in measured) if glass_c is not None else 0
+    if below:
+        yield f"{below} conditions are below the glass transition, {glass_c:g} degC: rubber is a glass there"
+
+
 LAWS: Final[Mapping[str, Law]] = {law.name: law for law in (WLF_BELL, POWER, PERSSON, GRETA)}
 """By name; the bell first: it needs nothing but what was measured."""
 OF_MATERIALS: Final = frozenset({PERSSON.name, GRETA.name})

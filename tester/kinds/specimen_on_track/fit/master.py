@@ -11,15 +11,13 @@ from math import hypot
 from pathlib import Path
 from typing import Final
 
-from tester.base.source import load_tree
 from tester.fit.law import FitPoint
 from tester.kinds.specimen_on_track.axes import INTERFACES, held_by
+from tester.kinds.specimen_on_track.fit.heat import BEYOND_BAND, beyond_band, rise_of, warmed_k
 from tester.kinds.specimen_on_track.fit.runs import INTERFACE, LOAD, SPEED, TEMPERATURE, points_of
-from tester.kinds.specimen_on_track.rig import TrackConfig
 from tester.master.part import MasterPart
 from tester.master.points import MasterPoint, MasterRun, MasterSource
 from tester.results.run_results import RunResults, results_of
-from tester.rig.load import checked
 from tester.store.reader import RunReader
 
 
@@ -31,37 +29,31 @@ class TrackMasters:
         with RunReader(folder) as reader:
             results = results_of(reader)
         found = points_of(folder.name, results)
-        rig = checked(TrackConfig, load_tree(results.run.info.rig_text, "rig.yaml"))
-        return MasterRun(tuple(_point(one) for one in found.points), found.left_out, _heated(results, rig.heat.rise))
+        return MasterRun(tuple(_point(one) for one in found.points), found.left_out, _heated(results))
 
     def packaged(self, name: str) -> MasterRun:
         """Raise KeyError: no conditions of a track ship with the program."""
         raise KeyError(name)
 
 
-def _heated(results: RunResults, rise_k_w: float) -> str:
+def _heated(results: RunResults) -> str:
     """Return which rows friction warms beyond their band, "" where none is."""
-    worst, rows = (0.0, 0.0, ""), 0
-    for one in results.conditions():
-        means = one.result.measured
-        power_w = one.result.mu_resultant * means.normal * abs(means.sliding)
-        warmed_k, band_k = rise_k_w * power_w, one.info.temperature_band_k
-        if warmed_k > band_k:
-            rows += 1
-            held = held_by(one.info.setpoint)
-            worst = max(worst, (warmed_k, band_k, f"{1e3 * held.track_m_s:g} mm/s and {held.temperature_c:g} degC"))
+    rise_k_w = rise_of(results.run.info)
+    rows = [one for one in results.conditions() if beyond_band(one, rise_k_w)]
     if not rows:
         return ""
-    warmed_k, band_k, where = worst
+    worst = max(rows, key=lambda one: warmed_k(one, rise_k_w))
+    held = held_by(worst.info.setpoint)
     return (
-        f"friction warms the contact in {rows} rows beyond their band of temperature: by {warmed_k:.1f} K at {where},"
-        f" band {band_k:g} K (heat.rise of the rig times the power of friction)"
+        f"{BEYOND_BAND} in {len(rows)} rows: by {warmed_k(worst, rise_k_w):.1f} K at {1e3 * held.track_m_s:g} mm/s and"
+        f" {held.temperature_c:g} degC, band {worst.info.temperature_band_k:g} K (heat.rise of the rig times the power"
+        " of friction)"
     )
 
 
 def _point(one: FitPoint) -> MasterPoint:
     thermometer = next(common.standard for common in one.source.common if common.variable == TEMPERATURE)
-    gain = hypot(*(common.standard for common in one.source.common if common.variable is None))
+    gain = hypot(*(c.standard for c in one.source.common if c.variable is None and c.piece in (0, one.piece)))
     held = {"interface": INTERFACES[round(one.nominal[INTERFACE])], "load": f"{one.nominal[LOAD]:g} N"}
     return MasterPoint(
         one.label, one.group, one.measured[SPEED], one.measured[TEMPERATURE], one.nominal[TEMPERATURE], one.value,

@@ -13,7 +13,7 @@ from tester.fit.law import FitError, FitPoint, Law, Sourced
 from tester.fit.part import FitPart, PublishedTable
 from tester.kinds.specimen_on_track.axes import INTERFACES
 from tester.kinds.specimen_on_track.fit.groups import TrackGroup, group_of
-from tester.kinds.specimen_on_track.fit.laws import GRETA, LAWS, OF_MATERIALS
+from tester.kinds.specimen_on_track.fit.laws import GRETA, LAWS, OF_MATERIALS, WLF_BELL, reference_band
 from tester.kinds.specimen_on_track.fit.runs import INTERFACE, LOAD, SPEED
 
 if TYPE_CHECKING:
@@ -56,7 +56,7 @@ class TrackFits:
         if law.name not in OF_MATERIALS:
             if figures:
                 raise FitError(f"the law {law.name} is given no figures, not {', '.join(figures)}")
-            return law
+            return self._with_glass(law, group_of(group).compound) if law.name == WLF_BELL.name else law
         own = group_of(group)
         if law.name == GRETA.name and own.interface != INTERFACES[0]:
             raise FitError(f"{group}: the law {law.name} has an adhesion, and is of dry contact")
@@ -71,6 +71,17 @@ class TrackFits:
             return bound(materials.rubber(own.compound), materials.surface(named), figures)
         except (ValueError, InvalidSource) as error:
             raise FitError(f"{group}: {error}") from error
+
+    def _with_glass(self, law: Law, compound: str) -> Law:
+        """Return the bell with the band of its t_ref for a compound, whose glass transition its file may say."""
+        try:
+            glass_c = self._materials().rubber(compound).glass_c
+        except (ValueError, InvalidSource):  # without a file, or without moduli in it, any rubber's is as good
+            return law
+        bands = {"t_ref": reference_band(glass_c)}
+        return replace(
+            law, parameters=tuple(replace(one, band=bands.get(one.name, one.band)) for one in law.parameters)
+        )
 
     def published_values(self) -> Sequence[tuple[Setpoint, float]]:
         """Return none."""

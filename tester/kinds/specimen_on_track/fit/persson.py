@@ -6,8 +6,9 @@ them: the coefficient of any lower q1 is that integral so far.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from math import log
 from typing import TYPE_CHECKING, Final
 
@@ -17,8 +18,8 @@ from sim.physics.materials import OutsideError, Rubber, Surface
 from sim.physics.persson import PerssonLaw
 from sim.physics.roughness import SelfAffine
 from sim.physics.wlf import PoleError
-from tester.fit.law import FitError, Law
-from tester.kinds.specimen_on_track.fit.laws import PERSSON
+from tester.fit.law import Band, FitError, Law
+from tester.kinds.specimen_on_track.fit.laws import PERSSON, below_glass
 from tester.kinds.specimen_on_track.fit.nodes import GridAxis, GridNodes
 from tester.kinds.specimen_on_track.fit.runs import LOAD, SPEED, TEMPERATURE
 
@@ -31,6 +32,8 @@ AREA_MM2: Final = 100.0
 """Of the contact, over which the load is spread evenly, where nothing else is given [A]."""
 BEYOND: Final = 30.0
 """A self-affine spectrum may go on so many times beyond the q1 of its file; a measured one ends where it ends."""
+END: Final = 1.01
+"""So near to an end of the spectrum, as a factor, a q1 is where the search was stopped [A]."""
 _AXES: Final = (GridAxis(-150.0, 250.0, 1.0), GridAxis(-9.0, 4.0, 0.1), GridAxis(2.0, 9.0, 0.2))
 """Temperature in degC, decades of the speed in m/s and of the pressure in Pa. Coefficients are taken as straight
 between them, which is right within 0.3 % over a bell of three decades."""
@@ -51,7 +54,14 @@ def bound(rubber: Rubber, surface: Surface, figures: Mapping[str, float]) -> Law
         spectrum = replace(spectrum, q1_1_m=BEYOND * start)
     law = PerssonLaw(rubber.modulus, rubber.poisson, spectrum, _PANELS, _NODES)
     many = _ManyPersson(law, spectrum.band_1_m, rubber.name, area_mm2)
-    return replace(PERSSON, value=many.value, parameters=(replace(PERSSON.parameters[0], start=start),))
+    first, last = spectrum.band_1_m
+    band = Band(END * first, last / END, f"the spectrum of surface {surface.name}")
+    q1 = replace(PERSSON.parameters[0], start=start, band=band)
+    return replace(PERSSON, value=many.value, parameters=(q1,), beyond=partial(_beyond, rubber.glass_c))
+
+
+def _beyond(glass_c: float | None, _: Sequence[float], measured: Sequence[tuple[float, ...]]) -> Iterator[str]:
+    yield from below_glass(glass_c, measured)
 
 
 class _ManyPersson:

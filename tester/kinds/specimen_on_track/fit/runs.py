@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import isfinite
 from pathlib import Path
-from statistics import median
 from typing import Final
 
-from tester.analysis.measurand import REPEATABILITY
-from tester.analysis.terms import Acts, with_settings
-from tester.fit.law import Common, Source, Sourced, Variable
+from tester.fit.law import Sourced, Variable
 from tester.kinds.specimen_on_track.axes import INTERFACES, held_by
-from tester.results.fit_points import point_of, sorted_out, standard_of, systematic_of
+from tester.kinds.specimen_on_track.fit.heat import beyond_band, rise_of, warmed_k
+from tester.results.fit_points import Scatter, declared_scatter, point_of, sorted_out, source_of
 from tester.results.run_results import Measured, RunResults, results_of
 from tester.store.reader import RunReader
 
@@ -34,22 +33,29 @@ def run_points(folder: Path) -> Sourced:
 def points_of(name: str, results: RunResults) -> Sourced:
     """Return the conditions of the results of a run of this name: speed in m/s, temperature in degC, load in N.
 
-    Left out: conditions without a value, and those with one that is to be taken with care. Specimens of replicates are
-    conditions of their own. What the conditions share: a factor, which is the budget without its type A and without
-    its temperature (the median over the conditions); the difference from specimen to specimen; the thermometer's bias.
+    Left out: conditions without a value, those with one that is to be taken with care, and those in which friction
+    warms the contact beyond its band of temperature. Specimens of replicates are conditions of their own.
     """
     info = results.run.info
-    terms = with_settings(info.terms, info.metadata)
-    kept, left_out = sorted_out(name, results, _reason)
-    apart = {REPEATABILITY, *(one.name for one in terms if one.acts is Acts.TEMPERATURE)}
-    systematic = [systematic_of(one, apart) for _, one in kept]
-    common = (
-        Common("calibration and alignment", median(systematic) if systematic else 0.0),
-        Common("specimen to specimen", standard_of(terms, Acts.PIECE)),
-        Common("thermometer", standard_of(terms, Acts.TEMPERATURE), TEMPERATURE),
+    rise_k_w = rise_of(info)
+
+    def reason(one: Measured) -> str:
+        return _reason(one) or beyond_band(one, rise_k_w)
+
+    def scatter(compound: str) -> Scatter:
+        return declared_scatter(compound, info.metadata, {})
+
+    kept, left_out = sorted_out(name, results, reason)
+    source = source_of(name, info, kept, temperature=TEMPERATURE, worn="specimen", scatter=scatter)
+    points = (
+        replace(
+            point_of(
+                label, one, source, _nominal(one), _measured(one), scatter(one.info.compound).standard, info
+            ),
+            own_heat_k=warmed_k(one, rise_k_w),
+        )
+        for label, one in kept
     )
-    source = Source(name, common)
-    points = (point_of(label, one, source, _nominal(one), _measured(one)) for label, one in kept)
     return Sourced(tuple(points), left_out)
 
 

@@ -13,7 +13,7 @@ from math import exp
 from typing import TYPE_CHECKING, Final
 
 from sim.physics.friction import COMPOUNDS, V2, V2_LOAD_N, V2_SLIP_M_S, V2_TEMPERATURE_C, PaperParameters, V2Parameters
-from tester.fit.law import Law, LawParameter, Variable
+from tester.fit.law import Band, Law, LawParameter, Variable
 
 if TYPE_CHECKING:
     import numpy as np
@@ -25,15 +25,22 @@ TEMPERATURE, LOAD, SLIP = range(3)
 """Places of the variables."""
 VARIABLES: Final = (Variable("temperature", "degC", ratio=False), Variable("load", "N"), Variable("slip", "mm/s", 1e3))
 
+_SOURCE: Final = "the three compounds of doi 10.3390/polym16050596, widened three- to fourfold [A]"
+
+
+def _band(low: float, high: float) -> Band:
+    return Band(low, high, _SOURCE)
+
+
 _HEAT: Final = (
-    LawParameter("a", "", 0.4, 0.1, levels=("temperature", 4)),
-    LawParameter("beta", "1/K2", 0.002, 0.1, positive=True, levels=("temperature", 4)),
-    LawParameter("tm", "degC", 68.0, 3.0, levels=("temperature", 4)),
+    LawParameter("a", "", 0.4, 0.1, levels=("temperature", 4), band=_band(0.0, 4.0)),
+    LawParameter("beta", "1/K2", 0.002, 0.1, positive=True, levels=("temperature", 4), band=_band(4e-4, 0.01)),
+    LawParameter("tm", "degC", 68.0, 3.0, levels=("temperature", 4), band=_band(30.0, 110.0)),
 )
 _SPEED: Final = (
-    LawParameter("c", "", 0.35, 0.1, positive=True, levels=("slip", 3)),
-    LawParameter("b2", "", 1.3, 0.1, positive=True, levels=("slip", 3)),
-    LawParameter("a2", "", 0.4, 0.1, levels=("slip", 3)),
+    LawParameter("c", "", 0.35, 0.1, positive=True, levels=("slip", 3), band=_band(0.05, 2.0)),
+    LawParameter("b2", "", 1.3, 0.1, positive=True, levels=("slip", 3), band=_band(0.3, 5.0)),
+    LawParameter("a2", "", 0.4, 0.1, levels=("slip", 3), band=_band(0.0, 2.0)),
 )
 """Starts are near the three compounds of the paper; a search from its Table 3 follows."""
 _FORM: Final = "mu = [1 + a (g(T) - g(25))] {}, g(T) = exp(-beta (T - tm)^2)"
@@ -101,7 +108,7 @@ PAPER: Final = Law(
     title="the paper's Eq 6",
     formula=_FORM.format("[c (v / 0.3)^b2 (F / 200)^b1 + a2]"),
     variables=VARIABLES,
-    parameters=(*_HEAT, LawParameter("b1", "", -0.5, 0.1, levels=("load", 2)), *_SPEED),
+    parameters=(*_HEAT, LawParameter("b1", "", -0.5, 0.1, levels=("load", 2), band=_band(-2.0, 0.5)), *_SPEED),
     value=_paper,
     published={name: joint_of(one) for name, one in COMPOUNDS.items()},
     table=_table_3,
@@ -113,7 +120,7 @@ V2_LAW: Final = Law(
     title="v2, load as a factor of both terms",
     formula=_FORM.format("exp(k (F - 200) / 200) [c (v / 0.3)^b2 + a2]"),
     variables=VARIABLES,
-    parameters=(*_HEAT, LawParameter("k", "", -0.4, 0.1, levels=("load", 2)), *_SPEED),
+    parameters=(*_HEAT, LawParameter("k", "", -0.4, 0.1, levels=("load", 2), band=_band(-2.0, 0.5)), *_SPEED),
     value=_v2,
     published={name: _of_v2(one) for name, one in V2.items()},
 )

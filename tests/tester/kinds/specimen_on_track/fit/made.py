@@ -49,11 +49,12 @@ def made_track_run(
     failed: Sequence[int] = (),
     band_k: float = 1.0,
     metadata: Mapping[str, str] | None = None,
+    law_name: str = "wlf_bell",
 ) -> Path:
     """Write a finished run of conditions, numbered from 1 in order of compound, interface, temperature and speed.
 
     ``scatter``: standard deviation of ln mu of a repeat. By number: ``carried`` have a flag of doubt, ``failed`` no
-    value. Returns its folder.
+    value. ``law_name``: what the rig file calls its law of friction. Returns its folder.
     """
     folder.mkdir(parents=True)
     random = np.random.default_rng(seed)
@@ -66,7 +67,8 @@ def made_track_run(
         )
         for n, (c, i, t, v) in enumerate(design, start=1)
     ]  # fmt: skip
-    rig = packaged.packaged_text(KIND.rig(), "grosch")
+    rig = packaged.packaged_text(KIND.rig(), "grosch").replace("law: wlf_bell", f"law: {law_name}")
+    assert f"law: {law_name}" in rig
     info = RunInfo(
         name=folder.name, recipe_name="master", recipe_text="recipe: master\n", rig_text=rig,
         started_utc="2024-02-21T14:05:09.000Z", simulated=True, kind=KIND.name, worn="specimen", terms=TERMS,

@@ -21,7 +21,7 @@ from sim.physics.wlf import WlfBell, WlfBellParameters
 from tester.fit.joint import GroupFit, fit_group
 from tester.fit.law import FitError, FitPoint, Law, Source
 from tester.kinds.specimen_on_track.fit.groups import TrackGroup, group_of
-from tester.kinds.specimen_on_track.fit.laws import GRETA, PERSSON, POWER, WLF_BELL
+from tester.kinds.specimen_on_track.fit.laws import GRETA, PERSSON, POWER, WLF_BELL, reference_band
 from tester.kinds.specimen_on_track.fit.part import TrackFits
 from tests.sim.physics.greta_example import SHEAR, road, rubber
 from tests.tester.kinds.specimen_on_track.fit.made import made_track_run
@@ -148,6 +148,30 @@ def test_without_different_temperatures_the_bell_has_no_reference() -> None:
         fitted(WLF_BELL, own)
 
 
+@pytest.mark.parametrize(("glass_c", "low", "high"), [(-53.0, -18.0, 12.0), (None, -60.0, 60.0)])
+def test_the_reference_of_a_bell_belongs_near_the_glass_transition(
+    glass_c: float | None, low: float, high: float
+) -> None:
+    assert reference_band(glass_c)[:2] == (low, high)
+
+
+def test_the_band_of_a_compounds_reference_is_that_of_its_file() -> None:
+    bound = TrackFits().bound(WLF_BELL, "SBR, dry", "", {})
+    assert next(one for one in bound.parameters if one.name == "t_ref").band[:2] == (-18.0, 12.0)
+
+
+def test_a_degenerate_greta_is_named() -> None:
+    own = [replace(one, type_a=0.01, df=50.0) for one in points(lambda *_: 0.8, noise=0.01)]
+    found = fit_group(PART.bound(GRETA, GROUP, "", {}), GROUP, own, PART.cells, count=99)
+    assert not found.sound
+
+
+def test_a_bell_warns_of_conditions_beyond_its_shift() -> None:
+    own = points(WlfBell(WlfBellParameters()).mu, (1e-6, 1e-5, 1e-4, 1e-3, 1e-2), (-20.0, 20.0, 60.0))
+    (warning,) = fitted(WLF_BELL, own).beyond
+    assert warning.startswith("10 conditions are outside -53 to 47 degC")
+
+
 @pytest.mark.parametrize(
     ("group", "surface", "figures", "message"),
     [
@@ -163,7 +187,7 @@ def test_what_the_law_of_a_group_lacks_is_said(
 ) -> None:
     with pytest.raises(FitError, match=message):
         PART.bound(GRETA, group, surface, figures)
-    assert PART.bound(WLF_BELL, group, surface, {}) is WLF_BELL
+    assert PART.bound(POWER, group, surface, {}) is POWER
 
 
 def test_the_area_that_is_given_is_that_of_the_law() -> None:

@@ -27,8 +27,13 @@ def test_points_have_measured_speed_and_temperature_and_what_they_share(tmp_path
 
 def test_a_run_whose_contact_friction_warms_beyond_its_band_is_refused_with_the_worst_row(tmp_path: Path) -> None:
     found = MASTERS.run(made_track_run(tmp_path / "one", (0.0, 20.0), (1e-4, 1e-2), scatter=0.0, band_k=0.1))
-    assert "friction warms the contact in 2 rows beyond their band" in found.refusal
+    assert "friction warms the contact beyond its band of temperature in 2 rows: by 0.2 K" in found.refusal
     assert "by 0.2 K at 10 mm/s and 0 degC, band 0.1 K" in found.refusal
+
+
+def test_a_run_whose_law_is_not_installed_any_more_has_its_master_curve(tmp_path: Path) -> None:
+    found = MASTERS.run(made_track_run(tmp_path / "one", (0.0, 20.0), (1e-4, 1e-3), law_name="a_law_of_nobody"))
+    assert len(found.points) == 4 and not found.refusal
 
 
 def test_nothing_of_it_ships_with_the_program() -> None:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from math import sqrt
+from math import inf, sqrt
 from pathlib import Path
 
 import pytest
 
 from tester.analysis.terms import Acts
 from tester.kinds.specimen_on_track.budget import TERMS
+from tester.kinds.specimen_on_track.fit.heat import BEYOND_BAND
 from tester.kinds.specimen_on_track.fit.runs import INTERFACE, LOAD, SPEED, TEMPERATURE, run_points
 from tester.store.schema import StoreError
 from tests.tester.kinds.specimen_on_track.fit.made import WARM_K, law, made_track_run
@@ -25,11 +26,32 @@ def test_measured_and_nominal_conditions_stand_side_by_side(tmp_path: Path) -> N
     assert len(found.points) == 4 and found.left_out == ()
 
 
-def test_repeats_tell_the_scatter_of_their_mean_and_one_tells_none(tmp_path: Path) -> None:
+def test_repeats_tell_the_scatter_of_their_mean(tmp_path: Path) -> None:
     several = run_points(made_track_run(tmp_path / "three", (20.0,), (1e-4, 1e-3), repeats=3, scatter=0.02))
-    assert all(0.0 < one.type_a < 0.05 and one.df == 2.0 for one in several.points)
-    alone = run_points(made_track_run(tmp_path / "one", (20.0,), (1e-4,)))
-    assert alone.points[0].type_a != alone.points[0].type_a and alone.points[0].df == 0.0
+    assert all(0.0 < one.type_a < 0.05 and one.df == 4.0 for one in several.points)
+    assert several.points[0].source.repeats == "repeats of the run"
+
+
+@pytest.mark.parametrize(("metadata", "share"), [({}, 0.02), ({"uncertainty.repeatability": "0.05"}, 0.05)])
+def test_of_single_repeats_the_declared_repeatability_counts(
+    tmp_path: Path, metadata: dict[str, str], share: float
+) -> None:
+    alone = run_points(made_track_run(tmp_path / "one", (20.0,), (1e-4,), metadata=metadata)).points[0]
+    assert (alone.type_a, alone.df) == (share, inf)
+    assert f"{100.0 * share:g} % a repeat, declared by the" in alone.source.repeats
+
+
+def test_what_friction_warms_beyond_its_band_is_left_out_and_the_rest_knows_its_own_heat(tmp_path: Path) -> None:
+    found = run_points(made_track_run(tmp_path / "one", (0.0, 20.0), (1e-4, 1e-2), scatter=0.0, band_k=0.21))
+    assert {reason for _, reason in found.left_out} == {BEYOND_BAND}
+    assert len(found.points) + len(found.left_out) == 4 and found.left_out
+    slow = found.points[0]
+    assert slow.own_heat_k == pytest.approx(0.5 * slow.value * 20.0 * 1e-4)
+
+
+def test_a_run_whose_law_is_not_installed_any_more_can_be_read(tmp_path: Path) -> None:
+    folder = made_track_run(tmp_path / "one", (20.0,), (1e-4, 1e-3), law_name="a_law_of_nobody")
+    assert len(run_points(folder).points) == 2
 
 
 def test_the_thermometers_bias_is_an_error_of_the_temperature_that_all_share(tmp_path: Path) -> None:

@@ -31,15 +31,26 @@ def test_what_was_measured_is_fitted_and_what_was_asked_for_tells_the_cell(found
 def test_repeats_tell_the_scatter_of_their_mean(found: Sourced) -> None:
     first = found.points[0]
     assert first.type_a == pytest.approx(0.01 / sqrt(3.0), rel=1e-3)
-    assert first.df == 2.0
+    assert first.df == 6.0  # pooled over the three conditions of three repeats
 
 
-def test_a_single_repeat_tells_none(found: Sourced) -> None:
-    assert found.points[3].type_a != found.points[3].type_a and found.points[3].df == 0.0
+def test_a_single_repeat_has_the_repeatability_of_the_run(found: Sourced) -> None:
+    assert found.points[3].type_a == pytest.approx(0.01, rel=1e-3) and found.points[3].df == 6.0
+
+
+def test_conditions_scatter_as_published_of_the_compound_or_as_the_recipe_says(tmp_path: Path) -> None:
+    for name, compound, metadata, expected in (
+        ("first", "1#", {}, 0.032),
+        ("third", "3#", {}, 0.059),
+        ("recipe", "1#", {"uncertainty.between_conditions": "0.01"}, 0.01),
+    ):
+        points = run_points(made_run(tmp_path / name, DESIGN[:2], compound=compound, metadata=metadata)).points
+        assert [one.between for one in points] == [expected] * 2
 
 
 def test_what_all_conditions_of_a_run_share_goes_with_it(found: Sourced) -> None:
-    gain, thermometer = found.points[0].source.common
+    gain, wheel, thermometer = found.points[0].source.common
+    assert (wheel.standard, wheel.piece) == (pytest.approx(0.03), found.points[0].piece)
     assert 0.005 < gain.standard < 0.03 and gain.variable is None
     assert thermometer.variable == TEMPERATURE
     assert thermometer.standard == pytest.approx(0.5 / sqrt(3.0))
