@@ -64,7 +64,8 @@ class _ManyGreta:
         corners = self._nodes.corners(x[..., TEMPERATURE], np.log10(v))
         found = sum((weight[..., None] * self._nodes.values[row] for row, weight in corners), np.zeros(3))
         fine, coarse, tan_delta = np.exp(found[..., 0]), np.exp(found[..., 1]), found[..., 2]
-        tau = strength * (1.0 + self._ratio / (1.0 + v_c / v) ** n)
+        with np.errstate(over="ignore"):  # far off, where a search may step, the power has no bound and tau still has
+            tau = strength * (1.0 + self._ratio / (1.0 + v_c / v) ** n)
         adhesion = tau * np.minimum(1.0 / pressure, 1.0 / (fine * contact_slope(law.fine)))
         friction = np.minimum(adhesion, law.parameters.friction_limit)
         share: Array = np.log10(pressure / (coarse * law.full_per_modulus))
