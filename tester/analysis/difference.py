@@ -42,9 +42,14 @@ class Difference:
         return t_quantile(0.5 + 0.5 * CONFIDENCE, self.df) if self.df > 0.0 else NAN
 
     @property
+    def expanded(self) -> float:
+        """Return its expanded uncertainty, 95 %."""
+        return self.coverage * self.standard
+
+    @property
     def told_apart(self) -> bool:
         """Return whether it is more than chance explains."""
-        return abs(self.value) > self.coverage * self.standard
+        return abs(self.value) > self.expanded
 
 
 def difference(first: ConditionResult, second: ConditionResult, *, same_rig: bool) -> Difference:

@@ -30,6 +30,7 @@ STICK_SLIP: Final = "stick-slip"
 STICK_SLIP_UNKNOWN: Final = "stick-slip not known"
 SHORT: Final = "short"
 CARRY_OVER: Final = "carry-over"
+DISAGREES: Final = "setting disagrees"
 IMPRECISE: Final = "precision not reached"
 OUT_OF_LIMITS: Final = "reference out of limits"
 REFERENCE: Final = "reference"
@@ -80,6 +81,12 @@ FLAGS: Final[Mapping[str, Flag]] = {
             OUT_OF_LIMITS,
             "A reference condition before or after it lies outside the limits of its control chart.",
             "change or clean the counterface, then measure the condition again",
+            doubt=True,
+        ),
+        Flag(
+            DISAGREES,
+            "The run measures this setting several times, and the values differ by more than their uncertainties.",
+            "look for what changed in between (counterface, rubber, temperature), then measure the setting again",
             doubt=True,
         ),
         Flag(

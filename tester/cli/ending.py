@@ -10,7 +10,6 @@ from textwrap import wrap
 
 from tester.cli.formatting import shown
 from tester.cli.text_table import WIDTH, table_lines
-from tester.cli.watch import watch_lines
 from tester.results.columns import Output
 from tester.results.conditions_table import axis_keys, conditions_table, recipe_rows
 from tester.results.run_results import RunResults, results_of
@@ -48,7 +47,7 @@ def ending_table(results: RunResults, folder: Path) -> Iterator[str]:
         axes = results.axes.columns(one.info.setpoint for one in listed)
         yield from table_lines(conditions.of(listed).view(Output.END, axis_keys(axes)), "remarks")
         yield shown(f"U: expanded uncertainty (95 %) of this {results.worn}; conditions.csv has the compound's")
-    yield from (shown(line) for line in watch_lines(results))
+    yield from (shown(line) for line in results.watch_lines())
     if len(tried) > ROWS_AT_MOST:
         yield f"and {len(tried) - ROWS_AT_MOST} more conditions: {folder / 'conditions.csv'}"
     if len(tried) < len(results.rows):

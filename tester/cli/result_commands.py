@@ -154,7 +154,6 @@ def _conditions(results: RunResults) -> Iterator[Json]:
 
 def _lines(name: str, results: RunResults) -> Iterator[str]:
     from tester.cli.ending import risk_lines
-    from tester.cli.watch import watch_lines
 
     run = results.run
     yield f"{name}: {shown(run.info.recipe_name)}"
@@ -174,7 +173,7 @@ def _lines(name: str, results: RunResults) -> Iterator[str]:
     left = sum(not row.tried for row in results.rows)
     if left:
         yield f"{left} of {len(results.rows)} conditions not measured"
-    for line in (*watch_lines(results), *results.angle_lines(), *results.wear_lines()):
+    for line in (*results.watch_lines(), *results.angle_lines(), *results.wear_lines()):
         yield shown(line)
 
 

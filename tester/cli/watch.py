@@ -1,28 +1,23 @@
-"""What a run's reference conditions say, on a terminal and as JSON."""
+"""What a run's reference conditions, and settings that it measures several times, say as JSON."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import asdict
 
 from tester.analysis.reference import ControlChart, CounterfaceDrift
 from tester.cli.formatting import Json, number
 from tester.results.run_results import RunResults
-
-
-def watch_lines(results: RunResults) -> Iterator[str]:
-    """Yield a sentence on the counterface, and a line for each control chart; nothing without references."""
-    if results.watch is not None:
-        yield from results.watch.lines(results.worn)
+from tester.results.settings_table import settings_table
 
 
 def watch_json(results: RunResults) -> dict[str, Json]:
-    """Return the same under ``reference``; no key without references."""
+    """Return what is found under ``settings``, and with references under ``reference``."""
+    settings: list[Json] = [*settings_table(results).records()]
     if results.watch is None:
-        return {}
+        return {"settings": settings}
     drift = results.watch.drift
     charts: list[Json] = [_chart(chart) for chart in results.watch.charts]
-    return {"reference": {"drift": None if drift is None else _drift(drift), "charts": charts}}
+    return {"settings": settings, "reference": {"drift": None if drift is None else _drift(drift), "charts": charts}}
 
 
 def _drift(drift: CounterfaceDrift) -> Json:

@@ -53,6 +53,9 @@ def conditions_section(record: RunRecord, key: str) -> ReportSection:
     advised, flags = [*_advice(results)], [*flag_lines(results)]
     parts += [Listing(advised, "care")] if advised else []
     parts += [Paragraph("Flags:"), Listing(flags)] if flags else []
+    again = [line for one in results.settings for line in one.lines(results.worn)]
+    tone = "care" if any(one.disagrees for one in results.settings) else ""
+    parts += [Paragraph("Settings that were measured several times:"), Listing(again, tone)] if again else []
     worn = [*results.wear_lines()]
     parts += [Paragraph("Diameters that were checked, with the wear rate:"), Listing(worn)] if worn else []
     return ReportSection(key, "Conditions", parts)

@@ -21,6 +21,7 @@ from tester.results.pieces_table import checks_table, pieces_table
 from tester.results.references_table import references_table
 from tester.results.repeats_table import repeats_table
 from tester.results.run_results import RunResults, results_of
+from tester.results.settings_table import settings_table
 from tester.results.tables import appendix_rows, condition_rows, marked, sample_rows
 from tester.store.reader import RunReader
 from tester.store.schema import PIECE
@@ -110,6 +111,8 @@ FORMATS: dict[str, Format] = {
                lambda results: bool(results.checks)),
         Format("reference", "reference.csv", "reference conditions, with limits and drift",
                _csv(lambda record: references_table(record.results).csv()), lambda results: results.watch is not None),
+        Format("settings", "settings.csv", "settings that were measured several times, and whether they agree",
+               _csv(lambda record: settings_table(record.results).csv()), lambda results: bool(results.settings)),
         Format("samples", "samples.csv", "every sample", _csv(lambda record: sample_rows(record.reader))),
         Format("parquet", "samples.parquet", "every sample, for programs",
                lambda record, file: write_parquet(record.reader, file), is_text=False),

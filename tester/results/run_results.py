@@ -8,7 +8,7 @@ from itertools import groupby
 from math import isfinite
 
 from tester.analysis.closest import Combining, combining_of
-from tester.analysis.flags import OUT_OF_LIMITS, REFERENCE, flags_in, joined, remedy_of
+from tester.analysis.flags import DISAGREES, OUT_OF_LIMITS, REFERENCE, flags_in, joined, remedy_of
 from tester.analysis.measurand import pooled, with_budget, with_budget_of_replicates
 from tester.analysis.misalignment import Misalignment, misalignment
 from tester.analysis.reference import (
@@ -27,6 +27,7 @@ from tester.analysis.wear import ConditionWear, WearRate, condition_wear, wear_r
 from tester.analysis.wear_check import WearCheck
 from tester.axes import Axes, condition_words
 from tester.quantities import Quantities
+from tester.results.settings import RepeatedSetting, SettingsOf, in_doubt
 from tester.results.surroundings import Reduced, SurroundingsOf
 from tester.store import older
 from tester.store.catalogue import under_way
@@ -155,6 +156,8 @@ class RunResults:
     """Reference conditions, in the order in which they were planned: none of the recipe's own conditions."""
     watch: ReferenceWatch | None = None
     """What they say; None without any."""
+    settings: tuple[RepeatedSetting, ...] = ()
+    """What was measured several times, references among it."""
     record_head: str = ""
     """The last head of the record's chain, hexadecimal; "" where an older version recorded without one."""
 
@@ -184,6 +187,13 @@ class RunResults:
             known = f" ± {found.expanded_deg:.2f}" if isfinite(found.expanded_deg) else ""
             told = f"the cell's axes seem to be off by {found.deg:+.2f}{known} deg (95 %, {found.pairs} pairs)"
             yield f"both directions: {told}, crosstalk in it; the coefficients are free of it"
+
+    def watch_lines(self) -> Iterator[str]:
+        """Yield what references and settings that were measured several times say, in lines for people."""
+        if self.watch is not None:
+            yield from self.watch.lines(self.worn)
+        for one in self.settings:
+            yield from one.lines(self.worn)
 
     def wear_of(self, piece: int) -> WearRate:
         """Return the wear rate over the life of what was mounted under a number."""
@@ -257,12 +267,49 @@ def results_of(reader: RunReader) -> RunResults:
             if watches or one.info.condition in doubts else one
             for one, watches in zip(found, watching, strict=True)
         ]
+    found, settings = _budgeted(found, surroundings)
+    rows = _rows(found, surroundings)
+    missing = any(not row.result.ok for row in rows)
+    ours = [row for row in rows if not is_reference(row.info.grid, run.info.metadata)]
+    references = [row for row in rows if is_reference(row.info.grid, run.info.metadata)]
+    held = under_way(reader.path.parent) is not None
+    status = run_status(run.status, held=held, missing=missing)
+    return RunResults(
+        run,
+        tuple(ours),
+        status,
+        reader.quantities(),
+        pieces,
+        checks,
+        tuple(references),
+        watch,
+        settings,
+        reader.record_head(),
+    )
+
+
+def _budgeted(
+    found: Sequence[Measured], surroundings: SurroundingsOf
+) -> tuple[list[Measured], tuple[RepeatedSetting, ...]]:
+    """Return the conditions with their budgets, those of a setting that disagrees flagged, and such settings."""
+    listed: list[Measured] = []
+    settings = SettingsOf()
+    for one in found:
+        by = surroundings.of(one.info, one.repeats, one.result)
+        result = with_budget(one.result, by)
+        settings.add(one.info, one.repeats, result, by)
+        listed.append(replace(one, result=result))
+    repeated = settings.repeated()
+    doubts = in_doubt(repeated)
+    flagged = [_flagged(one, DISAGREES) if one.info.condition in doubts else one for one in listed]
+    return flagged, repeated
+
+
+def _rows(found: Sequence[Measured], surroundings: SurroundingsOf) -> list[TableRow]:
+    """Return the rows of conditions with their budgets; of replicates the value that stands for them, with its own."""
     rows: list[TableRow] = []
     for _, group in groupby(found, key=lambda one: one.info.row):
-        replicates = tuple(
-            replace(one, result=with_budget(one.result, surroundings.of(one.info, one.repeats, one.result)))
-            for one in group
-        )
+        replicates = tuple(group)
         if len(replicates) == 1:
             rows.append(TableRow(replicates, replicates[0].result))
             continue
@@ -271,14 +318,7 @@ def results_of(reader: RunReader) -> RunResults:
         measured = [repeat for one in replicates for repeat in one.repeats]
         by = surroundings.of(replicates[0].info, measured, combined)
         rows.append(TableRow(replicates, with_budget_of_replicates(combined, results, by)))
-    missing = any(not row.result.ok for row in rows)
-    ours = [row for row in rows if not is_reference(row.info.grid, run.info.metadata)]
-    references = [row for row in rows if is_reference(row.info.grid, run.info.metadata)]
-    held = under_way(reader.path.parent) is not None
-    status = run_status(run.status, held=held, missing=missing)
-    return RunResults(
-        run, tuple(ours), status, reader.quantities(), pieces, checks, tuple(references), watch, reader.record_head()
-    )
+    return rows
 
 
 def watch_of(references: Sequence[Measured], surroundings: SurroundingsOf, run: StoredRun) -> ReferenceWatch:

@@ -1,0 +1,88 @@
+"""The table of settings that a run measures several times: a row for each measurement, beside its setting's verdict."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Final
+
+from tester.analysis.difference import Difference
+from tester.analysis.settings import SettingMeasurement, difference_of
+from tester.results.columns import Column, Table, axis_column
+from tester.results.run_results import RunResults
+from tester.results.settings import RepeatedSetting
+from tester.store.records import ConditionInfo
+
+
+@dataclass(frozen=True, slots=True)
+class SettingRow:
+    """A measurement of a setting, and by how much it differs from the setting's first."""
+
+    info: ConditionInfo
+    setting: RepeatedSetting
+    measurement: SettingMeasurement
+    from_first: Difference
+
+    @property
+    def one_piece(self) -> bool:
+        """Return whether it was made on the piece of the setting's first."""
+        return self.measurement.piece == self.setting.first.piece
+
+    @property
+    def stands_out(self) -> bool | None:
+        """Return whether it is what stands out most; None where the setting agrees, or was not judged."""
+        found = self.setting.found
+        if found is None or found.kept or found.outstanding is None:
+            return None
+        return found.measurements[found.outstanding] is self.measurement
+
+
+def settings_table(results: RunResults) -> Table[SettingRow]:
+    """Return a row for each measurement of a setting that was measured several times.
+
+    ``difference`` is that from the setting's first measurement, with its expanded uncertainty (95 %) ``u_difference``;
+    chi2 and its limit are the setting's, the same in its rows.
+    """
+    piece = Column[SettingRow](results.worn, results.worn, lambda row: row.measurement.piece or None)
+    axes = (axis_column(one, _info) for one in results.axes)
+    return Table[SettingRow]((*_WHICH, *axes, piece, *_FOUND), tuple(_rows(results)))
+
+
+def _rows(results: RunResults) -> Iterator[SettingRow]:
+    infos = {one.info.condition: one.info for one in results.conditions()}
+    for setting in results.settings:
+        for one in setting.measurements:
+            off = Difference() if one is setting.first else difference_of(setting.first, one)
+            yield SettingRow(infos[one.condition], setting, one, off)
+
+
+def _info(row: SettingRow) -> ConditionInfo:
+    return row.info
+
+
+def _chi2(row: SettingRow) -> float | None:
+    return None if row.setting.found is None else row.setting.found.chi2
+
+
+def _limit(row: SettingRow) -> float | None:
+    return None if row.setting.found is None else row.setting.found.limit
+
+
+def _agrees(row: SettingRow) -> bool | None:
+    return None if row.setting.found is None else row.setting.found.kept
+
+
+_WHICH: Final[tuple[Column[SettingRow], ...]] = (
+    Column("condition", "condition", lambda row: row.measurement.condition, "", 0),
+    Column("compound", "compound", lambda row: row.info.compound),
+)
+_FOUND: Final[tuple[Column[SettingRow], ...]] = (
+    Column("mu", "mu", lambda row: row.measurement.mu, "", 3),
+    Column("difference", "difference from the first", lambda row: row.from_first.value, "", 3),
+    Column("u_difference", "U of the difference", lambda row: row.from_first.expanded, "", 3),
+    Column("one_piece", "on one piece", lambda row: row.one_piece),
+    Column("chi2", "chi-squared", _chi2, "", 1),
+    Column("chi2_limit", "limit", _limit, "", 1),
+    Column("agrees", "agrees", _agrees),
+    Column("stands_out", "stands out most", lambda row: row.stands_out),
+)
