@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import re
+import runpy
 import shlex
 import subprocess
 import sys
@@ -216,3 +217,8 @@ def test_the_page_on_the_paper_quotes_what_is_predicted(
 
     assert invoke(["predict", "--compound", compound, *held]) == 0
     assert capsys.readouterr().out.strip() in PAPER.read_text(encoding="utf-8")
+
+
+def test_the_glossary_has_every_flag_as_the_one_list_has_it() -> None:
+    text = (DOCS / "glossary.md").read_text(encoding="utf-8")
+    assert runpy.run_path(str(DOCS / "flags.py"))["page_text"](text) == text

@@ -55,8 +55,11 @@ def compare(run1: str, run2: str, compounds: tuple[str, str] | None, as_json: bo
 def _lines(table: Table[Pair], compounds: tuple[str, str] | None) -> Iterator[str]:
     """Yield what all pairs share, then a row for each: what tells it from the others, and its figures."""
     words = ListWords(one.either.info.setpoint for one in table.rows)
-    if words.common:
-        yield f"all at {shown(words.common)}"
+    common = words.common
+    if compounds:
+        common = common.removeprefix(f"{compounds[0]}, ")
+    if common:
+        yield f"all at {shown(common)}"
     if compounds:
         yield f"1: {shown(compounds[0])}, 2: {shown(compounds[1])}"
     from tester.cli.text_table import plain_lines

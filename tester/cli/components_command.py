@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from tester.axes import ListWords
+from tester.base.words import coefficient
 from tester.cli.formatting import Json, dump, number, shown
 from tester.cli.options import json_option
 from tester.cli.run_lookup import run_folder
@@ -65,24 +66,26 @@ def components(run: str, as_json: bool) -> None:
         click.echo(f"all at {shown(words.common)}")
     width = max(map(len, [*told, "condition"]))
     heads = "".join(f"{head:<{_WIDTH}}" for head in ("adhesion", "hysteresis", "share"))
-    click.echo(f"{'condition':<{width}}  mu dry  mu film  {heads}warmer")
+    click.echo(f"{'condition':<{width}}  dry    film   {heads}warmer")
     for text, one in zip(told, pairs, strict=True):
         parts = one.parts
         figures = "".join(f"{_told(each):<{_WIDTH}}" for each in (parts.adhesion, parts.hysteresis, parts.share))
         mu = (one.dry.result.mu_resultant, one.film.result.mu_resultant)
         warmer = f"{parts.warmer_k:+.1f} K" if isfinite(parts.warmer_k) else "-"
-        click.echo(f"{text:<{width}}  {mu[0]:6.4f}  {mu[1]:7.4f}  {figures}{warmer}")
+        click.echo(f"{text:<{width}}  {coefficient(mu[0])}  {coefficient(mu[1])}  {figures}{warmer}")
     for mean in means:
         of = f"{mean.compound}, {mean.interface}: share of hysteresis, mean of {mean.conditions} conditions"
         click.echo(f"{shown(of)}: {_told(mean.share)}")
     if any(not isfinite(one.parts.share.expanded) for one in pairs):
         click.echo("no U: a condition measured once does not tell its repeatability (measure: repeats: 2 or more)")
+    click.echo("dry, film: mu as measured, at the temperatures that were measured")
     for line in ASSUMED:
         click.echo(line)
 
 
 def _told(one: PartValue) -> str:
-    return f"{one.value:.4f} ± {one.expanded:.4f}" if isfinite(one.expanded) else f"{one.value:.4f}"
+    value = coefficient(one.value)
+    return f"{value} ± {coefficient(one.expanded)}" if isfinite(one.expanded) else value
 
 
 def _estimate_json(one: PartValue) -> dict[str, Json]:
@@ -96,8 +99,8 @@ def _pair_json(one: FilmPair) -> dict[str, Json]:
         "specimen": one.film.info.specimen,
         "replicate": one.film.info.replicate,
         **{axis.column: axis.of(held) for axis in held.axes},
-        "mu_dry": number(one.dry.result.mu_resultant),
-        "mu_film": number(one.film.result.mu_resultant),
+        "mu_dry_as_measured": number(one.dry.result.mu_resultant),
+        "mu_film_as_measured": number(one.film.result.mu_resultant),
         "adhesion": _estimate_json(parts.adhesion),
         "hysteresis": _estimate_json(parts.hysteresis),
         "hysteresis_share": _estimate_json(parts.share),

@@ -56,7 +56,7 @@ def _say(run: str, repeat: str, reason: str, operator: str | None, *, excluded: 
             results = results_of(reader)
     except (CannotExcludeError, StoreError) as error:
         raise click.ClickException(str(error)) from error
-    row = next(row for row in results.rows if any(one.info.condition == condition for one in row.replicates))
+    row = next(row for row in results.all_rows() if any(one.info.condition == condition for one in row.replicates))
     n = f"valid {row.result.counts.words}"
     click.echo(f"{condition}/{number} {'excluded' if excluded else 'included'}: {shown(row.describe())}, {n}", err=True)
     click.echo(f"record head: {results.record_head}", err=True)

@@ -109,8 +109,9 @@ def _trip(trip: StoredTrip) -> Json:
 def _summary(name: str, results: RunResults) -> dict[str, Json]:
     from tester.cli.watch import watch_json
     from tester.results.pieces_table import pieces_table
+    from tester.results.tally import tally_of
 
-    run = results.run
+    run, tally = results.run, tally_of(results)
     return {
         "run": name,
         "status": results.status.value,
@@ -131,7 +132,9 @@ def _summary(name: str, results: RunResults) -> dict[str, Json]:
         "rig_seconds": number(run.rig_seconds),
         "overruns": run.overruns,
         "metadata": dict(run.info.metadata),
-        "rows": results.valued(),
+        "tally": {
+            "conditions": tally.conditions, "values": tally.valued, "doubts": tally.doubted, "notes": tally.noted,
+        },
         "missing": [row.describe() for row in results.missing()],
         "conditions": [*_conditions(results)],
         "wheels": [*pieces_table(results).records()],
@@ -153,7 +156,7 @@ def _conditions(results: RunResults) -> Iterator[Json]:
 
 
 def _lines(name: str, results: RunResults) -> Iterator[str]:
-    from tester.cli.ending import risk_lines
+    from tester.cli.ending import risk_lines, told_lines
 
     run = results.run
     yield f"{name}: {shown(run.info.recipe_name)}"
@@ -168,8 +171,8 @@ def _lines(name: str, results: RunResults) -> Iterator[str]:
         yield from (shown(f"  doubt: {doubt}") for doubt in one.doubts.splitlines())
     if run.overruns:
         yield f"overruns {run.overruns} samples dropped"
-    yield f"values   {results.valued()} of {len(results.rows)} conditions"
     yield from _table(results)
+    yield from told_lines(results, SHOW_WIDTH)
     left = sum(not row.tried for row in results.rows)
     if left:
         yield f"{left} of {len(results.rows)} conditions not measured"

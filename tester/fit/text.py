@@ -73,7 +73,7 @@ def group_lines(fit: GroupFit, validation: Errors | None, *, force: bool = False
     intervals that are not to be relied on.
     """
     sources = ", ".join(dict.fromkeys(one.source.name for one in fit.points))
-    yield f"{fit.group}: {len(fit.points)} conditions of {sources}"
+    yield f"{fit.group}: {len(fit.points)} conditions of {sources}, mu as measured"
     yield from _parameter_lines(fit, force)
     yield f"  {_HEADER}"
     yield f"  {error_row('conditions that were fitted', fit.errors)}"

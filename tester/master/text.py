@@ -12,20 +12,20 @@ from tester.master.verdict import TEST_WORDS
 
 Plain = str | int | float | bool | None | list["Plain"] | dict[str, "Plain"]
 
-HEADER = "log10 aT v       mu      degC        v /m/s  off curve %"
+HEADER = "log10 aT v  mu as measured      degC        v /m/s  off curve %"
 
 
 def table_lines(one: Master) -> Iterator[str]:
-    """Yield the table: x at the reference temperature, mu, what was measured, and how far mu is off the curve."""
+    """Yield the table: x at the reference temperature, what was measured, and how far mu is off the curve."""
     yield HEADER
     for row in one.rows():
         off = 100.0 * row.off
-        yield f"{row.x:>10.4f} {row.mu:>8.4f} {row.temperature_c:>9.2f} {row.speed_m_s:>13.4g} {off:>+12.2f}"
+        yield f"{row.x:>10.4f} {row.mu:>15.4f} {row.temperature_c:>9.2f} {row.speed_m_s:>13.4g} {off:>+12.2f}"
 
 
 def csv_text(one: Master) -> str:
     """Return the table as CSV with full precision, a header first."""
-    lines = ["log10 aT v,mu,Temperature /°C,Speed /m·s⁻¹,ln mu off the curve"]
+    lines = ["log10 aT v,mu as measured,Temperature /°C,Speed /m·s⁻¹,ln mu off the curve"]
     lines += [
         f"{row.x!r},{row.mu!r},{row.temperature_c!r},{row.speed_m_s!r},{row.off!r}" for row in one.rows()
     ]
@@ -102,7 +102,10 @@ def plain(one: Master) -> dict[str, Plain]:
     """Return a master curve as data: SI units but degC, shifts in decades, NaN and infinity as None."""
     c, judged = one.collapse, one.judged
     rows: list[Plain] = [
-        {"x": row.x, "mu": row.mu, "temperature_c": row.temperature_c, "speed_m_s": row.speed_m_s, "off_ln": row.off}
+        {
+            "x": row.x, "mu_as_measured": row.mu, "temperature_c": row.temperature_c, "speed_m_s": row.speed_m_s,
+            "off_ln": row.off,
+        }
         for row in one.rows()
     ]
     tests: list[Plain] = [

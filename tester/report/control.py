@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from math import isfinite
 
 from tester.analysis.reference import ControlChart, ControlPoint
+from tester.base.words import coefficient
 from tester.report.chart import Chart, ChartPanel, Series
 
 LABEL = "friction coefficient"
@@ -46,5 +47,7 @@ def _points(label: str, points: Sequence[ControlPoint], style: int) -> Series:
         "left out" if style else "measured",
         style,
         tuple(one.expanded for one in points),
-        names=tuple(f"turn {one.number}: {one.mu:.3f}\u00a0±\u00a0{one.expanded:.3f}" for one in points),
+        names=tuple(
+            f"turn {one.number}: {coefficient(one.mu)}\u00a0±\u00a0{coefficient(one.expanded)}" for one in points
+        ),
     )

@@ -12,6 +12,7 @@ from tester.materials.schema import CompoundModel, SurfaceModel
 from tester.materials.surface import surface_model
 from tester.report.layout import FactSheet, Listing, Paragraph, Part, ReportRow, ReportSection, ReportTable, heads
 from tester.report.record import RunRecord
+from tester.report.words import file_name
 from tester.store.records import StoredMaterial
 
 
@@ -63,7 +64,7 @@ def _formulations(compounds: Mapping[str, CompoundModel]) -> ReportTable:
 
 
 def _told(one: StoredMaterial, compound: CompoundModel | None) -> list[Part]:
-    facts = [("source", one.source), ("SHA-256", one.sha256)]
+    facts = [("source", file_name(one.source)), ("SHA-256", one.sha256)]
     if compound is not None:
         facts = [*_of_compound(compound), *facts]
     surface = _surface(one)

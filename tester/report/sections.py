@@ -24,7 +24,7 @@ from tester.report.layout import (
     rendered,
 )
 from tester.report.record import ALARMING, RunRecord
-from tester.report.words import day
+from tester.report.words import day, file_name
 from tester.results.columns import Output
 from tester.results.pieces_table import pieces_table
 from tester.results.references_table import ReferenceRow, references_table
@@ -61,7 +61,7 @@ def ran_section(record: RunRecord, key: str) -> ReportSection:
 
 
 def _from(source: str) -> str:
-    return f" (from {source})" if source else ""
+    return f" (from {file_name(source)})" if source else ""
 
 
 def _revision(revision: str) -> str:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 from tester.axes import Axis
 from tester.base.words import NONE
 from tester.results.columns import unit_of
@@ -10,6 +12,11 @@ from tester.results.columns import unit_of
 def day(utc: str) -> str:
     """Return the day and the minute of a wall-clock text, in UTC."""
     return f"{utc[:10]} {utc[11:16]} UTC" if len(utc) > 15 and utc[10:11] == "T" else utc or NONE
+
+
+def file_name(source: str) -> str:
+    """Return where something was read from without its folders, which are nobody's business but its maker's."""
+    return re.split(r"[/\\]", source.rstrip("/\\"))[-1]
 
 
 def name_of(axis: Axis) -> str:

@@ -180,7 +180,7 @@ def _uncertainties(worn: str) -> tuple[Column[ConditionRow], ...]:
                _PEOPLE - {Output.END}),
         Column("u_expanded_compound_percent", "U compound",
                lambda row: _percent(row.result.compound_budget.expanded, row), "%", 1, frozenset({Output.REPORT})),
-        Column("coverage_factor_compound", "k compound", lambda row: row.result.compound_budget.coverage, "", 2),
+        Column("coverage_factor_compound", "k", lambda row: row.result.compound_budget.coverage, "", 2),
     )  # fmt: skip
 
 

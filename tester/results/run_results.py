@@ -26,6 +26,7 @@ from tester.analysis.results import ConditionStatus
 from tester.analysis.wear import ConditionWear, WearRate, condition_wear, wear_rate
 from tester.analysis.wear_check import WearCheck
 from tester.axes import Axes, condition_words
+from tester.base.words import coefficient
 from tester.quantities import Quantities
 from tester.results.settings import RepeatedSetting, SettingsOf, in_doubt
 from tester.results.surroundings import Reduced, SurroundingsOf
@@ -119,7 +120,7 @@ class ReferenceWatch:
             yield "counterface: fewer than two references have a value, nothing is known of it"
         for chart in self.charts:
             outside = [f"{one.number}" for one in chart.points if isfinite(one.mu) and not one.within]
-            told = f"references of {chart.compound}: limits {chart.low:.4f} to {chart.high:.4f}"
+            told = f"references of {chart.compound}: limits {coefficient(chart.low)} to {coefficient(chart.high)}"
             yield f"{told}; outside: {', '.join(outside)}" if outside else f"{told}; all inside"
 
 

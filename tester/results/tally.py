@@ -38,6 +38,8 @@ class Tally:
         values = f"{some} a value" if self.missing else f"{all_of} a value"
         if not self.valued:
             return f"{values}."
+        if not (self.doubted or self.noted):
+            return f"{values}; none carries a flag."
         return f"{values}; {_carried(self.doubted, 'doubt', self.doubts)}, {_carried(self.noted, 'note', self.notes)}."
 
 

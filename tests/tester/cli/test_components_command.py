@@ -29,7 +29,8 @@ def test_each_pair_has_its_parts_with_what_is_assumed(tmp_path: Path, capsys: py
     found = data(capsys, "components", str(run))
     assert len(found["conditions"]) == 6 and len(found["means"]) == 1
     for one in found["conditions"]:
-        assert one["adhesion"]["value"] + one["hysteresis"]["value"] == pytest.approx(one["mu_dry"], rel=1e-9)
+        both = one["adhesion"]["value"] + one["hysteresis"]["value"]
+        assert both == pytest.approx(one["mu_dry_as_measured"], rel=1e-9)
         assert 0.0 < one["hysteresis_share"]["U"] < 0.2
         assert one["hysteresis_share"]["value"] == pytest.approx(1.0, abs=one["hysteresis_share"]["U"] * 1.5)
     assert "takes all adhesion away" in found["assumed"][0]

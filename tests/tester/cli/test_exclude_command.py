@@ -30,7 +30,7 @@ def test_it_says_what_the_condition_has_become(home: Path, capsys: pytest.Captur
     assert captured.out == "" and captured.err.startswith("2/1 excluded: 1#, 300 mm/s, 200 N, 25 degC: ok")
     told, head = captured.err.splitlines()
     with RunReader(home / "runs" / "one") as reader:
-        assert told.endswith("n 3 of 3") and head == f"record head: {reader.record_head()}"
+        assert told.endswith("valid 3 of 3") and head == f"record head: {reader.record_head()}"
 
 
 def test_show_lists_every_word_with_who_and_why(home: Path, capsys: pytest.CaptureFixture[str]) -> None:

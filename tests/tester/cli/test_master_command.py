@@ -44,7 +44,7 @@ def test_a_run_of_the_simulated_law_collapses_at_its_ts(home: Path, capsys: pyte
 
 def test_the_table_is_stdout_and_what_is_said_of_it_stderr(home: Path, capsys: pytest.CaptureFixture[str]) -> None:
     table, summary = said(capsys, str(made_track_run(home / "one")))
-    assert len(table.splitlines()) == 100 and table.startswith("log10 aT v       mu")
+    assert len(table.splitlines()) == 100 and table.startswith("log10 aT v  mu as measured")
     assert "SBR, dry, 20 N: 99 conditions of one, 11 temperatures from -40 to 60 degC" in summary
     assert "verdict: collapses" in summary and "0.58 K of the thermometer" in summary
     assert "maximum: mu 2." in summary
@@ -118,7 +118,7 @@ def test_the_table_is_written_with_full_precision(home: Path, capsys: pytest.Cap
     said(capsys, run, "-o", "master.csv")
     rows = list(csv.reader(io.StringIO(Path("master.csv").read_text(encoding="utf-8"))))
     told = data(capsys, run)["rows"]
-    assert rows[0][:2] == ["log10 aT v", "mu"] and len(rows) == 100
+    assert rows[0][:2] == ["log10 aT v", "mu as measured"] and len(rows) == 100
     assert [float(one) for one in rows[1]] == list(told[0].values())
 
 

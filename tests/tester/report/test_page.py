@@ -227,3 +227,11 @@ def test_without_jinja_the_line_that_installs_it_is_named(monkeypatch: pytest.Mo
     with pytest.raises(MissingExtraError, match=r"friction-tester\[report\]"):
         page_of(empty)
     assert ReportSection("a", "b", []).parts == []
+
+
+@pytest.mark.parametrize("source", ["/home/ada/lab/mine.yaml", "C:\\Users\\ada\\lab\\mine.yaml"])
+def test_a_page_names_files_without_the_folders_of_its_maker(source: str, plain: RunRecord) -> None:
+    info = replace(plain.results.run.info, recipe_source=source, rig_source=source)
+    run = replace(plain.results.run, info=info)
+    text = page(replace(plain, results=replace(plain.results, run=run)))
+    assert "(from mine.yaml)" in text and "ada" not in text.replace(info.operator, "")

@@ -4,19 +4,23 @@ from __future__ import annotations
 
 import csv
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
+from tester.analysis.repeats import ConditionResult
 from tester.cli.main import invoke
+from tester.kinds.wheel_on_belt.quantities import QUANTITIES
+from tester.quantities import FURTHER, Channel, Means
 from tester.results import conditions_table as module
 from tester.results.columns import Column, Output
 from tester.results.conditions_table import ConditionRow, conditions_table
-from tester.results.run_results import results_of
+from tester.results.run_results import RunResults, results_of
 from tester.store.reader import RunReader
 from tester.tui.stored import read
 from tests.tester.results.made import made
-from tests.tester.store.build import small_run
+from tests.tester.store.build import CONDITION, RUN, SPECIMENS, open_writer, result, small_run
 
 
 @pytest.fixture
@@ -80,3 +84,43 @@ def test_keys_stand_once(tmp_path: Path) -> None:
     with RunReader(small_run(tmp_path)) as reader:
         keys = [one.key for one in conditions_table(results_of(reader)).columns]
     assert len(keys) == len(set(keys))
+
+
+def with_humidity(results: RunResults) -> RunResults:
+    """Return results of a rig that has a further sensor, which showed 41.3 % throughout."""
+    channel = Channel("humidity_percent", "%", "Humidity", f"{FURTHER}.0", mean=99, decimals=1)
+    quantities = QUANTITIES.with_further((channel,))
+
+    def measured(one: ConditionResult) -> ConditionResult:
+        return replace(one, measured=Means(quantities, [*one.measured.values(), 41.3]))
+
+    rows = tuple(
+        replace(
+            row,
+            result=measured(row.result),
+            replicates=tuple(replace(one, result=measured(one.result)) for one in row.replicates),
+        )
+        for row in results.rows
+    )
+    return replace(results, quantities=quantities, rows=rows)
+
+
+@pytest.mark.parametrize("output", [Output.SHOW, Output.REPORT, Output.SCREEN])
+def test_people_see_the_mean_of_a_further_sensor(output: Output, tmp_path: Path) -> None:
+    with RunReader(small_run(tmp_path)) as reader:
+        table = conditions_table(with_humidity(results_of(reader))).view(output)
+    texts = dict(zip([one.head for one in table.columns], next(table.texts()), strict=True))
+    assert texts["humidity (%)"] == "41.3" and "surface temp (°C)" not in texts
+
+
+def test_a_number_that_is_not_trusted_has_its_mark_everywhere(tmp_path: Path) -> None:
+    writer = open_writer(tmp_path)
+    writer.begin_run(RUN, SPECIMENS, [CONDITION])
+    for repeat in (1, 2):
+        writer.commit_repeat(writer.begin_repeat(1, repeat, 1), result(0.7))
+    writer.close()
+    with RunReader(tmp_path) as reader:
+        table = conditions_table(results_of(reader))
+    (row,) = table.rows
+    assert table["mu"].text(row) == "0.700!" and table["mark"].text(row) == "!"
+    assert table["remarks"].text(row).startswith("not measured")
