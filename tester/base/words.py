@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import isfinite
 from typing import Final
 
-NONE: Final = "–"
+NONE: Final = "—"
 """Stands where there is no value."""
 
 

@@ -6,11 +6,11 @@ import json
 import platform
 from collections.abc import Iterable
 from dataclasses import dataclass
-from math import isfinite
 from pathlib import Path
 from typing import Protocol
 
 from tester.axes import Axes, AxisValue, Setpoint, axes_from
+from tester.base.as_json import finite
 from tester.results.run_results import Measured, results_of
 from tester.store import older
 from tester.store.catalogue import run_folders, under_way
@@ -180,7 +180,7 @@ def read_entries(folder: Path, origin: str, print_: str) -> tuple[RunEntry, list
         seed=run.info.seed,
         started_utc=run.info.started_utc,
         ended_utc=run.ended_utc,
-        rig_seconds=_number(run.rig_seconds),
+        rig_seconds=finite(run.rig_seconds),
         software_version=run.info.software_version,
         conditions=len(results.rows),
         repeats=sum(len(measured.repeats) for measured in conditions),
@@ -205,10 +205,10 @@ def _condition(measured: Measured) -> ConditionEntry:
         compound=i.compound,
         held=held_text(i.setpoint),
         status=r.status.value,
-        mu=_number(r.mu),
-        s=_number(r.s),
-        u_standard=_number(r.standard),
-        u_expanded=_number(r.expanded),
+        mu=finite(r.mu),
+        s=finite(r.s),
+        u_standard=finite(r.standard),
+        u_expanded=finite(r.expanded),
         n_valid=r.n_valid,
         n=r.counts.asked,
         flags=r.flags,
@@ -220,7 +220,3 @@ def _unreadable(folder: Path, origin: str, print_: str, problem: str) -> RunEntr
     return RunEntry(
         origin, folder.name, print_, status, "", "", "", "", False, None, "", "", None, "", 0, 0, 0, 0, problem
     )
-
-
-def _number(value: float) -> float | None:
-    return value if isfinite(value) else None

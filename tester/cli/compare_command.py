@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 import click
 
 from tester.axes import ListWords
-from tester.cli.formatting import Json, dump, shown
+from tester.base.as_json import Json
+from tester.cli.formatting import dump, shown
 from tester.cli.run_lookup import run_folder
 
 if TYPE_CHECKING:

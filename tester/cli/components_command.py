@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 import click
 
 from tester.axes import ListWords
+from tester.base.as_json import Json, finite
 from tester.base.words import coefficient
-from tester.cli.formatting import Json, dump, number, shown
+from tester.cli.formatting import dump, shown
 from tester.cli.options import json_option
 from tester.cli.run_lookup import run_folder
 
@@ -89,7 +90,7 @@ def _told(one: PartValue) -> str:
 
 
 def _estimate_json(one: PartValue) -> dict[str, Json]:
-    return {"value": number(one.value), "u": number(one.standard), "U": number(one.expanded)}
+    return {"value": finite(one.value), "u": finite(one.standard), "U": finite(one.expanded)}
 
 
 def _pair_json(one: FilmPair) -> dict[str, Json]:
@@ -99,12 +100,12 @@ def _pair_json(one: FilmPair) -> dict[str, Json]:
         "specimen": one.film.info.specimen,
         "replicate": one.film.info.replicate,
         **{axis.column: axis.of(held) for axis in held.axes},
-        "mu_dry_as_measured": number(one.dry.result.mu_resultant),
-        "mu_film_as_measured": number(one.film.result.mu_resultant),
+        "mu_dry_as_measured": finite(one.dry.result.mu_resultant),
+        "mu_film_as_measured": finite(one.film.result.mu_resultant),
         "adhesion": _estimate_json(parts.adhesion),
         "hysteresis": _estimate_json(parts.hysteresis),
         "hysteresis_share": _estimate_json(parts.share),
-        "dry_warmer_k": number(parts.warmer_k),
+        "dry_warmer_k": finite(parts.warmer_k),
     }
 
 

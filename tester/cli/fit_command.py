@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import click
 
+from tester.base.as_json import Json
 from tester.base.exits import EXIT_DONE, EXIT_FAILED
-from tester.cli.formatting import Json, dump, shown
+from tester.cli.formatting import dump, shown
 from tester.cli.options import json_option
 
 if TYPE_CHECKING:

@@ -1,18 +1,12 @@
-"""How commands show what is stored: numbers, durations, text that somebody else wrote."""
+"""How commands show what is stored: as JSON, and text that somebody else wrote."""
 
 from __future__ import annotations
 
 import json
-from math import isfinite
 
 import click
 
-from tester.base.as_json import Json as Json
-
-
-def number(value: float) -> float | None:
-    """Return a number, None (JSON's null) for what is not finite."""
-    return value if isfinite(value) else None
+from tester.base.as_json import Json
 
 
 def shown(text: str) -> str:

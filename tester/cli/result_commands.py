@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING
 
 import click
 
+from tester.base.as_json import Json, finite
 from tester.base.words import duration
-from tester.cli.formatting import Json, dump, number, shown
+from tester.cli.formatting import dump, shown
 from tester.cli.run_lookup import run_folder
 
 if TYPE_CHECKING:
@@ -58,7 +59,7 @@ def show(run: str, as_json: bool, with_budget: bool) -> None:
             "exclusions": [_fields(word, _WORD, excluded=bool(word.excluded)) for word in said],
         }
         history["trips"] = [*map(_trip, trips)]
-        history["commands"] = [{"t_s": number(one.t_s), "utc": one.utc, "text": one.text} for one in commands]
+        history["commands"] = [{"t_s": finite(one.t_s), "utc": one.utc, "text": one.text} for one in commands]
         dump(_summary(folder.name, results) | history)
         return
     if with_budget:
@@ -93,14 +94,14 @@ def _fields(record: object, names: str, **instead: Json) -> Json:
 
 def _trip(trip: StoredTrip) -> Json:
     return {
-        "t_s": number(trip.t_s),
+        "t_s": finite(trip.t_s),
         "utc": trip.utc,
         "interlock": trip.interlock,
         "text": trip.text,
-        "value": number(trip.value),
-        "limit": number(trip.limit_value),
+        "value": finite(trip.value),
+        "limit": finite(trip.limit_value),
         "unit": trip.unit,
-        "acknowledged_s": number(trip.acknowledged_s),
+        "acknowledged_s": finite(trip.acknowledged_s),
         "acknowledged_utc": trip.acknowledged_utc or None,
         "acknowledged_by": trip.acknowledged_by,
     }
@@ -129,7 +130,7 @@ def _summary(name: str, results: RunResults) -> dict[str, Json]:
         "materials": [_fields(one, _MATERIAL) for one in run.info.materials],
         "started_utc": run.info.started_utc,
         "ended_utc": run.ended_utc or None,
-        "rig_seconds": number(run.rig_seconds),
+        "rig_seconds": finite(run.rig_seconds),
         "overruns": run.overruns,
         "metadata": dict(run.info.metadata),
         "tally": {

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 
 import click
 
+from tester.base.as_json import Json
 from tester.base.words import duration
-from tester.cli.formatting import Json, dump, shown
+from tester.cli.formatting import dump, shown
 from tester.store.status import RunStatus
 
 if TYPE_CHECKING:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import asdict
 
 from tester.analysis.reference import ControlChart, CounterfaceDrift
-from tester.cli.formatting import Json, number
+from tester.base.as_json import Json, finite
 from tester.results.run_results import RunResults
 from tester.results.settings_table import settings_table
 
@@ -24,10 +24,10 @@ def _drift(drift: CounterfaceDrift) -> Json:
     change, low, high = drift.changed_percent(drift.over_m)
     return {
         "told_apart": drift.apart,
-        "over_m": number(drift.over_m),
-        "change_percent": number(change),
-        "change_low_percent": number(low),
-        "change_high_percent": number(high),
+        "over_m": finite(drift.over_m),
+        "change_percent": finite(change),
+        "change_low_percent": finite(low),
+        "change_high_percent": finite(high),
         "references": drift.references,
         "pieces": drift.pieces,
     }
@@ -35,8 +35,8 @@ def _drift(drift: CounterfaceDrift) -> Json:
 
 def _chart(chart: ControlChart) -> Json:
     points: list[Json] = [
-        {key: number(value) if isinstance(value, float) else value for key, value in asdict(one).items()}
+        {key: finite(value) if isinstance(value, float) else value for key, value in asdict(one).items()}
         for one in chart.points
     ]
-    limits: dict[str, Json] = {"centre": number(chart.centre), "low": number(chart.low), "high": number(chart.high)}
+    limits: dict[str, Json] = {"centre": finite(chart.centre), "low": finite(chart.low), "high": finite(chart.high)}
     return {"compound": chart.compound, **limits, "points": points}

@@ -3,31 +3,24 @@
 from __future__ import annotations
 
 from dataclasses import asdict
-from math import isfinite
 
+from tester.base.as_json import Json, finite
 from tester.fit.check import Errors
 from tester.fit.joint import GroupFit
 from tester.fit.part import PublishedTable, TableLine
 from tester.fit.trends import Interval
 
-Json = str | int | float | bool | None | list["Json"] | dict[str, "Json"]
-
-
-def number(value: float) -> float | None:
-    """Return a number, None for what is not finite."""
-    return value if isfinite(value) else None
-
 
 def interval(given: Interval) -> Json:
     """Return both ends."""
-    return [number(one) for one in given]
+    return [finite(one) for one in given]
 
 
 def errors(given: Errors | None) -> Json:
     """Return errors, None where there are none."""
     if given is None:
         return None
-    return {name: number(value) if isinstance(value, float) else value for name, value in asdict(given).items()}
+    return {name: finite(value) if isinstance(value, float) else value for name, value in asdict(given).items()}
 
 
 def group(fit: GroupFit, validation: Errors | None, *, force: bool = False) -> dict[str, Json]:
@@ -48,7 +41,7 @@ def group(fit: GroupFit, validation: Errors | None, *, force: bool = False) -> d
             for one, value, pair in zip(law.parameters, fit.parameters, fit.intervals, strict=True)
         },
         "table": table,
-        "condition_number": number(fit.condition_number),
+        "condition_number": finite(fit.condition_number),
         "resamples": {"fitted": len(fit.resamples.parameters), "drawn": fit.resamples.drawn},
         "errors": errors(fit.errors),
         "left_out": errors(fit.left_out),
@@ -69,12 +62,12 @@ def group(fit: GroupFit, validation: Errors | None, *, force: bool = False) -> d
                 {
                     "variable": one.variable.name,
                     "trend": one.word,
-                    "peak": number(one.variable.scale * one.peak),
-                    "peak_interval": [number(one.variable.scale * end) for end in one.peak_interval] if sure else None,
+                    "peak": finite(one.variable.scale * one.peak),
+                    "peak_interval": [finite(one.variable.scale * end) for end in one.peak_interval] if sure else None,
                     "inside": one.inside,
                     "exponent" if one.variable.ratio else "per_unit": one.exponent,
                     "interval": interval(one.exponent_interval) if sure and not one.own_heat else None,
-                    "agree": number(one.agree),
+                    "agree": finite(one.agree),
                 }
                 for one in (fit.trends.each if sure or not fit.lack.shown else ())
             ],
@@ -87,12 +80,12 @@ def _lack(fit: GroupFit) -> dict[str, Json]:
     return {
         "shown": lack.shown,
         "residual": lack.residual,
-        "independent": number(below.standard) if below is not None else None,
-        "repeats": number(below.repeats) if below is not None else None,
-        "own": number(below.own) if below is not None else None,
-        "between_conditions": number(below.between) if below is not None else None,
+        "independent": finite(below.standard) if below is not None else None,
+        "repeats": finite(below.repeats) if below is not None else None,
+        "own": finite(below.own) if below is not None else None,
+        "between_conditions": finite(below.between) if below is not None else None,
         "tests": [{"name": one.name, "p": one.p, "failed": one.failed} for one in lack.tests],
-        "visible": number(lack.visible),
+        "visible": finite(lack.visible),
     }
 
 

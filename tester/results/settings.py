@@ -21,6 +21,7 @@ from tester.analysis.settings import (
     measurement,
 )
 from tester.axes import AxisValue, Setpoint, condition_words
+from tester.base.words import coefficient
 from tester.store.records import ConditionInfo, StoredRepeat
 
 DIFFERENCES_SHOWN = 3
@@ -81,7 +82,7 @@ class RepeatedSetting:
         i = found.outstanding
         one, off = found.measurements[i], found.off[i]
         percent, u_percent = (100.0 * value / (one.mu - off) for value in (off, 2.0 * found.off_standard[i]))
-        what = f"condition {one.condition} stands out most, mu {one.mu:.3f}"
+        what = f"condition {one.condition} stands out most, mu {coefficient(one.mu)}"
         return f": {what}, {percent:+.1f} ± {u_percent:.1f} % off what the others give"
 
 

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from math import inf, isfinite
+from math import inf
 from pathlib import Path
 from typing import Any, Final
 
 from tester.analysis.misalignment import misalignment
+from tester.base.as_json import finite
 from tester.base.keys import FAST_STOP, MEANINGS, STOP
 from tester.commission.person import Asks, Person, Question, StepRefused
 from tester.machine.context import Progress
@@ -104,21 +105,17 @@ def run_recipe(options: SessionOptions, folder: Path, person: Person, name: str,
     angle = misalignment(found)
     conditions = [
         {
-            "mu": one.mu, "s": _number(one.s), "n": one.n_valid, "expanded": _number(one.expanded),
-            "difference_percent": _number(one.both_ways.difference_percent) if one.both_ways is not None else None,
+            "mu": one.mu, "s": finite(one.s), "n": one.n_valid, "expanded": finite(one.expanded),
+            "difference_percent": finite(one.both_ways.difference_percent) if one.both_ways is not None else None,
         }
         for one in found
     ]  # fmt: skip
     return {
-        "run": where.name, "rig_s": rig_s, "conditions": conditions, "angle_deg": _number(angle.deg),
-        "angle_expanded_deg": _number(angle.expanded_deg),
+        "run": where.name, "rig_s": rig_s, "conditions": conditions, "angle_deg": finite(angle.deg),
+        "angle_expanded_deg": finite(angle.expanded_deg),
     }  # fmt: skip
 
 
 def _scripted(person: Person) -> bool:
     """Tell whether a person reads a simulated rig: the run then mounts and answers by itself."""
     return hasattr(person, "at")
-
-
-def _number(value: float) -> float | None:
-    return value if isfinite(value) else None

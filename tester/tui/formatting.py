@@ -8,8 +8,6 @@ from datetime import datetime
 from textwrap import wrap
 
 REPLACEMENT = "\N{REPLACEMENT CHARACTER}"
-NOTHING = "—"
-"""Stands where there is no value."""
 _KEY = re.compile(r"\S.*?  +(?=\S)")
 """In a help text a key is followed by two spaces or more."""
 HIDDEN = frozenset({"Cc", "Cf", "Cs", "Co", "Cn", "Zl", "Zp", "Mn", "Me"})
@@ -27,16 +25,6 @@ def clean(text: str, limit: int = 2000) -> str:
 def clean_lines(text: str) -> str:
     """Return a text of several lines the same way, its line ends kept."""
     return "\n".join(clean(line) for line in text.split("\n"))
-
-
-def number(value: float | None, decimals: int) -> str:
-    """Return a number with so many decimals; a dash where there is none."""
-    return NOTHING if value is None else f"{round(value, decimals) + 0.0:.{decimals}f}"  # + 0.0: never -0.0
-
-
-def count(much: float, thing: str) -> str:
-    """Return how many of a thing there are: 1 wheel, 2 wheels."""
-    return f"{much:.0f} {thing}{'' if round(much) == 1 else 's'}"
 
 
 def clock_text(utc: str, *, seconds: bool = False) -> str:

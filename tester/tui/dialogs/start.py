@@ -9,12 +9,12 @@ from textual.containers import Horizontal
 from textual.widget import Widget
 from textual.widgets import Button, Checkbox, Input, Static
 
-from tester.base.words import duration
+from tester.base.words import counted, duration
 from tester.service.commands import RunRecipe, ShowPlan
 from tester.service.state import Check
 from tester.tui.dialogs.confirm import preflight_rows
 from tester.tui.dialogs.dialog import Dialog, entry, field, line
-from tester.tui.formatting import clean, count
+from tester.tui.formatting import clean
 from tester.tui.recipe_library import ListedRecipe
 
 LATER = ("guard and safety chain", "zero of the load cell", "watchdogs of the drives")
@@ -144,7 +144,7 @@ def totals(plan: dict[str, JsonValue], part: str) -> str:
         value = plan.get(key)
         return float(value) if isinstance(value, int | float) else 0.0
 
-    conditions, parts = count(figure("conditions"), "condition"), count(figure(f"{part}s"), part)
+    conditions, parts = counted(int(figure("conditions")), "condition"), counted(int(figure(f"{part}s")), part)
     return (
         f"{conditions}, {parts}, {duration(figure('rig_seconds'))} of rig time, "
         f"{figure('sliding_m'):.0f} m sliding, {figure('loss_mm'):.2f} mm wear"

@@ -6,11 +6,11 @@ from math import isfinite
 from textwrap import wrap
 from typing import Final
 
-from tester.base.words import duration
+from tester.base.words import NONE, decimal, duration
 from tester.commission.engine import Ended
 from tester.commission.standing import StepStanding
 from tester.commission.step import StepReading
-from tester.tui.formatting import NOTHING, clean, fit, number
+from tester.tui.formatting import clean, fit
 from tester.tui.guide.guide import ENDINGS, GuideView
 from tester.tui.scene import ScreenScene
 from tester.tui.widgets.panel import ABNORMAL, FAINT, NOTICE, WARNING, Panel, Part, Parts, rows
@@ -73,7 +73,7 @@ def end_words(seen: GuideView) -> tuple[str, str]:
         again = "" if outcome.ended is Ended.DONE else ". r goes on where it stands"
         return f"{ENDINGS[outcome.ended]}{at}{why}{again}", ABNORMAL if outcome.ended in BAD else "bold"
     if not seen.now:
-        return f"nothing is connected, nothing moves. Next: {seen.next or NOTHING}", ""
+        return f"nothing is connected, nothing moves. Next: {seen.next or NONE}", ""
     if seen.question is not None:
         return f"{seen.now}: waits for your answer", "bold"
     return f"{seen.now}: under way", NOTICE
@@ -109,7 +109,7 @@ class ReadingsPanel(GuidePanel):
 
 def reading_row(one: StepReading, width: int) -> Parts:
     """Return a reading: label, value, unit, words."""
-    value = number(one.value, one.decimals) if isfinite(one.value) else "" if one.words and not one.unit else NOTHING
+    value = decimal(one.value, one.decimals) if isfinite(one.value) else "" if one.words and not one.unit else NONE
     text = f"{fit(clean(one.label), LABEL):<{LABEL}}{value:>{CELL}} {clean(one.unit, 5):<5} {clean(one.words)}"
     return [fit(text.rstrip(), width)]
 

@@ -10,12 +10,13 @@ from textual.widgets import Input
 
 from tester.base import clock
 from tester.base.trouble import in_words
+from tester.base.words import decimal
 from tester.service.commands import WatchFrames
 from tester.service.protocol import Frame
 from tester.service.state import BusView as BusState
 from tester.service.state import DeviceView
 from tester.tui.bundle import write_bundle
-from tester.tui.formatting import clean, fit, number
+from tester.tui.formatting import clean, fit
 from tester.tui.pages.view import Keys, View
 from tester.tui.scene import STALE_S, ScreenScene
 from tester.tui.widgets.panel import FAINT, NOTICE, WARNING, Panel, Parts, rows
@@ -74,7 +75,7 @@ class BusesPanel(Panel):
 
 def bus_row(one: BusState) -> str:
     """Return a bus."""
-    load = f"{number(one.load_percent, 1)} %" if one.load_percent is not None else "load unknown"
+    load = f"{decimal(one.load_percent, 1)} %" if one.load_percent is not None else "load unknown"
     return f"{clean(one.name):<9} {one.kind:<7} {load:>12}  {one.errors} errors  {clean(one.detail)}"
 
 

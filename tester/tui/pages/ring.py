@@ -14,8 +14,9 @@ from textual.widgets import DataTable
 
 from tester.analysis.ring_runs import RingRun
 from tester.base.trouble import in_words
+from tester.base.words import NONE, decimal
 from tester.store.schema import StoreError
-from tester.tui.formatting import NOTHING, clean, number
+from tester.tui.formatting import clean
 from tester.tui.pages.results import TextTable
 from tester.tui.pages.view import Keys, View
 from tester.tui.rings import KeptRings, RingRow
@@ -141,6 +142,6 @@ def cells(row: RingRow) -> tuple[str, ...]:
     """Return a run's cells of HEADER."""
     run = row.run
     places = [f"{one.centre_deg:.0f}° ±{one.half_deg:.0f}" for one in row.sectors if one.found]
-    per_thousand = number(run.per_thousand, 2) if run.requests else NOTHING
+    per_thousand = decimal(run.per_thousand, 2) if run.requests else NONE
     texts = (run.name, f"{row.age:.0f}", str(run.requests), str(run.errors), per_thousand, ", ".join(places))
     return tuple(clean(text, 60) for text in texts)

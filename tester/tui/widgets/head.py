@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Final
 
-from tester.base.words import duration
+from tester.base.words import decimal, duration
 from tester.service.state import Alarm, StateView
-from tester.tui.formatting import clean, clock_text, fit, number
+from tester.tui.formatting import clean, clock_text, fit
 from tester.tui.gone import gone_line
 from tester.tui.scene import STALE_S, UNDER_WAY, ScreenScene
 from tester.tui.widgets.panel import ABNORMAL, FAINT, NOTICE, WARNING, Panel, Part, Parts
@@ -129,8 +129,8 @@ def alarm_words(alarm: Alarm) -> str:
     """Return an alarm in a line: what, value, limit, what it means, what happens next."""
     text = f"{ALARM_SIGNS[alarm.state]} P{alarm.priority} {clean(alarm.name)}"
     if alarm.value is not None:
-        limit = f" (limit {number(alarm.limit, 1)})" if alarm.limit is not None else ""
-        text += f" {number(alarm.value, 1)} {clean(alarm.unit)}{limit}"
+        limit = f" (limit {decimal(alarm.limit, 1)})" if alarm.limit is not None else ""
+        text += f" {decimal(alarm.value, 1)} {clean(alarm.unit)}{limit}"
     gone = ", gone by itself" if alarm.state == "returned" else ""
     then = f"; {clean(alarm.consequence)}" if alarm.consequence else ""
     return f"{text}: {clean(alarm.text)}{gone}{then}"

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from tester.base.words import duration
+from tester.base.words import decimal, duration
 from tester.service.state import Gate, ProgressView, SoakView
-from tester.tui.formatting import clean, fit, number
+from tester.tui.formatting import clean, fit
 from tester.tui.scene import UNDER_WAY, ScreenScene
 from tester.tui.widgets.panel import FAINT, NOTICE, Panel, Parts, rows
 
@@ -82,7 +82,7 @@ def _step(progress: ProgressView, soak: SoakView | None, gates: tuple[Gate, ...]
 def soak_words(soak: SoakView, *, short: bool = False) -> str:
     """Return a soak in words: 39.6 of 40.0 ± 1.0 °C, in band 3:10 of 10:00; ``short``: 39.6 of 40.0 °C 3:10/10:00."""
     if short:
-        at = f"{number(soak.surface_c, 1)} of {soak.target_c:.1f} °C"
+        at = f"{decimal(soak.surface_c, 1)} of {soak.target_c:.1f} °C"
         return f"{at} {duration(soak.in_band_s)}/{duration(soak.for_s)}"
-    band = f"{number(soak.surface_c, 1)} of {soak.target_c:.1f} ± {soak.within_k:.1f} °C"
+    band = f"{decimal(soak.surface_c, 1)} of {soak.target_c:.1f} ± {soak.within_k:.1f} °C"
     return f"{band}, in band {duration(soak.in_band_s)} of {duration(soak.for_s)}"

@@ -7,7 +7,8 @@ from textwrap import wrap
 from typing import Final
 
 from tester.analysis.ring_runs import RingRun, trend_of
-from tester.tui.formatting import NOTHING, fit, number
+from tester.base.words import NONE, decimal
+from tester.tui.formatting import fit
 from tester.tui.plot import Point, scatter
 from tester.tui.rings import RingRow
 from tester.tui.scene import ScreenScene
@@ -71,7 +72,7 @@ class SpeedPanel(Panel):
             return []
         lines: list[Parts] = []
         for words, requests, errors in self.run.by_speed():
-            share = number(1e3 * errors / requests, 2) if requests else NOTHING
+            share = decimal(1e3 * errors / requests, 2) if requests else NONE
             lines.append([fit(f"{words:<15}{errors:>6}{share:>8}/1000", width)])
         return rows(lines[:height])
 

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from tester.base.words import decimal
 from tester.screen import PlotView
 from tester.service.protocol import SNAPSHOT_S, TREND_ROWS
-from tester.tui.formatting import clean, number
+from tester.tui.formatting import clean
 from tester.tui.plot import LIMIT, WISH, Bin, Canvas, PlotRange
 from tester.tui.scene import ScreenScene
 from tester.tui.widgets.panel import FAINT, Panel, Part, Parts
@@ -71,8 +72,8 @@ class TrendPanel(Panel):
         bins = self._take(scene, columns.index(plot.column), canvas.columns)
         known = [one for one in bins[-canvas.columns :] if one is not None]
         ends = [y for one in known for y in one] + ([value.setpoint] if value.setpoint is not None else [])
-        wanted = "" if value.setpoint is None else f" ── SP {number(value.setpoint, value.decimals)}"
-        self.entitle(f"{clean(value.label)} {number(value.value, value.decimals)}{wanted}")
+        wanted = "" if value.setpoint is None else f" ── SP {decimal(value.setpoint, value.decimals)}"
+        self.entitle(f"{clean(value.label)} {decimal(value.value, value.decimals)}{wanted}")
         if not ends:
             return [("no data yet", FAINT)]
         scale = self._range

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from tester.base.words import NONE, decimal
 from tester.service.state import Value
 from tester.tui.bar import bar, believable, beyond
-from tester.tui.formatting import NOTHING, clean, fit, number
+from tester.tui.formatting import clean, fit
 from tester.tui.scene import ScreenScene
 from tester.tui.widgets.panel import ABNORMAL, FAINT, WARNING, Panel, Parts, rows
 
@@ -24,12 +25,12 @@ def value_row(value: Value, width: int, *, linked: bool = True) -> Parts:
     """Return one value in ``width`` columns. ``linked`` False: what is shown is not how it is."""
     label = fit(clean(value.label), LABEL).ljust(LABEL)
     unit = clean(value.unit, UNIT).ljust(UNIT)
-    wanted = number(value.setpoint, value.decimals).rjust(CELL)
+    wanted = decimal(value.setpoint, value.decimals).rjust(CELL)
     fresh = believable(value) and linked
-    measured = number(value.value, value.decimals)
+    measured = decimal(value.value, value.decimals)
     flag, style = beyond(value), ABNORMAL
     if value.quality == "none" or value.value is None:
-        measured, flag, style = NOTHING, "", FAINT
+        measured, flag, style = NONE, "", FAINT
     elif not fresh:
         measured, style = f"{measured}?", FAINT
         flag = "BAD" if value.quality == "bad" else "STALE"

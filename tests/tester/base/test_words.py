@@ -12,16 +12,16 @@ from tester.base.words import counted, decimal, duration, percent, significant
 @pytest.mark.parametrize(
     ("seconds", "text"),
     [(0.0, "0:00:00"), (190.0, "0:03:10"), (3599.6, "1:00:00"), (22440.0, "6:14:00"), (360000.0, "100:00:00"),
-     (-3.0, "0:00:00"), (None, "–"), (nan, "–"), (inf, "–")],
+     (-3.0, "0:00:00"), (None, "—"), (nan, "—"), (inf, "—")],
 )  # fmt: skip
 def test_a_duration_is_hours_minutes_and_whole_seconds(seconds: float | None, text: str) -> None:
     assert duration(seconds) == text
 
 
 def test_a_number_that_is_none_is_a_dash_and_no_number_is_minus_nought() -> None:
-    assert [decimal(x, 1) for x in (None, nan, -0.04, 0.06)] == ["–", "–", "0.0", "0.1"]
-    assert [significant(x) for x in (None, inf, 0.00012345)] == ["–", "–", "0.000123"]
-    assert [percent(x) for x in (nan, 0.0205)] == ["–", "2.1\u00a0%"]
+    assert [decimal(x, 1) for x in (None, nan, -0.04, 0.06)] == ["—", "—", "0.0", "0.1"]
+    assert [significant(x) for x in (None, inf, 0.00012345)] == ["—", "—", "0.000123"]
+    assert [percent(x) for x in (nan, 0.0205)] == ["—", "2.1\u00a0%"]
 
 
 def test_one_thing_is_not_several() -> None:

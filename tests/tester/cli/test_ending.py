@@ -34,7 +34,7 @@ def test_numbers_stand_below_each_other(tmp_path: Path) -> None:
 
 def test_a_condition_without_a_value_has_a_dash_and_its_status(tmp_path: Path) -> None:
     row = ending_lines(small_run(tmp_path, ([nan] * 3, [0.73, 0.74, 0.72])))[3]
-    assert row.split()[5:] == ["–", "–", "0", "of", "3", "insufficient"]
+    assert row.split()[5:] == ["—", "—", "0", "of", "3", "insufficient"]
 
 
 def test_camber_is_a_column_where_a_condition_has_it(tmp_path: Path) -> None:

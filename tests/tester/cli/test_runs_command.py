@@ -189,4 +189,4 @@ def test_a_condition_that_only_one_run_has_is_compared_with_nothing(home: Path) 
     small_run(home / "runs" / "two", ([0.9, 0.91, 0.89],))
     rows = json.loads(invoke(compare, "one", "two", "--json").stdout)
     assert rows[1]["mu_2"] is None and rows[1]["z"] is None
-    assert " – " in invoke(compare, "one", "two").stdout.splitlines()[3]
+    assert " — " in invoke(compare, "one", "two").stdout.splitlines()[3]

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from tester.tui.bar import bar, beyond
 from tester.tui.filters import ascii_text
-from tester.tui.formatting import clean, count, fit, number, reflow
+from tester.tui.formatting import clean, fit, reflow
 from tester.tui.plot import Canvas, PlotRange, Point, round_step, scatter
 from tester.tui.scene import ScreenScene
 from tests.tester.service.views import HOSTILE, value
@@ -20,14 +20,6 @@ def test_what_cannot_be_seen_is_replaced_one_for_one() -> None:
 def test_a_help_text_fills_its_lines_and_hangs_what_a_key_does_beside_it() -> None:
     text = "One line of a\nparagraph.\n\nspace  HOLD: lift and wait\nq      leave\n"
     assert reflow(text, 18) == "One line of a\nparagraph.\n\nspace  HOLD: lift\n       and wait\nq      leave"
-
-
-def test_no_number_is_minus_nought() -> None:
-    assert [number(x, 1) for x in (-0.04, -0.06, None)] == ["0.0", "-0.1", "—"]
-
-
-def test_one_thing_is_not_several() -> None:
-    assert [count(n, "wheel") for n in (0, 1, 2)] == ["0 wheels", "1 wheel", "2 wheels"]
 
 
 def test_fit_marks_what_is_missing() -> None:
