@@ -1,0 +1,135 @@
+"""The operator's screens as text: results, repeats, replay."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+
+from tests.campaigns.agreement.facts import Facts, seconds_of
+from tests.campaigns.agreement.names import CONDITIONS, RIG_SECONDS, STATUS, VALUES, quantity_of
+from tests.campaigns.agreement.record import Record
+from tests.campaigns.agreement.table import TableReader
+
+_EDGE = "│"
+
+
+def boxes(text: str) -> dict[str, list[str]]:
+    """Return what stands in the boxes of a screen that are as wide as the screen, by their titles."""
+    found: dict[str, list[str]] = {}
+    title = ""
+    for line in text.splitlines():
+        if line.startswith("╭"):
+            title = line.strip("╭─╮ ")
+            found[title] = []
+        elif line.startswith(_EDGE) and title:
+            found[title].append(line.strip(_EDGE))
+        elif line.startswith("╰"):
+            title = ""
+    return found
+
+
+def cells_of(header: str, line: str) -> list[str]:
+    """Return the cells of a line below the headings of a table whose columns begin where these do."""
+    starts = [match.start() for match in re.finditer(r"(?:(?<=  )|^ ?)\S", header)]
+    starts = [at + len(header[at:]) - len(header[at:].lstrip()) for at in starts]
+    return [line[begin:end].strip() for begin, end in pairwise([*starts, len(line) + 1])]
+
+
+def read_results(record: Record, worn: str, text: str, output: str) -> Facts:
+    """Return the facts of the Results screen: the line of the run, and its conditions."""
+    facts = Facts(output)
+    for title, lines in boxes(text).items():
+        if title.startswith("Runs") and lines:
+            _runs(facts, record, lines)
+        elif title.startswith(record.name) and lines:
+            _conditions(facts, record, worn, lines)
+    return facts
+
+
+def _runs(facts: Facts, record: Record, lines: Sequence[str]) -> None:
+    for line in lines[1:]:
+        cells = dict(zip(cells_of(lines[0], lines[0]), cells_of(lines[0], line), strict=True))
+        if cells.get("Run") != record.name:
+            continue
+        facts.add(record.run, STATUS, cells["Status"])
+        values, conditions = cells["Values"].split("/")
+        facts.count(record.run, VALUES, values)
+        facts.count(record.run, CONDITIONS, conditions)
+        facts.add(record.run, RIG_SECONDS, seconds_of(cells["Rig time"]), 0.5)
+
+
+def _conditions(facts: Facts, record: Record, worn: str, lines: Sequence[str]) -> None:
+    """Read the table of conditions, a line each in the order of the record, references last."""
+    headings = cells_of(lines[0], lines[0])
+    order = _order(record)
+    for line in lines[1:]:
+        cells = cells_of(lines[0], line)
+        if not any(cells):
+            break
+        number = next(order, None)
+        if number is None:
+            facts.strange.append(f"no condition is like this line: {line.strip()}")
+            return
+        reader = TableReader(facts, record, worn)
+        for heading, cell in zip(headings, cells, strict=True):
+            if not cell.endswith("…"):
+                reader.cell(record.of_condition(number), heading, cell)
+
+
+def _order(record: Record) -> Iterator[int]:
+    """Yield the numbers of conditions as tables list them: the recipe's rows, then references."""
+    rows = sorted(record.rows, key=lambda row: (record.is_reference(row), row))
+    for row in rows:
+        yield from (condition.number for condition in record.rows[row])
+
+
+_REPEAT = re.compile(
+    r"repeat (?P<repeat>\d+): (?P<heading>mu[a-z ]*) (?P<mu>[\d.]+|–)(?:  (?P<status>[a-z]+(?: [a-z]+)*))?"
+)
+_FIGURE = re.compile(r"(?P<heading>.+?) (?P<value>\d+ of \d+.*|\S+|\S+ %)")
+
+
+def read_repeats(record: Record, worn: str, condition: int, text: str, output: str) -> Facts:
+    """Return the facts of the dialog that shows the repeats of a condition: its figures, then a line a repeat."""
+    facts = Facts(output)
+    reader = TableReader(facts, record, worn)
+    subject = record.of_condition(condition)
+    lines = [line.strip("│ ") for line in text.splitlines()]
+    for figure in next((line for line in lines if re.search(r"  mu [\d.–]", line)), "").split("  ")[1:]:
+        if figure.startswith("flags "):
+            reader.cell(subject, "flags", figure.removeprefix("flags "))
+        elif match := _FIGURE.fullmatch(figure.strip()):
+            reader.cell(subject, match["heading"], match["value"])
+    for line in lines:
+        if match := _REPEAT.match(line):
+            at = record.of_repeat(condition, int(match["repeat"]))
+            facts.number(at, f"repeat {quantity_of(match['heading'], worn)}", match["mu"])
+            if match["status"]:
+                facts.add(at, "repeat status", match["status"])
+                facts.add(at, "repeat in mean", float("not in the mean" not in line))
+    return facts
+
+
+_COND, _REP = re.compile(r"cond (\d+)/(\d+)"), re.compile(r"rep (\d+)/(\d+)")
+_HEAD_LEFT, _CAMPAIGN_LEFT = re.compile(r"left (\d+:\d\d:\d\d)"), re.compile(r"Campaign .*?(\d+:\d\d:\d\d) left")
+_STEP = re.compile(r"([✔▶·]) (\S.*?)\s+(~?\d+:\d\d(?::\d\d)?)\s*[│┃]")
+
+
+def moment(facts: Facts, record: Record, at: str, text: str) -> None:
+    """Read a moment of a run from the Run screen: what is done, what is left, the list of steps."""
+    subject = ("moment", record.name, at)
+    if match := _COND.search(text):
+        facts.count(subject, "conditions done", match.group(1))
+        facts.count(record.run, "conditions of the plan", match.group(2))
+    for found in (_HEAD_LEFT.search(text), _CAMPAIGN_LEFT.search(text)):
+        if found is not None:
+            facts.add(subject, "time left", seconds_of(found.group(1)), 0.5)
+    steps = [(match.group(1), seconds_of(match.group(3))) for match in _STEP.finditer(text)]
+    if steps:
+        facts.count(subject, "conditions done", sum(sign == "✔" for sign, _ in steps))
+
+
+def done_by(record: Record, at_s: float) -> int:
+    """Return how many conditions were over at a time of the rig."""
+    return sum(one.ended_s is not None and one.ended_s <= at_s for one in record.conditions)

@@ -1,0 +1,39 @@
+"""`tester`, with a person who presses the key for STOP once a share of the run's time is done.
+
+Run as a file, by the Python of any installation: python stopping.py SHARE run RECIPE ... A run that is over before is
+not stopped.
+"""
+
+from __future__ import annotations
+
+import sys
+
+from tester.cli import console
+from tester.cli.main import main
+from tester.machine.context import Progress
+
+
+class Stopping(console.Console):
+    """A console at which somebody is impatient."""
+
+    at_share = 1.0
+    pressed = False
+    done = 0.0
+
+    def show(self, now_s: float, run: Progress, share: float) -> None:
+        """Keep how far the run is."""
+        self.done = share
+        super().show(now_s, run, share)
+
+    def commands(self) -> list[str]:
+        """Return the command to stop, once."""
+        if self.pressed or self.done < self.at_share:
+            return []
+        self.pressed = True
+        return ["stop"]
+
+
+if __name__ == "__main__":
+    Stopping.at_share = float(sys.argv.pop(1))
+    console.Console = Stopping
+    sys.exit(main())
