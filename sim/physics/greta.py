@@ -18,7 +18,7 @@ measured is known to agree with it.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields
 from math import isfinite, pi, sqrt
 from typing import TYPE_CHECKING, Annotated, Final, NamedTuple
@@ -106,6 +106,19 @@ class Greta:
         share = min(1.0, pressure_pa / (fine.magnitude_pa * contact_slope(self.fine)))
         adhesion = shear_strength_pa(self._shear, v) / pressure_pa * share
         return Components(adhesion, self.hysteresis(pressure_pa, coarse, adhesion))
+
+    def caveats(self, temperature_c: float, load_n: float, slip_m_s: float) -> Iterator[str]:
+        """Yield that a speed is below the slowest, and that the contact is full; raises as ``mu``."""
+        if slip_m_s < SLOWEST_M_S:
+            yield f"below {1e3 * SLOWEST_M_S:g} mm/s the coefficient is that of this speed"
+        _, fine = self.dynamic(temperature_c, max(slip_m_s, SLOWEST_M_S))
+        full_pa = fine.magnitude_pa * contact_slope(self.fine)
+        pressure_pa = self.pressure_pa(load_n)
+        if pressure_pa > full_pa:
+            yield (
+                f"at {1e-6 * pressure_pa:.3g} MPa the contact is full ({1e-6 * full_pa:.3g} MPa would do): the law's"
+                " contact is of a pressure below that"
+            )
 
     def hysteresis(self, pressure_pa: float, dynamic: Dynamic, friction: float) -> float:
         """Return mu_hys (Eq 20) under a pressure; ``friction``: K, of which more than the limit does not count."""

@@ -9,7 +9,7 @@ up where this module knows no law of a name.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
 from math import isfinite
@@ -37,6 +37,15 @@ class LawOfParts(FrictionLaw, Protocol):
 
     def components(self, temperature_c: float, load_n: float, slip_m_s: float) -> Components:
         """Return both parts; ``mu`` is their sum."""
+        ...
+
+
+@runtime_checkable
+class LawOfRange(FrictionLaw, Protocol):
+    """A law that knows where it holds."""
+
+    def caveats(self, temperature_c: float, load_n: float, slip_m_s: float) -> Iterator[str]:
+        """Yield why the coefficient of a condition is to be taken with care, a line each."""
         ...
 
 
@@ -173,6 +182,12 @@ def _of_materials(
     if not (isfinite(area_mm2) and area_mm2 > 0.0):
         raise ValueError(f"the nominal area of contact must be finite and above 0 mm2, not {area_mm2!r}")
     return maker.make(materials.rubber(compound), materials.surface(setting.surface), area_mm2, figures)
+
+
+def caveats_of(law: FrictionLaw, temperature_c: float, load_n: float, slip_m_s: float) -> Iterator[str]:
+    """Yield why the coefficient of a condition is to be taken with care; nothing of a law that knows no range."""
+    if isinstance(law, LawOfRange):
+        yield from law.caveats(temperature_c, load_n, slip_m_s)
 
 
 def with_parts(name: str, law: FrictionLaw) -> LawOfParts:

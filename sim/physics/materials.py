@@ -6,6 +6,7 @@ them for a calculation.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
@@ -59,6 +60,12 @@ class Rubber:
     """What its adhesion is made of, where it is known."""
     decade_k: float = 8.0
     """Temperature that stands for a decade of frequency (paper G, Eq 9), K."""
+
+
+def below_glass(rubber: Rubber, temperature_c: float) -> Iterator[str]:
+    """Yield that a compound is a glass at a temperature, of which laws of rubber know nothing."""
+    if rubber.glass_c is not None and temperature_c < rubber.glass_c:
+        yield f"{temperature_c:g} degC is below the glass transition of {rubber.name}, {rubber.glass_c:g} degC"
 
 
 class Spectrum(Protocol):

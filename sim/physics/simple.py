@@ -10,10 +10,12 @@ glass transition.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields
 from math import exp, isfinite, log, log10
 from typing import Annotated, Any, Final, TypeVar
+
+from sim.physics.wlf import heated
 
 GAS_J_MOL_K: Final = 8.314462618
 KELVIN: Final = 273.15
@@ -65,6 +67,12 @@ class PowerLaw:
         """Take a rubber's parameters."""
         self.parameters = parameters
 
+    def caveats(self, temperature_c: float, load_n: float, slip_m_s: float) -> Iterator[str]:
+        """Yield that the temperature does not count, and speeds at which the law ends."""
+        yield "the law power knows no temperature: it is of the one at which it was measured"
+        if slip_m_s < SLOWEST_M_S:
+            yield f"below {1e3 * SLOWEST_M_S:g} mm/s the coefficient is that of this speed"
+
     def mu(self, temperature_c: float, load_n: float, slip_m_s: float) -> float:
         """Return the coefficient."""
         p = self.parameters
@@ -79,6 +87,10 @@ class Arrhenius:
     def __init__(self, parameters: ArrheniusParameters) -> None:
         """Take a rubber's parameters."""
         self.parameters = parameters
+
+    def caveats(self, temperature_c: float, load_n: float, slip_m_s: float) -> Iterator[str]:
+        """Yield speeds at which friction heats the contact, which the law does not know."""
+        yield from heated(slip_m_s)
 
     def mu(self, temperature_c: float, load_n: float, slip_m_s: float) -> float:
         """Return the coefficient; at standstill mu_0. Raises ValueError at absolute zero and below."""

@@ -13,7 +13,7 @@ or below it there is no law, and ``PoleError`` is raised.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields
 from typing import Annotated, Final
 
@@ -23,6 +23,19 @@ C2_K: Final = 101.5
 GLASS_TO_REFERENCE_K: Final = 50.0
 FITTED_K: Final = 100.0
 """From the glass transition on, the constants hold over this span, K."""
+
+
+HEATING_M_S: Final = 0.01
+"""Slower than this, friction of some newtons does not heat the contact: 20 N at a coefficient of 2 are 0.4 W [A]."""
+
+
+def heated(slip_m_s: float) -> Iterator[str]:
+    """Yield that friction heats the contact at a speed, of which a law without heat knows nothing."""
+    if slip_m_s > HEATING_M_S:
+        yield (
+            f"above {1e3 * HEATING_M_S:g} mm/s friction heats the contact, and the law knows no heat: the temperature"
+            " is that of the contact"
+        )
 
 
 class PoleError(ValueError):
@@ -99,6 +112,16 @@ class WlfBell:
         """Return log10 aT, 0 at t_ref. Raises PoleError."""
         p = self._parameters
         return log10_shift(temperature_c, p.t_ref, p.c1, p.c2)
+
+    def caveats(self, temperature_c: float, load_n: float, slip_m_s: float) -> Iterator[str]:
+        """Yield where the shift does not hold, and speeds at which friction heats the contact."""
+        low_c, high_c = self._parameters.fitted_c
+        if not low_c <= temperature_c <= high_c:
+            yield (
+                f"{temperature_c:g} degC is outside {low_c:g} to {high_c:g} degC, from the glass transition to"
+                f" {FITTED_K:g} K above it, where the shift of WLF holds"
+            )
+        yield from heated(slip_m_s)
 
     def mu(self, temperature_c: float, load_n: float, slip_m_s: float) -> float:
         """Return the coefficient; at standstill that of the slowest sliding, mu_0. Raises PoleError."""

@@ -31,7 +31,7 @@ TOGETHER = "several-runs"
     "--out", type=click.Path(file_okay=False, path_type=Path), default=Path("figures"), show_default=True,
     help="Folder; each run's figures are in one of its own there.",
 )  # fmt: skip
-@click.option("--law", default="", metavar="LAW", help="Draw a published law too: paper or v2.")
+@click.option("--law", default="", metavar="LAW", help="Draw a law with published parameters: of a wheel paper or v2.")
 @click.option("--published/--no-published", default=True, show_default=True, help="Points of the paper beside.")
 @click.option("--components", is_flag=True, help="No run: adhesion and hysteresis of a law of materials.")
 @click.option("--over", type=click.Choice(OVERS), default="ra", show_default=True, help="What --components goes over.")

@@ -40,9 +40,11 @@ def material_of(results: RunResults, law: str, published: bool) -> Material:
     if not law:
         return Material(measured, beside)
     try:
-        return Material(measured, beside, part.law_at(law), f"law {law}")
+        return Material(measured, beside, part.law_at(law), f"law {law}", part.law_caveats)
     except KeyError as error:
-        raise click.UsageError(f"--law: no law {law!r} (expected {', '.join(part.laws)})") from error
+        known = ", ".join(part.published_laws)
+        expected = f"expected {known}" if known else "of this kind of rig no law has any: fit one with tester fit"
+        raise click.UsageError(f"--law: no law {law!r} with published parameters ({expected})") from error
 
 
 def words_of(info: RunInfo) -> MachineWords:

@@ -58,8 +58,8 @@ def master(
 
     log10 aT = -8.86 (T - Ts) / (101.5 K + T - Ts) after Williams, Landel and Ferry. The table goes to stdout: x =
     log10(aT v) at the reference temperature, mu, measured temperature and speed, and how far mu is off the curve. The
-    rest goes to stderr: the verdict, Ts with its 95 % interval, the scatter, the maxima, and the shifts between
-    neighbouring temperatures by themselves. Runs in which friction heats the contact are refused.
+    rest goes to stderr: first the verdict, then Ts with its 95 % interval, the scatter, the maxima with theirs, and the
+    shifts between neighbouring temperatures by themselves. Runs in which friction heats the contact are refused.
 
     Exit code 0: it collapses; 1: it does not, or is refused; 6: these conditions cannot tell.
     """
@@ -204,25 +204,23 @@ def _held(point: MasterPoint, name: str) -> str:
 
 
 def _tell(made: Master, left_out: Sequence[tuple[str, str]], as_json: bool) -> None:
-    from tester.master.text import plain, summary_lines, table_lines
+    from tester.master.text import plain, summary_lines, table_lines, verdict_lines
 
     if as_json:
         dump({**plain(made), "left_out": [{"condition": label, "reason": reason} for label, reason in left_out]})
         return
+    for line in verdict_lines(made):
+        click.echo(shown(line), err=True)
     for line in table_lines(made):
         click.echo(line)
     for line in summary_lines(made):
-        click.echo(_shown_lines(line), err=True)
+        click.echo(shown(line), err=True)
     reasons: dict[str, list[str]] = {}
     for label, reason in left_out:
         reasons.setdefault(reason, []).append(label)
     for reason, labels in reasons.items():
         click.echo(f"left out ({shown(reason)}): {shown(', '.join(labels))}", err=True)
-
-
-def _shown_lines(text: str) -> str:
-    """Return lines harmless for a terminal."""
-    return "\n".join(shown(line) for line in text.split("\n"))
+    click.echo(next(verdict_lines(made)), err=True)  # again, below a table that has pushed the first one out of sight
 
 
 def _write(made: Master, path: Path, ending: str) -> None:

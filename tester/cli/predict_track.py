@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -10,7 +11,7 @@ import click
 
 from sim.physics import laws
 from sim.physics.friction import in_range
-from sim.physics.materials import Rubber, Surface
+from sim.physics.materials import Rubber, Surface, below_glass
 from sim.physics.track import TrackParameters, table_span
 from tester.cli.options import print_json
 from tester.materials.setting import law_setting
@@ -61,7 +62,8 @@ def predict_on_track(point: TrackPoint, *, components: bool, table: bool, as_jso
     if components:
         parts = laws.with_parts(point.law, law).components(*at)
         found |= {"adhesion": parts.adhesion, "hysteresis": parts.hysteresis}
-    _say_beyond(point, setting)
+    for caveat in _caveats(point, law, setting):
+        click.echo(f"warning: {caveat}", err=True)
     right = True
     if table:
         if setting is None:
@@ -95,19 +97,21 @@ def _setting(point: TrackPoint) -> laws.LawSetting | None:
     )
 
 
-def _say_beyond(point: TrackPoint, setting: laws.LawSetting | None) -> None:
-    """Say how far moduli were held on beyond those measured."""
+def _caveats(point: TrackPoint, law: laws.FrictionLaw, setting: laws.LawSetting | None) -> Iterator[str]:
+    """Yield where the law does not hold, and how far moduli were held on beyond those measured."""
     from sim.physics.moduli import TabulatedModulus
 
+    yield from laws.caveats_of(law, point.temperature_c, point.load_n, point.slip_m_s)
     if setting is None or setting.materials is None:
         return
-    modulus = setting.materials.rubber(point.compound).modulus
+    rubber = setting.materials.rubber(point.compound)
+    yield from below_glass(rubber, point.temperature_c)
+    modulus = rubber.modulus
     if isinstance(modulus, TabulatedModulus) and modulus.beyond_decades > 0.0:
         low_hz, high_hz = modulus.limits_hz(point.temperature_c)
-        click.echo(
-            f"warning: the moduli of {point.compound} at {point.temperature_c:g} degC are measured from {low_hz:.3g} to"
-            f" {high_hz:.3g} Hz, and held on for {modulus.beyond_decades:.1f} decades beyond",
-            err=True,
+        yield (
+            f"the moduli of {point.compound} at {point.temperature_c:g} degC are measured from {low_hz:.3g} to"
+            f" {high_hz:.3g} Hz, and held on for {modulus.beyond_decades:.1f} decades beyond"
         )
 
 

@@ -55,6 +55,7 @@ def group(fit: GroupFit, validation: Errors | None, *, force: bool = False) -> d
             for variable, found in zip(law.variables, fit.residuals, strict=True)
         },
         "lack_of_fit": _lack(fit),
+        "impossible": {**fit.impossible},
         "beyond": [*fit.beyond],
         "trends": {
             "at": {v.name: v.scale * x for v, x in zip(law.variables, fit.trends.at, strict=True)},

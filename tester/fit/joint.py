@@ -69,7 +69,9 @@ class GroupFit:
         """Return why no interval of this fit is to be relied on, "" where some are."""
         if self.lack.shown is None:
             return "nothing is known of the repeatability: no repeats, and none declared"
-        return "the law does not describe the conditions" if self.lack.shown else ""
+        if self.lack.shown:
+            return "the law does not describe the conditions"
+        return f"no such rubber has this {', '.join(self.impossible)}" if self.impossible else ""
 
     @property
     def sound(self) -> bool:
@@ -79,7 +81,7 @@ class GroupFit:
 
     def why_no_interval(self, name: str) -> str:
         """Return why the interval of a parameter is not to be relied on, "" where it is."""
-        return self.silent or self.impossible.get(name, "") or self.heated.get(name, "")
+        return self.silent or self.heated.get(name, "")
 
     @property
     def beyond(self) -> list[str]:

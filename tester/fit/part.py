@@ -91,6 +91,15 @@ class FitPart(Protocol):
         """Return published coefficients, each with what it was held at, to be shown beside measured ones."""
         ...
 
+    @property
+    def published_laws(self) -> Sequence[str]:
+        """Return the names of laws with published parameters, those that ``law_at`` knows."""
+        ...
+
+    def law_caveats(self, setpoint: Setpoint) -> Sequence[str]:
+        """Return why the value of a law with published parameters at a setpoint is to be taken with care."""
+        ...
+
     def law_at(self, name: str) -> Callable[[Setpoint], float]:
         """Return a law with published parameters over setpoints; raises KeyError for no such law."""
         ...

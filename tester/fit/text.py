@@ -43,7 +43,7 @@ def verdict_lines(fit: GroupFit) -> Iterator[str]:
                 f" is seen in {100.0 * SEEN:g} % of such records"
             )
     for name, reason in {**fit.heated, **fit.impossible}.items():
-        yield f"  {name} {fit.parameters[fit.law.names.index(name)]:.3g}: {reason}: no interval"
+        yield f"  {name} {fit.parameters[fit.law.names.index(name)]:.3g}: {reason}"
     yield from (f"  warning: {one}" for one in fit.beyond)
 
 

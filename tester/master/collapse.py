@@ -13,7 +13,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from math import inf, log, sqrt
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
@@ -64,6 +64,16 @@ class Curve:
         return np.asarray(slopes(np.clip(x, self.knots[0], self.knots[-1]), self.knots) @ self.weights)
 
 
+class Drawn(NamedTuple):
+    """Sets drawn anew from a curve: ``y`` is ln mu with what is known of factors, shape (n + factors, B), ``ts_c``
+    where each collapses best, ``thermometer_k`` by how much its thermometer is off, both (B,).
+    """
+
+    y: Array
+    ts_c: Array
+    thermometer_k: Array
+
+
 @dataclass(frozen=True, slots=True)
 class Collapse:
     """A set on one curve: ``x`` at Ts, ``residual`` of ln mu, shape (n,).
@@ -84,6 +94,7 @@ class Collapse:
     residual: Array
     curve: Curve
     of: MasterSet
+    drawn: Drawn | None = None
 
     @property
     def parameters(self) -> int:
@@ -163,17 +174,21 @@ def collapse(of: MasterSet, ts_c: float | None = None, resamples: int = RESAMPLE
         within = max(low, nearest_c - GRID_K), min(high, nearest_c + GRID_K)
         best_c = _golden(lambda at: left(at, interior), *within)
     x = of.log_v + shifts(of.celsius, best_c)
-    columns = _columns(of, x, interior)
-    weights: Array = np.asarray(np.linalg.lstsq(columns, y, rcond=None)[0], dtype=np.float64)
-    knots = quantile_knots(x, interior)
-    splines = knots.size - 4
-    curve = Curve(knots, weights[:splines], weights[splines:])
-    residual = (y - columns @ weights)[:n]
+    curve, residual = curve_through(of, x, interior, y)
     ends = min(best_c - low, high - best_c) < GRID_K
     given = Collapse(
         best_c, ts_c is None, (best_c, best_c), 0.0, inf, ts_c is None and ends, interior, x, residual, curve, of
     )
     return _with_interval(given, (low, high), resamples, seed)
+
+
+def curve_through(of: MasterSet, x: Array, interior: int, y: Array) -> tuple[Curve, Array]:
+    """Return the spline through ``y`` (``padded``) at x, with so many interior knots, and its residuals, shape (n,)."""
+    columns = _columns(of, x, interior)
+    weights: Array = np.asarray(np.linalg.lstsq(columns, y, rcond=None)[0], dtype=np.float64)
+    knots = quantile_knots(x, interior)
+    splines = knots.size - 4
+    return Curve(knots, weights[:splines], weights[splines:]), (y - columns @ weights)[: x.size]
 
 
 def _least(left: Callable[[float, int], float], trials: Array, interior: int) -> tuple[float, float]:
@@ -209,20 +224,24 @@ def _with_interval(one: Collapse, bounds: tuple[float, float], resamples: int, s
     u_k = one.scatter / _length(left_over(orthonormal(columns), moved))
     factors = np.column_stack([columns, padded(of, of.in_block)])
     u_factors_k = one.scatter / _length(left_over(orthonormal(factors), moved))
-    if not one.searched:
-        return replace(one, u_factors_k=u_factors_k)
-    reach = min(max(_REACH * u_k, 0.2), BELOW_K)
-    trials = np.linspace(max(bounds[0], one.ts_c - reach), min(bounds[1], one.ts_c + reach), 49)
     random = np.random.default_rng(seed)
     spread = one.residual * sqrt(n / max(n - one.parameters, 1))
-    drawn = random.choice(spread - np.mean(spread), (n, resamples))
+    own = random.choice(spread - np.mean(spread), (n, resamples))
     in_common = _between(one.residual, of) * random.standard_normal((len(of.blocks_c), resamples))
-    y = padded(of, (of.log_mu - one.residual)[:, None] + drawn + in_common[of.block])
+    y = padded(of, (of.log_mu - one.residual)[:, None] + own + in_common[of.block])
+    thermometer_k = of.thermometer_k * random.standard_normal(resamples)
+    if not one.searched:
+        drawn = Drawn(y, np.full(resamples, one.ts_c), thermometer_k)
+        return replace(one, u_factors_k=u_factors_k, drawn=drawn)
+    reach = min(max(_REACH * u_k, 0.2), BELOW_K)
+    trials = np.linspace(max(bounds[0], one.ts_c - reach), min(bounds[1], one.ts_c + reach), 49)
     left = np.array([_left_of(of, float(at), one.interior, y) for at in trials])
     found = _lowest(trials, left)
-    thermometer_k = of.thermometer_k * random.standard_normal(resamples)
     low, high = np.quantile(found + thermometer_k, [0.025, 0.975])
-    return replace(one, interval=(float(low), float(high)), u_fit_k=float(np.std(found)), u_factors_k=u_factors_k)
+    return replace(
+        one, interval=(float(low), float(high)), u_fit_k=float(np.std(found)), u_factors_k=u_factors_k,
+        drawn=Drawn(y, found, thermometer_k),
+    )  # fmt: skip
 
 
 def _length(values: Array) -> float:

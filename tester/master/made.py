@@ -36,6 +36,8 @@ class Master:
     pairs: tuple[TemperaturePair, ...]
     judged: MasterJudgement
     peaks: tuple[Peak, ...]
+    bumps: int = 0
+    """Maxima of the curve that its scatter may have made."""
     rules: tuple[Rule, ...] = ()
     glass_c: float | None = None
     """Glass transition that the compound's file says."""
@@ -75,8 +77,8 @@ def master_of(
     try:
         one = collapse(set_of(points), ts_c, resamples)
         pairs = pairs_of(one)
-        peaks = peaks_of(one, reference_c)
+        peaks, bumps = peaks_of(one, reference_c)
         rules = rules_of(rubber.modulus, reference_c, peaks) if rubber is not None else ()
     except PoleError as error:
         raise MasterError(f"no shift: {error}") from error
-    return Master(reference_c, one, pairs, judge(one, pairs), peaks, rules, glass_c)
+    return Master(reference_c, one, pairs, judge(one, pairs), peaks, bumps, rules, glass_c)

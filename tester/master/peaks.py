@@ -17,7 +17,7 @@ import numpy as np
 
 from sim.physics.materials import OutsideError, ShearModulus
 from sim.physics.wlf import PoleError
-from tester.master.collapse import Collapse, shifts
+from tester.master.collapse import Collapse, Curve, curve_through, padded, shifts
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -31,14 +31,24 @@ DECADES: Final = (-6, 14)
 A_DECADE: Final = 50
 PROMINENT: Final = 0.02
 """A maximum of the curve counts where ln mu falls by more than this on both sides [A]."""
+PLACES: Final = 1000
+DRAWN: Final = 200
+"""Sets drawn anew in which a maximum is looked for again."""
+FINER: Final = 4
+"""Knots more with which it is seen how far the spline moves a maximum [A]."""
+SURE: Final = 0.95
+"""Share of them that has to have it."""
+REACH_DECADES: Final = 1.0
+"""Within so much of the one maximum of a curve a maximum counts as the same [A]; of several, half their distance."""
 
 
 @dataclass(frozen=True, slots=True)
 class Peak:
-    """A maximum of the master curve: its speed in m/s at the reference temperature, and mu."""
+    """A maximum of the master curve: its speed in m/s at the reference temperature with its 95 % interval, and mu."""
 
     speed_m_s: float
     mu: float
+    interval_m_s: tuple[float, float] = (nan, nan)
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,16 +68,56 @@ class Rule:
         return float(np.log10(self.nearest_m_s / self.speed_m_s))
 
 
-def peaks_of(one: Collapse, reference_c: float) -> tuple[Peak, ...]:
-    """Return the maxima within a master curve, from slow to fast; raises PoleError for the reference temperature."""
-    x = np.linspace(float(np.min(one.x)), float(np.max(one.x)), 2000)
-    y = one.curve.at(x)
-    back = float(shifts(np.array([reference_c]), one.ts_c)[0])
-    found: list[Peak] = []
-    for i in np.flatnonzero((y[1:-1] > y[:-2]) & (y[1:-1] >= y[2:])) + 1:
-        if min(_falls(y[i::-1]), _falls(y[i:])) > PROMINENT:
-            found.append(Peak(float(10.0 ** (x[i] - back)), float(np.exp(y[i]))))
-    return tuple(found)
+def peaks_of(one: Collapse, reference_c: float) -> tuple[tuple[Peak, ...], int]:
+    """Return the maxima of a master curve that its scatter does not make, from slow to fast, and how many others there
+    are; raises PoleError for the reference temperature.
+
+    A maximum counts where ``SURE`` of the sets that are drawn anew have one there. Its interval reaches to where a
+    curve of ``FINER`` more knots has it: a spline moves a maximum by what it smooths away, which no drawing shows.
+    """
+    back = _back(one.ts_c, reference_c)
+    found = [(x - back, mu) for x, mu in _maxima(one.curve, one.x)]
+    if not found or one.drawn is None:
+        return tuple(Peak(float(10.0**x), mu) for x, mu in found), 0
+    places = [x for x, _ in found]
+    again = [_maxima_again(one, i, reference_c) for i in range(min(DRAWN, one.drawn.ts_c.size))]
+    finer, _ = curve_through(one.of, one.x, min(one.interior + FINER, one.x.size // 3), padded(one.of, one.of.log_mu))
+    places_finer = [at - back for at, _ in _maxima(finer, one.x)]
+    peaks: list[Peak] = []
+    for x, mu in found:
+        reach = min([0.5 * abs(x - other) for other in places if other != x], default=REACH_DECADES)
+        near = [min(own, key=lambda at, x=x: abs(at - x)) for own in again if own]
+        kept = [at for at in near if abs(at - x) <= reach]
+        if len(kept) >= SURE * len(again):
+            moved = min((at - x for at in places_finer if abs(at - x) <= reach), key=abs, default=0.0)
+            low, high = np.quantile(kept, [0.025, 0.975]) + np.array([min(moved, 0.0), max(moved, 0.0)])
+            peaks.append(Peak(float(10.0**x), mu, (float(10.0**low), float(10.0**high))))
+    return tuple(peaks), len(found) - len(peaks)
+
+
+def _maxima_again(one: Collapse, i: int, reference_c: float) -> list[float]:
+    """Return where the curve of a set that was drawn anew has maxima, x at the reference temperature."""
+    assert one.drawn is not None
+    ts_c = float(one.drawn.ts_c[i])
+    x = one.of.log_v + shifts(one.of.celsius, ts_c)
+    curve, _ = curve_through(one.of, x, one.interior, one.drawn.y[:, i])
+    back = _back(ts_c, reference_c - float(one.drawn.thermometer_k[i]))
+    return [at - back for at, _ in _maxima(curve, x)]
+
+
+def _back(ts_c: float, reference_c: float) -> float:
+    return float(shifts(np.array([reference_c]), ts_c)[0])
+
+
+def _maxima(curve: Curve, over: Array) -> list[tuple[float, float]]:
+    """Return x and mu of the maxima of a curve within a range that are ``PROMINENT``."""
+    x = np.linspace(float(np.min(over)), float(np.max(over)), PLACES)
+    y = curve.at(x)
+    return [
+        (float(x[i]), float(np.exp(y[i])))
+        for i in np.flatnonzero((y[1:-1] > y[:-2]) & (y[1:-1] >= y[2:])) + 1
+        if min(_falls(y[i::-1]), _falls(y[i:])) > PROMINENT
+    ]
 
 
 def _falls(y: Array) -> float:

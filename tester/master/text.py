@@ -32,8 +32,14 @@ def csv_text(one: Master) -> str:
     return "\n".join(lines) + "\n"
 
 
+def verdict_lines(one: Master) -> Iterator[str]:
+    """Yield the verdict with its reasons."""
+    yield f"verdict: {one.judged.verdict.value}"
+    yield from (f"  {reason}" for reason in one.judged.reasons)
+
+
 def summary_lines(one: Master) -> Iterator[str]:
-    """Yield the verdict and what goes with it."""
+    """Yield what the verdict rests on."""
     of, judged = one.collapse.of, one.judged
     first = one.points[0]
     sources = ", ".join(dict.fromkeys(point.source.name for point in one.points))
@@ -42,7 +48,6 @@ def summary_lines(one: Master) -> Iterator[str]:
         f"{first.compound}{held}: {len(one.points)} conditions of {sources}, {len(of.blocks_c)} temperatures from"
         f" {of.blocks_c[0]:g} to {of.blocks_c[-1]:g} degC"
     )
-    yield f"verdict: {judged.verdict.value}" + "".join(f"\n  {reason}" for reason in judged.reasons)
     yield f"Ts {_ts_words(one)}; reference {one.reference_c:g} degC"
     if one.glass_c is not None:
         yield f"the compound's file says Tg {one.glass_c:g} degC: Ts = Tg + 50 K is {_expected(one.glass_c):g} degC"
@@ -55,7 +60,13 @@ def summary_lines(one: Master) -> Iterator[str]:
         told = "more than chance" if test.failed else "no more than chance"
         yield f"  {TEST_WORDS[test.name]}: F {test.f:.2f}, chance stays below {test.critical:.2f}: {told}"
     for peak in one.peaks:
-        yield f"maximum: mu {peak.mu:.3f} at {peak.speed_m_s:.3g} m/s and {one.reference_c:g} degC"
+        low, high = peak.interval_m_s
+        yield (
+            f"maximum: mu {peak.mu:.3f} at {peak.speed_m_s:.3g} m/s (95 %: {low:.3g} to {high:.3g}) and"
+            f" {one.reference_c:g} degC"
+        )
+    if one.bumps:
+        yield f"further maxima of the curve that its scatter may have made: {one.bumps}"
     for rule in one.rules:
         yield f"Grosch, {rule.name}: {_rule_words(rule.speed_m_s, rule.decades)}"
     yield from _pair_lines(one)
@@ -128,7 +139,11 @@ def plain(one: Master) -> dict[str, Plain]:
         "scatter_mu": c.scatter_mu,
         "interior_knots": c.interior,
         "tests": tests,
-        "peaks": [{"speed_m_s": peak.speed_m_s, "mu": peak.mu} for peak in one.peaks],
+        "peaks": [
+            {"speed_m_s": peak.speed_m_s, "mu": peak.mu, "interval_m_s": [_known(end) for end in peak.interval_m_s]}
+            for peak in one.peaks
+        ],
+        "bumps": one.bumps,
         "rules": [
             {"rule": rule.name, "speed_m_s": _known(rule.speed_m_s), "decades": _known(rule.decades)}
             for rule in one.rules

@@ -56,6 +56,8 @@ class Material:
     published: Sequence[ChartValue] = ()
     law: Law | None = None
     law_name: str = ""
+    law_caveats: Callable[[Setpoint], Sequence[str]] | None = None
+    """Why the law's coefficient at a setpoint is to be taken with care."""
 
 
 def values_of(results: RunResults, run: str = "") -> list[ChartValue]:
@@ -134,11 +136,19 @@ def _chart(material: Material, along: Axis, across: Axis | None) -> Chart | None
     notes = [BARS]
     looks = {series.look for panel in panels for series in panel.series}
     notes += [HOLLOW] if "published" in looks else []
-    notes += [f"lines: {material.law_name}"] if "law" in looks else []
+    notes += [f"lines: {material.law_name}", *_caveats(material)] if "law" in looks else []
     by = f"-by-{across.name}" if across is not None else ""
     title = f"{Y_LABEL} over {name_of(along)}" + (f" at each {name_of(across)}" if across is not None else "")
     log_x = _logarithmic(material.measured, along)
     return Chart(f"{along.name}{by}", title, labelled(along), Y_LABEL, tuple(panels), "; ".join(notes), log_x=log_x)
+
+
+def _caveats(material: Material) -> list[str]:
+    """Return where the law does not hold among the measured values, each once, with how many values it is said of."""
+    if material.law_caveats is None:
+        return []
+    found = Counter(caveat for one in material.measured for caveat in material.law_caveats(one.held))
+    return [f"caution ({count} values): {caveat}" for caveat, count in found.items()]
 
 
 def _logarithmic(values: Iterable[ChartValue], along: Axis) -> bool:

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from tester.cli.main import invoke
+from tests.tester.kinds.specimen_on_track.fit.made import made_track_run
 from tests.tester.kinds.wheel_on_belt.fit.made import made_run
 
 
@@ -50,7 +51,7 @@ def test_a_figure_is_written_in_each_format(
     ("arguments", "message"),
     [
         (("one", "--name", "slip"), "no figure slip of one (there are load, overview, repeats-1, repeats-2)"),
-        (("one", "--law", "v3"), "no law 'v3' (expected v2, paper)"),
+        (("one", "--law", "v3"), "no law 'v3' with published parameters (expected paper, v2)"),
         (("two",), "no run two"),
     ],
 )
@@ -128,3 +129,11 @@ def test_a_run_that_friction_heats_has_no_master_curve(home: Path, capsys: pytes
 
     assert invoke(["figure", str(made_run(home / "wheel")), "--list"]) == 0
     assert "master" not in capsys.readouterr().out
+
+
+def test_of_a_kind_without_published_laws_none_is_expected(home: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    made_track_run(home / "runs" / "track", (0.0, 20.0), (1e-4, 1e-3))
+    assert invoke(["figure", "track", "--law", "wlf_bell"]) == 2
+    said = capsys.readouterr().err
+    assert "no law 'wlf_bell' with published parameters (of this kind of rig no law has any" in said
+    assert "expected" not in said

@@ -50,6 +50,20 @@ def test_the_table_is_stdout_and_what_is_said_of_it_stderr(home: Path, capsys: p
     assert "maximum: mu 2." in summary
 
 
+def test_the_verdict_comes_first_and_is_there_again_below_the_table(
+    home: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    _, error = said(capsys, str(made_track_run(home / "one")))
+    lines = error.splitlines()
+    assert lines[0] == lines[-1] == "verdict: collapses"
+
+
+def test_a_maximum_has_its_interval(home: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (peak,) = data(capsys, str(made_track_run(home / "one")))["peaks"]
+    low, high = peak["interval_m_s"]
+    assert low < peak["speed_m_s"] < high and low < 0.0755 < high
+
+
 def test_the_compounds_file_gives_grosch_his_rules_and_ts(home: Path, capsys: pytest.CaptureFixture[str]) -> None:
     run = str(made_track_run(home / "one", scatter=0.005))
     found = data(capsys, run, "--ts", "glass")

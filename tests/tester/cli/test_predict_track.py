@@ -118,3 +118,38 @@ def test_a_table_says_what_it_takes_and_by_how_much_it_is_off(
     monkeypatch.setattr(tabulated, "build", at_once)
     assert invoke([*ON_S0, "--table"]) == 1
     assert "table of 240 points" in capsys.readouterr().out
+
+
+WARNED = ("--compound", "SBR", "--load", "20 N")
+
+
+@pytest.mark.parametrize(
+    ("words", "warning"),
+    [
+        (("--law", "wlf_bell", "--slip", "1 mm/s", "--temperature", "60 degC"), "60 degC is outside -53 to 47 degC"),
+        (("--law", "wlf_bell", "--slip", "300 mm/s", "--temperature", "20 degC"), "above 10 mm/s friction heats"),
+        (("--law", "arrhenius", "--slip", "300 mm/s", "--temperature", "20 degC"), "above 10 mm/s friction heats"),
+        (("--law", "power", "--slip", "1 mm/s", "--temperature", "20 degC"), "the law power knows no temperature"),
+        (("--law", "persson", "--surface", "S0", "--slip", "1 mm/s", "--temperature=-60 degC"),
+         "-60 degC is below the glass transition of SBR"),
+    ],
+)  # fmt: skip
+def test_outside_of_what_a_law_knows_a_warning_names_the_bound(
+    capsys: pytest.CaptureFixture[str], words: tuple[str, ...], warning: str
+) -> None:
+    assert invoke(["predict", *WARNED, *words]) == 0
+    (line,) = [one for one in capsys.readouterr().err.splitlines() if warning in one]
+    assert line.startswith("warning: ")
+
+
+def test_inside_of_what_a_law_knows_nothing_is_printed_beside_the_value(capsys: pytest.CaptureFixture[str]) -> None:
+    assert invoke(["predict", *WARNED, "--law", "wlf_bell", "--slip", "1 mm/s", "--temperature", "20 degC"]) == 0
+    assert capsys.readouterr().err == ""
+
+
+def test_a_full_contact_is_beyond_what_greta_knows(capsys: pytest.CaptureFixture[str]) -> None:
+    at = ["--compound", "tread", "--law", "greta", "--surface", "road", "--slip", "1 m/s", "--temperature", "25 degC"]
+    assert invoke(["predict", *at, "--load", "20 N"]) == 0
+    assert "the contact is full" not in capsys.readouterr().err
+    assert invoke(["predict", *at, "--load", "100 kN", "--area", "10 mm2"]) == 0
+    assert "the contact is full" in capsys.readouterr().err

@@ -120,12 +120,12 @@ def test_a_law_that_does_not_describe_has_no_intervals() -> None:
     ("band", "reason"),
     [(Band(0.6, 2.0, "a source"), "outside 0.6 to 2 1/m (a source)"), (Band(0.48, 2.0, "it"), "open beyond 0.48 to")],
 )
-def test_a_parameter_or_an_interval_outside_its_band_is_named_and_has_no_interval(band: Band, reason: str) -> None:
+def test_a_parameter_or_an_interval_outside_its_band_is_named_and_the_fit_silent(band: Band, reason: str) -> None:
     law = replace(LINE, parameters=(LINE.parameters[0], replace(LINE.parameters[1], band=band)))
     quiet = [replace(one, type_a=0.02, df=50.0) for one in noisy(0.01)]
     found = fit_group(law, "one", quiet, (0,), {}, count=99)
-    assert reason in found.why_no_interval("s") and not found.why_no_interval("m")
-    assert not found.sound
+    assert reason in found.impossible["s"] and not found.sound
+    assert found.why_no_interval("m") == "no such rubber has this s"
 
 
 def test_an_effect_that_is_the_contacts_own_heat_has_no_interval_and_is_no_failure() -> None:

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from sim.physics.materials import Components
-from tester.kinds.wheel_on_belt.fit.setpoints import law_at, published_values
+from tester.kinds.wheel_on_belt.fit.setpoints import law_at, law_caveats, published_values
 from tester.report.chart import Chart, ChartSurface, Figure, Series
 from tester.report.charts import ChartValue, Material, charts_of, repeats_chart, values_of
 from tester.report.components import components_chart
@@ -180,3 +180,12 @@ def test_the_parts_of_a_law_are_lines_with_their_sum() -> None:
         "adhesion": (1.0, 10.0), "hysteresis": (2.0, 20.0), "sum": (3.0, 30.0),
     }  # fmt: skip
     assert found.log_x and {one.look for one in panel.series} == {"law"}
+
+
+def test_a_law_that_is_drawn_beyond_its_data_is_named_with_what_it_is_beyond(results: RunResults) -> None:
+    held = values_of(results)
+    far = [replace(one, held=one.held.but(load=2.0 * one.held.number("load"))) for one in held]
+    for values, beyond in ((held, False), (far, True)):
+        material = Material(values, (), law_at("v2"), "law v2", law_caveats)
+        found = chart({one.name: one for one in charts_of(material)}, "load-by-temperature")
+        assert ("load 800 N is outside the paper's data, 100 to 400 N: an extrapolation" in found.note) is beyond

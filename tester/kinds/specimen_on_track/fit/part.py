@@ -87,6 +87,12 @@ class TrackFits:
         """Return none."""
         return ()
 
+    published_laws: Sequence[str] = ()
+
+    def law_caveats(self, setpoint: Setpoint) -> Sequence[str]:
+        """Return none."""
+        return ()
+
     def law_at(self, name: str) -> Callable[[Setpoint], float]:
         """Raise KeyError: no law has published parameters of a specimen on a track."""
         raise KeyError(name)

@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Final
 
+from sim.physics.friction import MODEL_NAMES
 from tester.axes import Setpoint
 from tester.fit.law import FitError, Law, Sourced
 from tester.fit.part import FitPart, PublishedTable
@@ -41,6 +42,14 @@ class WheelFits:
         from tester.kinds.wheel_on_belt.fit.setpoints import published_values
 
         return published_values()
+
+    published_laws: Sequence[str] = MODEL_NAMES
+
+    def law_caveats(self, setpoint: Setpoint) -> Sequence[str]:
+        """Return where a setpoint is outside the paper's data."""
+        from tester.kinds.wheel_on_belt.fit.setpoints import law_caveats
+
+        return law_caveats(setpoint)
 
     def law_at(self, name: str) -> Callable[[Setpoint], float]:
         """Return a law of the paper's compounds; raises KeyError."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from sim.physics.data_range import caveats
 from sim.physics.friction import MODEL_NAMES, UnknownCompoundError
 from sim.physics.slip import predict
 from tester.axes import Setpoint
@@ -26,6 +27,13 @@ def published_values() -> list[tuple[Setpoint, float]]:
                 )
                 found.setdefault(held, float(row["mu"]))
     return list(found.items())
+
+
+def law_caveats(setpoint: Setpoint) -> list[str]:
+    """Return why a coefficient of the paper's laws at a setpoint is to be taken with care."""
+    held = held_by(setpoint)
+    at = abs(held.slip_velocity_m_s), held.load_n, held.temperature_c, held.sideslip_deg
+    return [*caveats(held.compound, *at)]
 
 
 def law_at(name: str) -> Callable[[Setpoint], float]:

@@ -13,8 +13,8 @@ from tester.fit.law import Law
 from tester.fit.problem import FitProblem
 from tester.fit.solve import solve
 from tester.kinds.wheel_on_belt.fit.laws import LAWS, PAPER, V2_LAW, joint_of, table_3_of, v2_of
-from tests.campaigns import fit as campaign
-from tests.campaigns.fit import DESIGN, NOISE, SAME, made, split
+from tests.campaigns.fit import synthetic as campaign
+from tests.campaigns.fit.synthetic import DESIGN, NOISE, SAME, made, split
 
 pytest.importorskip("scipy", reason="needs the extra `report`")
 

@@ -1,28 +1,17 @@
-"""`python -m tests.campaigns.fit [--sample]`: does a fit give back what was put in, and do its intervals hold it?
-
-Synthetic conditions on the paper's design (40 of load, slip and temperature; Table 3 for the truth), with noise in
-ln mu. Prints a line a figure and exits 1 where one misses: every eighth condition predicted by a fit to the others,
-predictions of redundant sets of parameters, how often the 95 % intervals hold the truth, and the paper's own table.
-"""
+"""Synthetic conditions on the paper's design (40 of load, slip and temperature), from its laws with noise in ln mu."""
 
 from __future__ import annotations
 
-import argparse
-import sys
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
-from math import sqrt
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from sim.physics.friction import COMPOUNDS, evaluate
 from tester.fit.joint import fit_only, predict
 from tester.fit.law import FitPoint, Law, Source
-from tester.fit.problem import FitProblem
-from tester.fit.resample import resample
-from tester.fit.solve import solve
-from tester.kinds.wheel_on_belt.fit.laws import PAPER, V2_LAW, joint_of, table_3_of
+from tester.kinds.wheel_on_belt.fit.laws import PAPER, joint_of, table_3_of
 from tester.kinds.wheel_on_belt.fit.published import published_table
 
 if TYPE_CHECKING:
@@ -38,36 +27,20 @@ DESIGN: Final = tuple(
     for load, slip in ((*((f, 0.3) for f in LOADS), *((200.0, v) for v in SLIPS)))
 )
 """Conditions of both of the paper's appendices, a compound."""
-NOISE, SCATTER = 0.01, 0.04
-"""Standard deviations of ln mu: as asked, and between conditions as in the paper's data."""
-SETS, SAMPLE = 200, 60
-RESAMPLES: Final = 399
+NOISE: Final = 0.01
+"""Standard deviation of ln mu."""
+SETS, SAMPLE = 200, 24
 EVERY: Final = 8
 """Of the conditions of a set, one of so many is held out; so many there are at each temperature."""
 HELD_OUT: Final = 0.03
 CELLS: Final = 0.95
 """Share of conditions that are asked to be so near where nothing of their load and slip was fitted [A]."""
 SAME: Final = 1e-12
-COVERED: Final = (0.90, 0.98)
-"""Share of sets whose 95 % interval has to hold the truth; of a sample 2.5 binomial standard deviations more."""
 SCALES: Final = (0.1, 0.5, 1.987, 10.0)
 """Numbers by which alpha and gamma are multiplied, a1 and a2 divided."""
 
 
 Split = Callable[[Sequence[FitPoint], int], tuple[list[FitPoint], list[FitPoint]]]
-
-
-class Case(NamedTuple):
-    """A law with noise that intervals are tried on."""
-
-    law: Law
-    noise: float
-
-    def __str__(self) -> str:
-        return f"{self.law.title}, {100.0 * self.noise:g} % noise"
-
-
-CASES: Final = (Case(PAPER, NOISE), Case(V2_LAW, SCATTER))
 
 
 def made(law: Law, seed: int, noise: float) -> tuple[tuple[float, ...], list[FitPoint]]:
@@ -123,30 +96,8 @@ def redundant() -> float:
     return largest
 
 
-def coverage(case: Case, sets: int) -> dict[str, float]:
-    """Return, for each parameter, the share of sets whose interval holds what was put in."""
-    held = dict.fromkeys(case.law.names, 0)
-    for seed in range(sets):
-        truth, points = made(case.law, seed, case.noise)
-        problem = FitProblem(case.law, points, {})
-        found = resample(problem, solve(problem, [truth]), RESAMPLES, seed)
-        for i, name in enumerate(case.law.names):
-            low, high = found.interval(found.parameters[:, i])
-            held[name] += low <= truth[i] <= high
-    return {name: count / sets for name, count in held.items()}
-
-
-def bounds(sets: int) -> tuple[float, float]:
-    """Return the least and the greatest share that is asked of so many sets."""
-    if sets >= SETS:
-        return COVERED
-    low, high = COVERED
-    allowed = [2.5 * sqrt(share * (1.0 - share) / sets) for share in COVERED]
-    return low - allowed[0], min(high + allowed[1], 1.0)
-
-
 def figures(sets: int) -> Iterator[tuple[str, bool]]:
-    """Yield every figure in words, and whether it is kept."""
+    """Yield every figure in words, and whether it is met."""
     largest, over, count = held_out(sets)
     text = f"held-out conditions, Eq 6 with {100.0 * NOISE:g} % noise: {count - over} of {count} within"
     yield f"{text} {100.0 * HELD_OUT:g} % (asked: all), largest {100.0 * largest:.2f} %", over == 0
@@ -155,28 +106,6 @@ def figures(sets: int) -> Iterator[tuple[str, bool]]:
     yield f"{text} (asked: {100.0 * CELLS:g} %), largest {100.0 * largest:.2f} %", count - over >= CELLS * count
     off = redundant()
     yield f"predictions of redundant parameters differ by {off:.1e} (asked: at most {SAME:.0e})", off <= SAME
-    low, high = bounds(sets)
-    for case in CASES:
-        found = coverage(case, sets)
-        told = ", ".join(f"{name} {100.0 * share:.1f}" for name, share in found.items())
-        kept = all(low <= share <= high for share in found.values())
-        yield f"{case}: % of {sets} sets in their interval: {told} (asked: {100 * low:.0f} to {100 * high:.0f})", kept
     for line in published_table().lines:
         if line.asked:
             yield f"{line.way}: {line.asked}", line.met
-
-
-def main(arguments: Sequence[str] | None = None) -> int:
-    """Print every figure; 1 where one misses."""
-    parser = argparse.ArgumentParser("python -m tests.campaigns.fit", description=(__doc__ or "").partition("\n")[2])
-    parser.add_argument("--sample", action="store_true", help=f"{SAMPLE} synthetic sets instead of {SETS}")
-    read = parser.parse_args(arguments)
-    missed = 0
-    for text, kept in figures(SAMPLE if read.sample else SETS):
-        missed += not kept
-        print(f"{'ok  ' if kept else 'MISS'} {text}", flush=True)
-    return 1 if missed else 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())
