@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from tester.machine.run_parts import KindRun
     from tester.machine.served import ServedKind
     from tester.master.part import MasterPart
+    from tester.papers.item import Paper
     from tester.recipe.part import RecipePart
     from tester.results.ring_part import RingPart
     from tester.rig import Rig
@@ -53,6 +54,8 @@ class Kind:
     """What it says about recipes; None: none can be read for it."""
     fits: Callable[[], FitPart] | None = None
     """Which laws can be fitted to its conditions; None: none."""
+    papers: Callable[[], tuple[Paper, ...]] | None = None
+    """Papers that its machine or its laws come from, each item with a verdict; None: none."""
     masters: Callable[[], MasterPart] | None = None
     """How its conditions stand on a master curve, and when not; None: they have no speed and temperature."""
     commissions: Callable[[], CommissionPart] | None = None

@@ -1,4 +1,4 @@
-"""`tester fit`, `tester paper`: a law of friction fitted to measured conditions; the paper held against itself."""
+"""`tester fit`: a law of friction fitted to measured conditions."""
 
 from __future__ import annotations
 
@@ -117,31 +117,6 @@ def fit(
         dump(told)
     missed = table is not None and bool(table.missed)
     return EXIT_FAILED if missed or not all(one.sound for one in fits) else EXIT_DONE
-
-
-@click.command()
-@json_option
-def paper(as_json: bool) -> int:
-    """Hold the paper's equations and claims against its own appendices; exit code 1 where a figure misses.
-
-    Polymers 2024, 16(5), 596, doi 10.3390/polym16050596 (CC BY 4.0): Eqs 7 to 9 with Table 3, fits to appendix A seen
-    on appendix B, and the errors that the paper quotes.
-    """
-    from tester.base.extras import MissingExtraError
-    from tester.fit import as_json as plain
-    from tester.fit.text import table_lines
-    from tester.kinds import DEFAULT, find
-
-    try:
-        table = _part(find(DEFAULT)).published_table()
-    except MissingExtraError as error:
-        raise click.UsageError(str(error)) from error
-    if as_json:
-        dump(plain.table(table))
-    else:
-        for line in table_lines(table):
-            click.echo(line)
-    return EXIT_FAILED if table.missed else EXIT_DONE
 
 
 def _part(kind: Kind) -> FitPart:

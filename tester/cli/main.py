@@ -48,7 +48,7 @@ COMMANDS: dict[str, CommandEntry] = {
     "verify": CommandEntry("tester.cli.verify_command", "verify", "Check that a run is as it was left."),
     "export": CommandEntry("tester.cli.result_commands", "export", "Write a run's results as a table."),
     "fit": CommandEntry("tester.cli.fit_command", "fit", "Fit a law of friction to measured conditions."),
-    "paper": CommandEntry("tester.cli.fit_command", "paper", "Hold the paper's equations against its own data."),
+    "paper": CommandEntry("tester.cli.paper_command", "paper", "Hold the papers against their data and the laws."),
     "components": CommandEntry(
         "tester.cli.components_command", "components", "Adhesion and hysteresis: dry less wet."
     ),

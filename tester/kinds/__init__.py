@@ -16,6 +16,7 @@ from tester.kind import Kind
 
 if TYPE_CHECKING:
     from tester.base.source import Tree
+    from tester.papers.item import Paper
     from tester.rig import Rig
 
 DEFAULT: Final = "wheel_on_belt"
@@ -75,6 +76,12 @@ def packaged_conditions() -> dict[str, Kind]:
     """Return the names of measured conditions that ship with packaged kinds, each with its kind."""
     kinds = [_packaged(name) for name in PACKAGED]
     return {name: kind for kind in kinds if kind.fits is not None for name in kind.fits().packaged}
+
+
+def packaged_papers() -> tuple[Paper, ...]:
+    """Return the papers of the packaged kinds, the first kind's first."""
+    kinds = [_packaged(name) for name in PACKAGED]
+    return tuple(paper for kind in kinds if kind.papers is not None for paper in kind.papers())
 
 
 def load_rig(source: str | Path = SIMULATED, overrides: Sequence[str] = (), accept_risk: str = "") -> Rig:

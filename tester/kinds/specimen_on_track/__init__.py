@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from tester.machine.run_parts import KindRun
     from tester.machine.served import ServedKind
     from tester.master.part import MasterPart
+    from tester.papers.item import Paper
     from tester.recipe.part import RecipePart
     from tester.rig import Rig
 
@@ -40,6 +41,12 @@ def _runs() -> KindRun:
     from tester.kinds.specimen_on_track.runs import RUNS
 
     return RUNS
+
+
+def _papers() -> tuple[Paper, ...]:
+    from tester.kinds.specimen_on_track.papers import PAPERS
+
+    return PAPERS
 
 
 def _masters() -> MasterPart:
@@ -74,6 +81,7 @@ KIND: Final = Kind(
     page="docs/track-safety.md",
     recipe=_recipe,
     runs=_runs,
+    papers=_papers,
     masters=_masters,
     served=_served,
     fits=_fits,

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from tester.machine.run_parts import KindRun
     from tester.machine.served import ServedKind
     from tester.master.part import MasterPart
+    from tester.papers.item import Paper
     from tester.recipe.part import RecipePart
     from tester.results.ring_part import RingPart
     from tester.rig import Rig
@@ -56,6 +57,12 @@ def _fits() -> FitPart:
     return FITS
 
 
+def _papers() -> tuple[Paper, ...]:
+    from tester.kinds.wheel_on_belt.papers import PAPERS
+
+    return PAPERS
+
+
 def _masters() -> MasterPart:
     from tester.kinds.wheel_on_belt.fit.master import MASTERS
 
@@ -87,6 +94,7 @@ KIND: Final = Kind(
     runs=_runs,
     served=_served,
     fits=_fits,
+    papers=_papers,
     masters=_masters,
     commissions=_commissions,
     ring=_ring,

@@ -1,0 +1,85 @@
+"""`tester paper`: the paper held against its own data; with --all every item of all papers."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import click
+
+from tester.base.exits import EXIT_DONE, EXIT_FAILED
+from tester.cli.formatting import Json, dump
+from tester.cli.options import json_option
+
+if TYPE_CHECKING:
+    from tester.fit.part import PublishedTable
+    from tester.papers.item import Paper
+
+
+@click.command()
+@click.option("--all", "every", is_flag=True, help="Every figure, table, equation and statement of all papers.")
+@json_option
+def paper(every: bool, as_json: bool) -> int:
+    """Hold the paper's equations and claims against its own appendices; exit code 1 where a figure misses.
+
+    Polymers 2024, 16(5), 596, doi 10.3390/polym16050596 (CC BY 4.0): Eqs 7 to 9 with Table 3, fits to appendix A seen
+    on appendix B, and the errors that the paper quotes. With --all: the page docs/papers.md, each item of this paper
+    and of the two that the laws persson and greta come from, with an error that is worked out now and a verdict.
+    """
+    from tester.base.extras import MissingExtraError
+
+    try:
+        return _all(as_json) if every else _one(as_json)
+    except MissingExtraError as error:
+        raise click.UsageError(str(error)) from error
+
+
+def _one(as_json: bool) -> int:
+    from tester.fit import as_json as plain
+    from tester.fit.text import table_lines
+
+    table = _table()
+    if as_json:
+        dump(plain.table(table))
+    else:
+        for line in table_lines(table):
+            click.echo(line)
+    return EXIT_FAILED if table.missed else EXIT_DONE
+
+
+def _table() -> PublishedTable:
+    from tester.kinds import DEFAULT, find
+
+    fits = find(DEFAULT).fits
+    assert fits is not None  # the packaged wheel brings its laws
+    return fits().published_table()
+
+
+def _all(as_json: bool) -> int:
+    from tester.kinds import packaged_papers
+    from tester.papers.page import page_text
+
+    papers = packaged_papers()
+    if as_json:
+        dump(_as_json(papers))
+    else:
+        click.echo(page_text(papers), nl=False)
+    return EXIT_DONE
+
+
+def _as_json(papers: Sequence[Paper]) -> Json:
+    from tester.papers.page import judged_items
+
+    return {
+        one.name: [
+            {
+                "where": item.where,
+                "states": item.states,
+                "verdict": finding.verdict.value,
+                "found": finding.found,
+                "command": item.command or None,
+            }
+            for item, finding in judged_items(one)
+        ]
+        for one in papers
+    }

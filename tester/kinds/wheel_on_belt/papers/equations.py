@@ -1,0 +1,254 @@
+"""Equations 1 to 9 and Table 3: as printed, as meant, and what fits of them give."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from math import exp, log
+from statistics import fmean
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from sim.physics.friction import COMPOUNDS, PaperParameters, coefficient, thermal_factor
+from tester.fit.check import Errors, errors_of
+from tester.fit.joint import fit_only, predict
+from tester.fit.law import FitPoint, by_group
+from tester.kinds.wheel_on_belt.fit.data import Reading, appendix
+from tester.kinds.wheel_on_belt.fit.laws import LOAD, PAPER, SLIP, TEMPERATURE
+from tester.kinds.wheel_on_belt.fit.published import FIT, VALIDATION, fitted, of_table_3
+from tester.kinds.wheel_on_belt.fit.staged import staged_table_3
+from tester.kinds.wheel_on_belt.papers.rows import COMPOUND_NAMES, errors_on, readable
+from tester.papers.item import PaperFinding, PaperItem, judged, slight, unjudged
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+
+COLD_C: Final = 25.0
+CELSIUS_0_K, GAS_J_MOL_K = 273.15, 8.314
+SAME: Final = 0.002
+"""Share within which a parameter counts as that of Table 3: its last printed digit."""
+CLAIMED: Final = 0.05
+"""Error that the paper states."""
+CURVE: Final = 0.02
+"""Share within which two factors of temperature are one curve [A]: the last digit of a coefficient of 0.5."""
+
+
+def words(errors: Errors) -> str:
+    """Return errors in words."""
+    return (
+        f"mean {100.0 * errors.mean:.1f} %, largest {100.0 * errors.largest:.0f} %,"
+        f" {errors.near} of {errors.rows} rows within 5 %"
+    )
+
+
+# -- Table 3 ----------------------------------------------------------------------------------------------------------
+
+
+def _off(name: str, compound: str, reading: Reading = Reading.WITHOUT) -> float:
+    found = staged_table_3(appendix(FIT, reading).points)[compound]
+    return getattr(found, name) / getattr(COMPOUNDS[compound], name) - 1.0
+
+
+def _parameters(names: Sequence[str], compounds: Sequence[str]) -> PaperFinding:
+    off = {(name, compound): _off(name, compound) for compound in compounds for name in names}
+    told = ", ".join(f"{name} of {compound} {100.0 * one:+.2f} %" for (name, compound), one in off.items())
+    return judged(all(abs(one) <= SAME for one in off.values()), told)
+
+
+def _open(names: Sequence[str], compounds: Sequence[str]) -> PaperFinding:
+    told = [
+        f"{reading.value}: "
+        + ", ".join(f"{name} of {one} {100.0 * _off(name, one, reading):+.1f} %" for one in compounds for name in names)
+        for reading in Reading
+    ]
+    return unjudged(f"hangs on A027 and A036, which cannot be read. {'; '.join(told)} (chosen to give Table 3)")
+
+
+def _heat_factor() -> PaperFinding:
+    found = staged_table_3(appendix(FIT).points)
+    off = {
+        name: max(
+            abs(_relative(found[name], celsius) / _relative(printed, celsius) - 1.0)
+            for celsius in np.linspace(25.0, 85.0, 61)
+        )
+        for name, printed in COMPOUNDS.items()
+    }
+    told = ", ".join(f"{100.0 * one:.1f} % ({name})" for name, one in off.items())
+    peaks = ", ".join(f"{found[name].tm - printed.tm:+.1f} K" for name, printed in COMPOUNDS.items())
+    return judged(max(off.values()) <= CURVE, f"f(T) / f(25) off by at most {told}; tm off by {peaks}")
+
+
+def _relative(given: PaperParameters, celsius: float) -> float:
+    return thermal_factor(given, celsius) / thermal_factor(given, COLD_C)
+
+
+TABLE_3: Final = (
+    PaperItem("Table 3", "b2, a2 of 3# and b1 of 2#, fitted factor by factor", "", lambda: _together()),
+    PaperItem("Table 3", "b2, a2 of 1# and 2#", "", lambda: _open(("b2", "a2"), ("1#", "2#"))),
+    PaperItem("Table 3", "b1 of 1# and 3#", "", lambda: _parameters(("b1",), ("1#", "3#"))),
+    PaperItem("Table 3", "a1 of 3#; that of 1# and 2# hangs on b2", "", lambda: _parameters(("a1",), ("3#",))),
+    PaperItem("Table 3", "alpha, beta, gamma, tm: the factor of temperature", "", _heat_factor),
+)
+
+
+def _together() -> PaperFinding:
+    one, other = _parameters(("b2", "a2"), ("3#",)), _parameters(("b1",), ("2#",))
+    return PaperFinding(max(one.verdict, other.verdict), f"{one.found}, {other.found}")
+
+
+# -- Equations --------------------------------------------------------------------------------------------------------
+
+
+def _cold(moving: bool) -> dict[str, list[FitPoint]]:
+    """Return the rows at 25 degC by compound; ``moving``: without those at no slip."""
+    own = [one for one in readable() if one.nominal[TEMPERATURE] == COLD_C]
+    return by_group(one for one in own if not moving or one.nominal[SLIP] > 0.0)
+
+
+def _linear(
+    columns: Callable[[FitPoint], Sequence[float]], y: Callable[[FitPoint], float], own: Sequence[FitPoint]
+) -> Array:
+    x = np.array([[*columns(one)] for one in own])
+    solution: Array = np.linalg.lstsq(x, np.array([y(one) for one in own]), rcond=None)[0]
+    return np.asarray(x @ solution)
+
+
+def _eq_1() -> PaperFinding:
+    off: list[Errors] = []
+    for own in _cold(moving=True).values():
+        found = _linear(
+            lambda one: (1.0, log(one.nominal[LOAD]), log(one.nominal[SLIP])), lambda one: log(one.value), own
+        )
+        off.append(errors_of([exp(one) for one in found.tolist()], [one.value for one in own]))
+    still = [own.value for rows in _cold(moving=False).values() for own in rows if own.nominal[SLIP] == 0.0]
+    told = ", ".join(f"{100.0 * one.mean:.1f}" for one in off)
+    return judged(
+        False,
+        f"fitted at 25 degC: mean error {told} % (1#, 2#, 3#) where it slips; at 0 mm/s it gives 0, the data"
+        f" {min(still):g} to {max(still):g}",
+    )
+
+
+def _eq_2() -> PaperFinding:
+    printed: list[int] = []
+    off: list[Errors] = []
+    for own in _cold(moving=False).values():
+        as_printed = np.array([_quadratic(one.nominal[LOAD] / 200.0, one.nominal[SLIP] / 0.3) for one in own])
+        printed.append(int(np.linalg.matrix_rank(as_printed)))
+        meant = _linear(
+            lambda one: _meant(one.nominal[LOAD] / 200.0, one.nominal[SLIP] / 0.3), lambda one: one.value, own
+        )
+        off.append(errors_of(meant.tolist(), [one.value for one in own]))
+    told = ", ".join(f"{100.0 * one.mean:.1f}" for one in off)
+    return judged(
+        False,
+        f"as printed p^2 stands twice: {max(printed)} of 6 coefficients can be told from each other. With a constant"
+        f" in place of one, mean error {told} % on the rows at 25 degC that were fitted",
+    )
+
+
+def _quadratic(p: float, v: float) -> tuple[float, ...]:
+    return p, p * p, v, p * p, p * v, v * v
+
+
+def _meant(p: float, v: float) -> tuple[float, ...]:
+    return 1.0, p, v, p * p, v * v  # p v is not told apart: no row at 25 degC varies both
+
+
+def _eq_3() -> PaperFinding:
+    energies: list[float] = []
+    for own in by_group(
+        one for one in appendix(FIT).points if one.nominal[LOAD] == 200.0 and one.nominal[SLIP] == 0.3
+    ).values():
+        rising = [one for one in own if one.nominal[TEMPERATURE] <= 70.0]
+        x = np.array([1.0 / (one.nominal[TEMPERATURE] + CELSIUS_0_K) for one in rising])
+        slope = float(np.polyfit(x, np.log([one.value for one in rising]), 1)[0])
+        energies.append(slope * GAS_J_MOL_K / 1000.0)
+    told = ", ".join(f"{one:.1f}" for one in energies)
+    return judged(
+        False,
+        f"as printed, exp(+E / RT) with E above 0 falls with temperature; up to 70 degC the data want E = {told} kJ/mol"
+        " (1#, 2#, 3#), and beyond 70 degC the other sign: no such factor has a peak",
+    )
+
+
+def _eq_4() -> PaperFinding:
+    off: list[float] = []
+    for name, found in staged_table_3(appendix(FIT).points).items():
+        own = [one for one in appendix(FIT).points if one.group == name and one.nominal[1:] == (200.0, 0.3)]
+        cold = next(one.value for one in own if one.nominal[TEMPERATURE] == COLD_C)
+        off += [thermal_factor(found, one.nominal[TEMPERATURE]) * cold / one.value - 1.0 for one in own]
+    largest = max(map(abs, off))
+    return judged(
+        largest <= CLAIMED, f"fitted to 5 temperatures a compound: largest error {100.0 * largest:.1f} % (4 parameters)"
+    )
+
+
+def _eq_5() -> PaperFinding:
+    predicted = fitted(PAPER, appendix(FIT).points)
+    cold = [one for one in appendix(FIT).points if one.nominal[TEMPERATURE] == COLD_C]
+    heavy = [one for one in cold if one.nominal[LOAD] == 400.0]
+    told = ", ".join(
+        f"{100.0 * (one.value / value - 1.0):+.0f}" for one, value in zip(heavy, predicted(heavy), strict=True)
+    )
+    return judged(
+        errors_on(predicted, cold).largest <= CLAIMED,
+        f"fitted to appendix A: measured at 400 N and 25 degC {told} % off it (1#, 2#, 3#): the load is a factor of"
+        " the whole, not of the term of speed",
+    )
+
+
+def _eq_6() -> PaperFinding:
+    b = appendix(VALIDATION).points
+    parts = {name: fit_only(PAPER, name, own) for name, own in by_group(appendix(FIT).points).items()}
+    errors = errors_of([predict(PAPER, parts[one.group], [one])[0] for one in b], [one.value for one in b])
+    return judged(errors.near == errors.rows, f"fitted to appendix A, seen on B: {words(errors)}")
+
+
+def _t_0() -> PaperFinding:
+    rows = readable()
+    as_it_is = errors_on(of_table_3, rows).mean
+    moved = fmean(
+        abs(
+            coefficient(one.group, one.nominal[TEMPERATURE] - COLD_C, one.nominal[LOAD], one.nominal[SLIP]) / one.value
+            - 1.0
+        )
+        for one in rows
+    )
+    told = f"Eqs 7 to 9 are {100.0 * moved:.0f} % off the data in the mean, with T itself {100.0 * as_it_is:.1f} %"
+    return judged(moved <= as_it_is, told)
+
+
+def _formula(name: str) -> PaperFinding:
+    given, rows = COMPOUNDS[name], [one for one in readable() if one.group == name]
+    off = 0.0
+    for t, p, v in (one.nominal for one in rows):
+        heat = given.alpha * exp(-given.beta * (t - given.tm) ** 2) + given.gamma
+        speed = given.a1 * p**given.b1 * v**given.b2 + given.a2
+        off = max(off, abs(heat * speed / coefficient(name, t, p, v) - 1.0))
+    printed = thermal_factor(given, 25.0) * (given.a1 * 200.0**given.b1 * 300.0**given.b2 + given.a2)
+    return judged(
+        off < 1e-9,
+        f"the formula to {slight(off)}; as printed with v in mm/s it gives {printed:.0f} at 25 degC, 200 N, 300 mm/s,"
+        " with m/s"
+        f" {coefficient(name, 25.0, 200.0, 0.3):.3f}. On {len(rows)} rows: {words(errors_on(of_table_3, rows))}",
+    )
+
+
+EQUATIONS: Final = (
+    PaperItem("Eq 1", "mu = c1 p^c2 v^c3", "", _eq_1),
+    PaperItem("Eq 2", "a quadratic in p and v", "", _eq_2),
+    PaperItem("Eq 3", "Arrhenius' rate as the factor of temperature", "", _eq_3),
+    PaperItem("Eq 4", "a bell over temperature", "tester fit appendix-a --law paper", _eq_4),
+    PaperItem("Eq 5", "a1 p^b1 v^b2 + a2", "tester fit appendix-a --law paper", _eq_5),
+    PaperItem("Eq 6", "the product of both, to describe the data", "tester paper", _eq_6),
+    PaperItem("4.1", "t is T less 25 degC in the fitted factor", "", _t_0),
+    *(
+        PaperItem(f"Eq {number}", f"Eq 6 with Table 3 for {name}",
+                  f'tester predict --compound "{name}" --slip "300 mm/s" --load "200 N" --temperature "25 degC"',
+                  lambda name=name: _formula(name))
+        for number, name in zip((7, 8, 9), COMPOUND_NAMES, strict=True)
+    ),
+)  # fmt: skip

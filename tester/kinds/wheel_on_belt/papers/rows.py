@@ -1,0 +1,92 @@
+"""Rows of the appendices as items of the paper need them: series over one variable, errors by compound."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from itertools import pairwise
+
+from tester.fit.check import Errors, errors_of
+from tester.fit.law import FitPoint, by_group
+from tester.kinds.wheel_on_belt.fit.data import appendix
+from tester.kinds.wheel_on_belt.fit.laws import LOAD, SLIP, TEMPERATURE
+from tester.kinds.wheel_on_belt.fit.published import FIT, VALIDATION, of_table_3
+
+USUAL_LOAD_N, USUAL_SLIP_M_S = 200.0, 0.3
+"""Held while the other is varied."""
+COMPOUND_NAMES = ("1#", "2#", "3#")
+
+
+def readable() -> list[FitPoint]:
+    """Return the rows of both appendices that can be read, without sideslip, none inferred."""
+    return [*appendix(FIT).points, *appendix(VALIDATION).points]
+
+
+def over_load() -> list[FitPoint]:
+    """Return the rows at the usual slip velocity."""
+    return [one for one in readable() if one.nominal[SLIP] == USUAL_SLIP_M_S]
+
+
+def over_slip() -> list[FitPoint]:
+    """Return the rows at the usual load."""
+    return [one for one in readable() if one.nominal[LOAD] == USUAL_LOAD_N]
+
+
+def series(points: Iterable[FitPoint], variable: int) -> list[list[FitPoint]]:
+    """Return the rows that differ in one variable alone, each series ascending."""
+    found: dict[tuple[object, ...], list[FitPoint]] = {}
+    for one in points:
+        held = tuple(value for i, value in enumerate(one.nominal) if i != variable)
+        found.setdefault((one.group, *held), []).append(one)
+    return [sorted(own, key=lambda one: one.nominal[variable]) for own in found.values()]
+
+
+def steps(points: Iterable[FitPoint], variable: int, up: bool) -> tuple[int, int]:
+    """Return in how many steps along a variable the coefficient changes as stated, and how many there are."""
+    pairs = [pair for own in series(points, variable) for pair in pairwise(own)]
+    return sum((b.value > a.value) is up and a.value != b.value for a, b in pairs), len(pairs)
+
+
+def peaks(points: Iterable[FitPoint]) -> tuple[int, int, list[str]]:
+    """Return how many series over temperature peak at 70 degC, how many reach beyond it, and which do not."""
+    told: list[str] = []
+    count = 0
+    for own in series(points, TEMPERATURE):
+        if not {55.0, 70.0, 85.0} <= {one.nominal[TEMPERATURE] for one in own}:
+            continue
+        count += 1
+        top = max(own, key=lambda one: one.value)
+        if top.nominal[TEMPERATURE] != 70.0:
+            told.append(f"{top.label} at {top.nominal[TEMPERATURE]:g} degC")
+    return count - len(told), count, told
+
+
+def errors_on(predicted: Callable[[Sequence[FitPoint]], Sequence[float]], points: Sequence[FitPoint]) -> Errors:
+    """Return how far predictions are off rows."""
+    return errors_of(predicted(points), [one.value for one in points])
+
+
+def by_compound_words(points: Sequence[FitPoint]) -> str:
+    """Return how far Eqs 7 to 9 are off rows, by compound."""
+    each = [errors_on(of_table_3, own) for own in by_group(points).values()]
+    every = errors_on(of_table_3, points)
+    means = ", ".join(f"{100.0 * one.mean:.1f}" for one in each)
+    return f"mean {means} % ({', '.join(by_group(points))}), largest {100.0 * every.largest:.0f} %"
+
+
+def bias(points: Sequence[FitPoint]) -> float:
+    """Return the mean of measured over Eqs 7 to 9, less 1; NaN of none."""
+    if not points:
+        return float("nan")
+    return sum(one.value / value for one, value in zip(points, of_table_3(points), strict=True)) / len(points) - 1.0
+
+
+def at(
+    points: Iterable[FitPoint], compound: str, *, celsius: float | None = None, load: float | None = None,
+    slip: float | None = None,
+) -> list[FitPoint]:  # fmt: skip
+    """Return the rows of a compound at values that are given."""
+    asked = {TEMPERATURE: celsius, LOAD: load, SLIP: slip}
+    held = {place: value for place, value in asked.items() if value is not None}
+    return [
+        one for one in points if one.group == compound and all(one.nominal[i] == value for i, value in held.items())
+    ]
