@@ -71,15 +71,15 @@ def _as_json(papers: Sequence[Paper]) -> Json:
     from tester.papers.page import judged_items
 
     return {
-        one.name: [
+        entry.name: [
             {
                 "where": item.where,
                 "states": item.states,
                 "verdict": finding.verdict.value,
-                "found": finding.found,
+                "error": finding.error,
                 "command": item.command or None,
             }
-            for item, finding in judged_items(one)
+            for item, finding in judged_items(entry)
         ]
-        for one in papers
+        for entry in papers
     }

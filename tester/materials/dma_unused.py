@@ -19,29 +19,29 @@ _STRAIN: Final = re.compile(r"(dyn(amic)?|shear|tensile|oscillation)?\W*(strain|
 _PERCENT: Final = re.compile(r"%|per\s?cent", re.I)
 
 
-def tell_unused(layout: DmaLayout, used: Set[int], found: Findings) -> None:
+def tell_unused(layout: DmaLayout, used: Set[int], result: Findings) -> None:
     """Note the columns that are not used; note a strain's range, and doubt a table of several strains."""
     unused = [(at, text) for at, text in enumerate(layout.headings) if text and at not in used]
     if unused:
-        found.notes.append("columns not used: " + ", ".join(f'"{text}"' for _, text in unused))
+        result.notes.append("columns not used: " + ", ".join(f'"{text}"' for _, text in unused))
     for at, text in unused:
         if _STRAIN.match(text):
-            _tell_strain(layout, at, text, found)
+            _tell_strain(layout, at, text, result)
 
 
-def _tell_strain(layout: DmaLayout, at: int, text: str, found: Findings) -> None:
+def _tell_strain(layout: DmaLayout, at: int, text: str, result: Findings) -> None:
     values = sorted(_values(layout, at))
     if not values:
         return
     below = layout.units[at] if layout.units is not None and at < len(layout.units) else ""
     unit = " %" if _PERCENT.search(text + below) else ""
     low, high = values[0], values[-1]
-    told = f"{low:g}{unit}" if low == high else f"{low:g} to {high:g}{unit}"
-    found.notes.append(f'strain: {told}, from "{text}"' + ("" if unit else ", whose unit is not said"))
+    phrase = f"{low:g}{unit}" if low == high else f"{low:g} to {high:g}{unit}"
+    result.notes.append(f'strain: {phrase}, from "{text}"' + ("" if unit else ", whose unit is not said"))
     if high > ALIKE * low:
-        found.doubt(
+        result.doubt(
             (layout.at + 1, 1),
-            f"measured at strains of {told}: moduli of filled rubber fall with strain, and laws take them for one",
+            f"measured at strains of {phrase}: moduli of filled rubber fall with strain, and laws take them for one",
             lasting=True,
         )
 

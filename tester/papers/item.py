@@ -23,7 +23,7 @@ class PaperFinding:
     """A verdict, and the error or the reason in words."""
 
     verdict: PaperVerdict
-    found: str
+    error: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,14 +54,14 @@ def slight(off: float) -> str:
     return f"{off:.0e}" if abs(off) >= ROUNDING else f"less than {ROUNDING:.0e}"
 
 
-def judged(holds: bool, found: str) -> PaperFinding:
+def judged(holds: bool, error: str) -> PaperFinding:
     """Return that an item is reproduced, or refuted where it does not hold."""
-    return PaperFinding(PaperVerdict.REPRODUCED if holds else PaperVerdict.REFUTED, found)
+    return PaperFinding(PaperVerdict.REPRODUCED if holds else PaperVerdict.REFUTED, error)
 
 
-def unjudged(found: str) -> PaperFinding:
+def unjudged(reason: str) -> PaperFinding:
     """Return that an item cannot be judged, with the numbers or the reason."""
-    return PaperFinding(PaperVerdict.NOT_ATTEMPTED, found)
+    return PaperFinding(PaperVerdict.NOT_ATTEMPTED, reason)
 
 
 def not_attempted(where: str, states: str, reason: str) -> PaperItem:

@@ -38,29 +38,29 @@ class JudgedItem(NamedTuple):
 
 def judged_items(paper: Paper) -> list[JudgedItem]:
     """Return the items of a paper with their verdicts, worked out now. Raises MissingExtraError."""
-    return [JudgedItem(one, one.work_out()) for one in paper.items]
+    return [JudgedItem(entry, entry.work_out()) for entry in paper.items]
 
 
 def page_text(papers: Sequence[Paper]) -> str:
     """Return the page in Markdown. Raises MissingExtraError."""
-    found = [(paper, judged_items(paper)) for paper in papers]
-    lines = [HEAD, *_summary(found)]
-    for paper, items in found:
+    result = [(paper, judged_items(paper)) for paper in papers]
+    lines = [HEAD, *_summary(result)]
+    for paper, items in result:
         lines += ["", f"## {paper.name}", "", paper.citation, ""]
         lines += ["| where | the paper | verdict | error or reason | more |", "|---|---|---|---|---|"]
-        lines += [_row(one) for one in items]
+        lines += [_row(entry) for entry in items]
     return "\n".join(lines) + "\n"
 
 
-def _summary(found: Sequence[tuple[Paper, list[JudgedItem]]]) -> Iterator[str]:
+def _summary(result: Sequence[tuple[Paper, list[JudgedItem]]]) -> Iterator[str]:
     yield f"| paper | {' | '.join(PaperVerdict)} |"
     yield "|---|" + "---|" * len(PaperVerdict)
-    for paper, items in found:
-        counted = Counter(one.finding.verdict for one in items)
+    for paper, items in result:
+        counted = Counter(entry.finding.verdict for entry in items)
         yield f"| {paper.name} | {' | '.join(str(counted[verdict]) for verdict in PaperVerdict)} |"
 
 
-def _row(one: JudgedItem) -> str:
-    command = f"`{one.item.command}`" if one.item.command else ""
-    cells = (one.item.where, one.item.states, one.finding.verdict.value, one.finding.found, command)
+def _row(entry: JudgedItem) -> str:
+    command = f"`{entry.item.command}`" if entry.item.command else ""
+    cells = (entry.item.where, entry.item.states, entry.finding.verdict.value, entry.finding.error, command)
     return f"| {' | '.join(text.replace('|', chr(92) + '|') for text in cells)} |"

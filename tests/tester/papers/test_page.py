@@ -129,7 +129,7 @@ def test_a_verdict_is_worked_out_when_it_is_asked_for() -> None:
 def test_what_is_not_attempted_has_its_reason() -> None:
     assert not_attempted("Fig 1", "a drawing", "no numbers").work_out() == unjudged("no numbers")
     reasons = [item.work_out() for _, item in ITEMS if "not_attempted" in getattr(item.work_out, "__qualname__", "")]
-    assert reasons and all(one.verdict is PaperVerdict.NOT_ATTEMPTED and len(one.found) > 10 for one in reasons)
+    assert reasons and all(one.verdict is PaperVerdict.NOT_ATTEMPTED and len(one.error) > 10 for one in reasons)
 
 
 def test_differences_of_rounding_are_not_told_as_digits() -> None:

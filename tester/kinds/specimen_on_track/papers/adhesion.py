@@ -28,8 +28,8 @@ PREDICT: Final = (
 
 def modulus_pa(celsius: float, hertz: float) -> complex:
     """Return E* of the tread that ships, Pa."""
-    found = rubber("tread").modulus.complex_pa(np.array([2.0 * pi * hertz]), celsius)
-    return 3.0 * complex(found[0])
+    result = rubber("tread").modulus.complex_pa(np.array([2.0 * pi * hertz]), celsius)
+    return 3.0 * complex(result[0])
 
 
 def _texture() -> PaperFinding:
@@ -54,8 +54,8 @@ def _road() -> PaperFinding:
     road = surface("road")
     assert road.coarse is not None and road.fine is not None
     printed = (MACRO_M, MACRO_RA_M, MACRO_M / 100.0, MACRO_RA_M / 100.0)
-    found = (road.coarse.wavelength_m, road.coarse.ra_m, road.fine.wavelength_m, road.fine.ra_m)
-    off = max(abs(a / b - 1.0) for a, b in zip(found, printed, strict=True))
+    result = (road.coarse.wavelength_m, road.coarse.ra_m, road.fine.wavelength_m, road.fine.ra_m)
+    off = max(abs(a / b - 1.0) for a, b in zip(result, printed, strict=True))
     return judged(off < 1e-9, f"the surface `road` has these waves, off by {slight(off)}")
 
 
@@ -88,8 +88,8 @@ def _shift() -> PaperFinding:
 def _trend_of_modulus() -> PaperFinding:
     hot, cold = modulus_pa(60.0, 1.0), modulus_pa(20.0, 1.0)
     fast = modulus_pa(20.0, 1e3)
-    tan = [modulus_pa(float(one), 1.0) for one in np.arange(-60.0, 61.0, 5.0)]
-    factors = [one.imag / one.real for one in tan]
+    tan = [modulus_pa(float(entry), 1.0) for entry in np.arange(-60.0, 61.0, 5.0)]
+    factors = [entry.imag / entry.real for entry in tan]
     inside = 0 < int(np.argmax(factors)) < len(factors) - 1
     return judged(
         hot.real < cold.real < fast.real and inside,
@@ -104,7 +104,7 @@ def _devices() -> PaperFinding:
 
     rig = TrackConfig.of(load_rig("pin-on-disc"))
     there = [name for name in ("load_cell", "pyrometer", "thermometer") if name in rig.devices]
-    weights = ", ".join(f"{one:g}" for one in rig.weights)
+    weights = ", ".join(f"{entry:g}" for entry in rig.weights)
     holds = len(there) == 3 and not rig.linear and {10.0, 20.0} <= set(rig.weights)
     return judged(
         holds,
@@ -121,8 +121,8 @@ def _eq_11_12_13() -> PaperFinding:
         e = abs(modulus_pa(WARM_C, speed / law.fine.wavelength_m))
         tau = shear.strength_pa * (1.0 + shear.ratio / (1.0 + shear.speed_m_s / speed) ** shear.exponent)
         share = min(1.0, 2.0 * PRESSURE_PA / (sqrt(pi * mean_square_slope(law.fine)) * e))
-        found = law.components(WARM_C, load_n(PRESSURE_PA, law), speed).adhesion
-        off = max(off, abs(found / (tau * share / PRESSURE_PA) - 1.0))
+        result = law.components(WARM_C, load_n(PRESSURE_PA, law), speed).adhesion
+        off = max(off, abs(result / (tau * share / PRESSURE_PA) - 1.0))
     return judged(off < 1e-6, f"adhesion at 0.01, 1 and 30 m/s differs from the formulas by {slight(off)}")
 
 

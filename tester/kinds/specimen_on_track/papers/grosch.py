@@ -67,7 +67,7 @@ def _cold_contact() -> PaperFinding:
 
 
 def _one_curve() -> PaperFinding:
-    told: list[str] = []
+    phrase: list[str] = []
     worst_k = 0.0
     for name in OUR_RUBBERS:
         law, ts_c = WlfBell(RUBBERS[name]), RUBBERS[name].t_ref
@@ -77,20 +77,20 @@ def _one_curve() -> PaperFinding:
             for celsius in np.arange(ts_c - 30.0, ts_c + 70.0, 20.0).tolist()
             for v in np.logspace(-6.0, -2.0, 9).tolist()
         ]
-        found = collapse(set_of(points), resamples=20)
-        worst_k = max(worst_k, abs(found.ts_c - ts_c))
-        told.append(f"{found.ts_c - ts_c:+.2f} K ({name})")
+        result = collapse(set_of(points), resamples=20)
+        worst_k = max(worst_k, abs(result.ts_c - ts_c))
+        phrase.append(f"{result.ts_c - ts_c:+.2f} K ({name})")
     return judged(
         worst_k <= 1.0,
         "values of the law `wlf_bell` over 5 temperatures and 9 speeds fall on one curve, Ts off by"
-        f" {', '.join(told)}. The rubbers obey WLF by construction: this shows the method",
+        f" {', '.join(phrase)}. The rubbers obey WLF by construction: this shows the method",
     )
 
 
 def _ts() -> PaperFinding:
     off = {name: RUBBERS[name].t_ref - (rubber(name).glass_c or 0.0) - GLASS_TO_REFERENCE_K for name in OUR_RUBBERS}
-    told = ", ".join(f"{one:+.1f} K ({name})" for name, one in off.items())
-    return unjudged(f"Ts - Tg - 50 K of the rubbers that ship: {told}, but by construction")
+    phrase = ", ".join(f"{entry:+.1f} K ({name})" for name, entry in off.items())
+    return unjudged(f"Ts - Tg - 50 K of the rubbers that ship: {phrase}, but by construction")
 
 
 def _dry_surfaces() -> PaperFinding:
@@ -109,7 +109,7 @@ def _dry_surfaces() -> PaperFinding:
 
 
 def _rules() -> PaperFinding:
-    told: list[str] = []
+    phrase: list[str] = []
     decades: list[float] = []
     for name in OUR_RUBBERS:
         ours = rubber(name)
@@ -117,10 +117,10 @@ def _rules() -> PaperFinding:
         top = peak(persson_over_speed(ours.modulus, spectrum("silicon carbide"), celsius=celsius))
         rule = rules_of(ours.modulus, celsius, (Peak(10.0 ** top[1], top[0]),))[1]
         decades.append(rule.decades)
-        told.append(f"{rule.decades:+.2f} ({name})")
+        phrase.append(f"{rule.decades:+.2f} ({name})")
     return judged(
         max(map(abs, decades)) <= HALF_DECADE,
-        f"hysteresis by `persson` on silicon carbide peaks {', '.join(told)} decades above {1e6 * GRIT_M:g} um times"
+        f"hysteresis by `persson` on silicon carbide peaks {', '.join(phrase)} decades above {1e6 * GRIT_M:g} um times"
         " the"
         " frequency: the rule is not put into that law, but the longest wave of the surface, 150 um, was chosen by it",
     )
@@ -132,9 +132,9 @@ def _same_for_all() -> PaperFinding:
         celsius = ROOM_C + RUBBERS[name].t_ref - RUBBERS["SBR"].t_ref
         jump, grit = rules_of(rubber(name).modulus, celsius, ())
         gaps.append(log10(grit.speed_m_s / jump.speed_m_s))
-    told = ", ".join(f"{one:.2f}" for one in gaps)
+    phrase = ", ".join(f"{entry:.2f}" for entry in gaps)
     return unjudged(
-        f"the rules put the peaks {told} decades apart (SBR, NR, NBR), but these rubbers differ in their glass"
+        f"the rules put the peaks {phrase} decades apart (SBR, NR, NBR), but these rubbers differ in their glass"
         " transition alone"
     )
 
@@ -144,8 +144,8 @@ def _far_apart() -> PaperFinding:
     assert isinstance(zener, FractionalZener)
     frequencies: list[float] = []
     between: list[float] = []
-    for one in (zener, replace(zener, glassy_pa=10.0 * zener.glassy_pa)):
-        jump, grit = rules_of(one, ROOM_C, ())
+    for entry in (zener, replace(zener, glassy_pa=10.0 * zener.glassy_pa)):
+        jump, grit = rules_of(entry, ROOM_C, ())
         frequencies.append(log10(jump.speed_m_s / JUMP_M) - log10(grit.speed_m_s / GRIT_M))
         between.append(log10(grit.speed_m_s / jump.speed_m_s))
     return judged(

@@ -138,10 +138,10 @@ def _asymmetry(friction: float) -> float:
 def _along() -> PaperFinding:
     friction = min(1.0, _parts(STRESS_PA).adhesion)
     x, stress = _field(friction)
-    one, other = float(x[int(np.argmin(stress))]), float(x[int(np.argmax(stress))])
+    entry, other = float(x[int(np.argmin(stress))]), float(x[int(np.argmax(stress))])
     return judged(
-        one * other < 0.0,
-        f"largest pressure {one:+.2f}, largest tension {other:+.2f} of a wave from the crest, on either side of it (K"
+        entry * other < 0.0,
+        f"largest pressure {entry:+.2f}, largest tension {other:+.2f} of a wave from the crest, on either side of it (K"
         f" {friction:.2f}, own field)",
     )
 
@@ -154,9 +154,9 @@ def _across() -> PaperFinding:
 
 
 def _more_friction() -> PaperFinding:
-    found = [_asymmetry(friction) for friction in (0.0, 0.5, 1.0)]
-    told = ", ".join(f"{one:.2f}" for one in found)
-    return judged(found[0] < found[1] < found[2], f"sx and its mirror image differ by {told} p at K = 0, 0.5, 1")
+    result = [_asymmetry(friction) for friction in (0.0, 0.5, 1.0)]
+    phrase = ", ".join(f"{entry:.2f}" for entry in result)
+    return judged(result[0] < result[1] < result[2], f"sx and its mirror image differ by {phrase} p at K = 0, 0.5, 1")
 
 
 def _fade() -> PaperFinding:
@@ -170,9 +170,9 @@ def _fade() -> PaperFinding:
 
 def _speed() -> PaperFinding:
     mu = [sum(_parts(speed=speed)) for speed in SPEEDS_M_S]
-    told = ", ".join(f"{one:.3f}" for one in mu)
+    phrase = ", ".join(f"{entry:.3f}" for entry in mu)
     return unjudged(
-        f"a surface without numbers; `greta` with the tread and road that ship: {told} at 0.1, 1, 10 m/s and 300 kPa"
+        f"a surface without numbers; `greta` with the tread and road that ship: {phrase} at 0.1, 1, 10 m/s and 300 kPa"
     )
 
 
@@ -212,14 +212,14 @@ def _soft() -> PaperFinding:
 
 
 def _stiffer(factor: float) -> Rubber:
-    one = rubber("tread")
-    return replace(one, modulus=Stiffer(one.modulus, factor))
+    entry = rubber("tread")
+    return replace(entry, modulus=Stiffer(entry.modulus, factor))
 
 
 def _smooth(factor: float) -> Components:
     road = surface("road")
     assert road.coarse is not None and road.fine is not None
-    waves = (Sinusoid(one.wavelength_m, factor * one.ra_m) for one in (road.coarse, road.fine))
+    waves = (Sinusoid(entry.wavelength_m, factor * entry.ra_m) for entry in (road.coarse, road.fine))
     coarse, fine = waves
     return _parts(law=Greta(rubber("tread"), replace(road, coarse=coarse, fine=fine)))
 
@@ -255,12 +255,12 @@ def _rough_sum() -> PaperFinding:
 
 def _tape() -> PaperFinding:
     tape = Greta(rubber("tread"), surface("anti-slip tape"))
-    told = ", ".join(
+    phrase = ", ".join(
         f"{tape.components(40.0, 10.0, speed).hysteresis:.3f}" for speed in (0.05, 0.5, 1.0, 2.0)
     )  # fmt: skip
     return unjudged(
         "moduli of C1 and C2 and the measured points are curves without numbers, wave lengths of the tape (Ra 27 um)"
-        f" are not printed. Hysteresis of `tread` on `anti-slip tape`, 40 degC, 10 N, 0.05 to 2 m/s: {told}"
+        f" are not printed. Hysteresis of `tread` on `anti-slip tape`, 40 degC, 10 N, 0.05 to 2 m/s: {phrase}"
     )
 
 

@@ -41,9 +41,9 @@ def surface(name: str) -> Surface:
 
 def spectrum(name: str) -> SelfAffine:
     """Return the spectrum of a self-affine surface that ships."""
-    found = surface(name).spectrum
-    assert isinstance(found, SelfAffine)
-    return found
+    result = surface(name).spectrum
+    assert isinstance(result, SelfAffine)
+    return result
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,8 +56,8 @@ class Stiffer:
 
     def complex_pa(self, rate_rad_s: Array, temperature_c: float) -> Complex:
         """Return G* in Pa."""
-        found = self.of.complex_pa(rate_rad_s, temperature_c)
-        return self.storage * found.real + 1j * self.loss * found.imag
+        result = self.of.complex_pa(rate_rad_s, temperature_c)
+        return self.storage * result.real + 1j * self.loss * result.imag
 
 
 def persson_over_speed(

@@ -44,7 +44,7 @@ def _direct(law_at_q1: bool) -> tuple[float, float]:
     square = 2.0 * pi * plane**2 * (1.0 + modulus.tan_delta**2) / s**2
     running = np.cumsum(q**3 * rough.power_m4(q) * dq) * square / 8.0
     running = np.full_like(running, running[-1]) if law_at_q1 else running - 0.5 * np.diff(running, prepend=0.0)
-    share = np.array([erf(0.5 / sqrt(one)) for one in running.tolist()])
+    share = np.array([erf(0.5 / sqrt(entry)) for entry in running.tolist()])
     mu = 0.5 * float(np.sum(q**3 * rough.power_m4(q) * share * dq)) * 4.0 * plane * modulus.tan_delta / s
     return mu, PerssonLaw(modulus, 0.5, rough).contact(ROOM_C, s, 0.1).mu
 
@@ -139,8 +139,8 @@ def _cut() -> PaperFinding:
 def _sinusoid() -> PaperFinding:
     """One wave in full contact: the most loss where its frequency is that of the loss modulus' maximum."""
     modulus, q = rubber("SBR").modulus, 1e5
-    one = SelfAffine(1e-22, q, 1.02 * q, 0.8)
-    mu = persson_over_speed(modulus, one, 1e9)
+    entry = SelfAffine(1e-22, q, 1.02 * q, 0.8)
+    mu = persson_over_speed(modulus, entry, 1e9)
     omega = np.logspace(2.0, 10.0, 4001)
     at_most = float(omega[int(np.argmax(modulus.complex_pa(omega, ROOM_C).imag))])
     off = peak(mu)[1] - log10(at_most / q)
@@ -152,8 +152,8 @@ def _sinusoid() -> PaperFinding:
 
 def _proportional() -> PaperFinding:
     modulus = rubber("SBR").modulus
-    one, other = (SelfAffine(1e-22, q, 1.02 * q, 0.8) for q in (1e4, 1e5))
-    decades = peak(persson_over_speed(modulus, one, 1e9))[1] - peak(persson_over_speed(modulus, other, 1e9))[1]
+    entry, other = (SelfAffine(1e-22, q, 1.02 * q, 0.8) for q in (1e4, 1e5))
+    decades = peak(persson_over_speed(modulus, entry, 1e9))[1] - peak(persson_over_speed(modulus, other, 1e9))[1]
     return judged(abs(decades - 1.0) < 0.02, f"a wave ten times as long peaks at {10.0**decades:.2f} times the speed")
 
 
@@ -172,9 +172,9 @@ def _unity() -> PaperFinding:
     tops = {
         name: peak(persson_over_speed(rubber("SBR").modulus, spectrum(name)))[0] for name in ("silicon carbide", "S0")
     }
-    told = ", ".join(f"{top:.2f} on {name}" for name, top in tops.items())
+    phrase = ", ".join(f"{top:.2f} on {name}" for name, top in tops.items())
     return judged(
-        all(0.3 <= top <= 3.0 for top in tops.values()), f"SBR at 20 degC and 1 bar: {told} (surfaces and rubber [A])"
+        all(0.3 <= top <= 3.0 for top in tops.values()), f"SBR at 20 degC and 1 bar: {phrase} (surfaces and rubber [A])"
     )
 
 

@@ -48,17 +48,17 @@ def low_friction(rig: TrackConfig, recipe: Recipe, tree: Tree) -> Iterator[Probl
     estimator = TrackEstimator(rig, surface=surface, recipe=Path(tree.name))
     lost = rig.interlocks.lost_share
     for number, specimen in enumerate(recipe.specimens):
-        found: list[tuple[float, str]] = []
-        for one in conditions_of(recipe, track_settings):
-            setpoint = Setpoint(specimen.compound, one.values, AXES)
+        result: list[tuple[float, str]] = []
+        for entry in conditions_of(recipe, track_settings):
+            setpoint = Setpoint(specimen.compound, entry.values, AXES)
             mu = estimator.mu(specimen.compound, held_by(setpoint))
             if not LOW * mu >= lost:
-                found.append((mu, condition_words(setpoint)))
-        if found:
-            mu, words = min(found)
+                result.append((mu, condition_words(setpoint)))
+        if result:
+            mu, words = min(result)
             yield tree.problem(
                 ("specimens", number, "compound"),
                 f"sim.law {rig.sim.law} expects friction of {100.0 * mu:.2g} % of the load at {words}, and too little"
-                f" in {len(found)} conditions: below {100.0 * lost:g} % the contact counts as lost and the run trips"
+                f" in {len(result)} conditions: below {100.0 * lost:g} % the contact counts as lost and the run trips"
                 " (interlocks.lost_share)",
             )

@@ -62,7 +62,7 @@ QUOTED: Final[Mapping[str, tuple[Quoted, ...]]] = {
 
 def of_table_3(points: Sequence[FitPoint]) -> list[float]:
     """Return Eqs 7 to 9 with Table 3, at the measured conditions."""
-    return by_compound(PAPER, {name: joint_of(one) for name, one in COMPOUNDS.items()})(points)
+    return by_compound(PAPER, {name: joint_of(entry) for name, entry in COMPOUNDS.items()})(points)
 
 
 def scaled(points: Sequence[FitPoint], reading: Reading = Reading.WITHOUT) -> dict[str, float]:
@@ -71,20 +71,20 @@ def scaled(points: Sequence[FitPoint], reading: Reading = Reading.WITHOUT) -> di
     No Eq 7 to 9 at all. A condition whose value at 25 degC cannot be read has none.
     """
     cold = {
-        (one.group, one.nominal[LOAD], one.nominal[SLIP]): one.value
-        for one in appendix(FIT, reading).points
-        if one.nominal[TEMPERATURE] == V2_TEMPERATURE_C
+        (entry.group, entry.nominal[LOAD], entry.nominal[SLIP]): entry.value
+        for entry in appendix(FIT, reading).points
+        if entry.nominal[TEMPERATURE] == V2_TEMPERATURE_C
     }
-    places = {one.label: (one.group, one.nominal[LOAD], one.nominal[SLIP]) for one in points}
+    places = {entry.label: (entry.group, entry.nominal[LOAD], entry.nominal[SLIP]) for entry in points}
     return {
-        one.label: cold[places[one.label]] * _thermal(COMPOUNDS[one.group], one.nominal[TEMPERATURE])
-        for one in points
-        if places[one.label] in cold
+        entry.label: cold[places[entry.label]] * _thermal(COMPOUNDS[entry.group], entry.nominal[TEMPERATURE])
+        for entry in points
+        if places[entry.label] in cold
     }
 
 
-def _thermal(given: PaperParameters, temperature_c: float) -> float:
-    return given.alpha * exp(-given.beta * (temperature_c - given.tm) ** 2) + given.gamma
+def _thermal(table: PaperParameters, temperature_c: float) -> float:
+    return table.alpha * exp(-table.beta * (temperature_c - table.tm) ** 2) + table.gamma
 
 
 def published_table() -> PublishedTable:
@@ -121,7 +121,7 @@ def _ways(reading: Reading, b: Sequence[FitPoint]) -> list[TableLine]:
     """Return the lines that depend on what is done with inferred rows."""
     a = appendix(FIT, reading).points
     both, times_f = (*a, *b), scaled(b, reading)
-    seen = [one for one in b if one.label in times_f]
+    seen = [entry for entry in b if entry.label in times_f]
     return [
         _on("the paper's staged way", by_compound(PAPER, staged(a)), a, b),
         _on("Eq 6, all parameters at once", fitted(PAPER, a), a, b),
@@ -129,81 +129,81 @@ def _ways(reading: Reading, b: Sequence[FitPoint]) -> list[TableLine]:
         _on("v2, fitted to A and B (*)", fitted(V2_LAW, both), both, b),
         TableLine(
             "measured at 25 degC, times f(T) (*)", errors_of([], []),
-            errors_of([times_f[one.label] for one in seen], [one.value for one in seen]),
+            errors_of([times_f[entry.label] for entry in seen], [entry.value for entry in seen]),
         ),
     ]  # fmt: skip
 
 
 def _judged_table_3(line: TableLine) -> TableLine:
-    found = line.validation
+    result = line.validation
     met = (
-        found.rows == ROWS and abs(found.mean - TABLE_3_MEAN) <= TABLE_3_WITHIN and found.near == TABLE_3_NEAR
+        result.rows == ROWS and abs(result.mean - TABLE_3_MEAN) <= TABLE_3_WITHIN and result.near == TABLE_3_NEAR
     )  # fmt: skip
     asked = (
         f"{ROWS} rows, mean {100.0 * TABLE_3_MEAN:.2f} +- {100.0 * TABLE_3_WITHIN:.2f} %, {TABLE_3_NEAR} within 5 %; "
-        f"found {found.rows}, {100.0 * found.mean:.2f} %, {found.near}"
+        f"found {result.rows}, {100.0 * result.mean:.2f} %, {result.near}"
     )
-    return TableLine(line.way, line.fitted, found, asked, met)
+    return TableLine(line.way, line.fitted, result, asked, met)
 
 
 def _judged_v2(line: TableLine, eq_6: TableLine) -> TableLine:
-    found, other = line.validation, eq_6.validation
-    met = found.rows == ROWS and found.mean <= V2_MEAN and found.near > other.near
+    result, other = line.validation, eq_6.validation
+    met = result.rows == ROWS and result.mean <= V2_MEAN and result.near > other.near
     asked = (
         f"mean at most {100.0 * V2_MEAN:.1f} %, more rows within 5 % than Eq 6; "
-        f"found {100.0 * found.mean:.2f} %, {found.near} against {other.near}"
+        f"found {100.0 * result.mean:.2f} %, {result.near} against {other.near}"
     )
-    return TableLine(line.way, line.fitted, found, asked, met)
+    return TableLine(line.way, line.fitted, result, asked, met)
 
 
-def _claims(found: Errors) -> tuple[Claim, ...]:
+def _claims(result: Errors) -> tuple[Claim, ...]:
     claims = [
         Claim(
             "errors within 5 %",
-            f"{found.near} of {found.rows} rows within 5 %, {found.far} within 10 %, largest {found.largest:.0%}",
+            f"{result.near} of {result.rows} rows within 5 %, {result.far} within 10 %, largest {result.largest:.0%}",
         )
     ]
     for where, quoted in QUOTED.items():
-        said = ", ".join(one.printed for one in quoted)
-        claims.append(Claim(f"{said} % ({QUOTED_COMPOUND} at {where})", _answer(quoted)))
+        printed_error = ", ".join(entry.printed for entry in quoted)
+        claims.append(Claim(f"{printed_error} % ({QUOTED_COMPOUND} at {where})", _answer(quoted)))
     return tuple(claims)
 
 
 def quoted_rows(quoted: Sequence[Quoted]) -> list[FitPoint]:
     """Return the rows of the appendices that errors are quoted of, in their order."""
     rows = (*appendix(FIT).points, *appendix(VALIDATION).points)
-    at = {one.nominal: one for one in rows if one.group == QUOTED_COMPOUND}
-    return [at[one.nominal] for one in quoted]
+    at = {entry.nominal: entry for entry in rows if entry.group == QUOTED_COMPOUND}
+    return [at[entry.nominal] for entry in quoted]
 
 
 def _answer(quoted: Sequence[Quoted]) -> str:
     """Return the errors of Eqs 7 to 9 and those of a measured value times f(T), by every reading that matters."""
     rows = quoted_rows(quoted)
-    told = [f"{_list(dict(zip((one.label for one in rows), of_table_3(rows), strict=True)), rows)} by Eqs 7 to 9"]
+    phrase = [f"{_list(dict(zip((entry.label for entry in rows), of_table_3(rows), strict=True)), rows)} by Eqs 7 to 9"]
     way = "by the value measured at 25 degC times f(T)"
     ways = {reading: scaled(rows, reading) for reading in Reading}
     if ways[Reading.WITHOUT]:
-        told.append(f"{_list(ways[Reading.WITHOUT], rows)} {way}")
+        phrase.append(f"{_list(ways[Reading.WITHOUT], rows)} {way}")
     else:
-        told.append(f"none {way}, which is not read")
-        told += [f"{_list(ways[reading], rows)} with it {reading.value}" for reading in Reading if ways[reading]]
-    return "; ".join(told)
+        phrase.append(f"none {way}, which is not read")
+        phrase += [f"{_list(ways[reading], rows)} with it {reading.value}" for reading in Reading if ways[reading]]
+    return "; ".join(phrase)
 
 
 def _list(predicted: Mapping[str, float], rows: Sequence[FitPoint]) -> str:
-    return ", ".join(f"{abs(predicted[one.label] / one.value - 1.0):.1%}" for one in rows)
+    return ", ".join(f"{abs(predicted[entry.label] / entry.value - 1.0):.1%}" for entry in rows)
 
 
 def fitted(law: Law, points: Sequence[FitPoint]) -> Predicted:
     """Return what a law predicts that is fitted to some conditions; raises MissingExtraError."""
-    return by_compound(law, {group: fit_only(law, group, own) for group, own in by_group(points).items()})
+    return by_compound(law, {group: fit_only(law, group, subset) for group, subset in by_group(points).items()})
 
 
 def by_compound(law: Law, parameters: Mapping[str, Sequence[float]]) -> Predicted:
     """Return what a law predicts with the parameters of each compound."""
 
     def predicted(points: Sequence[FitPoint]) -> list[float]:
-        return [predict(law, parameters[one.group], [one])[0] for one in points]
+        return [predict(law, parameters[entry.group], [entry])[0] for entry in points]
 
     return predicted
 
@@ -213,4 +213,4 @@ def _on(way: str, predicted: Predicted, fitted: Sequence[FitPoint], validation: 
 
 
 def _errors(predicted: Predicted, points: Sequence[FitPoint]) -> Errors:
-    return errors_of(predicted(points), [one.value for one in points])
+    return errors_of(predicted(points), [entry.value for entry in points])

@@ -47,41 +47,43 @@ def words(errors: Errors) -> str:
 
 
 def _off(name: str, compound: str, reading: Reading = Reading.WITHOUT) -> float:
-    found = staged_table_3(appendix(FIT, reading).points)[compound]
-    return getattr(found, name) / getattr(COMPOUNDS[compound], name) - 1.0
+    result = staged_table_3(appendix(FIT, reading).points)[compound]
+    return getattr(result, name) / getattr(COMPOUNDS[compound], name) - 1.0
 
 
 def _parameters(names: Sequence[str], compounds: Sequence[str]) -> PaperFinding:
     off = {(name, compound): _off(name, compound) for compound in compounds for name in names}
-    told = ", ".join(f"{name} of {compound} {100.0 * one:+.2f} %" for (name, compound), one in off.items())
-    return judged(all(abs(one) <= SAME for one in off.values()), told)
+    phrase = ", ".join(f"{name} of {compound} {100.0 * entry:+.2f} %" for (name, compound), entry in off.items())
+    return judged(all(abs(entry) <= SAME for entry in off.values()), phrase)
 
 
 def _open(names: Sequence[str], compounds: Sequence[str]) -> PaperFinding:
-    told = [
+    phrase = [
         f"{reading.value}: "
-        + ", ".join(f"{name} of {one} {100.0 * _off(name, one, reading):+.1f} %" for one in compounds for name in names)
+        + ", ".join(
+            f"{name} of {entry} {100.0 * _off(name, entry, reading):+.1f} %" for entry in compounds for name in names
+        )
         for reading in Reading
     ]
-    return unjudged(f"hangs on A027 and A036, which cannot be read. {'; '.join(told)} (chosen to give Table 3)")
+    return unjudged(f"hangs on A027 and A036, which cannot be read. {'; '.join(phrase)} (chosen to give Table 3)")
 
 
 def _heat_factor() -> PaperFinding:
-    found = staged_table_3(appendix(FIT).points)
+    result = staged_table_3(appendix(FIT).points)
     off = {
         name: max(
-            abs(_relative(found[name], celsius) / _relative(printed, celsius) - 1.0)
+            abs(_relative(result[name], celsius) / _relative(printed, celsius) - 1.0)
             for celsius in np.linspace(25.0, 85.0, 61)
         )
         for name, printed in COMPOUNDS.items()
     }
-    told = ", ".join(f"{100.0 * one:.1f} % ({name})" for name, one in off.items())
-    peaks = ", ".join(f"{found[name].tm - printed.tm:+.1f} K" for name, printed in COMPOUNDS.items())
-    return judged(max(off.values()) <= CURVE, f"f(T) / f(25) off by at most {told}; tm off by {peaks}")
+    phrase = ", ".join(f"{100.0 * entry:.1f} % ({name})" for name, entry in off.items())
+    peaks = ", ".join(f"{result[name].tm - printed.tm:+.1f} K" for name, printed in COMPOUNDS.items())
+    return judged(max(off.values()) <= CURVE, f"f(T) / f(25) off by at most {phrase}; tm off by {peaks}")
 
 
-def _relative(given: PaperParameters, celsius: float) -> float:
-    return thermal_factor(given, celsius) / thermal_factor(given, COLD_C)
+def _relative(table: PaperParameters, celsius: float) -> float:
+    return thermal_factor(table, celsius) / thermal_factor(table, COLD_C)
 
 
 TABLE_3: Final = (
@@ -94,8 +96,8 @@ TABLE_3: Final = (
 
 
 def _together() -> PaperFinding:
-    one, other = _parameters(("b2", "a2"), ("3#",)), _parameters(("b1",), ("2#",))
-    return PaperFinding(max(one.verdict, other.verdict), f"{one.found}, {other.found}")
+    entry, other = _parameters(("b2", "a2"), ("3#",)), _parameters(("b1",), ("2#",))
+    return PaperFinding(max(entry.verdict, other.verdict), f"{entry.error}, {other.error}")
 
 
 # -- Equations --------------------------------------------------------------------------------------------------------
@@ -103,30 +105,32 @@ def _together() -> PaperFinding:
 
 def _cold(moving: bool) -> dict[str, list[FitPoint]]:
     """Return the rows at 25 degC by compound; ``moving``: without those at no slip."""
-    own = [one for one in readable() if one.nominal[TEMPERATURE] == COLD_C]
-    return by_group(one for one in own if not moving or one.nominal[SLIP] > 0.0)
+    subset = [entry for entry in readable() if entry.nominal[TEMPERATURE] == COLD_C]
+    return by_group(entry for entry in subset if not moving or entry.nominal[SLIP] > 0.0)
 
 
 def _linear(
-    columns: Callable[[FitPoint], Sequence[float]], y: Callable[[FitPoint], float], own: Sequence[FitPoint]
+    columns: Callable[[FitPoint], Sequence[float]], y: Callable[[FitPoint], float], subset: Sequence[FitPoint]
 ) -> Array:
-    x = np.array([[*columns(one)] for one in own])
-    solution: Array = np.linalg.lstsq(x, np.array([y(one) for one in own]), rcond=None)[0]
+    x = np.array([[*columns(entry)] for entry in subset])
+    solution: Array = np.linalg.lstsq(x, np.array([y(entry) for entry in subset]), rcond=None)[0]
     return np.asarray(x @ solution)
 
 
 def _eq_1() -> PaperFinding:
     off: list[Errors] = []
-    for own in _cold(moving=True).values():
-        found = _linear(
-            lambda one: (1.0, log(one.nominal[LOAD]), log(one.nominal[SLIP])), lambda one: log(one.value), own
+    for subset in _cold(moving=True).values():
+        result = _linear(
+            lambda entry: (1.0, log(entry.nominal[LOAD]), log(entry.nominal[SLIP])),
+            lambda entry: log(entry.value),
+            subset,
         )
-        off.append(errors_of([exp(one) for one in found.tolist()], [one.value for one in own]))
-    still = [own.value for rows in _cold(moving=False).values() for own in rows if own.nominal[SLIP] == 0.0]
-    told = ", ".join(f"{100.0 * one.mean:.1f}" for one in off)
+        off.append(errors_of([exp(entry) for entry in result.tolist()], [entry.value for entry in subset]))
+    still = [subset.value for rows in _cold(moving=False).values() for subset in rows if subset.nominal[SLIP] == 0.0]
+    phrase = ", ".join(f"{100.0 * entry.mean:.1f}" for entry in off)
     return judged(
         False,
-        f"fitted at 25 degC: mean error {told} % (1#, 2#, 3#) where it slips; at 0 mm/s it gives 0, the data"
+        f"fitted at 25 degC: mean error {phrase} % (1#, 2#, 3#) where it slips; at 0 mm/s it gives 0, the data"
         f" {min(still):g} to {max(still):g}",
     )
 
@@ -134,18 +138,20 @@ def _eq_1() -> PaperFinding:
 def _eq_2() -> PaperFinding:
     printed: list[int] = []
     off: list[Errors] = []
-    for own in _cold(moving=False).values():
-        as_printed = np.array([_quadratic(one.nominal[LOAD] / 200.0, one.nominal[SLIP] / 0.3) for one in own])
+    for subset in _cold(moving=False).values():
+        as_printed = np.array([_quadratic(entry.nominal[LOAD] / 200.0, entry.nominal[SLIP] / 0.3) for entry in subset])
         printed.append(int(np.linalg.matrix_rank(as_printed)))
         meant = _linear(
-            lambda one: _meant(one.nominal[LOAD] / 200.0, one.nominal[SLIP] / 0.3), lambda one: one.value, own
+            lambda entry: _meant(entry.nominal[LOAD] / 200.0, entry.nominal[SLIP] / 0.3),
+            lambda entry: entry.value,
+            subset,
         )
-        off.append(errors_of(meant.tolist(), [one.value for one in own]))
-    told = ", ".join(f"{100.0 * one.mean:.1f}" for one in off)
+        off.append(errors_of(meant.tolist(), [entry.value for entry in subset]))
+    phrase = ", ".join(f"{100.0 * entry.mean:.1f}" for entry in off)
     return judged(
         False,
         f"as printed p^2 stands twice: {max(printed)} of 6 coefficients can be told from each other. With a constant"
-        f" in place of one, mean error {told} % on the rows at 25 degC that were fitted",
+        f" in place of one, mean error {phrase} % on the rows at 25 degC that were fitted",
     )
 
 
@@ -159,27 +165,27 @@ def _meant(p: float, v: float) -> tuple[float, ...]:
 
 def _eq_3() -> PaperFinding:
     energies: list[float] = []
-    for own in by_group(
-        one for one in appendix(FIT).points if one.nominal[LOAD] == 200.0 and one.nominal[SLIP] == 0.3
+    for subset in by_group(
+        entry for entry in appendix(FIT).points if entry.nominal[LOAD] == 200.0 and entry.nominal[SLIP] == 0.3
     ).values():
-        rising = [one for one in own if one.nominal[TEMPERATURE] <= 70.0]
-        x = np.array([1.0 / (one.nominal[TEMPERATURE] + CELSIUS_0_K) for one in rising])
-        slope = float(np.polyfit(x, np.log([one.value for one in rising]), 1)[0])
+        rising = [entry for entry in subset if entry.nominal[TEMPERATURE] <= 70.0]
+        x = np.array([1.0 / (entry.nominal[TEMPERATURE] + CELSIUS_0_K) for entry in rising])
+        slope = float(np.polyfit(x, np.log([entry.value for entry in rising]), 1)[0])
         energies.append(slope * GAS_J_MOL_K / 1000.0)
-    told = ", ".join(f"{one:.1f}" for one in energies)
+    phrase = ", ".join(f"{entry:.1f}" for entry in energies)
     return judged(
         False,
-        f"as printed, exp(+E / RT) with E above 0 falls with temperature; up to 70 degC the data want E = {told} kJ/mol"
-        " (1#, 2#, 3#), and beyond 70 degC the other sign: no such factor has a peak",
+        f"as printed, exp(+E / RT) with E above 0 falls with temperature; up to 70 degC the data want E = {phrase}"
+        " kJ/mol (1#, 2#, 3#), and beyond 70 degC the other sign: no such factor has a peak",
     )
 
 
 def _eq_4() -> PaperFinding:
     off: list[float] = []
-    for name, found in staged_table_3(appendix(FIT).points).items():
-        own = [one for one in appendix(FIT).points if one.group == name and one.nominal[1:] == (200.0, 0.3)]
-        cold = next(one.value for one in own if one.nominal[TEMPERATURE] == COLD_C)
-        off += [thermal_factor(found, one.nominal[TEMPERATURE]) * cold / one.value - 1.0 for one in own]
+    for name, result in staged_table_3(appendix(FIT).points).items():
+        subset = [entry for entry in appendix(FIT).points if entry.group == name and entry.nominal[1:] == (200.0, 0.3)]
+        cold = next(entry.value for entry in subset if entry.nominal[TEMPERATURE] == COLD_C)
+        off += [thermal_factor(result, entry.nominal[TEMPERATURE]) * cold / entry.value - 1.0 for entry in subset]
     largest = max(map(abs, off))
     return judged(
         largest <= CLAIMED, f"fitted to 5 temperatures a compound: largest error {100.0 * largest:.1f} % (4 parameters)"
@@ -188,22 +194,22 @@ def _eq_4() -> PaperFinding:
 
 def _eq_5() -> PaperFinding:
     predicted = fitted(PAPER, appendix(FIT).points)
-    cold = [one for one in appendix(FIT).points if one.nominal[TEMPERATURE] == COLD_C]
-    heavy = [one for one in cold if one.nominal[LOAD] == 400.0]
-    told = ", ".join(
-        f"{100.0 * (one.value / value - 1.0):+.0f}" for one, value in zip(heavy, predicted(heavy), strict=True)
+    cold = [entry for entry in appendix(FIT).points if entry.nominal[TEMPERATURE] == COLD_C]
+    heavy = [entry for entry in cold if entry.nominal[LOAD] == 400.0]
+    phrase = ", ".join(
+        f"{100.0 * (entry.value / value - 1.0):+.0f}" for entry, value in zip(heavy, predicted(heavy), strict=True)
     )
     return judged(
         errors_on(predicted, cold).largest <= CLAIMED,
-        f"fitted to appendix A: measured at 400 N and 25 degC {told} % off it (1#, 2#, 3#): the load is a factor of"
+        f"fitted to appendix A: measured at 400 N and 25 degC {phrase} % off it (1#, 2#, 3#): the load is a factor of"
         " the whole, not of the term of speed",
     )
 
 
 def _eq_6() -> PaperFinding:
     b = appendix(VALIDATION).points
-    parts = {name: fit_only(PAPER, name, own) for name, own in by_group(appendix(FIT).points).items()}
-    errors = errors_of([predict(PAPER, parts[one.group], [one])[0] for one in b], [one.value for one in b])
+    parts = {name: fit_only(PAPER, name, subset) for name, subset in by_group(appendix(FIT).points).items()}
+    errors = errors_of([predict(PAPER, parts[entry.group], [entry])[0] for entry in b], [entry.value for entry in b])
     return judged(errors.near == errors.rows, f"fitted to appendix A, seen on B: {words(errors)}")
 
 
@@ -212,23 +218,24 @@ def _t_0() -> PaperFinding:
     as_it_is = errors_on(of_table_3, rows).mean
     moved = fmean(
         abs(
-            coefficient(one.group, one.nominal[TEMPERATURE] - COLD_C, one.nominal[LOAD], one.nominal[SLIP]) / one.value
+            coefficient(entry.group, entry.nominal[TEMPERATURE] - COLD_C, entry.nominal[LOAD], entry.nominal[SLIP])
+            / entry.value
             - 1.0
         )
-        for one in rows
+        for entry in rows
     )
-    told = f"Eqs 7 to 9 are {100.0 * moved:.0f} % off the data in the mean, with T itself {100.0 * as_it_is:.1f} %"
-    return judged(moved <= as_it_is, told)
+    phrase = f"Eqs 7 to 9 are {100.0 * moved:.0f} % off the data in the mean, with T itself {100.0 * as_it_is:.1f} %"
+    return judged(moved <= as_it_is, phrase)
 
 
 def _formula(name: str) -> PaperFinding:
-    given, rows = COMPOUNDS[name], [one for one in readable() if one.group == name]
+    table, rows = COMPOUNDS[name], [entry for entry in readable() if entry.group == name]
     off = 0.0
-    for t, p, v in (one.nominal for one in rows):
-        heat = given.alpha * exp(-given.beta * (t - given.tm) ** 2) + given.gamma
-        speed = given.a1 * p**given.b1 * v**given.b2 + given.a2
+    for t, p, v in (entry.nominal for entry in rows):
+        heat = table.alpha * exp(-table.beta * (t - table.tm) ** 2) + table.gamma
+        speed = table.a1 * p**table.b1 * v**table.b2 + table.a2
         off = max(off, abs(heat * speed / coefficient(name, t, p, v) - 1.0))
-    printed = thermal_factor(given, 25.0) * (given.a1 * 200.0**given.b1 * 300.0**given.b2 + given.a2)
+    printed = thermal_factor(table, 25.0) * (table.a1 * 200.0**table.b1 * 300.0**table.b2 + table.a2)
     return judged(
         off < 1e-9,
         f"the formula to {slight(off)}; as printed with v in mm/s it gives {printed:.0f} at 25 degC, 200 N, 300 mm/s,"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from sim.physics.slip import SIDESLIP_DATA, predict
+from sim.physics.slip import predict
 from tester.fit.check import errors_of
 from tester.kinds.wheel_on_belt.fit.data import READABLE, rows
 from tester.kinds.wheel_on_belt.fit.laws import LOAD, SLIP
@@ -19,11 +19,11 @@ NEARLY: Final = 0.95
 
 
 def _trend(variable: int, up: bool) -> PaperFinding:
-    own = over_load() if variable == LOAD else over_slip()
-    agree, count = steps(own, variable, up)
+    subset = over_load() if variable == LOAD else over_slip()
+    agree, count = steps(subset, variable, up)
     return judged(
         agree >= NEARLY * count,
-        f"{agree} of {count} steps in the data; Eqs 7 to 9, by which the twin rubs, {by_compound_words(own)}",
+        f"{agree} of {count} steps in the data; Eqs 7 to 9, by which the twin rubs, {by_compound_words(subset)}",
     )
 
 
@@ -53,7 +53,7 @@ def _sideslip() -> PaperFinding:
 
 
 def _sideslip_3() -> PaperFinding:
-    own = {
+    subset = {
         name: [row["mu"] for row in rows("appendix-a") if row["formula"] == name and float(row["angle_deg"])]
         for name in ("2#", "3#")
     }
@@ -61,24 +61,26 @@ def _sideslip_3() -> PaperFinding:
         float(row["mu"]) for row in rows("appendix-a")
         if row["formula"] == "3#" and (row["slip_mm_s"], row["load_N"], row["temp_C"]) == ("300", "200", "25")
     )  # fmt: skip
-    same = own["2#"] == own["3#"]
-    assert "3#" not in SIDESLIP_DATA or not same
+    same = subset["2#"] == subset["3#"]
     return judged(
-        not same, f"the values are those of 2# ({', '.join(own['3#'])}), below {straight:g} of 3# at 0 degrees: copied"
+        not same,
+        f"the values are those of 2# ({', '.join(subset['3#'])}), below {straight:g} of 3# at 0 degrees: copied",
     )
 
 
 def _peaked(variable: int) -> PaperFinding:
-    found, count, others = peaks(over_load() if variable == LOAD else over_slip())
+    result, count, others = peaks(over_load() if variable == LOAD else over_slip())
     odd = f"; not {', '.join(others)}" if others else ""
-    return judged(found >= NEARLY * count, f"{found} of {count} series that reach 85 degC are largest at 70 degC{odd}")
+    return judged(
+        result >= NEARLY * count, f"{result} of {count} series that reach 85 degC are largest at 70 degC{odd}"
+    )
 
 
 def _model(variable: int) -> PaperFinding:
     from tester.kinds.wheel_on_belt.fit.data import appendix
 
-    own = [one for one in appendix("appendix-b").points if (one.nominal[SLIP] == 0.3) is (variable == LOAD)]
-    errors = errors_on(of_table_3, own)
+    subset = [entry for entry in appendix("appendix-b").points if (entry.nominal[SLIP] == 0.3) is (variable == LOAD)]
+    errors = errors_on(of_table_3, subset)
     return judged(errors.near == errors.rows, f"Eqs 7 to 9 on the rows of appendix B: {words(errors)}")
 
 

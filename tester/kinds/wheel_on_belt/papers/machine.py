@@ -28,12 +28,13 @@ def _table_1() -> PaperFinding:
 
     library = Library([recipes.FOLDER])
     models = {name: library.compound(name).model for name in TABLE_1_LINES}
-    sums = ", ".join(f"{sum(one.formulation.values()):.4g}" for one in models.values())
+    sums = ", ".join(f"{sum(entry.formulation.values()):.4g}" for entry in models.values())
     cured = all(
-        one.cure is not None and (one.cure.temperature, one.cure.time) == (CURE_C, CURE_S) for one in models.values()
+        entry.cure is not None and (entry.cure.temperature, entry.cure.time) == (CURE_C, CURE_S)
+        for entry in models.values()
     )
-    holds = {name: len(one.formulation) for name, one in models.items()} == TABLE_1_LINES and cured
-    lines = sum(len(one.formulation) for one in models.values())
+    holds = {name: len(entry.formulation) for name, entry in models.items()} == TABLE_1_LINES and cured
+    lines = sum(len(entry.formulation) for entry in models.values())
     return judged(holds, f"{lines} lines in the files, {sums} phr in all; cure {CURE_C:g} degC, {CURE_S / 60.0:g} min")
 
 
@@ -43,7 +44,7 @@ def _table_2() -> PaperFinding:
 
     recipe = _recipe("table2")
     conditions = conditions_of(recipe, PART.settings)
-    values = {name: {one.values[AXES.places[name]] for one in conditions} for name in TABLE_2}
+    values = {name: {entry.values[AXES.places[name]] for entry in conditions} for name in TABLE_2}
     holds = all(values[name] == set(printed) for name, printed in TABLE_2.items())
     count = len(conditions) * len(recipe.specimens)
     return judged(holds, f"{count} conditions, {len(conditions)} a compound, at all of the printed values")
@@ -91,11 +92,11 @@ def _recipe(name: str) -> WheelRecipe:
 def _grind() -> PaperFinding:
     grind = _recipe("pre-grind").pre_grind
     assert grind is not None
-    found = {name: float(getattr(grind, name)) for name in GRIND}
-    slip_m_s = found["wheel_speed"] - found["belt_speed"]
-    way_m = slip_m_s * found["duration"]
-    told = f"the recipe has the printed values: slip {slip_m_s:.1f} m/s, {way_m:.0f} m of sliding"
-    return judged(found == GRIND, told if found == GRIND else f"the recipe has {found}")
+    result = {name: float(getattr(grind, name)) for name in GRIND}
+    slip_m_s = result["wheel_speed"] - result["belt_speed"]
+    way_m = slip_m_s * result["duration"]
+    phrase = f"the recipe has the printed values: slip {slip_m_s:.1f} m/s, {way_m:.0f} m of sliding"
+    return judged(result == GRIND, phrase if result == GRIND else f"the recipe has {result}")
 
 
 def _repeats() -> PaperFinding:

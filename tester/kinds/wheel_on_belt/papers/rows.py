@@ -23,53 +23,53 @@ def readable() -> list[FitPoint]:
 
 def over_load() -> list[FitPoint]:
     """Return the rows at the usual slip velocity."""
-    return [one for one in readable() if one.nominal[SLIP] == USUAL_SLIP_M_S]
+    return [entry for entry in readable() if entry.nominal[SLIP] == USUAL_SLIP_M_S]
 
 
 def over_slip() -> list[FitPoint]:
     """Return the rows at the usual load."""
-    return [one for one in readable() if one.nominal[LOAD] == USUAL_LOAD_N]
+    return [entry for entry in readable() if entry.nominal[LOAD] == USUAL_LOAD_N]
 
 
 def series(points: Iterable[FitPoint], variable: int) -> list[list[FitPoint]]:
     """Return the rows that differ in one variable alone, each series ascending."""
-    found: dict[tuple[object, ...], list[FitPoint]] = {}
-    for one in points:
-        held = tuple(value for i, value in enumerate(one.nominal) if i != variable)
-        found.setdefault((one.group, *held), []).append(one)
-    return [sorted(own, key=lambda one: one.nominal[variable]) for own in found.values()]
+    result: dict[tuple[object, ...], list[FitPoint]] = {}
+    for entry in points:
+        setting = tuple(value for i, value in enumerate(entry.nominal) if i != variable)
+        result.setdefault((entry.group, *setting), []).append(entry)
+    return [sorted(subset, key=lambda entry: entry.nominal[variable]) for subset in result.values()]
 
 
 def steps(points: Iterable[FitPoint], variable: int, up: bool) -> tuple[int, int]:
     """Return in how many steps along a variable the coefficient changes as stated, and how many there are."""
-    pairs = [pair for own in series(points, variable) for pair in pairwise(own)]
+    pairs = [pair for subset in series(points, variable) for pair in pairwise(subset)]
     return sum((b.value > a.value) is up and a.value != b.value for a, b in pairs), len(pairs)
 
 
 def peaks(points: Iterable[FitPoint]) -> tuple[int, int, list[str]]:
     """Return how many series over temperature peak at 70 degC, how many reach beyond it, and which do not."""
-    told: list[str] = []
+    phrase: list[str] = []
     count = 0
-    for own in series(points, TEMPERATURE):
-        if not {55.0, 70.0, 85.0} <= {one.nominal[TEMPERATURE] for one in own}:
+    for subset in series(points, TEMPERATURE):
+        if not {55.0, 70.0, 85.0} <= {entry.nominal[TEMPERATURE] for entry in subset}:
             continue
         count += 1
-        top = max(own, key=lambda one: one.value)
+        top = max(subset, key=lambda entry: entry.value)
         if top.nominal[TEMPERATURE] != 70.0:
-            told.append(f"{top.label} at {top.nominal[TEMPERATURE]:g} degC")
-    return count - len(told), count, told
+            phrase.append(f"{top.label} at {top.nominal[TEMPERATURE]:g} degC")
+    return count - len(phrase), count, phrase
 
 
 def errors_on(predicted: Callable[[Sequence[FitPoint]], Sequence[float]], points: Sequence[FitPoint]) -> Errors:
     """Return how far predictions are off rows."""
-    return errors_of(predicted(points), [one.value for one in points])
+    return errors_of(predicted(points), [entry.value for entry in points])
 
 
 def by_compound_words(points: Sequence[FitPoint]) -> str:
     """Return how far Eqs 7 to 9 are off rows, by compound."""
-    each = [errors_on(of_table_3, own) for own in by_group(points).values()]
+    each = [errors_on(of_table_3, subset) for subset in by_group(points).values()]
     every = errors_on(of_table_3, points)
-    means = ", ".join(f"{100.0 * one.mean:.1f}" for one in each)
+    means = ", ".join(f"{100.0 * entry.mean:.1f}" for entry in each)
     return f"mean {means} % ({', '.join(by_group(points))}), largest {100.0 * every.largest:.0f} %"
 
 
@@ -77,7 +77,7 @@ def bias(points: Sequence[FitPoint]) -> float:
     """Return the mean of measured over Eqs 7 to 9, less 1; NaN of none."""
     if not points:
         return float("nan")
-    return sum(one.value / value for one, value in zip(points, of_table_3(points), strict=True)) / len(points) - 1.0
+    return sum(entry.value / value for entry, value in zip(points, of_table_3(points), strict=True)) / len(points) - 1.0
 
 
 def at(
@@ -86,7 +86,9 @@ def at(
 ) -> list[FitPoint]:  # fmt: skip
     """Return the rows of a compound at values that are given."""
     asked = {TEMPERATURE: celsius, LOAD: load, SLIP: slip}
-    held = {place: value for place, value in asked.items() if value is not None}
+    setting = {place: value for place, value in asked.items() if value is not None}
     return [
-        one for one in points if one.group == compound and all(one.nominal[i] == value for i, value in held.items())
+        entry
+        for entry in points
+        if entry.group == compound and all(entry.nominal[i] == value for i, value in setting.items())
     ]
