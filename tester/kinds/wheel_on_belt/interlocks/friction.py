@@ -13,7 +13,7 @@ from tester.rig.parameter import NOT_NEGATIVE, SHARE, Direction, Parameter
 _RADIANS: Final = pi / 180.0
 
 FRICTION_SHARE: Final = Parameter(
-    "friction_share", "1", "2", "friction above this share of the load: 3# has 1.6 at 400 N and 70 degC [A] ...",
+    "friction_share", "1", "2", "friction above this share of the load: Eq 9 has 1.6 at 400 N and 70 degC [A] ...",
     direction=Direction.LOWER, hardest="3",
     because="the published model's greatest coefficient is 1.6 at 400 N; twice that is no rubber's",
 )  # fmt: skip
