@@ -75,8 +75,7 @@ def _power() -> PaperFinding:
 def _eq_20() -> PaperFinding:
     law, parts = tread_on_road(), _parts()
     coarse = law.dynamic(WARM_C, 1.0)[0]
-    fine = Greta(rubber("tread"), surface("road"))
-    scratch = Scratch(fine.coarse.wavelength_m, 1e-3 * fine.parameters.tread, 2 * HARMONICS, 20 * DEPTHS)
+    scratch = Scratch(law.coarse.wavelength_m, 1e-3 * law.parameters.tread, 2 * HARMONICS, 20 * DEPTHS)
     normal_m, shear_m = scratch.parts_m(PRESSURE_PA / (coarse.magnitude_pa * law.full_per_modulus))
     squares_m = normal_m + min(1.0, parts.adhesion) ** 2 * shear_m
     limit = pi * coarse.tan_delta * squares_m * PRESSURE_PA / (law.coarse.wavelength_m * coarse.magnitude_pa)
