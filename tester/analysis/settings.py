@@ -83,9 +83,9 @@ def measurement(condition: int, piece: int, result: ConditionResult, by: Surroun
 
     What the counterface has changed is left out: a setting that it has changed does not agree.
     """
-    pieces = {one.name for one in by.terms if one.acts is Acts.PIECE}
+    shared = {one.name: _shared(one, by) for one in by.terms}
     errors = [
-        _part(one, condition, pieces, by)
+        _part(one, condition, shared.get(one.name, one.common), by)
         for one in result.compound_budget.contributions
         if one.name not in (COUNTERFACE, TEMPERATURE_SENSITIVITY)
     ]
@@ -93,10 +93,17 @@ def measurement(condition: int, piece: int, result: ConditionResult, by: Surroun
     return SettingMeasurement(condition, piece, result.mu if result.ok else float("nan"), tuple(errors))
 
 
-def _part(one: Contribution, condition: int, pieces: set[str], by: Surroundings) -> ErrorPart:
+def _shared(term: Term, by: Surroundings) -> str:
+    """Return what has a term's error in common."""
+    if term.acts is Acts.PIECE:
+        return PIECE
+    # A check of the diameter is off by itself. What the checks of a series share makes U rather too large.
+    return "" if term.acts is Acts.LOSS and by.size.checked else term.common
+
+
+def _part(one: Contribution, condition: int, common: str, by: Surroundings) -> ErrorPart:
     signed = one.input_u * one.sensitivity
     value = signed if isfinite(signed) else one.standard
-    common = PIECE if one.name in pieces else one.common
     estimate = ""
     if one.name == REPEATABILITY:
         estimate = "pool" if one.df == float(by.pool.df) else f"condition {condition}"

@@ -82,6 +82,11 @@ def test_what_wears_off_between_two_measurements_on_a_wheel_is_left_of_its_diame
     assert difference_of(early, late).standard == pytest.approx(sqrt(own + off**2), rel=1e-4)
 
 
+def test_checks_of_a_diameter_are_off_each_by_itself() -> None:
+    one = measured(by=replace(BY, size=Size(90.0, 0.4, 0.02)))
+    assert error(one, "diameter worn off").common == ""
+
+
 def test_an_unknown_sensitivity_counts_as_far_as_the_temperatures_differ() -> None:
     def at(shown_c: float) -> SettingMeasurement:
         return measured(by=replace(BY, warmth=SurfaceWarmth(25.0, shown_c, 0.0, Slope(0.0, 0.02, "", known=False))))
