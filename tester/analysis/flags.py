@@ -99,8 +99,8 @@ FLAGS: Final[Mapping[str, Flag]] = {
         Flag(ROLLING, "Measured without slip: the coefficient is the rolling resistance."),
         Flag(
             STICK_SLIP_UNKNOWN,
-            "Whether the contact sticks and slips cannot be told: contacts are too short, samples too slow, or friction"
-            " swings with the wheel's turning.",
+            "Whether the contact sticks and slips cannot be told: contacts are too short, or friction swings with the"
+            " wheel's turning, or faster than samples come.",
         ),
         Flag(EXTENDED, "A repeat collected more revolutions than its window before its drift was known."),
         Flag(TRUNCATED, "The first revolutions of a repeat are left out of its mean as a transient."),

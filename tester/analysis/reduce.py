@@ -137,9 +137,9 @@ def reduce_repeat(
 
 
 def _swing_flags(swing: Swing) -> list[str]:
-    if isnan(swing.percent):
-        return [STICK_SLIP_UNKNOWN]
-    return [STICK_SLIP] if swing.percent > LIMIT_PERCENT else []
+    if swing.seen_percent > LIMIT_PERCENT:
+        return [STICK_SLIP]
+    return [STICK_SLIP_UNKNOWN] if isnan(swing.percent) else []
 
 
 def _uncertainty(used: Sequence[Block], batches: Sequence[float], drift: Drift) -> float:

@@ -54,12 +54,14 @@ class Swing:
     """How friction swings within a revolution, off the wheel's orders (``tester.analysis.swing``).
 
     ``percent``: to either side of the mean, in per cent of it, 0 where it does not; at ``hz``; ``skewness`` of the
-    differences between neighbouring samples. NaN where that is not known.
+    differences between neighbouring samples. NaN where that is not known. ``seen_percent`` is what the samples show of
+    a swing that is too fast for them to have an amplitude: at least so much.
     """
 
     percent: float = NAN
     hz: float = NAN
     skewness: float = NAN
+    seen_percent: float = NAN
 
 
 @dataclass(frozen=True, slots=True)

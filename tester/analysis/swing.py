@@ -5,13 +5,14 @@ orders, a sine and a cosine of each) and a slow trend of each contact are fitted
 spectrum, averaged over stretches of up to ``LONGEST_S``. Where its level within an octave is exceeded ``PROMINENCE``
 times, between ``LOWEST_HZ`` and a tenth of the rate of samples, friction swings: with the frequency of the highest of
 these peaks, and an amplitude of sqrt(2) times the root mean square of that peak and its multiples. So a sine's is as it
-is, and that of a saw-tooth reads 18 % low.
+is, and that of a saw-tooth reads 18 % low. A faster swing, up to what the rate of samples shows at all, has a frequency
+and no amplitude: at least so much as is seen.
 
 The skewness of the differences between neighbouring samples says what kind of swing it is: friction that rises slowly
 and falls fast has one far below 0, a vibration none.
 
-What is not known is NaN and never 0: no contact is long enough, samples come too slowly, or what goes with the wheel's
-turning swings so much that it may be stick-slip beside an order.
+What is not known is NaN and never 0: no contact is long enough, or what goes with the wheel's turning swings so much
+that it may be stick-slip beside an order.
 """
 
 from __future__ import annotations
@@ -30,6 +31,8 @@ if TYPE_CHECKING:
 
 LOWEST_HZ: Final = 0.8
 """Slower than this is drift, which other tests judge [A]."""
+FASTEST: Final = 0.45
+"""Nothing faster is looked for, as a share of the rate of samples: half of it is where frequencies fold [A]."""
 PER_PERIOD: Final = 10.0
 """Samples in a period of the fastest swing that has an amplitude: 10 Hz of 100 Hz. Load cell and polling take more of a
 faster one than is known [A]."""
@@ -47,8 +50,8 @@ LEAST_PERCENT: Final = 1.0
 """A swing of less is noise to whoever reads it [A]."""
 LIMIT_PERCENT: Final = 5.0
 """Friction that swings by more than this to either side carries a doubt [A]."""
-_ORDERS_UP_TO: Final = 1.5
-"""Orders of the wheel are taken out up to this times the highest frequency looked at."""
+MOST_HZ: Final = 15.0
+"""Orders of the wheel are taken out up to this frequency: runout, flats and seams of a tread have no more [A]."""
 _LOBE: Final = 0.1
 """Half the width of a peak, as a share of its frequency: the periods of stick-slip are not alike [A]."""
 _MULTIPLES: Final = 4
@@ -83,17 +86,21 @@ def swing_of(trace: Trace) -> Swing:
     contacts = [one for one in trace.contacts() if len(one["time_s"]) > 1]
     steps = np.concatenate([np.diff(one["time_s"]) for one in contacts]) if contacts else np.array([])
     step_s = float(np.median(steps)) if len(steps) else inf
-    if not (step_s > 0.0 and 1.0 / (PER_PERIOD * step_s) > LOWEST_HZ):
+    if not (step_s > 0.0 and FASTEST / step_s > 2.0 * LOWEST_HZ):
         return UNKNOWN
-    highest_hz = 1.0 / (PER_PERIOD * step_s)
-    stretches = _stretches(contacts, step_s, _orders(contacts, highest_hz) if trace.turns else 0)
+    highest_hz, fastest_hz = 1.0 / (PER_PERIOD * step_s), FASTEST / step_s
+    stretches = _stretches(contacts, step_s, _orders(contacts, min(fastest_hz, MOST_HZ)) if trace.turns else 0)
     if not stretches:
         return UNKNOWN
     rests, ordered_percent = _without_orders(stretches)
-    found = _swing(_spectrum(rests, step_s), highest_hz)
-    if found is None:
-        return UNKNOWN if ordered_percent > LIMIT_PERCENT else NO_SWING
-    return Swing(*found, _skewness(rests))
+    spectrum = _spectrum(rests, step_s)
+    if (found := _swing(spectrum, LOWEST_HZ, highest_hz)) is not None:
+        percent, at_hz = found
+        return Swing(percent, at_hz, _skewness(rests), percent)
+    if (found := _swing(spectrum, max(LOWEST_HZ, highest_hz), fastest_hz)) is not None:
+        percent, at_hz = found
+        return Swing(NAN, at_hz, _skewness(rests), percent)
+    return UNKNOWN if ordered_percent > LIMIT_PERCENT else NO_SWING
 
 
 def _orders(contacts: list[dict[str, Array]], highest_hz: float) -> int:
@@ -102,7 +109,7 @@ def _orders(contacts: list[dict[str, Array]], highest_hz: float) -> int:
 
     slopes = [abs(np.ptp(one["position"]) / np.ptp(one["time_s"])) for one in contacts]
     turn_hz = float(np.median(slopes))
-    return int(_ORDERS_UP_TO * highest_hz / turn_hz) if turn_hz > 0.0 else 0
+    return int(highest_hz / turn_hz) if turn_hz > 0.0 else 0
 
 
 def _stretches(contacts: list[dict[str, Array]], step_s: float, orders: int) -> list[_Stretch]:
@@ -174,14 +181,17 @@ def _spectrum(rests: list[Array], step_s: float) -> _Spectrum:
     return _Spectrum(frequency, power / count, 2.0 * len(rests) / (count * step_s))
 
 
-def _swing(spectrum: _Spectrum, highest_hz: float) -> tuple[float, float] | None:
-    """Return amplitude (per cent) and frequency (Hz) of the highest peak that stands out; None where none does."""
+def _swing(spectrum: _Spectrum, lowest_hz: float, highest_hz: float) -> tuple[float, float] | None:
+    """Return amplitude (per cent) and frequency (Hz) of the highest peak between two frequencies that stands out; None
+    where none does, or there is nothing between them."""
     import numpy as np
 
+    if lowest_hz >= highest_hz:
+        return None
     frequency, power = spectrum.frequency_hz, spectrum.power
-    marks = np.geomspace(LOWEST_HZ, highest_hz, _LEVELS)
+    marks = np.geomspace(lowest_hz, highest_hz, _LEVELS)
     level = np.interp(frequency, marks, [_level(spectrum, float(mark)) for mark in marks])
-    stands_out = (frequency >= LOWEST_HZ) & (frequency <= highest_hz) & (power > PROMINENCE * level)
+    stands_out = (frequency >= lowest_hz) & (frequency <= highest_hz) & (power > PROMINENCE * level)
     if not stands_out.any():
         return None
     at_hz = float(frequency[np.argmax(np.where(stands_out, power, 0.0))])

@@ -11,7 +11,7 @@ from sim.noise import NormalStream
 from sim.stick_slip import StickSlip
 from tester.analysis.blocks import BlockCounter
 from tester.analysis.results import Swing
-from tester.analysis.swing import LIMIT_PERCENT, swing_of
+from tester.analysis.swing import LIMIT_PERCENT, UNKNOWN, swing_of
 from tester.analysis.trace import Trace
 from tester.kinds.wheel_on_belt.quantities import QUANTITIES
 from tests.tester.analysis.series import sample
@@ -98,8 +98,14 @@ def test_contacts_that_are_too_short_tell_nothing() -> None:
     assert isnan(swing_of(trace(0.10, contacts=10, contact_s=2.0)).percent)
 
 
+def test_a_swing_that_is_fast_for_its_samples_has_a_frequency_and_no_amplitude() -> None:
+    found = swing_of(trace(0.10, 4.3, rate_hz=20.0, contact_s=8.0))
+    assert isnan(found.percent) and found.hz == pytest.approx(4.3, rel=0.05)
+    assert LIMIT_PERCENT < found.seen_percent < 10.0
+
+
 def test_samples_that_come_too_slowly_tell_nothing() -> None:
-    assert isnan(swing_of(trace(0.10, 1.0, rate_hz=6.0, contacts=3, contact_s=8.0)).percent)
+    assert swing_of(trace(0.10, 1.0, rate_hz=3.0, contact_s=8.0)) == UNKNOWN
 
 
 def test_no_samples_tell_nothing() -> None:
