@@ -25,6 +25,7 @@ class Flag:
 
 
 NOT_SHOWN: Final = "drift not shown"
+THERMOMETER: Final = "thermometer off"
 CHANGED: Final = "friction changed"
 STICK_SLIP: Final = "stick-slip"
 STICK_SLIP_UNKNOWN: Final = "stick-slip not known"
@@ -56,6 +57,13 @@ FLAGS: Final[Mapping[str, Flag]] = {
             "Friction changed by more than 5 % at once, within a repeat or from one repeat to the next.",
             "see which repeat changed (repeats.csv: change_percent), clean or change the counterface, then measure the"
             " condition again",
+            doubt=True,
+        ),
+        Flag(
+            THERMOMETER,
+            "After the soak the surface's thermometer and the hub's sensor part by more than both are believed to.",
+            "compare them at a soak (tester commission), clean the thermometer's window, look at its emissivity and at"
+            " observer in the rig file",
             doubt=True,
         ),
         Flag(

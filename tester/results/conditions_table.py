@@ -144,6 +144,12 @@ def _held(row: ConditionRow, name: str) -> Value:
     return getattr(row.measured.condition, name) if row.measured is not None else None
 
 
+def _soaked(row: ConditionRow, name: str) -> Value:
+    """Return what the thermometer showed after the soak; None of replicates, and where it was not looked at."""
+    soak = row.measured.soak if row.measured is not None else None
+    return getattr(soak, name) if soak is not None else None
+
+
 _PEOPLE = frozenset({Output.END, Output.SHOW, Output.COVER, Output.REPORT, Output.SCREEN})
 _FULL = frozenset({Output.SHOW, Output.REPORT})
 _FURTHER = frozenset({Output.SHOW, Output.REPORT, Output.SCREEN})
@@ -204,6 +210,10 @@ _MORE: tuple[Column[ConditionRow], ...] = (
            frozenset({Output.REPEATS})),
     Column("swing_percent", "swing", lambda row: row.result.swing_percent, "%", 1, frozenset({Output.REPEATS})),
     Column("swing_hz", "swing at", lambda row: row.result.swing_hz, "Hz", 1, frozenset({Output.REPEATS})),
+    Column("thermometer_off_k", "thermometer off", lambda row: _soaked(row, "off_k"), "K", 1,
+           frozenset({Output.REPEATS})),
+    Column("thermometer_allowed_k", "allowed", lambda row: _soaked(row, "allowed_k"), "K", 1,
+           frozenset({Output.REPEATS})),
     Column("warming_k_s", "warming", lambda row: _held(row, "warming_k_s"), "K/s", 2),
     Column("holdable_band_k", "band that can be held", lambda row: _held(row, "holdable_band_k"), "K", 2),
 )  # fmt: skip

@@ -8,7 +8,7 @@ from itertools import groupby
 from math import isfinite
 
 from tester.analysis.closest import Combining, combining_of
-from tester.analysis.flags import DISAGREES, OUT_OF_LIMITS, REFERENCE, flags_in, joined, remedy_of
+from tester.analysis.flags import DISAGREES, OUT_OF_LIMITS, REFERENCE, THERMOMETER, flags_in, joined, remedy_of
 from tester.analysis.measurand import pooled, with_budget, with_budget_of_replicates
 from tester.analysis.misalignment import Misalignment, misalignment
 from tester.analysis.reference import (
@@ -23,6 +23,7 @@ from tester.analysis.reference import (
 )
 from tester.analysis.repeats import ConditionResult, combine_replicates
 from tester.analysis.results import ConditionStatus
+from tester.analysis.soak_check import SoakCheck
 from tester.analysis.wear import ConditionWear, WearRate, condition_wear, wear_rate
 from tester.analysis.wear_check import WearCheck
 from tester.axes import Axes, condition_words
@@ -47,6 +48,8 @@ class Measured:
     result: ConditionResult
     by_hand: Mapping[int, StoredExclusion]
     """What a person has left out, by its position in ``repeats``."""
+    soak: SoakCheck | None = None
+    """The surface's thermometer after the soak; None where nothing is on record of it."""
 
     @property
     def info(self) -> ConditionInfo:
@@ -250,6 +253,9 @@ def results_of(reader: RunReader) -> RunResults:
         repeats.setdefault(repeat.condition, []).append(repeat)
     stored = reader.conditions()
     found = [_measured(one, repeats.get(one.info.condition, []), left_out, combining) for one in stored]
+    soaks = reader.soaks()
+    found = [replace(one, soak=soaks.get(one.info.condition)) for one in found]
+    found = [one if one.soak is None or one.soak.agrees else _flagged(one, THERMOMETER) for one in found]
     pieces, checks = tuple(reader.pieces()), tuple(reader.wear_checks())
     surroundings = SurroundingsOf(reader, run, pieces, checks, pooled([one.result for one in found]))
     watching = [is_reference(one.info.grid, run.info.metadata) for one in found]

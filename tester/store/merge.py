@@ -49,6 +49,7 @@ TABLES: dict[str, Merged] = {
     "prompt": Merged(times=("asked_s", "answered_s"), key="id"),
     "tare": Merged(times=("t_s",), key="id", repeat="repeat_id"),
     "wear_check": Merged(times=("t_s", "reference_s"), key="id"),
+    "soak": Merged(times=("t_s",), key="id"),
     "trip": Merged(times=("t_s", "acknowledged_s"), key="id"),
     "bus_statistic": Merged(times=("t_s",), key="id"),
     "device_parameter": Merged(times=("t_s",), key="id"),

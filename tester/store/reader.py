@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Literal, TypeVar
 
 from tester.analysis.kelvin import KnownSlope
 from tester.analysis.results import Burst, ConditionStatus, Judgement, RepeatResult, RepeatStatus
+from tester.analysis.soak_check import SoakCheck
 from tester.analysis.terms import Term
 from tester.analysis.wear_check import WearCheck
 from tester.axes import Axes
@@ -279,6 +280,11 @@ class RunReader:
         """Return the checks of diameters in the order in which they were made."""
         rows = self._rows("SELECT * FROM wear_check ORDER BY id")
         return [_record(WearCheck, row, piece=_whole(row, PIECE)) for row in rows]
+
+    def soaks(self) -> dict[int, SoakCheck]:
+        """Return what thermometer and heater's sensor showed at the end of the last soak of each condition."""
+        found = (_record(SoakCheck, row) for row in self._rows("SELECT * FROM soak ORDER BY id"))
+        return {one.condition: one for one in found}
 
     def conditions(self) -> list[StoredCondition]:
         """Return the plan's conditions in the recipe's order, replicates one after the other."""

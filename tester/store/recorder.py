@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import fields, replace
 
 from tester.analysis.results import Burst, ConditionStatus, RepeatResult, RepeatStatus
+from tester.analysis.soak_check import SoakCheck
 from tester.analysis.wear_check import WearCheck
 from tester.store.axes import axis_rows, setpoint_columns
 from tester.store.budget import budget_rows
@@ -48,6 +49,7 @@ _BURST_FIELDS = tuple(field.name for field in fields(Burst))
 _CONDITION_FIELDS = tuple(field.name for field in fields(ConditionInfo)
                           if field.name not in ("setpoint", "both_directions"))  # fmt: skip
 _PIECE_FIELDS = tuple(field.name for field in fields(PieceInfo) if field.name != "piece")
+_SOAK_FIELDS = tuple(field.name for field in fields(SoakCheck))
 _CHECK_FIELDS = tuple(field.name for field in fields(WearCheck) if field.name != "piece")
 _SESSION_FIELDS = tuple(field.name for field in fields(SessionInfo))
 _MATERIAL_FIELDS = tuple(field.name for field in fields(StoredMaterial))
@@ -226,6 +228,10 @@ class Recorder:
         self._write(insert("wear_check", {PIECE: check.piece} | columns_in(check, _CHECK_FIELDS) | times), urgent=True)
 
     # Conditions and repeats
+
+    def soaked(self, check: SoakCheck) -> None:
+        """Record what thermometer and heater's sensor showed at the end of a condition's soak."""
+        self._write(insert("soak", columns_in(check, _SOAK_FIELDS) | {"t_s": check.t_s + self.origin_s}))
 
     def begin_condition(self, condition: int, t_s: float) -> None:
         """Record the start of a condition (its number in the plan)."""

@@ -467,6 +467,20 @@ _AS_VERSION_13 = (
     "CREATE TEMP VIEW repeat AS SELECT *, " + ", ".join(f"NULL AS {name}" for name in _LOOKED_AT) + " FROM main.repeat;"
 )
 
+_SOAK = """
+CREATE {temporary}TABLE soak (
+    id INTEGER PRIMARY KEY,
+    condition INTEGER NOT NULL,
+    t_s REAL,
+    surface_c REAL,
+    model_c REAL,
+    hub_c REAL,
+    allowed_k REAL
+);
+"""
+"""The surface's thermometer against the heater's sensor at the end of each soak (tester.analysis.soak_check); a
+condition that soaked again after a hold has a row for each."""
+
 _CONDITION = """
 DROP TABLE condition;
 CREATE TABLE condition (
@@ -509,6 +523,7 @@ MIGRATIONS: tuple[str, ...] = (
     _TRAVEL.format(temporary=""),
     _MATERIAL.format(temporary=""),
     _CHANGE,
+    _SOAK.format(temporary=""),
 )
 """Migration n leads from schema n to n + 1."""
 
@@ -534,6 +549,7 @@ _ADDED: dict[int, str] = {
     12: _TRAVEL,
     13: _MATERIAL,
     14: _AS_VERSION_13,
+    15: _SOAK,
 }
 """What versions have added, by version: what a connection to an older record can have for itself."""
 

@@ -139,6 +139,7 @@ def build_run(
         wheel_changed=control.view.wheel_changed,
         heat=control.view.heat,
         heat_known=control.view.know_heat(heat),
+        observer=control.view.observer,
         quantities=quantities,
     )
     results = WheelResults(recorder, combining_of(plan.metadata))

@@ -7,6 +7,7 @@ from math import inf
 from typing import Final, Protocol
 
 from tester.kinds.wheel_on_belt.control.load_loop import LoadLoop
+from tester.kinds.wheel_on_belt.control.observer import ThermalObserver
 from tester.kinds.wheel_on_belt.interlocks.heat_balance import HeatBalance
 from tester.kinds.wheel_on_belt.procedures.gates import Gates
 from tester.kinds.wheel_on_belt.procedures.wheel_life import WheelLife
@@ -104,6 +105,7 @@ class Context(BaseContext[RigConfig, Readings, Demand]):
         wheel_changed: Callable[[float], None] = nothing_to_tell,
         heat: HeatBalance | None = None,
         heat_known: str = "",
+        observer: ThermalObserver | None = None,
         quantities: Quantities = QUANTITIES,
     ) -> None:
         """Take the parts of a rig.
@@ -111,8 +113,8 @@ class Context(BaseContext[RigConfig, Readings, Demand]):
         ``contact``: the press loop, which knows whether it is in contact and where the wheel was touched.
         ``ambient_c``: air temperature at the rig, degC. ``wheel_changed`` tells control that another wheel is on the
         rig, at ambient temperature (s). ``heat``: control's balance of the heater's energy, None on a bench without
-        control; ``heat_known``: what earlier runs make known of it, in words. ``quantities``: the run's table of
-        channels.
+        control; ``heat_known``: what earlier runs make known of it, in words. ``observer``: control's model of the
+        rubber's temperature, None on a bench without control. ``quantities``: the run's table of channels.
         """
         super().__init__(rig, readings, demand, prompts, journal)
         self.setpoints = Setpoints()
@@ -125,6 +127,7 @@ class Context(BaseContext[RigConfig, Readings, Demand]):
         self.wheel_changed = wheel_changed
         self.heat = heat
         self.heat_known = heat_known
+        self.observer = observer
         self.quantities = quantities
         self.shelf: dict[tuple[int, int], WheelLife] = {}
         """The wheels that were taken off: the last of each specimen and replicate."""

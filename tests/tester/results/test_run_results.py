@@ -7,8 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from tester.analysis.flags import SHORT
+from tester.analysis.flags import SHORT, THERMOMETER
 from tester.analysis.results import ConditionStatus, RepeatStatus
+from tester.analysis.soak_check import SoakCheck
+from tester.results.conditions_table import conditions_table
 from tester.results.run_results import RunResults, results_of
 from tester.store.reader import RunReader
 from tester.store.schema import StoreError
@@ -92,3 +94,26 @@ def test_a_run_whose_recipe_says_so_has_the_mean_of_the_closest_two(tmp_path: Pa
     (row,) = results(tmp_path).rows
     assert row.result.mu_resultant == 0.71
     assert "closest two of three" in row.result.flags
+
+
+def soaked(folder: Path, *off_k: float) -> RunResults:
+    """Return the results of a condition that soaked so often, with the thermometer so far off, K; 2 K are allowed."""
+    writer = open_writer(folder)
+    writer.begin_run(RUN, SPECIMENS, [CONDITION])
+    for off in off_k:
+        writer.soaked(SoakCheck(1, 60.0, 25.0 + off, 25.0, 27.0, 2.0))
+    record(writer, 1, [0.70, 0.71, 0.72])
+    writer.close()
+    return results(folder)
+
+
+def test_a_thermometer_that_parts_from_the_hub_is_a_doubt(tmp_path: Path) -> None:
+    found = soaked(tmp_path, 3.0)
+    assert found.rows[0].result.doubts == (THERMOMETER,)
+    table = conditions_table(found)
+    header, row = table.csv()
+    assert row[header.index("thermometer_off_k")] == 3.0 and row[header.index("thermometer_allowed_k")] == 2.0
+
+
+def test_the_last_soak_of_a_condition_counts(tmp_path: Path) -> None:
+    assert soaked(tmp_path, 3.0, 0.5).rows[0].result.doubts == ()

@@ -212,6 +212,8 @@ def without_channels(database: sqlite3.Connection) -> None:
 
 
 def without_looks(database: sqlite3.Connection) -> None:
-    """Make a record one of version 13: it does not say how friction changed and swung within a repeat."""
+    """Make a record one of version 13: it does not say how friction changed and swung within a repeat, nor what the
+    thermometer showed after a soak."""
+    database.execute("DROP TABLE soak")
     for column in ("change_percent", "swing_percent", "swing_hz", "swing_skewness"):
         database.execute(f"ALTER TABLE repeat DROP COLUMN {column}")

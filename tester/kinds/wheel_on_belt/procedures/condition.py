@@ -10,6 +10,7 @@ from tester.kinds.wheel_on_belt.axes import held_by
 from tester.kinds.wheel_on_belt.context import Context
 from tester.kinds.wheel_on_belt.procedures.bursts import MeasureRepeat
 from tester.kinds.wheel_on_belt.procedures.run_in import run_in_m, slides_reversed
+from tester.kinds.wheel_on_belt.procedures.soak_check import soak_check
 from tester.kinds.wheel_on_belt.procedures.thermal_steps import SoakTo, roll, soak_within_k
 from tester.kinds.wheel_on_belt.procedures.wear_check import CheckByRolling
 from tester.kinds.wheel_on_belt.procedures.zero_check import ZeroCheck, is_due
@@ -140,9 +141,23 @@ class MeasureCondition:
             return False
         self.soaked = True
         if self.soak.reached:
+            self._check_soak(ctx)
             return False
         text = f"surface at {ctx.gates.surface.slow_c:.1f} degC after {step.soak.at_most_s / 60:g} min of soak"
         return self._close(ctx, ConditionEnd(Ending.NOT_REACHED, text))
+
+    def _check_soak(self, ctx: Context) -> None:
+        """Put on record whether thermometer and hub agree, and say so where they do not."""
+        check = soak_check(ctx, self.condition.condition)
+        if check is None:
+            return
+        ctx.journal.soaked(check)
+        if not check.agrees:
+            text = (
+                f"thermometer at {check.surface_c:.1f} degC; by the hub's sensor, {check.hub_c:.1f} degC, the surface"
+                f" is at {check.model_c:.1f} degC; {check.allowed_k:.1f} K are allowed"
+            )
+            ctx.journal.event(ctx.now, "soak", text, "warning")
 
     # -- repeats --------------------------------------------------------------------------------------------
 

@@ -1,0 +1,48 @@
+"""The thermometer against the hub's sensor after a soak."""
+
+from __future__ import annotations
+
+import pytest
+
+from tester.analysis.soak_check import SoakCheck
+from tester.kinds.wheel_on_belt.control.observer import ThermalObserver
+from tester.kinds.wheel_on_belt.procedures.soak_check import HUB_K, MODEL_SHARE, THERMOMETER_K, allowed_k, soak_check
+from tests.tester.kinds.wheel_on_belt.bench import Bench, make_bench
+
+
+def soaked(surface_c: float, *, model_c: float = 40.0, hub_c: float = 52.0, valid: bool = True) -> SoakCheck | None:
+    """Return what is found on a rig whose sensors show this."""
+    bench: Bench = make_bench()
+    ctx = bench.ctx
+    ctx.observer = ThermalObserver(ctx.rig)
+    ctx.observer.surface_c = model_c
+    ctx.readings.hub_c, ctx.readings.jacket_valid = hub_c, valid
+    ctx.gates.surface.slow_c = surface_c
+    return soak_check(ctx, 3)
+
+
+def test_what_is_allowed_is_the_sum_of_three_beliefs() -> None:
+    assert allowed_k(52.0, 40.0) == pytest.approx(THERMOMETER_K + HUB_K + 12.0 * MODEL_SHARE)
+    assert THERMOMETER_K == 1.0
+
+
+@pytest.mark.parametrize(("surface_c", "agrees"), [(40.0, True), (43.0, True), (44.0, False), (36.0, False)])
+def test_a_thermometer_agrees_within_what_is_allowed(surface_c: float, agrees: bool) -> None:
+    found = soaked(surface_c)
+    assert found is not None and (found.condition, found.off_k) == (3, surface_c - 40.0)
+    assert found.agrees == agrees
+
+
+def test_near_the_air_less_is_allowed() -> None:
+    found = soaked(28.0, model_c=25.0, hub_c=27.0)
+    assert found is not None and not found.agrees
+
+
+def test_without_a_hub_sensor_nothing_is_found() -> None:
+    assert soaked(40.0, valid=False) is None
+
+
+def test_without_a_model_nothing_is_found() -> None:
+    bench = make_bench()
+    bench.ctx.observer = None
+    assert soak_check(bench.ctx, 3) is None
