@@ -16,7 +16,7 @@ from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
 
 from tests.campaigns.acceptance.figure import Figure, at_most, holds
-from tests.campaigns.doubts.cases import Case, steady, steps, swings
+from tests.campaigns.doubts.cases import WHEEL, Case, steady, steady_recipes, steps, swings
 from tests.campaigns.doubts.runs import Found, carry_out
 
 SEEDS, SAMPLE = 20, 1
@@ -64,7 +64,8 @@ def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser("python -m tests.campaigns.doubts", description=about)
     parser.add_argument("topics", nargs="*", metavar="TOPIC", help="all unless named: " + ", ".join(TOPICS))
     parser.add_argument("--sample", action="store_true", help="the short form, for every change")
-    parser.add_argument("--seeds", type=int, metavar="N", help=f"of steps and swings (default {SEEDS})")
+    parser.add_argument("--seeds", type=int, metavar="N", help=f"default {SEEDS}, of steady friction {STEADY_SEEDS}")
+    parser.add_argument("--first", type=int, default=1, metavar="SEED", help="the first of them (default 1)")
     parser.add_argument("--jobs", type=int, default=1, metavar="N", help="runs side by side (default 1)")
     read = parser.parse_args(arguments)
     if unknown := [name for name in read.topics if name not in TOPICS]:
@@ -72,10 +73,10 @@ def main(arguments: list[str] | None = None) -> int:
     cases: list[Case] = []
     for name in read.topics or TOPICS:
         few, many = (SAMPLE_STEADY, STEADY_SEEDS) if name == "steady" else (SAMPLE, SEEDS)
-        seeds = few if read.sample else many
-        cases += TOPICS[name](read.seeds if read.seeds and name != "steady" else seeds)
+        seeds = read.seeds or (few if read.sample else many)
+        cases += [one for one in TOPICS[name](max(seeds, many)) if read.first <= one.seed < read.first + seeds]
     if read.sample:
-        cases = [one for one in cases if "sideslip" not in one.topic and "3#" not in one.recipe][:12]
+        cases = [one for one in cases if one.topic != "steady" or one.rig != WHEEL or one.recipe == steady_recipes()[1]]
     found: list[Found] = []
     with ProcessPoolExecutor(read.jobs, mp_context=get_context("spawn")) as pool:
         for one in pool.map(carry_out, cases):

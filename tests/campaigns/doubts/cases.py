@@ -133,17 +133,21 @@ def swings(seeds: int) -> Iterator[Case]:
         yield Case("stick-slip", DISC, disc_recipe(), seed, stick, hz=hz)
 
 
-def steady(seeds: int) -> Iterator[Case]:
-    """Yield runs in which friction is steady."""
-    grids = (
+def steady_recipes() -> tuple[str, ...]:
+    """Return the recipes of a wheel with steady friction: 30 conditions of three compounds."""
+    return (
         wheel_recipe("1#", load="[100 N, 200 N, 300 N]", slip="[100 mm/s, 300 mm/s]", temperature="[25 degC, 40 degC]"),
         wheel_recipe("2#", load="[100 N, 300 N]", slip="[100 mm/s, 200 mm/s, 300 mm/s]", temperature="55 degC"),
         wheel_recipe("3#", load="[100 N, 200 N]", slip="[100 mm/s, 200 mm/s]", temperature="[40 degC, 70 degC]"),
         wheel_recipe("1#", load="[100 N, 200 N]", slip="300 mm/s", angle="[5 deg, 10 deg]", temperature="40 degC"),
     )
+
+
+def steady(seeds: int) -> Iterator[Case]:
+    """Yield runs in which friction is steady."""
     speeds = "[0.05 m/s, 0.1 m/s, 0.2 m/s, 0.5 m/s, 1 m/s]"
     for seed in range(1, seeds + 1):
-        for number, recipe in enumerate(grids):
+        for number, recipe in enumerate(steady_recipes()):
             yield Case("steady", WHEEL, recipe, seed, beliefs(WHEEL, seed + number))
         for rubber in ("SBR", "NBR"):
             recipe = disc_recipe(rubber, load="[10 N, 20 N]", speed=speeds, interface="[dry, wet]")

@@ -8,7 +8,7 @@ from random import Random
 from tempfile import TemporaryDirectory
 from typing import Final
 
-from tester.analysis.flags import CHANGED, STICK_SLIP
+from tester.analysis.flags import CHANGED, STICK_SLIP, THERMOMETER
 from tester.results import results_of
 from tester.run.session import Session, SessionOptions
 from tester.store.reader import RunReader
@@ -19,7 +19,7 @@ TRIES: Final = 8
 """So often a time is drawn until it lies inside the repeat that it is to lie in."""
 LONGEST_S: Final = {WHEEL: 45.0, "pin-on-disc": 16.0}
 """Of a repeat, from its tare to its last sample, s."""
-OURS: Final = (CHANGED, STICK_SLIP)
+OURS: Final = (CHANGED, STICK_SLIP, THERMOMETER)
 
 
 @dataclass(frozen=True, slots=True)
