@@ -198,6 +198,8 @@ def _swing(spectrum: _Spectrum, lowest_hz: float, highest_hz: float) -> tuple[fl
     variance = 0.0
     for multiple in range(1, _MULTIPLES + 1):
         middle = multiple * at_hz
+        if middle > frequency[-1]:
+            break
         half = min(max(spectrum.width_hz, _LOBE * middle), 0.5 * at_hz)
         lobe = (frequency > middle - half) & (frequency <= middle + half)
         variance += max(float(np.sum(power[lobe] - _level(spectrum, middle))) * float(frequency[1]), 0.0)

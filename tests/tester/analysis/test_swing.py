@@ -104,6 +104,12 @@ def test_a_swing_that_is_fast_for_its_samples_has_a_frequency_and_no_amplitude()
     assert LIMIT_PERCENT < found.seen_percent < 10.0
 
 
+@pytest.mark.filterwarnings("error")
+def test_a_swing_whose_multiples_lie_beyond_what_samples_show_is_found() -> None:
+    found = swing_of(trace(0.10, 8.0, rate_hz=20.0, contact_s=8.0))
+    assert found.hz == pytest.approx(8.0, rel=0.05) and found.seen_percent > LIMIT_PERCENT
+
+
 def test_samples_that_come_too_slowly_tell_nothing() -> None:
     assert swing_of(trace(0.10, 1.0, rate_hz=3.0, contact_s=8.0)) == UNKNOWN
 
