@@ -21,6 +21,7 @@ from tester.cli.ending import ending_lines
 from tester.cli.keys import keys_of
 from tester.machine.context import Progress as RunProgress
 from tester.machine.prompts import DONE, Prompt, Prompts
+from tester.machine.time_left import Standing
 
 ASKED = f'type "{DONE}" and Enter when it is done'
 MOST_TYPED = 20
@@ -134,20 +135,22 @@ class Console:
             self._tasks[1] = self._progress.add_task(name, total=1.0)
             self._progress.start()
 
-    def show(self, now_s: float, run: RunProgress, share: float) -> None:
-        """Show where the run is, or one of its parts: ``share`` of the estimated rig time, 0..1."""
-        of_part = {"part": run.part} if run.parts > 1 else {}
-        label = f"part {run.part} of {run.parts}  " if run.parts > 1 else ""
-        if run.title != self._titles.get(run.part):
-            self._titles[run.part] = run.title
-            self.emit({"event": "step", **of_part, "t_s": round(now_s, 3), "step": run.step, "title": run.title})
+    def show(self, now_s: float, run: RunProgress, at: Standing) -> None:
+        """Show where the run is, or one of its parts where they run side by side."""
+        of_part = {"part": at.part} if at.parts > 1 else {}
+        label = f"part {at.part} of {at.parts}  " if at.parts > 1 else ""
+        if run.title != self._titles.get(at.part):
+            self._titles[at.part] = run.title
+            where = {"t_s": round(now_s, 3), "step": at.step, "title": run.title}
+            counted = {"over": at.over, "conditions": at.conditions, "left_s": at.left_s}
+            self.emit({"event": "step", **of_part, **where, **counted})
             if self._progress is None:
                 self.message(f"{label}{duration(now_s)}  {run.title}")
         if self._progress is not None:
-            text = f"{label}{duration(now_s)}  "
+            text = label + standing_words(at)
             if run.repeats:
-                text += f"{run.condition}/{run.conditions} repeat {run.repeat}/{run.repeats}  "
-            self._show_line(self._progress, run.part, min(share, 1.0), text + run.title)
+                text += f"  repeat {run.repeat}/{run.repeats}"
+            self._show_line(self._progress, at.part if at.beside else 1, at.share, f"{text}  {run.title}")
             self._err.check()
 
     def _show_line(self, progress: Progress, part: int, share: float, text: str) -> None:
@@ -223,6 +226,14 @@ class Console:
             self.message(f"answered: {DONE}")
         else:
             self.message(f"{question.text} - {ASKED}")
+
+
+def standing_words(at: Standing) -> str:
+    """Return how far a run is: conditions that are over, and the time left."""
+    words = [f"{at.over}/{at.conditions} conditions over"] if at.conditions else []
+    if at.left_s is not None:
+        words.append(f"{duration(at.left_s)} left")
+    return ", ".join(words)
 
 
 def _is_terminal(stream: TextIO | None) -> bool:

@@ -20,15 +20,12 @@ class Progress:
     title: str = "connecting"
     phase: str = ""
     condition: int = 0
-    conditions: int = 0
+    """Number of the one under way, 0 before the first."""
     repeat: int = 0
     repeats: int = 0
     revolutions: float = 0.0
     revolutions_wanted: float = 0.0
     burst: int = 0
-    part: int = 1
-    """Which of the run's parts this is, and how many there are (tester.run.part_run)."""
-    parts: int = 1
 
 
 RigT_co = TypeVar("RigT_co", bound=Rig, covariant=True)

@@ -73,7 +73,6 @@ class Executor(Generic[ContextT]):
         self.activity: Activity[ContextT] | None = None
         self.finished = False
         self.failed = ""
-        self.conditions = sum(1 for _ in plan.conditions())
 
     @property
     def measuring(self) -> bool:
@@ -136,7 +135,6 @@ class Executor(Generic[ContextT]):
         """Tell what is done next."""
         ctx.progress.step += 1
         ctx.progress.steps = ctx.progress.step + len(self.steps)
-        ctx.progress.conditions = self.conditions
         ctx.progress.repeat = ctx.progress.repeats = 0
         ctx.progress.title, ctx.progress.phase = text, ""
         ctx.journal.event(ctx.now, "step", ctx.progress.title)

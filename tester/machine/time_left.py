@@ -1,22 +1,31 @@
-"""How far a run is and how long it still takes, from the plan's estimate and what has passed.
+"""Where a run is, and how long it still takes: the one place where steps, conditions and times to come are counted.
 
-Only work counts. While the rig is held, or a person is waited for, neither the share nor the time left moves; once the
-run has been given up (a trip, a stop, a failure) nothing of the plan is left to be done, and there is no time left to
-tell. Each kind of step has a pace of its own: rests that last what they are told say nothing of conditions that take
-twice what was estimated. Times in s of rig time.
+The steps are those of the plan, and after each part of it the way to standstill. The time left is the sum of what the
+steps to come are expected to take and of what is left of the present one, each in whole seconds, so that a list of the
+steps adds up to it. Only work counts: while the rig is held, or a person is waited for, neither the share nor the time
+left moves; once the run has been given up (a trip, a stop, a failure) nothing of the plan is left to be done, and there
+is no time left to tell. Each kind of step has a pace of its own: rests that last as long as planned say nothing of
+conditions that take twice what was estimated. Times in s of rig time.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from enum import Enum
-from typing import Final
+from itertools import accumulate
+from math import ceil
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
 
 from tester.machine.context import Progress
 from tester.machine.run import Outcome, Run
 from tester.machine.state import Mode
-from tester.recipe.estimate import Estimate
-from tester.recipe.plan import Plan, Step
+from tester.recipe.plan import ConditionStep, Plan, Step
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
 
 PRIOR_S: Final = 300.0
 """The estimate of a kind of step counts as much as this long a measurement of it, s [A]."""
@@ -26,6 +35,8 @@ SHOWN: Final = 0.3
 """A condition's repeats tell its duration once this share of one repeat is done [A]."""
 SHOWN_S: Final = 30.0
 """... and not before this long a time of contacts, s [A]."""
+STANDSTILL: Final = "standstill"
+"""Kind of the entry behind the last step of a part: the way to standstill, cooling included."""
 
 
 class Doing(Enum):
@@ -58,28 +69,84 @@ def share_of_repeats(progress: Progress) -> float:
     return min((max(progress.repeat - 1, 0) + within) / progress.repeats, 1.0)
 
 
-class TimeLeft:
-    """The plan's estimate beside the clock."""
+@dataclass(frozen=True, slots=True)
+class PartTime:
+    """A part of a run, and what it is expected to take: its steps, and the way to standstill behind them, s."""
 
-    def __init__(self, plan: Plan, estimate: Estimate) -> None:
-        """Begin before the first step."""
-        self.estimated = [one.seconds for one in estimate.steps]
-        self.total_s = max(estimate.rig_seconds, 1.0)
+    plan: Plan
+    seconds: tuple[float, ...]
+    down_s: float
+
+
+@dataclass(frozen=True, slots=True)
+class Earlier:
+    """What earlier stretches of an interrupted run have done; nothing of a run that begins."""
+
+    seconds: float = 0.0
+    over: frozenset[int] = frozenset()
+    """Numbers of the conditions that are over."""
+    repeats: Mapping[int, int] = field(default_factory=dict[int, int])
+    """Committed repeats of conditions that are not, by their numbers."""
+
+
+@dataclass(frozen=True, slots=True)
+class Standing:
+    """Where a run is: steps and conditions counted, and times in s of rig time.
+
+    ``over`` of ``conditions`` are over, with a value or without. ``share`` of the rig time is done, 0..1. ``left_s``:
+    whole seconds still to go, None once the run was given up; ``step_left_s`` of them in the present step.
+    """
+
+    step: int = 0
+    steps: int = 0
+    over: int = 0
+    conditions: int = 0
+    share: float = 0.0
+    left_s: float | None = None
+    step_left_s: float = 0.0
+    part: int = 1
+    parts: int = 1
+    beside: bool = False
+    """The figures are of this part alone, which runs beside others."""
+
+
+class TimeLeft:
+    """A run's steps beside the clock."""
+
+    def __init__(self, parts: Sequence[PartTime], earlier: Earlier | None = None) -> None:
+        """Begin before the first step of the first part."""
+        self._earlier = earlier or Earlier()
+        self.steps: list[Step | None] = []
+        """The plan's, and None behind each part's last: the way to standstill."""
+        self.estimated: list[float] = []
+        self._ends: dict[int, int] = {}
+        """Where each part's way to standstill is listed, by the identity of the part's last step."""
+        for one in parts:
+            self._list(one)
+        self._kinds = [STANDSTILL if step is None else step.kind for step in self.steps]
+        self._sorts = list(dict.fromkeys(self._kinds))
+        self._sort = np.array([self._sorts.index(kind) for kind in self._kinds], dtype=np.intp)
+        self._estimated = np.array(self.estimated)
+        self._places = {id(step): place for place, step in enumerate(self.steps) if step is not None}
+        planned = {step.condition for step in self.steps if isinstance(step, ConditionStep)}
+        over = accumulate((isinstance(step, ConditionStep) for step in self.steps), initial=0)
+        self._over = [len(self._earlier.over - planned) + one for one in over]
+        """Conditions that are over before each step begins, and behind the last."""
+        self._conditions = len(self._earlier.over | planned)
         self.position = -1
-        """Index of the present step in the plan; a wheel change that was not planned belongs to the step after it."""
+        """Index of the present step; a wheel change that was not planned belongs to the step after it."""
         self.measured: dict[int, float] = {}
         """What each step took that is over, s of work."""
-        self._kinds = [step.kind for step in plan.steps]
-        self._ahead: dict[str, float] = {}
-        """Estimates of the steps behind the present one, by kind, s."""
-        for kind, seconds in zip(self._kinds, self.estimated, strict=True):
-            self._ahead[kind] = self._ahead.get(kind, 0.0) + seconds
-        self._after_s = max(self.total_s - sum(self._ahead.values()), 0.0)
+        self.ahead: NDArray[np.float64] = self._estimated
+        """What each step is expected to take, whole s."""
+        self._ahead_s = 0.0
+        """Sum of those behind the present one."""
+        self.revision = 0
+        """Counts changes of what the list of steps shows."""
         self._took: dict[str, tuple[float, float]] = {}
         """What the steps that are over took, and what they were estimated at, by kind, s."""
-        self._places = {id(step): place for place, step in enumerate(plan.steps)}
-        self._part_ends = len(plan.steps)
-        self._step = 0
+        self._part, self._parts, self._end = 0, len(parts), len(self.steps) - 1
+        self._step = self._repeat = 0
         self._open = False
         """The step at ``position`` is under way."""
         self._doing = Doing.WORKING
@@ -92,34 +159,61 @@ class TimeLeft:
         """Work, and share of the condition's repeats, when the present condition began to be measured."""
         self._repeats, self._enough = 0.0, 1.0
         """Share of the present condition's repeats that is done, and that has to be to tell its duration."""
+        self._expect()
+
+    def _list(self, part: PartTime) -> None:
+        """Take in a part: its steps, less the repeats that were committed before, and the way to standstill."""
+        for step, seconds in zip(part.plan.steps, part.seconds, strict=True):
+            done = self._earlier.repeats.get(step.condition, 0) if isinstance(step, ConditionStep) else 0
+            made = step.repeats * step.scheme.repeats_each if isinstance(step, ConditionStep) else 1
+            self.steps.append(step)
+            self.estimated.append(seconds * max(1.0 - done / made, 0.0))
+        if part.plan.steps:
+            self._ends[id(part.plan.steps[-1])] = len(self.steps)
+        self.steps.append(None)
+        self.estimated.append(part.down_s)
+
+    # -- looking at a run -------------------------------------------------------------------------------------
 
     def begin_part(self, plan: Plan) -> None:
-        """Begin a part of the plan, on a rig of its own whose time starts at 0."""
+        """Begin a part, on a rig of its own whose time starts at 0."""
         self._finish()
+        self._part += 1
         self._now, self._step, self._doing = 0.0, 0, Doing.WORKING
-        self._part_ends = self._places[id(plan.steps[-1])] + 1 if plan.steps else 0
+        self._end = self._ends[id(plan.steps[-1])] if plan.steps else len(self.steps) - 1
 
-    def look(self, now: float, run: Run) -> bool:
-        """Take in where a run is at a rig time; return whether a step has begun."""
+    def look(self, now: float, run: Run) -> None:
+        """Take in where a run is at a rig time."""
         executor = run.engine.executor
-        return self.update(now, run.engine.ctx.progress, executor.steps, doing(run), measuring=executor.measuring)
+        self.update(now, run.engine.ctx.progress, executor.steps, doing(run), measuring=executor.measuring,
+                    finished=executor.finished and not executor.failed)  # fmt: skip
 
     def update(
-        self, now: float, progress: Progress, remaining: Sequence[Step], state: Doing, *, measuring: bool
-    ) -> bool:
-        """Take in where the executor is; return whether a step has begun. ``remaining``: its steps to come."""
+        self,
+        now: float,
+        progress: Progress,
+        remaining: Sequence[Step],
+        state: Doing,
+        *,
+        measuring: bool = False,
+        finished: bool = False,
+    ) -> None:
+        """Take in where the executor is. ``remaining``: its steps to come; ``finished``: there is none any more."""
         if state is Doing.WORKING:
             self._worked_s += now - self._now
         self._now, self._doing = now, state
-        begun = progress.step != self._step
-        if begun:
+        if finished:
+            self._move_to(self._end)
+        elif progress.step != self._step:
             self._step = progress.step
             self._move_to(self._position(remaining))
         if measuring:
             self._repeats, self._enough = share_of_repeats(progress), SHOWN / max(progress.repeats, 1)
             if self._first is None and progress.burst:  # before the first contact it may wait long for its temperature
                 self._first = self._worked_s, max(progress.repeat - 1, 0) / max(progress.repeats, 1)
-        return begun
+            if progress.repeat != self._repeat:
+                self._repeat = progress.repeat
+                self._expect()
 
     def _position(self, remaining: Sequence[Step]) -> int:
         inserted = 0
@@ -128,21 +222,21 @@ class TimeLeft:
                 break
             inserted += 1
         # With steps inserted, the one that waits behind them is the present one.
-        return self._part_ends - (len(remaining) - inserted) - (0 if inserted else 1)
+        return self._end - (len(remaining) - inserted) - (0 if inserted else 1)
 
     def _move_to(self, position: int) -> None:
         if position == self.position:
             return
         self._finish()
-        for place in range(self.position + 1, min(position + 1, len(self.estimated))):
-            self._ahead[self._kinds[place]] -= self.estimated[place]
-            if place < position:  # came and went between two looks: its time is told with the step before it
-                self.measured[place] = 0.0
+        for place in range(self.position + 1, position):
+            self.measured[place] = 0.0  # came and went between two looks: its time is told with the step before it
         self.position, self._open = position, True
+        self._repeat = 0
+        self._expect()
 
     def _finish(self) -> None:
         """Take what the present step took as a measurement of its kind."""
-        if self._open and 0 <= self.position < len(self.estimated):
+        if self._open:
             took_s = self._worked_s - self._began_s
             self.measured[self.position] = took_s
             kind = self._kinds[self.position]
@@ -151,36 +245,48 @@ class TimeLeft:
         self._began_s, self._open = self._worked_s, False
         self._first = None
 
-    def left_s(self) -> float | None:
-        """Return the rig seconds still to go; None once the run was given up: nobody will do what is left."""
-        if self._doing is Doing.GIVEN_UP:
-            return None
-        here = self._kinds[self.position] if self._open and 0 <= self.position < len(self._kinds) else ""
-        present_s = self._present_s(here) if here else 0.0
-        so_far_s = self._worked_s - self._began_s + present_s
-        left_s = present_s + self._after_s
-        for kind, ahead_s in self._ahead.items():
+    # -- what is expected -------------------------------------------------------------------------------------
+
+    def _expect(self) -> None:
+        """Work out anew what the steps to come take: their list changes now, and not again before it is seen."""
+        here = self._kinds[self.position] if self._open else ""
+        paces: list[float] = []
+        for kind in self._sorts:
             took_s, estimated_s = self._took.get(kind, (0.0, 0.0))
             if kind == here:
-                took_s, estimated_s = took_s + so_far_s, estimated_s + self.estimated[self.position]
-            left_s += max(ahead_s, 0.0) * (took_s + PRIOR_S) / (estimated_s + PRIOR_S)
-        return left_s
+                took_s += self._worked_s - self._began_s + self._present_s()
+                estimated_s += self.estimated[self.position]
+            paces.append((took_s + PRIOR_S) / (estimated_s + PRIOR_S))
+        self.ahead = np.rint(self._estimated * np.array(paces)[self._sort])
+        self._ahead_s = float(self.ahead[self.position + 1 :].sum())
+        self.revision += 1
 
-    def _present_s(self, kind: str) -> float:
-        """Return what is left of the present step: by its repeats where they tell, else by its estimate."""
+    def _present_s(self) -> float:
+        """Return what is left of the present step, s: by its repeats where they tell, else by its estimate."""
+        if not self._open:
+            return 0.0
         so_far_s = self._worked_s - self._began_s
         if self._first is not None:
             since_s, done = self._worked_s - self._first[0], self._repeats - self._first[1]
             if done >= self._enough and since_s >= SHOWN_S:
                 return since_s * (1.0 - self._repeats) / done
-        took_s, estimated_s = self._took.get(kind, (0.0, 0.0))
+        took_s, estimated_s = self._took.get(self._kinds[self.position], (0.0, 0.0))
         expected_s = self.estimated[self.position] * (took_s + PRIOR_S) / (estimated_s + PRIOR_S)
         return max(expected_s - so_far_s, OVERRUN * so_far_s)
 
-    def share(self) -> float:
-        """Return the share of the run that is done, 0..1; where it was given up, what was done by then."""
-        state, self._doing = self._doing, Doing.WORKING
-        left_s = self.left_s() or 0.0
-        self._doing = state
-        done_s = self._worked_s
-        return done_s / (done_s + left_s) if done_s + left_s > 0.0 else 0.0
+    def standing(self) -> Standing:
+        """Return where the run is."""
+        present_s = float(ceil(self._present_s()))
+        left_s = present_s + self._ahead_s
+        done_s = self._earlier.seconds + self._worked_s
+        return Standing(
+            step=self.position + 1,
+            steps=len(self.steps),
+            over=self._over[max(self.position + (0 if self._open else 1), 0)],
+            conditions=self._conditions,
+            share=done_s / (done_s + left_s) if done_s + left_s > 0.0 else 0.0,
+            left_s=None if self._doing is Doing.GIVEN_UP else left_s,
+            step_left_s=present_s,
+            part=max(self._part, 1),
+            parts=self._parts,
+        )

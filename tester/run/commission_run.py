@@ -14,6 +14,7 @@ from tester.base.keys import FAST_STOP, MEANINGS, STOP
 from tester.commission.person import Asks, Person, Question, StepRefused
 from tester.machine.context import Progress
 from tester.machine.prompts import DONE, Prompt, Prompts
+from tester.machine.time_left import Standing
 from tester.results.run_results import results_of
 from tester.run.session import Session, SessionOptions
 from tester.store.reader import RunReader
@@ -38,11 +39,11 @@ class PersonScreen:
         """Say that it begins."""
         self.person.tell(f"  run {name}")
 
-    def show(self, now_s: float, run: Progress, share: float) -> None:
+    def show(self, now_s: float, run: Progress, at: Standing) -> None:
         """Say what the run does, step by step."""
         if run.title != self._title:
             self._title = run.title
-            self.person.tell(f"  {100 * min(share, 1.0):3.0f} %  {run.title}")
+            self.person.tell(f"  {100 * at.share:3.0f} %  {run.title}")
 
     def attend(self, prompts: Prompts) -> None:
         """Put the question that waits, and take its answer."""

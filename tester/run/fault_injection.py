@@ -151,7 +151,7 @@ class FaultyRun:
         if progress.step != self._step:
             self._step = progress.step
             names += progress.title.split() if progress.step else ["connect"]
-            if progress.conditions and ":" in progress.title:
+            if ":" in progress.title and next(engine.executor.plan.conditions(), None) is not None:
                 names.append("soak")
         phase = progress.phase.split(" ")[0]
         if phase != self._phase:

@@ -5,12 +5,15 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from math import fsum
 from pathlib import Path
 
 from tester.base import clock
 from tester.machine.results import condition_records
 from tester.machine.run_parts import Part
 from tester.machine.served import History
+from tester.machine.time_left import Earlier, PartTime
+from tester.recipe.estimate import Estimate
 from tester.recipe.plan import Plan
 from tester.recipe.schema import Recipe
 from tester.rig import Rig
@@ -67,6 +70,27 @@ def work_of(recipe: Recipe, rig: Rig) -> Work:
     """Return the work that a recipe is on a rig."""
     plan = recipe_part(rig).expand(recipe, rig)
     return Work(rig, plan, run_parts(rig).split(plan) if rig.simulated else (Part(1, plan),))
+
+
+def part_time(rig: Rig, plan: Plan, expected: Estimate | None = None) -> PartTime:
+    """Return what a part is expected to take; ``expected``: of its plan, where that is known already."""
+    found = expected or recipe_part(rig).estimate(plan, rig)
+    seconds = tuple(one.seconds for one in found.steps)
+    return PartTime(plan, seconds, max(found.rig_seconds - fsum(seconds), 0.0))
+
+
+def parts_time(work: Work, expected: Estimate | None = None) -> list[PartTime]:
+    """Return what each part of a run is expected to take; ``expected``: of the whole plan, where that is known."""
+    whole = expected if len(work.parts) == 1 else None
+    return [part_time(work.rig, part.plan, whole) for part in work.parts]
+
+
+def earlier_of(point: ResumePoint | None) -> Earlier:
+    """Return what earlier stretches of a run have done, for its count."""
+    if point is None:
+        return Earlier()
+    repeats = {number: len(condition.results) for number, condition in point.conditions.items()}
+    return Earlier(point.origin_s, point.stand.ended, repeats)
 
 
 def write_sources(folder: Path, recipe_text: str, rig: Rig) -> None:

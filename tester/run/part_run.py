@@ -23,7 +23,7 @@ from tester.run.bus_log import BusLog
 from tester.run.endings import PartEnd
 from tester.run.folder import Begin, Job, Work
 from tester.run.kept import record_kept
-from tester.run.kinds import recipe_part, run_parts
+from tester.run.kinds import run_parts
 from tester.run.provenance import record_parameters, record_statistics
 from tester.run.set_up import GoodRun
 from tester.run.truth import Witnessed, truth_of
@@ -46,6 +46,8 @@ class Watch(Protocol):
 
     statistics: TickStatistics
     """Is told how punctual the ticks are, in real time."""
+    track: TimeLeft
+    """Counts the run's steps; looks at a part before each poll."""
 
     def begun(self, run: Run) -> None:
         """Take notice of the run: from now on it can be stopped."""
@@ -59,8 +61,8 @@ class Watch(Protocol):
         """Take notice that the run is at rest: nothing ticks any more, its record is not closed yet."""
         ...
 
-    def poll(self, now_s: float, run: Run, share: float) -> None:
-        """Look at the run, about ten times a second of wall time; ``share`` of the part that is done, 0..1."""
+    def poll(self, now_s: float, run: Run) -> None:
+        """Look at the run, about ten times a second of wall time."""
         ...
 
 
@@ -179,13 +181,13 @@ def _execute(
             attendant = Witnessed(attendant, truth, part.plan, writer)
         build = run_parts(rig).build
         run = build(rig, part.plan, ports, attendant, writer, prompts, work.point, job.history)
-        _place(run, work, part)
-        left = TimeLeft(part.plan, recipe_part(rig).estimate(part.plan, rig))
+        run.engine.executor.procedures.number_after(part.last_mounted)  # the plan may be a part of one
+        watch.track.begin_part(part.plan)
         ticked, lives = _with_faults(run, world, faults) if world is not None and faults else (run, world)
         with collector_at_rest():  # already: from here to the first tick nothing takes long, and STOP waits for that
             watch.begun(run)
             with left_safe(run):
-                seconds = _tick(run, ticked, lives, ports.pace, job.lapse, left, writer, watch, job.good)
+                seconds = _tick(run, ticked, lives, ports.pace, job.lapse, writer, watch, job.good)
         watch.rested()
         record_statistics(run.engine.devices, writer, seconds)
         if run.outcome is Outcome.DONE:
@@ -204,21 +206,12 @@ def _log_folder(folder: Path, work: Work, part: Part) -> Path:
     return folder if len(work.parts) == 1 else folder / f"part-{part.number}"
 
 
-def _place(run: Run, work: Work, part: Part) -> None:
-    """Tell a run which part of the whole it is: numbers of unforeseen specimens, what people are shown."""
-    executor, progress = run.engine.executor, run.engine.ctx.progress
-    executor.procedures.number_after(part.last_mounted)
-    executor.conditions = sum(1 for _ in work.plan.conditions())
-    progress.part, progress.parts = part.number, len(work.parts)
-
-
 def _tick(
     run: Run,
     ticked: Ticked,
     world: TickedWorld | None,
     pace: Pace | None,
     lapse: float | None,
-    left: TimeLeft,
     recorder: RunWriter,
     watch: Watch,
     good: GoodRun | None,
@@ -227,8 +220,8 @@ def _tick(
 
     def poll(now_s: float) -> None:
         notes.poll(now_s)
-        left.look(now_s, run)
-        watch.poll(now_s, run, left.share())
+        watch.track.look(now_s, run)
+        watch.poll(now_s, run)
         if recorder.failed:
             run.request_stop(f"the run can no longer be recorded: {recorder.failed}")
 

@@ -9,6 +9,7 @@ from typing import Protocol, runtime_checkable
 from tester.base.trouble import in_words
 from tester.machine.context import Progress
 from tester.machine.prompts import Prompts
+from tester.machine.time_left import Standing
 
 
 class ReportScreen(Protocol):
@@ -25,8 +26,8 @@ class ReportScreen(Protocol):
         """Show that a run has begun."""
         ...
 
-    def show(self, now_s: float, run: Progress, share: float) -> None:
-        """Show where the run is, or one of its parts (``run.part`` of ``run.parts``)."""
+    def show(self, now_s: float, run: Progress, at: Standing) -> None:
+        """Show where the run is, or one of its parts where they run side by side."""
         ...
 
     def attend(self, prompts: Prompts) -> None:
@@ -85,12 +86,12 @@ class LastingScreen:
         except OSError as error:
             self._lose(error)
 
-    def show(self, now_s: float, run: Progress, share: float) -> None:
+    def show(self, now_s: float, run: Progress, at: Standing) -> None:
         """Show where the run is."""
         if self.gone:
             return
         try:
-            self._screen.show(now_s, run, share)
+            self._screen.show(now_s, run, at)
         except OSError as error:
             self._lose(error)
 

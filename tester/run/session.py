@@ -23,6 +23,7 @@ from tester.machine.results import condition_records
 from tester.machine.run import Outcome, Run
 from tester.machine.run_parts import Part
 from tester.machine.tickers import TickStatistics
+from tester.machine.time_left import TimeLeft
 from tester.recipe.loader import LoadedRecipe
 from tester.results import doubtful, write_all
 from tester.results.run_results import TableRow, results_of
@@ -30,7 +31,17 @@ from tester.rig import Rig
 from tester.rig.ceilings import counts_as_simulated
 from tester.rig.load import risks_of
 from tester.run.endings import EXIT_CODES, CannotStartError, PartEnd, RunEnding, StopLevel, ending_of
-from tester.run.folder import Begin, Job, Work, beginning_of, make_folder, specimens_of, write_sources
+from tester.run.folder import (
+    Begin,
+    Job,
+    Work,
+    beginning_of,
+    earlier_of,
+    make_folder,
+    parts_time,
+    specimens_of,
+    write_sources,
+)
 from tester.run.kinds import run_parts
 from tester.run.latch import acknowledge, open_trips
 from tester.run.materials import KeptFile, kept_files, write_materials
@@ -99,6 +110,8 @@ class Session:
         self.prompts = Prompts(automatic=screen.answer_yes)
         """Of all parts that run in this process: each has a number of its own."""
         self.statistics = TickStatistics()
+        self.track = TimeLeft([])
+        """Counts the steps of the whole run, once it is known."""
         self._level = StopLevel.NONE
         self._pool: WorkerPool | None = None
 
@@ -132,6 +145,10 @@ class Session:
                 self.screen.message(f"doubt: {doubt}")
             begin = self._beginning(folder, found.path, recipe, work, kept)
             return self._record(self._job(folder, options.seed, rig), work, begin)
+
+    def tracked(self, work: Work) -> TimeLeft:
+        """Return what counts the steps of a run."""
+        return TimeLeft(parts_time(work), earlier_of(work.point))
 
     def prepare(self) -> Prepared:
         """Read and plan the recipe; raises as ``run`` does."""
@@ -203,10 +220,10 @@ class Session:
     def rested(self) -> None:
         """Nothing: who is at this screen asks for nothing while a record is closed."""
 
-    def poll(self, now_s: float, run: Run, share: float) -> None:
-        """Show the part that runs in this process and attend to its prompts."""
+    def poll(self, now_s: float, run: Run) -> None:
+        """Show the run, of which a part runs in this process, and attend to its prompts."""
         ctx = run.engine.ctx
-        self.screen.show(now_s, ctx.progress, share)
+        self.screen.show(now_s, ctx.progress, self.track.standing())
         self.screen.attend(ctx.prompts)
         for command in self.screen.commands():
             self._command(run, command)
@@ -282,6 +299,7 @@ class Session:
     def _record(self, job: Job, work: Work, begin: Begin) -> int:
         """Carry out the work into the folder; write the tables and return the exit code."""
         self.folder = job.folder
+        self.track = self.tracked(work)
         self.prompts.real = not counts_as_simulated(work.rig)
         for risk in risks_of(work.rig):
             self.screen.message(f"accepted risk ({self.options.accept_risk}): {risk}")
@@ -321,7 +339,7 @@ class Session:
         self.screen.emit({"event": "part end", "part": end.part, "outcome": end.outcome.value, "reason": end.reason})
 
     def _show(self, sight: Sight) -> None:
-        self.screen.show(sight.now_s, sight.progress, sight.share)
+        self.screen.show(sight.now_s, sight.progress, sight.at)
 
     def _take(self, pool: WorkerPool) -> None:
         self._pool = pool

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, wait
 from concurrent.futures.process import BrokenProcessPool
+from dataclasses import replace
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -12,8 +13,9 @@ from tester.machine.context import Progress
 from tester.machine.prompts import Prompts
 from tester.machine.run import Outcome, Run
 from tester.machine.tickers import TickStatistics
+from tester.machine.time_left import Standing, TimeLeft
 from tester.run.endings import PartEnd, StopLevel
-from tester.run.folder import Job, Work, beginning_of, read_work
+from tester.run.folder import Job, Work, beginning_of, part_time, read_work
 from tester.run.kinds import recipe_part
 from tester.run.part_run import run_part
 from tester.run.pool import WorkerPool, say, stop_level
@@ -23,11 +25,11 @@ POLL_S = 0.1
 
 
 class Sight(NamedTuple):
-    """How far a part is: its rig time in s, where it is, its share of the expected rig time."""
+    """How far a part is: its rig time in s, what it does, and where it is among its own steps."""
 
     now_s: float
     progress: Progress
-    share: float
+    at: Standing
 
 
 def side_by_side(
@@ -74,7 +76,8 @@ def run_in_worker(job: Job, number: int) -> PartEnd | None:
         return None
     work = _work_of(job)
     part = work.parts[number - 1]
-    return run_part(job, work, part, beginning_of(part, job, work), _Reporting(), Prompts(automatic=True))
+    watch = _Reporting(number, len(work.parts), TimeLeft([part_time(work.rig, part.plan)]))
+    return run_part(job, work, part, beginning_of(part, job, work), watch, Prompts(automatic=True))
 
 
 @lru_cache(maxsize=1)
@@ -85,7 +88,8 @@ def _work_of(job: Job) -> Work:
 class _Reporting:
     """A watch that tells the parent how far the part is, and hears from it when to stop."""
 
-    def __init__(self) -> None:
+    def __init__(self, part: int, parts: int, track: TimeLeft) -> None:
+        self.part, self.parts, self.track = part, parts, track
         self.statistics = TickStatistics()
         self._heard = StopLevel.NONE
 
@@ -99,9 +103,10 @@ class _Reporting:
     def rested(self) -> None:
         """Nothing: the parent hears STOP."""
 
-    def poll(self, now_s: float, run: Run, share: float) -> None:
+    def poll(self, now_s: float, run: Run) -> None:
         """Report and obey."""
-        say(Sight(now_s, run.engine.ctx.progress, share))
+        at = replace(self.track.standing(), part=self.part, parts=self.parts, beside=True)
+        say(Sight(now_s, run.engine.ctx.progress, at))
         self._obey(run)
 
     def _obey(self, run: Run) -> None:

@@ -1,12 +1,13 @@
-"""How far a run is, as clients are told: the plan's steps with estimated and measured durations."""
+"""How far a run is, as clients are told: its steps with estimated and measured durations."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from tester.axes import ListWords
 from tester.machine.served import ServedKind
-from tester.machine.time_left import TimeLeft
-from tester.recipe.estimate import Estimate
-from tester.recipe.plan import ConditionStep, Plan, Step
+from tester.machine.time_left import STANDSTILL, Earlier, PartTime, TimeLeft
+from tester.recipe.plan import ConditionStep, Step
 from tester.service.state import PlanStep, PlanView, StepState
 
 LISTED = 400
@@ -16,26 +17,32 @@ BEFORE = 100
 
 
 class PlanTrack(TimeLeft):
-    """The plan beside the clock, to be shown. Times are rig seconds."""
+    """A run's steps beside the clock, to be shown. Times are rig seconds."""
 
-    def __init__(self, plan: Plan, estimate: Estimate, kind: ServedKind) -> None:
-        """Begin before the first step. ``kind``: the rig's, which has the words for a step."""
-        super().__init__(plan, estimate)
-        self.plan = plan
+    def __init__(self, name: str, parts: Sequence[PartTime], kind: ServedKind, earlier: Earlier | None = None) -> None:
+        """Begin before the first step. ``name``: the plan's; ``kind``: the rig's, which has the words for a step."""
+        super().__init__(parts, earlier)
+        self.name = name
         self.kind = kind
-        self._words = ListWords(step.setpoint for step in plan.conditions())
+        self._words = ListWords(step.setpoint for step in self.steps if isinstance(step, ConditionStep))
 
     def view(self) -> PlanView:
         """Return the steps around the present one."""
-        steps = self.plan.steps
-        first = max(min(self.position - BEFORE, len(steps) - LISTED), 0)
+        first = max(min(self.position - BEFORE, len(self.steps) - LISTED), 0)
+        behind = min(first + LISTED, len(self.steps))
         listed = tuple(
-            PlanStep(i + 1, one.kind, self._title(one), self._state(i), self.estimated[i], self.measured.get(i))
-            for i, one in enumerate(steps[first : first + LISTED], first)
-        )
-        return PlanView(self.plan.name, len(steps), first + 1, listed, self.total_s)
+            PlanStep(
+                i + 1, STANDSTILL if one is None else one.kind, self._title(one), self._state(i), self.estimated[i],
+                self.measured.get(i), float(self.ahead[i]),
+            )
+            for i, one in enumerate(self.steps[first:behind], first)
+        )  # fmt: skip
+        beyond_s = float(self.ahead[behind:].sum())
+        return PlanView(self.name, len(self.steps), first + 1, listed, sum(self.estimated), beyond_s)
 
-    def _title(self, step: Step) -> str:
+    def _title(self, step: Step | None) -> str:
+        if step is None:
+            return "to standstill"
         return self._words.of(step.setpoint) if isinstance(step, ConditionStep) else self.kind.title(step)
 
     def _state(self, index: int) -> StepState:

@@ -12,9 +12,10 @@ from tester.machine.context import Progress as RunProgress
 from tester.machine.prompts import Prompts
 from tester.machine.run import Run
 from tester.machine.tickers import TickStatistics
+from tester.machine.time_left import Standing
 from tester.recipe.estimate import Estimate
 from tester.run.endings import CannotStartError, StopLevel
-from tester.run.folder import Begin, Job, Work
+from tester.run.folder import Begin, Job, Work, earlier_of, parts_time
 from tester.run.kinds import recipe_part, served_kind
 from tester.run.preparing import Prepared
 from tester.run.session import Session, SessionOptions
@@ -52,7 +53,6 @@ class ServiceSession(Session):
         self._tell_begun = begun
         self._meanwhile = meanwhile
         self._expected: Estimate | None = None
-        self._track: PlanTrack | None = None
         self._punctual = Punctuality()
 
     def prepare(self) -> Prepared:
@@ -79,8 +79,8 @@ class ServiceSession(Session):
     def begun(self, run: Run) -> None:
         """Look after a part's run; the first one begins the whole."""
         super().begun(run)
-        if self._track is None:
-            return
+        track = self.track
+        assert isinstance(track, PlanTrack)
         first = not self.view.name
         if first:
             folder = self.folder
@@ -89,7 +89,7 @@ class ServiceSession(Session):
                 self.view, name=folder.name, folder=str(folder), recipe=self._screen.name, started_utc=clock.utc_now()
             )
         run.stays_latched = True
-        self.desk.attach(run, self._track, self.view)
+        self.desk.attach(run, track, self.view)
         self.desk.stop_rest = self._stop_rest
         self.desk.stop_first()  # one that came while it was prepared
         if first:
@@ -99,7 +99,7 @@ class ServiceSession(Session):
         """STOP does not wait for the record of this part, nor for the next part to connect."""
         self.desk.gateway.lane.end_ticking()
 
-    def poll(self, now_s: float, run: Run, share: float) -> None:
+    def poll(self, now_s: float, run: Run) -> None:
         """Let the desk look, and clients speak."""
         self.desk.tick = self._punctual.look(self.statistics, clock.monotonic())
         self.desk.specimen(run)
@@ -107,10 +107,14 @@ class ServiceSession(Session):
 
     def _record(self, job: Job, work: Work, begin: Begin) -> int:
         """Estimate the plan before anything moves, then go on as ever."""
-        expected = self._expected or recipe_part(work.rig).estimate(work.plan, work.rig)
-        self._track = PlanTrack(work.plan, expected, served_kind(work.rig))
+        expected = self._expected = self._expected or recipe_part(work.rig).estimate(work.plan, work.rig)
         self.desk.needed = round(expected_bytes(work.plan, expected))
         return super()._record(job, work, begin)
+
+    def tracked(self, work: Work) -> PlanTrack:
+        """Return what counts the steps of a run, with the words that clients see."""
+        parts = parts_time(work, self._expected)
+        return PlanTrack(work.plan.name, parts, served_kind(work.rig), earlier_of(work.point))
 
     def _stop_rest(self, fast: bool) -> None:
         """Begin no further part."""
@@ -163,7 +167,7 @@ class RunScreen:
         """Take the recipe's name."""
         self.name = name
 
-    def show(self, now_s: float, run: RunProgress, share: float) -> None:
+    def show(self, now_s: float, run: RunProgress, at: Standing) -> None:
         """Nothing: the desk looks at the run itself."""
 
     def attend(self, prompts: Prompts) -> None:

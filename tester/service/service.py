@@ -24,7 +24,8 @@ from tester.machine.manual import NAME, ManualExecutor
 from tester.machine.run import Outcome, Run
 from tester.machine.tickers import TickedWorld, TickStatistics, collector_at_rest, run_real_time, run_simulated
 from tester.run.endings import CannotStartError
-from tester.run.kinds import recipe_part, run_parts
+from tester.run.folder import part_time
+from tester.run.kinds import run_parts
 from tester.run.part_run import closed_early, connect_ports, left_safe
 from tester.run.preconditions import hold_rig
 from tester.run.rigs import load_rig
@@ -250,7 +251,8 @@ class Service:
                     return
                 made = kind.by_hand(rig, ports, attendant, record, left, history)
                 run, hand = made.run, made.executor
-                track = PlanTrack(hand.plan, recipe_part(rig).estimate(hand.plan, rig), kind)
+                track = PlanTrack(hand.plan.name, [part_time(rig, hand.plan)], kind)
+                track.begin_part(hand.plan)
                 with collector_at_rest():  # already: from here to the first tick nothing takes long
                     desk.attach(run, track, view, hand)
                     self.orders.lost_control()  # somebody may have taken it since the order

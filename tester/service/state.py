@@ -35,15 +35,18 @@ connects it. INTERRUPTED: the same, and the store holds a run that was cut off; 
 class ProgressView:
     """Where the run is. ``share``: of the whole rig time, 0..1, corrected by the durations measured so far.
 
-    ``left_s``: rig seconds of work to the end, None once a trip or a stop has given the run up; neither it nor the
-    share moves in a hold. ``finish_utc``: the wall clock then at the run's speed, "" at full speed.
+    ``step`` counts through ``PlanView.steps``. ``over`` of the run's ``conditions`` are over, with a value or without,
+    in earlier stretches of a resumed run too. ``left_s``: whole rig seconds of work to the end, None once a trip or a
+    stop has given the run up; the sum of ``step_left_s``, of the present step, and of what the plan's list shows of
+    the later ones. Neither it nor the share moves in a hold. ``finish_utc``: the wall clock then at the run's speed,
+    "" at full speed.
     """
 
     step: int = 0
     steps: int = 0
     title: str = ""
     phase: str = ""
-    condition: int = 0
+    over: int = 0
     conditions: int = 0
     repeat: int = 0
     repeats: int = 0
@@ -53,6 +56,7 @@ class ProgressView:
     share: float = 0.0
     elapsed_s: float = 0.0
     left_s: float | None = None
+    step_left_s: float = 0.0
     finish_utc: str = ""
 
 
@@ -236,7 +240,11 @@ StepState = Literal["done", "now", "later"]
 
 @dataclass(frozen=True, slots=True)
 class PlanStep:
-    """One step: its number from 1, estimated seconds, and once it is done the measured ones."""
+    """One step: its number from 1, seconds as estimated before the run, once it is done the measured ones.
+
+    ``expected_s``: what it is expected to take by what the run has shown so far, whole seconds. The kind
+    ``standstill`` is no step of the plan: the way to standstill behind each part.
+    """
 
     number: int
     kind: str
@@ -244,14 +252,19 @@ class PlanStep:
     state: StepState
     estimated_s: float
     measured_s: float | None
+    expected_s: float
 
 
 @dataclass(frozen=True, slots=True)
 class PlanView:
-    """The plan's steps around the present one. ``first``: number of the first listed; ``total``: how many there are."""
+    """The steps around the present one. ``first``: number of the first listed; ``total``: how many there are.
+
+    ``beyond_s``: what the steps behind the last listed are expected to take, whole seconds.
+    """
 
     name: str
     total: int
     first: int
     steps: tuple[PlanStep, ...]
     estimated_s: float
+    beyond_s: float = 0.0

@@ -93,6 +93,8 @@ class Desk:
     _mode: str = ""
     _mode_since_s: float = 0.0
     _asked: int = 0
+    _revision: int = 0
+    """Of the list of steps that clients have."""
     _controller: int = 0
     _low: bool = False
     _disk_due_s: float = float("-inf")
@@ -127,7 +129,11 @@ class Desk:
         self.gateway.lane.begin_ticking()
         self.now_s = 0.0
         self._asked = 0
-        self.gateway.plan(None if hand is not None else self.watch.track.view())
+        self._revision = 0
+        if hand is not None:
+            self.gateway.plan(None)
+        else:
+            self._show_steps(self.watch)
 
     def specimen(self, run: Run) -> None:
         """Note which compound is on the rig."""
@@ -261,14 +267,20 @@ class Desk:
         watch, now = self.watch, self.now_s
         if watch is not None:
             self._watch_frames(watch)
-            if watch.track.look(now, watch.run):
-                self.gateway.plan(watch.track.view())
+            watch.track.look(now, watch.run)
+            self._show_steps(watch)
             watch.watch_trip(self.alarms, now)
         view = self.view()
         if watch is not None:
             watch.watch_values(self.alarms, now, view.values)
         self.gateway.state(view, self._row(view))
         self._notice_prompt(view)
+
+    def _show_steps(self, watch: RunWatch) -> None:
+        """Tell the list of steps where it has changed, before the state that goes with it."""
+        if self.hand is None and watch.track.revision != self._revision:
+            self._revision = watch.track.revision
+            self.gateway.plan(watch.track.view())
 
     def _watch_frames(self, watch: RunWatch) -> None:
         watch.frames.watch(self.gateway.presence.frames)

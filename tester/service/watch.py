@@ -50,7 +50,6 @@ class RunWatch:
         self.frames = FrameLog(engine.devices.can, dict(zip(self.rig.lines, ports, strict=True)))
         self.alone = kind.alone(self.rig)
         self.track = track
-        track.begin_part(engine.executor.plan)
         self.watched: set[str] = set()
         """Names of the alarms that stand for this run's devices: they go with it."""
         self.tripped = ""
@@ -81,11 +80,10 @@ class RunWatch:
 
     def progress(self, now: float, lapse: float | None) -> ProgressView:
         """Return where the run is; ``lapse``: rig seconds per second, None where nobody knows."""
-        p = self.run.engine.ctx.progress
-        left = self.track.left_s()
-        finish = clock.utc_in(left / lapse) if lapse and left is not None else ""
-        return ProgressView(p.step, p.steps, p.title, p.phase, p.condition, p.conditions, p.repeat, p.repeats,
-                            p.revolutions, p.revolutions_wanted, p.burst, self.track.share(), now, left,
+        p, at = self.run.engine.ctx.progress, self.track.standing()
+        finish = clock.utc_in(at.left_s / lapse) if lapse and at.left_s is not None else ""
+        return ProgressView(at.step, at.steps, p.title, p.phase, at.over, at.conditions, p.repeat, p.repeats,
+                            p.revolutions, p.revolutions_wanted, p.burst, at.share, now, at.left_s, at.step_left_s,
                             finish)  # fmt: skip
 
     def gates(self) -> tuple[Gate, ...]:

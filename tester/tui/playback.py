@@ -10,7 +10,6 @@ from math import isfinite
 from pathlib import Path
 
 from tester.analysis.results import Burst
-from tester.axes import ListWords, condition_words
 from tester.machine.served import Wanted
 from tester.quantities import Channel, Quantities
 from tester.results.run_results import results_of
@@ -22,8 +21,6 @@ from tester.service.state import (
     ClientsView,
     DiskView,
     ManualView,
-    PlanStep,
-    PlanView,
     ProgressView,
     RunView,
     StateView,
@@ -32,6 +29,7 @@ from tester.service.state import (
 from tester.service.values import NOTHING_WANTED, Spec, friction, screen_of, specs, trend_row
 from tester.store.reader import RunReader
 from tester.store.records import ConditionInfo, StoredCondition, StoredRepeat, StoredRun
+from tester.tui.recorded_steps import RecordedStep, left_of, plan_of, present_of, recorded_steps
 from tester.tui.scene import ScreenScene
 from tester.tui.widgets.trends import WINDOW_S
 
@@ -62,6 +60,7 @@ class Playback:
     """Of the committed repeats, by their keys."""
     events: tuple[Event, ...]
     event_times: tuple[float, ...]
+    steps: tuple[RecordedStep, ...]
 
     @property
     def length_s(self) -> float:
@@ -75,7 +74,7 @@ class Playback:
         scene.replayed = True
         scene.machine = self.machine
         scene.state = self._state(at_s, index, condition)
-        scene.plan = self._plan(at_s)
+        scene.plan = plan_of(self.run.info.recipe_name, self.steps, at_s)
         scene.events.clear()
         scene.events.extend(self.events[: bisect_right(self.event_times, at_s)])
         scene.trend.clear()
@@ -104,21 +103,20 @@ class Playback:
         )  # fmt: skip
 
     def _progress(self, at_s: float, condition: StoredCondition | None) -> ProgressView:
-        begun = [c for c in self.conditions if c.started_s <= at_s]
-        length_s = max(self.length_s, 1e-9)
+        here = present_of(self.steps, at_s)
+        left_s, step_left_s = left_of(self.steps, at_s)
         last = max((r for r in self.repeats if condition is not None and r.begun_s <= at_s
                     and r.condition == condition.info.condition), key=lambda r: r.begun_s, default=None)  # fmt: skip
         bursts = [one for one in self.bursts.get(last.key, ()) if one.started_s <= at_s] if last is not None else []
         wanted = condition.info.window_revolutions if condition is not None else None
         return ProgressView(
-            step=len(begun), steps=max(len(self.conditions), 1),
-            title=condition_words(condition.info.setpoint) if condition is not None else "between conditions",
-            condition=len(begun), conditions=len(self.conditions),
+            step=here, steps=len(self.steps), title=self.steps[here - 1].title if here else "connecting",
+            over=sum(one.ended_s <= at_s for one in self.conditions), conditions=len(self.conditions),
             repeat=last.repeat if last is not None else 0,
             repeats=condition.info.repeats_planned if condition is not None else 0,
             revolutions=sum(_done(one, at_s) for one in bursts), revolutions_wanted=wanted or 0.0,
             burst=bursts[-1].number if bursts else 0,
-            share=at_s / length_s, elapsed_s=at_s, left_s=max(length_s - at_s, 0.0),
+            share=at_s / max(at_s + left_s, 1e-9), elapsed_s=at_s, left_s=left_s, step_left_s=step_left_s,
         )  # fmt: skip
 
     def _values(self, at_s: float, index: int, info: ConditionInfo | None) -> tuple[Value, ...]:
@@ -149,19 +147,6 @@ class Playback:
         held = info.setpoint
         return Wanted(held.axes[screen.axis].number(held), info.temperature_band_k if warm else None)
 
-    def _plan(self, at_s: float) -> PlanView:
-        words = ListWords(c.info.setpoint for c in self.conditions)
-        steps = tuple(
-            PlanStep(
-                number, "condition", words.of(c.info.setpoint),
-                "done" if _end(c, self.length_s) <= at_s else "now" if c.started_s <= at_s else "later",
-                _end(c, self.length_s) - c.started_s if isfinite(c.started_s) else 0.0,
-                _end(c, self.length_s) - c.started_s if _end(c, self.length_s) <= at_s else None,
-            )
-            for number, c in enumerate(sorted(self.conditions, key=_began), 1)
-        )  # fmt: skip
-        return PlanView(self.run.info.recipe_name, len(steps), 1, steps, self.length_s)
-
     def _row(self, index: int) -> tuple[float | None, ...]:
         """Return a row of the trend; of a setpoint that was not recorded it says nothing."""
         row = {name: column[index] for name, column in self.samples.items()}
@@ -175,10 +160,6 @@ class Playback:
 def _done(burst: Burst, at_s: float) -> float:
     """Return the revolutions of a burst that were counted by then, as if evenly."""
     return burst.revolutions * min((at_s - burst.started_s) / max(burst.ended_s - burst.started_s, 1e-9), 1.0)
-
-
-def _began(condition: StoredCondition) -> float:
-    return condition.started_s if isfinite(condition.started_s) else float("inf")
 
 
 def _end(condition: StoredCondition, length_s: float) -> float:
@@ -203,7 +184,7 @@ def load(folder: Path) -> Playback:
             run, results.status.value, rig.name, drawn_as(quantities, shown, kind.machine), quantities, shown,
             _thinned(reader, spacing_s),
             tuple(reader.conditions()), repeats, {one.key: tuple(reader.bursts(one.key)) for one in repeats}, events,
-            tuple(event.t_s for event in events),
+            tuple(event.t_s for event in events), recorded_steps(events, run.rig_seconds),
         )  # fmt: skip
 
 

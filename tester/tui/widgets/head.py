@@ -71,7 +71,7 @@ def _where(scene: ScreenScene, state: StateView, width: int) -> list[str]:
     progress, run = state.progress, state.run
     pieces: list[str] = []
     if progress.conditions:
-        pieces.append(f"  cond {progress.condition}/{progress.conditions}")
+        pieces.append(f"  {progress.over}/{progress.conditions} cond over")
     if progress.repeats:
         pieces.append(f"  rep {progress.repeat}/{progress.repeats}")
     if progress.steps and progress.left_s is not None:

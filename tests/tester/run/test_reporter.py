@@ -6,6 +6,7 @@ import pytest
 
 from tester.machine.context import Progress
 from tester.machine.prompts import Prompts
+from tester.machine.time_left import Standing
 from tester.run.reporter import LastingScreen
 
 
@@ -27,7 +28,7 @@ class Failing:
     def begin(self, name: str) -> None:
         self._do("begin")
 
-    def show(self, now_s: float, run: Progress, share: float) -> None:
+    def show(self, now_s: float, run: Progress, at: Standing) -> None:
         self._do("show")
 
     def attend(self, prompts: Prompts) -> None:
@@ -52,7 +53,7 @@ class Failing:
 
 def everything(screen: LastingScreen) -> None:
     screen.begin("x")
-    screen.show(0.0, Progress(), 0.0)
+    screen.show(0.0, Progress(), Standing())
     screen.attend(Prompts())
     screen.commands()
     screen.emit({})

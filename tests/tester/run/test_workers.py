@@ -13,6 +13,7 @@ import pytest
 from tester.kinds.wheel_on_belt.split import split
 from tester.machine.context import Progress
 from tester.machine.run import Outcome
+from tester.machine.time_left import Standing
 from tester.run import workers as crew
 from tester.run.endings import PartEnd, StopLevel
 from tester.run.folder import Job, Work
@@ -33,7 +34,7 @@ class Pool:
     def __init__(self, jobs: int) -> None:
         self.jobs = jobs
         self.level = StopLevel.NONE
-        self.said: list[object] = [Sight(1.5, Progress(part=2), 0.25), "something else"]
+        self.said: list[object] = [Sight(1.5, Progress(), Standing(part=2, share=0.25)), "something else"]
 
     def __enter__(self) -> Pool:
         return self
@@ -115,7 +116,7 @@ def test_an_error_in_a_part_is_not_hidden(carried: Callable[[dict[int, Result]],
 
 def test_what_workers_report_is_shown(carried: Callable[[dict[int, Result]], Carried]) -> None:
     (sight,) = carried({1: ended(1), 2: ended(2), 3: ended(3)}).sights
-    assert (sight.now_s, sight.progress.part, sight.share) == (1.5, 2, 0.25)
+    assert (sight.now_s, sight.at.part, sight.at.share) == (1.5, 2, 0.25)
 
 
 def test_a_process_that_is_no_worker_is_told_nothing_and_says_nothing() -> None:

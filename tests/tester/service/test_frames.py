@@ -8,8 +8,6 @@ from pathlib import Path
 
 import pytest
 
-from tester.kinds.wheel_on_belt.recipe.part import PART
-
 if sys.platform == "win32":
     pytest.skip("this system has no pseudo-terminals", allow_module_level=True)
 
@@ -30,6 +28,7 @@ from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.kinds.wheel_on_belt.served import SERVED
 from tester.machine.prompts import Prompts
 from tester.run.bus_log import BusLog
+from tester.run.folder import part_time
 from tester.run.hardware import hardware_ports
 from tester.service.progress import PlanTrack
 from tester.service.protocol import Frame
@@ -93,7 +92,7 @@ def watched(rig: RigConfig, lines: dict[str, FarEnd], log: BusLog | None = None)
     ports = hardware_ports(rig, log)
     plan = plan_of(config=rig)
     run = build_run(rig, plan, ports, Nobody(), NullRecorder(), Prompts(automatic=True))
-    watch = RunWatch(run, PlanTrack(plan, PART.estimate(plan, rig), SERVED), SERVED)
+    watch = RunWatch(run, PlanTrack(plan.name, [part_time(rig, plan)], SERVED), SERVED)
     watch.frames.watch(True)
     try:
         for t in (0.0, 0.02, 0.04):

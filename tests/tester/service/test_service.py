@@ -434,7 +434,7 @@ def test_stop_ends_a_tripped_run_whose_cause_stays_and_the_rig_stays_latched(tmp
 def test_a_held_run_goes_on_when_it_is_released(tmp_path: Path) -> None:
     def script(stage: Stage) -> Script:
         yield stage.order(RUN)
-        yield from stage.until(lambda view: view.mode == "RUN" and view.progress.condition == 1)
+        yield from stage.until(lambda view: view.mode == "RUN" and view.progress.repeat == 1)
         yield stage.order(Hold())
         yield from stage.until(lambda view: view.mode == "HOLD" and view.mode_since_s > 5.0)
         yield stage.order(Release())

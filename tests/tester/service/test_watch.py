@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from tester.kinds.wheel_on_belt.recipe.part import PART
 from tester.kinds.wheel_on_belt.served import SERVED
+from tester.run.folder import part_time
 from tester.service.progress import PlanTrack
 from tester.service.state import SoakView
 from tester.service.watch import RunWatch
@@ -15,7 +15,7 @@ from tests.tester.kinds.wheel_on_belt.bench import QUIET, SHORT
 
 def test_a_soak_is_shown_with_how_long_it_has_been_in_band() -> None:
     stage = Stage(SHORT, QUIET)
-    watch = RunWatch(stage.run, PlanTrack(stage.plan, PART.estimate(stage.plan, rig_of(QUIET)), SERVED), SERVED)
+    watch = RunWatch(stage.run, PlanTrack(stage.plan.name, [part_time(rig_of(QUIET), stage.plan)], SERVED), SERVED)
     shown: list[SoakView] = []
     while not stage.ended and (not shown or shown[-1].in_band_s < 1.9):
         now = stage.next_s

@@ -47,7 +47,7 @@ def state(mode: str = "RUN") -> StateView:
             "A. Person", 1, True, 1.0, "2024-02-21T12:04:00.000Z", "running", "", None, (),
         ),
         progress=ProgressView(21, 60, "1#: 300 mm/s, 200 N, 40 degC", "measure", 17, 55, 3, 5, 19.0, 30.0, 4, 0.37,
-                              7261.5, 22440.0, "2024-02-21T20:19:09.000Z"),
+                              7261.5, 22440.0, 300.0, "2024-02-21T20:19:09.000Z"),
         values=(
             value("friction", "Friction mu", "", 0.731, None, 2.0),
             value("load", "Load", "N", 199.6, 200.0, 500.0),
@@ -100,10 +100,10 @@ def hostile(view: StateView) -> StateView:
 
 
 def plan() -> PlanView:
-    """Return a plan of four steps, the third under way."""
-    return PlanView("Table 2, compound 1#", 4, 1, (
-        PlanStep(1, "install", "install wheel 1 (1#)", "done", 60.0, 64.2),
-        PlanStep(2, "pre_grind", "pre-grind 4 min at 200 N", "done", 270.0, 268.8),
-        PlanStep(3, "heat", "heat to 40 degC", "now", 300.0, None),
-        PlanStep(4, "condition", "1#: 300 mm/s, 200 N, 40 degC", "later", 600.0, None),
-    ), 1230.0)  # fmt: skip
+    """Return four of the steps around the present one; what is left of them and beyond adds up to that of ``state``."""
+    return PlanView("Table 2, compound 1#", 60, 19, (
+        PlanStep(19, "install", "install wheel 1 (1#)", "done", 60.0, 64.2, 60.0),
+        PlanStep(20, "pre_grind", "pre-grind 4 min at 200 N", "done", 270.0, 268.8, 270.0),
+        PlanStep(21, "heat", "heat to 40 degC", "now", 300.0, None, 310.0),
+        PlanStep(22, "condition", "1#: 300 mm/s, 200 N, 40 degC", "later", 600.0, None, 600.0),
+    ), 29700.0, 21540.0)  # fmt: skip

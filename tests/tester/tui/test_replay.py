@@ -76,12 +76,12 @@ def test_a_moment_shows_what_was_recorded_at_it(run: Path, playback: Playback) -
     async def act(app: ReplayApp, press: Press) -> None:
         app.action_seek(at_s)
         state = app.scene.state
-        assert state is not None and state.progress.condition == 1 and state.progress.repeats == 3
+        assert state is not None and state.progress.over == 0 and state.progress.repeats == 3
         surface = state.value("surface")
         assert surface is not None and surface.value is not None and abs(surface.value - 25.0) < 3.0
         assert all(event.t_s <= at_s for event in app.scene.events)
         await press("f3")
-        assert "REPLAY" in screen_text(app) and "cond 1/1" in screen_text(app)
+        assert "REPLAY" in screen_text(app) and "0/1 cond over" in screen_text(app)
 
     replay(run, playback, act)
 

@@ -79,10 +79,10 @@ def test_nothing_is_left_running_at_the_end() -> None:
     assert executor.activity is None and not executor.steps
 
 
-def test_progress_counts_steps_and_conditions() -> None:
+def test_progress_counts_steps() -> None:
     _, bench = walk(plan_of(LOADS), Results())
     progress = bench.ctx.progress
-    assert (progress.step, progress.steps, progress.conditions) == (5, 5, 3)
+    assert (progress.step, progress.steps) == (5, 5)
 
 
 def test_a_step_does_not_begin_with_the_phase_of_the_one_before() -> None:
