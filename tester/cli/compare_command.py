@@ -20,11 +20,15 @@ if TYPE_CHECKING:
 
 @click.command()
 @click.argument("run1")
-@click.argument("run2")
-@click.option("--compounds", nargs=2, metavar="FIRST SECOND", help="Compare these: FIRST of RUN1, SECOND of RUN2.")
+@click.argument("run2", required=False)
+@click.option(
+    "--compounds", nargs=2, metavar="FIRST SECOND",
+    help="Compare these: FIRST of RUN1, SECOND of RUN2; without RUN2 both are of RUN1 (unless told its only two).",
+)  # fmt: skip
 @click.option("--json", "as_json", is_flag=True, help="As JSON.")
-def compare(run1: str, run2: str, compounds: tuple[str, str] | None, as_json: bool) -> None:
-    """Hold the conditions of RUN1 and RUN2 against each other: coefficients, difference, uncertainty, z.
+def compare(run1: str, run2: str | None, compounds: tuple[str, str] | None, as_json: bool) -> None:
+    """Hold the conditions of RUN1 and RUN2, or of two compounds of RUN1, against each other: coefficients, difference,
+    uncertainty, z.
 
     Compared are compounds, at the temperatures asked for: the difference from one piece that was mounted to the next is
     in u, the standard uncertainty of the difference; errors that both have in common (one rig, one calibration) are
@@ -34,12 +38,15 @@ def compare(run1: str, run2: str, compounds: tuple[str, str] | None, as_json: bo
     """
     from tester.results.compared import comparison, same_rig
 
-    results = [_results(name) for name in (run1, run2)]
+    names = (run1, run1 if run2 is None else run2)
+    results = [_results(name) for name in names]
+    if run2 is None and compounds is None:
+        compounds = _both(run1, results[0])
     kinds = [one.run.info.kind for one in results]
     if kinds[0] != kinds[1]:
         told = f"{run1} is of kind {kinds[0]}, {run2} of {kinds[1]}"
         raise click.ClickException(f"{told}: their conditions have no axes in common")
-    for i, name in enumerate((run1, run2) if compounds else ()):
+    for i, name in enumerate(names if compounds else ()):
         if compounds and all(row.info.compound != compounds[i] for row in results[i].rows):
             raise click.ClickException(f"{name} has no compound {compounds[i]}")
     table = comparison(results[0], results[1], compounds)
@@ -51,6 +58,16 @@ def compare(run1: str, run2: str, compounds: tuple[str, str] | None, as_json: bo
     one_rig = same_rig(results[0].run, results[1].run)
     shared = "one rig and calibration: common errors drop out" if one_rig else "different rigs or calibrations"
     click.echo(f"u: of the compounds' difference; {shared}")
+
+
+def _both(name: str, results: RunResults) -> tuple[str, str]:
+    """Return the two compounds of a run; a usage error where it has more or fewer."""
+    found = list(dict.fromkeys(row.info.compound for row in results.rows))
+    if len(found) != 2:
+        expected = "--compounds FIRST SECOND" if len(found) > 2 else "RUN2"
+        listed = shown(", ".join(found)) or "none"
+        raise click.UsageError(f"{name} alone has the compounds {listed}: which two? (expected {expected})")
+    return found[0], found[1]
 
 
 def _lines(table: Table[Pair], compounds: tuple[str, str] | None) -> Iterator[str]:

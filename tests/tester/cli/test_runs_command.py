@@ -12,6 +12,7 @@ from click.testing import CliRunner, Result
 from tester.base.lock import RUN_LOCK, ExclusiveUse
 from tester.cli.compare_command import compare
 from tester.cli.runs_command import runs
+from tester.store.records import SpecimenInfo
 from tests.tester.store.build import CONDITIONS, PIECE, RUN, SPECIMENS, open_writer, record, small_run
 
 
@@ -183,6 +184,23 @@ def test_two_compounds_are_compared_by_their_names(home: Path) -> None:
     assert [row["difference"] is None for row in found] == [False, True] and found[0]["differs"]
     wrong = invoke(compare, "one", "new", "--compounds", "new", "new")
     assert wrong.exit_code == 1 and "one has no compound new" in wrong.stderr
+
+
+def test_the_two_compounds_of_one_run_are_compared_without_another_run(home: Path) -> None:
+    (home / "runs" / "both").mkdir()
+    writer = open_writer(home / "runs" / "both")
+    held = CONDITIONS[0].setpoint
+    second = replace(CONDITIONS[0], condition=2, row=2, specimen=2, setpoint=held.but("2#"))
+    writer.begin_run(RUN, [SPECIMENS[0], SpecimenInfo(2, "2#", "")], [replace(CONDITIONS[0], row=1), second])
+    writer.piece_mounted(PIECE)
+    record(writer, 1, [0.7, 0.71, 0.69])
+    record(writer, 2, [1.2, 1.21, 1.19])
+    writer.close()
+    for named in ([], ["--compounds", "1#", "2#"]):
+        (row,) = json.loads(invoke(compare, "both", *named, "--json").stdout)
+        assert row["difference"] == pytest.approx(0.5) and row["differs"]
+    alone = invoke(compare, "one")
+    assert alone.exit_code == 2 and "one alone has the compounds 1#: which two? (expected RUN2)" in alone.stderr
 
 
 def test_a_condition_that_only_one_run_has_is_compared_with_nothing(home: Path) -> None:

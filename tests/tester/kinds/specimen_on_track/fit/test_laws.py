@@ -160,6 +160,7 @@ def test_the_band_of_a_compounds_reference_is_that_of_its_file() -> None:
     assert next(one for one in bound.parameters if one.name == "t_ref").band[:2] == (-18.0, 12.0)
 
 
+@pytest.mark.filterwarnings("error")  # NumPy prints its with a path
 def test_a_degenerate_greta_is_named() -> None:
     own = [replace(one, type_a=0.01, df=50.0) for one in points(lambda *_: 0.8, noise=0.01)]
     found = fit_group(PART.bound(GRETA, GROUP, "", {}), GROUP, own, PART.cells, count=99)
