@@ -108,14 +108,13 @@ class ReplayApp(TesterApp):
 
     def _line_of_runs(self) -> dict[str, JsonValue]:
         """Return the run as `tester runs --json` lists it."""
-        run, rows = self.playback.run, self.stored.rows
-        values = sum(row.mu is not None for row in rows)
+        run = self.playback.run
         return {
             "run": self.stored.name,
             "recipe": self.stored.recipe,
             "status": self.stored.status,
-            "values": values,
-            "conditions": len(rows),
+            "values": self.stored.values,
+            "conditions": self.stored.conditions,
             "rig_seconds": run.rig_seconds,
             "started_utc": run.info.started_utc,
         }

@@ -13,7 +13,7 @@ from tester.results.columns import Output, Table
 from tester.results.conditions_table import ConditionRow, axis_keys, conditions_table
 from tester.results.repeats_table import repeats_table
 from tester.results.run_results import RunResults, results_of
-from tester.results.tally import flag_words
+from tester.results.tally import flag_words, tally_of
 from tester.store.catalogue import find_run
 from tester.store.reader import RunReader
 from tester.store.records import StoredExclusion
@@ -67,6 +67,10 @@ class Stored:
     axes: Axes
     record_head: str = ""
     """Of the chain over the run's record; "" where there is none."""
+    conditions: int = 0
+    """Of the recipe, without references; replicates of one are one."""
+    values: int = 0
+    """Of these, those with a value to be trusted."""
 
     @property
     def plotted(self) -> tuple[Axis, ...]:
@@ -101,8 +105,9 @@ def stored_of(folder: Path, results: RunResults) -> Stored:
     run = results.run
     if run.info.risk:
         common = f"RISK ACCEPTED: {run.info.risk}{'; ' + common if common else ''}"
-    status, head = results.status.value, results.record_head
-    return Stored(folder.name, folder, run.info.recipe_name, status, header, common, rows, results.axes, head)
+    status, head, tally = results.status.value, results.record_head, tally_of(results)
+    return Stored(folder.name, folder, run.info.recipe_name, status, header, common, rows, results.axes, head,
+                  tally.conditions, tally.valued)  # fmt: skip
 
 
 def _row(one: ConditionRow, view: Table[ConditionRow]) -> Row:
