@@ -37,8 +37,6 @@ def of_told(found: Sequence[Found]) -> Iterator[Figure]:
         told = sum(one.told for one in ours)
         words = Counter(doubt for one in ours for seen in one.conditions for doubt in set(seen.doubts))
         text = f"{told} of {len(ours)}; doubts {dict(words.most_common(4))}"
-        if ours[0].case.repeat:
-            text += f"; inside the repeat {sum(one.inside for one in ours)}"
         if topic == NOT_ASKED:
             yield holds(f"{topic}, {rig}", True, text, "stated, not asked")
         else:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from math import nan
 from pathlib import Path
 from random import Random
 from tempfile import TemporaryDirectory
@@ -13,12 +14,8 @@ from tester.results import results_of
 from tester.run.session import Session, SessionOptions
 from tester.store.reader import RunReader
 from tests.campaigns.compiled.worker import Silent
-from tests.campaigns.doubts.cases import STEP_PERCENT, WHEEL, Case
+from tests.campaigns.doubts.cases import STEP_PERCENT, Case
 
-TRIES: Final = 8
-"""So often a time is drawn until it lies inside the repeat that it is to lie in."""
-LONGEST_S: Final = {WHEEL: 45.0, "pin-on-disc": 16.0}
-"""Of a repeat, from its tare to its last sample, s."""
 OURS: Final = (CHANGED, STICK_SLIP, THERMOMETER)
 
 
@@ -36,11 +33,11 @@ class Seen:
 
 @dataclass(frozen=True, slots=True)
 class Found:
-    """What a run said. ``inside``: friction changed while samples of the repeat in question counted."""
+    """What a run said. ``span_s``: rig times of the first and the last sample of the case's repeat; NaN without one."""
 
     case: Case
     code: int
-    inside: bool
+    span_s: tuple[float, float]
     conditions: tuple[Seen, ...] = field(default=())
 
     @property
@@ -60,18 +57,14 @@ class Found:
 
 
 def carry_out(case: Case) -> Found:
-    """Run a case; one whose step is to lie within a repeat until it does."""
-    random = Random(f"{case.topic} {case.rig} {case.seed}")
-    for _ in range(TRIES):
-        faults: tuple[str, ...] = ()
-        if case.condition:
-            after_s = f" + {random.uniform(3.0, LONGEST_S[case.rig]):.2f} s" if case.repeat else ""
-            where = f"{case.condition}/{case.repeat}" if case.repeat else f"{case.condition}"
-            faults = (f"condition {where}{after_s}: friction {100.0 + STEP_PERCENT:g} %",)
-        found = _run(case, faults)
-        if found.inside or not case.repeat:
-            break
-    return found
+    """Run a case. Where its step is to lie within a repeat, a run without it says when that repeat's samples are."""
+    if not case.condition:
+        return _run(case, ())
+    when = f"condition {case.condition}"
+    if case.repeat:
+        begins_s, ends_s = _run(case, ()).span_s
+        when = f"t={Random(f'{case.topic} {case.rig} {case.seed}').uniform(begins_s, ends_s):.2f} s"
+    return _run(case, (f"{when}: friction {100.0 + STEP_PERCENT:g} %",))
 
 
 def _run(case: Case, faults: tuple[str, ...]) -> Found:
@@ -87,16 +80,14 @@ def _run(case: Case, faults: tuple[str, ...]) -> Found:
         if session.folder is None:
             raise RuntimeError(" ".join(screen.messages))
         with RunReader(session.folder) as reader:
-            begun = [one.t_s for one in reader.events() if one.kind == "injected"]
-            inside = any(
-                one.result.started_s < at_s < one.result.ended_s
+            spans = [
+                (one.result.started_s, one.result.ended_s)
                 for one in reader.repeats()
-                for at_s in begun
                 if (one.condition, one.repeat) == (case.condition, case.repeat)
-            )
+            ]
             seen = [
                 Seen(one.info.condition, one.result.ok, one.result.doubts, one.result.change_percent,
                      one.result.swing_percent, one.result.swing_hz)
                 for one in results_of(reader).conditions()
             ]  # fmt: skip
-    return Found(case, code, inside, tuple(seen))
+    return Found(case, code, spans[0] if spans else (nan, nan), tuple(seen))
