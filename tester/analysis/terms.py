@@ -104,12 +104,13 @@ class Term:
 class Size:
     """The diameter of what is mounted: mm, what is believed to be worn off, and what a check has found.
 
-    ``checked_u_mm``: standard uncertainty of the loss by a check, NaN where none was made.
+    ``checked_u_mm``: standard uncertainty of the loss by checks, NaN where none was made; ``source``: by which.
     """
 
     size_mm: float = NAN
     loss_mm: float = 0.0
     checked_u_mm: float = NAN
+    source: str = "check of the diameter"
 
     @property
     def checked(self) -> bool:
@@ -183,7 +184,7 @@ def _contribution(one: Term, at: BudgetPoint) -> Contribution:
     if one.acts is Acts.LOSS:
         standard *= abs(at.size.loss_mm)
         if at.size.checked:
-            standard, source, distribution = at.size.checked_u_mm, "check of the diameter", "normal"
+            standard, source, distribution = at.size.checked_u_mm, at.size.source, "normal"
     elif one.acts is Acts.SLIDING:
         standard *= at.speed(one.channel) if one.channel else 1.0
     elif one.channel and one.acts is not Acts.SIZE:

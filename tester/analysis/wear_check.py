@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from tester.analysis.results import NAN
+
 NO_CONDITION = 0
 
 
@@ -42,3 +44,5 @@ class WearCheck:
     """Standard uncertainty of a rate from exposure and width, relative."""
     used: int
     """1; 0: not believed (larger than the check before, or no rubber left)."""
+    expected_mm: float = NAN
+    """The diameter that was reckoned with until then, cold; NaN in a record that does not say."""

@@ -14,6 +14,7 @@ from tester.analysis.repeats import REPEATABILITY, ConditionResult
 from tester.analysis.results import NAN
 from tester.analysis.terms import NO_SIZE, Acts, Size, with_settings
 from tester.analysis.wear_check import WearCheck
+from tester.analysis.worn import Worn
 from tester.axes import AxisValue, Setpoint
 from tester.store.reader import RunReader
 from tester.store.records import ConditionInfo, PieceInfo, StoredRepeat, StoredRun, Travel
@@ -50,11 +51,11 @@ class SurroundingsOf:
         except ValueError as error:
             raise StoreError(f"{reader.path}: {error}") from error
         self._known = run.info.known
-        self._pieces = {one.piece: one for one in pieces}
-        self._checks = [one for one in checks if one.used]
+        self._worn = _worn(pieces, checks)
         self._pool = pool
         self._warming = reader.warming()
         self._travels = reader.travels()
+        self._marks = reader.slid()
         self._drift: CounterfaceDrift | None = None
         quantities = reader.quantities()
         role = quantities.roles.temperature
@@ -135,11 +136,26 @@ class SurroundingsOf:
 
     def _size(self, repeats: Sequence[StoredRepeat]) -> Size:
         """Return the diameter of the pieces that were measured on, the worst known of them."""
-        sizes = [self._size_of(self._pieces[one]) for one in {r.piece for r in repeats} if one in self._pieces]
-        return max(sizes, key=lambda one: (not one.checked, one.loss_mm), default=NO_SIZE)
+        pieces = dict.fromkeys(one.piece for one in repeats)
+        sizes = [self._worn[one].size(self._slid(one, repeats)) for one in pieces if one in self._worn]
+        return max(sizes, key=lambda one: (not one.checked, one.checked_u_mm, one.loss_mm), default=NO_SIZE)
 
-    def _size_of(self, piece: PieceInfo) -> Size:
-        installed_mm, mm = piece.installed_diameter_mm, piece.diameter_mm
-        loss_mm = max(installed_mm - mm, 0.0) if isfinite(mm) else 0.0
-        u_mm = max((one.u_mm for one in self._checks if one.piece == piece.piece), default=NAN)
-        return Size(mm if isfinite(mm) else installed_mm, loss_mm, u_mm)
+    def _slid(self, piece: int, repeats: Sequence[StoredRepeat]) -> float:
+        """Return how far a piece had slid in the middle of the repeats on it that count, m; NaN where nothing says."""
+        marks = sorted([*self._marks.get(piece, ()), *(one.sliding_m for one in self._worn[piece].checks)])
+        begun = [self._travels[one.key].piece_m for one in repeats
+                 if one.piece == piece and one.result.valid and one.key in self._travels]  # fmt: skip
+        middles = [0.5 * (at + next((mark for mark in marks if mark > at), at)) for at in begun if isfinite(at)]
+        return sum(middles) / len(middles) if middles else NAN
+
+
+def _worn(pieces: Sequence[PieceInfo], checks: Sequence[WearCheck]) -> dict[int, Worn]:
+    return {
+        one.piece: Worn(
+            one.installed_diameter_mm,
+            one.diameter_mm if isfinite(one.diameter_mm) else one.installed_diameter_mm,
+            one.sliding_m,
+            tuple(check for check in checks if check.used and check.piece == one.piece),
+        )
+        for one in pieces
+    }

@@ -258,6 +258,13 @@ class RunReader:
         rows = self._rows("SELECT * FROM travel WHERE repeat_id > 0")
         return {_whole(row, "repeat_id"): _record(Travel, row) for row in rows}
 
+    def slid(self) -> dict[int, list[float]]:
+        """Return how far each piece had slid as its repeats began and as its state was stored last, m, in order."""
+        found: dict[int, list[float]] = {}
+        for row in self._rows(f"SELECT {PIECE}, piece_m FROM travel WHERE piece_m IS NOT NULL ORDER BY piece_m"):
+            found.setdefault(_whole(row, PIECE), []).append(_number(row, "piece_m"))
+        return found
+
     def counterface_m(self) -> float:
         """Return how far the counterface has travelled under load since the run began, m; 0 where nothing says."""
         rows = self._rows("SELECT coalesce(max(counterface_m), 0.0) AS travel_m FROM travel")

@@ -466,6 +466,8 @@ before, which nothing looked at that way."""
 _AS_VERSION_13 = (
     "CREATE TEMP VIEW repeat AS SELECT *, " + ", ".join(f"NULL AS {name}" for name in _LOOKED_AT) + " FROM main.repeat;"
 )
+_EXPECTED = "ALTER TABLE wear_check ADD COLUMN expected_mm REAL;"
+"""The diameter that was reckoned with until a check; NULL in every record begun before."""
 
 _SOAK = """
 CREATE {temporary}TABLE soak (
@@ -524,6 +526,7 @@ MIGRATIONS: tuple[str, ...] = (
     _MATERIAL.format(temporary=""),
     _CHANGE,
     _SOAK.format(temporary=""),
+    _EXPECTED,
 )
 """Migration n leads from schema n to n + 1."""
 
@@ -550,6 +553,7 @@ _ADDED: dict[int, str] = {
     13: _MATERIAL,
     14: _AS_VERSION_13,
     15: _SOAK,
+    16: "",
 }
 """What versions have added, by version: what a connection to an older record can have for itself."""
 

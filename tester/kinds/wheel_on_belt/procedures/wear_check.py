@@ -205,6 +205,7 @@ def conclude(ctx: Context, before: int, taken: Taken) -> None:
         width_mm=wheel.width_mm,
         u_rate_percent=wear.rate_uncertainty_percent,
         used=1,
+        expected_mm=wheel.cold_mm,
     )
     doubt = _doubt(ctx, check)
     text = f"loss of diameter {loss_mm:.3f} mm by {taken.method} check (u {u_mm:.3f} mm)"

@@ -15,7 +15,7 @@ from tests.tester.kinds.wheel_on_belt.procedures.test_steps import LOADS, Wearin
 
 COLUMNS = (
     "wheel", "method", "t_s", "reference_s", "before", "after", "diameter_mm", "u_mm", "rubber_c", "u_growth_mm_k",
-    "press_mm", "load_n", "sliding_m", "exposure_n_m", "width_mm", "u_rate_percent", "used",
+    "press_mm", "load_n", "sliding_m", "exposure_n_m", "width_mm", "u_rate_percent", "used", "expected_mm",
 )  # fmt: skip
 CHECKED = LOADS.replace("repeats: 1", "repeats: 1\n  wear_check: each_condition")
 ASKED = LOADS.replace("repeats: 1", "repeats: 1\n  wear_check: prompt")
@@ -31,7 +31,7 @@ def bench() -> Bench:
 def checks(bench: Bench) -> list[dict[str, object]]:
     """Return the checks on record, by column."""
     found = [values for sql, values in bench.notes.statements if sql.startswith("INSERT INTO wear_check")]
-    return [dict(zip((*COLUMNS,), (*values[:17],), strict=True)) for values in found]
+    return [dict(zip((*COLUMNS,), (*values[: len(COLUMNS)],), strict=True)) for values in found]
 
 
 def number(check: dict[str, object], name: str) -> float:
@@ -63,6 +63,14 @@ def test_a_press_that_stands_deeper_tells_the_loss_of_diameter(rolled: Bench) ->
     roll(rolled)
     assert rolled.ctx.wheel.loss_mm == pytest.approx(0.4)
     assert checks(rolled)[1]["reference_s"] == checks(rolled)[0]["t_s"]
+
+
+def test_a_check_keeps_the_diameter_that_was_reckoned_with_until_then(rolled: Bench) -> None:
+    rolled.ctx.wheel.loss_mm = 0.3
+    rolled.pressed_mm += 0.1
+    roll(rolled)
+    assert number(checks(rolled)[1], "expected_mm") == pytest.approx(89.7)
+    assert number(checks(rolled)[1], "diameter_mm") == pytest.approx(89.6)
 
 
 def test_a_load_off_its_nominal_value_is_corrected_by_the_contact_s_stiffness(rolled: Bench) -> None:

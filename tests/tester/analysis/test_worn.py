@@ -1,0 +1,87 @@
+"""How worn a piece was when a condition was measured on it, and how well its checks know that."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import hypot, isnan, nan
+
+import pytest
+
+from tester.analysis.worn import Worn
+from tests.tester.analysis.test_wear import FIRST
+
+U = FIRST.u_mm
+NEW = replace(FIRST, t_s=10.0, reference_s=10.0, diameter_mm=90.0, sliding_m=0.0, exposure_n_m=0.0, before=0)
+"""As it was mounted."""
+AFTER_GRINDING = replace(NEW, t_s=500.0, diameter_mm=89.8, expected_mm=89.9, sliding_m=50.0, exposure_n_m=1e4, before=1)
+AFTER_ONE = replace(
+    NEW, t_s=900.0, diameter_mm=89.6, expected_mm=89.63, sliding_m=100.0, exposure_n_m=2e4, before=2, after=1
+)
+WORN = Worn(90.0, 89.6, 100.0, (NEW, AFTER_GRINDING, AFTER_ONE))
+
+
+def test_without_a_check_the_loss_is_what_was_believed_by_then_and_not_at_the_end() -> None:
+    piece = Worn(90.0, 88.0, 400.0)
+    assert piece.size(100.0).loss_mm == pytest.approx(0.5)
+    assert piece.size(400.0).loss_mm == pytest.approx(2.0)
+    assert isnan(piece.size(100.0).checked_u_mm)
+
+
+def test_a_record_that_does_not_say_how_far_it_slid_has_the_loss_of_its_end() -> None:
+    assert Worn(90.0, 88.0, 400.0).size(nan).loss_mm == pytest.approx(2.0)
+
+
+def test_between_two_checks_the_diameter_is_interpolated_over_the_sliding() -> None:
+    assert WORN.size(75.0).size_mm == pytest.approx(89.7)
+    assert WORN.size(90.0).size_mm == pytest.approx(89.64)
+
+
+def test_what_the_belief_was_off_by_at_the_next_check_is_in_the_uncertainty_in_proportion() -> None:
+    apart = hypot(U, 0.5 * U, 0.5 * U, 0.5 * 0.03)  # the series' first check, both checks by halves, half of the error
+    assert WORN.size(75.0).checked_u_mm == pytest.approx(apart)
+    assert WORN.size(50.0).checked_u_mm == pytest.approx(hypot(U, U))
+
+
+def test_a_record_that_does_not_say_the_belief_is_given_all_that_wore_off_between_checks() -> None:
+    unsaid = replace(WORN, checks=(NEW, AFTER_GRINDING, replace(AFTER_ONE, expected_mm=nan)))
+    assert unsaid.size(75.0).checked_u_mm == pytest.approx(hypot(U, 0.5 * U, 0.5 * U, 0.5 * 0.2))
+
+
+def test_after_the_last_check_the_rate_that_the_checks_have_shown_counts() -> None:
+    piece = replace(WORN, last_mm=89.2, last_m=200.0)
+    found = piece.size(200.0)
+    assert found.loss_mm == pytest.approx(0.8)
+    rate_share = (found.checked_u_mm**2 - 2.0 * U**2) ** 0.5 / 0.4
+    assert 0.015 < rate_share < 0.1
+
+
+def test_after_a_single_check_all_that_is_believed_to_be_worn_off_since_is_uncertain() -> None:
+    piece = Worn(90.0, 89.2, 200.0, (NEW,))
+    assert piece.size(100.0).loss_mm == pytest.approx(0.4)
+    assert piece.size(100.0).checked_u_mm == pytest.approx(0.4)
+
+
+def test_a_series_that_began_on_a_worn_piece_carries_what_was_only_believed_by_then() -> None:
+    late = replace(NEW, diameter_mm=89.5, sliding_m=50.0, exposure_n_m=1e4)
+    assert Worn(90.0, 89.5, 50.0, (late,)).size(50.0).checked_u_mm == pytest.approx(0.5)
+
+
+def test_the_rate_of_a_series_tells_how_much_was_worn_off_before_it() -> None:
+    late = replace(NEW, diameter_mm=89.9, sliding_m=50.0, exposure_n_m=1e4)
+    checks = tuple(
+        replace(late, t_s=10.0 + i, diameter_mm=89.9 - 0.3 * i, sliding_m=50.0 * (i + 1), exposure_n_m=1e4 * (i + 1))
+        for i in range(4)
+    )
+    found = Worn(90.0, 89.0, 200.0, checks).size(50.0)
+    assert found.checked_u_mm == pytest.approx(0.2, rel=0.05)  # 0.3 mm before it, and 0.1 mm believed
+
+
+def test_a_wheel_that_was_put_back_keeps_what_its_earlier_checks_knew() -> None:
+    again = replace(AFTER_ONE, t_s=2000.0, reference_s=2000.0, expected_mm=nan, exposure_n_m=0.0)
+    found = replace(WORN, checks=(*WORN.checks, again)).size(100.0)
+    assert found.checked_u_mm == pytest.approx(hypot(U, U), rel=1e-6)
+
+
+def test_a_check_that_was_not_believed_is_no_check() -> None:
+    unused = tuple(replace(one, used=0) for one in WORN.checks)
+    assert isnan(replace(WORN, checks=unused).size(75.0).checked_u_mm)
