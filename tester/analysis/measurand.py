@@ -17,14 +17,14 @@ from dataclasses import dataclass, replace
 from math import isfinite, sqrt
 from typing import Final
 
-from tester.analysis.kelvin import NO_WARMTH, SurfaceWarmth
+from tester.analysis.kelvin import NO_WARMTH, Slope, SurfaceWarmth
 from tester.analysis.quantiles import f_quantile
 from tester.analysis.reference import CounterfaceDrift
 from tester.analysis.repeatability import NOTHING_POOLED, Pool
 from tester.analysis.repeats import ConditionResult
 from tester.analysis.results import NAN
 from tester.analysis.terms import NO_SIZE, Acts, BudgetPoint, Size, Term, contributions_of
-from tester.analysis.uncertainty import NO_BUDGET, Contribution, Unsteadiness, budget, contribution
+from tester.analysis.uncertainty import NO_BUDGET, Budget, Contribution, Unsteadiness, budget, contribution
 
 REPEATABILITY: Final = "repeatability"
 """Name of the contribution of what repeating showed."""
@@ -103,6 +103,12 @@ def _machine(result: ConditionResult, by: Surroundings) -> tuple[list[Contributi
     if any(one.acts is Acts.TEMPERATURE for one in chain):
         found.append(by.warmth.contribution(mu, chain))
     return found, contributions_of([one for one in by.terms if one.acts is Acts.PIECE], at)
+
+
+def expected_budget(terms: Sequence[Term], at: BudgetPoint, slope: Slope) -> Budget:
+    """Return what a machine's terms add to the uncertainty of a coefficient that is expected, before it is measured."""
+    chain = [one for one in terms if one.acts is not Acts.PIECE]
+    return budget([*contributions_of(chain, at), SurfaceWarmth(slope=slope).contribution(at.mu, chain)])
 
 
 def with_budget(result: ConditionResult, by: Surroundings) -> ConditionResult:

@@ -76,6 +76,7 @@ _KINDS: tuple[_Kind, ...] = (
     _Kind("a drift with temperature", "0.1 N/K", {"N/K": _ONE}),
     _Kind("a rise with power", "5 K/W", {"K/W": _ONE}),
     _Kind("a change with temperature", "0.4 %/K", {"1/K": _ONE, "%/K": Fraction(1, 100)}),
+    _Kind("a curvature over temperature", "0.002 1/K2", {"1/K2": _ONE}),
     _Kind("a rate of force", "100 N/s", {"N/s": _ONE}),
     _Kind("a bit rate", "500 kbit/s", {"bit/s": _ONE, "kbit/s": _K, "Mbit/s": Fraction(10**6)}),
     _Kind("a number of revolutions", "30 rev", {"rev": _ONE}),

@@ -141,6 +141,10 @@ def _of_compound(one: LoadedCompound) -> Iterable[str]:
     if model.shear is not None:
         s = model.shear
         yield f"shear    tau_s0 {s.tau_s0 / 1e3:g} kPa, v_c {s.v_c:g} m/s, n {s.n:g}, ratio {s.ratio:g}"
+    if model.over_temperature is not None:
+        t = model.over_temperature
+        law = f"alpha {t.alpha:g}, beta {t.beta:g} 1/K2, gamma {t.gamma:g}, Tm {t.Tm:g} degC"
+        yield f"over temperature  {law}; {t.least:g} to {t.most:g} degC"
 
 
 @materials.command()

@@ -12,7 +12,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
 if TYPE_CHECKING:
-    from tester.analysis.kelvin import KnownSlope
     from tester.machine.ports import Ports
     from tester.machine.prompts import Prompts
     from tester.machine.run import Run
@@ -94,8 +93,11 @@ class KindRun(Protocol):
         and drives are known without it."""
         ...
 
-    def known_slopes(self, plan: Plan) -> Iterable[KnownSlope]:
-        """Return what is known of the sensitivity of the plan's compounds to temperature."""
+    def rubs_as_described(self, rig: Rig) -> bool:
+        """Return whether rubber on this rig follows temperature as its compound's file says.
+
+        A simulated rig may rub by any law: a file tells nothing of that.
+        """
         ...
 
     def store_state(self, run: Run, recorder: Recorder, now_s: float) -> None:

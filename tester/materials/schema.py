@@ -6,6 +6,7 @@ editors are generated from these classes.
 
 from __future__ import annotations
 
+from math import exp
 from typing import Annotated, Literal, TypeAlias
 
 from pydantic import Field, model_validator
@@ -120,6 +121,36 @@ class ShearModel(Section, frozen=True):
     """modulus of the glass over that of the rubber"""
 
 
+class OverTemperatureModel(Section, frozen=True):
+    """How its coefficient follows temperature: in proportion to alpha exp(-beta (T - Tm)^2) + gamma."""
+
+    alpha: Annotated[float, Quantity("1", ge=-100, le=100)]
+    beta: Annotated[float, Quantity("1/K2", gt=0, le=1)]
+    gamma: Annotated[float, Quantity("1", gt=0, le=100)]
+    Tm: Celsius
+    """temperature of the maximum, of the minimum where alpha is below 0"""
+    least: Celsius
+    """lowest temperature at which it was measured"""
+    most: Celsius
+    """highest temperature at which it was measured"""
+    source: Note | None = None
+    """where the figures are from"""
+
+    @model_validator(mode="after")
+    def _sense(self) -> OverTemperatureModel:
+        if self.most <= self.least:
+            raise ValueError(f"most, {self.most:g} degC, is not above least, {self.least:g} degC")
+        if self.alpha + self.gamma <= 0.0:
+            raise ValueError(f"alpha + gamma is {self.alpha + self.gamma:g} (expected more than 0: a coefficient is)")
+        return self
+
+    def per_kelvin(self, at_c: float) -> float:
+        """Return d ln(mu) / dT at a temperature in degC, 1/K."""
+        off_k = at_c - self.Tm
+        bell = self.alpha * exp(-self.beta * off_k * off_k)
+        return -2.0 * self.beta * off_k * bell / (bell + self.gamma)
+
+
 class CompoundModel(Section, frozen=True):
     """A rubber compound: what it is made of, and what is known of it."""
 
@@ -144,6 +175,8 @@ class CompoundModel(Section, frozen=True):
     """kelvin that stand for a decade of frequency, as of a sweep at one frequency (default 8)"""
     moduli: ModuliModel | None = None
     shear: ShearModel | None = None
+    over_temperature: OverTemperatureModel | None = None
+    """how its coefficient on an abrasive follows temperature, as a fit or a publication has it"""
 
 
 class PowerLawModel(Section, frozen=True):

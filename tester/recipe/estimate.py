@@ -5,12 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Final, NamedTuple, Protocol
 
+from tester.analysis.kelvin import UNKNOWN, Slope
 from tester.recipe.plan import ConditionStep, Plan
 
 if TYPE_CHECKING:
     from tester.analysis.uncertainty import Budget
+    from tester.axes import Setpoint
 
 
 class StepEstimate(NamedTuple):
@@ -34,6 +36,22 @@ class StepEstimate(NamedTuple):
     repeats: float = 0.0
 
 
+@dataclass(frozen=True, slots=True)
+class Outlook:
+    """What is expected of a condition's uncertainty beside its setpoint: what is worn off by then, mm; whether a check
+    of the diameter is made before and after it; what is known of its sensitivity to temperature; and whether it is
+    measured in both directions, None: as the step says."""
+
+    loss_mm: float = 0.0
+    checked: bool = False
+    slope: Slope = UNKNOWN
+    both_directions: bool | None = None
+
+
+NEW: Final = Outlook()
+"""A new piece, of which nothing is known."""
+
+
 class Estimator(Protocol):
     """What a kind knows of the time that steps take on one rig."""
 
@@ -53,7 +71,11 @@ class Estimator(Protocol):
         """Return the standard deviation between repeats that is expected, per cent of the coefficient."""
         ...
 
-    def budget(self, step: ConditionStep) -> tuple[float, Budget] | None:
+    def mu(self, setpoint: Setpoint) -> float | None:
+        """Return the coefficient expected at a setpoint; None where there is none, such as where it does not slide."""
+        ...
+
+    def budget(self, step: ConditionStep, outlook: Outlook = NEW) -> tuple[float, Budget] | None:
         """Return the coefficient expected of a condition, and what the instruments add to its uncertainty.
 
         None for a condition without a coefficient, such as one that does not slide.

@@ -17,7 +17,7 @@ from tester.base.source import Problem, Tree
 from tester.base.units import Quantity, UnitError, show
 from tester.recipe.conditions import conditions_of, metadata_of, ordered
 from tester.recipe.describe import repeats_words, window_words
-from tester.recipe.estimate import StepEstimate
+from tester.recipe.estimate import NEW, Outlook, StepEstimate
 from tester.recipe.part import RecipePart
 from tester.recipe.plan import ConditionStep, Plan, Specimen, Step
 from tester.recipe.repeats import HISTORIC_PERCENT, expected
@@ -79,7 +79,10 @@ class PlainEstimator:
         """Return the standard deviation between repeats that is expected, per cent."""
         return self._s_percent.get(compound, HISTORIC_PERCENT)
 
-    def budget(self, step: ConditionStep) -> None:
+    def mu(self, setpoint: Setpoint) -> None:
+        """Return None: no coefficient is expected."""
+
+    def budget(self, step: ConditionStep, outlook: Outlook = NEW) -> None:
         """Return None: what the instruments add is not known."""
 
 

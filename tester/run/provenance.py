@@ -14,11 +14,14 @@ from pathlib import Path
 import recipes
 from drivers.drives.reader import GENERIC
 from tester import kinds
+from tester.analysis.kelvin import KnownSlope
 from tester.base import clock
 from tester.base.plugins import plugins
 from tester.machine.devices import DeviceList
+from tester.materials.compound import compound_model
 from tester.recipe.loader import LoadedRecipe
 from tester.recipe.plan import Plan
+from tester.recipe.sensitivity import known_slopes
 from tester.rig import Rig
 from tester.rig.load import risks_of
 from tester.rig.profiles import profile_of
@@ -84,9 +87,17 @@ def run_info(
         metadata={**plan.metadata, **(risks or {})},
         versions=library_versions(),
         terms=tuple(recipe_part(rig).terms(rig)),
-        known=tuple(run_parts(rig).known_slopes(plan)),
+        known=_known_slopes(plan, rig, materials),
         materials=tuple(materials),
     )
+
+
+def _known_slopes(plan: Plan, rig: Rig, materials: Sequence[StoredMaterial]) -> tuple[KnownSlope, ...]:
+    """Return what the compounds' files say of friction over temperature, where it holds for the rubber on the rig."""
+    if not run_parts(rig).rubs_as_described(rig):
+        return ()
+    files = [one for one in materials if one.role == "compound" and one.text]
+    return tuple(known_slopes(plan, {one.name: compound_model(one.text or "", one.file) for one in files}))
 
 
 def accepted_risks(rig: Rig, reason: str) -> dict[str, str]:

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from typing import Final
 
-from tester.analysis.terms import Acts, BudgetPoint, Term, contributions_of
-from tester.analysis.uncertainty import Budget, budget
+from tester.analysis.kelvin import Slope
+from tester.analysis.measurand import expected_budget
+from tester.analysis.terms import Acts, BudgetPoint, Term
+from tester.analysis.uncertainty import Budget
 
 TERMS: Final[tuple[Term, ...]] = (
     Term("cell linearity", Acts.FRICTION, 0.2, "N", "rectangular", "0.1 % of 200 N [A]", setting="cell_linearity_n"),
@@ -25,10 +27,10 @@ TERMS: Final[tuple[Term, ...]] = (
 """Limits are engineering assumptions; a recipe's metadata replaces them as ``uncertainty.<setting>``."""
 
 
-def instruments_budget(mu: float, load_n: float, track_m_s: float) -> Budget:
+def instruments_budget(mu: float, load_n: float, track_m_s: float, slope: Slope) -> Budget:
     """Return what the measuring chain adds to the uncertainty of a coefficient that is expected.
 
-    Without the temperature: what a law says about that is the twin's alone, and nothing is published of a rubber here.
+    ``slope``: what is known of the sensitivity to temperature.
     """
-    at = BudgetPoint(mu, load_n, track_m_s, {"load_n": load_n, "sliding_m_s": track_m_s})
-    return budget(contributions_of([one for one in TERMS if one.acts is not Acts.PIECE], at))
+    means = {"load_n": load_n, "sliding_m_s": track_m_s}
+    return expected_budget(TERMS, BudgetPoint(mu, load_n, track_m_s, means, slope.per_kelvin), slope)

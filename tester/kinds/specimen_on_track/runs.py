@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from tester.analysis.kelvin import KnownSlope
 from tester.kinds.specimen_on_track.axes import NAME
 from tester.kinds.specimen_on_track.build import build_run
 from tester.kinds.specimen_on_track.context import TrackAttendant, TrackNobody
@@ -74,9 +73,9 @@ class TrackRuns:
         for number, weight_n in enumerate(TrackConfig.of(rig).weights, start=1):
             yield Calibration("weights", f"set {number}", repr(weight_n), "N")
 
-    def known_slopes(self, plan: Plan) -> tuple[KnownSlope, ...]:
-        """Return that nothing is published of its rubbers."""
-        return ()
+    def rubs_as_described(self, rig: Rig) -> bool:
+        """Return True on a machine; a simulated track rubs by its law alone."""
+        return not rig.simulated
 
     def store_state(self, run: Run, recorder: Recorder, now_s: float) -> None:
         """Store how far the specimen has slid."""

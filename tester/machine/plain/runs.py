@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 from math import nan
 from pathlib import Path
 
-from tester.analysis.kelvin import KnownSlope
 from tester.axes import Setpoint
 from tester.machine.connect import Connector
 from tester.machine.engine import Engine
@@ -110,9 +109,9 @@ class PlainRuns:
         """Yield nothing beside the figures of devices and drives."""
         yield from ()
 
-    def known_slopes(self, plan: Plan) -> tuple[KnownSlope, ...]:
-        """Return that nothing is published of its rubbers."""
-        return ()
+    def rubs_as_described(self, rig: Rig) -> bool:
+        """Return True on a machine; a simulated one rubs by its law alone."""
+        return not rig.simulated
 
     def store_state(self, run: Run, recorder: Recorder, now_s: float) -> None:
         """Store how far the specimen has slid."""

@@ -11,7 +11,7 @@ from tester.axes import Axes, Axis, Setpoint, condition_words, numbers
 from tester.base.source import Location, Problem, Tree
 from tester.base.units import Quantity, show
 from tester.recipe.conditions import conditions_of, metadata_of, ordered
-from tester.recipe.estimate import Estimator, StepEstimate
+from tester.recipe.estimate import NEW, Estimator, Outlook, StepEstimate
 from tester.recipe.part import RecipePart
 from tester.recipe.plan import ConditionStep, Plan, Specimen, Step
 from tester.recipe.schema import GridModel, MeasureModel, Recipe, Section
@@ -77,7 +77,10 @@ class TrackEstimator:
         """Return a round figure."""
         return 2.0
 
-    def budget(self, step: ConditionStep) -> tuple[float, Budget] | None:
+    def mu(self, setpoint: Setpoint) -> None:
+        """Return None: no coefficient is expected."""
+
+    def budget(self, step: ConditionStep, outlook: Outlook = NEW) -> tuple[float, Budget] | None:
         """Return nothing known."""
         return None
 

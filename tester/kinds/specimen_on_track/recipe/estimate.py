@@ -9,13 +9,14 @@ from typing import Final
 from sim.physics.laws import NO_SETTING, FrictionLaw
 from tester.analysis.repeats import REPEATABILITY
 from tester.analysis.uncertainty import Budget
+from tester.axes import Setpoint
 from tester.base.source import InvalidSource
 from tester.kinds.specimen_on_track.axes import TrackHeld, held_by
 from tester.kinds.specimen_on_track.budget import instruments_budget
 from tester.kinds.specimen_on_track.recipe.steps import MountSpecimen, Prepare, Temper, TrackCondition
 from tester.kinds.specimen_on_track.rig import TrackConfig
 from tester.materials.setting import law_setting
-from tester.recipe.estimate import StepEstimate
+from tester.recipe.estimate import NEW, Outlook, StepEstimate
 from tester.recipe.plan import ConditionStep, Plan, PromptStep, Step
 from tester.recipe.repeats import expected
 
@@ -53,7 +54,11 @@ class TrackEstimator:
         self.recipe = recipe
         self._laws: dict[tuple[str, str, str], FrictionLaw] = {}
 
-    def mu(self, compound: str, held: TrackHeld) -> float:
+    def mu(self, setpoint: Setpoint) -> float:
+        """Return the coefficient expected at a setpoint."""
+        return self.mu_of(setpoint.compound, held_by(setpoint))
+
+    def mu_of(self, compound: str, held: TrackHeld) -> float:
         """Return the coefficient that is expected, by the simulated rig's law where there is one."""
         try:
             return self.law(compound, held.interface).mu(held.temperature_c, held.load_n, held.track_m_s)
@@ -72,7 +77,7 @@ class TrackEstimator:
 
     def rise_k(self, compound: str, held: TrackHeld) -> float:
         """Return by how much friction warms the contact in the end, K."""
-        return self.rig.heat.rise * self.mu(compound, held) * held.load_n * held.track_m_s
+        return self.rig.heat.rise * self.mu_of(compound, held) * held.load_n * held.track_m_s
 
     def walk(self, plan: Plan) -> Sequence[StepEstimate]:
         """Return an estimate for every step of a plan."""
@@ -101,7 +106,7 @@ class TrackEstimator:
         repeats = expected(step, self.s_percent(compound))
         slid_m = repeats * (1.5 + SETTLES[self.rig.track]) * step.distance_m
         arm_s = 0.0 if self.rig.axes.lift is not None or self.rig.simulated else 2.0 * PERSON_S
-        rise_k, power_w = self.rise_k(compound, held), self.mu(compound, held) * held.load_n * held.track_m_s
+        rise_k, power_w = self.rise_k(compound, held), self.mu_of(compound, held) * held.load_n * held.track_m_s
         return StepEstimate(
             slid_m / held.track_m_s + repeats * (REPEAT_S + arm_s), slid_m,
             friction_j=slid_m * power_w / held.track_m_s,
@@ -122,8 +127,7 @@ class TrackEstimator:
         """Return the standard deviation between repeats that is expected, per cent of the coefficient."""
         return self.repeatability.get(compound, 100.0 * REPEATABILITY)
 
-    def budget(self, step: ConditionStep) -> tuple[float, Budget] | None:
+    def budget(self, step: ConditionStep, outlook: Outlook = NEW) -> tuple[float, Budget] | None:
         """Return the coefficient expected of a condition, and what the instruments add to its uncertainty."""
-        held = held_by(step.setpoint)
-        mu = self.mu(step.setpoint.compound, held)
-        return mu, instruments_budget(mu, held.load_n, held.track_m_s)
+        held, mu = held_by(step.setpoint), self.mu(step.setpoint)
+        return mu, instruments_budget(mu, held.load_n, held.track_m_s, outlook.slope)

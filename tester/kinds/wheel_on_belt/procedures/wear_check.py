@@ -23,10 +23,9 @@ from tester.kinds.wheel_on_belt.procedures.thermal_steps import Straighten
 from tester.kinds.wheel_on_belt.procedures.wheel_life import CheckReference, WheelLife, rubber_c
 from tester.kinds.wheel_on_belt.process import NAN
 from tester.kinds.wheel_on_belt.recipe.steps import WearCheck as Method
+from tester.kinds.wheel_on_belt.roll_check import ROLL_CHECK_N, roll_check_u_mm
 from tester.machine.motions import Power, Sequence, Settle
 
-ROLL_CHECK_N: Final = 50.0
-"""Load of the automatic diameter check, N [A]: little penetration, and above the press's friction."""
 ROLL_CHECK_TURNS: Final = 6.0
 """Whole turns averaged by the check: runout drops out, and the load loop's ripple."""
 TARE_WAIT_S: Final = 0.4
@@ -80,13 +79,7 @@ class RollCheck:
         wear, wheel = ctx.rig.wear, ctx.wheel
         stiffness = ctx.rig.loops.load.stiffness_n_per_mm
         off_mm = depth_mm(load_n, stiffness) - depth_mm(ROLL_CHECK_N, stiffness)
-        per_n = 2.0 * (depth_mm(ROLL_CHECK_N + 0.5, stiffness) - depth_mm(ROLL_CHECK_N - 0.5, stiffness))
-        u_mm = hypot(
-            2.0 * wear.check_press_mm,
-            per_n * wear.check_load_n,
-            0.01 * wear.check_stiffness_percent * 2.0 * off_mm,
-            wear.growth_mm_per_k * wear.check_rubber_k,
-        )
+        u_mm = roll_check_u_mm(ctx.rig, off_mm)
         cold_mm = press_mm - off_mm + 0.5 * wear.growth_mm(mean_c)
         reference = wheel.reference
         if reference is None:

@@ -10,7 +10,9 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from sim.physics.slip import slip_velocity
+from tester.analysis.terms import Size
 from tester.analysis.uncertainty import Budget
+from tester.axes import Setpoint
 from tester.kinds.wheel_on_belt.axes import held_by
 from tester.kinds.wheel_on_belt.budget import instruments_budget
 from tester.kinds.wheel_on_belt.recipe.body import Body
@@ -27,7 +29,8 @@ from tester.kinds.wheel_on_belt.recipe.steps import (
     WheelPlan,
 )
 from tester.kinds.wheel_on_belt.recipe.wheel_change import TOUCH
-from tester.recipe.estimate import StepEstimate
+from tester.kinds.wheel_on_belt.roll_check import roll_check_u_mm
+from tester.recipe.estimate import NEW, Outlook, StepEstimate
 from tester.recipe.plan import ConditionStep, Plan, PromptStep, Step
 from tester.recipe.repeats import MADE_UP, POOLED_DF, SURE, expected, repeats_each
 
@@ -66,6 +69,8 @@ class WheelEstimator:
         self.constants = constants
         self.ambient_c = rig.ambient_c
         self.diameter_mm = rig.geometry.wheel_diameter_mm
+        self.check_u_mm = math.sqrt(2.0) * roll_check_u_mm(rig)
+        """Of a loss between two roll checks, standard."""
         self.cool_c, self.cool_at_most_s = rig.interlocks.cooldown_hub_c, rig.interlocks.cooldown_at_most_s
         self.parts = rig.simulated
         """Each specimen, and each replicate of it, is a part of the run, on a rig of its own."""
@@ -173,15 +178,24 @@ class WheelEstimator:
         """Return the standard deviation between repeats that is expected, per cent of the coefficient."""
         return self.costs.s_percent(compound)
 
-    def budget(self, step: ConditionStep) -> tuple[float, Budget] | None:
-        """Return the coefficient expected, and what the instruments add to its uncertainty; None where it rolls."""
-        sp = held_by(step.setpoint)
+    def mu(self, setpoint: Setpoint) -> float | None:
+        """Return the coefficient expected at a setpoint; None where it rolls."""
+        sp = held_by(setpoint)
         slip_m_s = slip_velocity(sp.wheel_speed_m_s, sp.belt_speed_m_s, sp.sideslip_deg)[2]
         if slip_m_s < ROLLING_M_S:
             return None
-        mu = self.costs.mu(sp.compound, sp.temperature_c, sp.load_n, slip_m_s, sp.sideslip_deg)
-        both = step.both_directions
-        return mu, instruments_budget(sp, mu, slip_m_s, self.diameter_mm, both_directions=both)
+        return self.costs.mu(sp.compound, sp.temperature_c, sp.load_n, slip_m_s, sp.sideslip_deg)
+
+    def budget(self, step: ConditionStep, outlook: Outlook = NEW) -> tuple[float, Budget] | None:
+        """Return the coefficient expected, and what the instruments add to its uncertainty; None where it rolls."""
+        sp, mu = held_by(step.setpoint), self.mu(step.setpoint)
+        if mu is None:
+            return None
+        slip_m_s = slip_velocity(sp.wheel_speed_m_s, sp.belt_speed_m_s, sp.sideslip_deg)[2]
+        both = step.both_directions if outlook.both_directions is None else outlook.both_directions
+        u_mm = self.check_u_mm if outlook.checked else math.nan
+        size = Size(self.diameter_mm - outlook.loss_mm, outlook.loss_mm, u_mm)
+        return mu, instruments_budget(sp, mu, slip_m_s, size, outlook.slope, both_directions=both)
 
     def shut_down_s(self, plan: Plan) -> float:
         """Return the seconds from the last step to standstill: a hot jacket is cooled turning."""
