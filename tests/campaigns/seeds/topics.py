@@ -70,7 +70,7 @@ def _table2(sweeps: Sweeps) -> Iterator[Figure]:
         rubber = spec.overrides[-1].removeprefix("sim.")
         ended = sum(run["outcome"] == "done" for run in swept.runs)
         yield equal(f"table2, {rubber}: seeds that came to their end, without a trip", ended, spec.seeds)
-        planned = int(str(sweeps.plan(spec)["conditions"]))
+        planned = int(str(sweeps.plan(spec)["conditions"])) - int(str(sweeps.plan(spec).get("references", 0)))
         yield equal(f"table2, {rubber}: rows, with or without a value", len(swept.conditions), planned * spec.seeds)
         conditions += swept.conditions
     lost = [row for row in conditions if row["status"] != "ok"]

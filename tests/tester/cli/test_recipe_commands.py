@@ -95,7 +95,7 @@ def test_plan_refuses_what_check_refuses(folder: Path, text: str, capsys: pytest
 def test_plan_lists_the_steps_with_durations(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert invoke(["plan", "table2"]) == 0
     out = capsys.readouterr().out
-    assert "conditions        165, 825 repeats" in out
+    assert "conditions        174, 870 repeats" in out
     assert out.count("pre-grind 4 min") == out.count("install wheel")
 
 
@@ -103,7 +103,7 @@ def test_plan_as_json_has_the_contracts_keys(folder: Path, capsys: pytest.Captur
     assert invoke(["plan", "table2", "--json"]) == 0
     data = json.loads(capsys.readouterr().out)
     conditions = [step for step in data["steps"] if step["kind"] == "condition"]
-    assert data["conditions"] == len(conditions) == 165
+    assert data["conditions"] == len(conditions) == 174
     assert data["rig_seconds"] > 0
     assert data["wheels"] == sum(step["kind"] == "install" for step in data["steps"])
     assert {step["repeats"] for step in conditions} == {5}
