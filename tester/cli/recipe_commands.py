@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import gc
 import sys
-from collections.abc import Generator, Iterator
+from collections.abc import Generator, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -27,7 +27,11 @@ from tester.cli.options import (
 if TYPE_CHECKING:
     from tester.analysis.repeatability import Pool
     from tester.base.source import Problem
+    from tester.materials.schema import CompoundModel
+    from tester.recipe.foreseen import Foreseen
+    from tester.recipe.part import RecipePart
     from tester.recipe.schema import Recipe
+    from tester.rig import Rig
     from tester.run.materials import UsedMaterials
 
 
@@ -137,9 +141,12 @@ def plan(
     from tester.recipe.conditions import merged_of
     from tester.recipe.describe import lines
     from tester.recipe.estimate import estimate
+    from tester.recipe.foreseen import foreseen, foreseen_fields, foreseen_lines
     from tester.recipe.plan_json import json_chunks
     from tester.recipe.precision import PrecisionError, precision_lines, s_percents, until_for_total, with_precision
-    from tester.run.kinds import checked_recipe, recipe_part
+    from tester.recipe.sensitivity import known_slopes
+    from tester.run.kinds import checked_recipe, recipe_part, served_kind
+    from tester.run.materials import described_compounds
     from tester.run.rigs import load_rig
 
     if precision is not None and total is not None:
@@ -151,9 +158,10 @@ def plan(
     rig = load_rig(rig_name, overrides, accept_risk)
     part = recipe_part(rig)
     wanted = checked_recipe(path, rig, name).recipe
+    described = described_compounds(wanted, path, rig)
     if total is not None:
         try:
-            precision = until_for_total(total, part.expand(wanted, rig), part.estimator(rig))
+            precision = until_for_total(total, _foreseen(wanted, rig, part, described))
         except PrecisionError as error:
             raise click.UsageError(str(error)) from error
     if precision is not None:
@@ -165,17 +173,30 @@ def plan(
 
         compounds = dict.fromkeys(one.compound for one in wanted.specimens)
         pools = repeatability(out or RUNS, compounds, simulated=rig.simulated)
-    estimator = part.estimator(rig, s_percents(pools))
+    estimator, worn = part.estimator(rig, s_percents(pools)), served_kind(rig).machine.specimen
     with _nothing_collected():
         steps = part.expand(wanted, rig, estimator)
         figures = estimate(steps, estimator)
         merged = list(merged_of(wanted))
+        found = foreseen(steps, figures.steps, estimator, known_slopes(steps, described))
+        terms = part.terms(rig)
         if as_json:
-            sys.stdout.writelines(json_chunks(steps, figures, part, merged))
+            uncertainty = foreseen_fields(found, estimator, terms)
+            sys.stdout.writelines(json_chunks(steps, figures, part, merged, uncertainty))
             return
         sys.stdout.writelines(f"{line}\n" for line in lines(steps, figures, part))
         sys.stdout.writelines(f"{one.sentence()}\n" for one in merged)
-        sys.stdout.writelines(f"{line}\n" for line in precision_lines(steps, figures, estimator, pools))
+        sys.stdout.writelines(f"{line}\n" for line in foreseen_lines(found, estimator, terms, worn))
+        sys.stdout.writelines(f"{line}\n" for line in precision_lines(steps, figures, estimator, pools, found))
+
+
+def _foreseen(recipe: Recipe, rig: Rig, part: RecipePart, described: Mapping[str, CompoundModel]) -> list[Foreseen]:
+    """Return what is foreseen of the uncertainty of a recipe's conditions."""
+    from tester.recipe.foreseen import foreseen
+    from tester.recipe.sensitivity import known_slopes
+
+    plan, estimator = part.expand(recipe, rig), part.estimator(rig)
+    return foreseen(plan, estimator.walk(plan), estimator, known_slopes(plan, described))
 
 
 def _asks_precision(recipe: Recipe) -> bool:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final, NamedTuple, Protocol
 
@@ -73,6 +73,14 @@ class Estimator(Protocol):
 
     def mu(self, setpoint: Setpoint) -> float | None:
         """Return the coefficient expected at a setpoint; None where there is none, such as where it does not slide."""
+        ...
+
+    def outlooks(self, plan: Plan, steps: Sequence[StepEstimate]) -> Iterable[Outlook]:
+        """Return what is expected of each condition of a plan, in order, by the estimates of the plan's steps."""
+        ...
+
+    def reversible(self, step: ConditionStep) -> bool:
+        """Return whether a condition could be measured in both directions of sliding."""
         ...
 
     def budget(self, step: ConditionStep, outlook: Outlook = NEW) -> tuple[float, Budget] | None:

@@ -82,6 +82,14 @@ class PlainEstimator:
     def mu(self, setpoint: Setpoint) -> None:
         """Return None: no coefficient is expected."""
 
+    def outlooks(self, plan: Plan, steps: Sequence[StepEstimate]) -> Iterator[Outlook]:
+        """Yield that nothing is worn off."""
+        return (NEW for _ in plan.conditions())
+
+    def reversible(self, step: ConditionStep) -> bool:
+        """Return False: it slides one way."""
+        return False
+
     def budget(self, step: ConditionStep, outlook: Outlook = NEW) -> None:
         """Return None: what the instruments add is not known."""
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
@@ -23,11 +23,16 @@ quoted = lru_cache(maxsize=1024)(encode)
 
 
 def json_chunks(
-    plan: Plan, estimate: Estimate, part: RecipePart, merged: Sequence[MergedConditions] = ()
+    plan: Plan,
+    estimate: Estimate,
+    part: RecipePart,
+    merged: Sequence[MergedConditions] = (),
+    uncertainty: Mapping[str, object] | None = None,
 ) -> Iterator[str]:
     """Yield the plan as JSON text, piece by piece, a step a line: a plan may have hundreds of thousands.
 
-    ``merged``: conditions that are steps of the plan once, and stand in several grids of its recipe.
+    ``merged``: conditions that are steps of the plan once, and stand in several grids of its recipe. ``uncertainty``:
+    what is foreseen of it (``tester.recipe.foreseen``).
     """
     head: dict[str, object] = {
         "recipe": plan.name,
@@ -37,6 +42,7 @@ def json_chunks(
         "rig_seconds_high": round(estimate.rig_seconds_high, 1),
         "sliding_m": round(estimate.sliding_m, 2),
         **part.plan_fields(plan, estimate),
+        **({"uncertainty": dict(uncertainty)} if uncertainty else {}),
         "not_held": list(estimate.not_held),
         "merged": [one.as_data() for one in merged],
         "specimens": [{"index": one.index, "compound": one.compound, "note": one.note} for one in plan.specimens],

@@ -6,14 +6,14 @@ uncertainty below that floor is refused.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
 from math import inf, sqrt
 from typing import TypeVar
 
 from tester.analysis.repeatability import Pool
 from tester.axes import condition_words
 from tester.recipe.estimate import Estimate, Estimator
+from tester.recipe.foreseen import Foreseen
 from tester.recipe.plan import ConditionStep, Plan
 from tester.recipe.repeats import HISTORIC_PERCENT, needed, reached_percent, s_of_values
 from tester.recipe.schema import MAX_REPEATS, Recipe, RepeatsModel
@@ -25,56 +25,34 @@ class PrecisionError(Exception):
     """A total uncertainty that cannot be reached; the message names the floor and its largest term."""
 
 
-@dataclass(frozen=True, slots=True)
-class Floor:
-    """Expanded uncertainty (95 %) that repeating does not lower, per cent of the coefficient, and its largest term."""
-
-    percent: float
-    largest: str
-    largest_percent: float
-    """Expanded, as the floor is."""
-    step: ConditionStep
+def floor_percent(one: Foreseen) -> float:
+    """Return the expanded uncertainty (95 %) that repeating does not lower, per cent of the coefficient."""
+    return 100.0 * one.instruments.expanded / one.mu
 
 
-def floors(plan: Plan, estimator: Estimator) -> Iterator[Floor]:
-    """Yield the floor of every condition that slides."""
-    known: dict[tuple[object, ...], Floor] = {}
-    for step in plan.conditions():
-        key = step.setpoint.compound, step.setpoint.values
-        if key not in known:
-            found = _floor(step, estimator)
-            if found is None:
-                continue
-            known[key] = found
-        yield known[key]
-
-
-def _floor(step: ConditionStep, estimator: Estimator) -> Floor | None:
-    found = estimator.budget(step)
-    if found is None:
-        return None
-    mu, budget = found
-    worst = max(budget.contributions, key=lambda one: one.standard)
-    share = 100.0 * budget.coverage / mu
-    return Floor(share * budget.standard, worst.name, share * worst.standard, step)
-
-
-def until_for_total(total_percent: float, plan: Plan, estimator: Estimator) -> float:
+def until_for_total(total_percent: float, found: Sequence[Foreseen]) -> float:
     """Return the repeatability (expanded, per cent) with which every condition has this total uncertainty.
 
     Raises PrecisionError where the instruments alone have more.
     """
-    highest = max(floors(plan, estimator), key=lambda one: one.percent, default=None)
+    highest = max(found, key=floor_percent, default=None)
     if highest is None:
         return total_percent
-    if total_percent <= highest.percent:
+    floor = floor_percent(highest)
+    if total_percent <= floor:
         where = condition_words(highest.step.setpoint)
-        largest = f"{highest.largest} {highest.largest_percent:.2f} %"
+        largest = "{} {:.2f} %".format(*_largest(highest))
         raise PrecisionError(
-            f"a total uncertainty of {total_percent:g} % cannot be reached: {where} has {highest.percent:.2f} % from "
+            f"a total uncertainty of {total_percent:g} % cannot be reached: {where} has {floor:.2f} % from "
             f"the instruments alone (95 %), of which {largest}; repeating does not lower it"
         )
-    return sqrt(total_percent**2 - highest.percent**2)
+    return sqrt(total_percent**2 - floor**2)
+
+
+def _largest(one: Foreseen) -> tuple[str, float]:
+    """Return the largest term of the instruments, and what it is expanded, per cent."""
+    worst = max(one.instruments.contributions, key=lambda term: term.standard)
+    return worst.name, 100.0 * one.instruments.coverage * worst.standard / one.mu
 
 
 def with_precision(recipe: AnyRecipe, percent: float) -> AnyRecipe:
@@ -93,8 +71,13 @@ def with_precision(recipe: AnyRecipe, percent: float) -> AnyRecipe:
     return recipe.model_copy(update={"measure": measure, "grids": grids})
 
 
-def precision_lines(plan: Plan, estimate: Estimate, estimator: Estimator, pools: Mapping[str, Pool]) -> Iterator[str]:
-    """Yield what the precision takes, where a plan asks for one: repeats, where s is from, what stands beside it."""
+def precision_lines(
+    plan: Plan, estimate: Estimate, estimator: Estimator, pools: Mapping[str, Pool], found: Sequence[Foreseen]
+) -> Iterator[str]:
+    """Yield what the precision takes, where a plan asks for one: repeats, where s is from, what stands beside it.
+
+    ``found``: what is foreseen of the plan's conditions.
+    """
     asked = [step for step in plan.conditions() if step.until_percent is not None]
     if not asked:
         return
@@ -115,11 +98,11 @@ def precision_lines(plan: Plan, estimate: Estimate, estimator: Estimator, pools:
         step = short[0]
         most = reached_percent(step, estimator.s_percent(step.setpoint.compound))
         yield f"                  at_most {step.at_most} repeats reach {most:.2g} % only, in {len(short)} conditions"
-    highest = max(floors(plan, estimator), key=lambda one: one.percent, default=None)
+    highest = max(found, key=floor_percent, default=None)
     if highest is not None:
-        least = min(one.percent for one in floors(plan, estimator))
-        part = f"largest: {highest.largest}, {highest.largest_percent:.2g} %"
-        yield f"                  the instruments add {least:.2g} to {highest.percent:.2g} % ({part})"
+        least = min(map(floor_percent, found))
+        part = "largest: {}, {:.2g} %".format(*_largest(highest))
+        yield f"                  the instruments add {least:.2g} to {floor_percent(highest):.2g} % ({part})"
 
 
 def _short(step: ConditionStep, estimator: Estimator) -> bool:

@@ -7,15 +7,20 @@ first. A name that no file has is a name and no more.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from hashlib import sha256
 from pathlib import Path
 
 import recipes
 from sim.physics.materials import UnknownMaterialError
+from tester.base.source import InvalidSource
 from tester.materials.files import FOLDERS, MaterialFile, Role
 from tester.materials.library import Library
+from tester.materials.schema import CompoundModel
 from tester.recipe.schema import Recipe
+from tester.rig import Rig
+from tester.run.kinds import run_parts
 from tester.store.files import write_whole
 from tester.store.records import StoredMaterial
 from tester.store.statements import text_sha256
@@ -65,6 +70,20 @@ def used_materials(recipe: Recipe, path: Path, leave_out: Iterable[str] = ()) ->
             continue
         files.append(loaded.file)
     return UsedMaterials(tuple(files), tuple(bare))
+
+
+def described_compounds(recipe: Recipe, path: Path, rig: Rig) -> dict[str, CompoundModel]:
+    """Return what the files of a recipe's compounds say, by name; nothing where rubber on the rig is not as they say.
+
+    A file that cannot be read is left out: what is wrong with it is a problem of the recipe, not of this.
+    """
+    if not run_parts(rig).rubs_as_described(rig):
+        return {}
+    library, found = Library.beside(path), dict[str, CompoundModel]()
+    for name in dict.fromkeys(one.compound for one in recipe.specimens):
+        with suppress(UnknownMaterialError, InvalidSource):
+            found[name] = library.compound(name).model
+    return found
 
 
 def _named(recipe: Recipe) -> Iterator[tuple[Role, str]]:

@@ -13,10 +13,11 @@ from tester.kinds.wheel_on_belt.recipe.estimate import WheelEstimator
 from tester.kinds.wheel_on_belt.recipe.expand import expand
 from tester.kinds.wheel_on_belt.recipe.part import PART
 from tester.recipe.estimate import estimate
+from tester.recipe.foreseen import Foreseen, foreseen
 from tester.recipe.plan import Plan
 from tester.recipe.precision import (
     PrecisionError,
-    floors,
+    floor_percent,
     precision_lines,
     s_percents,
     until_for_total,
@@ -84,7 +85,8 @@ def test_what_is_stored_counts() -> None:
 def lines(pools: dict[str, Pool]) -> str:
     estimator = WheelEstimator(rig(), repeatability=s_percents(pools))
     plan = expand(with_precision(recipe(PREPARED), 2.0), rig(), estimator)
-    return "\n".join(precision_lines(plan, estimate(plan, estimator), estimator, pools))
+    figures = estimate(plan, estimator)
+    return "\n".join(precision_lines(plan, figures, estimator, pools, foreseen(plan, figures.steps, estimator)))
 
 
 def test_the_plan_says_where_the_deviation_is_from() -> None:
@@ -96,21 +98,27 @@ def test_the_plan_says_where_the_deviation_is_from() -> None:
 def test_a_plan_without_a_precision_says_nothing_of_it() -> None:
     plan = small_plan()
     estimator = WheelEstimator(rig())
-    assert list(precision_lines(plan, estimate(plan, estimator), estimator, {})) == []
+    assert list(precision_lines(plan, estimate(plan, estimator), estimator, {}, small())) == []
 
 
 def small_plan() -> Plan:
     return expand(recipe(PREPARED), rig())
 
 
+def small() -> list[Foreseen]:
+    estimator, plan = WheelEstimator(rig()), small_plan()
+    return foreseen(plan, estimator.walk(plan), estimator)
+
+
 def test_a_total_below_what_the_instruments_have_is_refused_by_its_largest_term() -> None:
-    highest = max(floors(small_plan(), WheelEstimator(rig())), key=lambda one: one.percent)
-    told = f"{highest.percent:.2f} % from the instruments .* of which {highest.largest}"
+    highest = max(small(), key=floor_percent)
+    largest = max(highest.instruments.contributions, key=lambda one: one.standard).name
+    told = f"{floor_percent(highest):.2f} % from the instruments .* of which {largest}"
     with pytest.raises(PrecisionError, match=told):
-        until_for_total(0.9 * highest.percent, small_plan(), WheelEstimator(rig()))
+        until_for_total(0.9 * floor_percent(highest), small())
 
 
 def test_a_total_leaves_to_the_repeats_what_the_instruments_do_not_take() -> None:
-    highest = max(one.percent for one in floors(small_plan(), WheelEstimator(rig())))
-    until = until_for_total(highest + 1.0, small_plan(), WheelEstimator(rig()))
+    highest = max(map(floor_percent, small()))
+    until = until_for_total(highest + 1.0, small())
     assert until**2 + highest**2 == pytest.approx((highest + 1.0) ** 2)

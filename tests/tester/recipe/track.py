@@ -80,6 +80,14 @@ class TrackEstimator:
     def mu(self, setpoint: Setpoint) -> None:
         """Return None: no coefficient is expected."""
 
+    def outlooks(self, plan: Plan, steps: Sequence[StepEstimate]) -> Iterator[Outlook]:
+        """Yield that nothing is worn off."""
+        return (NEW for _ in plan.conditions())
+
+    def reversible(self, step: ConditionStep) -> bool:
+        """Return False: it slides one way."""
+        return False
+
     def budget(self, step: ConditionStep, outlook: Outlook = NEW) -> tuple[float, Budget] | None:
         """Return nothing known."""
         return None

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Final
 
@@ -126,6 +126,14 @@ class TrackEstimator:
     def s_percent(self, compound: str) -> float:
         """Return the standard deviation between repeats that is expected, per cent of the coefficient."""
         return self.repeatability.get(compound, 100.0 * REPEATABILITY)
+
+    def outlooks(self, plan: Plan, steps: Sequence[StepEstimate]) -> Iterator[Outlook]:
+        """Yield that nothing is worn off."""
+        return (NEW for _ in plan.conditions())
+
+    def reversible(self, step: ConditionStep) -> bool:
+        """Return False: it slides one way."""
+        return False
 
     def budget(self, step: ConditionStep, outlook: Outlook = NEW) -> tuple[float, Budget] | None:
         """Return the coefficient expected of a condition, and what the instruments add to its uncertainty."""

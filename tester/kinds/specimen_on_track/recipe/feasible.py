@@ -8,7 +8,7 @@ from typing import Final
 
 from tester.axes import Setpoint, condition_words
 from tester.base.source import Location, Problem, Tree
-from tester.kinds.specimen_on_track.axes import AXES, held_by
+from tester.kinds.specimen_on_track.axes import AXES
 from tester.kinds.specimen_on_track.recipe.estimate import TrackEstimator
 from tester.kinds.specimen_on_track.recipe.schema import track_settings
 from tester.kinds.specimen_on_track.rig import TrackConfig
@@ -51,7 +51,7 @@ def low_friction(rig: TrackConfig, recipe: Recipe, tree: Tree) -> Iterator[Probl
         result: list[tuple[float, str]] = []
         for entry in conditions_of(recipe, track_settings):
             setpoint = Setpoint(specimen.compound, entry.values, AXES)
-            mu = estimator.mu(specimen.compound, held_by(setpoint))
+            mu = estimator.mu(setpoint)
             if not LOW * mu >= lost:
                 result.append((mu, condition_words(setpoint)))
         if result:

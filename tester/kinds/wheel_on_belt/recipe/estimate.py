@@ -6,14 +6,14 @@ The times are sums of the moves that the executor makes; those of a condition ar
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from sim.physics.slip import slip_velocity
 from tester.analysis.terms import Size
 from tester.analysis.uncertainty import Budget
 from tester.axes import Setpoint
-from tester.kinds.wheel_on_belt.axes import held_by
+from tester.kinds.wheel_on_belt.axes import POSITIONED, held_by
 from tester.kinds.wheel_on_belt.budget import instruments_budget
 from tester.kinds.wheel_on_belt.recipe.body import Body
 from tester.kinds.wheel_on_belt.recipe.constants import CONSTANTS, EstimateConstants
@@ -185,6 +185,23 @@ class WheelEstimator:
         if slip_m_s < ROLLING_M_S:
             return None
         return self.costs.mu(sp.compound, sp.temperature_c, sp.load_n, slip_m_s, sp.sideslip_deg)
+
+    def outlooks(self, plan: Plan, steps: Sequence[StepEstimate]) -> Iterator[Outlook]:
+        """Yield how worn the wheel will be in the middle of each condition, and whether it is checked around it."""
+        worn: dict[int, float] = {}
+        wheel = 0
+        for step, one in zip(plan.steps, steps, strict=True):
+            if isinstance(step, Install):
+                wheel = step.wheel
+            before_mm = worn.get(wheel, 0.0)
+            worn[wheel] = before_mm + one.loss_mm
+            if isinstance(step, WheelCondition):
+                yield Outlook(before_mm + 0.5 * one.loss_mm, checked=step.wear_check != "never")
+
+    def reversible(self, step: ConditionStep) -> bool:
+        """Return whether a condition could be measured in both directions: it slides, and no angle is set."""
+        slides = held_by(step.setpoint).slip_velocity_m_s != 0.0
+        return slides and not any(step.setpoint.number(axis.name) for axis in POSITIONED)
 
     def budget(self, step: ConditionStep, outlook: Outlook = NEW) -> tuple[float, Budget] | None:
         """Return the coefficient expected, and what the instruments add to its uncertainty; None where it rolls."""

@@ -107,10 +107,10 @@ def test_an_estimate_asks_the_law_on_the_recipes_surface() -> None:
     plan = PART.expand(load_recipe(ON, PART, "bench.yaml").recipe, config)
     estimator = PART.estimator(config)
     held = held_by(next(iter(plan.conditions())).setpoint)
-    assert estimator.mu("SBR", held) == LIKELY_MU
+    assert estimator.mu_of("SBR", held) == LIKELY_MU
     estimator.walk(plan)
     law = make("persson", "SBR", setting=LawSetting(Library.beside(), "S0", 100.0))
-    assert estimator.mu("SBR", held) == pytest.approx(law.mu(held.temperature_c, held.load_n, held.track_m_s))
+    assert estimator.mu_of("SBR", held) == pytest.approx(law.mu(held.temperature_c, held.load_n, held.track_m_s))
 
 
 def test_a_wheel_has_no_law_of_materials() -> None:
