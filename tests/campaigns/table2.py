@@ -98,7 +98,7 @@ def rows_of(seed: int, text: str, overrides: tuple[str, ...]) -> list[Row]:
 
 def _row(seed: int, one: TableRow, database: sqlite3.Connection) -> Row:
     result, setpoint = one.result, one.info.setpoint
-    mu, slow = result.mu_corrected, setpoint.number("slip_velocity") == SLOW_M_S
+    mu, slow = result.mu, setpoint.number("slip_velocity") == SLOW_M_S
     if not (result.ok and isfinite(mu)):
         return Row(seed, condition_words(setpoint), slow, False, tuple(result.doubts), *2 * [float("nan")], "")
     said = "SELECT name, value FROM truth WHERE condition = ?"

@@ -55,6 +55,30 @@ def test_every_term_of_the_machine_is_looked_at_here() -> None:
     assert found().keys() == EXPECTED.keys()
 
 
+COMMON = {
+    "cell zero, friction": "", "cell zero, load": "", "wheel to wheel": "",
+    "diameter as installed": "piece", "diameter worn off": "piece",
+}  # fmt: skip
+"""What has the same error; of the others the rig."""
+
+
+@pytest.mark.parametrize("name", EXPECTED)
+def test_what_shares_a_term_s_error_is_known(name: str) -> None:
+    assert {one.name: one.common for one in contributions_of(TERMS, AT)}[name] == COMMON.get(name, "rig")
+
+
+@pytest.mark.parametrize("name", ["thermometer", "thermometer lag"])
+def test_a_coefficient_that_falls_with_temperature_is_off_the_other_way(name: str) -> None:
+    falls = {one.name: one.sensitivity for one in contributions_of(TERMS, replace(AT, per_kelvin=-PER_KELVIN))}
+    rises = {one.name: one.sensitivity for one in contributions_of(TERMS, AT)}
+    assert rises[name] > 0.0 and falls[name] == pytest.approx(-rises[name])
+
+
+def test_slower_than_a_tenth_of_a_metre_a_second_counts_as_that() -> None:
+    slow, slower = (found(replace(AT, sliding_m_s=speed))["wheel speed"] for speed in (0.1, 0.02))
+    assert slower == slow > 2.9 * found()["wheel speed"]
+
+
 BOTH = replace(AT, turning={"wheel_speed_m_s": 0.0, "belt_speed_m_s": -0.3})
 """Both directions: the belt at 0.5 and at 1.1 m/s."""
 LEFT = {

@@ -37,15 +37,15 @@ def setpoints(plan: WheelPlan) -> list[tuple[float, float]]:
 
 def test_table_2_has_55_distinct_conditions_a_compound() -> None:
     plan = table2()
-    found = [step.setpoint for step in plan.conditions() if not step.same_as]
+    found = [step.setpoint for step in plan.conditions() if not step.reference]
     assert len(found) == len(set(found)) == 165
     assert [sum(one.compound == name for one in found) for name in ("1#", "2#", "3#")] == [55, 55, 55]
 
 
 def test_three_replicates_of_table_2_are_495_conditions() -> None:
     plan = table2("replicates: 3\n")
-    assert sum(not step.same_as for step in plan.conditions()) == 495
-    assert len({step.row for step in plan.conditions()}) == 165
+    assert sum(not step.reference for step in plan.conditions()) == 495
+    assert len({step.row for step in plan.conditions() if not step.reference}) == 165
 
 
 def test_a_condition_is_held_and_measured_as_the_recipe_says() -> None:
