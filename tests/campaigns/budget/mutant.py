@@ -57,6 +57,9 @@ def survivors(hunted: Sequence[Mutant]) -> Iterator[tuple[Mutant, bool]]:
                 shutil.copytree(source, copy / part, ignore=shutil.ignore_patterns("__pycache__"))
             else:
                 shutil.copy(source, copy / part)
+        # Compiled once, by the hash of each source: a mutant is read anew even where size and second stay the same.
+        compiled = [sys.executable, "-m", "compileall", "-q", "--invalidation-mode", "checked-hash"]
+        subprocess.run([*compiled, *COPIED[:4]], cwd=copy, check=True)
         every = tuple(dict.fromkeys(file for one in hunted for file in one.tests))
         if every and not _passes(copy, every):
             raise RuntimeError("the unchanged copy does not pass its tests")
@@ -77,9 +80,9 @@ def _lives(mutant: Mutant, copy: Path) -> bool:
 
 
 def _passes(copy: Path, tests: Sequence[str]) -> bool:
-    command = [sys.executable, "-B", "-m", "pytest", "-n", "0", "-q", "-x", "-p", "no:cacheprovider", *tests]
-    done = subprocess.run(command, cwd=copy, capture_output=True, check=False,
-                          env=os.environ | {"PYTHONPATH": str(copy)})  # fmt: skip
+    command = [sys.executable, "-B", "-m", "pytest", "-o", "addopts=", "-q", "-x", "-p", "no:cacheprovider", *tests]
+    plain = {"PYTHONPATH": str(copy), "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"}  # no plugin's import is waited for
+    done = subprocess.run(command, cwd=copy, capture_output=True, check=False, env=os.environ | plain)
     if done.returncode not in (0, 1, 2):  # 2: a mutant that no module can be read with any more
         raise RuntimeError(f"pytest ended with {done.returncode}: {done.stdout.decode()[-500:]}")
     return done.returncode == 0

@@ -9,4 +9,5 @@ from tests.campaigns.budget.mutant import Mutant
 def mutants() -> list[Mutant]:
     """Return all of them."""
     of_budgets = (terms.of_terms(), terms.of_formulas(), formulas.of_formulas(), formulas.of_structure())
-    return [one for some in (*of_budgets, parts.of_components()) for one in some]
+    of_parts = (parts.of_components(), parts.of_fits(), parts.of_masters())
+    return [one for some in (*of_budgets, *of_parts) for one in some]

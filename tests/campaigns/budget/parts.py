@@ -75,3 +75,104 @@ def of_components() -> Iterator[Mutant]:
     for path, tests, others in ((_COMPONENTS, _OF_COMPONENTS, _OTHERS), (_PAIRS, _OF_PAIRS, _OF_RUNS)):
         for name, old, new in others:
             yield Mutant(f"components: {name}", path, old, new, tests)
+
+
+_PROBLEM, _LACK, _RESAMPLE = "tester/fit/problem.py", "tester/fit/lack.py", "tester/fit/resample.py"
+_POINTS = "tester/results/fit_points.py"
+_OF_FIT = tests_of("fit/lack", "fit/joint")
+_OF_POINTS = tests_of("kinds/wheel_on_belt/fit/runs", "kinds/specimen_on_track/fit/runs")
+_FIT_SCALED: Final = (
+    (_PROBLEM, "weight of repeats", "squares = [(one.type_a**2 if", "squares = [({} * one.type_a**2 if"),
+    (_PROBLEM, "weight of what is a condition's own", "+ one.own**2 + one.between**2 for",
+     "+ {} * one.own**2 + one.between**2 for"),
+    (_PROBLEM, "weight of scatter between conditions", "+ one.own**2 + one.between**2 for",
+     "+ one.own**2 + {} * one.between**2 for"),
+    (_PROBLEM, "prior of a common error", "of_prior = self.reference * (", "of_prior = {} * self.reference * ("),
+    (_PROBLEM, "size of a common error", "error = one.standard * z", "error = {} * one.standard * z"),
+    (_LACK, "repeats in the denominator", "repeats = fmean(one.type_a**2", "repeats = {} * fmean(one.type_a**2"),
+    (_LACK, "a condition's own part in the denominator", "own, between = fmean(one.own**2",
+     "own, between = {} * fmean(one.own**2"),
+    (_LACK, "scatter between conditions in the denominator", ", fmean(one.between**2 for one in points)",
+     ", {} * fmean(one.between**2 for one in points)"),
+    (_LACK, "F of the residuals", "f = np.sum(residuals**2, axis=-1) / self._df / scale",
+     "f = {} * np.sum(residuals**2, axis=-1) / self._df / scale"),
+    (_LACK, "what is visible", "visible = denominator.standard * chance",
+     "visible = {} * denominator.standard * chance"),
+    (_RESAMPLE, "own errors of resamples", "+ spread * problem.sigma", "+ {} * spread * problem.sigma"),
+    (_RESAMPLE, "common errors of resamples", "prior = fitted[free:] + random", "prior = fitted[free:] + {} * random"),
+)  # fmt: skip
+_FIT_OTHERS: Final = (
+    (_PROBLEM, "conditions count alike", "self.weight: Array = self.reference / self.sigma",
+     "self.weight: Array = np.ones(len(points))"),
+    (_PROBLEM, "conditions that scatter more count more", "self.weight: Array = self.reference / self.sigma",
+     "self.weight: Array = self.sigma / self.reference"),
+    (_LACK, "degrees of freedom of repeats are taken as many",
+     "df = (repeats + own + between) ** 2 / squares if squares", "df = inf if squares"),
+    (_LACK, "what is fitted takes nothing up", "self._df = size - self._taken.shape[1]", "self._df = size"),
+    (_LACK, "chance has all of its errors left", "return errors - (errors @ self._taken) @ self._taken.T",
+     "return errors"),
+    (_LACK, "each test has the level of all", "if p[place] > LEVEL / (len(p) - rank):", "if p[place] > LEVEL:"),
+    (_LACK, "signs of next to nothing count", "(np.abs(residuals[:, : self._n]) > self._negligible)",
+     "(np.abs(residuals[:, : self._n]) >= 0.0)"),
+    (_LACK, "signs that keep are looked for the other way", "signs[:, pairs[:, 1]] <= 0.0",
+     "signs[:, pairs[:, 1]] >= 0.0"),
+    (_LACK, "neighbours differ in anything", "if i != variable)", "if i < 0)"),
+    (_LACK, "a law fails only where all tests do", "return any(test.failed", "return all(test.failed"),
+    (_LACK, "a power is that of one test", "np.mean(smallest <= LEVEL / len(p))", "np.mean(smallest <= 20.0 * LEVEL)"),
+    (_RESAMPLE, "intervals are of 68 %", "TAILS: Final = (0.025, 0.975)", "TAILS: Final = (0.16, 0.84)"),
+    (_RESAMPLE, "intervals are of 99.9 %", "TAILS: Final = (0.025, 0.975)", "TAILS: Final = (0.0005, 0.9995)"),
+    (_POINTS, "repeats count by the whole budget", "part.name == REPEATABILITY), None)", "True), None)"),
+    (_POINTS, "a mean is as uncertain as a repeat", "Scatter(share / sqrt(max(result.n_valid, 1)), source)",
+     "Scatter(share, source)"),
+    (_POINTS, "what rows share is a condition's own", "own is not bool(part.common)", "own is bool(part.common)"),
+    (_POINTS, "repeats count twice", "return {REPEATABILITY, TEMPERATURE_SENSITIVITY,",
+     "return {TEMPERATURE_SENSITIVITY,"),
+    (_POINTS, "a calibration is no common error", "median(factors) if factors else 0.0", "0.0"),
+    (_POINTS, "pieces do not differ", 'Common(f"{worn} to {worn}", between, piece=piece)',
+     'Common(f"{worn} to {worn}", 0.0, piece=piece)'),
+    (_POINTS, "a thermometer is right", "standard_of(terms, Acts.TEMPERATURE), temperature)", "0.0, temperature)"),
+    (_POINTS, "a doubt is no reason", 'return ", ".join(result.doubts)', 'return ""'),
+)  # fmt: skip
+_COLLAPSE, _VERDICT = "tester/master/collapse.py", "tester/master/verdict.py"
+_OF_MASTER = tests_of("master/collapse", "master/verdict")
+_MASTER_SCALED: Final = (
+    (_COLLAPSE, "residuals of resamples", "spread = one.residual * sqrt(", "spread = {} * one.residual * sqrt("),
+    (_COLLAPSE, "the thermometer in the interval", "thermometer_k = of.thermometer_k *",
+     "thermometer_k = {} * of.thermometer_k *"),
+    (_COLLAPSE, "what a temperature has in common", "in_common = _between(", "in_common = {} * _between("),
+    (_COLLAPSE, "what is known of a run's factor", "held = np.diag(PILOT /", "held = np.diag({} * PILOT /"),
+    (_VERDICT, "F of a test", "max(before - after, 0.0) / more", "{} * max(before - after, 0.0) / more"),
+)
+_MASTER_OTHERS: Final = (
+    (_COLLAPSE, "the interval is of 68 %", "[0.025, 0.975]", "[0.16, 0.84]"),
+    (_COLLAPSE, "the interval is of 99.9 %", "[0.025, 0.975]", "[0.0005, 0.9995]"),
+    (_COLLAPSE, "the scatter forgets what was fitted", "max(self.residual.size - self.parameters, 1))",
+     "max(self.residual.size - 6 * self.parameters, 1))"),
+    (_VERDICT, "no test of factors", "{_FACTORS: of.in_block,", "{"),
+    (_VERDICT, "no test of shifts", "_SHIFTS: slope * of.in_block,", ""),
+    (_VERDICT, "no test of the shape", ", _SHAPE: splines * warmer}", "}"),
+    (_VERDICT, "Ts is not among what is fitted", "if one.searched:\n        base",
+     "if not one.searched:\n        base"),
+    (_VERDICT, "a hundredth off is a failure", "chance = max(after / df, FLOOR**2)", "chance = after / df"),
+    (_VERDICT, "chance is what is left before", "chance = max(after / df,", "chance = max(before / df,"),
+    (_VERDICT, "one set in five is refused", "LEVEL: Final = 1e-4", "LEVEL: Final = 0.2"),
+    (_VERDICT, "a power law is one curve", "if one.u_factors_k > OPEN_K or not _bends(one):", "if False:"),
+    (_VERDICT, "temperatures that share nothing are one curve", "if apart:", "if False:"),
+    (_VERDICT, "an open Ts is one curve", "if high - low > WIDE_K:", "if False:"),
+)
+
+
+def of_fits() -> Iterator[Mutant]:
+    """Yield mutants of fits: weights, denominators, tests and intervals, and what a run's conditions bring."""
+    for path, name, old, new in _FIT_SCALED:
+        yield from scaled(path, _OF_FIT, [(f"fit: {name}", old, new)])
+    for path, name, old, new in _FIT_OTHERS:
+        yield Mutant(f"fit: {name}", path, old, new, _OF_POINTS if path == _POINTS else _OF_FIT)
+
+
+def of_masters() -> Iterator[Mutant]:
+    """Yield mutants of master curves: what an interval holds, and what a verdict compares."""
+    for path, name, old, new in _MASTER_SCALED:
+        yield from scaled(path, _OF_MASTER, [(f"master: {name}", old, new)])
+    for path, name, old, new in _MASTER_OTHERS:
+        yield Mutant(f"master: {name}", path, old, new, _OF_MASTER)
