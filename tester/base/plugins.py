@@ -104,7 +104,7 @@ class Plugins:
                     place = import_module(module)
                     found = attrgetter(attribute)(place) if attribute else place
                     content = Path(place.__file__).read_bytes() if place.__file__ else b""
-            except (ImportError, SyntaxError, AttributeError, OSError, TypeError, UnicodeDecodeError) as error:
+            except (ImportError, SyntaxError, AttributeError, OSError, TypeError, ValueError) as error:
                 raise PluginError(f'extension "{name}" ({target}) cannot be loaded: {error}') from error
             known = version(distribution) if distribution else ""
             digest = sha256(content).hexdigest() if content else ""

@@ -1,8 +1,9 @@
 """Quantities as text: ``"0.8 m/s"`` to a float in the unit that the caller asks for.
 
-A closed table of the units of this domain, not a unit system: what is not in the table is refused, and the
-message names what would be accepted. Conversions are exact (rational arithmetic, rounded once), so
-``parse("800 mm/s", "m/s") == 0.8``. SI units: BIPM, The International System of Units, 9th edition (2019).
+A table of the units of this domain, not a unit system: what is not in the table is refused, and the message names what
+would be accepted. A kind of rig with a quantity of another kind adds it (``add_kind``). Conversions are exact (rational
+arithmetic, rounded once), so ``parse("800 mm/s", "m/s") == 0.8``. SI units: BIPM, The International System of Units,
+9th edition (2019).
 
 Absolute temperatures and temperature differences are two different kinds of field: ``Quantity("degC")`` is a
 temperature, ``Quantity("K")`` a difference (where ``2 degC`` and ``2 K`` are the same).
@@ -95,6 +96,34 @@ def _kinds_by_unit() -> dict[str, _Kind]:
 
 
 _KIND_OF = _kinds_by_unit()
+
+
+def add_kind(name: str, example: str, units: Mapping[str, float]) -> None:
+    """Add a kind of quantity to the table, before anything asks for its unit.
+
+    ``name`` with its article, such as "a viscosity"; ``example`` such as "50 mPa s"; ``units`` with the factor to the
+    first of them, which is 1: {"mPa s": 1, "Pa s": 1000}. The same kind may be added again. Raises UnitError for a unit
+    that is there already as another kind's, and for a factor that is not above 0.
+    """
+    factors = {unit: Fraction(factor) for unit, factor in units.items() if factor > 0.0 and math.isfinite(factor)}
+    if len(factors) < len(units) or next(iter(factors.values()), None) != 1:
+        raise UnitError(f"{name}: factors of units are above 0, that of the first is 1 (given {dict(units)})")
+    kind = _Kind(name, example, factors)
+    for unit in factors:
+        if _KIND_OF.get(unit, kind) != kind:
+            raise UnitError(f"{name}: the unit {unit} is that of {_KIND_OF[unit].name}")
+    _KIND_OF.update(dict.fromkeys(factors, kind))
+
+
+def known_unit(unit: str, of: str) -> None:
+    """Raise UnitError unless a unit is in the table; ``of``: what has it, for the message."""
+    if unit not in _KIND_OF:
+        near = difflib.get_close_matches(unit, [*_KIND_OF], n=1, cutoff=0.6)
+        meant = f", did you mean {near[0]}?" if near else ""
+        raise UnitError(
+            f"{of}: the unit {shown(unit)} is not in the table{meant} (expected one of {', '.join(_KIND_OF)}; "
+            "tester.base.units.add_kind adds a kind of quantity)"
+        )
 
 _SPELLINGS: dict[str, str] = {
     "°C": "degC", "℃": "degC", "deg C": "degC", "° C": "degC", "C": "degC", "celsius": "degC",

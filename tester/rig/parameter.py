@@ -11,7 +11,7 @@ from enum import Enum
 from typing import Final, TypeAlias
 
 from tester.base.config_reader import SUFFIXES, Range
-from tester.base.units import parse
+from tester.base.units import known_unit, parse
 
 SECTION: Final = "interlocks"
 """Of a rig file: where parameters stand."""
@@ -53,6 +53,10 @@ class Parameter:
     """
     because: str = ""
     """Why there."""
+
+    def __post_init__(self) -> None:
+        """Raise UnitError for a unit that the table lacks."""
+        known_unit(self.unit.replace(".", " "), f"interlock parameter {self.name}")
 
     def __deepcopy__(self, memo: dict[int, object]) -> Parameter:
         """Return itself: a copied rig looks its values up under the same parameters."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Final
 
-from tests.campaigns.budget.mutant import SIGNED, Mutant, scaled, tests_of
+from tests.campaigns.budget.mutant import Mutant, scaled, tests_of
 
 _COMPONENTS, _PAIRS = "tester/analysis/components.py", "tester/results/components.py"
 _OF_COMPONENTS, _OF_PAIRS = tests_of("analysis/components"), tests_of("results/components")
@@ -70,8 +70,7 @@ _OF_RUNS: Final = (
 def of_components() -> Iterator[Mutant]:
     """Yield mutants of adhesion and hysteresis by a film: weights, derivatives, what is common, and which pairs."""
     rows = [(f"components: {name}", old, new) for name, old, new in _SCALED]
-    yield from scaled(_COMPONENTS, _OF_COMPONENTS, [rows[0], rows[1], *rows[3:]])
-    yield from scaled(_COMPONENTS, _OF_COMPONENTS, [rows[2]], SIGNED)
+    yield from scaled(_COMPONENTS, _OF_COMPONENTS, rows)
     for path, tests, others in ((_COMPONENTS, _OF_COMPONENTS, _OTHERS), (_PAIRS, _OF_PAIRS, _OF_RUNS)):
         for name, old, new in others:
             yield Mutant(f"components: {name}", path, old, new, tests)

@@ -70,6 +70,22 @@ def test_the_film_is_taken_to_the_temperature_of_the_dry_contact() -> None:
     assert parts.hysteresis.common[SENSITIVITY][0] == pytest.approx(expected, rel=1e-12)
 
 
+def test_what_the_film_is_off_by_goes_with_it_to_that_temperature() -> None:
+    parts = by_film(result(2.0, at_c=33.0), result(1.2, 0.03, at_c=23.0), Slope(-0.05, 0.0, "known"))
+    own = hypot(0.03, hypot(CELL_N, WEIGHTS_N * 1.2) / LOAD_N)
+    assert parts.hysteresis.standard == pytest.approx(own * exp(-0.5), rel=1e-12)
+
+
+def test_a_sensitivity_is_taken_as_known_as_well_as_it_is_said_to_be() -> None:
+    parts = by_film(result(2.0), result(1.2), UNKNOWN)
+    assert parts.hysteresis.expanded == pytest.approx(1.96 * parts.hysteresis.standard, rel=1e-3)
+
+
+def test_the_fewest_degrees_of_freedom_of_a_common_error_stand_in_a_mean() -> None:
+    common = [PartValue(0.6, ((0.03, inf),), {"cell": (0.04, df)}) for df in (3.0, 50.0)]
+    assert mean_of(common).common["cell"][1] == 3.0
+
+
 def test_an_unknown_sensitivity_widens_what_differs_in_temperature() -> None:
     colder, same, warmer = (by_film(result(2.0, 0.02, at), result(1.2, 0.02), UNKNOWN) for at in (13.0, 23.0, 33.0))
     assert colder.share.value == same.share.value == warmer.share.value

@@ -71,6 +71,12 @@ def test_a_dotted_name_is_on_record_with_its_package(acme: Path) -> None:
     assert (found.loaded[0].distribution, found.loaded[0].version) == ("acme", "1.2")
 
 
+def test_a_module_that_refuses_its_own_values_cannot_be_loaded(acme: Path) -> None:
+    (acme / "wrong.py").write_text("raise ValueError('the unit \\'deg/min\\' is not in the table')\n")
+    with pytest.raises(PluginError, match=r"wrong:LAW.* cannot be loaded: the unit 'deg/min'"):
+        Plugins().load("laws", "wrong:LAW")
+
+
 def test_a_module_of_no_package_is_on_record_as_such(acme: Path) -> None:
     (acme / "loose.py").write_text("LAW = 1\n")
     found = Plugins()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from collections.abc import Iterator
 from typing import Annotated
 
 import pytest
@@ -11,6 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from pydantic import BaseModel, ValidationError
 
+from tester.base import units
 from tester.base.units import Quantity, UnitError, as_text, expected, parse, parse_one_of, shown, units_like
 
 UNITS = [
@@ -188,3 +190,36 @@ def test_the_schema_tells_editors_the_form() -> None:
 def test_units_load_without_pydantic() -> None:
     code = "import sys, tester.base.units; sys.exit('pydantic' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+@pytest.fixture
+def viscosity() -> Iterator[None]:
+    before = dict(units._KIND_OF)
+    units.add_kind("a viscosity", "50 mPa s", {"mPa s": 1, "Pa s": 1000})
+    yield
+    units._KIND_OF.clear()
+    units._KIND_OF.update(before)
+
+
+@pytest.mark.usefixtures("viscosity")
+def test_a_kind_that_was_added_is_read_in_all_its_units() -> None:
+    assert (parse("0.05 Pa s", "mPa s"), parse("50 mPa s", "mPa s")) == (50.0, 50.0)
+    with pytest.raises(UnitError, match="a viscosity such as"):
+        parse("50 N", "mPa s")
+
+
+@pytest.mark.usefixtures("viscosity")
+def test_a_unit_of_another_kind_is_not_taken_over() -> None:
+    with pytest.raises(UnitError, match="the unit N is that of a force"):
+        units.add_kind("a weight", "5 N", {"N": 1})
+
+
+@pytest.mark.parametrize("wrong", [{"P": 0.0}, {"P": 100.0}, {}])
+def test_units_without_factors_are_refused(wrong: dict[str, float]) -> None:
+    with pytest.raises(UnitError, match="above 0"):
+        units.add_kind("a viscosity", "1 P", wrong)
+
+
+def test_a_unit_that_the_table_lacks_is_named_with_what_is_there_and_how_to_add_one() -> None:
+    with pytest.raises(UnitError, match=r'mine: the unit "mm/ss".*did you mean.*expected one of m/s.*add_kind'):
+        units.known_unit("mm/ss", "mine")
