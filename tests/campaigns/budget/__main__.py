@@ -32,8 +32,8 @@ CALLED_ON_THE_TWIN = (1.0, 11.0)
 """Share of pairs of wheels of one compound, on the simulated rig, that are called different, per cent."""
 SURE = 2.5
 """A figure of a sample may miss by so many of its own standard deviations."""
-EVERY = 5
-"""The sample hunts every fifth mutant."""
+EVERY = 20
+"""The sample hunts every twentieth mutant."""
 
 
 def _within(name: str, hits: int, count: int, low: float, high: float, *, exact: bool) -> Figure:
