@@ -145,7 +145,7 @@ def plan(
     from tester.recipe.plan_json import json_chunks
     from tester.recipe.precision import PrecisionError, precision_lines, s_percents, until_for_total, with_precision
     from tester.recipe.sensitivity import known_slopes
-    from tester.run.kinds import checked_recipe, recipe_part, served_kind
+    from tester.run.kinds import checked_recipe, recipe_part
     from tester.run.materials import described_compounds
     from tester.run.rigs import load_rig
 
@@ -173,7 +173,7 @@ def plan(
 
         compounds = dict.fromkeys(one.compound for one in wanted.specimens)
         pools = repeatability(out or RUNS, compounds, simulated=rig.simulated)
-    estimator, worn = part.estimator(rig, s_percents(pools)), served_kind(rig).machine.specimen
+    estimator = part.estimator(rig, s_percents(pools))
     with _nothing_collected():
         steps = part.expand(wanted, rig, estimator)
         figures = estimate(steps, estimator)
@@ -186,7 +186,7 @@ def plan(
             return
         sys.stdout.writelines(f"{line}\n" for line in lines(steps, figures, part))
         sys.stdout.writelines(f"{one.sentence()}\n" for one in merged)
-        sys.stdout.writelines(f"{line}\n" for line in foreseen_lines(found, estimator, terms, worn))
+        sys.stdout.writelines(f"{line}\n" for line in foreseen_lines(found, estimator, terms))
         sys.stdout.writelines(f"{line}\n" for line in precision_lines(steps, figures, estimator, pools, found))
 
 

@@ -93,13 +93,6 @@ class KindRun(Protocol):
         and drives are known without it."""
         ...
 
-    def rubs_as_described(self, rig: Rig) -> bool:
-        """Return whether rubber on this rig follows temperature as its compound's file says.
-
-        A simulated rig may rub by any law: a file tells nothing of that.
-        """
-        ...
-
     def store_state(self, run: Run, recorder: Recorder, now_s: float) -> None:
         """Store what an interruption would lose of the state of the specimen; about once a second of wall time, while
         the rig is connected, beside the scan. ``now_s``: rig time."""

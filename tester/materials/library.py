@@ -12,18 +12,19 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import recipes
 from sim.physics.materials import Rubber, Shear, ShearModulus, Sinusoid, Spectrum, Surface, UnknownMaterialError
-from sim.physics.moduli import ConstantModulus, DmaRow, FractionalZener, TabulatedModulus
-from sim.physics.roughness import SelfAffine, TabulatedSpectrum
 from tester.base.source import InvalidSource, Problem, load_tree
 from tester.base.units import shown
 from tester.materials.compound import LoadedCompound, load_compound
 from tester.materials.files import FOLDERS, Role
 from tester.materials.moduli import ModuliTable
 from tester.materials.schema import CompoundModel, ModuliModel, WaveModel
-from tester.materials.surface import LoadedSurface, load_surface
+
+if TYPE_CHECKING:
+    from tester.materials.surface import LoadedSurface
 
 VARIABLE = "TESTER_MATERIALS"
 """Environment variable: the laboratory's folder, with ``compounds`` and ``surfaces`` in it."""
@@ -95,6 +96,8 @@ class Library:
 
     def surface_file(self, name: str) -> LoadedSurface:
         """Return a surface's file. Raises UnknownMaterialError, InvalidSource."""
+        from tester.materials.surface import load_surface  # needs numpy, and a plan asks for compounds alone
+
         return load_surface(self._found("surface", name))
 
     def rubber(self, name: str) -> Rubber:
@@ -140,6 +143,8 @@ def rubber_of(loaded: LoadedCompound) -> Rubber:
 
 
 def _modulus(model: CompoundModel, moduli: ModuliModel, table: ModuliTable | None) -> ShearModulus:
+    from sim.physics.moduli import ConstantModulus, DmaRow, FractionalZener, TabulatedModulus  # needs numpy
+
     if moduli.constant is not None:
         return ConstantModulus(moduli.constant.G, moduli.constant.loss_factor)
     if moduli.fractional_zener is not None:
@@ -157,6 +162,8 @@ def _modulus(model: CompoundModel, moduli: ModuliModel, table: ModuliTable | Non
 
 def surface_of(loaded: LoadedSurface) -> Surface:
     """Return a surface as laws see it."""
+    from sim.physics.roughness import SelfAffine, TabulatedSpectrum  # needs numpy
+
     model = loaded.model
     spectrum: Spectrum | None = None
     if model.spectrum is not None:

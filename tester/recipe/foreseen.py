@@ -156,18 +156,13 @@ def _held(step: ConditionStep, axes: Axes | None) -> _Held:
     return setpoint.compound, tuple(axis.of(setpoint) for axis in setpoint.axes if axis.name != name)
 
 
-def foreseen_lines(
-    found: Sequence[Foreseen], estimator: Estimator, terms: Sequence[Term], worn: str
-) -> Iterator[str]:
-    """Yield what will be uncertain, for people: the range, the most, its largest term, and what halves that.
-
-    ``worn``: what they call what is mounted.
-    """
+def foreseen_lines(found: Sequence[Foreseen], estimator: Estimator, terms: Sequence[Term]) -> Iterator[str]:
+    """Yield what will be uncertain, for people: the range, the most, its largest term, and what halves that."""
     if not found:
         return
     worst, least = max(found, key=_percent), min(found, key=_percent)
     span = f"{least.percent:.2g} to {worst.percent:.2g}" if len(found) > 1 else f"{worst.percent:.2g}"
-    yield f"uncertainty       {span} % of this {worn} (expanded, 95 %), without drift"
+    yield f"uncertainty       {span} % of this piece (expanded, 95 %), without drift"
     largest = worst.largest
     where = condition_words(worst.step.setpoint)
     yield f"                  most at {where}; largest term {largest.name}, {worst.percent_of(largest):.2g} %"

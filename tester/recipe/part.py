@@ -92,6 +92,13 @@ class RecipePart(ABC):
         """Return what the rig's measuring chain may be off by: the machine's part of every budget."""
         return ()
 
+    def rubs_as_described(self, rig: Rig) -> bool:
+        """Return whether rubber on this rig follows temperature as its compound's file says.
+
+        A simulated rig may rub by any law: a file tells nothing of that.
+        """
+        return not rig.simulated
+
     def outlasted(self, recipe: Recipe, tree: Tree, rig: Rig) -> Iterator[Problem]:
         """Yield what a rig could do and a specimen would not outlast, of a recipe that is valid otherwise."""
         yield from ()

@@ -20,7 +20,7 @@ from tester.materials.library import Library
 from tester.materials.schema import CompoundModel
 from tester.recipe.schema import Recipe
 from tester.rig import Rig
-from tester.run.kinds import run_parts
+from tester.run.kinds import recipe_part
 from tester.store.files import write_whole
 from tester.store.records import StoredMaterial
 from tester.store.statements import text_sha256
@@ -77,7 +77,7 @@ def described_compounds(recipe: Recipe, path: Path, rig: Rig) -> dict[str, Compo
 
     A file that cannot be read is left out: what is wrong with it is a problem of the recipe, not of this.
     """
-    if not run_parts(rig).rubs_as_described(rig):
+    if not recipe_part(rig).rubs_as_described(rig):
         return {}
     library, found = Library.beside(path), dict[str, CompoundModel]()
     for name in dict.fromkeys(one.compound for one in recipe.specimens):

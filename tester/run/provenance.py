@@ -94,7 +94,7 @@ def run_info(
 
 def _known_slopes(plan: Plan, rig: Rig, materials: Sequence[StoredMaterial]) -> tuple[KnownSlope, ...]:
     """Return what the compounds' files say of friction over temperature, where it holds for the rubber on the rig."""
-    if not run_parts(rig).rubs_as_described(rig):
+    if not recipe_part(rig).rubs_as_described(rig):
         return ()
     files = [one for one in materials if one.role == "compound" and one.text]
     return tuple(known_slopes(plan, {one.name: compound_model(one.text or "", one.file) for one in files}))

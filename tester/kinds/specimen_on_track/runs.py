@@ -73,10 +73,6 @@ class TrackRuns:
         for number, weight_n in enumerate(TrackConfig.of(rig).weights, start=1):
             yield Calibration("weights", f"set {number}", repr(weight_n), "N")
 
-    def rubs_as_described(self, rig: Rig) -> bool:
-        """Return True on a machine; a simulated track rubs by its law alone."""
-        return not rig.simulated
-
     def store_state(self, run: Run, recorder: Recorder, now_s: float) -> None:
         """Store how far the specimen has slid."""
         on = run.engine.ctx.on

@@ -6,7 +6,6 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import ClassVar, Final
 
-from sim.physics.friction import MODEL_NAMES
 from tester.kinds.wheel_on_belt.build import build_run
 from tester.kinds.wheel_on_belt.context import Attendant, Nobody
 from tester.kinds.wheel_on_belt.heatings import known_heat
@@ -74,10 +73,6 @@ class WheelRuns:
             yield Calibration("load_cell", "cell sensitivity", repr(known.cell_sensitivity), "1")
         yield Calibration("wheel", "diameter when new", repr(geometry.wheel_diameter_mm), "mm")
         yield Calibration("belt", "roller diameter", repr(geometry.belt_roller_diameter_mm), "mm")
-
-    def rubs_as_described(self, rig: Rig) -> bool:
-        """Return True on a machine; on a simulated rig, whether its law is the paper's."""
-        return not rig.simulated or RigConfig.of(rig).sim.friction_model in MODEL_NAMES
 
     def store_state(self, run: Run, recorder: Recorder, now_s: float) -> None:
         """Store how worn the wheel is, and how far belt and wheel have come."""

@@ -109,10 +109,6 @@ class PlainRuns:
         """Yield nothing beside the figures of devices and drives."""
         yield from ()
 
-    def rubs_as_described(self, rig: Rig) -> bool:
-        """Return True on a machine; a simulated one rubs by its law alone."""
-        return not rig.simulated
-
     def store_state(self, run: Run, recorder: Recorder, now_s: float) -> None:
         """Store how far the specimen has slid."""
         ctx: PlainContext = run.engine.ctx

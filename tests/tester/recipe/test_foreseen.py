@@ -92,14 +92,14 @@ def test_a_term_that_nothing_halves_has_no_proposal() -> None:
 def test_lines_and_fields_say_the_same() -> None:
     found = of(SLOW % "")
     terms: tuple[Term, ...] = TERMS
-    fields, text = foreseen_fields(found, ESTIMATOR, terms), "\n".join(foreseen_lines(found, ESTIMATOR, terms, "wheel"))
+    fields, text = foreseen_fields(found, ESTIMATOR, terms), "\n".join(foreseen_lines(found, ESTIMATOR, terms))
     assert f"{fields['largest']}, {fields['largest_percent']:.2g} %" in text
     assert f"halved by {fields['halved_by']}: {fields['halved_percent']:.2g} %" in text
-    assert f"to {fields['most_percent']:.2g} % of this wheel" in text
+    assert f"to {fields['most_percent']:.2g} % of this piece" in text
 
 
 def test_where_nothing_slides_nothing_is_said() -> None:
-    assert list(foreseen_lines([], ESTIMATOR, TERMS, "wheel")) == [] and foreseen_fields([], ESTIMATOR, TERMS) == {}
+    assert list(foreseen_lines([], ESTIMATOR, TERMS)) == [] and foreseen_fields([], ESTIMATOR, TERMS) == {}
 
 
 def test_of_a_long_plan_some_conditions_are_looked_at() -> None:

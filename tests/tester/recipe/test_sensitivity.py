@@ -13,7 +13,7 @@ from tester.materials.compound import compound_model
 from tester.materials.library import Library
 from tester.materials.schema import CompoundModel
 from tester.recipe.sensitivity import LEAST_PERCENT, SHARE, known_slope, known_slopes
-from tester.run.kinds import run_parts
+from tester.run.kinds import recipe_part
 from tester.run.rigs import load_rig
 from tests.tester.recipe.test_precision import small_plan
 
@@ -81,9 +81,9 @@ def test_a_law_that_makes_no_sense_is_refused(changed: str, told: str) -> None:
 @pytest.mark.parametrize(("law", "described"), [("paper", True), ("v2", True), ("power", False)])
 def test_a_simulated_wheel_rubs_as_described_where_its_law_is_the_papers(law: str, described: bool) -> None:
     rig = load_rig("sim", (f"sim.friction_model={law}",))
-    assert run_parts(rig).rubs_as_described(rig) is described
+    assert recipe_part(rig).rubs_as_described(rig) is described
 
 
 def test_a_simulated_track_does_not() -> None:
     rig = load_rig("grosch")
-    assert not run_parts(rig).rubs_as_described(rig)
+    assert not recipe_part(rig).rubs_as_described(rig)

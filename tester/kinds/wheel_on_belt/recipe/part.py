@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import ClassVar, Final
 
+from sim.physics.friction import MODEL_NAMES
 from tester.analysis.terms import Term
 from tester.axes import Axes, numbers
 from tester.base.source import Location, Problem, Tree
@@ -77,6 +78,10 @@ class WheelPart(RecipePart):
         """Return what the measuring chain may be off by, the cell's calibration included."""
         known = RigConfig.of(rig).calibration
         return terms_of(known.cell_sensitivity, known.record)
+
+    def rubs_as_described(self, rig: Rig) -> bool:
+        """Return True on a machine; on a simulated rig, whether its law is the paper's."""
+        return not rig.simulated or RigConfig.of(rig).sim.friction_model in MODEL_NAMES
 
     def outlasted(self, recipe: Recipe, tree: Tree, rig: Rig) -> Iterator[Problem]:
         """Yield what would wear a wheel beyond ``wheel.replace_after`` in one go."""
