@@ -32,14 +32,18 @@ WRONG_BELIEFS = (
     "sim.belt_conductance=0.078 W/K",
     "sim.record_truth=true",
 )
-CONDITIONS = (("1#", 200, 300, 40), ("3#", 200, 300, 55), ("2#", 100, 300, 25), ("1#", 300, 300, 70))
-"""Compound, load N, slip mm/s, temperature degC, in turns."""
+CONDITIONS = (
+    ("1#", 200, 300, 40, "never"), ("3#", 200, 300, 55, "never"), ("1#", 200, 100, 55, "each_condition"),
+    ("2#", 100, 300, 25, "never"), ("1#", 300, 300, 70, "never"), ("2#", 400, 100, 70, "each_condition"),
+)  # fmt: skip
+"""Compound, load N, slip mm/s, temperature degC, checks of the diameter, in turns: at 100 mm/s a diameter matters."""
 RECIPE = """recipe: true or not
 specimens: [{{compound: "{0}"}}]
 replicates: 2
 pre_grind: {{wheel_speed: 0.8 m/s, belt_speed: 0.6 m/s, load: 200 N, duration: 4 min}}
 rest: {{at_least: 20 min, until: 25 degC, within: 2 degC}}
-measure: {{wheel_speed: 0.8 m/s, repeats: 3, window: 30 rev, temperature_band: 2 degC}}
+measure: {{wheel_speed: 0.8 m/s, repeats: 3, window: 30 rev, temperature_band: 2 degC,
+  wear_check: {4}}}
 grids:
   - {{name: one, slip_velocity: {2} mm/s, load: {1} N, temperature: {3} degC}}
 """
@@ -50,7 +54,7 @@ class Held:
     """What became of one seed: per cent by which the first wheel's value is off its truth, and whether U holds each."""
 
     seed: int
-    condition: tuple[str, int, int, int]
+    condition: tuple[str, int, int, int, str]
     off_percent: float
     u_percent: float
     this: bool
@@ -72,7 +76,7 @@ def _of_seed(seed: int) -> Held | None:
         return _run(Path(name), seed, CONDITIONS[seed % len(CONDITIONS)])
 
 
-def _run(folder: Path, seed: int, condition: tuple[str, int, int, int]) -> Held | None:
+def _run(folder: Path, seed: int, condition: tuple[str, int, int, int, str]) -> Held | None:
     recipe = folder / "recipe.yaml"
     recipe.write_text(RECIPE.format(*condition), encoding="utf-8")
     screen = Unseen()
