@@ -7,11 +7,13 @@ What is not known stays NaN, infinite or the value that trips.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from math import inf
+from math import inf, nan
 from typing import Any, Final
 
 from tester.machine.state import ControlState, Mode, StopProgress
+from tester.rig import Rig
 from tester.rig.parameter import Values
+from tester.rig.sensors import further_channels
 
 # Bound once: a look-up on the enum class costs several times as much in every scan (CPython 3.11).
 _HOLD: Final = Mode.HOLD
@@ -52,6 +54,18 @@ class ScanInputs:
     it in every scan."""
     attended: bool = False
     """A person was asked to come near; what hands do to sensors is nobody's fault."""
+
+    further_places: dict[str, int] = field(default_factory=dict[str, int])
+    """Place in ``readings.channels`` of each channel of a further sensor, by its name."""
+
+    def note_further(self, rig: Rig) -> None:
+        """Take over what a rig's further sensors measure."""
+        self.further_places = {one.name: place for place, one in enumerate(further_channels(rig))}
+
+    def further(self, channels: list[float], name: str) -> float:
+        """Return what a further sensor shows now, of ``readings.channels``; NaN, which trips, while that is unknown."""
+        place = self.further_places.get(name, len(channels))
+        return channels[place] if place < len(channels) else nan
 
     def note_times(self, state: ControlState[Any], now_s: float, scan_s: float) -> None:
         """Take over when this scan is, and how long mode and stop have been under way."""

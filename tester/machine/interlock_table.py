@@ -52,6 +52,8 @@ class InterlockTable:
         self.rows: tuple[Interlock, ...] = tuple(rows)
         self.operation: tuple[Parameter, ...] = tuple(operation)
         self.parameters: tuple[Parameter, ...] = (*parameters_of(self.rows), *self.operation)
+        self.channels: tuple[str, ...] = tuple(dict.fromkeys(name for row in self.rows for name in row.channels))
+        """Channels of further sensors that rows look at."""
         """Every key of the rig file's section ``interlocks``, in its order."""
         self._bits = {row.name: 1 << i for i, row in enumerate(self.rows)}
         self.always = self._group(ALWAYS)

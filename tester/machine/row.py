@@ -88,6 +88,9 @@ class Interlock:
     section once, with the first of them."""
     delay: Parameter | None = None
     """How long the condition must hold; None: it trips in its first scan."""
+    channels: tuple[str, ...] = ()
+    """Channels of further sensors that the condition looks at (``ScanInputs.further``), by their names in the record. A
+    rig file without such a sensor is refused."""
     when: When = ALWAYS
     compared: Callable[[Any], Compared] | None = None
     """Value and limit of a trip, for the record; asked when the row trips. None: what it looks at is no number."""

@@ -13,7 +13,7 @@ from tester.base.source import Location, Problem, Tree
 from tester.rig.cells import problems_of_cells
 from tester.rig.config import DeviceConfig, Rig
 from tester.rig.profiles import profile_of
-from tester.rig.sensors import channels_of, further_sensors, parts_of
+from tester.rig.sensors import channels_of, further_channels, further_sensors, parts_of
 
 MAX_BUS_LOAD = 0.5
 """Above this share of the bus the scan rate is refused: bursts of SDO and EMCY need the rest (fieldbus, wire sums)."""
@@ -30,7 +30,7 @@ _Found = Iterator[tuple[Location, str]]
 def problems_of(rig: Rig, tree: Tree) -> list[Problem]:
     """Return what does not fit together, the kind's own included, with positions."""
     found = [*_packaged(rig), *_nodes(rig), *_drives(rig), *_bus_load(rig), *_lines(rig), *_profiles(rig)]
-    found += [*_channels(rig), *problems_of_cells(rig), *_simulation(rig), *rig.problems()]
+    found += [*_channels(rig), *_watched(rig), *problems_of_cells(rig), *_simulation(rig), *rig.problems()]
     return [tree.problem(location, message) for location, message in found]
 
 
@@ -168,6 +168,19 @@ def _channels(rig: Rig) -> _Found:
         if not re.fullmatch("[a-z][a-z0-9_]*", channel):
             place = ("devices", name) if name in rig.devices else ("can", "nodes", name)
             yield place, f"channel {channel}: expected small letters, digits and _"
+
+
+def _watched(rig: Rig) -> _Found:
+    """Every channel that an interlock looks at is measured by a further sensor."""
+    try:
+        there = [one.name for one in further_channels(rig)]
+    except ProfileError:
+        return
+    for name in rig.watched:
+        if name not in there:
+            known = f"there are {', '.join(there)}" if there else "there is none"
+            message = f"an interlock looks at the channel {name}, which no further sensor measures"
+            yield ("devices",), f"{message} (expected a device or a node with it; {known})"
 
 
 def _is_own(rig: Rig, channel: str) -> bool:

@@ -178,6 +178,8 @@ class Rig:
     """Devices of the kind by their keys in ``devices``; any other there is a further sensor (tester.rig.sensors)."""
     parameters: ClassVar[tuple[Parameter, ...]] = ()
     """Of the section ``interlocks``. One that the packaged file does not have counts there with its default."""
+    watched: ClassVar[tuple[str, ...]] = ()
+    """Channels of further sensors that the kind's interlocks look at: a rig file has to have them."""
     quantities: ClassVar[Quantities]
     """The kind's table of channels, without those of further sensors (tester.rig.sensors.quantities_on)."""
     ceilings: ClassVar[tuple[Ceiling, ...]] = ()

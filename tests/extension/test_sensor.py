@@ -14,6 +14,7 @@ import pytest
 from sim.nodes.profile_slave import ProfileSlave
 from tester.cli.main import invoke
 from tester.kinds import load_rig, packaged_text
+from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.rig.sensors import quantities_on
 from tester.run.kinds import served_kind
 from tester.screen import Value
@@ -137,3 +138,19 @@ def test_a_channel_called_as_another_column_of_the_record_is_refused(capfd: pyte
     rig = ["--rig", "my-rig.yaml", "--set", taken, "--set", "devices.hygrometer.simulated={}"]
     assert invoke(["run", "short.yaml", *rig, "--yes"]) != 0
     assert "channel attempt: a repeat has another column of this name" in capfd.readouterr().err
+
+
+def test_an_interlock_s_channel_that_no_sensor_measures_is_a_problem_of_the_rig_file(
+    monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(RigConfig, "watched", ("humidity_percent", "room_c"))
+    assert invoke(["check", "short.yaml", "--rig", "my-rig.yaml"]) == 3
+    told = "an interlock looks at the channel room_c, which no further sensor measures"
+    assert f"{told} (expected a device or a node with it; there are humidity_percent, air_c)" in capfd.readouterr().err
+
+
+def test_an_interlock_reads_a_further_channel_by_its_name() -> None:
+    run = simulation()
+    view, channels = run.run.engine.control.view, run.ctx.readings.channels
+    assert view.further(channels, "humidity_percent") == pytest.approx(45.5, abs=0.1)
+    assert isnan(view.further(channels, "room_c"))

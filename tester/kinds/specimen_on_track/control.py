@@ -40,6 +40,7 @@ class TrackControl(Control[TrackState, TrackReadings, TrackDemand, TrackInputs])
         """``most_m_s``: the most that the recipe asks for; commands stay within it and the rig's own bound."""
         state, view = TrackState(TrackSetpoints(lift_mm=rig.arm.raised_mm)), TrackInputs()
         p = view.parameters = values_of(rig.interlocks, rig.table.parameters)
+        view.note_further(rig)
         view.stop, view.setpoints = state.stop, state.setpoints
         view.limits = _limits(rig)
         metres = rig.metres

@@ -145,6 +145,7 @@ class TrackConfig(Rig):
     quantities: ClassVar[Quantities] = QUANTITIES
     table: ClassVar[InterlockTable] = TABLE
     parameters: ClassVar[tuple[Parameter, ...]] = TABLE.parameters
+    watched: ClassVar[tuple[str, ...]] = TABLE.channels
     ceilings: ClassVar[tuple[Ceiling, ...]] = CEILINGS
     real: ClassVar[tuple[tuple[str, str], ...]] = (("# air around a real rig; the simulated one's is sim.ambient",
                                                     "# air around the rig"),)  # fmt: skip

@@ -63,6 +63,21 @@ def test_scatter_between_conditions_is_part_of_the_denominator() -> None:
     assert lack(wide).shown and not lack([replace(one, between=sqrt(0.05**2 - 0.01**2)) for one in wide]).shown
 
 
+def test_a_condition_weighs_by_its_repeats_what_is_its_own_and_the_scatter_between_conditions() -> None:
+    one = replace(point(0.0, 1.0), type_a=0.02, own=0.03, between=0.06, df=inf)
+    problem = FitProblem(LINE, [one, replace(one, own=0.0), replace(one, between=0.0), replace(one, type_a=0.0)], {})
+    assert problem.sigma == pytest.approx([0.07, sqrt(0.004), sqrt(0.0013), sqrt(0.0045)])
+    assert problem.weight * problem.sigma == pytest.approx(problem.reference)
+
+
+def test_the_denominator_is_made_of_the_same_three() -> None:
+    points = [replace(point(x, 1.0), type_a=0.02, own=0.03, between=0.06, df=8.0) for x in XS]
+    found = denominator_of(points)
+    assert found is not None and (found.repeats, found.own, found.between) == pytest.approx((0.02, 0.03, 0.06))
+    assert found.standard == pytest.approx(0.07)
+    assert found.df == pytest.approx(0.07**4 / (0.02**4 / 8.0))
+
+
 def test_without_repeats_it_cannot_be_told() -> None:
     found = lack([replace(one, type_a=float("nan"), df=0.0) for one in drawn(0, 0.02)])
     assert found.shown is None and found.tests == () and found.denominator is None

@@ -60,6 +60,7 @@ class InterlockInputs(Inputs):
         """Take over the parts of the rig file that conditions compare with, and the state they look at."""
         rig, state = self.rig, self.state
         self.parameters = p = values_of(rig.interlocks, rig.table.parameters)
+        self.note_further(rig)
         self.limits = limits_of(rig)
         self.setpoints, self.contact = state.setpoints, state.load
         self.stop, self.stop_start = state.stop, state.stop_start

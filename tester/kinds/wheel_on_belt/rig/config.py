@@ -68,6 +68,7 @@ class RigConfig(Rig):
     table: ClassVar[InterlockTable] = TABLE
     """The rows that control evaluates; a laboratory's own kind may have more."""
     parameters: ClassVar[tuple[Parameter, ...]] = TABLE.parameters
+    watched: ClassVar[tuple[str, ...]] = TABLE.channels
     ceilings: ClassVar[tuple[Ceiling, ...]] = CEILINGS
     real: ClassVar[tuple[tuple[str, str], ...]] = (
         ("the estimates and the thermal interlocks believe of the wheel. The simulated wheel behaves by `sim`\n",
