@@ -4,17 +4,20 @@ from __future__ import annotations
 
 from collections import defaultdict
 from dataclasses import replace
+from math import hypot
 from pathlib import Path
 
 import pytest
 
 from tester.analysis.kelvin import KnownSlope
+from tester.analysis.wear_check import WearCheck
 from tester.kinds.wheel_on_belt.budget import TERMS
 from tester.kinds.wheel_on_belt.quantities import QUANTITIES
 from tester.quantities import Means
 from tester.results.run_results import RunResults, results_of
 from tester.store.reader import RunReader
-from tester.store.records import PieceInfo
+from tester.store.records import PieceInfo, Travel
+from tests.tester.analysis.test_wear import FIRST
 from tests.tester.results.made import made
 from tests.tester.results.test_tables import table
 from tests.tester.store.build import CONDITION, PIECE, RUN, SPECIMENS, open_writer, record, result, small_run
@@ -127,6 +130,38 @@ def test_the_believed_wear_of_the_piece_is_in_the_budget(tmp_path: Path) -> None
         return next(float(row["standard_uncertainty"]) for row in found if row["term"] == "diameter worn off")
 
     assert (u(tmp_path / "new", 90.0), u(tmp_path / "worn", 89.4)) == pytest.approx((0.0, 0.6))
+
+
+def worn_between(folder: Path, checks: tuple[WearCheck, ...] = ()) -> list[tuple[float, str]]:
+    """Return the uncertainty of the loss, mm, and its source, of two conditions that wore a wheel by 2 mm in 200 m."""
+    writer = open_writer(folder)
+    conditions = [
+        replace(CONDITION, condition=i, row=i, setpoint=CONDITION.setpoint.but(load=100.0 * i)) for i in (1, 2)
+    ]
+    writer.begin_run(replace(RUN, terms=TERMS), SPECIMENS, conditions)
+    writer.piece_mounted(replace(PIECE, installed_diameter_mm=90.0, diameter_mm=88.0, sliding_m=200.0))
+    for check in checks:
+        writer.wear_check(check)
+    for condition, repeat in ((1, 1), (1, 2), (2, 1), (2, 2)):
+        key = writer.begin_repeat(condition, repeat, 1, 9.0, piece=1)
+        writer.travelled(1, Travel(0.0, 100.0 * (condition - 1) + 50.0 * (repeat - 1)), key)
+        writer.commit_repeat(key, result(0.7))
+    writer.close()
+    terms = [row for found in rows(folder).values() for row in found if row["term"] == "diameter worn off"]
+    return [(float(row["standard_uncertainty"]), row["source"]) for row in terms]
+
+
+def test_a_condition_has_the_loss_of_its_own_time(tmp_path: Path) -> None:
+    (first, _), (second, _) = worn_between(tmp_path)
+    assert (first, second) == pytest.approx((0.5, 1.375))  # in the middle of what it slid
+
+
+def test_checks_around_a_condition_are_its_own(tmp_path: Path) -> None:
+    check = replace(FIRST, t_s=5.0, reference_s=5.0, sliding_m=0.0, exposure_n_m=0.0, u_mm=0.01)
+    later = replace(check, t_s=50.0, diameter_mm=89.0, expected_mm=89.1, sliding_m=100.0, exposure_n_m=1e4)
+    (first, source), _ = worn_between(tmp_path, (check, later))
+    assert source == "checks of the diameter before and after it"
+    assert first == pytest.approx(hypot(0.5 * 0.01, 0.5 * 0.01, 0.5 * 0.1), rel=1e-3)
 
 
 def test_a_record_that_says_no_terms_has_those_of_its_kind(tmp_path: Path) -> None:
