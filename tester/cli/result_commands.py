@@ -50,6 +50,7 @@ def show(run: str, as_json: bool, with_budget: bool) -> None:
         with RunReader(folder) as reader:
             results, sessions, changes = results_of(reader), reader.sessions(), reader.changes()
             said, trips, commands = reader.exclusions(), [*reader.trips()], [*reader.commands()]
+            holds = [*reader.holds()]
     except StoreError as error:
         raise click.ClickException(str(error)) from error
     if as_json:
@@ -59,6 +60,7 @@ def show(run: str, as_json: bool, with_budget: bool) -> None:
             "exclusions": [_fields(word, _WORD, excluded=bool(word.excluded)) for word in said],
         }
         history["trips"] = [*map(_trip, trips)]
+        history["holds"] = [{"t_s": finite(one.t_s), "utc": one.utc, "text": one.text} for one in holds]
         history["commands"] = [{"t_s": finite(one.t_s), "utc": one.utc, "text": one.text} for one in commands]
         dump(_summary(folder.name, results) | history)
         return
@@ -77,6 +79,8 @@ def show(run: str, as_json: bool, with_budget: bool) -> None:
         click.echo(f"{change.subject} changed before stretch {change.session}: {shown(change.reason)}")
     for one in commands:
         click.echo(f"command at {duration(one.t_s)} of rig time, {one.utc}: {shown(one.text)}")
+    for one in holds:
+        click.echo(f"{one.text}, until {duration(one.t_s)} of rig time, {one.utc}")
     for trip in trips:
         compared = f" ({trip.compared})" if trip.compared else ""
         click.echo(f"trip at {duration(trip.t_s)} of rig time, {trip.utc}: {trip.interlock}{compared}")

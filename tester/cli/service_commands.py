@@ -211,7 +211,8 @@ def _show(state: StateView, as_json: bool) -> None:
 def _lines(state: StateView) -> list[str]:
     """Return a state in some lines."""
     run, progress = state.run, state.progress
-    lines = [f"{state.mode}  {state.mode_text}".rstrip()]
+    held = f"  for {duration(state.mode_since_s)}" if state.mode == "HOLD" else ""
+    lines = [f"{state.mode}  {state.mode_text}{held}".rstrip()]
     if state.risk:
         lines.append(f"risk     accepted: {state.risk}")
     if run is not None:

@@ -7,6 +7,7 @@ from enum import Enum
 from math import inf
 from typing import Final, Generic, TypeVar
 
+from tester.base.words import duration
 from tester.machine.image import BaseSetpoints
 from tester.machine.row import NOTHING_COMPARED, Compared, Reaction
 
@@ -43,6 +44,8 @@ class Trip:
     compared: Compared = NOTHING_COMPARED
 
 
+HELD: Final = "held"
+"""Kind of the event at the end of a hold; its text is how long it lasted."""
 ACKNOWLEDGED: Final = "acknowledged"
 """Kind of the event that ends a trip; its text is who has acknowledged."""
 
@@ -101,7 +104,9 @@ class ControlState(Generic[SetpointsT_co]):
         """Who gave it."""
 
     def enter(self, mode: Mode, now_s: float, why: str) -> None:
-        """Change the mode and journal it."""
+        """Change the mode and journal it; at the end of a hold, how long it lasted, too."""
+        if self.mode is Mode.HOLD:
+            self.events.append(ControlEvent(now_s, HELD, f"HOLD lasted {duration(now_s - self.mode_since_s)}"))
         self.events.append(ControlEvent(now_s, "mode", f"{self.mode.value} -> {mode.value}: {why}"))
         self.mode = mode
         self.mode_since_s = now_s

@@ -345,6 +345,11 @@ class RunReader:
         for row in self._rows("SELECT * FROM event WHERE kind = 'command' AND severity <> 'debug' ORDER BY sequence"):
             yield _record(StoredEvent, row)
 
+    def holds(self) -> Iterator[StoredEvent]:
+        """Yield the ends of holds, in order; each text is how long it lasted."""
+        for row in self._rows("SELECT * FROM event WHERE kind = 'held' ORDER BY sequence"):
+            yield _record(StoredEvent, row)
+
     def sessions(self) -> list[SessionInfo]:
         """Return the stretches in which the run was worked on, a process each."""
         return [_record(SessionInfo, row) for row in self._rows("SELECT * FROM session ORDER BY session")]

@@ -6,6 +6,7 @@ from copy import deepcopy
 
 import pytest
 
+from tester.base.words import duration
 from tester.machine.run import Outcome
 from tester.machine.state import Mode
 from tests.tester.kinds.wheel_on_belt.bench import SHORT, Simulation, in_burst
@@ -69,6 +70,14 @@ def test_no_sample_of_a_hold_belongs_to_a_repeat(held_run: Simulation) -> None:
     released = next(t for t, text in texts if text.startswith("hold -> run"))
     keys = {row["repeat_key"] for row in held_run.rows() if held < row["time_s"] <= released}
     assert keys == {0.0}
+
+
+def test_the_end_of_a_hold_says_how_long_it_lasted(held_run: Simulation) -> None:
+    events = held_run.notes.events
+    changes = "run -> hold", "hold ->"
+    began, ended = (next(t for t, _, text, _ in events if text.startswith(change)) for change in changes)
+    ((at, said),) = [(t, text) for t, kind, text, _ in events if kind == "held"]
+    assert at == ended and said == f"HOLD lasted {duration(ended - began)}"
 
 
 def test_the_surface_is_conditioned_again_after_a_hold(held_run: Simulation) -> None:
