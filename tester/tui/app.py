@@ -13,12 +13,13 @@ from textual.widget import Widget
 from textual.widgets import ContentSwitcher
 
 from tester.base import clock
-from tester.service.commands import Acknowledge, Hold, Release, ResumeRun, TakeControl
-from tester.service.state import RunView
+from tester.service.commands import Acknowledge, Hold, ListRuns, Release, TakeControl
+from tester.service.state import RunView, StateView
 from tester.tui.commissioning import FREE, begins_here, commission_rig
 from tester.tui.dialogs.confirm import AbortDialog, GoOnDialog
 from tester.tui.dialogs.dialog import Dialog
 from tester.tui.dialogs.log import TextDialog
+from tester.tui.dialogs.resume import ResumeDialog, resumable
 from tester.tui.gone import TITLE, death_text
 from tester.tui.host import HostApp, TuiOptions
 from tester.tui.pages.bus import BusPage
@@ -202,23 +203,35 @@ class TesterApp(HostApp):
         self.order(Acknowledge(alarm.number if alarm is not None else 0))
 
     def action_abort(self) -> None:
-        """Ask for the word."""
-        self.push_screen(AbortDialog())
+        """Ask for the word, while there is a run to abort."""
+        run = self.scene.state.run if self.scene.state is not None else None
+        if run is not None and run.outcome == UNDER_WAY:
+            self.push_screen(AbortDialog())
+        else:
+            self.say("nothing runs that could be aborted")
 
     def action_resume(self) -> None:
-        """Go on after HOLD, or with a run that was cut off, after the pre-flight list."""
+        """Go on after HOLD, or with a stored run that is not over, after the pre-flight list."""
         state = self.scene.state
         if state is None:
             return
         if state.mode == "HOLD":
             self.push_screen(GoOnDialog(state, Release(), "HOLD ends, the run goes on"))
-        elif state.mode in ("OFFLINE", "INTERRUPTED", "IDLE") and state.interrupted:
-            name = state.interrupted[-1]
-            speed = self.options.speed if state.simulated else 1.0
-            self.push_screen(GoOnDialog(state, ResumeRun(name, speed), f"{name} goes on"))
-            self.go_to("run")
+        elif state.mode == "LATCHED":
+            self.say("nothing begins before the trip is acknowledged: a acknowledges")
+        elif state.mode not in FREE:
+            self.say("the rig is in use: nothing to resume")
         else:
-            self.say("nothing to resume")
+            self.run_worker(self._offer_runs(state), group="orders", exit_on_error=False)
+
+    async def _offer_runs(self, state: StateView) -> None:
+        """Show the runs that `tester resume` goes on with, the newest first."""
+        answer = await self.ask(ListRuns())
+        runs = resumable(answer)
+        if runs:
+            self.push_screen(ResumeDialog(state, runs))
+        elif answer is not None:
+            self.say("nothing to resume: every stored run went through its plan")
 
     def action_take_control(self) -> None:
         """Take control from whoever has it."""
@@ -249,7 +262,7 @@ class TesterApp(HostApp):
         yield SystemCommand("STOP", "Software stop, at once (F12, Ctrl+X)", self.action_stop)
         yield SystemCommand("FAST STOP", "Quick stop of both drives, at once (F9, Ctrl+F)", self.action_fast_stop)
         yield SystemCommand("HOLD", "Lift and wait, keep the temperature (space)", self.action_hold)
-        yield SystemCommand("Resume", "End HOLD, or go on with a run that was cut off (r)", self.action_resume)
+        yield SystemCommand("Resume", "End HOLD, or go on with a run that is not over (r)", self.action_resume)
         yield SystemCommand("Abort…", "Controlled stop of the run (x)", self.action_abort)
         yield SystemCommand("Acknowledge", "The alarm of line 2 (a)", self.action_acknowledge)
         for key, title, name in self.SCREENS_HERE:

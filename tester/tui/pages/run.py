@@ -23,8 +23,8 @@ Each row: measured value, setpoint, unit, and a bar. On the bar ● is the value
 samples count, ├ and ┤ the limits at which something happens. A dim value with ? is old: it is not a value.
 
 space   HOLD: lift, nothing slides, keep the temperature. Costs at most the repeat under way, which is done again.
-r       resume after HOLD, or a run that was cut off: shows the pre-flight list first.
-x       abort: controlled stop of the run; type the word.
+r       resume after HOLD; else lists the runs that are not over (stopped, tripped, cut off). Shows the pre-flight list.
+x       abort: controlled stop of the run under way; type the word.
 a       acknowledge the alarm of line 2. Nothing moves by it.
 Enter   answer the question that waits: its buttons are shown. At the end of a run: its results.
 l       event log.

@@ -45,6 +45,8 @@ def idle_words(scene: ScreenScene, width: int) -> Parts:
             lines.append([fit(f" {len(run.missing)} without a value: {named}", width)])
     if len(lines) < 3 and state.interrupted:
         lines.append([(fit(f" {clean(state.interrupted[-1])} was cut off: r resumes it", width), NOTICE)])
+    elif len(lines) < 3 and run is not None and run.outcome not in (UNDER_WAY, "done", "incomplete"):
+        lines.append([(fit(" r goes on with it, or with another run that is not over", width), NOTICE)])
     if len(lines) < 3:
         lines.append([(fit(" F2 chooses a recipe", width), FAINT)])
     return rows(lines)

@@ -40,12 +40,14 @@ class PlayedQueries(Queries):
     answered: int = 0
     planned: int = 0
     listed: int = 0
+    stored: list[JsonValue] = field(default_factory=list[JsonValue])
+    """The runs that there are."""
 
     async def answer(self, question: Query) -> JsonValue:
         """Return what the service would."""
         if isinstance(question, ListRuns):
             self.listed += 1
-            return {"runs": []}
+            return {"runs": self.stored}
         if isinstance(question, ShowPlan):
             self.planned += 1
             await self.planning.wait()

@@ -9,7 +9,19 @@ from pathlib import Path
 import pytest
 
 from tester.run.rigs import load_rig
-from tester.service.commands import Acknowledge, Answer, Arm, Hold, Jog, Release, RunRecipe, Stop, Tare, WatchFrames
+from tester.service.commands import (
+    Acknowledge,
+    Answer,
+    Arm,
+    Hold,
+    Jog,
+    Release,
+    ResumeRun,
+    RunRecipe,
+    Stop,
+    Tare,
+    WatchFrames,
+)
 from tester.service.state import ManualView
 from tester.tui.pages.recipes import RecipesView
 from tests.tester.service.views import state as a_state
@@ -42,6 +54,48 @@ def test_abort_needs_its_word(house: House) -> None:
         assert not on.fake.orders
         await on.pilot.press("backspace", "backspace", *"abort", "enter")
         await on.ordered(Stop)
+
+    house.play(act)
+
+
+def test_where_nothing_runs_there_is_nothing_to_abort(house: House) -> None:
+    async def act(on: Stage) -> None:
+        view = a_state("OFFLINE")
+        assert view.run is not None
+        await on.show(replace(view, run=replace(view.run, outcome="stopped")))
+        await on.pilot.press("f3", "x")
+        await on.until(lambda: "nothing runs that could be aborted" in on.text(), "it says so")
+        assert len(on.app.screen_stack) == 1
+
+    house.play(act)
+
+
+def test_after_a_stop_the_runs_that_are_not_over_are_listed_and_the_chosen_one_goes_on(house: House) -> None:
+    async def act(on: Stage) -> None:
+        ended = {"conditions": 2, "repeats": 3, "repeats_planned": 6}
+        on.queries.stored = [
+            {"run": "2024-first", "status": "stopped", "can_resume": True, "started_utc": "2024-01-01", **ended},
+            {"run": "2024-over", "status": "done", "can_resume": False, "started_utc": "2024-01-02", **ended},
+            {"run": "2024-last", "status": "tripped", "can_resume": True, "started_utc": "2024-01-03", **ended},
+        ]
+        await on.show(a_state("OFFLINE"))
+        await on.pilot.press("f3", "r")
+        await on.until(lambda: "2024-first  stopped, 3 of 6 repeats committed" in on.text(), "the list is shown")
+        assert "2024-over" not in on.text() and on.text().index("2024-last") < on.text().index("2024-first")
+        await on.pilot.press("down", "enter")
+        await on.until(lambda: "2024-first goes on" in on.text(), "the pre-flight list is shown")
+        await on.pilot.press("enter")
+        assert (await on.ordered(ResumeRun)).run == "2024-first"  # type: ignore[union-attr]
+        on.queries.stored = []
+
+    house.play(act)
+
+
+def test_a_latched_rig_resumes_nothing_before_it_is_acknowledged(house: House) -> None:
+    async def act(on: Stage) -> None:
+        await on.show(a_state("LATCHED"))
+        await on.pilot.press("f3", "r")
+        await on.until(lambda: "nothing begins before the trip is acknowledged" in on.text(), "it says so")
 
     house.play(act)
 
@@ -124,7 +178,7 @@ def test_the_plan_is_shown_though_other_recipes_are_still_being_checked(house: H
         on.queries.checking.set()
         await on.until(lambda: on.queries.answered > before + 1, "a check is answered, and the next one asked for")
         on.queries.planning.set()
-        await on.until(lambda: "2 conditions, 1 wheel, 0:45 h" in on.text(), "the plan's totals are shown")
+        await on.until(lambda: "2 conditions, 1 wheel, 0:45:00 of rig time" in on.text(), "the plan's totals are shown")
 
     house.play(act)
 
