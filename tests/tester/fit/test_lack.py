@@ -10,8 +10,9 @@ import numpy as np
 import pytest
 
 from tester.fit.lack import Lack, denominator_of, lack_of, neighbours, power_of
-from tester.fit.law import FitPoint, Source
+from tester.fit.law import Common, FitPoint, Source
 from tester.fit.problem import FitProblem
+from tester.fit.resample import resample
 from tester.fit.solve import solve
 from tests.tester.fit.straight import LINE, line, point
 
@@ -68,6 +69,30 @@ def test_a_condition_weighs_by_its_repeats_what_is_its_own_and_the_scatter_betwe
     problem = FitProblem(LINE, [one, replace(one, own=0.0), replace(one, between=0.0), replace(one, type_a=0.0)], {})
     assert problem.sigma == pytest.approx([0.07, sqrt(0.004), sqrt(0.0013), sqrt(0.0045)])
     assert problem.weight * problem.sigma == pytest.approx(problem.reference)
+
+
+def test_an_error_in_common_is_held_by_its_own_uncertainty_and_no_more() -> None:
+    source = Source("run", (Common("gain", 0.05),))
+    points = [point(x, 1.0, source=source, type_a=0.02, df=inf) for x in XS]
+    problem = FitProblem(LINE, points, {})
+    off = problem.residuals(np.array([0.0, 0.5, 1.5]), problem.y, np.array([0.5]))
+    assert off[-1] == pytest.approx(0.02)  # one standard uncertainty, in units of the conditions' own
+    assert problem.logarithms(np.array([0.0, 0.0, 1.5])) == pytest.approx([1.5 * 0.05] * len(XS))
+
+
+def test_resamples_have_the_errors_that_the_fit_has() -> None:
+    source = Source("run", (Common("gain", 0.05),))
+    problem = FitProblem(LINE, [replace(one, source=source) for one in drawn(2, 0.02)], {})
+    fitted = solve(problem, [(1.0, 0.5)])
+    found = resample(problem, fitted, 999).parameters
+    jacobian = problem.jacobian(fitted, problem.y, np.zeros(1)) / problem.reference
+    left = problem.residuals(fitted, problem.y, np.zeros(1)) / problem.reference
+    spread = float(left @ left) / (len(XS) - 2) * (18.0 / 16.0)  # variance of Student's t, 18 degrees of freedom
+    data, prior = jacobian[:-1], jacobian[-1:]
+    taken = np.linalg.inv(jacobian.T @ jacobian)
+    covariance = taken @ (spread * data.T @ data + prior.T @ prior) @ taken
+    assert float(np.std(found[:, 1])) == pytest.approx(float(np.sqrt(covariance[1, 1])), rel=0.1)
+    assert float(np.std(np.log(found[:, 0]))) == pytest.approx(float(np.sqrt(covariance[0, 0])), rel=0.1)
 
 
 def test_the_denominator_is_made_of_the_same_three() -> None:
