@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import sys
+from html import unescape
 from pathlib import Path
 
 import pytest
 
 from tester.cli.main import invoke
+from tester.results.run_results import results_of
+from tester.store.reader import RunReader
 from tests.tester.kinds.wheel_on_belt.fit.made import made_run
+from tests.tester.results.test_settings import CHANGED, repeated_run
 
 
 @pytest.fixture
@@ -38,6 +42,18 @@ def test_a_report_of_several_runs_goes_where_it_is_told(home: Path, capsys: pyte
     made_run(home / "runs" / "two", [(25.0, 100.0, 0.3), (25.0, 200.0, 0.3)])
     assert out(capsys, "one", "two", "one", "--out", "sent/both.html").splitlines() == [str(Path("sent") / "both.html")]
     assert "Runs held against each other" in (home / "sent" / "both.html").read_text(encoding="utf-8")
+
+
+def test_a_setting_that_disagrees_is_in_the_report_in_the_words_of_show(
+    home: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    pytest.importorskip("matplotlib", reason="needs the extra `report`")
+    repeated_run(home / "runs" / "again", CHANGED)
+    with RunReader(home / "runs" / "again") as reader:
+        lines = list(results_of(reader).watch_lines())
+    out(capsys, "again")
+    text = unescape((home / "reports" / "again.html").read_text(encoding="utf-8"))
+    assert len(lines) == 2 and all(line in text for line in lines)
 
 
 def test_a_kind_that_is_not_installed_has_a_report_without_its_words(
