@@ -53,10 +53,10 @@ def make_ups_of(asked: int, made: int, refused: Collection[int]) -> tuple[int, .
 
     What is made beyond ``asked`` while none is owed is for precision, or to show that a drift is small: no make-up.
     """
-    owed, found = 0, list[int]()
+    owed, make_ups = 0, list[int]()
     for place in range(made):
         if place >= asked and owed:
             owed -= 1
-            found.append(place)
+            make_ups.append(place)
         owed += place in refused
-    return tuple(found)
+    return tuple(make_ups)

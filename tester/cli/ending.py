@@ -48,7 +48,7 @@ def ending_table(results: RunResults, folder: Path) -> Iterator[str]:
         axes = results.axes.columns(one.info.setpoint for one in listed)
         yield from table_lines(conditions.of(listed).view(Output.END, axis_keys(axes)), "remarks")
         yield shown(f"U: expanded uncertainty (95 %) of this {results.worn}; conditions.csv has the compound's")
-        yield from told_lines(results)
+        yield from tally_lines(results)
     yield from (shown(line) for line in results.watch_lines())
     if len(tried) > ROWS_AT_MOST:
         yield f"and {len(tried) - ROWS_AT_MOST} more conditions: {folder / 'conditions.csv'}"
@@ -56,7 +56,7 @@ def ending_table(results: RunResults, folder: Path) -> Iterator[str]:
         yield f"{len(results.rows) - len(tried)} of {len(results.rows)} conditions not measured"
 
 
-def told_lines(results: RunResults, width: int = WIDTH) -> Iterator[str]:
+def tally_lines(results: RunResults, width: int = WIDTH) -> Iterator[str]:
     """Yield how many conditions have a value and carry flags, then what each flag means and what to do about it."""
     for line in (tally_of(results).sentence, *flag_lines(results)):
         yield from wrap(shown(line), width, subsequent_indent="    ")

@@ -161,7 +161,7 @@ def _conditions(results: RunResults) -> Iterator[Json]:
 
 
 def _lines(name: str, results: RunResults) -> Iterator[str]:
-    from tester.cli.ending import risk_lines, told_lines
+    from tester.cli.ending import risk_lines, tally_lines
 
     run = results.run
     yield f"{name}: {shown(run.info.recipe_name)}"
@@ -177,7 +177,7 @@ def _lines(name: str, results: RunResults) -> Iterator[str]:
     if run.overruns:
         yield f"overruns {run.overruns} samples dropped"
     yield from _table(results)
-    yield from told_lines(results, SHOW_WIDTH)
+    yield from tally_lines(results, SHOW_WIDTH)
     left = sum(not row.tried for row in results.rows)
     if left:
         yield f"{left} of {len(results.rows)} conditions not measured"

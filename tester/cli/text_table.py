@@ -20,26 +20,25 @@ NAME_AT_MOST = 12
 def table_lines(table: Table[R], remarks: str, width: int = WIDTH) -> Iterator[str]:
     """Yield headings and rows; the first column names a row, the column ``remarks`` stands behind it or below."""
     behind = table[remarks]
-    columns = [one for one in table.columns if one.key != remarks]
-    marked = [any(one.mark_at(row) for row in table.rows) for one in columns]
-    top, bottom = zip(*(_two_lines(one.narrow_head, one.unit) for one in columns), strict=True)
-    cells = [
+    columns = [column for column in table.columns if column.key != remarks]
+    pads = [" " if any(column.mark_at(row) for row in table.rows) else "" for column in columns]
+    heads = zip(*(_two_lines(column.narrow_head, column.unit) for column in columns), strict=True)
+    lines = [[text + pad for text, pad in zip(head, pads, strict=True)] for head in heads]
+    lines += [
         [_cut(shown(columns[0].text(row))),
-         *(one.text(row) + (" " if has and not one.mark_at(row) else "")
-           for one, has in zip(columns[1:], marked[1:], strict=True))]
+         *(column.text(row) + ("" if column.mark_at(row) else pad)
+           for column, pad in zip(columns[1:], pads[1:], strict=True))]
         for row in table.rows
     ]  # fmt: skip
-    pads = [" " if has else "" for has in marked]
-    lines = [[text + pad for text, pad in zip(head, pads, strict=True)] for head in (top, bottom)] + cells
-    widths = [max(map(cell_len, column)) for column in zip(*lines, strict=True)]
-    told = ["", "", *(text if (text := shown(behind.text(row))) != NONE else "" for row in table.rows)]
-    for line, remark in zip(lines, told, strict=True):
-        yield from _line(line, widths, remark, width)
+    widths = [max(map(cell_len, cells)) for cells in zip(*lines, strict=True)]
+    notes = ["", "", *(text if (text := shown(behind.text(row))) != NONE else "" for row in table.rows)]
+    for line, note in zip(lines, notes, strict=True):
+        yield from _line(line, widths, note, width)
 
 
 def plain_lines(table: Table[R]) -> Iterator[str]:
     """Yield headings and rows, words at the left and numbers at the right."""
-    texts = [tuple(one.head for one in table.columns), *table.texts()]
+    texts = [tuple(column.head for column in table.columns), *table.texts()]
     lines = [[shown(text) for text in cells] for cells in texts]
     widths = [max(map(cell_len, column)) for column in zip(*lines, strict=True)]
     for cells in lines:
@@ -61,7 +60,7 @@ def _two_lines(head: str, unit: str) -> tuple[str, str]:
 
 def _line(cells: Sequence[str], widths: Sequence[int], remarks: str, width: int) -> Iterator[str]:
     """Yield a row: the name at the left, numbers at the right, remarks behind them or below."""
-    room = [" " * (one - cell_len(cell)) for cell, one in zip(cells, widths, strict=True)]
+    room = [" " * (wide - cell_len(cell)) for cell, wide in zip(cells, widths, strict=True)]
     line = "  ".join([cells[0] + room[0], *(space + cell for space, cell in zip(room[1:], cells[1:], strict=True))])
     if not remarks or cell_len(line) + 2 + cell_len(remarks) <= width:
         yield f"{line}  {remarks}".rstrip()

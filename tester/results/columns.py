@@ -128,7 +128,7 @@ def setting_columns(
         Column("grid", "grid", lambda row: info(row).grid),
         Column("compound", "compound", lambda row: info(row).compound),
         Column("note", "note", lambda row: info(row).note),
-        *(axis_column(one, info) for one in axes),
+        *(axis_column(axis, info) for axis in axes),
     )
 
 
@@ -154,9 +154,9 @@ class Table(Generic[R]):
 
     def __getitem__(self, key: str) -> Column[R]:
         """Return the column of a key; raises KeyError."""
-        for one in self.columns:
-            if one.key == key:
-                return one
+        for column in self.columns:
+            if column.key == key:
+                return column
         raise KeyError(key)
 
     def of(self, rows: Iterable[R]) -> Table[R]:
@@ -166,22 +166,22 @@ class Table(Generic[R]):
     def view(self, output: Output, first: Iterable[str] = ()) -> Table[R]:
         """Return the table with the columns of an output, behind those of the keys ``first``; raises KeyError."""
         leading = tuple(self[key] for key in first)
-        return replace(self, columns=leading + tuple(one for one in self.columns if output in one.views))
+        return replace(self, columns=leading + tuple(column for column in self.columns if output in column.views))
 
     def csv(self) -> Iterator[tuple[Cell, ...]]:
         """Yield keys, then the cells of each row."""
-        stored = [one for one in self.columns if one.stored]
-        yield tuple(one.key for one in stored)
+        stored = [column for column in self.columns if column.stored]
+        yield tuple(column.key for column in stored)
         for row in self.rows:
-            yield tuple(one.cell(row) for one in stored)
+            yield tuple(column.cell(row) for column in stored)
 
     def records(self) -> Iterator[dict[str, Json]]:
         """Yield each row as JSON, by keys."""
-        stored = [one for one in self.columns if one.stored]
+        stored = [column for column in self.columns if column.stored]
         for row in self.rows:
-            yield {one.key: one.as_json(row) for one in stored}
+            yield {column.key: column.as_json(row) for column in stored}
 
     def texts(self) -> Iterator[tuple[str, ...]]:
         """Yield what people read, row by row."""
         for row in self.rows:
-            yield tuple(one.text(row) for one in self.columns)
+            yield tuple(column.text(row) for column in self.columns)

@@ -72,7 +72,7 @@ def conditions_table(results: RunResults) -> Table[ConditionRow]:
 
 def recipe_rows(table: Table[ConditionRow]) -> Table[ConditionRow]:
     """Return the rows of the recipe's table: one for each condition, none for references."""
-    return table.of(one for one in table.rows if one.whole and not one.reference)
+    return table.of(row for row in table.rows if row.whole and not row.reference)
 
 
 def axis_keys(axes: Iterable[Axis]) -> tuple[str, ...]:
@@ -82,14 +82,14 @@ def axis_keys(axes: Iterable[Axis]) -> tuple[str, ...]:
 
 def columns_of(results: RunResults) -> tuple[Column[ConditionRow], ...]:
     """Return the columns of a run's table, in the order of its CSV file."""
-    further = {one.name for one in results.quantities.further}
+    further = {channel.name for channel in results.quantities.further}
     return (
         *_WHICH,
         *setting_columns(results.axes, _info, _replicate),
         *_fixed(results.worn),
         *(
-            mean_column(one, _means, _FURTHER if one.name in further else frozenset())
-            for one in results.quantities.averaged
+            mean_column(channel, _means, _FURTHER if channel.name in further else frozenset())
+            for channel in results.quantities.averaged
         ),
         _REMARKS,
     )
@@ -97,7 +97,7 @@ def columns_of(results: RunResults) -> tuple[Column[ConditionRow], ...]:
 
 def sweep_columns() -> tuple[Column[ConditionRow], ...]:
     """Return the columns of a sweep's table of conditions, which are the same for every run."""
-    return tuple(one for one in _fixed("piece") if Output.SWEEP in one.views)
+    return tuple(column for column in _fixed("piece") if Output.SWEEP in column.views)
 
 
 def _fixed(worn: str) -> tuple[Column[ConditionRow], ...]:
@@ -109,8 +109,9 @@ def _rows(results: RunResults) -> Iterator[ConditionRow]:
     references = {id(row) for row in results.references}
     for row in results.all_rows():
         watches = id(row) in references
-        for one in row.replicates:
-            yield ConditionRow(row, one.result, one, results.condition_wear(one.info.condition), watches)
+        for replicate in row.replicates:
+            wear = results.condition_wear(replicate.info.condition)
+            yield ConditionRow(row, replicate.result, replicate, wear, watches)
         if len(row.replicates) > 1:
             yield ConditionRow(row, row.result, None, None, watches)
 

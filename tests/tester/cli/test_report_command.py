@@ -68,7 +68,7 @@ def test_a_kind_that_is_not_installed_has_a_report_without_its_words(
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (("one", "--law", "v3"), "no law 'v3' (expected v2, paper)"),
+        (("one", "--law", "v3"), "no law 'v3' with published parameters (expected paper, v2)"),
         (("two",), "no run two"),
         ((), "Missing argument"),
     ],
