@@ -15,6 +15,7 @@ from dataclasses import dataclass, field
 from enum import Enum
 from itertools import accumulate
 from math import ceil
+from statistics import fmean
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -32,7 +33,7 @@ PRIOR_S: Final = 300.0
 OVERRUN: Final = 0.1
 """A step that takes longer than expected is expected to take this much longer still, share of its time so far [A]."""
 SHOWN: Final = 0.3
-"""A condition's repeats tell its duration once this share of one repeat is done [A]."""
+"""A repeat tells how long it takes once this share of it is done [A]."""
 SHOWN_S: Final = 30.0
 """... and not before this long a time of contacts, s [A]."""
 STANDSTILL: Final = "standstill"
@@ -60,13 +61,10 @@ def doing(run: Run) -> Doing:
     return Doing.WORKING if state.mode in (Mode.ARMED, Mode.RUN) else Doing.GIVEN_UP
 
 
-def share_of_repeats(progress: Progress) -> float:
-    """Return the share of the present condition's repeats that is done, 0..1: by number, and by revolutions."""
-    if progress.repeats <= 0:
-        return 0.0
+def share_of_repeat(progress: Progress) -> float:
+    """Return the share of the present repeat that is done, 0..1, by its revolutions."""
     wanted = progress.revolutions_wanted
-    within = min(progress.revolutions / wanted, 1.0) if wanted > 0.0 and progress.burst else 0.0
-    return min((max(progress.repeat - 1, 0) + within) / progress.repeats, 1.0)
+    return min(progress.revolutions / wanted, 1.0) if wanted > 0.0 and progress.burst else 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -147,7 +145,7 @@ class TimeLeft:
         """What the steps that are over took, and what they were estimated at, by kind, s."""
         self._part, self._parts, self._end = 0, len(parts), len(self.steps) - 1
         self._step = self._repeat = 0
-        self._open = False
+        self._open = self._fresh = False
         """The step at ``position`` is under way."""
         self._doing = Doing.WORKING
         self._now = 0.0
@@ -155,10 +153,12 @@ class TimeLeft:
         """Work in all parts until ``_now``."""
         self._began_s = 0.0
         """Work when the present step began."""
-        self._first: tuple[float, float] | None = None
-        """Work, and share of the condition's repeats, when the present condition began to be measured."""
-        self._repeats, self._enough = 0.0, 1.0
-        """Share of the present condition's repeats that is done, and that has to be to tell its duration."""
+        self._contact_s: float | None = None
+        """Work when the present repeat had its first contact: before it may wait long for its temperature."""
+        self._repeats_s: list[float] = []
+        """What the repeats of the present condition took that are over, s."""
+        self._within, self._to_come = 0.0, 0
+        """Share of the present repeat that is done, and repeats behind it."""
         self._expect()
 
     def _list(self, part: PartTime) -> None:
@@ -208,12 +208,21 @@ class TimeLeft:
             self._step = progress.step
             self._move_to(self._position(remaining))
         if measuring:
-            self._repeats, self._enough = share_of_repeats(progress), SHOWN / max(progress.repeats, 1)
-            if self._first is None and progress.burst:  # before the first contact it may wait long for its temperature
-                self._first = self._worked_s, max(progress.repeat - 1, 0) / max(progress.repeats, 1)
-            if progress.repeat != self._repeat:
-                self._repeat = progress.repeat
-                self._expect()
+            self._look_at_repeats(progress)
+
+    def _look_at_repeats(self, progress: Progress) -> None:
+        """Take in how far the present condition's repeats are."""
+        begun = progress.repeat != self._repeat
+        if begun and self._contact_s is not None:
+            self._repeats_s.append(self._worked_s - self._contact_s)
+            self._contact_s = self._worked_s
+        self._repeat = progress.repeat
+        self._within = 0.0 if begun else share_of_repeat(progress)
+        self._to_come = max(progress.repeats - progress.repeat, 0)
+        if self._contact_s is None and progress.burst:
+            self._contact_s = self._worked_s
+        if begun:
+            self._expect()
 
     def _position(self, remaining: Sequence[Step]) -> int:
         inserted = 0
@@ -231,8 +240,17 @@ class TimeLeft:
         for place in range(self.position + 1, position):
             self.measured[place] = 0.0  # came and went between two looks: its time is told with the step before it
         self.position, self._open = position, True
-        self._repeat = 0
+        self._repeat, self._to_come, self._repeats_s = 0, 0, []
+        self._fresh = self._is_fresh(position)
         self._expect()
+
+    def _is_fresh(self, position: int) -> bool:
+        """Return whether a step is the first condition on a piece: its first repeat runs in, and tells nothing."""
+        here = self.steps[position]
+        before = next((one for one in reversed(self.steps[:position]) if isinstance(one, ConditionStep)), None)
+        return isinstance(here, ConditionStep) and (
+            before is None or (before.specimen, before.replicate) != (here.specimen, here.replicate)
+        )
 
     def _finish(self) -> None:
         """Take what the present step took as a measurement of its kind."""
@@ -243,7 +261,7 @@ class TimeLeft:
             before_s, estimated_s = self._took.get(kind, (0.0, 0.0))
             self._took[kind] = before_s + took_s, estimated_s + self.estimated[self.position]
         self._began_s, self._open = self._worked_s, False
-        self._first = None
+        self._contact_s = None
 
     # -- what is expected -------------------------------------------------------------------------------------
 
@@ -266,10 +284,13 @@ class TimeLeft:
         if not self._open:
             return 0.0
         so_far_s = self._worked_s - self._began_s
-        if self._first is not None:
-            since_s, done = self._worked_s - self._first[0], self._repeats - self._first[1]
-            if done >= self._enough and since_s >= SHOWN_S:
-                return since_s * (1.0 - self._repeats) / done
+        if self._contact_s is not None:
+            since_s, shown = self._worked_s - self._contact_s, self._repeats_s[self._fresh :]
+            if shown:
+                each_s = fmean(shown)
+                return max(each_s - since_s, OVERRUN * since_s) + each_s * self._to_come
+            if not self._fresh and self._within >= SHOWN and since_s >= SHOWN_S:
+                return since_s / self._within * (1.0 - self._within + self._to_come)
         took_s, estimated_s = self._took.get(self._kinds[self.position], (0.0, 0.0))
         expected_s = self.estimated[self.position] * (took_s + PRIOR_S) / (estimated_s + PRIOR_S)
         return max(expected_s - so_far_s, OVERRUN * so_far_s)
