@@ -80,7 +80,7 @@ def test_status_shows_mode_run_step_and_values_without_control_characters(
 
 def test_status_as_json_is_the_whole_state(fake: FakeService, capsys: pytest.CaptureFixture[str]) -> None:
     assert invoke(["status", "--json"]) == 0
-    assert json.loads(capsys.readouterr().out)["progress"]["condition"] == 17
+    assert json.loads(capsys.readouterr().out)["progress"]["over"] == 17
 
 
 def test_stop_is_given_fast_where_that_is_asked(fake: FakeService) -> None:
