@@ -11,7 +11,7 @@ from tester.kinds.specimen_on_track.budget import TERMS as TRACK
 from tester.kinds.wheel_on_belt.budget import TERMS as WHEEL
 from tests.campaigns.budget.mutant import ROOT, SIGNED, SIZES, Mutant, scaled, tests_of
 
-_WHEEL_TESTS = tests_of("analysis/terms")
+_WHEEL_TESTS = tests_of("analysis/terms", "analysis/kelvin")
 _TRACK_TESTS = tests_of("kinds/specimen_on_track/track_budget")
 KINDS: Final = (
     ("wheel", "tester/store/older.py", WHEEL, _WHEEL_TESTS),
