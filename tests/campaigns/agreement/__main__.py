@@ -8,6 +8,7 @@ when every figure is what is asked for, 1 when one misses it.
 from __future__ import annotations
 
 import argparse
+import pickle
 import shutil
 import sys
 from collections.abc import Iterator, Sequence
@@ -29,6 +30,8 @@ SAMPLE = ("a repeat excluded", "disc, stopped")
 """The scenes of the short form."""
 DRAWN = 5
 """`tester figure` draws every so many runs; the report draws those of all."""
+KEPT = "made.pickle"
+"""Beside the runs: how each was made."""
 SHOWN = 12
 """Disagreements of a kind that are printed."""
 SAMPLE_EVERY = 4
@@ -44,36 +47,46 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--python", default=sys.executable, metavar="FILE",
                         help="of the installation that makes the runs, such as a compiled one")  # fmt: skip
     parser.add_argument("--keep", type=Path, metavar="DIR", help="new folder for the runs, which are kept there")
+    parser.add_argument("--again", type=Path, metavar="DIR", help="compare the runs that --keep left, make none")
     parser.add_argument("--scene", action="append", choices=[*SCENES], help="only this; may be given again")
     parser.add_argument("--no-mutants", action="store_true", help="compare only")
     options = parser.parse_args(arguments)
     names: Sequence[str] = options.scene or (SAMPLE if options.sample else [*SCENES])
     count = len(names) if options.sample or options.scene else options.runs
     with TemporaryDirectory() as name:
-        folder = options.keep or Path(name)
+        folder = options.again or options.keep or Path(name)
         folder.mkdir(parents=True, exist_ok=True)
         missed = 0
         hunted = [] if options.no_mutants else [*MUTANTS][:: SAMPLE_EVERY if options.sample else 1]
-        for figure in _figures(folder, options.seed, [*islice(cycle(names), count)], options.python, hunted):
+        wanted = [*islice(cycle(names), count)]
+        made = _kept(folder) if options.again else _made(folder, options.seed, wanted, options.python)
+        for figure in _figures(made, folder, hunted):
             print(figure, flush=True)
             missed += not figure.ok
     print(f"     CPU time {_cpu_s():.0f} s")
     return 1 if missed else 0
 
 
-def _figures(
-    folder: Path, base: int, names: Sequence[str], python: str, hunted: Sequence[str]
-) -> Iterator[Figure]:
-    begun = _cpu_s()
-    made: list[Made] = []
+def _made(folder: Path, base: int, names: Sequence[str], python: str) -> list[Made]:
+    """Return the runs, made one after the other."""
+    begun, made = _cpu_s(), list[Made]()
     for one in make_runs(folder, base, iter(names), python):
         print(f"     {one.folder.name}  seed {one.seed}  {one.scene}", flush=True)
         made.append(one)
-    print(f"     {len(made)} runs made in {_cpu_s() - begun:.0f} s of CPU time", flush=True)
+        (folder / KEPT).write_bytes(pickle.dumps(made))
+    rig_h = sum(read_record(one.folder).rig_seconds for one in made) / 3600.0
+    print(f"     {len(made)} runs made: {rig_h:.1f} h of rig time in {_cpu_s() - begun:.0f} s of CPU time", flush=True)
+    return made
+
+
+def _kept(folder: Path) -> list[Made]:
+    return pickle.loads((folder / KEPT).read_bytes())  # noqa: S301 - the campaign's own
+
+
+def _figures(made: Sequence[Made], folder: Path, hunted: Sequence[str]) -> Iterator[Figure]:
     found = compare([*_read(made, folder / "reports")], [read_record(one.folder) for one in made])
     _print(found)
-    yield at_least("runs whose outputs were read", len(made), len(names))
-    yield at_least("statements compared with another output's", found.compared, 300 * len(made))
+    yield at_least(f"of {len(made)} runs: statements compared with another output's", found.compared, 300 * len(made))
     yield at_most("disagreements", len(found.disagreements), 0, digits=0)
     if hunted:
         alive = survivors(hunted, made[0], {one.key for one in found.disagreements}, folder)

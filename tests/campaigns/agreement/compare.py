@@ -13,6 +13,7 @@ from tests.campaigns.agreement.names import (
     LEFT_OUT,
     MADE,
     MARK,
+    MISSING,
     MU,
     MU_MEASURED,
     STATUS,
@@ -183,6 +184,9 @@ def counted(groups: Grouped, record: Record) -> Facts:
            quantity == "repeat in mean" and _value(groups, subject, quantity) == 0.0]  # fmt: skip
     facts.count(record.run, CONDITIONS, len(rows))
     facts.count(record.run, VALUES, len(valued))
+    facts.count(record.run, MISSING, len([*record.rows]) - sum(
+        _value(groups, record.of_row(row), STATUS) == "ok" for row in record.rows
+    ))  # fmt: skip
     facts.count(record.run, WITH_CARE, sum(True in found for found in carried))
     facts.count(record.run, "noted", sum(False in found for found in carried))
     facts.count(record.run, LEFT_OUT, len(out))
@@ -233,7 +237,7 @@ REQUIRED: Mapping[str, tuple[str, ...]] = {
     "show --budget": (MU, U_THIS, U_COMPOUND),
     "export conditions": (MU, MU_MEASURED, U_THIS, U_COMPOUND, VALID, MADE, FLAGS),
     "export appendix": (MU,),
-    "report": (MU, MU_MEASURED, U_THIS, U_COMPOUND, VALID, MADE, FLAGS, MARK),
+    "report": (MU, MU_MEASURED, U_THIS, U_COMPOUND, VALID, FLAGS, MARK),
     "screen Results": (MU, VALID, FLAGS, MARK),
 }
 """What an output states of every row that has a value."""

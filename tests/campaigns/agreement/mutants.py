@@ -96,7 +96,7 @@ MUTANTS: Mapping[str, Mutant] = {
         (SCREENS,),
     ),
     "replay: the time left is a minute too long": Mutant(
-        "tester.tui.playback", "left_s=max(length_s - at_s, 0.0)", "left_s=max(length_s - at_s, 0.0) + 60.0",
+        "tester.tui.playback", "left_s=left_s, step_left_s", "left_s=left_s + 60.0, step_left_s",
         (SCREENS,),
     ),
 }  # fmt: skip

@@ -11,7 +11,7 @@ from traceback import extract_tb
 from tests.campaigns.agreement.call import CallError, called
 from tests.campaigns.agreement.facts import Facts
 from tests.campaigns.agreement.read_figures import canvases, read_canvases
-from tests.campaigns.agreement.read_json import read_compare_json, read_runs_json, read_show_json
+from tests.campaigns.agreement.read_json import read_compare_json, read_events, read_runs_json, read_show_json, times_of
 from tests.campaigns.agreement.read_page import read_page
 from tests.campaigns.agreement.read_tables import read_table, sweep_facts
 from tests.campaigns.agreement.read_text import read_budget, read_compare, read_ending, read_runs, read_show
@@ -24,6 +24,8 @@ PARTS = (COMMANDS, TABLES, REPORT, SCREENS)
 """Outputs of one run, by how they are made."""
 SEVERAL = "several"
 """Outputs that hold runs against each other."""
+REPORTED = 4
+"""Of so many pairs of runs that are compared one has a report, too."""
 FORMATS = ("appendix", "conditions", "budget", "repeats", "directions", "wheel", "pieces", "wear", "reference")
 WORN = {"wheel_on_belt": "wheel", "specimen_on_track": "specimen"}
 
@@ -58,6 +60,9 @@ def _commands(made: Made, record: Record, worn: str) -> Iterator[Facts]:
     yield read_ending(record, worn, _ending(made.folder), "end of the run")
     if made.printed:
         yield read_ending(record, worn, made.printed.splitlines(), "end of the run as it was printed")
+    if made.events:
+        yield read_events(record, made.events, "run --json")
+        yield times_of(record, made.events)
     yield read_show(record, worn, called("show", folder).out, "show")
     yield read_budget(record, worn, called("show", "--budget", folder).out, "show --budget")
     yield read_show_json(record, worn, called("show", "--json", folder).out, "show --json")
@@ -100,9 +105,10 @@ def facts_of_several(made: Sequence[Made], reports: Path) -> Iterator[Facts]:
     records = [read_record(one.folder) for one in made]
     yield from _whole(partial(_listed, records), "runs")
     alike = sorted(records, key=lambda record: record.kind)
-    for first, second in pairwise(alike):
+    for number, (first, second) in enumerate(pairwise(alike)):
         if first.kind == second.kind:
-            yield from _whole(partial(_pair, first, second, reports), f"{first.name} beside {second.name}")
+            page = reports if number % REPORTED == 0 else None
+            yield from _whole(partial(_pair, first, second, page), f"{first.name} beside {second.name}")
 
 
 def _listed(records: Sequence[Record]) -> Iterator[Facts]:
@@ -111,12 +117,12 @@ def _listed(records: Sequence[Record]) -> Iterator[Facts]:
     yield read_runs_json(records, called("runs", "--out", under, "--json").out, "runs --json")
 
 
-def _pair(first: Record, second: Record, reports: Path) -> Iterator[Facts]:
+def _pair(first: Record, second: Record, reports: Path | None) -> Iterator[Facts]:
     both = [str(first.folder), str(second.folder)]
     yield read_compare([first, second], called("compare", *both).out, "compare")
     yield read_compare_json([first, second], called("compare", *both, "--json").out, "compare --json")
-    name = f"{first.name}+{second.name}"
-    yield from _report([first, second], reports / f"{name}.html", "report of two runs")
+    if reports is not None:
+        yield from _report([first, second], reports / f"{first.name}+{second.name}.html", "report of two runs")
 
 
 def figures_of(made: Made, folder: Path) -> Iterator[Facts]:

@@ -8,6 +8,7 @@ from typing import Any
 
 from tests.campaigns.agreement.facts import Facts, Subject
 from tests.campaigns.agreement.names import (
+    CONDITIONS,
     COUNTS,
     MADE,
     MARK,
@@ -16,11 +17,12 @@ from tests.campaigns.agreement.names import (
     RIG_SECONDS,
     STATUS,
     VALUES,
+    WITH_CARE,
     WORDS,
     quantity_of,
 )
 from tests.campaigns.agreement.read_text import pair_of
-from tests.campaigns.agreement.record import Record
+from tests.campaigns.agreement.record import Record, plain_heading
 from tests.campaigns.agreement.table import IDENTITY, TableReader
 
 Json = Mapping[str, Any]
@@ -32,7 +34,8 @@ def read_show_json(record: Record, worn: str, text: str, output: str) -> Facts:
     shown: Json = json.loads(text)
     facts.add(record.run, STATUS, str(shown["status"]))
     facts.add(record.run, RIG_SECONDS, shown["rig_seconds"])
-    facts.count(record.run, VALUES, shown["rows"])
+    for key, quantity in (("conditions", CONDITIONS), ("values", VALUES), ("doubts", WITH_CARE), ("notes", "noted")):
+        facts.count(record.run, quantity, shown["tally"][key])
     facts.count(record.run, MISSING, len(shown["missing"]))
     combined = TableReader(facts, record, worn, used={row for row, found in record.rows.items() if len(found) == 1})
     for condition in shown["conditions"]:
@@ -58,7 +61,7 @@ def _subject(record: Record, combined: TableReader, condition: Json) -> Subject 
     """Return what a record is of: a condition by its number, what stands for replicates by its setpoint."""
     if condition["condition"] is not None:
         return record.of_condition(condition["condition"])
-    cells = {key: str(value) for key, value in condition.items()}
+    cells = {plain_heading(key): str(value) for key, value in condition.items()}
     return combined.by_setpoint(cells, [key for key in cells if record.axis_of(key) is not None])
 
 
@@ -84,6 +87,34 @@ def _term(facts: Facts, subject: Subject, term: Json, worn: str) -> None:
     for key, value in term.items():
         if key not in ("term", "source", "distribution", "unit"):
             facts.add(subject, f"{term['term']}: {quantity_of(key, worn)}", value)
+
+
+def read_events(record: Record, text: str, output: str) -> Facts:
+    """Return the facts of what `tester run --json` writes while it runs: conditions that are over at every step.
+
+    Only of a run in one part, whose times are those of its record.
+    """
+    facts = Facts(output)
+    for line in text.splitlines():
+        event = json.loads(line)
+        if event.get("event") == "step" and "over" in event and "part" not in event:
+            facts.count(record.run, "conditions of the plan", event["conditions"])
+            if record.is_one_part:
+                at = ("moment", record.name, f"step {event['step']} at {event['t_s']:.0f} s")
+                facts.count(at, "conditions done", event["over"])
+    return facts
+
+
+def times_of(record: Record, text: str) -> Facts:
+    """Return what the record has of the same moments."""
+    facts = Facts("record")
+    for line in text.splitlines() if record.is_one_part else ():
+        event = json.loads(line)
+        if event.get("event") == "step" and "over" in event:
+            at = ("moment", record.name, f"step {event['step']} at {event['t_s']:.0f} s")
+            over = sum(one.ended_s is not None and one.ended_s <= event["t_s"] + 1e-3 for one in record.conditions)
+            facts.count(at, "conditions done", over)
+    return facts
 
 
 def read_runs_json(records: Sequence[Record], text: str, output: str) -> Facts:

@@ -16,11 +16,9 @@ from tests.campaigns.agreement.names import (
     MU_MEASURED,
     STATUS,
     U_THIS,
-    VALUES,
-    WITH_CARE,
     quantity_of,
 )
-from tests.campaigns.agreement.read_text import BUDGET, OF_BUDGET, of_budget, pair_of, term
+from tests.campaigns.agreement.read_text import BUDGET, OF_BUDGET, of_budget, pair_of, read_tally, term
 from tests.campaigns.agreement.record import Record
 from tests.campaigns.agreement.table import TableReader
 
@@ -77,25 +75,9 @@ def _cover(facts: Facts, records: Sequence[Record], worn: Sequence[str], header:
                 if _text(name) == "status":
                     facts.add(record.run, STATUS, _text(value).split(":")[0])
         elif element.tag == f"{_X}p":
-            _verdict(facts, record, _text(element))
+            read_tally(facts, record, _text(element))
         elif element.tag == f"{_X}figure" and at >= 0:
             _table(facts, record, worn[at], element, TableReader(facts, record, worn[at]))
-
-
-def _verdict(facts: Facts, record: Record, text: str) -> None:
-    """Read how many conditions have a value, and how many of these carry a doubt or a note."""
-    if match := re.match(r"All (\d+) conditions have a value|(The condition) has a value", text):
-        total = match.group(1) or "1"
-        values = (total, total)
-    elif match := re.match(r"(\d+) of (\d+) conditions? ha(?:ve|s) a value", text):
-        values = (match.group(1), match.group(2))
-    else:
-        return
-    facts.count(record.run, VALUES, values[0])
-    facts.count(record.run, CONDITIONS, values[1])
-    for word, quantity in (("doubt", WITH_CARE), ("note", "noted")):
-        if match := re.search(rf"(\d+|none) carr(?:y|ies) a {word}", text):
-            facts.count(record.run, quantity, match.group(1).replace("none", "0"))
 
 
 def _heads_and_rows(figure: Element) -> tuple[list[str], list[list[str]]]:

@@ -84,9 +84,8 @@ def _order(record: Record) -> Iterator[int]:
         yield from (condition.number for condition in record.rows[row])
 
 
-_REPEAT = re.compile(
-    r"repeat (?P<repeat>\d+): (?P<heading>mu[a-z ]*) (?P<mu>[\d.]+|–)(?:  (?P<status>[a-z]+(?: [a-z]+)*))?"
-)
+_REPEAT = re.compile(r"repeat (?P<repeat>\d+): (?P<rest>.*)")
+_REPEAT_STATUS = frozenset({"valid", "refused", "too few revolutions", "temperature cannot be held", "not reached"})
 _FIGURE = re.compile(r"(?P<heading>.+?) (?P<value>\d+ of \d+.*|\S+|\S+ %)")
 
 
@@ -95,23 +94,28 @@ def read_repeats(record: Record, worn: str, condition: int, text: str, output: s
     facts = Facts(output)
     reader = TableReader(facts, record, worn)
     subject = record.of_condition(condition)
-    lines = [line.strip("│ ") for line in text.splitlines()]
+    lines = [line.strip("│┃ ") for line in text.splitlines()]
     for figure in next((line for line in lines if re.search(r"  mu [\d.–]", line)), "").split("  ")[1:]:
         if figure.startswith("flags "):
             reader.cell(subject, "flags", figure.removeprefix("flags "))
         elif match := _FIGURE.fullmatch(figure.strip()):
             reader.cell(subject, match["heading"], match["value"])
     for line in lines:
-        if match := _REPEAT.match(line):
-            at = record.of_repeat(condition, int(match["repeat"]))
-            facts.number(at, f"repeat {quantity_of(match['heading'], worn)}", match["mu"])
-            if match["status"]:
-                facts.add(at, "repeat status", match["status"])
+        match = _REPEAT.match(line)
+        if match is None:
+            continue
+        at = record.of_repeat(condition, int(match["repeat"]))
+        for part in match["rest"].split("  "):
+            figure = _FIGURE.fullmatch(part.strip())
+            if part.strip() in _REPEAT_STATUS:
+                facts.add(at, "repeat status", part.strip())
                 facts.add(at, "repeat in mean", float("not in the mean" not in line))
+            elif figure is not None and not part.startswith("✘"):
+                facts.number(at, f"repeat {quantity_of(figure['heading'], worn)}", figure["value"])
     return facts
 
 
-_COND, _REP = re.compile(r"cond (\d+)/(\d+)"), re.compile(r"rep (\d+)/(\d+)")
+_COND = re.compile(r"(\d+)/(\d+) cond over")
 _HEAD_LEFT, _CAMPAIGN_LEFT = re.compile(r"left (\d+:\d\d:\d\d)"), re.compile(r"Campaign .*?(\d+:\d\d:\d\d) left")
 _STEP = re.compile(r"([✔▶·]) (\S.*?)\s+(~?\d+:\d\d(?::\d\d)?)\s*[│┃]")
 
@@ -124,10 +128,10 @@ def moment(facts: Facts, record: Record, at: str, text: str) -> None:
         facts.count(record.run, "conditions of the plan", match.group(2))
     for found in (_HEAD_LEFT.search(text), _CAMPAIGN_LEFT.search(text)):
         if found is not None:
-            facts.add(subject, "time left", seconds_of(found.group(1)), 0.5)
-    steps = [(match.group(1), seconds_of(match.group(3))) for match in _STEP.finditer(text)]
-    if steps:
-        facts.count(subject, "conditions done", sum(sign == "✔" for sign, _ in steps))
+            facts.add(subject, "time left", seconds_of(found.group(1)), 0.49)
+    steps = [(match.group(1), seconds_of(match.group(3)) or 0.0) for match in _STEP.finditer(text)]
+    if steps:  # the list adds up to the second
+        facts.add(subject, "time left", sum(seconds for sign, seconds in steps if sign != "✔"), 0.49)
 
 
 def done_by(record: Record, at_s: float) -> int:

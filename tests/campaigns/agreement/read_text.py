@@ -6,7 +6,18 @@ import re
 from collections.abc import Mapping, Sequence
 
 from tests.campaigns.agreement.facts import Facts, Subject, is_dash, marks_of, seconds_of
-from tests.campaigns.agreement.names import CONDITIONS, FLAGS, MADE, MARK, MU, MU_MEASURED, RIG_SECONDS, STATUS, VALUES
+from tests.campaigns.agreement.names import (
+    CONDITIONS,
+    FLAGS,
+    MADE,
+    MARK,
+    MU,
+    MU_MEASURED,
+    RIG_SECONDS,
+    STATUS,
+    VALUES,
+    WITH_CARE,
+)
 from tests.campaigns.agreement.record import Record
 from tests.campaigns.agreement.table import TableReader, columns_of, headings_of
 
@@ -19,6 +30,7 @@ def read_ending(record: Record, worn: str, lines: Sequence[str], output: str) ->
     _conditions(facts, record, worn, lines)
     for line in lines:
         _counted(facts, record, line)
+        read_tally(facts, record, line)
     return facts
 
 
@@ -53,6 +65,22 @@ def _counted(facts: Facts, record: Record, line: str) -> None:
         facts.count(record.run, CONDITIONS, match.group(2))
 
 
+def read_tally(facts: Facts, record: Record, text: str) -> None:
+    """Read in a sentence how many conditions have a value, and how many of these carry a doubt or a note."""
+    if match := re.match(r"All (\d+) conditions have a value|(The condition) has a value", text):
+        total = match.group(1) or "1"
+        values = (total, total)
+    elif match := re.match(r"(\d+) of (\d+) conditions? ha(?:ve|s) a value", text):
+        values = (match.group(1), match.group(2))
+    else:
+        return
+    facts.count(record.run, VALUES, values[0])
+    facts.count(record.run, CONDITIONS, values[1])
+    for word, quantity in (("doubt", WITH_CARE), ("note", "noted")):
+        if match := re.search(rf"(\d+|none) carr(?:y|ies) a {word}", text):
+            facts.count(record.run, quantity, match.group(1).replace("none", "0"))
+
+
 def read_show(record: Record, worn: str, text: str, output: str) -> Facts:
     """Return the facts of `tester show`."""
     facts = Facts(output)
@@ -60,10 +88,8 @@ def read_show(record: Record, worn: str, text: str, output: str) -> Facts:
     _conditions(facts, record, worn, lines)
     for line in lines:
         _counted(facts, record, line)
-        if match := re.fullmatch(r"values   (\d+) of (\d+) conditions", line):
-            facts.count(record.run, VALUES, match.group(1))
-            facts.count(record.run, CONDITIONS, match.group(2))
-        elif match := re.match(r"status   ([a-z ]+)", line):
+        read_tally(facts, record, line)
+        if match := re.match(r"status   ([a-z ]+)", line):
             facts.add(record.run, STATUS, match.group(1).strip())
         elif match := re.match(r"rig time ([\d:]+)", line):
             facts.add(record.run, RIG_SECONDS, seconds_of(match.group(1)), 0.5)

@@ -55,6 +55,7 @@ class Record:
     conditions: tuple[RecordedCondition, ...]
     repeats: frozenset[tuple[int, int]]
     """Condition and number of every repeat that was committed."""
+    specimens: int
     has_references: bool
     simulated: bool
 
@@ -62,6 +63,11 @@ class Record:
     def name(self) -> str:
         """Return the name of the run's folder."""
         return self.folder.name
+
+    @property
+    def is_one_part(self) -> bool:
+        """Return whether all of the run was on one simulated rig, by one clock."""
+        return self.specimens == 1 and len(self.rows) == len(self.conditions)
 
     @property
     def run(self) -> Subject:
@@ -155,9 +161,10 @@ def read_record(folder: Path) -> Record:
         )
         committed = "SELECT DISTINCT condition, repeat FROM repeat WHERE status NOT IN ('open', 'void')"
         repeats = frozenset((row[0], row[1]) for row in database.execute(committed))
+        (specimens,) = database.execute("SELECT count(*) FROM specimen").fetchone()
         references = database.execute("SELECT 1 FROM metadata WHERE key = ?", (_REFERENCE_KEY,)).fetchone()
     return Record(
-        folder, run["kind"], run["rig_seconds"] or 0.0, axes, conditions, repeats, references is not None,
+        folder, run["kind"], run["rig_seconds"] or 0.0, axes, conditions, repeats, specimens, references is not None,
         bool(run["simulated"]),
     )  # fmt: skip
 

@@ -31,6 +31,8 @@ class Made:
     printed: str = ""
     sweep: Path | None = None
     """Conditions of a sweep that has the same recipe and seed."""
+    events: str = ""
+    """What the command wrote for programs, with --json."""
 
 
 @dataclass
@@ -72,7 +74,8 @@ class Laboratory:
         name = done.stdout.strip().splitlines()[-1:]
         if not name or not (self.folder / name[0] / "run.db").is_file():
             raise RunError(f"{done.args}: exit {done.returncode}: {done.stderr[-800:]}")
-        return Made(self.folder / name[0], self.seed, printed=done.stderr)
+        events = "\n".join(line for line in done.stdout.splitlines() if line.startswith("{"))
+        return Made(self.folder / name[0], self.seed, printed=done.stderr, events=events)
 
 
 # -- recipes -----------------------------------------------------------------------------------------------------------
@@ -129,7 +132,7 @@ def track_recipe(random: Random) -> str:
         "measure: {repeats: 3, min_valid: 2, distance: 1 mm, at_least: 3 s, temperature_band: 1 K, "
         "soak: {within: 0.5 K, for: 1 min, at_most: 3 h}}\n"
         "grids:\n"
-        f"  - {{name: speeds, load: {random.randint(10, 30)} N, temperature: [{low} degC, {low + 8} degC], "
+        f"  - {{name: speeds, load: {random.choice([10, 20, 40])} N, temperature: [{low} degC, {low + 8} degC], "
         "track_speed: [1e-3 m/s, 1e-2 m/s]}\n"
     )
 
@@ -146,17 +149,17 @@ def _plain(lab: Laboratory) -> Made:
 
 def _both_directions(lab: Laboratory) -> Made:
     lab.text = wheel_recipe(lab.random, measure=", both_directions: true").replace("repeats: 3", "repeats: 4")
-    return lab.run()
+    return lab.run("--json")
 
 
 def _references(lab: Laboratory) -> Made:
     lab.text = wheel_recipe(lab.random, more="reference: {every: 1, temperature: 28 degC, repeats: 2}\n")
-    return lab.run()
+    return lab.run("--json")
 
 
 def _replicates(lab: Laboratory) -> Made:
     lab.text = wheel_recipe(lab.random, more="replicates: 2\n")
-    return lab.run()
+    return lab.run("--json")
 
 
 def _parts(lab: Laboratory) -> Made:
@@ -201,12 +204,12 @@ def _swept(lab: Laboratory) -> Made:
 
 def _disc(lab: Laboratory) -> Made:
     lab.text, lab.rig = disc_recipe(lab.random, compounds=2), "pin-on-disc"
-    return lab.run()
+    return lab.run("--json")
 
 
 def _disc_replicates(lab: Laboratory) -> Made:
     lab.text, lab.rig = disc_recipe(lab.random, more="replicates: 2\n"), "pin-on-disc"
-    return lab.run()
+    return lab.run("--json")
 
 
 def _disc_parts(lab: Laboratory) -> Made:

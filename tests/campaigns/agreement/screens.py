@@ -12,6 +12,8 @@ from tests.campaigns.agreement.record import Record
 _SIZE = (180, 70)
 """Characters of the screen: wide enough for every column, high enough for every condition."""
 _WAIT_S = 60.0
+_STEP_S = 0.5
+"""Each step of a list is shown in whole seconds."""
 _SHARES = (0.1, 0.35, 0.6, 0.85, 1.0)
 """Moments of a replay that are looked at, shares of the run."""
 
@@ -48,7 +50,7 @@ async def _replayed(record: Record, worn: str) -> list[Facts]:
             moment(replay, record, f"{share:.2f}", screen_text(app))
             at = ("moment", record.name, f"{share:.2f}")
             journal.count(at, "conditions done", done_by(record, app.at_s))
-            journal.add(at, "time left", app.playback.length_s - app.at_s, 0.01)
+            journal.add(at, "time left", app.playback.length_s - app.at_s, _STEP_S * len(app.scene.plan.steps) + 1.0)
         journal.count(record.run, "conditions of the plan", len(record.conditions))
         found += [replay, journal]
         await pilot.press("f5")

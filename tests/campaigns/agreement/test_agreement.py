@@ -86,7 +86,7 @@ def test_a_row_of_the_terminal_is_found_by_its_setpoint_and_its_remarks_are_flag
         RecordedCondition(number, number, 1, "1#", "g", {"load": load}, 3, 0.0, 1.0)
         for number, load in ((1, 100.0), (2, 200.0))
     )
-    record = Record(Path("run"), "wheel_on_belt", 0.0, (axis,), conditions, frozenset(), False, True)
+    record = Record(Path("run"), "wheel_on_belt", 0.0, (axis,), conditions, frozenset(), 1, False, True)
     lines = ["compound  Load     mu", "             N       ", "1#         200  0.98?  carry-over, short"]
     facts = read_ending(record, "wheel", lines, "end")
     found = {one.quantity: one.value for one in facts.collected if one.subject == record.of_condition(2)}
