@@ -32,7 +32,8 @@ EVERY_S: Final = 5.0
 ROWS: Final = 12
 """Rows of the list of steps that is added up."""
 _LATER = re.compile(r"~(\d+):(\d\d):(\d\d)")
-_HEAD = re.compile(r"(\d+)/(\d+) cond over.*left (\d+):(\d\d):(\d\d)")
+_COUNTED = re.compile(r"(\d+)/(\d+) cond over")
+_LEFT = re.compile(r"left (\d+):(\d\d):(\d\d)")
 
 
 class Look(NamedTuple):
@@ -57,11 +58,13 @@ class Looked(NamedTuple):
 
 def printed(scene: ScreenScene) -> tuple[float, float, int, int] | None:
     """Return what screens print: time left of the head and of the list, s; conditions over and in all."""
-    head = _HEAD.search(_text(StateLine().picture(scene, 300, 1)))
-    if head is None:
+    head = _text(StateLine().picture(scene, 300, 1))
+    left, counted = _LEFT.search(head), _COUNTED.search(head)
+    if left is None:
         return None
+    over, conditions = (int(counted[1]), int(counted[2])) if counted is not None else (0, 0)
     listed = _LATER.findall(_text(StepsPanel().picture(scene, 100, ROWS)))
-    return _seconds(head.groups()[2:]), sum(map(_seconds, listed)), int(head[1]), int(head[2])
+    return _seconds(left.groups()), sum(map(_seconds, listed)), over, conditions
 
 
 def _text(parts: Parts) -> str:
