@@ -21,7 +21,7 @@ from tester.cli.ending import ending_lines
 from tester.cli.keys import keys_of
 from tester.machine.context import Progress as RunProgress
 from tester.machine.prompts import DONE, Prompt, Prompts
-from tester.machine.time_left import Standing
+from tester.machine.time_left import RunPosition
 
 ASKED = f'type "{DONE}" and Enter when it is done'
 MOST_TYPED = 20
@@ -135,7 +135,7 @@ class Console:
             self._tasks[1] = self._progress.add_task(name, total=1.0)
             self._progress.start()
 
-    def show(self, now_s: float, run: RunProgress, at: Standing) -> None:
+    def show(self, now_s: float, run: RunProgress, at: RunPosition) -> None:
         """Show where the run is, or one of its parts where they run side by side."""
         of_part = {"part": at.part} if at.parts > 1 else {}
         label = f"part {at.part} of {at.parts}  " if at.parts > 1 else ""
@@ -228,7 +228,7 @@ class Console:
             self.message(f"{question.text} - {ASKED}")
 
 
-def standing_words(at: Standing) -> str:
+def standing_words(at: RunPosition) -> str:
     """Return how far a run is: conditions that are over, and the time left."""
     words = [f"{at.over}/{at.conditions} conditions over"] if at.conditions else []
     if at.left_s is not None:

@@ -14,8 +14,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
 from itertools import accumulate
-from math import ceil, exp, log
-from statistics import median
+from math import ceil
+from statistics import fmean
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -30,8 +30,6 @@ if TYPE_CHECKING:
 
 PRIOR_S: Final = 300.0
 """The estimate of a kind of step counts as much as this long a measurement of it, s [A]."""
-MOST: Final = 2.0
-"""What took more than this many times its estimate, or less than one part in so many of it, counts as this much [A]."""
 OVERRUN: Final = 0.1
 """A step that takes longer than expected is expected to take this much longer still, share of its time so far [A]."""
 SHOWN: Final = 0.3
@@ -90,7 +88,7 @@ class Earlier:
 
 
 @dataclass(frozen=True, slots=True)
-class Standing:
+class RunPosition:
     """Where a run is: steps and conditions counted, and times in s of rig time.
 
     ``over`` of ``conditions`` are over, with a value or without. ``share`` of the rig time is done, 0..1. ``left_s``:
@@ -143,9 +141,8 @@ class TimeLeft:
         """Sum of those behind the present one."""
         self.revision = 0
         """Counts changes of what the list of steps shows."""
-        self._shown: dict[str, tuple[float, float]] = {}
-        """Of the steps that are over, by kind: the logarithms of what they took as a share of their estimates, weighted
-        with these, and the sum of the weights, s."""
+        self._took: dict[str, tuple[float, float]] = {}
+        """What the steps that are over took, and what they were estimated at, by kind, s."""
         self._part, self._parts, self._end = 0, len(parts), len(self.steps) - 1
         self._step = self._repeat = 0
         self._open = self._fresh = False
@@ -261,11 +258,8 @@ class TimeLeft:
             took_s = self._worked_s - self._began_s
             self.measured[self.position] = took_s
             kind = self._kinds[self.position]
-            logs, weights_s = self._shown.get(kind, (0.0, 0.0))
-            estimated_s = self.estimated[self.position]
-            if estimated_s > 0.0:
-                off = min(max(took_s / estimated_s, 1.0 / MOST), MOST)
-                self._shown[kind] = logs + estimated_s * log(off), weights_s + estimated_s
+            before_s, estimated_s = self._took.get(kind, (0.0, 0.0))
+            self._took[kind] = before_s + took_s, estimated_s + self.estimated[self.position]
         self._began_s, self._open = self._worked_s, False
         self._contact_s = None
 
@@ -273,53 +267,40 @@ class TimeLeft:
 
     def _expect(self) -> None:
         """Work out anew what the steps to come take: their list changes now, and not again before it is seen."""
-        paces = [self._pace(kind) for kind in self._sorts]
+        here = self._kinds[self.position] if self._open else ""
+        paces: list[float] = []
+        for kind in self._sorts:
+            took_s, estimated_s = self._took.get(kind, (0.0, 0.0))
+            if kind == here:
+                took_s += self._worked_s - self._began_s + self._present_s()
+                estimated_s += self.estimated[self.position]
+            paces.append((took_s + PRIOR_S) / (estimated_s + PRIOR_S))
         self.ahead = np.rint(self._estimated * np.array(paces)[self._sort])
         self._ahead_s = float(self.ahead[self.position + 1 :].sum())
         self.revision += 1
-
-    def _pace(self, kind: str) -> float:
-        """Return what steps of a kind take, as a share of their estimates, by those that are over."""
-        logs, weights_s = self._shown.get(kind, (0.0, 0.0))
-        return exp(logs / (weights_s + PRIOR_S))
 
     def _present_s(self) -> float:
         """Return what is left of the present step, s: by its repeats where they tell, else by its estimate."""
         if not self._open:
             return 0.0
         so_far_s = self._worked_s - self._began_s
-        expected_s = self.estimated[self.position] * self._pace(self._kinds[self.position])
-        by_repeats_s = self._by_repeats_s(expected_s)
-        return max(expected_s - so_far_s, OVERRUN * so_far_s) if by_repeats_s is None else by_repeats_s
+        if self._contact_s is not None:
+            since_s, shown = self._worked_s - self._contact_s, self._repeats_s[self._fresh :]
+            if shown:
+                each_s = fmean(shown)
+                return max(each_s - since_s, OVERRUN * since_s) + each_s * self._to_come
+            if not self._fresh and self._within >= SHOWN and since_s >= SHOWN_S:
+                return since_s / self._within * (1.0 - self._within + self._to_come)
+        took_s, estimated_s = self._took.get(self._kinds[self.position], (0.0, 0.0))
+        expected_s = self.estimated[self.position] * (took_s + PRIOR_S) / (estimated_s + PRIOR_S)
+        return max(expected_s - so_far_s, OVERRUN * so_far_s)
 
-    def _by_repeats_s(self, expected_s: float) -> float | None:
-        """Return what is left of the present condition by its repeats, s; None where they do not tell.
-
-        ``expected_s``: of the whole condition. A condition's first repeat runs in and may take many times what the
-        others take: alone it tells little, and the first on a piece nothing.
-        """
-        if self._contact_s is None:
-            return None
-        since_s, before = self._worked_s - self._contact_s, self._repeats_s
-        each_s = expected_s / max(len(before) + 1 + self._to_come, 1)
-        if len(before) > 1:
-            each_s = median(before[1:])
-        elif self._fresh:
-            return None
-        elif before:
-            each_s = min(before[0], MOST * each_s)
-        elif SHOWN <= self._within < 1.0 and since_s >= SHOWN_S:
-            each_s = min(since_s / self._within, MOST * each_s)
-        elif self._within < 1.0:
-            return None
-        return max(each_s - since_s, OVERRUN * since_s) + each_s * self._to_come
-
-    def standing(self) -> Standing:
+    def standing(self) -> RunPosition:
         """Return where the run is."""
         present_s = float(ceil(self._present_s()))
         left_s = present_s + self._ahead_s
         done_s = self._earlier.seconds + self._worked_s
-        return Standing(
+        return RunPosition(
             step=self.position + 1,
             steps=len(self.steps),
             over=self._over[max(self.position + (0 if self._open else 1), 0)],

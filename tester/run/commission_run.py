@@ -14,7 +14,7 @@ from tester.base.keys import FAST_STOP, MEANINGS, STOP
 from tester.commission.person import Asks, Person, Question, StepRefused
 from tester.machine.context import Progress
 from tester.machine.prompts import DONE, Prompt, Prompts
-from tester.machine.time_left import Standing
+from tester.machine.time_left import RunPosition
 from tester.results.run_results import results_of
 from tester.run.session import Session, SessionOptions
 from tester.store.reader import RunReader
@@ -39,7 +39,7 @@ class PersonScreen:
         """Say that it begins."""
         self.person.tell(f"  run {name}")
 
-    def show(self, now_s: float, run: Progress, at: Standing) -> None:
+    def show(self, now_s: float, run: Progress, at: RunPosition) -> None:
         """Say what the run does, step by step."""
         if run.title != self._title:
             self._title = run.title

@@ -9,7 +9,7 @@ from typing import Protocol, runtime_checkable
 from tester.base.trouble import in_words
 from tester.machine.context import Progress
 from tester.machine.prompts import Prompts
-from tester.machine.time_left import Standing
+from tester.machine.time_left import RunPosition
 
 
 class ReportScreen(Protocol):
@@ -26,7 +26,7 @@ class ReportScreen(Protocol):
         """Show that a run has begun."""
         ...
 
-    def show(self, now_s: float, run: Progress, at: Standing) -> None:
+    def show(self, now_s: float, run: Progress, at: RunPosition) -> None:
         """Show where the run is, or one of its parts where they run side by side."""
         ...
 
@@ -86,7 +86,7 @@ class LastingScreen:
         except OSError as error:
             self._lose(error)
 
-    def show(self, now_s: float, run: Progress, at: Standing) -> None:
+    def show(self, now_s: float, run: Progress, at: RunPosition) -> None:
         """Show where the run is."""
         if self.gone:
             return

@@ -13,7 +13,7 @@ from tester.machine.context import Progress
 from tester.machine.prompts import Prompts
 from tester.machine.run import Outcome, Run
 from tester.machine.tickers import TickStatistics
-from tester.machine.time_left import Standing, TimeLeft
+from tester.machine.time_left import RunPosition, TimeLeft
 from tester.run.endings import PartEnd, StopLevel
 from tester.run.folder import Job, Work, beginning_of, part_time, read_work
 from tester.run.kinds import recipe_part
@@ -29,7 +29,7 @@ class Sight(NamedTuple):
 
     now_s: float
     progress: Progress
-    at: Standing
+    at: RunPosition
 
 
 def side_by_side(

@@ -12,7 +12,7 @@ from tester.machine.context import Progress as RunProgress
 from tester.machine.prompts import Prompts
 from tester.machine.run import Run
 from tester.machine.tickers import TickStatistics
-from tester.machine.time_left import Standing
+from tester.machine.time_left import RunPosition
 from tester.recipe.estimate import Estimate
 from tester.run.endings import CannotStartError, StopLevel
 from tester.run.folder import Begin, Job, Work, earlier_of, parts_time
@@ -167,7 +167,7 @@ class RunScreen:
         """Take the recipe's name."""
         self.name = name
 
-    def show(self, now_s: float, run: RunProgress, at: Standing) -> None:
+    def show(self, now_s: float, run: RunProgress, at: RunPosition) -> None:
         """Nothing: the desk looks at the run itself."""
 
     def attend(self, prompts: Prompts) -> None:

@@ -13,6 +13,7 @@ from tester.axes import Setpoint
 from tester.base.trouble import in_words
 from tester.machine.context import Progress
 from tester.machine.prompts import Prompts
+from tester.machine.time_left import RunPosition
 from tester.results.cells import Cell
 from tester.results.conditions_table import ConditionRow, conditions_table, recipe_rows, sweep_columns
 from tester.results.run_results import results_of
@@ -140,7 +141,7 @@ class Unseen:
     def begin(self, name: str) -> None:
         """Show nothing."""
 
-    def show(self, now_s: float, run: Progress, share: float) -> None:
+    def show(self, now_s: float, run: Progress, at: RunPosition) -> None:
         """Look whether somebody wants the sweep to stop."""
         level = stop_level()
         if level and self.session is not None:

@@ -11,6 +11,7 @@ import sys
 from tester.cli import console
 from tester.cli.main import main
 from tester.machine.context import Progress
+from tester.machine.time_left import RunPosition
 
 
 class Stopping(console.Console):
@@ -20,10 +21,10 @@ class Stopping(console.Console):
     pressed = False
     done = 0.0
 
-    def show(self, now_s: float, run: Progress, share: float) -> None:
+    def show(self, now_s: float, run: Progress, at: RunPosition) -> None:
         """Keep how far the run is."""
-        self.done = share
-        super().show(now_s, run, share)
+        self.done = at.share
+        super().show(now_s, run, at)
 
     def commands(self) -> list[str]:
         """Return the command to stop, once."""

@@ -18,7 +18,7 @@ from typing import TypedDict
 import tester.kinds.wheel_on_belt.control.step
 from tester.machine.context import Progress
 from tester.machine.prompts import Prompts
-from tester.machine.time_left import Standing
+from tester.machine.time_left import RunPosition
 from tester.run.endings import CannotStartError
 from tester.run.session import Session, SessionOptions
 from tester.store.reader import RunReader
@@ -48,7 +48,7 @@ class Silent:
     def begin(self, name: str) -> None:
         """Show nothing."""
 
-    def show(self, now_s: float, run: Progress, at: Standing) -> None:
+    def show(self, now_s: float, run: Progress, at: RunPosition) -> None:
         """Show nothing."""
 
     def attend(self, prompts: Prompts) -> None:

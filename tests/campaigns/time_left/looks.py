@@ -11,7 +11,7 @@ from tempfile import TemporaryDirectory
 from typing import Final, NamedTuple
 
 from tester.machine.context import Progress
-from tester.machine.time_left import Standing
+from tester.machine.time_left import RunPosition
 from tester.run.endings import StopLevel
 from tester.run.folder import Work, earlier_of, parts_time
 from tester.run.kinds import served_kind
@@ -32,8 +32,7 @@ EVERY_S: Final = 5.0
 ROWS: Final = 12
 """Rows of the list of steps that is added up."""
 _LATER = re.compile(r"~(\d+):(\d\d):(\d\d)")
-_COUNTED = re.compile(r"(\d+)/(\d+) cond over")
-_LEFT = re.compile(r"left (\d+):(\d\d):(\d\d)")
+_HEAD = re.compile(r"(\d+)/(\d+) cond over.*left (\d+):(\d\d):(\d\d)")
 
 
 class Look(NamedTuple):
@@ -58,13 +57,11 @@ class Looked(NamedTuple):
 
 def printed(scene: ScreenScene) -> tuple[float, float, int, int] | None:
     """Return what screens print: time left of the head and of the list, s; conditions over and in all."""
-    head = _text(StateLine().picture(scene, 300, 1))
-    left, counted = _LEFT.search(head), _COUNTED.search(head)
-    if left is None:
+    head = _HEAD.search(_text(StateLine().picture(scene, 300, 1)))
+    if head is None:
         return None
-    over, conditions = (int(counted[1]), int(counted[2])) if counted is not None else (0, 0)
     listed = _LATER.findall(_text(StepsPanel().picture(scene, 100, ROWS)))
-    return _seconds(left.groups()), sum(map(_seconds, listed)), over, conditions
+    return _seconds(head.groups()[2:]), sum(map(_seconds, listed)), int(head[1]), int(head[2])
 
 
 def _text(parts: Parts) -> str:
@@ -86,7 +83,7 @@ class Observer(Silent):
         self._stop_at = stop_at
         self._before_s, self._last_s, self._part, self._due_s = 0.0, 0.0, 1, 0.0
 
-    def show(self, now_s: float, run: Progress, at: Standing) -> None:
+    def show(self, now_s: float, run: Progress, at: RunPosition) -> None:
         """Note it."""
         if at.part != self._part:
             self._before_s, self._part, self._due_s = self._before_s + self._last_s, at.part, 0.0

@@ -13,7 +13,7 @@ from tester.cli.console import Console, standing_words
 from tester.cli.keys import NoKeys
 from tester.machine.context import Progress
 from tester.machine.prompts import Prompts
-from tester.machine.time_left import Standing
+from tester.machine.time_left import RunPosition
 
 Output = pytest.CaptureFixture[str]
 
@@ -80,7 +80,7 @@ def test_without_a_terminal_every_step_is_a_line(capsys: Output) -> None:
     console = Console(as_json=False, answer_yes=True)
     console.begin("short")
     for title in ("heat to 40 degC", "heat to 40 degC", "1#: 300 mm/s"):
-        console.show(3725.0, Progress(title=title), Standing())
+        console.show(3725.0, Progress(title=title), RunPosition())
     console.end()
     assert capsys.readouterr().err == "1:02:05  heat to 40 degC\n1:02:05  1#: 300 mm/s\n"
 
@@ -88,7 +88,7 @@ def test_without_a_terminal_every_step_is_a_line(capsys: Output) -> None:
 def test_a_step_is_a_record_once(capsys: Output) -> None:
     console = Console(as_json=True, answer_yes=True)
     for _ in range(3):
-        console.show(12.3456, Progress(title="heat to 40 degC"), Standing(2, 9, 1, 4, 0.5, 61.0))
+        console.show(12.3456, Progress(title="heat to 40 degC"), RunPosition(2, 9, 1, 4, 0.5, 61.0))
     (line,) = capsys.readouterr().out.splitlines()
     counted = {"over": 1, "conditions": 4, "left_s": 61.0}
     assert json.loads(line) == {"event": "step", "t_s": 12.346, "step": 2, "title": "heat to 40 degC", **counted}
@@ -97,12 +97,12 @@ def test_a_step_is_a_record_once(capsys: Output) -> None:
 @pytest.mark.parametrize(
     ("at", "words"),
     [
-        (Standing(2, 9, 1, 4, 0.5, 61.0), "1/4 conditions over, 0:01:01 left"),
-        (Standing(2, 9, 1, 4, 0.5, None), "1/4 conditions over"),
-        (Standing(1, 3, left_s=7200.0), "2:00:00 left"),
+        (RunPosition(2, 9, 1, 4, 0.5, 61.0), "1/4 conditions over, 0:01:01 left"),
+        (RunPosition(2, 9, 1, 4, 0.5, None), "1/4 conditions over"),
+        (RunPosition(1, 3, left_s=7200.0), "2:00:00 left"),
     ],
 )
-def test_how_far_a_run_is_in_words(at: Standing, words: str) -> None:
+def test_how_far_a_run_is_in_words(at: RunPosition, words: str) -> None:
     assert standing_words(at) == words
 
 
@@ -215,6 +215,6 @@ def test_a_broken_progress_line_is_noticed_although_a_thread_draws_it(monkeypatc
     console.begin("short")
     try:
         with pytest.raises(BrokenPipeError):
-            console.show(0.0, Progress(), Standing())
+            console.show(0.0, Progress(), RunPosition())
     finally:
         console.end()

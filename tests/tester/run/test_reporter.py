@@ -6,7 +6,7 @@ import pytest
 
 from tester.machine.context import Progress
 from tester.machine.prompts import Prompts
-from tester.machine.time_left import Standing
+from tester.machine.time_left import RunPosition
 from tester.run.reporter import LastingScreen
 
 
@@ -28,7 +28,7 @@ class Failing:
     def begin(self, name: str) -> None:
         self._do("begin")
 
-    def show(self, now_s: float, run: Progress, at: Standing) -> None:
+    def show(self, now_s: float, run: Progress, at: RunPosition) -> None:
         self._do("show")
 
     def attend(self, prompts: Prompts) -> None:
@@ -53,7 +53,7 @@ class Failing:
 
 def everything(screen: LastingScreen) -> None:
     screen.begin("x")
-    screen.show(0.0, Progress(), Standing())
+    screen.show(0.0, Progress(), RunPosition())
     screen.attend(Prompts())
     screen.commands()
     screen.emit({})

@@ -26,7 +26,7 @@ from tester.machine.context import Progress
 from tester.machine.ports import Ports
 from tester.machine.prompts import Prompts
 from tester.machine.tickers import TickedWorld
-from tester.machine.time_left import Standing
+from tester.machine.time_left import RunPosition
 from tester.run import folder as folder_module
 from tester.run import part_run
 from tester.run.bus_log import BusLog
@@ -55,7 +55,7 @@ class Screen:
     def begin(self, name: str) -> None:
         self.messages.append(f"begin {name}")
 
-    def show(self, now_s: float, run: Progress, at: Standing) -> None:
+    def show(self, now_s: float, run: Progress, at: RunPosition) -> None:
         pass
 
     def attend(self, prompts: Prompts) -> None:
@@ -340,7 +340,7 @@ class Breaking(Screen):
         super().__init__()
         self.error = error
 
-    def show(self, now_s: float, run: Progress, at: Standing) -> None:
+    def show(self, now_s: float, run: Progress, at: RunPosition) -> None:
         if run.repeat:
             raise self.error
 
@@ -389,7 +389,7 @@ class Removing(Screen):
         super().__init__()
         self.runs = runs
 
-    def show(self, now_s: float, run: Progress, at: Standing) -> None:
+    def show(self, now_s: float, run: Progress, at: RunPosition) -> None:
         if run.repeat:
             shutil.rmtree(self.runs, ignore_errors=True)
 

@@ -13,7 +13,7 @@ import pytest
 from tester.kinds.wheel_on_belt.split import split
 from tester.machine.context import Progress
 from tester.machine.run import Outcome
-from tester.machine.time_left import Standing
+from tester.machine.time_left import RunPosition
 from tester.run import workers as crew
 from tester.run.endings import PartEnd, StopLevel
 from tester.run.folder import Job, Work
@@ -34,7 +34,7 @@ class Pool:
     def __init__(self, jobs: int) -> None:
         self.jobs = jobs
         self.level = StopLevel.NONE
-        self.said: list[object] = [Sight(1.5, Progress(), Standing(part=2, share=0.25)), "something else"]
+        self.said: list[object] = [Sight(1.5, Progress(), RunPosition(part=2, share=0.25)), "something else"]
 
     def __enter__(self) -> Pool:
         return self
