@@ -35,6 +35,8 @@ PRESS_SPRING_MM_S: Final = -20.0
 """Speed at which the spring retracts an unpowered press, mm/s [A]."""
 FORCES: Final = ("fx", "fy", "fz")
 """What the load cell has to measure, each by a transmitter; one may measure all."""
+_NO_ANGLES: Final = frozenset({"wheel_speed", "slip_velocity", "load", "temperature"})
+"""Axes of a condition that are no angle; the others are."""
 _NEAR_LIMIT: Final = 0.5
 """Below this share of the force that the press can bring about no single step brings it there."""
 
@@ -279,9 +281,8 @@ class WheelRig:
 
     def begin_repeat(self, condition: int, repeat: int, attempt: int, held: Mapping[str, float]) -> None:
         """Begin a repeat at setpoints by axis: the random streams, and the sensors' dither, start anew with it."""
-        setting = WheelSetting(
-            held["slip_velocity"], held["load"], held["sideslip"], held["camber"], held["temperature"]
-        )
+        angles = tuple(value for axis, value in held.items() if axis not in _NO_ANGLES)
+        setting = WheelSetting(held["slip_velocity"], held["load"], angles, held["temperature"])
         self.plant.begin_repeat(condition, repeat, attempt, setting)
         self.ir.dither = 0
         for cell in self.cells.values():

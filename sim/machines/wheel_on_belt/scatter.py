@@ -25,8 +25,8 @@ class WheelSetting(NamedTuple):
 
     slip_m_s: float
     load_n: float
-    sideslip_deg: float
-    camber_deg: float
+    angles_deg: tuple[float, ...]
+    """Of the driven angles, in the order of the machine's axes."""
     temperature_c: float
 
     @property
@@ -39,8 +39,7 @@ class WheelSetting(NamedTuple):
         return (
             round(1e4 * abs(self.slip_m_s)),
             round(10.0 * self.load_n),
-            round(100.0 * abs(self.sideslip_deg)),
-            round(100.0 * abs(self.camber_deg)),
+            *(round(100.0 * abs(angle)) for angle in self.angles_deg),
             round(10.0 * (self.temperature_c + 273.0)),
         )
 

@@ -76,7 +76,7 @@ def test_repeats_share_condition_and_wheel_and_have_runs_of_their_own(told: Path
 
 
 def test_the_condition_has_the_factor_of_its_setting(told: Path) -> None:
-    of_setting = condition_factor(SimParameters(), 3, "1#", WheelSetting(0.3, 200.0, 0.0, 0.0, 30.0))
+    of_setting = condition_factor(SimParameters(), 3, "1#", WheelSetting(0.3, 200.0, (0.0, 0.0), 30.0))
     assert {one["condition"] for one in truth(told).values()} == {of_setting}
 
 

@@ -20,7 +20,7 @@ from sim.physics.wear import radius_loss_mm, running_in_factor
 EXACT = SimParameters(noise=0.0, scatter=0.0, running_in=0.0, growth=0.0, ambient=25.0)
 ROUND = replace(EXACT, contact=ContactParameters(runout=0.0))
 WHEEL_RAD_S = 0.8 / 0.045
-MIDDLE = WheelSetting(0.3, 200.0, 0.0, 0.0, 40.0)
+MIDDLE = WheelSetting(0.3, 200.0, (0.0, 0.0), 40.0)
 
 
 def mounted(parameters: SimParameters = ROUND, compound: str = "1#", seed: int = 1) -> Plant:

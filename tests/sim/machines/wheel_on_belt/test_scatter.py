@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import statistics
 from dataclasses import replace
+from typing import Any
 
 import pytest
 
@@ -13,7 +14,7 @@ from sim.noise import Autoregressive, NormalStream
 from sim.physics.parameters import SimParameters
 
 QUIET = replace(SimParameters(), scatter=0.0)
-MIDDLE = WheelSetting(0.3, 200.0, 0.0, 0.0, 40.0)
+MIDDLE = WheelSetting(0.3, 200.0, (0.0, 0.0), 40.0)
 
 
 def test_wheels_scatter_by_their_sigma() -> None:
@@ -34,21 +35,22 @@ def factor(setting: WheelSetting, compound: str = "1#", seed: int = 1) -> float:
 
 
 def test_a_setting_has_one_factor_of_its_compound_and_seed() -> None:
-    assert factor(MIDDLE) == factor(WheelSetting(0.3, 200.0, 0.0, 0.0, 40.0))
+    assert factor(MIDDLE) == factor(WheelSetting(0.3, 200.0, (0.0, 0.0), 40.0))
     assert len({factor(MIDDLE), factor(MIDDLE, "2#"), factor(MIDDLE, seed=2)}) == 3
 
 
 @pytest.mark.parametrize("other", [
-    {"slip_m_s": 0.2}, {"load_n": 100.0}, {"sideslip_deg": 5.0}, {"camber_deg": 2.0}, {"temperature_c": 55.0},
+    {"slip_m_s": 0.2}, {"load_n": 100.0}, {"angles_deg": (5.0, 0.0)}, {"angles_deg": (0.0, 2.0)},
+    {"temperature_c": 55.0},
 ])  # fmt: skip
-def test_each_of_its_values_tells_a_setting_from_another(other: dict[str, float]) -> None:
+def test_each_of_its_values_tells_a_setting_from_another(other: dict[str, Any]) -> None:
     assert factor(MIDDLE._replace(**other)) != factor(MIDDLE)
 
 
 def test_the_last_digits_of_a_float_and_the_way_of_sliding_make_no_other_setting() -> None:
-    assert factor(WheelSetting(0.1 + 0.2, 200.0 + 1e-9, 0.0, -0.0, 40.0 - 1e-12)) == factor(MIDDLE)
-    turned = MIDDLE._replace(sideslip_deg=5.0)
-    assert factor(turned._replace(slip_m_s=-0.3, sideslip_deg=-5.0)) == factor(turned)
+    assert factor(WheelSetting(0.1 + 0.2, 200.0 + 1e-9, (0.0, -0.0), 40.0 - 1e-12)) == factor(MIDDLE)
+    turned = MIDDLE._replace(angles_deg=(5.0, 0.0))
+    assert factor(turned._replace(slip_m_s=-0.3, angles_deg=(-5.0, 0.0))) == factor(turned)
 
 
 def test_the_coldest_setting_that_a_recipe_may_ask_for_has_a_factor() -> None:
