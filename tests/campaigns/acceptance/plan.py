@@ -62,8 +62,11 @@ def _wheels(steps: list[Step], plan: dict[str, Any]) -> Iterator[Figure]:
     for (wheel, loss), following in zip(zip(wheels, losses, strict=True), wheels[1:], strict=False):
         if wheel[0]["specimen"] == following[0]["specimen"]:
             # A change is due when what is to come at the next temperature does not fit on the wheel any more.
-            first = next(step for step in following if step["kind"] == "condition")
-            block = [s for s in following if s.get("temperature_c") == first["temperature_c"]]
+            conditions = [step for step in following if step["kind"] == "condition"]
+            first = next(step for step in conditions if step["grid"] != "reference")
+            last = max(n for n, s in enumerate(conditions) if s["temperature_c"] == first["temperature_c"])
+            # References that fall due before them or among them wear the wheel as well.
+            block = conditions[: last + 1]
             needless += loss + fsum(step.get("loss_mm", 0.0) for step in block) <= limit
     yield equal("wheels changed although the next temperature's conditions would fit", needless, 0)
 

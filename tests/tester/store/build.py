@@ -208,6 +208,8 @@ def without_channels(database: sqlite3.Connection) -> None:
         database.execute(f"ALTER TABLE run DROP COLUMN {column}")
     database.execute("ALTER TABLE condition DROP COLUMN both_directions")
     without_looks(database)
+    if database.execute("SELECT 1 FROM sqlite_master WHERE name = 'wear_check'").fetchone():  # not of version 4
+        database.execute("ALTER TABLE wear_check DROP COLUMN expected_mm")
     database.execute("PRAGMA user_version = 7")
 
 

@@ -13,7 +13,7 @@ from tester.axes import condition_words
 from tester.catalogue.entries import read_entries
 from tester.kinds.wheel_on_belt.axes import AXES, KIND
 from tester.results import results_of
-from tester.results.budget import budget_rows
+from tester.results.budget import budget_table
 from tester.results.tables import appendix_rows
 from tester.store import older
 from tester.store.exclusions import add_exclusion
@@ -54,7 +54,7 @@ def test_an_older_record_is_exported_and_catalogued(folder: Path) -> None:
 def test_an_older_record_has_a_budget_of_its_kind_s_terms(folder: Path) -> None:
     with RunReader(folder) as reader:
         results = results_of(reader)
-        header, *rows = budget_rows(results)
+        header, *rows = budget_table(results).csv()
         assert reader.run().info.terms is older.TERMS
     named = {row[header.index("term")] for row in rows}
     assert {one.name for one in older.TERMS} <= named and "temperature sensitivity" in named
