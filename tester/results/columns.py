@@ -132,6 +132,14 @@ def setting_columns(
     )
 
 
+def piece_key(worn: str) -> str:
+    """Return the key of the column that numbers what is mounted; ``worn``: what people call it.
+
+    A recipe has specimens, too: a kind that wears specimens would have two columns of one key.
+    """
+    return "piece" if worn == "specimen" else worn
+
+
 def mean_column(channel: Channel, means: Callable[[R], Means], views: frozenset[Output] = frozenset()) -> Column[R]:
     """Return the column of a channel's mean; ``means`` reads a row's off it."""
     return Column(

@@ -8,7 +8,7 @@ from typing import Final
 from tester.analysis.wear import WearRate
 from tester.analysis.wear_check import WearCheck
 from tester.base.words import duration
-from tester.results.columns import Column, Output, Table
+from tester.results.columns import Column, Output, Table, piece_key
 from tester.results.run_results import RunResults
 from tester.store.records import PieceInfo
 
@@ -23,14 +23,14 @@ class PieceRow:
 
 def pieces_table(results: RunResults) -> Table[PieceRow]:
     """Return a row for each piece that was mounted: what it was and is, and its wear rate (95 % interval)."""
-    number = Column[PieceRow](results.worn, results.worn, lambda row: row.piece.piece, "", 0, _SHOWN)
+    number = Column[PieceRow](piece_key(results.worn), results.worn, lambda row: row.piece.piece, "", 0, _SHOWN)
     rows = (PieceRow(one, results.wear_of(one.piece)) for one in results.pieces)
     return Table((number, *_PIECE), tuple(rows))
 
 
 def checks_table(results: RunResults) -> Table[WearCheck]:
     """Return a row for each check of a diameter; ``before`` and ``after`` are conditions, none where there is none."""
-    number = Column[WearCheck](results.worn, results.worn, lambda row: row.piece)
+    number = Column[WearCheck](piece_key(results.worn), results.worn, lambda row: row.piece)
     return Table((number, *map(_of_check, _CHECK)), results.checks)
 
 

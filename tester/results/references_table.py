@@ -8,7 +8,7 @@ from math import isfinite
 from typing import Final
 
 from tester.analysis.reference import ControlChart, ControlPoint, CounterfaceDrift, Reference
-from tester.results.columns import Column, Output, Table, Value, axis_column
+from tester.results.columns import Column, Output, Table, Value, axis_column, piece_key
 from tester.results.run_results import RunResults, TableRow
 from tester.store.records import ConditionInfo
 
@@ -44,7 +44,7 @@ def references_table(results: RunResults) -> Table[ReferenceRow]:
     ``mu`` is at the temperature asked for, ``u_expanded`` its expanded repeatability (95 %). What is found of the
     counterface is the same in every row.
     """
-    piece = Column[ReferenceRow](results.worn, results.worn, lambda row: row.reference.piece or None)
+    piece = Column[ReferenceRow](piece_key(results.worn), results.worn, lambda row: row.reference.piece or None)
     axes = (axis_column(one, _info) for one in results.axes)
     return Table[ReferenceRow]((*_WHICH, piece, _COMPOUND, *axes, *_FOUND), tuple(_rows(results)))
 

@@ -9,7 +9,7 @@ from tester.analysis.directions import is_reversed
 from tester.analysis.flags import flags_in
 from tester.analysis.results import RepeatResult
 from tester.quantities import Means
-from tester.results.columns import Column, Output, Table, mean_column, setting_columns
+from tester.results.columns import Column, Output, Table, mean_column, piece_key, setting_columns
 from tester.results.run_results import Measured, RunResults
 from tester.store.records import ConditionInfo, StoredRepeat
 
@@ -44,7 +44,7 @@ class CommittedRepeat:
 
 def repeats_table(results: RunResults) -> Table[CommittedRepeat]:
     """Return the table of all committed repeats, condition by condition."""
-    which = (*_WHICH, Column[CommittedRepeat](results.worn, results.worn, lambda row: row.repeat.piece))
+    which = (*_WHICH, Column[CommittedRepeat](piece_key(results.worn), results.worn, lambda row: row.repeat.piece))
     settings = setting_columns(results.axes, _info, lambda row: row.measured.info.replicate)
     means = (mean_column(one, _means) for one in results.quantities.averaged)
     ways = (_DIRECTION,) if results.both_directions else ()

@@ -8,7 +8,7 @@ from typing import Final
 
 from tester.analysis.difference import Difference
 from tester.analysis.settings import SettingMeasurement, difference_of
-from tester.results.columns import Column, Table, axis_column
+from tester.results.columns import Column, Table, axis_column, piece_key
 from tester.results.run_results import RunResults
 from tester.results.settings import RepeatedSetting
 from tester.store.records import ConditionInfo
@@ -43,7 +43,7 @@ def settings_table(results: RunResults) -> Table[SettingRow]:
     ``difference`` is that from the setting's first measurement, with its expanded uncertainty (95 %) ``u_difference``;
     chi2 and its limit are the setting's, the same in its rows.
     """
-    piece = Column[SettingRow](results.worn, results.worn, lambda row: row.measurement.piece or None)
+    piece = Column[SettingRow](piece_key(results.worn), results.worn, lambda row: row.measurement.piece or None)
     axes = (axis_column(one, _info) for one in results.axes)
     return Table[SettingRow]((*_WHICH, *axes, piece, *_FOUND), tuple(_rows(results)))
 

@@ -56,8 +56,8 @@ MUTANTS: Mapping[str, Mutant] = {
         'shown(f"  {line}".replace("U compound", "U this wheel")) for line in others',
     ),
     "tables: the column headed mu_as_measured is the coefficient at the temperature asked for": Mutant(
-        "tester.results.columns", "tuple(one.key for one in stored)",
-        'tuple({"mu": "mu_as_measured", "mu_as_measured": "mu"}.get(one.key, one.key) for one in stored)',
+        "tester.results.columns", "tuple(column.key for column in stored)",
+        'tuple({"mu": "mu_as_measured", "mu_as_measured": "mu"}.get(column.key, column.key) for column in stored)',
     ),
     "report: a condition with a doubt is not counted": Mutant(
         "tester.results.tally", "sum(map(bool, doubts))", "sum(map(bool, doubts[1:]))",

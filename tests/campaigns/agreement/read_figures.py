@@ -65,8 +65,9 @@ def _points(place: Any) -> Iterator[tuple[str, list[tuple[float, float, float]]]
         upright = [0.0] * len(xy)
         for collection in bars:
             segments = collection.get_segments()
-            if len(segments) == len(xy) and any(abs(part[1][1] - part[0][1]) > _FLAT for part in segments):
-                upright = [0.5 * abs(part[1][1] - part[0][1]) for part in segments]
+            lengths = [abs(part[1][1] - part[0][1]) if len(part) else 0.0 for part in segments]  # none: no U
+            if len(lengths) == len(xy) and any(length > _FLAT for length in lengths):
+                upright = [0.5 * length for length in lengths]
         yield (
             str(container.get_label()),
             [(float(x), float(y), bar) for (x, y), bar in zip(xy, upright, strict=True)],

@@ -17,6 +17,10 @@ from tester.analysis.results import RepeatStatus
 from tester.kinds.wheel_on_belt.quantities import QUANTITIES
 from tester.results import write_all, write_file
 from tester.results.manifest import manifest_problems
+from tester.results.pieces_table import checks_table, pieces_table
+from tester.results.repeats_table import repeats_table
+from tester.results.run_results import results_of
+from tester.results.settings_table import settings_table
 from tester.store.reader import RunReader
 from tester.store.records import PieceInfo
 from tests.tester.results.made import made
@@ -280,3 +284,13 @@ def test_an_unfinished_run_can_be_exported_while_it_is_written(tmp_path: Path) -
     record(writer, 1, [0.7, 0.7, 0.7])
     assert len(tables(tmp_path)[0]) == 1
     writer.close()
+
+
+def test_no_table_has_two_columns_of_one_key_where_specimens_wear(tmp_path: Path) -> None:
+    with RunReader(small_run(tmp_path)) as reader:
+        found = results_of(reader)
+    results = replace(found, run=replace(found.run, info=replace(found.run.info, worn="specimen")))
+    tables = (pieces_table, checks_table, repeats_table, settings_table)
+    keys = [[column.key for column in table_of(results).columns] for table_of in tables]
+    assert [len(listed) for listed in keys] == [len(set(listed)) for listed in keys]
+    assert "piece" in keys[0] and "specimen" in keys[0]
