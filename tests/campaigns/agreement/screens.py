@@ -11,6 +11,8 @@ from tests.campaigns.agreement.record import Record
 
 _SIZE = (180, 70)
 """Characters of the screen: wide enough for every column, high enough for every condition."""
+_LISTED = 8
+"""Repeats that the dialog lists at once, at least."""
 _WAIT_S = 60.0
 _STEP_S = 0.5
 """Each step of a list is shown in whole seconds."""
@@ -63,6 +65,10 @@ async def _replayed(record: Record, worn: str) -> list[Facts]:
             await pilot.press("enter")
             text = await until(lambda text: "repeat 1:" in text or "no repeat is committed" in text)
             found.append(read_repeats(record, worn, row.condition, text, "screen repeats"))
+            if sum(condition == row.condition for condition, _ in record.repeats) > _LISTED:
+                await pilot.press("end")  # what does not fit is scrolled to
+                await pilot.pause()
+                found.append(read_repeats(record, worn, row.condition, screen_text(app), "screen repeats"))
             await pilot.press("escape")
             await pilot.pause()
     return found
