@@ -32,7 +32,7 @@ EVERY_S: Final = 5.0
 ROWS: Final = 12
 """Rows of the list of steps that is added up."""
 _LATER = re.compile(r"~(\d+):(\d\d):(\d\d)")
-_HEAD = re.compile(r"(\d+)/(\d+) cond over.*left (\d+):(\d\d):(\d\d)")
+_HEAD = re.compile(r"(?:(\d+)/(\d+) cond over.*)?left (\d+):(\d\d):(\d\d)")
 
 
 class Look(NamedTuple):
@@ -61,7 +61,7 @@ def printed(scene: ScreenScene) -> tuple[float, float, int, int] | None:
     if head is None:
         return None
     listed = _LATER.findall(_text(StepsPanel().picture(scene, 100, ROWS)))
-    return _seconds(head.groups()[2:]), sum(map(_seconds, listed)), int(head[1]), int(head[2])
+    return _seconds(head.groups()[2:]), sum(map(_seconds, listed)), int(head[1] or 0), int(head[2] or 0)
 
 
 def _text(parts: Parts) -> str:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from sim.physics.wlf import PoleError
-from tester.master.collapse import collapse, shifts
+from tester.master.collapse import PILOT, collapse, shifts
 from tester.master.points import MasterError, MasterPoint, MasterSource, set_of
 from tests.campaigns.master.synthetic import TS_C, synthetic
 
@@ -80,3 +80,19 @@ def test_the_arrays_are_in_order_of_temperature_and_speed() -> None:
     assert found.points == tuple(points)
     assert found.in_block.shape == (99, 11) and np.all(np.sum(found.in_block, axis=0) == 9)
     assert np.allclose(shifts(found.celsius, TS_C)[:9], shifts(np.array([-5.0]), TS_C))
+
+
+def test_factors_of_two_runs_are_held_by_what_is_known_of_them() -> None:
+    """Least squares by hand: of a difference d the factors take n / (n + (PILOT / gain)^2), here one half."""
+    made = synthetic(0, 0.0)
+    gain, d = PILOT / np.sqrt(len(made)), 0.004
+    runs = [replace(made[0].source, name=name, gain=gain) for name in ("a", "b")]
+    both = [
+        replace(one, source=source, mu=one.mu * np.exp(sign * 0.5 * d))
+        for source, sign in zip(runs, (1.0, -1.0), strict=True)
+        for one in made
+    ]
+    of = set_of(both)
+    found = collapse(of, TS_C, resamples=2)
+    sides = [float(np.mean(found.residual[of.source == place])) for place in (0, 1)]
+    assert abs(sides[0] - sides[1]) == pytest.approx(0.5 * d, rel=0.02)

@@ -108,8 +108,11 @@ def test_conditions_that_differ_in_more_than_temperature_are_no_pair(tmp_path: P
     writer.begin_run(RUN, SPECIMENS, conditions)
     for number, at_c in ((1, 25.0), (2, 40.0)):
         means = Means(QUANTITIES, {**result().means, "surface_c": at_c}.values())
-        writer.commit_repeat(writer.begin_repeat(number, 1, 1, 9.0, piece=1), replace(result(0.7), means=means))
+        for repeat in (1, 2, 3):
+            key = writer.begin_repeat(number, repeat, 1, 9.0, piece=1)
+            writer.commit_repeat(key, replace(result(0.7), means=means))
     writer.close()
+    assert all(one.result.ok for one in results(tmp_path).rows)
     assert "unknown" in source_of_sensitivity(tmp_path)
 
 
