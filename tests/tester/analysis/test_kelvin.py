@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import exp, hypot, sqrt
 
 import pytest
@@ -60,3 +61,14 @@ def test_an_unknown_sensitivity_is_named_with_its_2_6_percent_a_kelvin() -> None
 
 def test_a_temperature_that_was_not_measured_moves_nothing() -> None:
     assert SurfaceWarmth(slope=STEEP).correction(TERMS) == 1.0
+
+
+def test_at_the_end_of_three_the_parabola_s_departure_from_the_chord_counts() -> None:
+    """Weights of the derivative at 25 degC by hand; slopes 2 %/K at 25 degC and 1.25 %/K in the mean."""
+    found = slope_of_pairs(25.0, [(t, bell(t)) for t in (25.0, 40.0, 55.0)])
+    scattered = CONDITION_SCATTER * sqrt(0.1**2 + (2.0 / 15.0) ** 2 + (1.0 / 30.0) ** 2)
+    assert found is not None and found.u_per_kelvin == pytest.approx(hypot(scattered, 0.0075 / sqrt(3.0)))
+
+
+def test_a_slope_that_is_only_a_prior_corrects_nothing() -> None:
+    assert SurfaceWarmth(55.0, 56.0, 2.0, replace(STEEP, known=False)).correction(TERMS) == 1.0

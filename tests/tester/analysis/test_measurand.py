@@ -165,3 +165,7 @@ def test_a_rig_that_says_no_terms_has_repeats_alone_for_both() -> None:
     found = with_budget(THREE, Surroundings(pool=BY.pool))
     assert found.budget.standard == found.compound_budget.standard == pytest.approx(0.70 * 0.02 / sqrt(3.0))
     assert found.mu == found.mu_resultant
+
+
+def test_without_a_pool_a_condition_has_its_own_repeatability() -> None:
+    assert repeatability(THREE, Pool()).standard == pytest.approx(THREE.type_a)

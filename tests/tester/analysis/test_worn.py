@@ -85,3 +85,14 @@ def test_a_wheel_that_was_put_back_keeps_what_its_earlier_checks_knew() -> None:
 def test_a_check_that_was_not_believed_is_no_check() -> None:
     unused = tuple(replace(one, used=0) for one in WORN.checks)
     assert isnan(replace(WORN, checks=unused).size(75.0).checked_u_mm)
+
+
+def test_a_check_of_a_later_series_does_not_end_an_interval() -> None:
+    other = replace(AFTER_ONE, reference_s=800.0)
+    piece = Worn(90.0, 89.4, 100.0, (NEW, AFTER_GRINDING, other))
+    assert piece.size(75.0).loss_mm == pytest.approx(0.2 + 0.5 * 0.4)
+
+
+def test_a_check_by_a_person_has_its_own_zero() -> None:
+    person = replace(NEW, method="person", diameter_mm=89.5, sliding_m=50.0)
+    assert Worn(90.0, 89.5, 50.0, (person,)).size(50.0).checked_u_mm == pytest.approx(U)
