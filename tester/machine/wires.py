@@ -7,7 +7,7 @@ from typing import Final, Protocol
 
 from tester.machine.image import BaseDemand, BaseReadings
 from tester.machine.row import ACK, CONTROLLED, EMERGENCY, FAST, REPAIR, WARN, Compared, Interlock
-from tester.rig.parameter import AT_LEAST_ONE, NOT_NEGATIVE, SHARE, Direction, Parameter, Values
+from tester.rig.parameter import AT_LEAST_ONE, NOT_NEGATIVE, SHARE, Parameter, Values
 
 
 class Limits(Protocol):
@@ -63,13 +63,11 @@ SAFETY_CHAIN: Final = Interlock(
 
 SILENT_CAN_SCANS: Final = Parameter(
     "silent_can_scans", "1", "2.5", "nothing heard over CAN for this many scan periods ...", AT_LEAST_ONE,
-    direction=Direction.LOWER, hardest="5",
-    because="as stale_can_scans",
+    hardest="5", because="as stale_can_scans",
 )  # fmt: skip
 SILENT_CAN_HEARTBEATS: Final = Parameter(
     "silent_can_heartbeats", "1", "1.5", "... or, if that is less, for this many heartbeats of a drive [A]",
-    AT_LEAST_ONE, direction=Direction.LOWER, hardest="3",
-    because="after three each drive counts as lost by itself",
+    AT_LEAST_ONE, hardest="3", because="after three each drive counts as lost by itself",
 )  # fmt: skip
 
 
@@ -156,8 +154,7 @@ CLOCK_JUMP: Final = Interlock(
 LATE_WARN_S: Final = Parameter("late_warn_s", "s", "50 ms", "a scan this late is a warning ...")
 LATE_SCAN_S: Final = Parameter(
     "late_scan_s", "s", "150 ms", "... this late a trip",
-    direction=Direction.LOWER, hardest="200 ms",
-    because="the drives stop by themselves 200 ms after the PC's last heartbeat or setpoint",
+    hardest="200 ms", because="the drives stop by themselves 200 ms after the PC's last heartbeat or setpoint",
 )  # fmt: skip
 
 
@@ -198,7 +195,7 @@ GUARD_OPEN: Final = Interlock(
 
 STALE_INPUTS_S: Final = Parameter(
     "stale_inputs_s", "s", "250 ms", "age of the inputs (safety chain, guard): one in a row may be lost [A]",
-    direction=Direction.LOWER, hardest="500 ms",
+    hardest="500 ms",
     because="five periods of the drive's input word: four lost in a row are no noise, the drive no longer sends them",
 )  # fmt: skip
 
@@ -222,12 +219,12 @@ INPUTS_STALE: Final = Interlock(
 
 STALE_CAN_SCANS: Final = Parameter(
     "stale_can_scans", "1", "2.5", "age of the drives' data in scan periods ...", AT_LEAST_ONE,
-    direction=Direction.LOWER, hardest="5",
+    hardest="5",
     because="the drives' own watch of the setpoints ends at 200 ms, twenty periods at 100 Hz: a quarter of that",
 )  # fmt: skip
 STALE_CAN_S: Final = Parameter(
     "stale_can_s", "s", "150 ms", "... and never more than this",
-    direction=Direction.LOWER, hardest="200 ms",
+    hardest="200 ms",
     because="a drive without setpoints stops by itself after 200 ms; nothing older may be believed of it",
 )  # fmt: skip
 
@@ -258,13 +255,12 @@ DEVICE_REFUSED: Final = Interlock(
 
 LINE_ERRORS: Final = Parameter(
     "line_errors", "1", "0.3", "share of failed requests to a Modbus device over 2 s or more ... [A]", SHARE,
-    direction=Direction.LOWER, hardest="0.5",
+    hardest="0.5",
     because="a line on which every second request fails reaches its devices half as often as was planned",
 )  # fmt: skip
 LINE_ERRORS_DELAY_S: Final = Parameter(
     "line_errors_delay_s", "s", "3 s", "... for this long [A]", NOT_NEGATIVE,
-    direction=Direction.LOWER, hardest="10 s",
-    because="the values' own ages are watched besides: this row only names the line",
+    hardest="10 s", because="the values' own ages are watched besides: this row only names the line",
 )  # fmt: skip
 
 

@@ -69,7 +69,7 @@ def ceilings_of(section: str, parameters: Iterable[Parameter]) -> tuple[Ceiling,
     return tuple(
         Ceiling(f"{section}.{one.key}", "" if one.unit == "1" else one.unit, one.direction, one.hardest, one.because)
         for one in parameters
-        if one.direction is not None
+        if one.hardest
     )
 
 

@@ -44,13 +44,11 @@ class Parameter:
     """The comment beside it: what it limits and where the number comes from; [A] marks an engineering assumption."""
     bounds: Range = POSITIVE
     """What the key accepts at all, in its unit."""
-    direction: Direction | None = None
-    """Which way is tighter; None where neither is, or where no harm hangs on it."""
+    direction: Direction = Direction.LOWER
+    """Which way is tighter, where ``hardest`` limits it."""
     hardest: str = ""
-    """How far it may be loosened before a row no longer does what it is there for, as text like ``default``.
-
-    On a real machine anything looser is a risk that somebody has to accept. "" where ``direction`` is None.
-    """
+    """How far it may be loosened before a row no longer does what it is there for, as text like ``default``; "" where
+    no harm hangs on it. On a real machine anything looser is a risk that somebody has to accept."""
     because: str = ""
     """Why there."""
 

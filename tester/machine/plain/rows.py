@@ -20,7 +20,7 @@ from tester.machine.row import ACK, ENDING, FAST, LOADED, POWER_OFF, REPAIR, Com
 from tester.machine.state import ControlState, Mode
 from tester.machine.wires import DEVICE_REFUSED, INPUTS_STALE, LINE_NOISY, WARNINGS
 from tester.machine.wires import ROWS as WIRE_ROWS
-from tester.rig.parameter import NOT_NEGATIVE, Direction, Parameter
+from tester.rig.parameter import NOT_NEGATIVE, Parameter
 from tester.rig.plain import PlainRig
 
 ReadingsT = TypeVar("ReadingsT", bound=PlainReadings)
@@ -81,8 +81,7 @@ DRIVE_DATA_STALE: Final = drive_data_stale(lambda r: (r.drives_at_s,))
 
 DROPPED_DELAY_S: Final = Parameter(
     "dropped_delay_s", "s", "50 ms", "a drive leaves operation by itself, or has power at rest [A]", NOT_NEGATIVE,
-    direction=Direction.LOWER, hardest="100 ms",
-    because="one scan of 20 Hz may see a drive on its way; two may not",
+    hardest="100 ms", because="one scan of 20 Hz may see a drive on its way; two may not",
 )  # fmt: skip
 
 
@@ -90,13 +89,11 @@ DRIVE_DROPPED_OUT: Final = drive_dropped_out(DROPPED_DELAY_S)
 
 OVERSPEED_SHARE: Final = Parameter(
     "overspeed_share", "1", "5 %", "above its greatest speed by this share [A]", NOT_NEGATIVE,
-    direction=Direction.LOWER, hardest="10 %",
-    because="a drive that follows its ramp does not overshoot by a tenth",
+    hardest="10 %", because="a drive that follows its ramp does not overshoot by a tenth",
 )  # fmt: skip
 OVERSPEED_DELAY_S: Final = Parameter(
     "overspeed_delay_s", "s", "50 ms", "... for this long [A]", NOT_NEGATIVE,
-    direction=Direction.LOWER, hardest="100 ms",
-    because="a runaway drive gains with every scan that waits",
+    hardest="100 ms", because="a runaway drive gains with every scan that waits",
 )  # fmt: skip
 
 
@@ -127,8 +124,7 @@ OVERSPEED: Final = Interlock(
 
 STALE_SENSOR_S: Final = Parameter(
     "stale_sensor_s", "s", "200 ms", "age of what a sensor measures; what it calls invalid is too old at once",
-    direction=Direction.LOWER, hardest="500 ms",
-    because="a row that looks at a sensor is blind that long",
+    hardest="500 ms", because="a row that looks at a sensor is blind that long",
 )  # fmt: skip
 
 
@@ -152,8 +148,7 @@ SENSOR_SILENT: Final = Interlock(
 
 STOP_MARGIN_S: Final = Parameter(
     "stop_margin_s", "s", "500 ms", "drives may stand this much later than their ramps say [A]",
-    direction=Direction.LOWER, hardest="1 s",
-    because="a drive that does not stop loses its power after two of these",
+    hardest="1 s", because="a drive that does not stop loses its power after two of these",
 )  # fmt: skip
 
 
@@ -178,8 +173,7 @@ QUICK_STOP_FAILED: Final = quick_stop_failed(
 
 STOP_TIMEOUT_S: Final = Parameter(
     "stop_timeout_s", "s", "10 s", "a stop that has not ended by then takes the power off and latches [A]",
-    direction=Direction.LOWER, hardest="15 s",
-    because="every part of a stop has been escalated by then; nothing gets better by waiting longer",
+    hardest="15 s", because="every part of a stop has been escalated by then; nothing gets better by waiting longer",
 )  # fmt: skip
 
 
@@ -189,8 +183,7 @@ STOP_NOT_ENDED: Final = stop_not_ended(
 
 REST_AFTER_S: Final = Parameter(
     "rest_after_s", "s", "500 ms", "data of a drive at rest that are older say nothing [A]",
-    direction=Direction.LOWER, hardest="1 s",
-    because="the scan at rest comes ten times a second",
+    hardest="1 s", because="the scan at rest comes ten times a second",
 )  # fmt: skip
 
 
@@ -217,8 +210,7 @@ MOVING_AT_REST: Final = Interlock(
 
 HOLD_AT_MOST_S: Final = Parameter(
     "hold_at_most_s", "s", "60 min", "a hold ends in a controlled stop after this [A]",
-    direction=Direction.LOWER, hardest="120 min",
-    because="nobody is expected to attend to a powered machine for longer than that",
+    hardest="120 min", because="nobody is expected to attend to a powered machine for longer than that",
 )  # fmt: skip
 OPERATION: Final = (HOLD_AT_MOST_S, ACK_WAIT_S)
 ABOUT: Final = "holds and acknowledgements"

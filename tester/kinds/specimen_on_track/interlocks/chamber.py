@@ -8,22 +8,19 @@ from typing import Final
 from tester.kinds.specimen_on_track.interlocks.inputs import TrackInputs
 from tester.machine.row import ACK, CONTROLLED, FAST, REPAIR, Compared, Interlock
 from tester.machine.wires import answered_s
-from tester.rig.parameter import NOT_NEGATIVE, Direction, Parameter
+from tester.rig.parameter import NOT_NEGATIVE, Parameter
 
 STALE_AIR_S: Final = Parameter(
     "stale_air_s", "s", "2.5 s", "age of the air's temperature: five polls [A]",
-    direction=Direction.LOWER, hardest="10 s",
-    because="at full output the air changes by 0.6 K in 10 s",
+    hardest="10 s", because="at full output the air changes by 0.6 K in 10 s",
 )  # fmt: skip
 STALE_EXIT_S: Final = Parameter(
     "stale_exit_s", "s", "2 s", "age of the pyrometer's temperature [A]",
-    direction=Direction.LOWER, hardest="10 s",
-    because="it is recorded and not controlled by: what is older says nothing of the present contact",
+    hardest="10 s", because="it is recorded and not controlled by: what is older says nothing of the present contact",
 )  # fmt: skip
 STALE_DELAY_S: Final = Parameter(
     "stale_delay_s", "s", "200 ms", "for both [A]", NOT_NEGATIVE,
-    direction=Direction.LOWER, hardest="1 s",
-    because="one reply may be lost; no more",
+    hardest="1 s", because="one reply may be lost; no more",
 )  # fmt: skip
 
 
@@ -63,8 +60,7 @@ EXIT_SILENT: Final = Interlock(
 
 BROKEN_DELAY_S: Final = Parameter(
     "broken_delay_s", "s", "1 s", "a temperature that its device denies, for this long [A]", NOT_NEGATIVE,
-    direction=Direction.LOWER, hardest="5 s",
-    because="a chamber with a broken sensor stands by on its own; in 5 s its air changes by 0.3 K",
+    hardest="5 s", because="a chamber with a broken sensor stands by on its own; in 5 s its air changes by 0.3 K",
 )  # fmt: skip
 
 
@@ -85,13 +81,11 @@ AIR_BROKEN: Final = Interlock(
 
 RANGE_K: Final = Parameter(
     "range_k", "K", "2 K", "the chamber's air beyond limits.air_low or air_high by this ... [A]",
-    direction=Direction.LOWER, hardest="4 K",
-    because="the chamber's own limiter stands by 5 K beyond; 10 K beyond specimen and cell are spoilt",
+    hardest="4 K", because="the chamber's own limiter stands by 5 K beyond; 10 K beyond specimen and cell are spoilt",
 )  # fmt: skip
 RANGE_DELAY_S: Final = Parameter(
     "range_delay_s", "s", "2 s", "... for this long [A]", NOT_NEGATIVE,
-    direction=Direction.LOWER, hardest="10 s",
-    because="at full output the air changes by 0.6 K in 10 s",
+    hardest="10 s", because="at full output the air changes by 0.6 K in 10 s",
 )  # fmt: skip
 
 
@@ -123,13 +117,11 @@ OUT_OF_RANGE: Final = Interlock(
 
 RUNAWAY_K: Final = Parameter(
     "runaway_k", "K", "10 K", "air off a setpoint that it has been at, by this ... [A]",
-    direction=Direction.LOWER, hardest="15 K",
-    because="a chamber that has lost its loop goes on at 3.6 K a minute",
+    hardest="15 K", because="a chamber that has lost its loop goes on at 3.6 K a minute",
 )  # fmt: skip
 RUNAWAY_DELAY_S: Final = Parameter(
     "runaway_delay_s", "s", "2 s", "... for this long [A]", NOT_NEGATIVE,
-    direction=Direction.LOWER, hardest="10 s",
-    because="at full output the air changes by 0.6 K in 10 s",
+    hardest="10 s", because="at full output the air changes by 0.6 K in 10 s",
 )  # fmt: skip
 
 
@@ -154,8 +146,7 @@ RUNAWAY: Final = Interlock(
 
 ALARM_DELAY_S: Final = Parameter(
     "alarm_delay_s", "s", "1500 ms", "the chamber says so in more than two polls [A]", NOT_NEGATIVE,
-    direction=Direction.LOWER, hardest="5 s",
-    because="it has stood by already: nothing gets worse meanwhile",
+    hardest="5 s", because="it has stood by already: nothing gets worse meanwhile",
 )  # fmt: skip
 CHAMBER_ALARM: Final = Interlock(
     name="chamber alarm",
@@ -170,8 +161,7 @@ CHAMBER_ALARM: Final = Interlock(
 
 CHAMBER_OFF_S: Final = Parameter(
     "chamber_off_s", "s", "3 s", "told to stand by, the chamber gives no output after this [A]: six polls",
-    direction=Direction.LOWER, hardest="30 s",
-    because="30 s is its lease: later it would have ended by itself",
+    hardest="30 s", because="30 s is its lease: later it would have ended by itself",
 )  # fmt: skip
 
 

@@ -11,13 +11,12 @@ from tester.rig.parameter import NOT_NEGATIVE, SHARE, Direction, Parameter
 
 STALE_CELL_S: Final = Parameter(
     "stale_cell_s", "s", "100 ms", "age of the force: two readings at the slow scan [A]",
-    direction=Direction.LOWER, hardest="500 ms",
+    hardest="500 ms",
     because="friction that grows by 100 N/s, ten times what a track at 10 mm/s makes of rubber, gains 50 N in 500 ms",
 )  # fmt: skip
 STALE_CELL_DELAY_S: Final = Parameter(
     "stale_cell_delay_s", "s", "50 ms", "one reply may be lost [A]", NOT_NEGATIVE,
-    direction=Direction.LOWER, hardest="200 ms",
-    because="with the age before it the force is unknown for 0.7 s at most",
+    hardest="200 ms", because="with the age before it the force is unknown for 0.7 s at most",
 )  # fmt: skip
 
 
@@ -40,8 +39,7 @@ CELL_SILENT: Final = Interlock(
 
 INVALID_DELAY_S: Final = Parameter(
     "invalid_cell_delay_s", "s", "50 ms", "a reading that its own status denies, or beyond the range [A]", NOT_NEGATIVE,
-    direction=Direction.LOWER, hardest="200 ms",
-    because="a broken bridge is at the end of its range at once; nothing better comes of waiting",
+    hardest="200 ms", because="a broken bridge is at the end of its range at once; nothing better comes of waiting",
 )  # fmt: skip
 
 
@@ -62,7 +60,7 @@ CELL_INVALID: Final = Interlock(
 
 OVERLOAD_DELAY_S: Final = Parameter(
     "overload_delay_s", "s", "20 ms", "above limits.force for this long [A]", NOT_NEGATIVE,
-    direction=Direction.LOWER, hardest="50 ms",
+    hardest="50 ms",
     because="a specimen that catches at 2 m/s draws the arm's spring, 200 N/mm, by 200 N in half a millisecond",
 )  # fmt: skip
 
@@ -84,7 +82,7 @@ OVERLOAD: Final = Interlock(
 
 FROZEN_CELL_S: Final = Parameter(
     "frozen_cell_s", "s", "1 s", "identical counts of the cell with the arm down and the track going [A]",
-    direction=Direction.LOWER, hardest="2 s",
+    hardest="2 s",
     because="20 readings of a cell with noise of many counts are never alike; at 10 mm/s 2 s are 20 mm of travel",
 )  # fmt: skip
 
@@ -108,13 +106,11 @@ CELL_FROZEN: Final = Interlock(
 
 RAISED_N: Final = Parameter(
     "raised_n", "N", "4 N", "force with the arm raised, after the tare [A]: zero drift is 0.4 N over 80 K",
-    direction=Direction.LOWER, hardest="10 N",
-    because="half of 20 N: a specimen that touches at the raised arm, or a cell whose zero has gone",
+    hardest="10 N", because="half of 20 N: a specimen that touches at the raised arm, or a cell whose zero has gone",
 )  # fmt: skip
 RAISED_DELAY_S: Final = Parameter(
     "raised_delay_s", "s", "500 ms", "... for this long [A]", NOT_NEGATIVE,
-    direction=Direction.LOWER, hardest="2 s",
-    because="a contact that opens has let go in some tenths of a second",
+    hardest="2 s", because="a contact that opens has let go in some tenths of a second",
 )  # fmt: skip
 
 
@@ -144,13 +140,11 @@ LOST_SHARE: Final = Parameter(
 )  # fmt: skip
 CONTACT_WAY_MM: Final = Parameter(
     "contact_way_mm", "mm", "0.8 mm", "... after this way one way: the arm's spring is drawn by then [A] ...",
-    direction=Direction.LOWER, hardest="5 mm",
-    because="100 N each way draw a spring of 200 N/mm by 1 mm",
+    hardest="5 mm", because="100 N each way draw a spring of 200 N/mm by 1 mm",
 )  # fmt: skip
 LOST_DELAY_S: Final = Parameter(
     "lost_delay_s", "s", "200 ms", "... for this long [A]", NOT_NEGATIVE,
-    direction=Direction.LOWER, hardest="2 s",
-    because="at 2 m/s a bare holder grinds along 4 m of the track in 2 s",
+    hardest="2 s", because="at 2 m/s a bare holder grinds along 4 m of the track in 2 s",
 )  # fmt: skip
 
 
@@ -176,18 +170,15 @@ CONTACT_LOST: Final = Interlock(
 
 FRICTION_SHARE: Final = Parameter(
     "friction_share", "1", "4", "force above this times the weights ... [A]: rubber at rest has 2.7",
-    direction=Direction.LOWER, hardest="6",
-    because="with 20 N six times is 120 N, and the cell of these rigs ends at 200 N",
+    hardest="6", because="with 20 N six times is 120 N, and the cell of these rigs ends at 200 N",
 )  # fmt: skip
 FRICTION_LEAST_N: Final = Parameter(
     "friction_least_n", "N", "5 N", "... and this beside it [A] ...", NOT_NEGATIVE,
-    direction=Direction.LOWER, hardest="20 N",
-    because="the zero of the cell is known to some newtons before the tare, afterwards to a tenth",
+    hardest="20 N", because="the zero of the cell is known to some newtons before the tare, afterwards to a tenth",
 )  # fmt: skip
 FRICTION_DELAY_S: Final = Parameter(
     "friction_delay_s", "s", "100 ms", "... for this long [A]", NOT_NEGATIVE,
-    direction=Direction.LOWER, hardest="500 ms",
-    because="a block that digs itself in tears within a few millimetres",
+    hardest="500 ms", because="a block that digs itself in tears within a few millimetres",
 )  # fmt: skip
 
 

@@ -5,16 +5,15 @@ from __future__ import annotations
 from typing import Final
 
 from tester.kinds.specimen_on_track.interlocks.inputs import TrackInputs
-from tester.rig.parameter import SHARE, Direction, Parameter
+from tester.rig.parameter import SHARE, Parameter
 
 STANDING_SHARE: Final = Parameter(
     "standing_share", "1", "0.0005", "a track slower than this share of axes.track.max_speed stands [A]", SHARE,
-    direction=Direction.LOWER, hardest="0.001",
-    because="a thousandth of the greatest speed counts as motion where everything must stand",
+    hardest="0.001", because="a thousandth of the greatest speed counts as motion where everything must stand",
 )  # fmt: skip
 SPEEDS_OLD_S: Final = Parameter(
     "speeds_old_s", "s", "500 ms", "a stop does not end on a speed older than this [A]",
-    direction=Direction.LOWER, hardest="1 s",
+    hardest="1 s",
     because="the next step of a stop that does not work begins half a second after it: by then it must be known",
 )  # fmt: skip
 

@@ -9,14 +9,13 @@ from tester.kinds.specimen_on_track.interlocks.known import STANDING_SHARE, stan
 from tester.machine.drive_rows import drive_data_stale, drive_dropped_out
 from tester.machine.row import ACK, CONTROLLED, FAST, REPAIR, Compared, Interlock
 from tester.machine.wires import INPUTS_STALE
-from tester.rig.parameter import NOT_NEGATIVE, SHARE, Direction, Parameter
+from tester.rig.parameter import NOT_NEGATIVE, SHARE, Parameter
 
 DRIVE_DATA_STALE: Final = drive_data_stale(lambda r: (r.track_at_s, r.lift_at_s))
 
 DROPPED_DELAY_S: Final = Parameter(
     "dropped_delay_s", "s", "50 ms", "a drive leaves operation by itself [A]", NOT_NEGATIVE,
-    direction=Direction.LOWER, hardest="200 ms",
-    because="the other drive goes on meanwhile: 200 ms is what a drive takes to miss our heartbeat",
+    hardest="200 ms", because="the other drive goes on meanwhile: 200 ms is what a drive takes to miss our heartbeat",
 )  # fmt: skip
 
 
@@ -24,12 +23,11 @@ DRIVE_DROPPED_OUT: Final = drive_dropped_out(DROPPED_DELAY_S)
 
 OVERSPEED_SHARE: Final = Parameter(
     "overspeed_share", "1", "5 %", "the track above limits.track_speed by this share [A]", NOT_NEGATIVE,
-    direction=Direction.LOWER, hardest="10 %",
-    because="a tenth more speed is a tenth more way that a stop takes before the end of the travel",
+    hardest="10 %", because="a tenth more speed is a tenth more way that a stop takes before the end of the travel",
 )  # fmt: skip
 OVERSPEED_DELAY_S: Final = Parameter(
     "overspeed_delay_s", "s", "50 ms", "... for this long [A]", NOT_NEGATIVE,
-    direction=Direction.LOWER, hardest="200 ms",
+    hardest="200 ms",
     because="at 10 mm/s the track goes 2 mm in 200 ms; 10 mm are left beyond the soft end of its travel",
 )  # fmt: skip
 
@@ -55,17 +53,15 @@ OVERSPEED: Final = Interlock(
 
 SPEED_SHARE: Final = Parameter(
     "speed_share", "1", "0.3", "way of a second off what is commanded by this share of it ... [A]", SHARE,
-    direction=Direction.LOWER, hardest="0.5",
-    because="at half the way the friction that is told for a speed is that of another one",
+    hardest="0.5", because="at half the way the friction that is told for a speed is that of another one",
 )  # fmt: skip
 SPEED_FLOOR: Final = Parameter(
     "speed_floor", "1", "0.00002", "... and this share of axes.track.max_speed, times a second [A] ...", SHARE,
-    direction=Direction.LOWER, hardest="0.0001",
-    because="1 um/s is a ten-thousandth of 10 mm/s: a track that stands instead would pass",
+    hardest="0.0001", because="1 um/s is a ten-thousandth of 10 mm/s: a track that stands instead would pass",
 )  # fmt: skip
 SPEED_DELAY_S: Final = Parameter(
     "speed_delay_s", "s", "200 ms", "... for this long [A]", NOT_NEGATIVE,
-    direction=Direction.LOWER, hardest="500 ms",
+    hardest="500 ms",
     because="a runaway at 10 mm/s goes 5 mm in half a second; 10 mm are left beyond the soft end of the travel",
 )  # fmt: skip
 
@@ -92,8 +88,7 @@ TRACK_SPEED: Final = Interlock(
 
 BEYOND_MM: Final = Parameter(
     "beyond_mm", "mm", "2 mm", "a linear track this far beyond limits.travel [A]", NOT_NEGATIVE,
-    direction=Direction.LOWER, hardest="5 mm",
-    because="the end switches open 10 mm beyond the soft ends, the stops stand 5 mm behind them",
+    hardest="5 mm", because="the end switches open 10 mm beyond the soft ends, the stops stand 5 mm behind them",
 )  # fmt: skip
 
 
@@ -142,8 +137,7 @@ ARM_WRONG: Final = Interlock(
 
 ARM_LATE_S: Final = Parameter(
     "arm_late_s", "s", "3.5 s", "the arm is not where it was sent after this long [A]: 10 mm take 1.2 s",
-    direction=Direction.LOWER, hardest="5 s",
-    because="three times as long as the way takes: what is not there by then does not come",
+    hardest="5 s", because="three times as long as the way takes: what is not there by then does not come",
 )  # fmt: skip
 
 

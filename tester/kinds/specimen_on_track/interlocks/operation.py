@@ -5,17 +5,15 @@ from __future__ import annotations
 from typing import Final
 
 from tester.machine.drive_rows import ACK_WAIT_S
-from tester.rig.parameter import Direction, Parameter
+from tester.rig.parameter import Parameter
 
 HOLD_AT_MOST_S: Final = Parameter(
     "hold_at_most_s", "s", "60 min", "a hold ends in a controlled stop after this [A]",
-    direction=Direction.LOWER, hardest="120 min",
-    because="nobody is expected to attend to a rig with its drives on for longer than that",
+    hardest="120 min", because="nobody is expected to attend to a rig with its drives on for longer than that",
 )  # fmt: skip
 ZERO_STOP_N: Final = Parameter(
     "zero_stop_n", "N", "10 N", "a zero of the cell further off than this is not taken: the run ends [A]",
-    direction=Direction.LOWER, hardest="20 N",
-    because="20 N that a tare takes off are a contact as firm as any of these rigs has",
+    hardest="20 N", because="20 N that a tare takes off are a contact as firm as any of these rigs has",
 )  # fmt: skip
 
 PARAMETERS: Final[tuple[Parameter, ...]] = (HOLD_AT_MOST_S, ACK_WAIT_S, ZERO_STOP_N)

@@ -9,11 +9,11 @@ from tester.kinds.specimen_on_track.interlocks.known import SPEEDS_OLD_S, STANDI
 from tester.kinds.specimen_on_track.interlocks.motion import DROPPED_DELAY_S
 from tester.machine.drive_rows import not_stopping, quick_stop_failed, stop_not_ended
 from tester.machine.row import ENDING, FAST, POWER_OFF, REPAIR, Interlock
-from tester.rig.parameter import NOT_NEGATIVE, Direction, Parameter
+from tester.rig.parameter import NOT_NEGATIVE, Parameter
 
 STOP_MARGIN_S: Final = Parameter(
     "stop_margin_s", "s", "600 ms", "the track may stand this much later than its ramp says [A]; seen late, too",
-    direction=Direction.LOWER, hardest="800 ms",
+    hardest="800 ms",
     because="a track that does not stop loses its power after two of these; a rig is to be safe 3 s after its trip",
 )  # fmt: skip
 
@@ -45,7 +45,7 @@ QUICK_STOP_FAILED: Final = quick_stop_failed(
 
 OFF_DELAY_S: Final = Parameter(
     "off_delay_s", "s", "500 ms", "the drives told to switch off, the track goes on for this long [A]", NOT_NEGATIVE,
-    direction=Direction.LOWER, hardest="1 s",
+    hardest="1 s",
     because="the track stands before it is told to: what goes on obeys nothing, and a person is about to come near",
 )  # fmt: skip
 
@@ -69,7 +69,7 @@ NOT_SWITCHED_OFF: Final = Interlock(
 
 STOP_TIMEOUT_S: Final = Parameter(
     "stop_timeout_s", "s", "6 s", "a stop that has not ended by then takes the power off and latches [A]",
-    direction=Direction.LOWER, hardest="10 s",
+    hardest="10 s",
     because="every part of a stop has been escalated 3 s after it began; nothing gets better by waiting longer",
 )  # fmt: skip
 

@@ -8,24 +8,21 @@ from typing import Final
 from tester.kinds.wheel_on_belt.interlocks.inputs import Inputs
 from tester.kinds.wheel_on_belt.process import Readings
 from tester.machine.row import FAST, LOADED, REPAIR, Compared, Interlock
-from tester.rig.parameter import NOT_NEGATIVE, SHARE, Direction, Parameter
+from tester.rig.parameter import NOT_NEGATIVE, SHARE, Parameter
 
 _RADIANS: Final = pi / 180.0
 
 FRICTION_SHARE: Final = Parameter(
     "friction_share", "1", "2", "friction above this share of the load: Eq 9 has 1.6 at 400 N and 70 degC [A] ...",
-    direction=Direction.LOWER, hardest="3",
-    because="the published model's greatest coefficient is 1.6 at 400 N; twice that is no rubber's",
+    hardest="3", because="the published model's greatest coefficient is 1.6 at 400 N; twice that is no rubber's",
 )  # fmt: skip
 FRICTION_LEAST_N: Final = Parameter(
     "friction_least_n", "N", "250 N", "... and this beside it: that model has 220 N for 3# at 20 N [A] ...",
-    NOT_NEGATIVE, direction=Direction.LOWER, hardest="400 N",
-    because="more than 400 N beside the load's share would be friction without a load",
+    NOT_NEGATIVE, hardest="400 N", because="more than 400 N beside the load's share would be friction without a load",
 )  # fmt: skip
 FRICTION_DELAY_S: Final = Parameter(
     "friction_delay_s", "s", "100 ms", "... for this long [A]", NOT_NEGATIVE,
-    direction=Direction.LOWER, hardest="300 ms",
-    because="friction power beyond the plan harms after 0.5 s",
+    hardest="300 ms", because="friction power beyond the plan harms after 0.5 s",
 )  # fmt: skip
 
 
@@ -49,23 +46,20 @@ FRICTION_BEYOND_LOAD: Final = Interlock(
 CLEAR_SLIP_M_S: Final = Parameter(
     "clear_slip_m_s", "m/s", "50 mm/s",
     "slip above this has a sure direction: diameter and scales are known to 3 % [A] ...",
-    direction=Direction.LOWER, hardest="150 mm/s",
+    hardest="150 mm/s",
     because="most conditions of a friction test slide at 0.1 m/s or more: above 0.15 m/s few would be watched",
 )  # fmt: skip
 AGAINST_SHARE: Final = Parameter(
     "against_share", "1", "0.1", "... friction of more than this share of the load with it, not against [A] ...",
-    SHARE, direction=Direction.LOWER, hardest="0.3",
-    because="the least coefficient of the paper's tests is 0.5",
+    SHARE, hardest="0.3", because="the least coefficient of the paper's tests is 0.5",
 )  # fmt: skip
 AGAINST_LEAST_N: Final = Parameter(
     "against_least_n", "N", "5 N", "... and this beside it: the zero of Fx and Fy [A] ...", NOT_NEGATIVE,
-    direction=Direction.LOWER, hardest="10 N",
-    because="a first contact of 20 N has 10 N of friction or more",
+    hardest="10 N", because="a first contact of 20 N has 10 N of friction or more",
 )  # fmt: skip
 AGAINST_DELAY_S: Final = Parameter(
     "against_delay_s", "s", "100 ms", "... for this long: a slip that reverses, speed and force read at two times [A]",
-    NOT_NEGATIVE, direction=Direction.LOWER, hardest="300 ms",
-    because="friction power beyond the plan harms after 0.5 s",
+    NOT_NEGATIVE, hardest="300 ms", because="friction power beyond the plan harms after 0.5 s",
 )  # fmt: skip
 
 
@@ -99,20 +93,17 @@ FRICTION_SIGN: Final = Interlock(
 SHAFT_FRICTION_W: Final = Parameter(
     "shaft_friction_w", "W", "30 W",
     "taken by the bearings of both shafts: 0.2 and 0.4 N m at 1.1 m/s are 13 W [A] ...",
-    NOT_NEGATIVE, direction=Direction.LOWER, hardest="60 W",
-    because="limits.slip_power and 60 W stay within what harms after 0.5 s",
+    NOT_NEGATIVE, hardest="60 W", because="limits.slip_power and 60 W stay within what harms after 0.5 s",
 )  # fmt: skip
 SHAFT_GAIN_SHARE: Final = Parameter(
     "shaft_gain_share", "1", "0.05",
     "... and this share of what goes round through them: errors of the torques [A] ...",
-    SHARE, direction=Direction.LOWER, hardest="0.1",
-    because="500 W go round at 3# and 400 N: a tenth is 50 W each",
+    SHARE, hardest="0.1", because="500 W go round at 3# and 400 N: a tenth is 50 W each",
 )  # fmt: skip
 SHAFT_POWER_DELAY_S: Final = Parameter(
     "shaft_power_delay_s", "s", "200 ms",
     "... for this long: acceleration, and torque and force read at two times [A]",
-    NOT_NEGATIVE, direction=Direction.LOWER, hardest="300 ms",
-    because="friction power beyond the plan harms after 0.5 s",
+    NOT_NEGATIVE, hardest="300 ms", because="friction power beyond the plan harms after 0.5 s",
 )  # fmt: skip
 
 
@@ -142,19 +133,18 @@ SHAFT_POWER: Final = Interlock(
 BELT_TORQUE_NM: Final = Parameter(
     "belt_torque_nm", "N m", "3 N m",
     "belt drive off friction by this: rollers 0.4, inertia 1 N m, zero of Fx [A] ...",
-    direction=Direction.LOWER, hardest="5 N m",
+    hardest="5 N m",
     because="a slack belt that stands then hides 100 N of friction: 40 J of heat on one spot in half a second",
 )  # fmt: skip
 BELT_TORQUE_SHARE: Final = Parameter(
     "belt_torque_share", "1", "0.05",
     "... and this share of friction's torque: errors of the drive's and of Fx [A] ...",
-    SHARE, direction=Direction.LOWER, hardest="0.1",
-    because="3# at 400 N has 32 N m: a tenth is as much as the rest",
+    SHARE, hardest="0.1", because="3# at 400 N has 32 N m: a tenth is as much as the rest",
 )  # fmt: skip
 BELT_TORQUE_DELAY_S: Final = Parameter(
     "belt_torque_delay_s", "s", "40 ms",
     "... for this long: friction turning round, Fx up to 20 ms later than torque [A]", NOT_NEGATIVE,
-    direction=Direction.LOWER, hardest="45 ms",
+    hardest="45 ms",
     because="3# at 430 N rubs a held belt with 0.85 kW; and scans of 50 ms must count as slow for \"belt caught\"",
 )  # fmt: skip
 
@@ -210,7 +200,7 @@ BELT_TORQUE: Final = Interlock(
 BELT_PULL_NM: Final = Parameter(
     "belt_pull_nm", "N m", "10 N m",
     "belt drive pulls with this where friction does, at slip > clear_slip: 200 N [A]",
-    direction=Direction.LOWER, hardest="15 N m",
+    hardest="15 N m",
     because="300 N are half of what 3# asks of the belt at 400 N: a roller that carries less slips in every test",
 )  # fmt: skip
 

@@ -9,18 +9,17 @@ from tester.kinds.wheel_on_belt.interlocks.inputs import Inputs
 from tester.kinds.wheel_on_belt.interlocks.temperatures import BLIND_S, JUMP_K, STALE_DELAY_S
 from tester.machine.row import ACK, CONTROLLED, REPAIR, Compared, Interlock, always
 from tester.machine.wires import answered_s
-from tester.rig.parameter import NOT_NEGATIVE, SHARE, Direction, Parameter
+from tester.rig.parameter import NOT_NEGATIVE, SHARE, Parameter
 
 _INF: Final = inf
 
 JACKET_MARGIN_K: Final = Parameter(
     "jacket_margin_k", "K", "3 K", "the hub may overshoot limits.jacket by this; 155 degC is harm [A]", NOT_NEGATIVE,
-    direction=Direction.LOWER, hardest="4 K",
-    because="150 degC and 4 K leave 1 K: what 200 W heat a hub of 420 J/K in two seconds",
+    hardest="4 K", because="150 degC and 4 K leave 1 K: what 200 W heat a hub of 420 J/K in two seconds",
 )  # fmt: skip
 JACKET_DELAY_S: Final = Parameter(
     "jacket_delay_s", "s", "2 s", "... for this long", NOT_NEGATIVE,
-    direction=Direction.LOWER, hardest="2 s",
+    hardest="2 s",
     because="200 W heat a hub of 420 J/K by 1 K in two seconds; above limits.jacket and its margin 2 K are left",
 )  # fmt: skip
 
@@ -44,18 +43,16 @@ JACKET_HOT: Final = Interlock(
 
 RUNAWAY_K: Final = Parameter(
     "runaway_k", "K", "8 K", "hub above every setpoint of runaway_window by this",
-    direction=Direction.LOWER, hardest="15 K",
-    because="three times the overshoot of a jacket controller that is tuned [A]",
+    hardest="15 K", because="three times the overshoot of a jacket controller that is tuned [A]",
 )  # fmt: skip
 RUNAWAY_WINDOW_S: Final = Parameter(
     "runaway_window_s", "s", "10 min", "how far back setpoints count: a hub cools more slowly than it heats [A]",
-    direction=Direction.LOWER, hardest="30 min",
+    hardest="30 min",
     because="a hub at 112 degC cools to 45 degC in half an hour: an older setpoint says nothing of it",
 )  # fmt: skip
 RUNAWAY_DELAY_S: Final = Parameter(
     "runaway_delay_s", "s", "2 s", "... for this long", NOT_NEGATIVE,
-    direction=Direction.LOWER, hardest="10 s",
-    because="200 W heat a hub of 420 J/K by 5 K in that time",
+    hardest="10 s", because="200 W heat a hub of 420 J/K by 5 K in that time",
 )  # fmt: skip
 
 
@@ -92,33 +89,27 @@ JACKET_RUNAWAY: Final = Interlock(
 
 STUCK_RATE_K_S: Final = Parameter(
     "stuck_rate_k_s", "K/s", "0.05 K/s", "the hub rises faster than this ...",
-    direction=Direction.LOWER, hardest="0.2 K/s",
-    because="full output, 200 W at 420 J/K, makes 0.48 K/s: less than half of it must be told",
+    hardest="0.2 K/s", because="full output, 200 W at 420 J/K, makes 0.48 K/s: less than half of it must be told",
 )  # fmt: skip
 STUCK_OFF_S: Final = Parameter(
     "stuck_off_s", "s", "5 s", "... with no output for this long ...", NOT_NEGATIVE,
-    direction=Direction.LOWER, hardest="20 s",
-    because="20 s of full output are 10 K",
+    hardest="20 s", because="20 s of full output are 10 K",
 )  # fmt: skip
 STUCK_DELAY_S: Final = Parameter(
     "stuck_delay_s", "s", "2 s", "... for this long", NOT_NEGATIVE,
-    direction=Direction.LOWER, hardest="10 s",
-    because="10 s of full output are 5 K",
+    hardest="10 s", because="10 s of full output are 5 K",
 )  # fmt: skip
 RATE_FILTER_S: Final = Parameter(
     "rate_filter_s", "s", "1 s", "the hub's rate is that of readings filtered like this ... [A]",
-    direction=Direction.LOWER, hardest="10 s",
-    because="as stuck_delay: the rate is known later by so much",
+    hardest="10 s", because="as stuck_delay: the rate is known later by so much",
 )  # fmt: skip
 RATE_WINDOW_S: Final = Parameter(
     "rate_window_s", "s", "4 s", "... over one to two times this: 5 mK/s of noise at 5 readings a second [A]",
-    direction=Direction.LOWER, hardest="10 s",
-    because="as stuck_delay: the rate is known later by up to twice so much",
+    hardest="10 s", because="as stuck_delay: the rate is known later by up to twice so much",
 )  # fmt: skip
 RATE_SETTLE_S: Final = Parameter(
     "rate_settle_s", "s", "3 s", "after the heat went off, sensor and filter still catch up for this long [A]",
-    direction=Direction.LOWER, hardest="20 s",
-    because="as stuck_off",
+    hardest="20 s", because="as stuck_off",
 )  # fmt: skip
 
 
@@ -165,8 +156,7 @@ HEATER_LINE_OPEN: Final = Interlock(
 
 STANDSTILL_HEAT_DELAY_S: Final = Parameter(
     "standstill_heat_delay_s", "s", "100 ms", "heating with the wheel not turning", NOT_NEGATIVE,
-    direction=Direction.LOWER, hardest="300 ms",
-    because="harm is half a second of heat on a standing wheel; the contactor needs its time to open",
+    hardest="300 ms", because="harm is half a second of heat on a standing wheel; the contactor needs its time to open",
 )  # fmt: skip
 
 
@@ -208,25 +198,23 @@ HUB_JUMP: Final = Interlock(
 HEAT_SHARE: Final = Parameter(
     "heat_share", "1", "0.3",
     "heat beyond what hub and rubber show, and this share: observer's error [A] ...",
-    SHARE, direction=Direction.LOWER, hardest="0.3",
+    SHARE, hardest="0.3",
     because="0.3 hides temperatures that read 26 % low until a rig has a history: heat_share_known",
 )  # fmt: skip
 HEAT_SHARE_KNOWN: Final = Parameter(
     "heat_share_known", "1", "0.12",
     "... or this beyond the ratio that a rig's own heatings have shown [A] ...",
-    SHARE, direction=Direction.LOWER, hardest="0.15",
+    SHARE, hardest="0.15",
     because="0.15 beyond a ratio of 1 hides temperatures that read 15 % low, and with heat_leak some 2 % more",
 )  # fmt: skip
 HEAT_LEAK_W: Final = Parameter(
     "heat_leak_w", "W", "5 W", "... and this: air 10 K colder than believed takes 4 W [A] ...", NOT_NEGATIVE,
-    direction=Direction.LOWER, hardest="10 W",
-    because="85 degC take some 25 W: 10 W are what a common supply 30 % low puts in besides",
+    hardest="10 W", because="85 degC take some 25 W: 10 W are what a common supply 30 % low puts in besides",
 )  # fmt: skip
 UNSEEN_HEAT_K: Final = Parameter(
     "unseen_heat_k", "K", "5 K",
     "... adds up to this much of hub: 10 s of full output; a sensor may be 5 s late [A]",
-    direction=Direction.LOWER, hardest="8 K",
-    because="a hub sensor 20 s late hides 9 K at full output",
+    hardest="8 K", because="a hub sensor 20 s late hides 9 K at full output",
 )  # fmt: skip
 SHOWN_SHARE: Final = 0.5
 """From this share of the heat on, it shows again [A]; less is a heater without current, a row of its own."""
@@ -263,13 +251,12 @@ HEAT_NOT_SHOWN: Final = Interlock(
 
 FROZEN_HUB_K: Final = Parameter(
     "frozen_hub_k", "K", "0.5 K", "heat beyond that of before must have moved the reading by now [A] ...",
-    direction=Direction.LOWER, hardest="1 K",
+    hardest="1 K",
     because="a hub at limits.jacket is 5 K from harm, and went on for 3 K while the output had begun to rise",
 )  # fmt: skip
 FROZEN_HUB_SHARE: Final = Parameter(
     "frozen_hub_share", "1", "0.3", "... or this share of what limits.jacket is away, where that is more [A]",
-    SHARE, direction=Direction.LOWER, hardest="0.5",
-    because="a hub that goes by as much again before it is told stays below limits.jacket",
+    SHARE, hardest="0.5", because="a hub that goes by as much again before it is told stays below limits.jacket",
 )  # fmt: skip
 
 
@@ -300,7 +287,7 @@ HUB_FROZEN: Final = Interlock(
 
 STALE_JACKET_S: Final = Parameter(
     "stale_jacket_s", "s", "1 s", "age of the hub temperature",
-    direction=Direction.LOWER, hardest="3 s",
+    hardest="3 s",
     because="full output heats the hub by 1.4 K in that time, and 2 K are left above limits.jacket and its margin",
 )  # fmt: skip
 

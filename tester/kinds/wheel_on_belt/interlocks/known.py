@@ -12,12 +12,11 @@ from tester.rig.parameter import Direction, Parameter
 
 STANDING_M_S: Final = Parameter(
     "standing_m_s", "m/s", "20 mm/s", "a drive slower than this stands [A]: forty times the noise of its speed",
-    direction=Direction.LOWER, hardest="50 mm/s",
-    because="0.05 m/s is the creep that the arming proof calls moving",
+    hardest="50 mm/s", because="0.05 m/s is the creep that the arming proof calls moving",
 )  # fmt: skip
 SPEEDS_OLD_S: Final = Parameter(
     "speeds_old_s", "s", "500 ms", "a stop does not end on speeds, force or position older than this [A]",
-    direction=Direction.LOWER, hardest="1 s",
+    hardest="1 s",
     because="the next step of a stop that does not work begins a second after it: by then it must be known to fail",
 )  # fmt: skip
 CLEAR_MM: Final = Parameter(

@@ -13,19 +13,16 @@ from tester.rig.parameter import AT_LEAST_ONE, NOT_NEGATIVE, SHARE, Direction, P
 
 STALE_CELL_S: Final = Parameter(
     "stale_cell_s", "s", "50 ms", "age of the load",
-    direction=Direction.LOWER, hardest="100 ms",
-    because="loading at 2 mm/s brings 34 N in 0.1 s (172 N/mm at 400 N)",
+    hardest="100 ms", because="loading at 2 mm/s brings 34 N in 0.1 s (172 N/mm at 400 N)",
 )  # fmt: skip
 STALE_CELL_DELAY_S: Final = Parameter(
     "stale_cell_delay_s", "s", "50 ms", "one reply may be lost [A]", NOT_NEGATIVE,
-    direction=Direction.LOWER, hardest="100 ms",
-    because="loading at 2 mm/s brings 34 N in 0.1 s (172 N/mm at 400 N)",
+    hardest="100 ms", because="loading at 2 mm/s brings 34 N in 0.1 s (172 N/mm at 400 N)",
 )  # fmt: skip
 
 CELL_SKEW_S: Final = Parameter(
     "cell_skew_s", "s", "30 ms", "a cell of several transmitters: its parts are read this far apart at most [A]",
-    direction=Direction.LOWER, hardest="50 ms",
-    because="a part that is older than another by stale_cell is stale itself",
+    hardest="50 ms", because="a part that is older than another by stale_cell is stale itself",
 )  # fmt: skip
 
 
@@ -78,8 +75,7 @@ CELL_SATURATED: Final = Interlock(
 
 FROZEN_CELL_S: Final = Parameter(
     "frozen_cell_s", "s", "500 ms", "identical raw counts of the load cell, loaded and turning ...",
-    direction=Direction.LOWER, hardest="1 s",
-    because="at 0.3 m/s runout moves the load once a second: a second without a change is no reading",
+    hardest="1 s", because="at 0.3 m/s runout moves the load once a second: a second without a change is no reading",
 )  # fmt: skip
 # A sound cell may show no force yet this far beyond where the contact is taken to be:
 #   a wheel's first contact: first_contact_place and first_contact_sweep of the radius, 0.3 + 1.35 mm, before that
@@ -91,7 +87,7 @@ FROZEN_CELL_S: Final = Parameter(
 TOUCH_MARGIN_MM: Final = Parameter(
     "touch_margin_mm", "mm", "1.8 mm",
     "... or no force this far beyond it: a new wheel may be 1.65 mm off; 200 N unseen",
-    direction=Direction.LOWER, hardest="2 mm",
+    hardest="2 mm",
     because="2 mm press a wheel with 230 N, rubber that is stiffer by 30 % with 325 N, before a dead cell is told",
 )  # fmt: skip
 
@@ -143,23 +139,19 @@ OVERLOAD: Final = Interlock(
 
 OVERLOAD_FACTOR: Final = Parameter(
     "overload_factor", "1", "1.1", "load above this times its target ...", AT_LEAST_ONE,
-    direction=Direction.LOWER, hardest="1.2",
-    because="400 N x 1.2 + 10 N are 490 N, and harm begins at 500 N",
+    hardest="1.2", because="400 N x 1.2 + 10 N are 490 N, and harm begins at 500 N",
 )  # fmt: skip
 OVERLOAD_MARGIN_N: Final = Parameter(
     "overload_margin_n", "N", "10 N", "... plus this ...", NOT_NEGATIVE,
-    direction=Direction.LOWER, hardest="20 N",
-    because="with 400 N x 1.2 it is the whole way to 500 N",
+    hardest="20 N", because="with 400 N x 1.2 it is the whole way to 500 N",
 )  # fmt: skip
 OVERLOAD_DELAY_S: Final = Parameter(
     "overload_delay_s", "s", "50 ms", "... for this long; above limits.load at once", NOT_NEGATIVE,
-    direction=Direction.LOWER, hardest="100 ms",
-    because="loading at 2 mm/s brings 34 N in 0.1 s (172 N/mm at 400 N)",
+    hardest="100 ms", because="loading at 2 mm/s brings 34 N in 0.1 s (172 N/mm at 400 N)",
 )  # fmt: skip
 PRESSED_N: Final = Parameter(
     "pressed_n", "N", "50 N", "an unwanted contact gets firmer by this at most [A]: runout and noise are 10 N",
-    direction=Direction.LOWER, hardest="80 N",
-    because="from 400 N it is 480 N, and harm begins at 500 N",
+    hardest="80 N", because="from 400 N it is 480 N, and harm begins at 500 N",
 )  # fmt: skip
 
 
@@ -192,18 +184,16 @@ OVERSHOOT: Final = Interlock(
 
 DEPTH_FACTOR: Final = Parameter(
     "depth_factor", "1", "1.3", "the press stands beyond the contact by this times what the load shown needs ...",
-    AT_LEAST_ONE, direction=Direction.LOWER, hardest="1.5",
+    AT_LEAST_ONE, hardest="1.5",
     because="force grows with depth^1.3: at 1.5 times the depth 300 N shown are 508 N, and harm begins at 500 N",
 )  # fmt: skip
 DEPTH_MARGIN_MM: Final = Parameter(
     "depth_margin_mm", "mm", "0.2 mm", "... plus this [A]: rubber may be softer than loops.load.stiffness by 29 % ...",
-    NOT_NEGATIVE, direction=Direction.LOWER, hardest="0.3 mm",
-    because="0.3 mm are 52 N at 400 N",
+    NOT_NEGATIVE, hardest="0.3 mm", because="0.3 mm are 52 N at 400 N",
 )  # fmt: skip
 DEPTH_DELAY_S: Final = Parameter(
     "depth_delay_s", "s", "50 ms", "... for this long: the cell reads too little [A]", NOT_NEGATIVE,
-    direction=Direction.LOWER, hardest="100 ms",
-    because="loading at 2 mm/s brings 34 N in 0.1 s (172 N/mm at 400 N)",
+    hardest="100 ms", because="loading at 2 mm/s brings 34 N in 0.1 s (172 N/mm at 400 N)",
 )  # fmt: skip
 
 
@@ -238,13 +228,11 @@ CONTACT_SHARE: Final = Parameter(
 )  # fmt: skip
 CONTACT_LEAST_N: Final = Parameter(
     "contact_least_n", "N", "50 N", "... of at least this: a smaller one is too near to touching to tell [A]",
-    direction=Direction.LOWER, hardest="100 N",
-    because="the paper's smallest load is 100 N: above it no test would be watched",
+    hardest="100 N", because="the paper's smallest load is 100 N: above it no test would be watched",
 )  # fmt: skip
 CONTACT_DELAY_S: Final = Parameter(
     "contact_delay_s", "s", "200 ms", "... for this long [A]", NOT_NEGATIVE,
-    direction=Direction.LOWER, hardest="1 s",
-    because="a press that has lost its wheel comes 4 mm further in 1 s at its loading speed",
+    hardest="1 s", because="a press that has lost its wheel comes 4 mm further in 1 s at its loading speed",
 )  # fmt: skip
 
 
@@ -276,8 +264,7 @@ CONTACT_LOST: Final = Interlock(
 
 SLIP_POWER_DELAY_S: Final = Parameter(
     "slip_power_delay_s", "s", "50 ms", "above limits.slip_power; harm is 0.5 s beyond [A]", NOT_NEGATIVE,
-    direction=Direction.LOWER, hardest="200 ms",
-    because="harm is 0.5 s beyond, and a quick stop from 0.8 m/s takes 0.1 s",
+    hardest="200 ms", because="harm is 0.5 s beyond, and a quick stop from 0.8 m/s takes 0.1 s",
 )  # fmt: skip
 
 

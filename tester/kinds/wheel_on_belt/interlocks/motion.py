@@ -17,7 +17,7 @@ DRIVE_DATA_STALE: Final = drive_data_stale(lambda r: (r.wheel_at_s, r.belt_at_s,
 
 DROPPED_DELAY_S: Final = Parameter(
     "dropped_delay_s", "s", "50 ms", "a drive leaves operation by itself [A]", NOT_NEGATIVE,
-    direction=Direction.LOWER, hardest="50 ms",
+    hardest="50 ms",
     because="one drive down under load rubs with up to 1 kW (3#, 430 N, 90 degC): 50 ms more are 50 J, and 40 J harm",
 )  # fmt: skip
 
@@ -26,13 +26,12 @@ DRIVE_DROPPED_OUT: Final = drive_dropped_out(DROPPED_DELAY_S)
 
 OVERSPEED_SHARE: Final = Parameter(
     "overspeed_share", "1", "5 %", "above a speed limit by this share [A]", NOT_NEGATIVE,
-    direction=Direction.LOWER, hardest="10 %",
+    hardest="10 %",
     because="a belt at 1.3 m/s gains a tenth in 65 ms on a ramp of 2 m/s2: more than that is no overshoot",
 )  # fmt: skip
 OVERSPEED_DELAY_S: Final = Parameter(
     "overspeed_delay_s", "s", "50 ms", "[A]", NOT_NEGATIVE,
-    direction=Direction.LOWER, hardest="100 ms",
-    because="at 2 m/s2 a drive gains another 0.2 m/s in 100 ms",
+    hardest="100 ms", because="at 2 m/s2 a drive gains another 0.2 m/s in 100 ms",
 )  # fmt: skip
 
 
@@ -72,12 +71,12 @@ RAMP_SHARE: Final = Parameter(
 )  # fmt: skip
 SPEED_ERROR_M_S: Final = Parameter(
     "speed_error_m_s", "m/s", "50 mm/s", "a speed off what its ramp allows by this [A]",
-    direction=Direction.LOWER, hardest="100 mm/s",
+    hardest="100 mm/s",
     because="a slip of 0.1 m/s that nobody asked for is within Table 2 of the paper; twice that doubles its heat",
 )  # fmt: skip
 SPEED_ERROR_DELAY_S: Final = Parameter(
     "speed_error_delay_s", "s", "100 ms", "... for this long", NOT_NEGATIVE,
-    direction=Direction.LOWER, hardest="150 ms",
+    hardest="150 ms",
     because="a runaway wheel gains 0.3 m/s in that time; friction power beyond the plan harms after 0.5 s",
 )  # fmt: skip
 
@@ -129,8 +128,7 @@ BELT_SPEED: Final = Interlock(
 
 PRESS_ERROR_MM: Final = Parameter(
     "press_error_mm", "mm", "0.3 mm", "the press further to the contact than its commands allow: 50 N at 200 N [A]",
-    direction=Direction.LOWER, hardest="0.5 mm",
-    because="0.5 mm are 86 N at 400 N (172 N/mm): 486 N, and harm begins at 500 N",
+    hardest="0.5 mm", because="0.5 mm are 86 N at 400 N (172 N/mm): 486 N, and harm begins at 500 N",
 )  # fmt: skip
 
 
@@ -174,13 +172,13 @@ PRESS_TRAVEL: Final = Interlock(
 
 APART_M_S: Final = Parameter(
     "apart_m_s", "m/s", "0.1 m/s", "one stands, the other is faster than this: no rounding of two equal ramps [A]",
-    direction=Direction.LOWER, hardest="0.2 m/s",
+    hardest="0.2 m/s",
     because="at 0.2 m/s a standing 3# wheel takes a quarter of that 1 kW on one spot: 40 J in 0.16 s",
 )  # fmt: skip
 STANDING_DELAY_S: Final = Parameter(
     "standing_delay_s", "s", "0 ms",
     "one drive stands under load while the other turns: 3# takes 1 kW, harm is 40 J", NOT_NEGATIVE,
-    direction=Direction.LOWER, hardest="0 ms",
+    hardest="0 ms",
     because="a belt that jams under 430 N makes 38 J until it is unloaded, with no delay at all; harm is 40 J",
 )  # fmt: skip
 
@@ -228,13 +226,11 @@ TORN_SHARE: Final = Parameter(
 )  # fmt: skip
 TORN_SLIP_M_S: Final = Parameter(
     "torn_slip_m_s", "m/s", "50 mm/s", "... above this slip [A]",
-    direction=Direction.LOWER, hardest="100 mm/s",
-    because="most conditions of a friction test slide at 0.1 m/s or more",
+    hardest="100 mm/s", because="most conditions of a friction test slide at 0.1 m/s or more",
 )  # fmt: skip
 TORN_DELAY_S: Final = Parameter(
     "torn_delay_s", "s", "100 ms", "... for this long", NOT_NEGATIVE,
-    direction=Direction.LOWER, hardest="200 ms",
-    because="at 1.3 m/s a torn belt has run off its rollers by 0.26 m",
+    hardest="200 ms", because="at 1.3 m/s a torn belt has run off its rollers by 0.26 m",
 )  # fmt: skip
 TORN_FRICTION_NM: Final = Parameter(
     "torn_friction_nm", "N m", "0.25 N m",

@@ -8,11 +8,11 @@ from tester.kinds.wheel_on_belt.interlocks.inputs import Inputs
 from tester.kinds.wheel_on_belt.interlocks.known import CLEAR_MM, SPEEDS_OLD_S, contactor_open, standing, unloaded
 from tester.machine.drive_rows import not_stopping, quick_stop_failed, stop_not_ended
 from tester.machine.row import CONTROLLED, ENDING, FAST, POWER_OFF, REPAIR, Compared, Interlock, always
-from tester.rig.parameter import POSITIVE, Direction, Parameter
+from tester.rig.parameter import POSITIVE, Parameter
 
 LIFT_LATE_S: Final = Parameter(
     "lift_late_s", "s", "1 s", "after a stop: unloaded by then, else both drives stop fast [A]",
-    direction=Direction.LOWER, hardest="1.5 s",
+    hardest="1.5 s",
     because="lifting 2.5 mm at 10 mm/s takes 0.3 s; what does not lift must have lost its power 2.5 s after the stop",
 )  # fmt: skip
 
@@ -35,18 +35,15 @@ NOT_LIFTED: Final = Interlock(
 
 LIFT_FAILED_S: Final = Parameter(
     "lift_failed_s", "s", "1800 ms", "... and by then, else the power is taken off and the press's spring lifts [A]",
-    direction=Direction.LOWER, hardest="2 s",
-    because="the spring takes half a second more, and a rig is to be safe 3 s after its trip",
+    hardest="2 s", because="the spring takes half a second more, and a rig is to be safe 3 s after its trip",
 )  # fmt: skip
 PUSHED_MM: Final = Parameter(
     "pushed_mm", "mm", "0.3 mm", "told to lift or to rest, the press goes on by this at most: 50 N at 200 N [A]",
-    direction=Direction.LOWER, hardest="0.5 mm",
-    because="0.5 mm are 86 N at 400 N (172 N/mm): 486 N, and harm begins at 500 N",
+    hardest="0.5 mm", because="0.5 mm are 86 N at 400 N (172 N/mm): 486 N, and harm begins at 500 N",
 )  # fmt: skip
 PRESS_LAG_S: Final = Parameter(
     "press_lag_s", "s", "50 ms", "from a command to the press following it: scan, wire and drive together [A]",
-    direction=Direction.LOWER, hardest="100 ms",
-    because="at 2 mm/s of loading it is another 0.2 mm that the press may go on unseen",
+    hardest="100 ms", because="at 2 mm/s of loading it is another 0.2 mm that the press may go on unseen",
 )  # fmt: skip
 
 
@@ -78,12 +75,11 @@ LIFT_FAILED: Final = Interlock(
 
 SLIP_OUT_S: Final = Parameter(
     "slip_out_s", "s", "500 ms", "slip is taken out for this long at most before both drives come down [A]",
-    direction=Direction.LOWER, hardest="1 s",
-    because="the press has lifted by then: later there is no slip to take out",
+    hardest="1 s", because="the press has lifted by then: later there is no slip to take out",
 )  # fmt: skip
 STOP_MARGIN_S: Final = Parameter(
     "stop_margin_s", "s", "500 ms", "drives may stand this much later than their ramps say [A]",
-    direction=Direction.LOWER, hardest="1 s",
+    hardest="1 s",
     because="a drive that does not stop loses its power after two of these; a rig is to be safe 3 s after its trip",
 )  # fmt: skip
 
@@ -117,7 +113,7 @@ QUICK_STOP_FAILED: Final = quick_stop_failed(
 
 HEAT_OFF_S: Final = Parameter(
     "heat_off_s", "s", "1 s", "after a stop: no heat by then, or the contactor is open [A]",
-    direction=Direction.LOWER, hardest="2 s",
+    hardest="2 s",
     because="full output heats the hub by 1 K in 2 s, and 2 K are left above limits.jacket and its margin",
 )  # fmt: skip
 
@@ -169,13 +165,12 @@ OUTPUT_NOT_OFF: Final = Interlock(
 STOP_TIMEOUT_S: Final = Parameter(
     "stop_timeout_s", "s", "10 s",
     "a stop that has not ended by then takes the power off and latches [A]",
-    direction=Direction.LOWER, hardest="15 s",
+    hardest="15 s",
     because="every part of a stop has been escalated 2.5 s after it began; nothing gets better by waiting longer",
 )  # fmt: skip
 LIFTED_MM: Final = Parameter(
     "lifted_mm", "mm", "0.2 mm", "the press is where it was sent within this [A]",
-    direction=Direction.LOWER, hardest="1 mm",
-    because="lifted means 2 mm off the contact: half of that must be there",
+    hardest="1 mm", because="lifted means 2 mm off the contact: half of that must be there",
 )  # fmt: skip
 
 
@@ -188,8 +183,7 @@ STOP_NOT_ENDED: Final = stop_not_ended(
 
 CONTACTOR_DELAY_S: Final = Parameter(
     "contactor_delay_s", "s", "500 ms", "the contactor has not followed its request by then [A]", POSITIVE,
-    direction=Direction.LOWER, hardest="1 s",
-    because="a contactor opens within 0.1 s [A]; the input word that says so may be 0.25 s old",
+    hardest="1 s", because="a contactor opens within 0.1 s [A]; the input word that says so may be 0.25 s old",
 )  # fmt: skip
 
 

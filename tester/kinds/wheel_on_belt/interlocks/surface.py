@@ -9,14 +9,13 @@ from tester.kinds.wheel_on_belt.interlocks.inputs import Inputs
 from tester.kinds.wheel_on_belt.interlocks.temperatures import BLIND_S, JUMP_K, STALE_DELAY_S
 from tester.machine.row import ACK, CONTROLLED, REPAIR, Compared, Interlock
 from tester.machine.wires import answered_s
-from tester.rig.parameter import NOT_NEGATIVE, Direction, Parameter
+from tester.rig.parameter import NOT_NEGATIVE, Parameter
 
 _INF: Final = inf
 
 SURFACE_DELAY_S: Final = Parameter(
     "surface_delay_s", "s", "500 ms", "rubber above limits.surface [A]", NOT_NEGATIVE,
-    direction=Direction.LOWER, hardest="2 s",
-    because="35 K are left from limits.surface to harm, and a burst is over after some seconds [A]",
+    hardest="2 s", because="35 K are left from limits.surface to harm, and a burst is over after some seconds [A]",
 )  # fmt: skip
 
 
@@ -64,19 +63,17 @@ def _measures(v: Inputs) -> bool:
 
 FROZEN_SURFACE_S: Final = Parameter(
     "frozen_surface_s", "s", "60 s", "identical raw counts of the thermometer while turning ...",
-    direction=Direction.LOWER, hardest="2 min",
+    hardest="2 min",
     because="a burst and its wait take a minute or two: a frozen thermometer must not last through them",
 )  # fmt: skip
 FROZEN_MODEL_K: Final = Parameter(
     "frozen_model_k", "K", "1 K", "... or while the model has moved by this",
-    direction=Direction.LOWER, hardest="2 K",
-    because="ten times what the thermometer resolves and a recipe's usual band of temperature",
+    hardest="2 K", because="ten times what the thermometer resolves and a recipe's usual band of temperature",
 )  # fmt: skip
 FROZEN_DELAY_S: Final = Parameter(
     "frozen_delay_s", "s", "2 s",
     "either of both for this long: the thermometer is polled, the model is not [A]", NOT_NEGATIVE,
-    direction=Direction.LOWER, hardest="5 s",
-    because="25 readings that say what the model denies",
+    hardest="5 s", because="25 readings that say what the model denies",
 )  # fmt: skip
 
 
@@ -112,13 +109,12 @@ THERMOMETER_FROZEN: Final = Interlock(
 
 MODEL_K: Final = Parameter(
     "model_k", "K", "8 K", "surface temperature off the thermal model ...",
-    direction=Direction.LOWER, hardest="15 K",
+    hardest="15 K",
     because="a thermometer that reads 15 K low at limits.surface lets the rubber reach 110 degC, 20 K from harm",
 )  # fmt: skip
 MODEL_DELAY_S: Final = Parameter(
     "model_delay_s", "s", "30 s", "... for this long", NOT_NEGATIVE,
-    direction=Direction.LOWER, hardest="60 s",
-    because="full output heats the hub by 29 K in a minute",
+    hardest="60 s", because="full output heats the hub by 29 K in a minute",
 )  # fmt: skip
 
 
@@ -143,8 +139,7 @@ SURFACE_OFF_MODEL: Final = Interlock(
 
 STALE_IR_S: Final = Parameter(
     "stale_ir_s", "s", "1 s", "age of the surface temperature",
-    direction=Direction.LOWER, hardest="3 s",
-    because="fifteen readings are missing by then: the thermometer is gone",
+    hardest="3 s", because="fifteen readings are missing by then: the thermometer is gone",
 )  # fmt: skip
 
 

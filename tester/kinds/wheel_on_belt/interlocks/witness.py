@@ -6,35 +6,30 @@ from typing import Final
 
 from tester.kinds.wheel_on_belt.interlocks.inputs import Inputs
 from tester.machine.row import FAST, LOADED, REPAIR, Interlock
-from tester.rig.parameter import NOT_NEGATIVE, SHARE, Direction, Parameter
+from tester.rig.parameter import NOT_NEGATIVE, SHARE, Parameter
 
 FORCE_STEP_N: Final = Parameter(
     "force_step_n", "N", "14 N",
     "force changes by this in 0.1 s without the press: runout makes 7 N at 400 N [A]",
-    direction=Direction.LOWER, hardest="30 N",
-    because="400 N, 30 N and what the press brings until it stops stay below 500 N",
+    hardest="30 N", because="400 N, 30 N and what the press brings until it stops stay below 500 N",
 )  # fmt: skip
 FORCE_STEP_UNSEEN_SHARE: Final = Parameter(
     "force_step_unseen_share", "1", "0.3",
     "... and this share of what the press does, at a stiffness not seen yet [A] ...", SHARE,
-    direction=Direction.LOWER, hardest="0.5",
-    because="rubber differs from loops.load.stiffness by a third: more hides a step while loading",
+    hardest="0.5", because="rubber differs from loops.load.stiffness by a third: more hides a step while loading",
 )  # fmt: skip
 FORCE_STEP_SEEN_SHARE: Final = Parameter(
     "force_step_seen_share", "1", "0.15", "... or, once it was seen in this contact, this one [A] ...", SHARE,
-    direction=Direction.LOWER, hardest="0.3",
-    because="loading at 2 mm/s changes 400 N by 34 N in 0.1 s: a third of that is 11 N",
+    hardest="0.3", because="loading at 2 mm/s changes 400 N by 34 N in 0.1 s: a third of that is 11 N",
 )  # fmt: skip
 FORCE_STEP_CROSS_SHARE: Final = Parameter(
     "force_step_cross_share", "1", "0.015",
     "... and of the change of Fx: the cell's cross-talk and 0.5 deg of misalignment [A]", SHARE,
-    direction=Direction.LOWER, hardest="0.03",
-    because="friction changes by 600 N at most: 18 N",
+    hardest="0.03", because="friction changes by 600 N at most: 18 N",
 )  # fmt: skip
 FORCE_STEP_DELAY_S: Final = Parameter(
     "force_step_delay_s", "s", "30 ms", "... for this long [A]", NOT_NEGATIVE,
-    direction=Direction.LOWER, hardest="80 ms",
-    because="a step stands in the comparison for 100 ms",
+    hardest="80 ms", because="a step stands in the comparison for 100 ms",
 )  # fmt: skip
 
 
@@ -57,13 +52,12 @@ FORCE_STEP: Final = Interlock(
 TORQUE_MARGIN_N: Final = Parameter(
     "press_torque_margin_n", "N", "20 N",
     "Fz outside what the press's torque and screw can mean, by this [A] ...",
-    direction=Direction.LOWER, hardest="40 N",
-    because="at the torque's limit 440 N or more press: a cell that shows less than 400 N is told",
+    hardest="40 N", because="at the torque's limit 440 N or more press: a cell that shows less than 400 N is told",
 )  # fmt: skip
 TORQUE_DELAY_S: Final = Parameter(
     "press_torque_delay_s", "s", "100 ms",
     "... for this long: acceleration, and torque and force read at two times [A]",
-    NOT_NEGATIVE, direction=Direction.LOWER, hardest="300 ms",
+    NOT_NEGATIVE, hardest="300 ms",
     because="the press's torque has a limit that keeps the force below 500 N: what is told in time is the test",
 )  # fmt: skip
 

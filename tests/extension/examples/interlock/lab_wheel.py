@@ -13,14 +13,13 @@ from tester.machine.interlock_table import InterlockTable
 from tester.machine.row import ACK, CONTROLLED, Compared, Interlock
 from tester.rig.ceilings import ceilings_of
 from tester.rig.config import section_of
-from tester.rig.parameter import Direction, Parameter
+from tester.rig.parameter import Parameter
 
 FAULT = "thermometer drift 2 K/s"
 """Trips it first: a line of a fault script, behind the time at which it begins."""
 EXCESS_K = Parameter(
     "surface_excess_k", "K", "8 K", "the rubber hotter than its hub by this: friction makes a few kelvin [A]",
-    direction=Direction.LOWER, hardest="30 K",
-    because="at limits.surface a hub that cold says that nothing heats but friction",
+    hardest="30 K", because="at limits.surface a hub that cold says that nothing heats but friction",
 )  # fmt: skip
 
 

@@ -12,13 +12,12 @@ from tester.machine.row import FAST, LOADED, REPAIR, Compared, Interlock
 from tester.quantities import Quantities
 from tester.rig.ceilings import Ceiling, ceilings_of
 from tester.rig.config import OwnDevice, section_of
-from tester.rig.parameter import SECTION, Direction, Parameter
+from tester.rig.parameter import SECTION, Parameter
 from tester.rig.plain import PlainRig
 
 SPRING_N = Parameter(
     "spring_n", "N", "40 N", "the spring pulls at most this: a sledge that slides needs half of it [A]",
-    direction=Direction.LOWER, hardest="60 N",
-    because="at 60 N the spring is drawn by 12 mm: a sledge that comes loose jumps that far",
+    hardest="60 N", because="at 60 N the spring is drawn by 12 mm: a sledge that comes loose jumps that far",
 )  # fmt: skip
 
 
