@@ -90,10 +90,10 @@ grids:
 
 def work(text: str) -> dict[str, float]:
     """Read, check and expand a recipe; return CPU seconds of each, and the conditions found."""
+    from tester.inputs.recipe.check import load_checked
+    from tester.inputs.recipe.conditions import conditions_of
     from tester.kinds import load_rig
     from tester.kinds.wheel_on_belt.recipe.expand import expand
-    from tester.recipe.check import load_checked
-    from tester.recipe.conditions import conditions_of
 
     rig = load_rig("sim")
     load_checked(recipe_text(2000), rig, PART, "few.yaml")  # the validator is made with the first recipe

@@ -10,13 +10,13 @@ from tempfile import TemporaryDirectory
 
 from bench.effort import TopicFailedError
 from tester.base import clock
+from tester.inputs.recipe.check import load_checked
 from tester.kinds import load_rig
-from tester.kinds.wheel_on_belt.build import build_run
-from tester.kinds.wheel_on_belt.quantities import QUANTITIES
+from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
 from tester.kinds.wheel_on_belt.recipe.part import PART
+from tester.kinds.wheel_on_belt.runs.build import build_run
 from tester.machine.prompts import Prompts
 from tester.machine.tickers import next_tick
-from tester.recipe.check import load_checked
 from tester.run.folder import Job, beginning_of, work_of
 from tester.run.simulated import simulated_ports
 from tester.store.writer import RunWriter

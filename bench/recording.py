@@ -14,7 +14,7 @@ from bench.figures import Figure, at_most
 from bench.lateness import bare_loop
 from bench.stopwatch import cpu_ns
 from tester.base import clock
-from tester.kinds.wheel_on_belt.quantities import QUANTITIES
+from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
 from tester.machine.tickers import collector_at_rest
 from tester.store.reader import RunReader
 from tester.store.writer import RunWriter

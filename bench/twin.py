@@ -67,7 +67,7 @@ def _plant() -> Plant:
 
 
 def _tick(wire: ModbusWire, link: ModbusLink, now: float) -> None:
-    """Serve a line as ``tester.kinds.wheel_on_belt.devices`` does."""
+    """Serve a line as ``tester.kinds.wheel_on_belt.image.devices`` does."""
     if wire.arrives_s <= now:
         link.feed(wire.read(now), now)
     if now >= link.wants_s:

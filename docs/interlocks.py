@@ -9,10 +9,10 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-from tester.kind import Kind
+from tester.inputs.rig.ceilings import ceiling_table
 from tester.kinds import PACKAGED, find
+from tester.kinds.kind import Kind
 from tester.machine.interlock_sheet import HEADER
-from tester.rig.ceilings import ceiling_table
 
 ROOT = Path(__file__).resolve().parents[1]
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from tester.kinds import load_rig
-from tests.tester.recipe.texts import rig
+from tests.tester.inputs.recipe.texts import rig
 
 ROOT = Path(__file__).parents[1]
 SOURCES = ("tester", "drivers", "sim", "recipes", "bench", "compiling", "docs", "tests")
@@ -114,7 +114,7 @@ def test_code_that_is_not_there_is_found(text: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "text", ["`sim/machines/<kind>`", "tester.base.plugins", "tester.kind.Kind", "tests.campaigns.faults", "`kind.py`"]
+    "text", ["`sim/machines/<kind>`", "tester.base.plugins", "tester.kinds.kind.Kind", "tests.campaigns.faults", "`kind.py`"]
 )
 def test_code_that_is_there_is_not(text: str) -> None:
     assert not led_nowhere(text)

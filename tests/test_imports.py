@@ -36,7 +36,7 @@ def loaded_by(code: str) -> set[str]:
     return set(json.loads(output_of(code + LOADED).splitlines()[-1]))
 
 
-@pytest.mark.parametrize("package", ["tester.machine", "tester.kinds", "tester.recipe", "sim"])
+@pytest.mark.parametrize("package", ["tester.machine", "tester.kinds", "tester.inputs.recipe", "sim"])
 def test_no_module_of_a_package_loads_a_screen_plotting_or_fitting_library(package: str) -> None:
     assert not loaded_by(EVERY_MODULE.format(names=[package])) & {"textual", "matplotlib", "scipy", "pandas"}
 

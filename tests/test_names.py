@@ -8,26 +8,26 @@ from pathlib import Path
 
 import pytest
 
-from tester.kinds.wheel_on_belt.quantities import QUANTITIES
-from tester.quantities import LAST, TIME
+from tester.base.quantities import LAST, TIME
+from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
 
 ROOT = Path(__file__).parents[1]
 WORDS = ("wheel", "belt", "slip", "jacket", "hub", "camber")
 """What only a wheel on a belt has; "sideslip" is found by "slip"."""
 EVERY_KIND_S = {TIME, *LAST, "surface_c"}
-"""Channels that the types name, too; a soak is told by the surface's temperature (tester.screen.SoakView)."""
+"""Channels that the types name, too; a soak is told by the surface's temperature (tester.base.screen.SoakView)."""
 CHANNELS = frozenset(QUANTITIES.names) - EVERY_KIND_S
 """The others are read off the table, or by their roles in it."""
 KINDLESS = (
-    "tester/catalogue",
+    "tester/results/catalogue",
     "tester/results",
-    "tester/fit",
+    "tester/analysis/fit",
     "tester/machine",
-    "tester/recipe",
+    "tester/inputs/recipe",
     "tester/report",
     "tester/service",
     "tester/store",
-    "tester/sweep",
+    "tester/run/sweep",
     "tester/tui",
 )
 """Folders that hold no such word. Add a folder once it is clean."""

@@ -1,6 +1,6 @@
 """What laws of friction are told of two materials: a rubber's complex modulus and the surface that it slides on.
 
-SI throughout. Files say how a compound or a surface is written down (``tester.materials``); here is what is left of
+SI throughout. Files say how a compound or a surface is written down (``tester.inputs.materials``); here is what is left of
 them for a calculation.
 """
 

@@ -22,7 +22,7 @@ from math import hypot
 from typing import TYPE_CHECKING, Final
 
 from tester.analysis.trace import Trace, columns_of
-from tester.quantities import BURST, GATE, KEY, TIME, Means, Quantities
+from tester.base.quantities import BURST, GATE, KEY, TIME, Means, Quantities
 
 if TYPE_CHECKING:
     import numpy as np

@@ -20,7 +20,7 @@ from tester.analysis.drift import PER_KELVIN_PERCENT
 from tester.analysis.quantiles import t_quantile
 from tester.analysis.results import NAN, RepeatResult
 from tester.analysis.stability import MIN_BLOCKS
-from tester.quantities import temperatures
+from tester.base.quantities import temperatures
 
 LIMIT_PERCENT: Final = 5.0
 """Friction that changes by more than this at once carries a doubt, per cent of the coefficient [A]: two and a half

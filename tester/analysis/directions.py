@@ -21,7 +21,7 @@ from tester.analysis.change import greatest
 from tester.analysis.flags import flags_in, joined
 from tester.analysis.reduce import standard_deviation, without_value
 from tester.analysis.results import RepeatResult, RepeatStatus, most_swinging
-from tester.quantities import Means, mean_of
+from tester.base.quantities import Means, mean_of
 
 
 def is_reversed(repeat: int) -> bool:

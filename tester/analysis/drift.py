@@ -38,7 +38,7 @@ from tester.analysis.blocks import Block
 from tester.analysis.quantiles import t_quantile
 from tester.analysis.results import NAN
 from tester.analysis.stability import MIN_BLOCKS
-from tester.quantities import temperatures
+from tester.base.quantities import temperatures
 
 DRIFT_LIMIT_PERCENT = 2.0
 """Largest drift over a window that counts as standing still, per cent of the coefficient [A]."""

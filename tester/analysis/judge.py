@@ -21,7 +21,7 @@ from tester.analysis.quantiles import t_quantile
 from tester.analysis.repeats import REPEATABILITY, counting
 from tester.analysis.results import NAN, NOT_JUDGED, Judgement, RepeatResult, RepeatStatus
 from tester.analysis.stability import seconds_of
-from tester.quantities import temperatures
+from tester.base.quantities import temperatures
 
 ALONE = 2
 """Up to this many repeats are judged each alone: there is nothing to pool."""

@@ -4,7 +4,7 @@ mu is a ratio of means, which noise of the forces does not bias (a mean of ratio
 
     longitudinal = mean(Fx) / mean(Fz)    lateral = mean(Fy) / mean(Fz)    resultant = hypot of the two
 
-with Fx along the sliding, Fy across it and the measured load Fz (``tester.quantities.Roles``), over the whole
+with Fx along the sliding, Fy across it and the measured load Fz (``tester.base.quantities.Roles``), over the whole
 revolutions that are left after truncation, each of equal weight. The tare was subtracted before the samples were
 recorded. The paper's tabulated coefficient is the resultant.
 
@@ -26,7 +26,7 @@ from tester.analysis.flags import EXTENDED, NOT_SHOWN, ROLLING, STICK_SLIP, STIC
 from tester.analysis.results import NAN, Burst, RepeatResult, RepeatStatus, Swing
 from tester.analysis.stability import REPEAT_WINDOWS, enough, left_out
 from tester.analysis.swing import LIMIT_PERCENT
-from tester.quantities import mean_of
+from tester.base.quantities import mean_of
 
 BATCHES = 10
 """Number of batch means per repeat."""

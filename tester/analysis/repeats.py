@@ -34,7 +34,7 @@ from tester.analysis.results import (
     most_swinging,
 )
 from tester.analysis.uncertainty import CONFIDENCE, NO_BUDGET, STEADY, Budget, Unsteadiness, unsteadiness
-from tester.quantities import Means, mean_of
+from tester.base.quantities import Means, mean_of
 
 COCHRAN_ALPHA = 0.01
 """Level at which ISO 5725-2 calls a variance an outlier."""

@@ -11,7 +11,7 @@ from enum import StrEnum
 from math import isfinite
 from typing import Final, Protocol, TypeVar
 
-from tester.quantities import Means
+from tester.base.quantities import Means
 
 NAN = float("nan")
 NO_MEANS: Final = Means()

@@ -17,7 +17,7 @@ from collections.abc import Sequence
 from math import inf, isfinite
 
 from tester.analysis.blocks import Block
-from tester.quantities import temperatures
+from tester.base.quantities import temperatures
 
 REPEAT_WINDOWS = 1.5
 """Windows that a repeat collects. With one window in each of three repeats a steady condition is often left undecided,

@@ -6,7 +6,7 @@ from array import array
 from itertools import pairwise
 from typing import TYPE_CHECKING, Final
 
-from tester.quantities import TIME, Quantities
+from tester.base.quantities import TIME, Quantities
 
 if TYPE_CHECKING:
     import numpy as np

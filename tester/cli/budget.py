@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from tester.axes import condition_words
+from tester.base.axes import condition_words
 from tester.cli.formatting import shown
 from tester.cli.text_table import plain_lines
 from tester.results.budget import budgeted_rows, sums, terms_table

@@ -15,9 +15,9 @@ from tester.cli.options import risk_option, seed_option, set_option
 from tester.cli.tui_command import SWITCH_S, SpeedType, need_terminal
 
 if TYPE_CHECKING:
-    from tester.commission.engine import CommissionOutcome
-    from tester.commission.step import CommissionStep
-    from tester.rig import Rig
+    from tester.inputs.rig import Rig
+    from tester.machine.commission.engine import CommissionOutcome
+    from tester.machine.commission.step import CommissionStep
     from tester.run.commissioning import CommissionOptions
 
 
@@ -47,8 +47,8 @@ def commission(
     What stands on record is not done again, unless the rig file has changed under it. Exit codes: 0 everything stands,
     3 a step was refused (with what to change), 1 it failed, 5 stopped, 6 left before the end.
     """
-    from tester.commission.engine import Ended
-    from tester.commission.record import RecordError
+    from tester.machine.commission.engine import Ended
+    from tester.machine.commission.record import RecordError
     from tester.run.commissioning import CommissionOptions, commission, part_of, record_path
     from tester.run.endings import CannotStartError
     from tester.run.rigs import load_rig
@@ -135,8 +135,8 @@ def _on_screen(load: Callable[[], Rig], options: CommissionOptions, theme: str, 
 
 def _list(path: Path, steps: tuple[CommissionStep, ...], rig: Rig) -> None:
     """Print a line a step: whether it stands, since when, by whom."""
-    from tester.commission.record import CommissionRecord
-    from tester.commission.standing import standing_of
+    from tester.machine.commission.record import CommissionRecord
+    from tester.machine.commission.standing import standing_of
 
     for one in standing_of(CommissionRecord(path, str, ""), steps, rig):
         click.echo(f"{one.step.name:16} {one.words}")

@@ -8,14 +8,14 @@ from typing import Final
 from tester.base.keys import FAST_STOP, STOP, pieces_of
 from tester.cli.console import Outlet
 from tester.cli.keys import Keys, keys_of
-from tester.commission.person import Question
+from tester.machine.commission.person import Question
 
 MOST_TYPED: Final = 200
 ERASES: Final = ("\b", "\x7f")
 
 
 class TerminalPerson:
-    """A front of the engine on a terminal (tester.commission.person.Person)."""
+    """A front of the engine on a terminal (tester.machine.commission.person.Person)."""
 
     def __init__(self, *, time_stands: bool, keys: Keys | None = None) -> None:
         """``time_stands``: on a rig simulated in this process."""

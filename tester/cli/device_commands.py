@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from drivers.canopen.scan import ObjectAnswer
     from tester.doctor.parameters import ParameterDump
     from tester.doctor.wires import Wires
-    from tester.rig import Rig
+    from tester.inputs.rig import Rig
     from tester.run.set_up import Parameters
 
 TYPES = ("u8", "i8", "u16", "i16", "u32", "i32", "text")

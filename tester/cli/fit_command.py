@@ -13,10 +13,10 @@ from tester.cli.formatting import dump, shown
 from tester.cli.options import json_option
 
 if TYPE_CHECKING:
-    from tester.fit.joint import GroupFit
-    from tester.fit.law import FitPoint, Law, Sourced
-    from tester.fit.part import FitPart
-    from tester.kind import Kind
+    from tester.analysis.fit.joint import GroupFit
+    from tester.analysis.fit.law import FitPoint, Law, Sourced
+    from tester.analysis.fit.part import FitPart
+    from tester.kinds.kind import Kind
 
 
 class Conditions(NamedTuple):
@@ -70,9 +70,9 @@ def fit(
 
     Exit code 1: a law does not describe the conditions, a parameter has no meaning, or a figure of --check misses.
     """
+    from tester.analysis.fit.joint import fit_group
+    from tester.analysis.fit.law import FitError, by_group
     from tester.base.extras import MissingExtraError
-    from tester.fit.joint import fit_group
-    from tester.fit.law import FitError, by_group
 
     fitted, others = _conditions(sources), _conditions(validation) if validation else None
     part = _part(fitted.kind)
@@ -105,8 +105,8 @@ def fit(
     if not as_json:
         _print(law, fits, rows, fitted, others, force)
     if table is not None:
-        from tester.fit import as_json as plain
-        from tester.fit.text import table_lines
+        from tester.analysis.fit import as_json as plain
+        from tester.analysis.fit.text import table_lines
 
         told["check"] = plain.table(table)
         if not as_json:
@@ -212,8 +212,8 @@ def _print(
     others: Conditions | None,
     force: bool,
 ) -> None:
-    from tester.fit.joint import overall
-    from tester.fit.text import all_lines, group_lines, law_line, trend_lines, verdict_lines
+    from tester.analysis.fit.joint import overall
+    from tester.analysis.fit.text import all_lines, group_lines, law_line, trend_lines, verdict_lines
 
     click.echo(law_line(law))
     for one in fits:
@@ -245,8 +245,8 @@ def _print(
 def _as_json(
     law: Law, fits: Sequence[GroupFit], rows: dict[str, list[FitPoint]] | None, fitted: Conditions, force: bool
 ) -> dict[str, Json]:
-    from tester.fit import as_json as plain
-    from tester.fit.joint import overall
+    from tester.analysis.fit import as_json as plain
+    from tester.analysis.fit.joint import overall
 
     every = overall(fits, rows)
     groups: list[Json] = []

@@ -15,8 +15,8 @@ def repeatability(under: Path, compounds: Iterable[str], *, simulated: bool) -> 
 
     Runs of the simulated rig count for it alone, and those of a machine for machines.
     """
-    from tester.catalogue import open_catalogue
-    from tester.catalogue.entries import CatalogueError, WantedRuns, refresh
+    from tester.results.catalogue import open_catalogue
+    from tester.results.catalogue.entries import CatalogueError, WantedRuns, refresh
 
     pools: dict[str, Pool] = {}
     if not under.is_dir():

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import click
 
 if TYPE_CHECKING:
-    from tester.kind import Kind
+    from tester.kinds.kind import Kind
     from tester.report.charts import Material
     from tester.report.record import MachineWords
     from tester.results.run_results import RunResults

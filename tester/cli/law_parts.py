@@ -29,7 +29,7 @@ def parts_chart(law: str, compound: str, surface: str, over: str, at: At) -> Cha
     """Return the chart; what makes no law is a usage error."""
     from sim.physics import laws
     from tester.base.source import InvalidSource
-    from tester.materials.library import Library
+    from tester.inputs.materials.library import Library
     from tester.report.components import components_chart
 
     try:

@@ -14,10 +14,10 @@ from tester.cli.options import QuantityType, json_option
 
 if TYPE_CHECKING:
     from sim.physics.materials import Rubber
-    from tester.kind import Kind
-    from tester.master.made import Master
-    from tester.master.points import MasterPoint, MasterRun
-    from tester.materials.compound import LoadedCompound
+    from tester.analysis.master_curve.made import Master
+    from tester.analysis.master_curve.points import MasterPoint, MasterRun
+    from tester.inputs.materials.compound import LoadedCompound
+    from tester.kinds.kind import Kind
 
 FORMATS = ("csv", "png", "svg", "pdf")
 GLASS = "glass"
@@ -63,9 +63,9 @@ def master(
 
     Exit code 0: it collapses; 1: it does not, or is refused; 6: these conditions cannot tell.
     """
-    from tester.master.made import master_of
-    from tester.master.points import MasterError
-    from tester.master.verdict import Verdict
+    from tester.analysis.master_curve.made import master_of
+    from tester.analysis.master_curve.points import MasterError
+    from tester.analysis.master_curve.verdict import Verdict
 
     kind_of_file = _ending(ending, out)
     found = _runs(runs)
@@ -124,7 +124,7 @@ def _compound_file(run: str, compound: str) -> LoadedCompound | None:
     from sim.physics.materials import UnknownMaterialError
     from tester.base.source import InvalidSource
     from tester.cli.run_lookup import run_folder
-    from tester.materials.library import Library
+    from tester.inputs.materials.library import Library
 
     try:
         return Library.beside(run_folder(run) / "recipe.yaml").compound(compound)
@@ -135,7 +135,7 @@ def _compound_file(run: str, compound: str) -> LoadedCompound | None:
 
 
 def _rubber(file: LoadedCompound | None) -> Rubber | None:
-    from tester.materials.library import MissingModuliError, rubber_of
+    from tester.inputs.materials.library import MissingModuliError, rubber_of
 
     try:
         return rubber_of(file) if file is not None else None
@@ -204,7 +204,7 @@ def _held(point: MasterPoint, name: str) -> str:
 
 
 def _tell(made: Master, left_out: Sequence[tuple[str, str]], as_json: bool) -> None:
-    from tester.master.text import plain, summary_lines, table_lines, verdict_lines
+    from tester.analysis.master_curve.text import plain, summary_lines, table_lines, verdict_lines
 
     if as_json:
         dump({**plain(made), "left_out": [{"condition": label, "reason": reason} for label, reason in left_out]})
@@ -225,10 +225,10 @@ def _tell(made: Master, left_out: Sequence[tuple[str, str]], as_json: bool) -> N
 
 def _write(made: Master, path: Path, ending: str) -> None:
     """Write the table or the figure."""
+    from tester.analysis.master_curve.text import csv_text
     from tester.base.extras import MissingExtraError
-    from tester.master.chart import master_chart
-    from tester.master.text import csv_text
     from tester.report.draw import draw
+    from tester.report.master_chart import master_chart
 
     try:
         if ending == "csv":

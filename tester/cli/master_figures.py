@@ -6,10 +6,10 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tester.kind import Kind
-from tester.master.chart import master_chart
-from tester.master.made import master_of
-from tester.master.points import MasterError, MasterPoint
+from tester.analysis.master_curve.made import master_of
+from tester.analysis.master_curve.points import MasterError, MasterPoint
+from tester.kinds.kind import Kind
+from tester.report.master_chart import master_chart
 
 if TYPE_CHECKING:
     from tester.report.chart import Chart

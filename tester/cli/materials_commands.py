@@ -11,11 +11,11 @@ import click
 from tester.cli.options import QuantityType, json_option, print_json
 
 if TYPE_CHECKING:
-    from tester.materials.compound import LoadedCompound
-    from tester.materials.files import DataFile, Role
-    from tester.materials.finding import Findings
-    from tester.materials.library import Library, LibraryEntry
-    from tester.materials.surface import LoadedSurface
+    from tester.inputs.materials.compound import LoadedCompound
+    from tester.inputs.materials.files import DataFile, Role
+    from tester.inputs.materials.finding import Findings
+    from tester.inputs.materials.library import Library, LibraryEntry
+    from tester.inputs.materials.surface import LoadedSurface
 
     Loaded = LoadedCompound | LoadedSurface
 
@@ -37,7 +37,7 @@ def materials() -> None:
 
 
 def _library(recipe: Path | None) -> Library:
-    from tester.materials.library import Library
+    from tester.inputs.materials.library import Library
 
     return Library.beside(recipe if recipe is not None else Path("recipe.yaml"))
 
@@ -47,7 +47,7 @@ def _library(recipe: Path | None) -> Library:
 @json_option
 def list_(recipe: Path | None, as_json: bool) -> None:
     """List compounds and surfaces by name, the nearest file first."""
-    from tester.materials.library import nameless
+    from tester.inputs.materials.library import nameless
 
     library = _library(recipe)
     roles: tuple[Role, ...] = ("compound", "surface")
@@ -113,7 +113,7 @@ def _summary(one: Loaded) -> dict[str, object]:
 
 
 def _lines(one: Loaded) -> Iterable[str]:
-    from tester.materials.compound import LoadedCompound
+    from tester.inputs.materials.compound import LoadedCompound
 
     yield f"{one.file.name}: {one.file.role}, {one.file.path}"
     yield f"sha256   {one.file.sha256}"
@@ -177,9 +177,9 @@ def check(file: Path, as_json: bool) -> int | None:
 
 def _load(file: Path) -> Loaded:
     from tester.base.source import read_tree
-    from tester.materials.compound import load_compound
-    from tester.materials.schema import CompoundModel, SurfaceModel
-    from tester.materials.surface import load_surface
+    from tester.inputs.materials.compound import load_compound
+    from tester.inputs.materials.schema import CompoundModel, SurfaceModel
+    from tester.inputs.materials.surface import load_surface
 
     if file.parent.name in ("compounds", "surfaces"):
         return load_surface(file) if file.parent.name == "surfaces" else load_compound(file)
@@ -226,12 +226,12 @@ def dma(
 
     What is converted and what is doubtful is said, and stands in the new file.
     """
-    from tester.materials.dma import MAX_BYTES, read_dma
-    from tester.materials.dma_options import DmaOptions
-    from tester.materials.files import decoded
-    from tester.materials.finding import Findings
-    from tester.materials.headings import QUANTITIES, quantity_named
-    from tester.materials.written import compound_text
+    from tester.inputs.materials.dma import MAX_BYTES, read_dma
+    from tester.inputs.materials.dma_options import DmaOptions
+    from tester.inputs.materials.files import decoded
+    from tester.inputs.materials.finding import Findings
+    from tester.inputs.materials.headings import QUANTITIES, quantity_named
+    from tester.inputs.materials.written import compound_text
 
     named: dict[str, str] = {}
     for quantity, heading in _pairs(columns, "--columns"):
@@ -262,10 +262,10 @@ def scan(
 ) -> None:
     """Make a surface of FILE, a map of heights: a matrix as text, or a format of instruments (extra `topography`)."""
     from tester.base.extras import MissingExtraError
-    from tester.materials.finding import Findings
-    from tester.materials.radial import Detrend
-    from tester.materials.scan import MAX_BYTES, ScanOptions, read_scan, spectrum_of
-    from tester.materials.written import surface_text
+    from tester.inputs.materials.finding import Findings
+    from tester.inputs.materials.radial import Detrend
+    from tester.inputs.materials.scan import MAX_BYTES, ScanOptions, read_scan, spectrum_of
+    from tester.inputs.materials.written import surface_text
 
     way = cast("Detrend", detrend)
     found = Findings(str(file))
@@ -281,7 +281,7 @@ def scan(
 
 
 def _read(file: Path, at_most: int) -> DataFile:
-    from tester.materials.files import DataFileError, read_beside
+    from tester.inputs.materials.files import DataFileError, read_beside
 
     try:
         return read_beside(file, file.name, at_most)

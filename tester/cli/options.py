@@ -11,7 +11,7 @@ import click
 from tester.base.units import UnitError, parse
 
 if TYPE_CHECKING:
-    from tester.rig import Rig
+    from tester.inputs.rig import Rig
 
 Decorated = TypeVar("Decorated", bound=Callable[..., Any])
 
@@ -92,7 +92,7 @@ def print_json(data: object) -> None:
 
 def say_other_settings(rig_name: str, rig: Rig) -> None:
     """Say on stderr which lines are set otherwise than the profiles of their devices say."""
-    from tester.rig.line_settings import other_settings
+    from tester.inputs.rig.line_settings import other_settings
 
     for text in other_settings(rig):
         click.echo(f"{rig_name}: warning: {text}", err=True)

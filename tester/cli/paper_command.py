@@ -12,8 +12,8 @@ from tester.cli.formatting import Json, dump
 from tester.cli.options import json_option
 
 if TYPE_CHECKING:
-    from tester.fit.part import PublishedTable
-    from tester.papers.item import Paper
+    from tester.analysis.fit.part import PublishedTable
+    from tester.analysis.papers.item import Paper
 
 
 @click.command()
@@ -35,8 +35,8 @@ def paper(every: bool, as_json: bool) -> int:
 
 
 def _one(as_json: bool) -> int:
-    from tester.fit import as_json as plain
-    from tester.fit.text import table_lines
+    from tester.analysis.fit import as_json as plain
+    from tester.analysis.fit.text import table_lines
 
     table = _table()
     if as_json:
@@ -56,8 +56,8 @@ def _table() -> PublishedTable:
 
 
 def _all(as_json: bool) -> int:
+    from tester.analysis.papers.page import page_text
     from tester.kinds import packaged_papers
-    from tester.papers.page import page_text
 
     papers = packaged_papers()
     if as_json:
@@ -68,7 +68,7 @@ def _all(as_json: bool) -> int:
 
 
 def _as_json(papers: Sequence[Paper]) -> Json:
-    from tester.papers.page import judged_items
+    from tester.analysis.papers.page import judged_items
 
     return {
         entry.name: [

@@ -14,7 +14,7 @@ from sim.physics.friction import in_range
 from sim.physics.materials import Rubber, Surface, below_glass
 from sim.physics.track import TrackParameters, table_span
 from tester.cli.options import print_json
-from tester.materials.setting import law_setting
+from tester.inputs.materials.setting import law_setting
 
 
 @dataclass(frozen=True, slots=True)

@@ -27,11 +27,11 @@ from tester.cli.options import (
 if TYPE_CHECKING:
     from tester.analysis.repeatability import Pool
     from tester.base.source import Problem
-    from tester.materials.schema import CompoundModel
-    from tester.recipe.foreseen import Foreseen
-    from tester.recipe.part import RecipePart
-    from tester.recipe.schema import Recipe
-    from tester.rig import Rig
+    from tester.inputs.materials.schema import CompoundModel
+    from tester.inputs.recipe.foreseen import Foreseen
+    from tester.inputs.recipe.part import RecipePart
+    from tester.inputs.recipe.schema import Recipe
+    from tester.inputs.rig import Rig
     from tester.run.materials import UsedMaterials
 
 
@@ -61,8 +61,8 @@ def check(
     and its surface, or is not expected to end well on the rig, is a warning.
     """
     from tester.base.source import InvalidSource
-    from tester.recipe.conditions import conditions_of, merged_of
-    from tester.recipe.reference import REFERENCE, ReferenceSection
+    from tester.inputs.recipe.conditions import conditions_of, merged_of
+    from tester.inputs.recipe.reference import REFERENCE, ReferenceSection
     from tester.run.kinds import checked_recipe, recipe_part
     from tester.run.materials import used_materials
     from tester.run.rigs import load_rig
@@ -138,13 +138,19 @@ def plan(
     out: Path | None,
 ) -> None:
     """List the steps of RECIPE (a file, or the name of a packaged recipe) with durations and totals."""
-    from tester.recipe.conditions import merged_of
-    from tester.recipe.describe import lines
-    from tester.recipe.estimate import estimate
-    from tester.recipe.foreseen import foreseen, foreseen_fields, foreseen_lines
-    from tester.recipe.plan_json import json_chunks
-    from tester.recipe.precision import PrecisionError, precision_lines, s_percents, until_for_total, with_precision
-    from tester.recipe.sensitivity import known_slopes
+    from tester.inputs.recipe.conditions import merged_of
+    from tester.inputs.recipe.describe import lines
+    from tester.inputs.recipe.estimate import estimate
+    from tester.inputs.recipe.foreseen import foreseen, foreseen_fields, foreseen_lines
+    from tester.inputs.recipe.plan_json import json_chunks
+    from tester.inputs.recipe.precision import (
+        PrecisionError,
+        precision_lines,
+        s_percents,
+        until_for_total,
+        with_precision,
+    )
+    from tester.inputs.recipe.sensitivity import known_slopes
     from tester.run.kinds import checked_recipe, recipe_part
     from tester.run.materials import described_compounds
     from tester.run.rigs import load_rig
@@ -192,8 +198,8 @@ def plan(
 
 def _foreseen(recipe: Recipe, rig: Rig, part: RecipePart, described: Mapping[str, CompoundModel]) -> list[Foreseen]:
     """Return what is foreseen of the uncertainty of a recipe's conditions."""
-    from tester.recipe.foreseen import foreseen
-    from tester.recipe.sensitivity import known_slopes
+    from tester.inputs.recipe.foreseen import foreseen
+    from tester.inputs.recipe.sensitivity import known_slopes
 
     plan, estimator = part.expand(recipe, rig), part.estimator(rig)
     return foreseen(plan, estimator.walk(plan), estimator, known_slopes(plan, described))
@@ -230,12 +236,12 @@ def schema(what: str) -> None:
     """Print the JSON Schema of recipes, or of compounds or surfaces, for editors and other programs."""
     if what != "recipe":
         from tester.base.section import editor_text
-        from tester.materials.schema import CompoundModel, SurfaceModel
+        from tester.inputs.materials.schema import CompoundModel, SurfaceModel
 
         click.echo(editor_text(CompoundModel if what == "compound" else SurfaceModel), nl=False)
         return
     from tester import kinds
-    from tester.recipe.schema import schema_text
+    from tester.inputs.recipe.schema import schema_text
 
     part = kinds.find(kinds.DEFAULT).recipe
     assert part is not None

@@ -13,7 +13,7 @@ from tester.cli.formatting import dump, shown
 from tester.store.status import RunStatus
 
 if TYPE_CHECKING:
-    from tester.catalogue.entries import RunEntry
+    from tester.results.catalogue.entries import RunEntry
 
 
 @click.command()
@@ -33,8 +33,8 @@ def runs(
 
     With TESTER_CATALOGUE=postgresql://... the runs of everybody who shares that catalogue.
     """
-    from tester.catalogue import open_catalogue
-    from tester.catalogue.entries import CatalogueError, WantedRuns, refresh
+    from tester.results.catalogue import open_catalogue
+    from tester.results.catalogue.entries import CatalogueError, WantedRuns, refresh
     from tester.store.catalogue import RUNS
 
     under = out or RUNS
@@ -64,7 +64,7 @@ def runs(
 
 def standing(run: RunEntry, under: Path) -> str:
     """Return a run's status and what goes with it, in words: by whom, how many values, how much is committed."""
-    from tester.catalogue.entries import origin_of
+    from tester.results.catalogue.entries import origin_of
     from tester.store.catalogue import under_way
 
     status = RunStatus(run.status)

@@ -15,8 +15,8 @@ import click
 from tester.cli.options import json_option, rig_option
 
 if TYPE_CHECKING:
-    from tester.sweep.case import CaseResult
-    from tester.sweep.sweep import SweepOptions
+    from tester.run.sweep.case import CaseResult
+    from tester.run.sweep.sweep import SweepOptions
 
 
 @click.command("sweep", short_help="Monte Carlo of a recipe: seeds, rig parameters.")
@@ -67,9 +67,9 @@ def sweep(
     The folder holds every run (runs.csv), its conditions (conditions.csv), their spread over the seeds beside the
     uncertainty the runs state (summary.csv), and durations and wheels (totals.csv). Ctrl+C keeps what is there.
     """
-    from tester.sweep.executors import NoClusterError, dask, local
-    from tester.sweep.grid import GridError, axes_of
-    from tester.sweep.sweep import NotSimulatedError, SweepOptions, carry_out, prepare_sweep
+    from tester.run.sweep.executors import NoClusterError, dask, local
+    from tester.run.sweep.grid import GridError, axes_of
+    from tester.run.sweep.sweep import NotSimulatedError, SweepOptions, carry_out, prepare_sweep
 
     if jobs is not None and address is not None:
         raise click.UsageError("--jobs is for processes of this machine, --dask for a cluster: one of them")
@@ -104,7 +104,7 @@ class _Printer:
 
     def ran(self, result: CaseResult, done: int) -> None:
         """Say how a run ended, and name what is missing."""
-        from tester.sweep.tables import row_record
+        from tester.run.sweep.tables import row_record
 
         record = {key: _json(value) for key, value in asdict(result).items() if key not in ("point", "rows")}
         record["set"] = dict(zip(self.keys, result.point, strict=True))

@@ -11,7 +11,7 @@ from drivers.canopen.scan import ANSWER_S, PATIENCE_S, Key, ObjectAnswer, SdoSca
 from drivers.ports import BusLost, CanFrame, CanPort
 from tester.doctor.wanted import objects_of
 from tester.doctor.wires import Wires
-from tester.rig import Rig
+from tester.inputs.rig import Rig
 from tester.run.kept import IDENTITY
 
 LISTEN_S = 1.0

@@ -12,7 +12,7 @@ from tester.doctor.line_survey import LineSurvey, survey_line
 from tester.doctor.system import ComputerDoor
 from tester.doctor.watch import RigWatch, watched
 from tester.doctor.wires import Wires
-from tester.rig import Rig
+from tester.inputs.rig import Rig
 
 
 def nobody(_: str) -> None:

@@ -11,7 +11,7 @@ from tester.doctor.examination import Examination
 from tester.doctor.finding import Finding, fault, note, ok, warning
 from tester.doctor.line_survey import LineSurvey, UnitSurvey
 from tester.doctor.watch import UnitWatch
-from tester.rig.sensors import title_of
+from tester.inputs.rig.sensors import title_of
 
 READINGS_S = 40.0
 """What a device that is read with every scan should give at least, readings a second."""

@@ -11,8 +11,8 @@ from drivers.ports import BusLost, LinePort
 from drivers.profiles.model import DeviceProfile
 from tester.doctor.wanted import configuration
 from tester.doctor.wires import Wires
-from tester.rig import DeviceConfig, LineConfig, Rig
-from tester.rig.profiles import profile_of
+from tester.inputs.rig import DeviceConfig, LineConfig, Rig
+from tester.inputs.rig.profiles import profile_of
 
 PATIENCE_S = 0.25
 """A device of the rig file is waited for so long, s: beyond every profile's reply time, and adapters that are late."""

@@ -9,8 +9,8 @@ from typing import cast
 
 from tester.base import clock
 from tester.doctor.examination import Examination
-from tester.rig import Rig
-from tester.rig.sensors import title_of
+from tester.inputs.rig import Rig
+from tester.inputs.rig.sensors import title_of
 from tester.run.kept import IDENTITY, KEPT, object_key, object_name
 from tester.run.set_up import DeviceParameter, Parameters, mapped, stored, written, written_at_connect
 from tester.store.reader import RunReader

@@ -10,7 +10,7 @@ from drivers.ports import BusLost, CanPort, LinePort, TellingCanPort
 from tester.doctor.can_survey import Heard
 from tester.doctor.line_survey import LineSurvey
 from tester.doctor.wires import Wires
-from tester.rig import Rig
+from tester.inputs.rig import Rig
 
 PATIENCE_S = 0.15
 """A reading is waited for so long, s: a slow profile's 60 ms, an adapter's latency, and a computer that is busy [A]."""

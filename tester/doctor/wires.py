@@ -11,7 +11,7 @@ from drivers.transports.tcp_line import TcpLine, open_tcp_line
 from sim.rig import SimRig
 from sim.wires.mistuned import MistunedCan, MistunedLine
 from tester.base.pace import Pace
-from tester.rig import LineConfig, Rig
+from tester.inputs.rig import LineConfig, Rig
 from tester.run.simulated import simulated_ports
 
 BITRATES = (1_000_000, 800_000, 500_000, 250_000, 125_000)

@@ -12,12 +12,12 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from tester.kind import Kind
+from tester.kinds.kind import Kind
 
 if TYPE_CHECKING:
+    from tester.analysis.papers.item import Paper
     from tester.base.source import Tree
-    from tester.papers.item import Paper
-    from tester.rig import Rig
+    from tester.inputs.rig import Rig
 
 DEFAULT: Final = "wheel_on_belt"
 """Kind of a rig file that does not say one."""
@@ -49,7 +49,7 @@ def find(name: str) -> Kind:
         known = ", ".join(PACKAGED)
         raise UnknownKindError(f"there is no kind of rig {name}{meant} (expected {known}); {error}") from error
     if not isinstance(found, Kind):
-        raise UnknownKindError(f"the extension {name} is no kind of rig (expected a tester.kind.Kind)")
+        raise UnknownKindError(f"the extension {name} is no kind of rig (expected a tester.kinds.kind.Kind)")
     return found
 
 
@@ -85,8 +85,8 @@ def packaged_papers() -> tuple[Paper, ...]:
 
 
 def load_rig(source: str | Path = SIMULATED, overrides: Sequence[str] = (), accept_risk: str = "") -> Rig:
-    """Return the rig of a file, or the packaged one of that name; raises InvalidSource (tester.rig.load.load)."""
-    from tester.rig.load import load
+    """Return the rig of a file, or the packaged one of that name; raises InvalidSource (tester.inputs.rig.load.load)."""
+    from tester.inputs.rig.load import load
 
     kind, tree = _opened(source)
     return load(kind.rig(), tree, overrides, accept_risk)
@@ -98,7 +98,7 @@ def load_rig_text(text: str | Path, name: str | None = None) -> Rig:
     Its risks were accepted when the run began, or are asked for where it goes on (tester.run.session).
     """
     from tester.base.source import load_tree
-    from tester.rig.load import checked
+    from tester.inputs.rig.load import checked
 
     tree = load_tree(text, name or ("rig.yaml" if isinstance(text, str) else None))
     return checked(_kind_of(tree).rig(), tree)
@@ -109,7 +109,7 @@ def packaged_keys(source: str | Path, overrides: Sequence[str] = ()) -> tuple[st
 
     As ``interlocks.pushed``, in the order of the packaged file. Raises InvalidSource for a file that cannot be read.
     """
-    from tester.rig.missing import lacking
+    from tester.inputs.rig.missing import lacking
 
     kind, tree = _opened(source)
     given = {text.partition("=")[0].strip() for text in overrides}
@@ -119,7 +119,7 @@ def packaged_keys(source: str | Path, overrides: Sequence[str] = ()) -> tuple[st
 
 def packaged_text(name: str = SIMULATED) -> str:
     """Return a packaged rig file as it is shipped; raises KeyError for a name that is none."""
-    from tester.rig import packaged
+    from tester.inputs.rig import packaged
 
     return packaged.packaged_text(packaged_rigs()[name].rig(), name)
 
@@ -129,7 +129,7 @@ def hardware_text(kind: str = DEFAULT, like: str = "") -> str:
 
     Raises UnknownKindError, KeyError where the kind has no such rig.
     """
-    from tester.rig import template
+    from tester.inputs.rig import template
 
     rig = find(kind).rig()
     if like and like not in rig.packaged:
@@ -138,9 +138,9 @@ def hardware_text(kind: str = DEFAULT, like: str = "") -> str:
 
 
 def upgrade(path: Path) -> tuple[str, ...]:
-    """Write the missing keys with their comments into a rig file and return them (tester.rig.upgrade)."""
+    """Write the missing keys with their comments into a rig file and return them (tester.inputs.rig.upgrade)."""
     from tester.base.source import load_tree
-    from tester.rig import upgrade
+    from tester.inputs.rig import upgrade
 
     return upgrade.upgrade(_kind_of(load_tree(path)).rig(), path)
 
@@ -154,8 +154,8 @@ def _packaged(name: str) -> Kind:
 def _opened(source: str | Path) -> tuple[Kind, Tree]:
     """Return a rig's kind, and its file as data."""
     from tester.base.source import load_tree
-    from tester.rig.packaged import new_tree
-    from tester.rig.profiles import find_beside
+    from tester.inputs.rig.packaged import new_tree
+    from tester.inputs.rig.profiles import find_beside
 
     kind = shipping(str(source))
     if kind is not None:

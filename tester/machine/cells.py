@@ -7,9 +7,9 @@ from collections.abc import Mapping, Sequence
 from drivers.joined_cell import JoinedCell, LoadCell, Transmitter
 from drivers.modbus import Device, ModbusLink
 from drivers.sensor import Sensor
-from tester.rig import DeviceConfig, LineConfig, Rig
-from tester.rig.profiles import profile_of
-from tester.rig.sensors import parts_of, title_of
+from tester.inputs.rig import DeviceConfig, LineConfig, Rig
+from tester.inputs.rig.profiles import profile_of
+from tester.inputs.rig.sensors import parts_of, title_of
 
 
 def link_of(config: LineConfig) -> ModbusLink:

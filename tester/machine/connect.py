@@ -11,9 +11,9 @@ from typing import Protocol
 
 from drivers.cia402 import Goal, State
 from drivers.ports import BusLost
+from tester.inputs.rig import Rig
 from tester.machine import line_speed
 from tester.machine.devices import DeviceList
-from tester.rig import Rig
 
 CONNECT_S = 0.01
 """Period of the ticks while connecting, s: an SDO exchange takes half a millisecond on the wire."""

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, Generic, TypeAlias, TypeVar
 
+from tester.inputs.rig import Rig
 from tester.machine.image import BaseDemand, BaseReadings
 from tester.machine.prompts import Prompts
-from tester.rig import Rig
 from tester.store.recorder import Recorder
 
 

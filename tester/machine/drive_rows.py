@@ -9,9 +9,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, Final
 
+from tester.inputs.rig.parameter import Parameter
 from tester.machine.row import ACK, ENDING, FAST, POWER_OFF, REPAIR, Compared, Interlock
 from tester.machine.wires import STALE_CAN_S, STALE_CAN_SCANS, drive_data_allowed_s
-from tester.rig.parameter import Parameter
 
 Tells = Callable[[Any], bool]
 """Over a kind's inputs."""

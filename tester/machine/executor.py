@@ -6,9 +6,9 @@ from collections import deque
 from collections.abc import Sequence
 from typing import Generic, TypeVar
 
+from tester.inputs.recipe.plan import Plan, Step
 from tester.machine.activity import Activity, MoveFailedError, Resumable
 from tester.machine.context import AnyContext
-from tester.recipe.plan import Plan, Step
 
 ContextT = TypeVar("ContextT", bound=AnyContext)
 

@@ -10,10 +10,10 @@ from dataclasses import dataclass, field
 from math import inf, nan
 from typing import Any, Final
 
+from tester.inputs.rig import Rig
+from tester.inputs.rig.parameter import Values
+from tester.inputs.rig.sensors import further_channels
 from tester.machine.state import ControlState, Mode, StopProgress
-from tester.rig import Rig
-from tester.rig.parameter import Values
-from tester.rig.sensors import further_channels
 
 # Bound once: a look-up on the enum class costs several times as much in every scan (CPython 3.11).
 _HOLD: Final = Mode.HOLD

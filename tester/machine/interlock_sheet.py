@@ -8,8 +8,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from tester.inputs.rig.parameter import SECTION, Parameter, key_line
 from tester.machine.row import Interlock
-from tester.rig.parameter import SECTION, Parameter, key_line
 
 HEADER = (
     "# Level and delay of each interlock: it trips when the level has stood for the delay. What is not known counts as",

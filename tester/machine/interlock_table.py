@@ -8,9 +8,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 from math import inf
 
+from tester.inputs.rig.parameter import Parameter, Values
 from tester.machine.inputs import ScanInputs
 from tester.machine.row import ALWAYS, ENDING, LOADED, WARN, Condition, Interlock, When
-from tester.rig.parameter import Parameter, Values
 
 
 def parameters_of(rows: Iterable[Interlock]) -> tuple[Parameter, ...]:

@@ -9,9 +9,9 @@ from __future__ import annotations
 from math import isfinite
 from typing import Any, Final, Protocol
 
+from tester.inputs.recipe.plan import Plan
 from tester.machine.context import AnyContext
 from tester.machine.executor import Executor, Procedures
-from tester.recipe.plan import Plan
 
 NAME: Final = "manual mode"
 ARMED_S: Final = 60.0

@@ -17,12 +17,12 @@ from tester.analysis.repeats import ConditionResult
 from tester.analysis.results import NOT_JUDGED, ConditionStatus, RepeatResult, RepeatStatus
 from tester.analysis.swing import swing_of
 from tester.analysis.trace import Trace
-from tester.axes import condition_words
+from tester.base.axes import condition_words
 from tester.base.words import coefficient, decimal
+from tester.inputs.recipe.plan import ConditionStep, Plan
+from tester.inputs.recipe.settings import LEAST_REPEATS
 from tester.machine.context import AnyContext
 from tester.machine.measured import ConditionEnd, Ending, RepeatOutcome
-from tester.recipe.plan import ConditionStep, Plan
-from tester.recipe.settings import LEAST_REPEATS
 from tester.store.recorder import Recorder
 from tester.store.records import ConditionInfo
 from tester.store.resume import ConditionSoFar

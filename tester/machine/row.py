@@ -13,7 +13,7 @@ from enum import Enum
 from math import nan
 from typing import Any, Final, TypeAlias
 
-from tester.rig.parameter import Parameter, Values
+from tester.inputs.rig.parameter import Parameter, Values
 
 Condition: TypeAlias = Callable[[Any], bool]
 """Over what the kind's rows look at: a class that inherits from ``ScanInputs``."""

@@ -12,12 +12,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
 if TYPE_CHECKING:
+    from tester.inputs.recipe.plan import Plan
+    from tester.inputs.rig import Rig
     from tester.machine.ports import Ports
     from tester.machine.prompts import Prompts
     from tester.machine.run import Run
     from tester.machine.served import History
-    from tester.recipe.plan import Plan
-    from tester.rig import Rig
     from tester.store.recorder import Recorder
     from tester.store.records import Calibration
     from tester.store.resume import ResumePoint

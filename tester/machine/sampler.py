@@ -8,8 +8,8 @@ from itertools import groupby
 from operator import attrgetter, itemgetter
 from typing import Any, Final, Protocol, TypeAlias
 
+from tester.base.quantities import LAST, Quantities
 from tester.machine.context import BaseContext
-from tester.quantities import LAST, Quantities
 
 IDLE_PERIOD_S: Final = 0.5
 """Recording period out of contact (2 Hz, interface: exports)."""

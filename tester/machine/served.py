@@ -11,14 +11,14 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Protocol
 
 if TYPE_CHECKING:
+    from tester.base.quantities import Quantities
+    from tester.base.screen import Check, Gate, MachineView, SoakView
+    from tester.inputs.recipe.plan import Step
+    from tester.inputs.rig import Rig
     from tester.machine.engine import Engine
     from tester.machine.manual import ManualExecutor
     from tester.machine.ports import Ports
     from tester.machine.run import Run
-    from tester.quantities import Quantities
-    from tester.recipe.plan import Step
-    from tester.rig import Rig
-    from tester.screen import Check, Gate, MachineView, SoakView
     from tester.store.reader import RunReader
     from tester.store.recorder import Recorder
 

@@ -20,10 +20,10 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from tester.inputs.recipe.plan import ConditionStep, Plan, Step
 from tester.machine.context import Progress
 from tester.machine.run import Outcome, Run
 from tester.machine.state import Mode
-from tester.recipe.plan import ConditionStep, Plan, Step
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

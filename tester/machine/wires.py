@@ -5,9 +5,9 @@ from __future__ import annotations
 from math import nan
 from typing import Final, Protocol
 
+from tester.inputs.rig.parameter import AT_LEAST_ONE, NOT_NEGATIVE, SHARE, Parameter, Values
 from tester.machine.image import BaseDemand, BaseReadings
 from tester.machine.row import ACK, CONTROLLED, EMERGENCY, FAST, REPAIR, WARN, Compared, Interlock
-from tester.rig.parameter import AT_LEAST_ONE, NOT_NEGATIVE, SHARE, Parameter, Values
 
 
 class Limits(Protocol):

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from tester.analysis.uncertainty import Contribution
-from tester.axes import condition_words
+from tester.base.axes import condition_words
 from tester.report.layout import Columns, Paragraph, Part, ReportRow, ReportSection, ReportTable, heads, rendered
 from tester.report.record import RunRecord
 from tester.results.budget import TermRow, budgeted_rows, sums, terms_of, terms_table

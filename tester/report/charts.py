@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from itertools import permutations
 from math import isfinite
 
-from tester.axes import Axis, AxisValue, Setpoint, condition_words, plain
+from tester.base.axes import Axis, AxisValue, Setpoint, condition_words, plain
 from tester.base.words import coefficient
 from tester.report.chart import Chart, ChartPanel, ChartSurface, Figure, Series
 from tester.report.words import labelled, name_of

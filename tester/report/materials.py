@@ -7,9 +7,9 @@ from collections.abc import Iterator, Mapping
 from tester.base.source import InvalidSource
 from tester.base.units import show
 from tester.base.words import NONE, decimal
-from tester.materials.compound import compound_model
-from tester.materials.schema import CompoundModel, SurfaceModel
-from tester.materials.surface import surface_model
+from tester.inputs.materials.compound import compound_model
+from tester.inputs.materials.schema import CompoundModel, SurfaceModel
+from tester.inputs.materials.surface import surface_model
 from tester.report.layout import FactSheet, Listing, Paragraph, Part, ReportRow, ReportSection, ReportTable, heads
 from tester.report.record import RunRecord
 from tester.report.words import file_name

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from math import isfinite
 
-from tester.axes import condition_words
+from tester.base.axes import condition_words
 from tester.base.words import coefficient
 from tester.report.chart import Chart, ChartPanel, Series
 from tester.report.words import labelled

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from tester.axes import Axis
+from tester.base.axes import Axis
 from tester.base.words import NONE
 from tester.results.columns import unit_of
 

@@ -13,10 +13,10 @@ from enum import StrEnum
 from math import isfinite
 from typing import Generic, TypeAlias, TypeVar
 
-from tester.axes import Axes, Axis
 from tester.base.as_json import Json
+from tester.base.axes import Axes, Axis
+from tester.base.quantities import Channel, Means
 from tester.base.words import NONE, decimal, significant
-from tester.quantities import Channel, Means
 from tester.results.cells import Cell, nominal
 from tester.store.records import ConditionInfo
 

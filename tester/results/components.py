@@ -7,7 +7,7 @@ from typing import Final, NamedTuple, TypeAlias
 
 from tester.analysis.components import ByFilm, PartValue, by_film, mean_of
 from tester.analysis.kelvin import UNKNOWN, Slope, slope_of_pairs
-from tester.axes import AxisValue, Setpoint
+from tester.base.axes import AxisValue, Setpoint
 from tester.results.run_results import Measured, RunResults
 
 AXIS: Final = "interface"

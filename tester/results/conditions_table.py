@@ -18,8 +18,8 @@ from tester.analysis.repeats import ConditionResult
 from tester.analysis.results import NAN
 from tester.analysis.trust import mark_of
 from tester.analysis.wear import ConditionWear
-from tester.axes import Axis
-from tester.quantities import Means
+from tester.base.axes import Axis
+from tester.base.quantities import Means
 from tester.results.columns import Column, Output, Table, Value, mean_column, setting_columns
 from tester.results.run_results import Measured, RunResults, TableRow
 from tester.store.records import ConditionInfo

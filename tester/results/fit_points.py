@@ -7,13 +7,13 @@ from math import inf, isfinite, sqrt
 from statistics import median
 from typing import Final, NamedTuple
 
+from tester.analysis.fit.law import Common, FitPoint, Source
 from tester.analysis.flags import REFERENCE, flags_in
 from tester.analysis.kelvin import TEMPERATURE_SENSITIVITY
 from tester.analysis.measurand import REPEATABILITY
 from tester.analysis.repeats import REPEATABILITY as STATED
 from tester.analysis.terms import PREFIX, Acts, Term, setting_of, with_settings
-from tester.axes import condition_words
-from tester.fit.law import Common, FitPoint, Source
+from tester.base.axes import condition_words
 from tester.results.run_results import Measured, RunResults
 from tester.store.records import RunInfo
 

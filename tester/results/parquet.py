@@ -7,7 +7,7 @@ from itertools import islice
 from math import isfinite
 from typing import BinaryIO, Protocol, cast
 
-from tester.quantities import Channel
+from tester.base.quantities import Channel
 from tester.results.tables import OWNER, RISK_COLUMN
 from tester.store.arrow import arrow_module
 from tester.store.reader import RunReader, SampleBlock

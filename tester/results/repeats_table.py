@@ -8,7 +8,7 @@ from typing import Final
 from tester.analysis.directions import is_reversed
 from tester.analysis.flags import flags_in
 from tester.analysis.results import RepeatResult
-from tester.quantities import Means
+from tester.base.quantities import Means
 from tester.results.columns import Column, Output, Table, mean_column, piece_key, setting_columns
 from tester.results.run_results import Measured, RunResults
 from tester.store.records import ConditionInfo, StoredRepeat

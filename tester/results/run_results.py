@@ -26,9 +26,9 @@ from tester.analysis.results import ConditionStatus
 from tester.analysis.soak_check import SoakCheck
 from tester.analysis.wear import ConditionWear, WearRate, condition_wear, wear_rate
 from tester.analysis.wear_check import WearCheck
-from tester.axes import Axes, condition_words
+from tester.base.axes import Axes, condition_words
+from tester.base.quantities import Quantities
 from tester.base.words import coefficient
-from tester.quantities import Quantities
 from tester.results.settings import RepeatedSetting, SettingsOf, in_doubt
 from tester.results.surroundings import Reduced, SurroundingsOf
 from tester.store import older

@@ -20,7 +20,7 @@ from tester.analysis.settings import (
     difference_of,
     measurement,
 )
-from tester.axes import AxisValue, Setpoint, condition_words
+from tester.base.axes import AxisValue, Setpoint, condition_words
 from tester.base.words import coefficient
 from tester.store.records import ConditionInfo, StoredRepeat
 

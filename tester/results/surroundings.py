@@ -15,7 +15,7 @@ from tester.analysis.results import NAN
 from tester.analysis.terms import NO_SIZE, Acts, Size, with_settings
 from tester.analysis.wear_check import WearCheck
 from tester.analysis.worn import Worn
-from tester.axes import AxisValue, Setpoint
+from tester.base.axes import AxisValue, Setpoint
 from tester.store.reader import RunReader
 from tester.store.records import ConditionInfo, PieceInfo, StoredRepeat, StoredRun, Travel
 from tester.store.schema import StoreError

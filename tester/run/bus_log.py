@@ -14,7 +14,7 @@ from typing import TextIO
 import can
 
 from drivers.ports import CanPort, LinePort
-from tester.rig import Rig
+from tester.inputs.rig import Rig
 
 CHANNEL = "can0"
 """Name of the bus in the log."""

@@ -11,7 +11,7 @@ from typing import Any, Final
 from tester.analysis.misalignment import misalignment
 from tester.base.as_json import finite
 from tester.base.keys import FAST_STOP, MEANINGS, STOP
-from tester.commission.person import Asks, Person, Question, StepRefused
+from tester.machine.commission.person import Asks, Person, Question, StepRefused
 from tester.machine.context import Progress
 from tester.machine.prompts import DONE, Prompt, Prompts
 from tester.machine.time_left import RunPosition

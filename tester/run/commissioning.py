@@ -15,14 +15,14 @@ from tester.base import clock
 from tester.base.lock import ExclusiveUse, RigInUseError, user
 from tester.base.signals import handled
 from tester.base.source import InvalidSource, Problem
-from tester.commission.engine import Commissioning, CommissionOutcome
-from tester.commission.onlooker import Onlooker
-from tester.commission.part import AtTheTwin, CommissionPart
-from tester.commission.person import Person
-from tester.commission.record import CommissionRecord
+from tester.inputs.rig import Rig
+from tester.machine.commission.engine import Commissioning, CommissionOutcome
+from tester.machine.commission.onlooker import Onlooker
+from tester.machine.commission.part import AtTheTwin, CommissionPart
+from tester.machine.commission.person import Person
+from tester.machine.commission.record import CommissionRecord
 from tester.machine.ports import Ports
 from tester.machine.tickers import TickedWorld
-from tester.rig import Rig
 from tester.run.commission_run import run_recipe
 from tester.run.endings import CannotStartError
 from tester.run.part_run import connect_ports

@@ -9,14 +9,14 @@ from math import fsum
 from pathlib import Path
 
 from tester.base import clock
+from tester.inputs.recipe.estimate import Estimate
+from tester.inputs.recipe.plan import Plan
+from tester.inputs.recipe.schema import Recipe
+from tester.inputs.rig import Rig
 from tester.machine.results import condition_records
 from tester.machine.run_parts import Part
 from tester.machine.served import History
 from tester.machine.time_left import Earlier, PartTime
-from tester.recipe.estimate import Estimate
-from tester.recipe.plan import Plan
-from tester.recipe.schema import Recipe
-from tester.rig import Rig
 from tester.run.endings import CannotStartError
 from tester.run.kinds import checked_recipe, recipe_part, run_parts
 from tester.run.rigs import load_rig_text

@@ -10,8 +10,8 @@ from drivers.transports.serial_line import SerialLine, open_serial_line
 from drivers.transports.tcp_line import TcpLine, open_tcp_line
 from tester.base.pace import UrgentPace
 from tester.base.priority import RealTimePriority
+from tester.inputs.rig import LineConfig, Rig
 from tester.machine.ports import Ports
-from tester.rig import LineConfig, Rig
 from tester.run.bus_log import BusLog
 
 CATCH_UP_S = 0.002

@@ -12,9 +12,9 @@ from drivers.canopen import objects as o
 from drivers.canopen.dictionary import DICTIONARY
 from drivers.canopen.scan import Key, SdoScan
 from drivers.ports import BusLost
+from tester.inputs.rig import Rig
 from tester.machine.ports import Ports
 from tester.machine.tickers import TickedWorld
-from tester.rig import Rig
 from tester.store.recorder import Recorder
 
 IDENTITY: tuple[Key, ...] = (

@@ -7,14 +7,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 from tester.base.source import InvalidSource, Problem, read_tree
+from tester.inputs.rig import Rig
 from tester.kinds import PACKAGED, find
-from tester.rig import Rig
 
 if TYPE_CHECKING:
+    from tester.inputs.recipe.loader import LoadedRecipe
+    from tester.inputs.recipe.part import RecipePart
     from tester.machine.run_parts import KindRun
     from tester.machine.served import ServedKind
-    from tester.recipe.loader import LoadedRecipe
-    from tester.recipe.part import RecipePart
 
 Part = TypeVar("Part")
 
@@ -41,12 +41,12 @@ def recipe_part(rig: Rig) -> RecipePart:
 
 
 def checked_recipe(source: Path | str, rig: Rig, name: str | None = None) -> LoadedRecipe:
-    """Return a recipe that a rig can carry out (tester.recipe.check.load_checked).
+    """Return a recipe that a rig can carry out (tester.inputs.recipe.check.load_checked).
 
     Raises InvalidSource with every problem; of a recipe that does not name its kind, and is plainly written for a
     packaged kind other than the rig's, with that alone.
     """
-    from tester.recipe.check import load_checked
+    from tester.inputs.recipe.check import load_checked
 
     try:
         return load_checked(source, rig, recipe_part(rig), name)
@@ -63,7 +63,7 @@ def checked_recipe(source: Path | str, rig: Rig, name: str | None = None) -> Loa
 
 def _kind_written_for(source: Path | str, rig: Rig, problems: int) -> str:
     """Return the packaged kind in whose schema a recipe has less than half as many problems, "" where none is so."""
-    from tester.recipe.loader import validated
+    from tester.inputs.recipe.loader import validated
 
     try:
         tree, _ = read_tree(source)

@@ -13,9 +13,9 @@ from pathlib import Path
 
 from tester.base import clock
 from tester.base.source import InvalidSource, load_tree
+from tester.inputs.rig import Rig
 from tester.results import write_all
 from tester.results.manifest import MANIFEST, manifest_problems
-from tester.rig import Rig
 from tester.store.amend import acknowledge_trips
 from tester.store.catalogue import run_folders, under_way
 from tester.store.reader import RunReader

@@ -15,11 +15,11 @@ from pathlib import Path
 import recipes
 from sim.physics.materials import UnknownMaterialError
 from tester.base.source import InvalidSource
-from tester.materials.files import FOLDERS, MaterialFile, Role
-from tester.materials.library import Library
-from tester.materials.schema import CompoundModel
-from tester.recipe.schema import Recipe
-from tester.rig import Rig
+from tester.inputs.materials.files import FOLDERS, MaterialFile, Role
+from tester.inputs.materials.library import Library
+from tester.inputs.materials.schema import CompoundModel
+from tester.inputs.recipe.schema import Recipe
+from tester.inputs.rig import Rig
 from tester.run.kinds import recipe_part
 from tester.store.files import write_whole
 from tester.store.records import StoredMaterial

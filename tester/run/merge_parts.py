@@ -10,9 +10,9 @@ from pathlib import Path
 from shutil import rmtree
 
 from tester.base import clock
+from tester.base.quantities import Quantities
 from tester.base.trouble import in_words
-from tester.quantities import Quantities
-from tester.rig.sensors import quantities_on
+from tester.inputs.rig.sensors import quantities_on
 from tester.run.endings import PartEnd, RunEnding, StopLevel, ending_of
 from tester.run.folder import PARTS, Begin, Job, Work
 from tester.store.files import sync_folder

@@ -11,14 +11,14 @@ from drivers.ports import BusLost
 from tester.base import clock
 from tester.base.pace import Pace
 from tester.base.trouble import in_words
+from tester.inputs.rig import Rig
+from tester.inputs.rig.sensors import quantities_on
 from tester.machine.ports import Ports
 from tester.machine.prompts import Prompts
 from tester.machine.run import Outcome, Run
 from tester.machine.run_parts import Part
 from tester.machine.tickers import Ticked, TickedWorld, TickStatistics, collector_at_rest, run_real_time, run_simulated
 from tester.machine.time_left import TimeLeft
-from tester.rig import Rig
-from tester.rig.sensors import quantities_on
 from tester.run.bus_log import BusLog
 from tester.run.endings import PartEnd
 from tester.run.folder import Begin, Job, Work

@@ -7,11 +7,11 @@ from pathlib import Path
 
 from tester.base.exits import EXIT_INVALID
 from tester.base.lock import RUN_LOCK, ExclusiveUse, RigInUseError
+from tester.inputs.recipe.estimate import Estimate
+from tester.inputs.recipe.plan import Plan
+from tester.inputs.rig import Rig
+from tester.inputs.rig.line_settings import other_settings
 from tester.machine.run import Outcome
-from tester.recipe.estimate import Estimate
-from tester.recipe.plan import Plan
-from tester.rig import Rig
-from tester.rig.line_settings import other_settings
 from tester.run.endings import EXIT_CODES, CannotStartError
 from tester.run.kinds import recipe_part
 from tester.store.space import expected_bytes, too_little_room

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from recipes import find
-from tester.recipe.estimate import Estimate
-from tester.recipe.loader import LoadedRecipe
+from tester.inputs.recipe.estimate import Estimate
+from tester.inputs.recipe.loader import LoadedRecipe
 from tester.run.folder import Work, work_of
 from tester.run.kinds import checked_recipe, recipe_part
 from tester.run.materials import UsedMaterials, used_materials

@@ -17,15 +17,15 @@ from tester import kinds
 from tester.analysis.kelvin import KnownSlope
 from tester.base import clock
 from tester.base.plugins import plugins
+from tester.inputs.materials.compound import compound_model
+from tester.inputs.recipe.loader import LoadedRecipe
+from tester.inputs.recipe.plan import Plan
+from tester.inputs.recipe.sensitivity import known_slopes
+from tester.inputs.rig import Rig
+from tester.inputs.rig.load import risks_of
+from tester.inputs.rig.profiles import profile_of
+from tester.inputs.rig.sensors import title_of
 from tester.machine.devices import DeviceList
-from tester.materials.compound import compound_model
-from tester.recipe.loader import LoadedRecipe
-from tester.recipe.plan import Plan
-from tester.recipe.sensitivity import known_slopes
-from tester.rig import Rig
-from tester.rig.load import risks_of
-from tester.rig.profiles import profile_of
-from tester.rig.sensors import title_of
 from tester.run.kept import object_key
 from tester.run.kinds import recipe_part, run_parts, served_kind
 from tester.run.set_up import GoodRun

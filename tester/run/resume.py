@@ -13,10 +13,10 @@ from pathlib import Path
 
 from tester.base import clock
 from tester.base.source import read_tree
+from tester.inputs.recipe.plan import Plan
+from tester.inputs.recipe.schema import Recipe
+from tester.inputs.rig import Rig
 from tester.machine.results import condition_records
-from tester.recipe.plan import Plan
-from tester.recipe.schema import Recipe
-from tester.rig import Rig
 from tester.run.kinds import checked_recipe, recipe_part
 from tester.run.materials import KeptFile, kept_files, put_back, used_materials, write_materials
 from tester.run.provenance import PACKAGED, accepted_risks, calibration_of, session_info

@@ -6,12 +6,12 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from tester import kinds
-from tester.rig import Rig
+from tester.inputs.rig import Rig
 from tester.run.kinds import to_be_run
 
 
 def load_rig(source: str | Path = kinds.SIMULATED, overrides: Sequence[str] = (), accept_risk: str = "") -> Rig:
-    """Return the rig of a file, or the packaged one of that name (tester.rig.load.load).
+    """Return the rig of a file, or the packaged one of that name (tester.inputs.rig.load.load).
 
     Raises InvalidSource, for a rig of a kind that no recipe can be run on too.
     """

@@ -18,18 +18,18 @@ from tester.base.lock import ExclusiveUse, user
 from tester.base.plain import plain_text
 from tester.base.signals import HANG_UP, QUIT, handled
 from tester.base.trouble import in_words
+from tester.inputs.recipe.loader import LoadedRecipe
+from tester.inputs.rig import Rig
+from tester.inputs.rig.ceilings import counts_as_simulated
+from tester.inputs.rig.load import risks_of
 from tester.machine.prompts import Prompts
 from tester.machine.results import condition_records
 from tester.machine.run import Outcome, Run
 from tester.machine.run_parts import Part
 from tester.machine.tickers import TickStatistics
 from tester.machine.time_left import TimeLeft
-from tester.recipe.loader import LoadedRecipe
 from tester.results import doubtful, write_all
 from tester.results.run_results import TableRow, results_of
-from tester.rig import Rig
-from tester.rig.ceilings import counts_as_simulated
-from tester.rig.load import risks_of
 from tester.run.endings import EXIT_CODES, CannotStartError, PartEnd, RunEnding, StopLevel, ending_of
 from tester.run.folder import (
     Begin,

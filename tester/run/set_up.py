@@ -12,7 +12,7 @@ from drivers.canopen import objects as o
 from drivers.canopen.scan import Key
 from drivers.drive_settings import plan
 from tester.base.source import load_tree
-from tester.rig import Rig
+from tester.inputs.rig import Rig
 from tester.run.kept import IDENTITY, KEPT, object_key
 from tester.store.catalogue import run_folders
 from tester.store.reader import RunReader

@@ -20,9 +20,9 @@ from sim.servers.tcp_doors import GATEWAY, SOCKETCAND
 from sim.servers.text_doors import CommandDoor, StandardInput
 from tester.base import clock
 from tester.base.priority import RealTimePriority
+from tester.inputs.rig import Rig
+from tester.inputs.rig.reach import reached
 from tester.machine.tickers import collector_at_rest
-from tester.rig import Rig
-from tester.rig.reach import reached
 from tester.run.bus_log import BusLog
 from tester.run.kinds import run_parts
 from tester.run.rigs import load_rig

@@ -11,10 +11,10 @@ from sim.nodes.profile_slave import UnknownQuantityError
 from sim.rig import DeviceSpec, LineSpec, RigSpec, SimRig
 from sim.wires.can_wire import CanWire
 from tester.base.source import InvalidSource, Problem
+from tester.inputs.materials.setting import law_setting
+from tester.inputs.rig import DeviceConfig, Rig
+from tester.inputs.rig.profiles import profile_of
 from tester.machine.ports import Ports
-from tester.materials.setting import law_setting
-from tester.rig import DeviceConfig, Rig
-from tester.rig.profiles import profile_of
 from tester.run.bus_log import BusLog
 from tester.run.kinds import run_parts
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from tester.recipe.plan import Plan
+from tester.inputs.recipe.plan import Plan
 from tester.store.recorder import Recorder
 
 Truth = Callable[[Mapping[str, float]], Mapping[str, float]]

@@ -7,9 +7,9 @@ from typing import Protocol, runtime_checkable
 
 from drivers.canopen.sensor_node import SensorNode
 from drivers.servo import ServoDrive
+from tester.inputs.rig import Rig
 from tester.machine.devices import DeviceList
 from tester.machine.field_device import FieldDevice
-from tester.rig import Rig
 from tester.service.state import BusView, DeviceView
 
 

@@ -24,8 +24,8 @@ from websockets.asyncio.client import ClientConnection, connect, unix_connect
 from websockets.exceptions import ConnectionClosed, InvalidHandshake
 
 from tester.base import clock
+from tester.base.screen import MachineView
 from tester.base.trouble import in_words
-from tester.screen import MachineView
 from tester.service.address import Address, AddressError, UnixAddress, default_address
 from tester.service.commands import Action, Attend, Command, Join, Stop
 from tester.service.protocol import (

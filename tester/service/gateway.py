@@ -20,7 +20,7 @@ from pydantic_core import from_json, to_json
 from websockets.asyncio.server import ServerConnection
 from websockets.exceptions import ConnectionClosed
 
-from tester.screen import UNKNOWN
+from tester.base.screen import UNKNOWN
 from tester.service.address import peer_text
 from tester.service.commands import (
     VERSION,

@@ -17,7 +17,7 @@ from pydantic_core import to_json
 
 from tester import __version__
 from tester.base import clock
-from tester.screen import MachineView
+from tester.base.screen import MachineView
 from tester.service.address import Address, TcpAddress, UnixAddress, stop_path, unlink_socket
 from tester.service.child_socket import spawn
 from tester.service.gateway_process import SETTINGS, GatewaySettings

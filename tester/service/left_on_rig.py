@@ -6,8 +6,8 @@ import sqlite3
 from contextlib import suppress
 from pathlib import Path
 
+from tester.inputs.rig import Rig
 from tester.machine.served import Left, ServedKind
-from tester.rig import Rig
 from tester.run.latch import made_on
 from tester.store.catalogue import run_folders
 from tester.store.reader import RunReader

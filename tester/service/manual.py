@@ -5,9 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 from tester.base import clock
+from tester.inputs.rig import Rig
+from tester.inputs.rig.sensors import quantities_on
 from tester.machine.manual import NAME
-from tester.rig import Rig
-from tester.rig.sensors import quantities_on
 from tester.run.folder import make_folder
 from tester.run.latch import MANUAL_RUNS
 from tester.run.part_run import Unsampled

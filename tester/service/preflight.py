@@ -14,10 +14,10 @@ from dataclasses import dataclass
 from datetime import date, timedelta
 from pathlib import Path
 
+from tester.base.screen import Check
+from tester.inputs.rig import CalibrationConfig, Rig
 from tester.machine.served import History, Left, ServedKind
 from tester.results.run_results import results_of
-from tester.rig import CalibrationConfig, Rig
-from tester.screen import Check
 from tester.service.state import Alarm, DiskView
 from tester.store.catalogue import run_folders
 from tester.store.reader import RunReader

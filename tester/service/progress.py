@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from tester.axes import ListWords
+from tester.base.axes import ListWords
+from tester.inputs.recipe.plan import ConditionStep, Step
 from tester.machine.served import ServedKind
 from tester.machine.time_left import STANDSTILL, Earlier, PartTime, TimeLeft
-from tester.recipe.plan import ConditionStep, Step
 from tester.service.state import PlanStep, PlanView, StepState
 
 LISTED = 400

@@ -14,7 +14,7 @@ from typing import Annotated, Literal, TypeAlias
 from pydantic import Field, JsonValue, TypeAdapter, ValidationError
 from pydantic_core import from_json
 
-from tester.screen import MachineView
+from tester.base.screen import MachineView
 from tester.service.commands import VERSION, ClientMessage, Command, Join, Stop
 from tester.service.state import PlanView, StateView
 

@@ -8,12 +8,12 @@ from types import FrameType
 from typing import TypeVar, cast
 
 from tester.base import clock
+from tester.inputs.recipe.estimate import Estimate
 from tester.machine.context import Progress as RunProgress
 from tester.machine.prompts import Prompts
 from tester.machine.run import Run
 from tester.machine.tickers import TickStatistics
 from tester.machine.time_left import RunPosition
-from tester.recipe.estimate import Estimate
 from tester.run.endings import CannotStartError, StopLevel
 from tester.run.folder import Begin, Job, Work, earlier_of, parts_time
 from tester.run.kinds import recipe_part, served_kind

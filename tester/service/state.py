@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-from tester.screen import Check, Gate, SoakView, Value
+from tester.base.screen import Check, Gate, SoakView, Value
 
 MODES = (
     "OFFLINE",

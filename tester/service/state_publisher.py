@@ -7,14 +7,14 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from tester.base import clock
+from tester.base.screen import Value
 from tester.base.trouble import in_words
+from tester.inputs.rig import Rig
 from tester.machine.manual import ManualExecutor
 from tester.machine.run import Outcome, Run
 from tester.machine.served import History, ServedKind
-from tester.rig import Rig
 from tester.run.kinds import served_kind
 from tester.run.latch import acknowledge, open_trips
-from tester.screen import Value
 from tester.service.address import with_peer
 from tester.service.alarms import AlarmList, Cause
 from tester.service.gateway_link import GatewayLink

@@ -6,13 +6,13 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from math import hypot, inf, isfinite
 
+from tester.base.quantities import LAST, Channel, Quantities, Screen
+from tester.base.screen import Quality, Value
+from tester.inputs.rig import Rig
+from tester.inputs.rig.sensors import further_sensors, quantities_on
 from tester.machine.engine import Engine
 from tester.machine.sampler import values_at
 from tester.machine.served import MachinePanel, News, Wanted
-from tester.quantities import LAST, Channel, Quantities, Screen
-from tester.rig import Rig
-from tester.rig.sensors import further_sensors, quantities_on
-from tester.screen import Quality, Value
 
 CONTACT_N = 20.0
 """Below this normal force a friction coefficient is noise [A]."""
@@ -151,7 +151,7 @@ def friction(quantities: Quantities, of: Callable[[str], float]) -> float:
 
 
 def trend_row(quantities: Quantities, values: Mapping[str, Value]) -> list[float | None]:
-    """Return a row of the trend behind its two times (``tester.screen.trend_columns``)."""
+    """Return a row of the trend behind its two times (``tester.base.screen.trend_columns``)."""
     row: list[float | None] = []
     for channel in quantities.shown:
         screen, value = screen_of(channel), values.get(screen_of(channel).key)

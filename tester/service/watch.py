@@ -6,13 +6,13 @@ from math import isfinite
 from typing import Any
 
 from tester.base import clock
+from tester.base.screen import Check, Gate, SoakView, Value
+from tester.inputs.rig import Rig
+from tester.inputs.rig.load import risks_of
 from tester.machine.connect import Stage
 from tester.machine.run import Run
 from tester.machine.served import ServedKind
 from tester.machine.state import ControlState, Mode
-from tester.rig import Rig
-from tester.rig.load import risks_of
-from tester.screen import Check, Gate, SoakView, Value
 from tester.service.alarms import AlarmList, Cause
 from tester.service.buses import BusWatch
 from tester.service.frames import FrameLog

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import cast
 
-from tester.axes import Axes, AxisValue, Setpoint, axes_from
+from tester.base.axes import Axes, AxisValue, Setpoint, axes_from
 from tester.store import older
 from tester.store.statements import Statement, Value, insert
 

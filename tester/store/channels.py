@@ -13,7 +13,7 @@ from functools import lru_cache
 from importlib.resources import files
 from typing import Any
 
-from tester.quantities import Channel, Figure, Quantities, Roles, Screen
+from tester.base.quantities import Channel, Figure, Quantities, Roles, Screen
 from tester.store.statements import Statement, Value, insert
 
 COLUMNS = ("position", "name", "unit", "label", "source", "mean", "decimals", "whole", "shown_name", "shown_unit",

@@ -18,7 +18,7 @@ from types import TracebackType
 import numpy as np
 
 from tester.analysis.results import Judgement
-from tester.quantities import KEY, TIME, Quantities
+from tester.base.quantities import KEY, TIME, Quantities
 from tester.store.chain import Chain
 from tester.store.channels import channels_before_8, make_columns, recorded_channels
 from tester.store.reader import DATABASE, RunReader

@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import Final
 
 from tester.analysis.terms import Acts, Term
-from tester.axes import Axes, Axis
+from tester.base.axes import Axes, Axis
 
 KIND: Final = "wheel_on_belt"
 

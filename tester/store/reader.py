@@ -19,8 +19,8 @@ from tester.analysis.results import Burst, ConditionStatus, Judgement, RepeatRes
 from tester.analysis.soak_check import SoakCheck
 from tester.analysis.terms import Term
 from tester.analysis.wear_check import WearCheck
-from tester.axes import Axes
-from tester.quantities import Means, Quantities
+from tester.base.axes import Axes
+from tester.base.quantities import Means, Quantities
 from tester.store import older
 from tester.store.axes import axes_of, setpoint_of
 from tester.store.budget import term_of

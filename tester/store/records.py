@@ -10,7 +10,7 @@ from tester.analysis.kelvin import KnownSlope
 from tester.analysis.results import NOT_JUDGED, ConditionStatus, Judgement, RepeatResult
 from tester.analysis.schemes import Scheme, scheme_of
 from tester.analysis.terms import Term
-from tester.axes import Axes, Setpoint
+from tester.base.axes import Axes, Setpoint
 
 NAN = float("nan")
 

@@ -10,7 +10,7 @@ from tester.analysis.blocks import Block, blocks_from_samples
 from tester.analysis.repeatability import NOTHING_POOLED, Pool
 from tester.analysis.results import NOT_JUDGED, ConditionStatus, Judgement, RepeatResult, RepeatStatus
 from tester.analysis.schemes import Scheme
-from tester.recipe.stand import Mounted, Stand
+from tester.inputs.recipe.stand import Mounted, Stand
 from tester.store.reader import RunReader
 from tester.store.records import NAN, PieceInfo, StoredCondition, StoredRepeat
 from tester.store.status import WENT_THROUGH

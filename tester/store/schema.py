@@ -371,7 +371,7 @@ CREATE {temporary}TABLE axis (
     blocks INTEGER NOT NULL
 );
 """
-"""The axes of the run's conditions (tester.axes): ``field`` is the column of ``condition`` that holds a value."""
+"""The axes of the run's conditions (tester.base.axes): ``field`` is the column of ``condition`` that holds a value."""
 
 _VERSION_8 = f"""{_AXIS.format(temporary="")}
 {_CHANNEL.format(temporary="")}

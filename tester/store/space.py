@@ -7,8 +7,8 @@ from collections.abc import Callable
 from pathlib import Path
 from threading import Thread
 
-from tester.recipe.estimate import Estimate
-from tester.recipe.plan import Plan
+from tester.inputs.recipe.estimate import Estimate
+from tester.inputs.recipe.plan import Plan
 
 ROW_BYTES = 60.0
 """A recorded sample in its block, with its share of the log and of the tables (measured: 38 to 55)."""

@@ -26,8 +26,8 @@ from threading import Event as Signal
 from threading import Thread
 
 from tester.analysis.results import Burst, RepeatResult
+from tester.base.quantities import KEY, TIME, Quantities
 from tester.base.trouble import in_words
-from tester.quantities import KEY, TIME, Quantities
 from tester.store.chain import Chain
 from tester.store.channels import channel_statements, make_columns, recorded_channels
 from tester.store.files import sync_folder

@@ -10,12 +10,12 @@ from math import isfinite
 from pathlib import Path
 
 from tester.analysis.results import Burst
+from tester.base.quantities import Channel, Quantities
+from tester.base.screen import MachineView, PlotView, Value, trend_columns
 from tester.machine.served import Wanted
-from tester.quantities import Channel, Quantities
 from tester.results.run_results import results_of
 from tester.run.kinds import served_kind
 from tester.run.rigs import load_rig_text
-from tester.screen import MachineView, PlotView, Value, trend_columns
 from tester.service.protocol import Event
 from tester.service.state import (
     ClientsView,

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from tester.base import clock
-from tester.screen import UNKNOWN, MachineView, Value
+from tester.base.screen import UNKNOWN, MachineView, Value
 from tester.service.client import Client, Gone, Lost
 from tester.service.protocol import (
     EVENTS_KEPT,

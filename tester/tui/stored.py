@@ -7,8 +7,8 @@ from math import isfinite
 from pathlib import Path
 
 from tester.analysis.flags import FLAGS, flags_in
-from tester.axes import Axes, Axis, ListWords, Setpoint, condition_words
-from tester.quantities import GATE
+from tester.base.axes import Axes, Axis, ListWords, Setpoint, condition_words
+from tester.base.quantities import GATE
 from tester.results.columns import Output, Table
 from tester.results.conditions_table import ConditionRow, axis_keys, conditions_table
 from tester.results.repeats_table import repeats_table

@@ -18,10 +18,10 @@ from bench.report import as_json, as_markdown, missed, table
 from bench.speed import one_compound
 from bench.wrapping import ENTRY_POINTS, wrapped
 from sim.machines.wheel_on_belt.plant import Plant
+from tester.inputs.recipe.check import load_checked
+from tester.inputs.recipe.conditions import conditions_of
 from tester.kinds import load_rig
 from tester.kinds.wheel_on_belt.recipe.part import PART
-from tester.recipe.check import load_checked
-from tester.recipe.conditions import conditions_of
 
 MACHINE: dict[str, str | int] = {"interpreter": "CPython 3.11", "pgo": "no", "cpus": 2}
 FAST = Figure("drivers", "us", (11.0, 9.0, 10.0), at_most(12.0))

@@ -24,7 +24,7 @@ from typing import NamedTuple
 import recipes
 from sim.physics.greta import greta
 from tester.cli.main import invoke
-from tester.materials.library import Library
+from tester.inputs.materials.library import Library
 from tester.results.components import FilmPair, SharesMean, film_pairs, means_of
 from tester.results.run_results import results_of
 from tester.store.reader import RunReader

@@ -21,8 +21,8 @@ from sim.physics import laws
 from sim.physics.lookup import TableSpan, TabulatedLaw
 from sim.physics.tabulated import ALLOWED, POINTS, build, build_at
 from sim.physics.track import table_span
-from tester.materials.library import Library
-from tester.materials.setting import VARIABLE
+from tester.inputs.materials.library import Library
+from tester.inputs.materials.setting import VARIABLE
 from tests.tester.kinds.specimen_on_track.bench import GROSCH, TrackBench
 
 PAIRS = (("persson", "SBR", "S0"), ("persson", "NBR", "silicon carbide"), ("greta", "tread", "road"))

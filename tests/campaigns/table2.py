@@ -24,7 +24,7 @@ from tempfile import TemporaryDirectory
 from typing import Final, NamedTuple
 
 import recipes
-from tester.axes import condition_words
+from tester.base.axes import condition_words
 from tester.results.run_results import TableRow, results_of
 from tester.run.session import Session, SessionOptions
 from tester.store.reader import RunReader

@@ -24,7 +24,7 @@ def test_the_count_prints_the_files_and_says_by_its_code_whether_it_is_met(capsy
     inside = all(len(files_naming(count.name)) <= count.at_most for count in COUNTS)
     beside = all(0 < len(files_of(example)) <= at_most for example, at_most in AT_MOST.items())
     assert code == int(not (inside and beside))
-    assert "axis camber: " in told and "  tester/kinds/wheel_on_belt/axes.py\n" in told
+    assert "axis camber: " in told and "  tester/kinds/wheel_on_belt/image/axes.py\n" in told
 
 
 @pytest.mark.parametrize("example", sorted(path.name for path in EXAMPLES.iterdir() if path.is_dir()))

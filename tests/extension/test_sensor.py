@@ -12,12 +12,12 @@ import numpy as np
 import pytest
 
 from sim.nodes.profile_slave import ProfileSlave
+from tester.base.screen import Value
 from tester.cli.main import invoke
+from tester.inputs.rig.sensors import quantities_on
 from tester.kinds import load_rig, packaged_text
 from tester.kinds.wheel_on_belt.rig import RigConfig
-from tester.rig.sensors import quantities_on
 from tester.run.kinds import served_kind
-from tester.screen import Value
 from tester.service.values import ValueView, unknown_values
 from tester.store.reader import RunReader
 from tester.tui.playback import load

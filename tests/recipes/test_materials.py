@@ -16,8 +16,8 @@ from sim.physics.laws import LawSetting
 from sim.physics.persson import PerssonLaw
 from sim.physics.track import RUBBERS
 from tester.base.section import editor_text
-from tester.materials.library import Library
-from tester.materials.schema import CompoundModel, SurfaceModel
+from tester.inputs.materials.library import Library
+from tester.inputs.materials.schema import CompoundModel, SurfaceModel
 
 LIBRARY = Library([recipes.FOLDER])
 COMPOUNDS = [one.name for one in LIBRARY.entries("compound")]

@@ -8,12 +8,12 @@ from pathlib import Path
 import pytest
 
 import recipes
+from tester.inputs.recipe.check import check
+from tester.inputs.recipe.loader import load_recipe
+from tester.inputs.recipe.schema import schema_text
 from tester.kinds import load_rig
 from tester.kinds.specimen_on_track.axes import held_by
 from tester.kinds.wheel_on_belt.recipe.part import PART
-from tester.recipe.check import check
-from tester.recipe.loader import load_recipe
-from tester.recipe.schema import schema_text
 from tester.run.kinds import recipe_part
 
 MASTERS = ["grosch", "grosch-glass", "grosch-talc"]

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
-from tester.kind import Kind
+from tester.kinds.kind import Kind
 
 if TYPE_CHECKING:
-    from tester.fit.part import FitPart
+    from tester.analysis.fit.part import FitPart
+    from tester.analysis.master_curve.part import MasterPart
+    from tester.analysis.papers.item import Paper
+    from tester.inputs.recipe.part import RecipePart
+    from tester.inputs.rig import Rig
     from tester.machine.interlock_sheet import InterlockSheet
     from tester.machine.run_parts import KindRun
     from tester.machine.served import ServedKind
-    from tester.master.part import MasterPart
-    from tester.papers.item import Paper
-    from tester.recipe.part import RecipePart
-    from tester.rig import Rig
 
 
 def _rig() -> type[Rig]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Final, NamedTuple
 
-from tester.axes import Axes, Axis, Setpoint
+from tester.base.axes import Axes, Axis, Setpoint
 
 NAME: Final = "specimen_on_track"
 INTERFACES: Final = ("dry", "wet", "talc")

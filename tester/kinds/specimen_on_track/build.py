@@ -11,6 +11,9 @@ from drivers.chamber import ClimateChamber
 from drivers.modbus import Device, ModbusLink
 from drivers.sensor import Sensor
 from drivers.servo import ServoDrive
+from tester.inputs.recipe.plan import Plan
+from tester.inputs.rig.profiles import profile_of
+from tester.inputs.rig.sensors import further_sensors, quantities_on, title_of
 from tester.kinds.specimen_on_track.axes import held_by
 from tester.kinds.specimen_on_track.context import TrackAttendant, TrackContext
 from tester.kinds.specimen_on_track.control import TrackControl
@@ -28,9 +31,6 @@ from tester.machine.ports import Ports
 from tester.machine.prompts import Prompts
 from tester.machine.run import Run
 from tester.machine.sampler import Sampler
-from tester.recipe.plan import Plan
-from tester.rig.profiles import profile_of
-from tester.rig.sensors import further_sensors, quantities_on, title_of
 from tester.store.recorder import Recorder
 from tester.store.resume import ResumePoint
 

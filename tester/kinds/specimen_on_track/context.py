@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from math import nan
 from typing import Protocol
 
+from tester.base.quantities import Quantities
 from tester.kinds.specimen_on_track.devices import TrackDevices
 from tester.kinds.specimen_on_track.process import (
     GATE_CONTACT,
@@ -20,7 +21,6 @@ from tester.kinds.specimen_on_track.quantities import QUANTITIES
 from tester.kinds.specimen_on_track.rig import TrackConfig
 from tester.machine.context import BaseContext
 from tester.machine.prompts import Prompts
-from tester.quantities import Quantities
 from tester.store.recorder import Recorder
 
 SAMPLES = 40.0

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from math import inf, isfinite
 
+from tester.inputs.rig.config import values_of
 from tester.kinds.specimen_on_track.interlocks.chamber import CHAMBER_OFF_S
 from tester.kinds.specimen_on_track.interlocks.force import STALE_CELL_DELAY_S, STALE_CELL_S
 from tester.kinds.specimen_on_track.interlocks.inputs import TrackInputs, TrackLimits, WayMonitor
@@ -19,7 +20,6 @@ from tester.kinds.specimen_on_track.rig import TrackConfig
 from tester.machine.control import Control, bounded, may_move
 from tester.machine.drive_rows import ACK_WAIT_S
 from tester.machine.state import ControlState, Mode
-from tester.rig.config import values_of
 
 ARRIVED_K = 2.0
 """Air within this of the chamber's setpoint has been there, K [A]."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from math import isfinite, nan
 from typing import Final
 
+from tester.inputs.recipe.plan import Plan
 from tester.kinds.specimen_on_track.axes import NAME
 from tester.kinds.specimen_on_track.build import build_run
 from tester.kinds.specimen_on_track.context import TrackAttendant, TrackContext
@@ -15,7 +16,6 @@ from tester.machine.manual import ManualExecutor
 from tester.machine.ports import Ports
 from tester.machine.prompts import Prompts
 from tester.machine.served import ByHand
-from tester.recipe.plan import Plan
 from tester.store.recorder import Recorder
 
 STEPS: Final = 10.0

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from tester.quantities import BURST, GATE, KEY, TIME, Channel, Figure, Quantities, Roles, Screen
+from tester.base.quantities import BURST, GATE, KEY, TIME, Channel, Figure, Quantities, Roles, Screen
 
 _ZERO: Final = Figure()
 _COLD: Final = Figure("limits.air_low_c", offset=-10.0)

@@ -9,15 +9,15 @@ from typing import TYPE_CHECKING, Annotated, ClassVar, Final, Literal
 from drivers.axis import AxisConfig
 from sim.physics.track import TrackParameters
 from tester.base.config_reader import Range
+from tester.base.quantities import Quantities
 from tester.base.source import Location
+from tester.inputs.rig.ceilings import AXES, TRUE, Ceiling, ceilings_of
+from tester.inputs.rig.config import CalibrationConfig, OwnDevice, Rig, section_of
+from tester.inputs.rig.parameter import SECTION, Direction, Parameter
 from tester.kinds.specimen_on_track import KIND
 from tester.kinds.specimen_on_track.interlocks.table import TABLE
 from tester.kinds.specimen_on_track.quantities import QUANTITIES
 from tester.machine.interlock_table import InterlockTable
-from tester.quantities import Quantities
-from tester.rig.ceilings import AXES, TRUE, Ceiling, ceilings_of
-from tester.rig.config import CalibrationConfig, OwnDevice, Rig, section_of
-from tester.rig.parameter import SECTION, Direction, Parameter
 
 _POSITIVE = Range(gt=0.0)
 _NOT_NEGATIVE = Range(ge=0.0)

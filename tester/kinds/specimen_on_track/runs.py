@@ -7,6 +7,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
+from tester.base.screen import Check
+from tester.inputs.recipe.plan import Plan
+from tester.inputs.rig import Rig
 from tester.kinds.specimen_on_track.axes import NAME
 from tester.kinds.specimen_on_track.build import build_run
 from tester.kinds.specimen_on_track.context import TrackAttendant, TrackNobody
@@ -16,9 +19,6 @@ from tester.machine.prompts import Prompts
 from tester.machine.run import Run
 from tester.machine.run_parts import KindRun, Part
 from tester.machine.served import History
-from tester.recipe.plan import Plan
-from tester.rig import Rig
-from tester.screen import Check
 from tester.store.recorder import Recorder
 from tester.store.records import Calibration
 from tester.store.resume import ResumePoint

@@ -5,13 +5,13 @@ from __future__ import annotations
 from math import isfinite
 from typing import Final
 
+from tester.base.screen import AxisView, Check, Gate, HandAxis, MachineView, PlotView, SoakView, trend_columns
 from tester.kinds.specimen_on_track.axes import AXES, NAME
 from tester.kinds.specimen_on_track.procedures.steps import TemperAir
 from tester.kinds.specimen_on_track.process import GATE_CONTACT, GATE_SETTLING, GATE_SPEED, GATE_TEMPERATURE
 from tester.kinds.specimen_on_track.quantities import QUANTITIES
 from tester.machine.engine import Engine
 from tester.machine.served import News, Wanted
-from tester.screen import AxisView, Check, Gate, HandAxis, MachineView, PlotView, SoakView, trend_columns
 
 GATES: Final = (
     ("speed", GATE_SPEED), ("temperature", GATE_TEMPERATURE), ("contact", GATE_CONTACT), ("settling", GATE_SETTLING),

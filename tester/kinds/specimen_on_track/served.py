@@ -5,6 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Final
 
+from tester.base.quantities import Quantities
+from tester.base.screen import MachineView
+from tester.inputs.recipe.plan import Step
+from tester.inputs.rig import Rig
 from tester.kinds.specimen_on_track import manual
 from tester.kinds.specimen_on_track.context import TrackAttendant
 from tester.kinds.specimen_on_track.procedures.steps import title
@@ -14,10 +18,6 @@ from tester.kinds.specimen_on_track.screen import MACHINE, TrackPanel
 from tester.machine.engine import Engine
 from tester.machine.ports import Ports
 from tester.machine.served import ByHand, History, Left, ServedKind
-from tester.quantities import Quantities
-from tester.recipe.plan import Step
-from tester.rig import Rig
-from tester.screen import MachineView
 from tester.store.reader import RunReader
 from tester.store.recorder import Recorder
 

@@ -4,19 +4,19 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
-from tester.kind import Kind
+from tester.kinds.kind import Kind
 
 if TYPE_CHECKING:
-    from tester.commission.part import CommissionPart
-    from tester.fit.part import FitPart
+    from tester.analysis.fit.part import FitPart
+    from tester.analysis.master_curve.part import MasterPart
+    from tester.analysis.papers.item import Paper
+    from tester.inputs.recipe.part import RecipePart
+    from tester.inputs.rig import Rig
+    from tester.machine.commission.part import CommissionPart
     from tester.machine.interlock_sheet import InterlockSheet
     from tester.machine.run_parts import KindRun
     from tester.machine.served import ServedKind
-    from tester.master.part import MasterPart
-    from tester.papers.item import Paper
-    from tester.recipe.part import RecipePart
     from tester.results.ring_part import RingPart
-    from tester.rig import Rig
 
 
 def _rig() -> type[Rig]:
@@ -40,13 +40,13 @@ def _recipe() -> RecipePart:
 
 
 def _runs() -> KindRun:
-    from tester.kinds.wheel_on_belt.runs import RUNS
+    from tester.kinds.wheel_on_belt.runs.runs import RUNS
 
     return RUNS
 
 
 def _served() -> ServedKind:
-    from tester.kinds.wheel_on_belt.served import SERVED
+    from tester.kinds.wheel_on_belt.served.served import SERVED
 
     return SERVED
 
@@ -76,7 +76,7 @@ def _commissions() -> CommissionPart:
 
 
 def _ring() -> RingPart:
-    from tester.kinds.wheel_on_belt.ring_record import RING
+    from tester.kinds.wheel_on_belt.runs.ring_record import RING
 
     return RING
 

@@ -8,7 +8,7 @@ from tester.analysis.kelvin import Slope
 from tester.analysis.measurand import expected_budget
 from tester.analysis.terms import Acts, BudgetPoint, Size, Term
 from tester.analysis.uncertainty import Budget
-from tester.kinds.wheel_on_belt.axes import Held
+from tester.kinds.wheel_on_belt.image.axes import Held
 from tester.store import older
 
 TERMS: Final[tuple[Term, ...]] = older.TERMS

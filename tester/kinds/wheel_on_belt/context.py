@@ -6,17 +6,17 @@ from collections.abc import Callable, Mapping
 from math import inf
 from typing import Final, Protocol
 
+from tester.base.quantities import Quantities
 from tester.kinds.wheel_on_belt.control.load_loop import LoadLoop
 from tester.kinds.wheel_on_belt.control.observer import ThermalObserver
+from tester.kinds.wheel_on_belt.image.process import Demand, Press, Readings, Setpoints
+from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
 from tester.kinds.wheel_on_belt.interlocks.heat_balance import HeatBalance
 from tester.kinds.wheel_on_belt.procedures.gates import Gates
 from tester.kinds.wheel_on_belt.procedures.wheel_life import WheelLife
-from tester.kinds.wheel_on_belt.process import Demand, Press, Readings, Setpoints
-from tester.kinds.wheel_on_belt.quantities import QUANTITIES
 from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.machine.context import BaseContext
 from tester.machine.prompts import Prompts
-from tester.quantities import Quantities
 from tester.store.recorder import Recorder
 
 CONTACT_N: Final = 5.0

@@ -8,11 +8,11 @@ from __future__ import annotations
 
 from math import inf
 
+from tester.inputs.rig.plain import PlainRig
 from tester.machine.devices import INPUT_GUARD, INPUT_SAFETY_CHAIN
 from tester.machine.plain.devices import STANDING_SHARE, PlainDevices
 from tester.machine.proof import WatchdogProof
 from tester.machine.wires import CAN_SILENT, STALE_INPUTS_S
-from tester.rig.plain import PlainRig
 
 
 class NothingToLift:

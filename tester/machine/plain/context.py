@@ -6,12 +6,12 @@ from collections.abc import Mapping
 from typing import Final, Protocol
 
 from drivers.sensor import Sensor
+from tester.base.quantities import Quantities
+from tester.inputs.recipe.plain import Mount
+from tester.inputs.rig.plain import PlainRig
 from tester.machine.context import BaseContext
 from tester.machine.plain.image import PlainDemand, PlainReadings
 from tester.machine.prompts import Prompts
-from tester.quantities import Quantities
-from tester.recipe.plain import Mount
-from tester.rig.plain import PlainRig
 from tester.store.recorder import Recorder
 
 SPEED_SHARE: Final = 0.02

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from tester.inputs.rig.plain import PlainRig
 from tester.machine.control import Control, bounded, may_move
 from tester.machine.drive_rows import ACK_WAIT_S
 from tester.machine.interlock_table import InterlockTable
 from tester.machine.plain.image import PlainDemand, PlainReadings, PlainSetpoints
 from tester.machine.plain.rows import HOLD_AT_MOST_S, STOP_TIMEOUT_S, PlainInputs
 from tester.machine.state import ControlState, Mode
-from tester.rig.plain import PlainRig
 
 State = ControlState[PlainSetpoints]
 

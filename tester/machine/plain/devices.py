@@ -12,13 +12,13 @@ from drivers.cia402 import Goal
 from drivers.modbus import ModbusLink
 from drivers.sensor import Sensor
 from drivers.servo import ServoDrive
+from tester.inputs.rig.plain import PlainRig
+from tester.inputs.rig.profiles import profile_of
+from tester.inputs.rig.sensors import title_of
 from tester.machine.devices import NEVER, DeviceList
 from tester.machine.field_device import FieldDevice
 from tester.machine.plain.image import PlainReadings, PlainSetpoints
 from tester.machine.ports import Ports
-from tester.rig.plain import PlainRig
-from tester.rig.profiles import profile_of
-from tester.rig.sensors import title_of
 
 STANDING_SHARE: Final = 0.01
 """A drive slower than this share of its greatest speed stands [A]."""

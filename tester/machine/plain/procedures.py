@@ -9,7 +9,10 @@ from typing import Final
 from tester.analysis.blocks import BlockCounter
 from tester.analysis.collected import collected
 from tester.analysis.judge import ALONE
-from tester.axes import Setpoint
+from tester.base.axes import Setpoint
+from tester.base.quantities import Quantities
+from tester.inputs.recipe.plain import Mount, PlainPart
+from tester.inputs.recipe.plan import ConditionStep, Step
 from tester.machine.activity import Activity, MoveFailedError
 from tester.machine.executor import Procedures
 from tester.machine.measured import ConditionEnd, Ending, RepeatOutcome
@@ -17,9 +20,6 @@ from tester.machine.motions import Ask
 from tester.machine.plain.context import PlainContext
 from tester.machine.plain.image import PlainReadings
 from tester.machine.results import StoredResults
-from tester.quantities import Quantities
-from tester.recipe.plain import Mount, PlainPart
-from tester.recipe.plan import ConditionStep, Step
 from tester.store.records import PieceInfo
 
 MOVE_AT_MOST_S: Final = 15.0

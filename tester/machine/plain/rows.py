@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any, Final, Generic, TypeVar
 
+from tester.inputs.rig.parameter import NOT_NEGATIVE, Parameter
+from tester.inputs.rig.plain import PlainRig
 from tester.machine.drive_rows import (
     ACK_WAIT_S,
     drive_data_stale,
@@ -20,8 +22,6 @@ from tester.machine.row import ACK, ENDING, FAST, LOADED, POWER_OFF, REPAIR, Com
 from tester.machine.state import ControlState, Mode
 from tester.machine.wires import DEVICE_REFUSED, INPUTS_STALE, LINE_NOISY, WARNINGS
 from tester.machine.wires import ROWS as WIRE_ROWS
-from tester.rig.parameter import NOT_NEGATIVE, Parameter
-from tester.rig.plain import PlainRig
 
 ReadingsT = TypeVar("ReadingsT", bound=PlainReadings)
 _WORKING: Final = frozenset({Mode.RUN, Mode.HOLD})

@@ -7,7 +7,13 @@ from dataclasses import dataclass, replace
 from math import nan
 from pathlib import Path
 
-from tester.axes import Setpoint
+from tester.base.axes import Setpoint
+from tester.base.screen import Check
+from tester.inputs.recipe.plain import Mount, PlainPart
+from tester.inputs.recipe.plan import Plan
+from tester.inputs.rig import Rig
+from tester.inputs.rig.plain import PlainRig
+from tester.inputs.rig.sensors import quantities_on
 from tester.machine.connect import Connector
 from tester.machine.engine import Engine
 from tester.machine.executor import Executor
@@ -24,12 +30,6 @@ from tester.machine.run import Run
 from tester.machine.run_parts import Part
 from tester.machine.sampler import Sampler
 from tester.machine.served import History, Left
-from tester.recipe.plain import Mount, PlainPart
-from tester.recipe.plan import Plan
-from tester.rig import Rig
-from tester.rig.plain import PlainRig
-from tester.rig.sensors import quantities_on
-from tester.screen import Check
 from tester.store.recorder import Recorder
 from tester.store.records import Calibration
 from tester.store.resume import ResumePoint

@@ -6,7 +6,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Final
 
-from tester.axes import Axes
+from tester.base.axes import Axes
+from tester.base.quantities import Quantities
+from tester.base.screen import AxisView, Check, Gate, HandAxis, MachineView, PlotView, SoakView, trend_columns
+from tester.inputs.recipe.plan import Plan, Step
+from tester.inputs.rig import Rig
+from tester.inputs.rig.plain import PlainRig
 from tester.machine.engine import Engine
 from tester.machine.manual import NAME, ManualExecutor
 from tester.machine.plain.context import GATE_SPEED, PlainAttendant, PlainContext
@@ -15,11 +20,6 @@ from tester.machine.ports import Ports
 from tester.machine.prompts import Prompts
 from tester.machine.served import ByHand, History, Left, News, Wanted
 from tester.machine.wires import STALE_INPUTS_S
-from tester.quantities import Quantities
-from tester.recipe.plan import Plan, Step
-from tester.rig import Rig
-from tester.rig.plain import PlainRig
-from tester.screen import AxisView, Check, Gate, HandAxis, MachineView, PlotView, SoakView, trend_columns
 from tester.store.reader import RunReader
 from tester.store.recorder import Recorder
 

@@ -8,7 +8,7 @@ from pydantic import JsonValue
 from textual.widget import Widget
 from textual.widgets import Static
 
-from tester.axes import Axes, AxisValue, axes_from, condition_words
+from tester.base.axes import Axes, AxisValue, axes_from, condition_words
 from tester.base.words import duration
 from tester.service.commands import ShowPlan
 from tester.tui.dialogs.dialog import Dialog, line

@@ -16,8 +16,8 @@ from textual.widgets.option_list import Option
 
 from tester.base import clock, keys
 from tester.base.trouble import in_words
-from tester.commission.person import Asks, Question
-from tester.commission.record import RecordError
+from tester.machine.commission.person import Asks, Question
+from tester.machine.commission.record import RecordError
 from tester.tui.dialogs.dialog import Dialog
 from tester.tui.dialogs.log import TextDialog
 from tester.tui.formatting import clean

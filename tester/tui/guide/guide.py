@@ -10,13 +10,13 @@ from threading import Thread
 from tester.base import clock
 from tester.base.source import InvalidSource
 from tester.base.trouble import in_words
-from tester.commission.engine import CommissionOutcome, Ended
-from tester.commission.part import AtTheTwin
-from tester.commission.person import Question
-from tester.commission.record import CommissionRecord, RecordError
-from tester.commission.standing import StepStanding, standing_of
-from tester.commission.step import CommissionStep
-from tester.rig import Rig
+from tester.inputs.rig import Rig
+from tester.machine.commission.engine import CommissionOutcome, Ended
+from tester.machine.commission.part import AtTheTwin
+from tester.machine.commission.person import Question
+from tester.machine.commission.record import CommissionRecord, RecordError
+from tester.machine.commission.standing import StepStanding, standing_of
+from tester.machine.commission.step import CommissionStep
 from tester.run.commissioning import CommissionOptions, commission, part_of, record_path
 from tester.run.endings import CannotStartError
 from tester.store.schema import StoreError

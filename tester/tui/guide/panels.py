@@ -7,9 +7,9 @@ from textwrap import wrap
 from typing import Final
 
 from tester.base.words import NONE, decimal, duration
-from tester.commission.engine import Ended
-from tester.commission.standing import StepStanding
-from tester.commission.step import StepReading
+from tester.machine.commission.engine import Ended
+from tester.machine.commission.standing import StepStanding
+from tester.machine.commission.step import StepReading
 from tester.tui.formatting import clean, fit
 from tester.tui.guide.guide import ENDINGS, GuideView
 from tester.tui.scene import ScreenScene

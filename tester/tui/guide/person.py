@@ -11,9 +11,9 @@ from typing import Final
 
 from tester.base import clock
 from tester.base.keys import FAST_STOP, STOP
-from tester.commission.person import Question
-from tester.commission.record import RecordEntry
-from tester.commission.step import CommissionStep, StepReading, Walk
+from tester.machine.commission.person import Question
+from tester.machine.commission.record import RecordEntry
+from tester.machine.commission.step import CommissionStep, StepReading, Walk
 
 KEPT: Final = 500
 """Lines of what was told."""
@@ -31,7 +31,7 @@ class Live:
 
 
 class ScreenPerson:
-    """A front of the engine (tester.commission.person.Person), which looks on as well (Onlooker)."""
+    """A front of the engine (tester.machine.commission.person.Person), which looks on as well (Onlooker)."""
 
     def __init__(self, *, time_stands: bool) -> None:
         """``time_stands``: on a rig simulated in this process."""

@@ -11,7 +11,7 @@ from textual.content import Content
 from textual.widgets import OptionList
 from textual.widgets.option_list import Option
 
-from tester.screen import HandAxis
+from tester.base.screen import HandAxis
 from tester.service.commands import Arm, Jog, Tare
 from tester.service.state import StateView
 from tester.tui.formatting import clean

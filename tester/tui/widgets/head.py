@@ -16,7 +16,7 @@ TABS: Tabs = (("f2", "Recipes", "recipes"), ("f3", "Run", "run"), ("f4", "Manual
         ("f5", "Results", "results"), ("f6", "Bus", "bus"), ("f7", "Ring", "ring"))  # fmt: skip
 """Key, title, id of each screen."""
 RING: Final = "ring"
-"""The screen that only a machine with a ring has (tester.screen.MachineView)."""
+"""The screen that only a machine with a ring has (tester.base.screen.MachineView)."""
 CALM_MODES = frozenset({"RUN", "IDLE", "OFFLINE", "ARMED", "CONNECTING", "MANUAL"})
 TRIPPED_MODES = frozenset({"FAST STOP", "LATCHED", "E-STOP"})
 ALARM_SIGNS = {"active": "■", "acknowledged": "▣", "returned": "◇"}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tester.axes import Axis, condition_words
+from tester.base.axes import Axis, condition_words
 from tester.tui.formatting import clean, fit
 from tester.tui.plot import scatter
 from tester.tui.scene import ScreenScene

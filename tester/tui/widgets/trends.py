@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from tester.base.screen import PlotView
 from tester.base.words import decimal
-from tester.screen import PlotView
 from tester.service.protocol import SNAPSHOT_S, TREND_ROWS
 from tester.tui.formatting import clean
 from tester.tui.plot import LIMIT, WISH, Bin, Canvas, PlotRange

@@ -17,9 +17,9 @@ from tester.analysis.measurand import Surroundings, pooled, with_budget, with_bu
 from tester.analysis.repeats import ConditionResult, combine_repeats, combine_replicates
 from tester.analysis.results import Judgement, RepeatResult, RepeatStatus
 from tester.analysis.terms import Size
+from tester.base.quantities import Means
 from tester.kinds.wheel_on_belt.budget import TERMS
-from tester.kinds.wheel_on_belt.quantities import QUANTITIES
-from tester.quantities import Means
+from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
 
 BETWEEN, REPEATS, OTHERS = 0.03, 0.02, 5
 """Relative standard deviations from wheel to wheel and from repeat to repeat; conditions of a run that share the

@@ -76,7 +76,7 @@ def of_components() -> Iterator[Mutant]:
             yield Mutant(f"components: {name}", path, old, new, tests)
 
 
-_PROBLEM, _LACK, _RESAMPLE = "tester/fit/problem.py", "tester/fit/lack.py", "tester/fit/resample.py"
+_PROBLEM, _LACK, _RESAMPLE = "tester/analysis/fit/problem.py", "tester/analysis/fit/lack.py", "tester/analysis/fit/resample.py"
 _POINTS = "tester/results/fit_points.py"
 _OF_FIT = tests_of("fit/lack", "fit/joint")
 _OF_POINTS = tests_of("kinds/wheel_on_belt/fit/runs", "kinds/specimen_on_track/fit/runs")
@@ -132,7 +132,7 @@ _FIT_OTHERS: Final = (
     (_POINTS, "a thermometer is right", "standard_of(terms, Acts.TEMPERATURE), temperature)", "0.0, temperature)"),
     (_POINTS, "a doubt is no reason", 'return ", ".join(result.doubts)', 'return ""'),
 )  # fmt: skip
-_COLLAPSE, _VERDICT = "tester/master/collapse.py", "tester/master/verdict.py"
+_COLLAPSE, _VERDICT = "tester/analysis/master_curve/collapse.py", "tester/analysis/master_curve/verdict.py"
 _OF_MASTER = tests_of("master/collapse", "master/verdict")
 _MASTER_SCALED: Final = (
     (_COLLAPSE, "residuals of resamples", "spread = one.residual * sqrt(", "spread = {} * one.residual * sqrt("),

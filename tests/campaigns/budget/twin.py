@@ -23,8 +23,8 @@ from tempfile import TemporaryDirectory
 from tester.analysis.difference import difference
 from tester.results.run_results import results_of
 from tester.run.session import Session, SessionOptions
+from tester.run.sweep.case import Unseen
 from tester.store.reader import RunReader
-from tester.sweep.case import Unseen
 
 WRONG_BELIEFS = (
     "sim.wear=3",

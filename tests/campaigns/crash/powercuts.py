@@ -10,7 +10,7 @@ from pathlib import Path
 from random import Random
 
 from tester.analysis.results import ConditionStatus, RepeatStatus
-from tester.kinds.wheel_on_belt.quantities import QUANTITIES
+from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
 from tester.store.reader import RunReader
 from tester.store.records import PieceInfo, SessionInfo
 from tester.store.resume import resume_point

@@ -11,10 +11,10 @@ from dataclasses import dataclass
 from functools import cache
 from itertools import product
 
+from tester.inputs.recipe.check import check
 from tester.kinds import load_rig
 from tester.kinds.wheel_on_belt.recipe.part import PART
 from tester.kinds.wheel_on_belt.rig import RigConfig
-from tester.recipe.check import check
 
 COMPOUNDS = ("1#", "2#", "3#")
 STIFFNESS = (0.75, 1.3)

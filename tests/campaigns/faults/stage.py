@@ -15,18 +15,18 @@ from sim.machines.wheel_on_belt.harm import HarmObserver, Truth
 from sim.machines.wheel_on_belt.rig import WheelRig
 from sim.nodes.drive_state import ENERGISED
 from tester.analysis.results import Burst, RepeatResult, RepeatStatus
+from tester.inputs.recipe.loader import load_recipe
+from tester.inputs.recipe.plan import Plan
 from tester.kinds import load_rig
-from tester.kinds.wheel_on_belt.build import build_run
-from tester.kinds.wheel_on_belt.heatings import KIND as HEATING
 from tester.kinds.wheel_on_belt.interlocks.heat_ratio import NO_HISTORY, KnownRatio
 from tester.kinds.wheel_on_belt.recipe.expand import expand
 from tester.kinds.wheel_on_belt.recipe.part import PART
 from tester.kinds.wheel_on_belt.rig import RigConfig
+from tester.kinds.wheel_on_belt.runs.build import build_run
+from tester.kinds.wheel_on_belt.runs.heatings import KIND as HEATING
 from tester.machine.prompts import Prompts
 from tester.machine.run import Run
 from tester.machine.tickers import next_tick
-from tester.recipe.loader import load_recipe
-from tester.recipe.plan import Plan
 from tester.run.fault_injection import RIG_STEP_S, FaultyRun
 from tester.run.simulated import simulated_ports
 from tester.store.recorder import NullRecorder

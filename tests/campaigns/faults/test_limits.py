@@ -8,9 +8,9 @@ import pytest
 
 from sim.machines.wheel_on_belt.faults import CATALOGUE, PARAMETRIC
 from sim.machines.wheel_on_belt.faults.catalogue import ASSEMBLY
+from tester.inputs.recipe.check import check
 from tester.kinds import load_rig
 from tester.kinds.wheel_on_belt.recipe.part import PART
-from tester.recipe.check import check
 from tests.campaigns.faults import limits, magnitudes
 from tests.campaigns.faults.campaign import all_cases
 from tests.campaigns.faults.corners import LOAD_STEP_N, SLIP_STEP_MM_S, TEMPERATURE_STEP_K, Corner, corners

@@ -11,6 +11,8 @@ from sim.faults.kinds import FaultKind
 from sim.machines.specimen_on_track.faults import CATALOGUE, Onset
 from sim.machines.specimen_on_track.harm import TrackHarmObserver, TrackTruth
 from sim.machines.specimen_on_track.rig import TrackRig
+from tester.inputs.recipe.loader import load_recipe
+from tester.inputs.recipe.plan import Plan
 from tester.kinds import load_rig
 from tester.kinds.specimen_on_track.build import build_run
 from tester.kinds.specimen_on_track.interlocks.table import TABLE
@@ -19,8 +21,6 @@ from tester.kinds.specimen_on_track.recipe.steps import Temper
 from tester.kinds.specimen_on_track.rig import TrackConfig
 from tester.machine.prompts import Prompts
 from tester.machine.run import Run
-from tester.recipe.loader import load_recipe
-from tester.recipe.plan import Plan
 from tester.run.simulated import simulated_ports
 from tests.campaigns.faults.first_up import First
 from tests.campaigns.faults.recipes import TRACKS

@@ -16,9 +16,9 @@ import numpy as np
 
 from sim.physics import laws
 from sim.physics.wlf import WlfBellParameters
+from tester.analysis.fit.law import Common, FitPoint, Law, Source
 from tester.analysis.repeats import REPEATABILITY
 from tester.analysis.terms import Acts
-from tester.fit.law import Common, FitPoint, Law, Source
 from tester.kinds.specimen_on_track.budget import TERMS as TRACK_TERMS
 from tester.kinds.specimen_on_track.fit.laws import WLF_BELL
 from tester.kinds.specimen_on_track.fit.part import FITS as TRACK

@@ -13,12 +13,12 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from sim.physics import laws
-from tester.fit.joint import fit_group
-from tester.fit.lack import power_of
-from tester.fit.law import FitError
-from tester.fit.problem import FitProblem
-from tester.fit.resample import resample
-from tester.fit.solve import solve
+from tester.analysis.fit.joint import fit_group
+from tester.analysis.fit.lack import power_of
+from tester.analysis.fit.law import FitError
+from tester.analysis.fit.problem import FitProblem
+from tester.analysis.fit.resample import resample
+from tester.analysis.fit.solve import solve
 from tests.campaigns.fit import twins
 from tests.campaigns.fit.records import Record, on_track, on_wheel, truth_on_track, truth_on_wheel
 

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from tester.kinds.wheel_on_belt.quantities import QUANTITIES
+from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
 from tester.results import write_all
 from tester.results.manifest import MANIFEST, manifest_text
 from tester.results.verify import verify

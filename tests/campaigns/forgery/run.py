@@ -7,7 +7,7 @@ from pathlib import Path
 from tester.analysis.wear_check import WearCheck
 from tester.base import clock
 from tester.cli.console import Console
-from tester.kinds.wheel_on_belt.quantities import QUANTITIES
+from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
 from tester.results import write_all
 from tester.results.exclude import Word, record_word
 from tester.run.session import Session, SessionOptions

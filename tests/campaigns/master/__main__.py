@@ -16,9 +16,9 @@ from typing import Final
 
 import numpy as np
 
-from tester.master.made import Master, master_of
-from tester.master.points import MasterPoint
-from tester.master.verdict import Verdict
+from tester.analysis.master_curve.made import Master, master_of
+from tester.analysis.master_curve.points import MasterPoint
+from tester.analysis.master_curve.verdict import Verdict
 from tests.campaigns.master.synthetic import FAILING, TS_C, synthetic
 from tests.campaigns.master.twin import Found, measured
 

@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 
 from sim.physics.wlf import log10_shift
-from tester.master.points import MasterPoint, MasterSource
+from tester.analysis.master_curve.points import MasterPoint, MasterSource
 
 TEMPERATURES_C: Final = tuple(-5.0 + 9.0 * i for i in range(11))
 SPEEDS_M_S: Final = tuple(10.0 ** (-6.0 + 0.5 * i) for i in range(9))

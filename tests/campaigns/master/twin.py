@@ -13,12 +13,12 @@ from typing import Final
 
 import recipes
 from sim.physics.track import RUBBERS
+from tester.analysis.master_curve.made import master_of
+from tester.analysis.master_curve.points import MasterPoint, MasterSource
 from tester.analysis.terms import Acts
 from tester.kinds.specimen_on_track.axes import held_by
 from tester.kinds.specimen_on_track.budget import TERMS
 from tester.machine.run import Outcome
-from tester.master.made import master_of
-from tester.master.points import MasterPoint, MasterSource
 from tests.tester.kinds.specimen_on_track.bench import TrackBench
 
 TRUTH_C: Final = RUBBERS["SBR"].t_ref

@@ -16,12 +16,12 @@ from tempfile import TemporaryDirectory
 from sim.machines.wheel_on_belt.faults.sensors import SpoiledForces, SpoiledTemperature
 from sim.machines.wheel_on_belt.rig import WheelRig
 from sim.noise import NormalStream
-from tester.commission.engine import Ended
-from tester.commission.person import Question
 from tester.kinds.wheel_on_belt.commission.jog import AXES
 from tester.kinds.wheel_on_belt.commission.steps import STEPS
 from tester.kinds.wheel_on_belt.commission.twin import TwinPerson
 from tester.kinds.wheel_on_belt.rig import RigConfig
+from tester.machine.commission.engine import Ended
+from tester.machine.commission.person import Question
 from tests.campaigns.mistakes.mistake import Mistake
 from tests.tester.kinds.wheel_on_belt.commission.twin_bench import Bench, believed
 

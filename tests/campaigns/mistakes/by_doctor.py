@@ -19,8 +19,8 @@ from tester.doctor.examination import Examination
 from tester.doctor.finding import Finding, Severity
 from tester.doctor.table import examined
 from tester.doctor.wires import SimulatedWires
+from tester.inputs.rig import Rig
 from tester.kinds import load_rig
-from tester.rig import Rig
 from tests.campaigns.mistakes.mistake import Mistake
 from tests.tester.doctor.fake_computer import CELL, FakeComputer, ip_link, on_adapters
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from tester.run.session import Session, SessionOptions
-from tester.sweep.case import Unseen
+from tester.run.sweep.case import Unseen
 
 
 def run(text: str, seed: int, folder: Path) -> Path:

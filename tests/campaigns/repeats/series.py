@@ -21,8 +21,8 @@ from tester.analysis.judge import judge
 from tester.analysis.reduce import counted, reduce_repeat
 from tester.analysis.repeats import counting
 from tester.analysis.results import NOT_JUDGED, Judgement, RepeatResult
-from tester.kinds.wheel_on_belt.quantities import QUANTITIES
-from tester.quantities import Means
+from tester.base.quantities import Means
+from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
 from tester.store.reader import RunReader
 from tests.tester.analysis.series import correlated
 

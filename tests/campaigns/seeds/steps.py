@@ -13,12 +13,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from statistics import median
 
+from tester.inputs.recipe.loader import load_recipe
+from tester.inputs.recipe.plan import Plan
 from tester.kinds import load_rig
 from tester.kinds.wheel_on_belt.recipe.expand import expand
 from tester.kinds.wheel_on_belt.recipe.part import PART
 from tester.kinds.wheel_on_belt.recipe.steps import Cool, Install, WheelCondition
-from tester.recipe.loader import load_recipe
-from tester.recipe.plan import Plan
 
 
 @dataclass(frozen=True, slots=True)

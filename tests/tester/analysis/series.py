@@ -7,8 +7,8 @@ from math import exp, sqrt
 from random import Random
 
 from tester.analysis.blocks import Block, resultant
-from tester.kinds.wheel_on_belt.quantities import QUANTITIES
-from tester.quantities import Means
+from tester.base.quantities import Means
+from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
 
 REVOLUTION_S = 0.353
 """A 90 mm wheel at 0.8 m/s."""

@@ -13,8 +13,8 @@ from tester.analysis.kelvin import UNKNOWN, Slope
 from tester.analysis.repeats import ConditionResult
 from tester.analysis.results import ConditionStatus
 from tester.analysis.uncertainty import Contribution, budget, contribution
+from tester.base.quantities import Means
 from tester.kinds.specimen_on_track.quantities import QUANTITIES
-from tester.quantities import Means
 
 LOAD_N, CELL_N, WEIGHTS_N = 10.0, 0.1, 0.01
 NO_SLOPE = Slope(0.0, 0.0, "none")

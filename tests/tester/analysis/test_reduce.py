@@ -12,7 +12,7 @@ from tester.analysis.blocks import BlockCounter
 from tester.analysis.flags import NOT_SHOWN
 from tester.analysis.reduce import batch_means, bursts_of, reduce_repeat, standard_deviation, without_value
 from tester.analysis.results import RepeatStatus
-from tester.kinds.wheel_on_belt.quantities import QUANTITIES
+from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
 from tests.tester.analysis.series import REVOLUTION_S, block, blocks, correlated, sample
 
 STEADY = [0.7, 0.701] * 15

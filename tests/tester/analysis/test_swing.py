@@ -13,7 +13,7 @@ from tester.analysis.blocks import BlockCounter
 from tester.analysis.results import Swing
 from tester.analysis.swing import LIMIT_PERCENT, UNKNOWN, swing_of
 from tester.analysis.trace import Trace
-from tester.kinds.wheel_on_belt.quantities import QUANTITIES
+from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
 from tests.tester.analysis.series import sample
 
 TURN_HZ = 2.83

@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 
 from tester.base.extras import needs
-from tester.catalogue import open_catalogue
-from tester.catalogue.entries import CatalogueError
 from tester.cli.main import invoke
+from tester.results.catalogue import open_catalogue
+from tester.results.catalogue.entries import CatalogueError
 from tester.run import provenance
 
 
@@ -38,7 +38,7 @@ def test_a_command_that_needs_an_extra_is_a_usage_error(
 
 def test_a_shared_catalogue_names_its_extra(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "sqlalchemy", None)
-    monkeypatch.delitem(sys.modules, "tester.catalogue.shared", raising=False)
+    monkeypatch.delitem(sys.modules, "tester.results.catalogue.shared", raising=False)
     with pytest.raises(CatalogueError, match=r"SQLAlchemy: pip install .friction-tester\[catalogue\]"):
         open_catalogue(tmp_path, "sqlite://")
 

@@ -13,7 +13,7 @@ import pytest
 
 from tester.base.lock import ExclusiveUse, RigInUseError, user_of
 from tester.run.preconditions import buses_of
-from tests.tester.recipe.texts import rig
+from tests.tester.inputs.recipe.texts import rig
 
 HOLD = """
 import sys

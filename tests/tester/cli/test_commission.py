@@ -10,11 +10,11 @@ import pytest
 
 from tester.cli.commission_person import TerminalPerson
 from tester.cli.main import invoke
-from tester.commission.engine import Ended
-from tester.commission.person import Question
-from tester.commission.record import CommissionRecord
 from tester.kinds.wheel_on_belt.commission.steps import STEPS
 from tester.kinds.wheel_on_belt.commission.twin import TwinPerson
+from tester.machine.commission.engine import Ended
+from tester.machine.commission.person import Question
+from tester.machine.commission.record import CommissionRecord
 from tester.run.commissioning import CommissionOptions, commission, record_path
 from tester.run.rigs import load_rig
 from tester.store.reader import RunReader

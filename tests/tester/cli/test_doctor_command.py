@@ -12,8 +12,8 @@ import pytest
 
 from tester.base.lock import FOLDER_VARIABLE, ExclusiveUse
 from tester.cli.main import invoke
+from tester.inputs.rig.reach import reached_over_tcp
 from tester.kinds import load_rig
-from tester.rig.reach import reached_over_tcp
 from tester.run.preconditions import buses_of
 
 QUICK = ("--quick", "--seconds", "1")

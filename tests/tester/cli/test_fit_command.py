@@ -12,8 +12,8 @@ import pytest
 
 from sim.physics.greta import greta
 from tester.cli.main import invoke
+from tester.inputs.materials.library import Library
 from tester.kinds.wheel_on_belt.fit import published
-from tester.materials.library import Library
 from tests.campaigns.fit.synthetic import DESIGN
 from tests.tester.kinds.specimen_on_track.fit.made import law, made_track_run
 from tests.tester.kinds.wheel_on_belt.fit.made import made_run

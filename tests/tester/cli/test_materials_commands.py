@@ -10,8 +10,8 @@ import pytest
 
 import recipes
 from tester.cli.main import invoke
-from tester.materials.compound import load_compound
-from tester.materials.surface import load_surface
+from tester.inputs.materials.compound import load_compound
+from tester.inputs.materials.surface import load_surface
 
 ROWS = "".join(f"{-60 + 5 * i};1;{2000 // (i + 1)},5;{200 // (i + 1)},25\n" for i in range(20))
 DMA = f"Instrument;X\nOperator;Li\n\nTemp./°C;Freq.;Storage Modulus;Loss Modulus\n;[Hz];[MPa];[MPa]\n{ROWS}"
@@ -160,7 +160,7 @@ def test_schemas_are_those_that_ship(what: str, capsys: pytest.CaptureFixture[st
 
 
 def test_check_of_a_recipe_warns_of_doubts(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    from tests.tester.recipe.texts import SMALL
+    from tests.tester.inputs.recipe.texts import SMALL
 
     (folder / "r.yaml").write_text(SMALL, encoding="utf-8")
     (folder / "compounds").mkdir()

@@ -11,9 +11,9 @@ import pytest
 
 from tester.analysis.results import RepeatStatus
 from tester.base.lock import RUN_LOCK, ExclusiveUse
-from tester.catalogue.entries import fingerprint, read_entries
 from tester.cli.main import invoke
-from tester.kinds.wheel_on_belt.served import SERVED
+from tester.kinds.wheel_on_belt.served.served import SERVED
+from tester.results.catalogue.entries import fingerprint, read_entries
 from tester.service.preflight import past_of
 from tester.tui.stored import read
 from tests.tester.store.build import CONDITIONS, RUN, SPECIMENS, open_writer, record

@@ -9,7 +9,7 @@ import pytest
 
 from tester.cli.main import invoke
 from tester.kinds import packaged_text
-from tests.tester.recipe.texts import SMALL
+from tests.tester.inputs.recipe.texts import SMALL
 
 
 @pytest.fixture

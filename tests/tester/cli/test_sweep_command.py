@@ -12,10 +12,10 @@ from pathlib import Path
 import pytest
 
 from tester.cli.main import invoke
-from tester.sweep import executors
-from tester.sweep.case import CaseResult, SweepTask
-from tester.sweep.executors import Submit
-from tests.tester.sweep.results import result, row
+from tester.run.sweep import executors
+from tester.run.sweep.case import CaseResult, SweepTask
+from tester.run.sweep.executors import Submit
+from tests.tester.run.sweep.results import result, row
 
 
 @pytest.fixture

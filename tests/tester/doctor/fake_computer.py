@@ -6,7 +6,7 @@ import json
 from dataclasses import dataclass, field, replace
 
 from tester.doctor.system import SerialPortInfo
-from tester.rig import Rig
+from tester.inputs.rig import Rig
 
 CELL, HEAT = "/dev/serial/by-id/cell", "/dev/serial/by-id/heat"
 

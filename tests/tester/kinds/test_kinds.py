@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from tester.base.source import InvalidSource
+from tester.inputs.rig import Rig, WrongKindError
 from tester.kinds import (
     PACKAGED,
     UnknownKindError,
@@ -18,7 +19,6 @@ from tester.kinds import (
     packaged_text,
 )
 from tester.kinds.wheel_on_belt.rig import RigConfig
-from tester.rig import Rig, WrongKindError
 
 
 @pytest.mark.parametrize("name", PACKAGED)

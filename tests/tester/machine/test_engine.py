@@ -10,8 +10,8 @@ import pytest
 
 from drivers.cia402 import State
 from drivers.jacket import LEASE_S
-from tester.kinds.wheel_on_belt.devices import Devices
-from tester.kinds.wheel_on_belt.process import Press, Setpoints
+from tester.kinds.wheel_on_belt.image.devices import Devices
+from tester.kinds.wheel_on_belt.image.process import Press, Setpoints
 from tester.machine.engine import Engine
 from tester.machine.motions import Power
 from tester.machine.state import Mode

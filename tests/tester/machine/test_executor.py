@@ -6,9 +6,9 @@ from collections.abc import Sequence
 
 import pytest
 
+from tester.inputs.recipe.plan import Plan, PromptStep, Step
 from tester.machine.activity import Activity, MoveFailedError
 from tester.machine.executor import Executor, Procedures, Unforeseen
-from tester.recipe.plan import Plan, PromptStep, Step
 from tests.tester.machine.toy import LampContext, make_context
 
 

@@ -9,10 +9,10 @@ from typing import Any
 
 import pytest
 
+from tester.inputs.rig.parameter import Parameter
 from tester.machine.inputs import ScanInputs
 from tester.machine.interlock_table import Group, InterlockTable, parameters_of
 from tester.machine.row import ENDING, FAST, LOADED, WARN, Interlock, always
-from tester.rig.parameter import Parameter
 
 DELAY = Parameter("toy_delay_s", "s", "30 ms", "for this long")
 LEVEL = Parameter("toy_level_n", "N", "3 N", "more than this")

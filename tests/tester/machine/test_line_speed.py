@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from tester.kinds import load_rig
-from tester.kinds.wheel_on_belt.build import build_devices
 from tester.kinds.wheel_on_belt.procedures.connection import WheelArming
+from tester.kinds.wheel_on_belt.runs.build import build_devices
 from tester.machine import line_speed
 from tester.machine.connect import Connector, Stage
 from tester.machine.devices import DeviceList

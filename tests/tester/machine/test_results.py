@@ -8,11 +8,11 @@ import pytest
 
 from tester.analysis.blocks import Block
 from tester.analysis.results import ConditionStatus, RepeatStatus
+from tester.inputs.recipe.plan import ConditionStep
 from tester.kinds.wheel_on_belt.procedures.bursts import MeasureRepeat
 from tester.kinds.wheel_on_belt.procedures.results import WheelResults
 from tester.machine.measured import ConditionEnd, Ending
 from tester.machine.results import condition_records
-from tester.recipe.plan import ConditionStep
 from tester.store.resume import ConditionSoFar
 from tests.tester.analysis.series import means_of
 from tests.tester.kinds.wheel_on_belt.bench import SHORT, Bench, condition_of, make_bench, plan_of

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Final
 
+from tester.inputs.rig import Rig
+from tester.inputs.rig.parameter import Parameter
 from tester.machine.context import BaseContext
 from tester.machine.control import Control, may_move
 from tester.machine.image import BaseDemand, BaseReadings, BaseSetpoints
@@ -13,10 +15,8 @@ from tester.machine.interlock_table import InterlockTable
 from tester.machine.prompts import Prompts
 from tester.machine.row import CONTROLLED, FAST, POWER_OFF, WARN, Compared, Interlock
 from tester.machine.state import ControlState
-from tester.rig import Rig
-from tester.rig.parameter import Parameter
 from tester.store.recorder import NullRecorder
-from tests.tester.recipe.texts import rig
+from tests.tester.inputs.recipe.texts import rig
 
 HOLD_S: Final = 10.0
 ACK_S: Final = 0.5

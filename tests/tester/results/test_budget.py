@@ -11,9 +11,9 @@ import pytest
 
 from tester.analysis.kelvin import KnownSlope
 from tester.analysis.wear_check import WearCheck
+from tester.base.quantities import Means
 from tester.kinds.wheel_on_belt.budget import TERMS
-from tester.kinds.wheel_on_belt.quantities import QUANTITIES
-from tester.quantities import Means
+from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
 from tester.results.run_results import RunResults, results_of
 from tester.store.reader import RunReader
 from tester.store.records import PieceInfo, Travel

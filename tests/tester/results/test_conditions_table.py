@@ -10,9 +10,9 @@ from pathlib import Path
 import pytest
 
 from tester.analysis.repeats import ConditionResult
+from tester.base.quantities import FURTHER, Channel, Means
 from tester.cli.main import invoke
-from tester.kinds.wheel_on_belt.quantities import QUANTITIES
-from tester.quantities import FURTHER, Channel, Means
+from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
 from tester.results import conditions_table as module
 from tester.results.columns import Column, Output
 from tester.results.conditions_table import ConditionRow, conditions_table
@@ -74,8 +74,8 @@ def test_a_column_is_in_the_report(more: None, tmp_path: Path) -> None:
 
 
 def test_a_column_is_in_the_tables_of_a_sweep(more: None) -> None:
-    from tester.kinds.wheel_on_belt.axes import AXES
-    from tester.sweep.tables import condition_header
+    from tester.kinds.wheel_on_belt.image.axes import AXES
+    from tester.run.sweep.tables import condition_header
 
     assert "grip" in condition_header((), AXES)
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from tester.kinds.wheel_on_belt.quantities import QUANTITIES
+from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
 from tester.results import write_format
 from tester.results.formats import FORMATS, Record
 from tester.store.reader import RunReader

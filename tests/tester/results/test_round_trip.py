@@ -16,17 +16,17 @@ from random import Random
 import pytest
 
 from tester.base.source import InvalidSource
-from tester.kinds.wheel_on_belt.quantities import QUANTITIES
+from tester.inputs.recipe.check import load_checked
+from tester.inputs.recipe.plan import Plan
+from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
 from tester.kinds.wheel_on_belt.recipe.expand import expand
 from tester.kinds.wheel_on_belt.recipe.part import PART
 from tester.machine.results import condition_records
-from tester.recipe.check import load_checked
-from tester.recipe.plan import Plan
 from tester.results.cells import unescaped
 from tester.store.reader import RunReader
 from tester.store.records import SpecimenInfo
 from tester.store.writer import RunWriter
-from tests.tester.recipe.texts import real_rig
+from tests.tester.inputs.recipe.texts import real_rig
 from tests.tester.results.made import made
 from tests.tester.store.build import RUN, Clock, result, row, small_run
 

@@ -14,7 +14,7 @@ import pyarrow.parquet as pq
 import pytest
 
 from tester.analysis.results import RepeatStatus
-from tester.kinds.wheel_on_belt.quantities import QUANTITIES
+from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
 from tester.results import write_all, write_file
 from tester.results.manifest import manifest_problems
 from tester.results.pieces_table import checks_table, pieces_table

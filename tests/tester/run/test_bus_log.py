@@ -14,14 +14,14 @@ import pytest
 
 from drivers.ports import FrameByFrame
 from drivers.transports.tcp_line import open_tcp_line
-from tester.kinds.wheel_on_belt.build import build_run
+from tester.kinds.wheel_on_belt.runs.build import build_run
 from tester.machine.prompts import Prompts
 from tester.machine.tickers import run_simulated
 from tester.run.bus_log import BusLog, CanLog, LineLog
 from tester.run.simulated import simulated_ports
 from tester.store.recorder import NullRecorder
+from tests.tester.inputs.recipe.texts import rig
 from tests.tester.kinds.wheel_on_belt.bench import QUIET, plan_of
-from tests.tester.recipe.texts import rig
 
 SYNC, NMT, EMERGENCIES = 0x080, 0x000, range(0x081, 0x100)
 

@@ -6,11 +6,11 @@ from dataclasses import replace
 
 import pytest
 
+from tester.inputs.recipe.check import load_checked
 from tester.kinds import load_rig
-from tester.recipe.check import load_checked
 from tester.run.folder import work_of
 from tester.run.kinds import recipe_part
-from tests.tester.kinds.wheel_on_belt.test_split import THREE
+from tests.tester.kinds.wheel_on_belt.runs.test_split import THREE
 
 
 @pytest.mark.parametrize(("simulated", "parts"), [(True, 3), (False, 1)])

@@ -12,13 +12,13 @@ from drivers.ports import BusLost
 from sim.machines.wheel_on_belt.rig import WheelRig
 from sim.servers.server import RigServer
 from tester.base import clock
+from tester.inputs.rig.reach import reached_over_tcp
 from tester.kinds import load_rig
-from tester.kinds.wheel_on_belt.build import build_devices
 from tester.kinds.wheel_on_belt.procedures.connection import WheelArming
 from tester.kinds.wheel_on_belt.rig import RigConfig
+from tester.kinds.wheel_on_belt.runs.build import build_devices
 from tester.machine.connect import Connector, Stage
 from tester.machine.tickers import TickStatistics, run_real_time
-from tester.rig.reach import reached_over_tcp
 from tester.run.bus_log import BusLog
 from tester.run.hardware import hardware_ports
 from tester.run.simulated import simulated_ports

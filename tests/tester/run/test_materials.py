@@ -13,7 +13,7 @@ import pytest
 import recipes
 from tester.base.source import InvalidSource
 from tester.cli.main import invoke
-from tester.materials.files import DataFile, MaterialFile
+from tester.inputs.materials.files import DataFile, MaterialFile
 from tester.report.materials import materials_sections
 from tester.report.record import MachineWords, read_record
 from tester.results.verify import verify
@@ -22,7 +22,7 @@ from tester.run.session import CannotStartError, Session, SessionOptions
 from tester.store.reader import RunReader
 from tester.store.records import StoredMaterial
 from tester.store.writer import RunWriter
-from tests.tester.recipe.texts import SMALL, recipe
+from tests.tester.inputs.recipe.texts import SMALL, recipe
 from tests.tester.run.test_resume import SETS, TEXT, StoppedError
 from tests.tester.run.test_session import Screen
 
@@ -209,7 +209,7 @@ def test_what_is_no_short_text_is_kept_by_its_hash(tmp_path: Path) -> None:
 
 
 def test_a_sweep_takes_them_along(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from tester.sweep.sweep import SweepOptions, prepare_sweep
+    from tester.run.sweep.sweep import SweepOptions, prepare_sweep
 
     monkeypatch.delenv("TESTER_MATERIALS", raising=False)
     write_own(tmp_path)

@@ -20,8 +20,8 @@ from tester.base.source import InvalidSource
 from tester.cli.ending import ending_lines
 from tester.kinds import load_rig
 from tester.kinds.wheel_on_belt.context import Attendant
-from tester.kinds.wheel_on_belt.heatings import heating_data
 from tester.kinds.wheel_on_belt.rig import RigConfig
+from tester.kinds.wheel_on_belt.runs.heatings import heating_data
 from tester.machine.context import Progress
 from tester.machine.ports import Ports
 from tester.machine.prompts import Prompts

@@ -16,8 +16,8 @@ from sim.physics.friction import coefficient
 from sim.physics.parameters import SimParameters
 from sim.physics.slip import slip_velocity
 from tester.run.session import Session, SessionOptions
+from tester.run.sweep.case import Unseen
 from tester.store.reader import RunReader
-from tester.sweep.case import Unseen
 from tests.test_names import names_in
 
 ROOT = Path(__file__).parents[3]
@@ -92,7 +92,7 @@ def _names(folder: str) -> Iterator[str]:
         yield from (name for _, name in names_in(ast.parse(path.read_text(encoding="utf-8"))))
 
 
-@pytest.mark.parametrize("folder", ["tester/analysis", "tester/results", "tester/sweep", "tester/catalogue"])
+@pytest.mark.parametrize("folder", ["tester/analysis", "tester/results", "tester/run/sweep", "tester/results/catalogue"])
 def test_what_reduces_and_exports_knows_no_truth(folder: str) -> None:
     assert [name for name in _names(folder) if "truth" in name.lower()] == []
 

@@ -17,7 +17,7 @@ from types import TracebackType
 from pydantic import JsonValue
 from pydantic_core import to_json
 
-from tester.screen import MachineView
+from tester.base.screen import MachineView
 from tester.service.address import Address, UnixAddress
 from tester.service.gateway import Gateway
 from tester.service.hook import Hook

@@ -22,10 +22,10 @@ from sim.nodes.ir_slave import IrSlave
 from sim.nodes.jacket_slave import JacketSlave
 from sim.nodes.modbus_slave import ModbusSlave
 from tester.kinds import hardware_text, load_rig
-from tester.kinds.wheel_on_belt.build import build_run
 from tester.kinds.wheel_on_belt.context import Nobody
 from tester.kinds.wheel_on_belt.rig import RigConfig
-from tester.kinds.wheel_on_belt.served import SERVED
+from tester.kinds.wheel_on_belt.runs.build import build_run
+from tester.kinds.wheel_on_belt.served.served import SERVED
 from tester.machine.prompts import Prompts
 from tester.run.bus_log import BusLog
 from tester.run.folder import part_time

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from websockets.asyncio.client import ClientConnection, unix_connect
 
-from tester.screen import MachineView
+from tester.base.screen import MachineView
 from tester.service.address import UnixAddress
 from tester.service.client import Client, LostError, NoServiceError, RefusedError
 from tester.service.commands import (

@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 
 from tester.kinds import load_rig
-from tester.kinds.wheel_on_belt.left_on_rig import WheelLeft
 from tester.kinds.wheel_on_belt.rig import RigConfig
-from tester.kinds.wheel_on_belt.served import SERVED
+from tester.kinds.wheel_on_belt.served.left_on_rig import WheelLeft
+from tester.kinds.wheel_on_belt.served.served import SERVED
 from tester.service.left_on_rig import left_on_rig
 from tester.store.records import PieceInfo, RunInfo
 from tests.tester.store.build import CONDITION, RUN, SPECIMENS, open_writer

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from tester.kinds import load_rig
-from tester.kinds.wheel_on_belt.manual import WheelHand
+from tester.kinds.wheel_on_belt.served.manual import WheelHand
 from tester.service.commands import Arm, Hold, Jog, Stop, Tare
 from tester.service.link import Presence
 from tester.service.state import StateView

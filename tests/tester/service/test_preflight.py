@@ -10,9 +10,9 @@ import pytest
 from tester.base.source import InvalidSource
 from tester.kinds import load_rig
 from tester.kinds.wheel_on_belt.interlocks.heat_ratio import NO_HISTORY
-from tester.kinds.wheel_on_belt.left_on_rig import HeatHistory, WheelLeft
 from tester.kinds.wheel_on_belt.rig import CertificatesConfig
-from tester.kinds.wheel_on_belt.served import SERVED
+from tester.kinds.wheel_on_belt.served.left_on_rig import HeatHistory, WheelLeft
+from tester.kinds.wheel_on_belt.served.served import SERVED
 from tester.service.preflight import (
     Past,
     alarms_check,

@@ -30,8 +30,8 @@ from tester.service.service import interrupted_runs
 from tester.service.state import StateView
 from tester.store.reader import RunReader
 from tester.store.writer import RunWriter
+from tests.tester.inputs.rig.test_ceilings import NONSENSE
 from tests.tester.kinds.wheel_on_belt.bench import QUIET, SHORT
-from tests.tester.rig.test_ceilings import NONSENSE
 from tests.tester.run.test_session import Screen
 from tests.tester.service.stage import Script, Stage, play
 

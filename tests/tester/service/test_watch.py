@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tester.kinds.wheel_on_belt.served import SERVED
+from tester.kinds.wheel_on_belt.served.served import SERVED
 from tester.run.folder import part_time
 from tester.service.progress import PlanTrack
 from tester.service.state import SoakView

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from tester.kinds.wheel_on_belt.screen import MACHINE as MACHINE
-from tester.screen import Check, Gate, SoakView, Value
+from tester.base.screen import Check, Gate, SoakView, Value
+from tester.kinds.wheel_on_belt.served.screen import MACHINE as MACHINE
 from tester.service.state import (
     Alarm,
     BusView,

@@ -8,9 +8,9 @@ from math import isfinite
 from pathlib import Path
 
 from tester.analysis.results import Burst, ConditionStatus, Judgement, RepeatResult, RepeatStatus
-from tester.kinds.wheel_on_belt.axes import AXES, KIND
 from tester.kinds.wheel_on_belt.budget import TERMS
-from tester.kinds.wheel_on_belt.quantities import QUANTITIES
+from tester.kinds.wheel_on_belt.image.axes import AXES, KIND
+from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
 from tester.store.recorder import Recorder
 from tester.store.records import ConditionInfo, PieceInfo, RunInfo, SpecimenInfo
 from tester.store.statements import Judged

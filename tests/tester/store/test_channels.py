@@ -14,8 +14,8 @@ from tester.analysis.reduce import reduce_repeat
 from tester.analysis.results import ConditionStatus
 from tester.analysis.swing import swing_of
 from tester.base import clock
-from tester.kinds.wheel_on_belt.quantities import QUANTITIES
-from tester.quantities import BURST, GATE, KEY, TIME, Channel, Quantities, Roles
+from tester.base.quantities import BURST, GATE, KEY, TIME, Channel, Quantities, Roles
+from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
 from tester.results.recomputed import coefficient_problems
 from tester.store.channels import channel_rows, channels_before_8, quantities_of
 from tester.store.merge import Merge

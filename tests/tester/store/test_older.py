@@ -9,11 +9,11 @@ from pathlib import Path
 
 import pytest
 
-from tester.axes import condition_words
-from tester.catalogue.entries import read_entries
-from tester.kinds.wheel_on_belt.axes import AXES, KIND
+from tester.base.axes import condition_words
+from tester.kinds.wheel_on_belt.image.axes import AXES, KIND
 from tester.results import results_of
 from tester.results.budget import budget_table
+from tester.results.catalogue.entries import read_entries
 from tester.results.tables import appendix_rows
 from tester.store import older
 from tester.store.exclusions import add_exclusion

@@ -14,7 +14,7 @@ import pytest
 
 from tester.analysis.results import ConditionStatus, Judgement, RepeatStatus
 from tester.base.extras import MissingExtraError
-from tester.kinds.wheel_on_belt.quantities import QUANTITIES
+from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
 from tester.store.reader import RunReader
 from tester.store.records import PieceInfo
 from tester.store.schema import StoreError

@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 
 from tester.analysis.results import ConditionStatus, RepeatStatus
-from tester.kinds.wheel_on_belt.quantities import QUANTITIES
+from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
 from tester.store.reader import RunReader
 from tester.store.recorder import NullRecorder, Recorder
 from tester.store.records import PieceInfo, SessionInfo

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from textual.widgets import OptionList
 
-from tester.screen import HandAxis, MachineView, PlotView, Value
+from tester.base.screen import HandAxis, MachineView, PlotView, Value
 from tester.service.commands import Arm, Jog
 from tester.service.state import ManualView
 from tester.tui.gone import death_text

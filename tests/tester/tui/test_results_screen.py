@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from textual.widgets import Input
 
-from tester.kinds.wheel_on_belt.axes import AXES
+from tester.kinds.wheel_on_belt.image.axes import AXES
 from tester.results import write_all
 from tester.results.run_results import results_of
 from tester.service.commands import Stop

@@ -13,7 +13,7 @@ import numpy as np
 from sim.physics.greta import Greta, contact_slope, greta
 from sim.physics.materials import OutsideError, Rubber, Surface
 from sim.physics.wlf import PoleError
-from tester.fit.law import FitError, Law
+from tester.analysis.fit.law import FitError, Law
 from tester.kinds.specimen_on_track.fit.laws import GRETA, below_glass
 from tester.kinds.specimen_on_track.fit.nodes import GridAxis, GridNodes
 from tester.kinds.specimen_on_track.fit.runs import LOAD, SPEED, TEMPERATURE

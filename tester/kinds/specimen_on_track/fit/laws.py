@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Final, NoReturn
 
 from sim.physics.wlf import C1, C2_K, FITTED_K, GLASS_TO_REFERENCE_K
-from tester.fit.law import Band, FitError, Law, LawParameter, Variable
+from tester.analysis.fit.law import Band, FitError, Law, LawParameter, Variable
 from tester.kinds.specimen_on_track.fit.runs import LOAD, SPEED, TEMPERATURE, VARIABLES
 
 if TYPE_CHECKING:

@@ -11,12 +11,12 @@ from math import hypot
 from pathlib import Path
 from typing import Final
 
-from tester.fit.law import FitPoint
+from tester.analysis.fit.law import FitPoint
+from tester.analysis.master_curve.part import MasterPart
+from tester.analysis.master_curve.points import MasterPoint, MasterRun, MasterSource
 from tester.kinds.specimen_on_track.axes import INTERFACES, held_by
 from tester.kinds.specimen_on_track.fit.heat import BEYOND_BAND, beyond_band, rise_of, warmed_k
 from tester.kinds.specimen_on_track.fit.runs import INTERFACE, LOAD, SPEED, TEMPERATURE, points_of
-from tester.master.part import MasterPart
-from tester.master.points import MasterPoint, MasterRun, MasterSource
 from tester.results.run_results import RunResults, results_of
 from tester.store.reader import RunReader
 

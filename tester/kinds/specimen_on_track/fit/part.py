@@ -1,4 +1,4 @@
-"""What this machine says about fitting (``tester.fit.part``)."""
+"""What this machine says about fitting (``tester.analysis.fit.part``)."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from tester.axes import Setpoint
+from tester.analysis.fit.law import FitError, FitPoint, Law, Sourced
+from tester.analysis.fit.part import FitPart, PublishedTable
+from tester.base.axes import Setpoint
 from tester.base.source import InvalidSource
-from tester.fit.law import FitError, FitPoint, Law, Sourced
-from tester.fit.part import FitPart, PublishedTable
 from tester.kinds.specimen_on_track.axes import INTERFACES
 from tester.kinds.specimen_on_track.fit.groups import TrackGroup, group_of
 from tester.kinds.specimen_on_track.fit.laws import GRETA, LAWS, OF_MATERIALS, WLF_BELL, reference_band
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 def _library() -> Materials:
-    from tester.materials.library import Library
+    from tester.inputs.materials.library import Library
 
     return Library.beside()
 

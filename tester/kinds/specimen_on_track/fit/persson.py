@@ -18,7 +18,7 @@ from sim.physics.materials import OutsideError, Rubber, Surface
 from sim.physics.persson import PerssonLaw
 from sim.physics.roughness import SelfAffine
 from sim.physics.wlf import PoleError
-from tester.fit.law import Band, FitError, Law
+from tester.analysis.fit.law import Band, FitError, Law
 from tester.kinds.specimen_on_track.fit.laws import PERSSON, below_glass
 from tester.kinds.specimen_on_track.fit.nodes import GridAxis, GridNodes
 from tester.kinds.specimen_on_track.fit.runs import LOAD, SPEED, TEMPERATURE

@@ -7,7 +7,7 @@ from math import isfinite
 from pathlib import Path
 from typing import Final
 
-from tester.fit.law import Sourced, Variable
+from tester.analysis.fit.law import Sourced, Variable
 from tester.kinds.specimen_on_track.axes import INTERFACES, held_by
 from tester.kinds.specimen_on_track.fit.heat import beyond_band, rise_of, warmed_k
 from tester.results.fit_points import Scatter, declared_scatter, point_of, sorted_out, source_of

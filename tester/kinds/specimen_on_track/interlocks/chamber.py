@@ -5,10 +5,10 @@ from __future__ import annotations
 from math import isfinite
 from typing import Final
 
+from tester.inputs.rig.parameter import NOT_NEGATIVE, Parameter
 from tester.kinds.specimen_on_track.interlocks.inputs import TrackInputs
 from tester.machine.row import ACK, CONTROLLED, FAST, REPAIR, Compared, Interlock
 from tester.machine.wires import answered_s
-from tester.rig.parameter import NOT_NEGATIVE, Parameter
 
 STALE_AIR_S: Final = Parameter(
     "stale_air_s", "s", "2.5 s", "age of the air's temperature: five polls [A]",

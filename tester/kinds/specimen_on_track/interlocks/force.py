@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Final
 
+from tester.inputs.rig.parameter import NOT_NEGATIVE, SHARE, Direction, Parameter
 from tester.kinds.specimen_on_track.interlocks.inputs import TrackInputs
 from tester.machine.row import ACK, CONTROLLED, FAST, LOADED, REPAIR, Compared, Interlock
 from tester.machine.wires import answered_s
-from tester.rig.parameter import NOT_NEGATIVE, SHARE, Direction, Parameter
 
 STALE_CELL_S: Final = Parameter(
     "stale_cell_s", "s", "100 ms", "age of the force: two readings at the slow scan [A]",

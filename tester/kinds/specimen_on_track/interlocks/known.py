@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Final
 
+from tester.inputs.rig.parameter import SHARE, Parameter
 from tester.kinds.specimen_on_track.interlocks.inputs import TrackInputs
-from tester.rig.parameter import SHARE, Parameter
 
 STANDING_SHARE: Final = Parameter(
     "standing_share", "1", "0.0005", "a track slower than this share of axes.track.max_speed stands [A]", SHARE,

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import Final
 
+from tester.inputs.rig.parameter import NOT_NEGATIVE, SHARE, Parameter
 from tester.kinds.specimen_on_track.interlocks.inputs import TrackInputs
 from tester.kinds.specimen_on_track.interlocks.known import STANDING_SHARE, standing_m_s
 from tester.machine.drive_rows import drive_data_stale, drive_dropped_out
 from tester.machine.row import ACK, CONTROLLED, FAST, REPAIR, Compared, Interlock
 from tester.machine.wires import INPUTS_STALE
-from tester.rig.parameter import NOT_NEGATIVE, SHARE, Parameter
 
 DRIVE_DATA_STALE: Final = drive_data_stale(lambda r: (r.track_at_s, r.lift_at_s))
 

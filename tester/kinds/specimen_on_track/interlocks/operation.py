@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Final
 
+from tester.inputs.rig.parameter import Parameter
 from tester.machine.drive_rows import ACK_WAIT_S
-from tester.rig.parameter import Parameter
 
 HOLD_AT_MOST_S: Final = Parameter(
     "hold_at_most_s", "s", "60 min", "a hold ends in a controlled stop after this [A]",

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import Final
 
+from tester.analysis.papers.item import Paper
 from tester.kinds.specimen_on_track.papers.adhesion import ADHESION_ITEMS
 from tester.kinds.specimen_on_track.papers.grosch import GROSCH_ITEMS
 from tester.kinds.specimen_on_track.papers.hysteresis import HYSTERESIS_ITEMS
 from tester.kinds.specimen_on_track.papers.theory import THEORY_ITEMS
-from tester.papers.item import Paper
 
 PAPERS: Final = (
     Paper(

@@ -11,6 +11,10 @@ import numpy as np
 from sim.physics.moduli import FractionalZener
 from sim.physics.track import RUBBERS, TrackParameters
 from sim.physics.wlf import GLASS_TO_REFERENCE_K, WlfBell, log10_shift
+from tester.analysis.master_curve.collapse import collapse
+from tester.analysis.master_curve.peaks import GRIT_M, JUMP_M, Peak, rules_of
+from tester.analysis.master_curve.points import MasterPoint, MasterSource, set_of
+from tester.analysis.papers.item import PaperFinding, PaperItem, judged, not_attempted, slight, unjudged
 from tester.kinds.specimen_on_track.papers.made import (
     PRESSURE_PA,
     ROOM_C,
@@ -20,10 +24,6 @@ from tester.kinds.specimen_on_track.papers.made import (
     rubber,
     spectrum,
 )
-from tester.master.collapse import collapse
-from tester.master.peaks import GRIT_M, JUMP_M, Peak, rules_of
-from tester.master.points import MasterPoint, MasterSource, set_of
-from tester.papers.item import PaperFinding, PaperItem, judged, not_attempted, slight, unjudged
 
 GRAINS_M: Final = 1.4e-4
 OUR_RUBBERS: Final = ("SBR", "NR", "NBR")

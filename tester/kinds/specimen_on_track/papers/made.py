@@ -14,7 +14,7 @@ from sim.physics.greta import Greta
 from sim.physics.materials import Rubber, ShearModulus, Spectrum, Surface
 from sim.physics.persson import PerssonLaw
 from sim.physics.roughness import SelfAffine
-from tester.materials.library import Library
+from tester.inputs.materials.library import Library
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -10,6 +10,7 @@ import numpy as np
 from sim.physics.moduli import ConstantModulus
 from sim.physics.persson import PerssonLaw
 from sim.physics.roughness import SelfAffine
+from tester.analysis.papers.item import PaperFinding, PaperItem, judged, not_attempted, slight
 from tester.kinds.specimen_on_track.papers.grosch import NEGLIGIBLE, PREDICT
 from tester.kinds.specimen_on_track.papers.made import (
     PRESSURE_PA,
@@ -22,7 +23,6 @@ from tester.kinds.specimen_on_track.papers.made import (
     smoother,
     spectrum,
 )
-from tester.papers.item import PaperFinding, PaperItem, judged, not_attempted, slight
 
 PRESSURES_PA: Final = (1e5, 2.5e5, 4e5, 5.5e5, 7e5)
 BAND_1_M: Final = (2.0e4, 10.0**5.344)

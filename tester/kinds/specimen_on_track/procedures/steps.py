@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence as Steps
 from typing import Final
 
-from tester.axes import condition_words
+from tester.base.axes import condition_words
+from tester.inputs.recipe.plan import PromptStep, Step
 from tester.kinds.specimen_on_track.context import MountedSpecimen, TrackContext
 from tester.kinds.specimen_on_track.procedures.condition import MeasureTrackCondition, TrackResults
 from tester.kinds.specimen_on_track.procedures.motions import AskBesideTrack
 from tester.kinds.specimen_on_track.recipe.steps import MountSpecimen, Prepare, Temper, TrackCondition
 from tester.machine.activity import Activity
 from tester.machine.executor import Procedures, Unforeseen
-from tester.recipe.plan import PromptStep, Step
 from tester.store.records import PieceInfo
 
 SHOW_S: Final = 1.0

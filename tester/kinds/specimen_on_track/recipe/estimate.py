@@ -9,16 +9,16 @@ from typing import Final
 from sim.physics.laws import NO_SETTING, FrictionLaw
 from tester.analysis.repeats import REPEATABILITY
 from tester.analysis.uncertainty import Budget
-from tester.axes import Setpoint
+from tester.base.axes import Setpoint
 from tester.base.source import InvalidSource
+from tester.inputs.materials.setting import law_setting
+from tester.inputs.recipe.estimate import NEW, Outlook, StepEstimate
+from tester.inputs.recipe.plan import ConditionStep, Plan, PromptStep, Step
+from tester.inputs.recipe.repeats import expected
 from tester.kinds.specimen_on_track.axes import TrackHeld, held_by
 from tester.kinds.specimen_on_track.budget import instruments_budget
 from tester.kinds.specimen_on_track.recipe.steps import MountSpecimen, Prepare, Temper, TrackCondition
 from tester.kinds.specimen_on_track.rig import TrackConfig
-from tester.materials.setting import law_setting
-from tester.recipe.estimate import NEW, Outlook, StepEstimate
-from tester.recipe.plan import ConditionStep, Plan, PromptStep, Step
-from tester.recipe.repeats import expected
 
 PERSON_S: Final = 300.0
 """A person does what a prompt asks [A]; nobody waits on a simulated rig."""

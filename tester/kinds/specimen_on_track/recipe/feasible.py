@@ -6,14 +6,14 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Final
 
-from tester.axes import Setpoint, condition_words
+from tester.base.axes import Setpoint, condition_words
 from tester.base.source import Location, Problem, Tree
+from tester.inputs.recipe.conditions import conditions_of
+from tester.inputs.recipe.schema import Recipe
 from tester.kinds.specimen_on_track.axes import AXES
 from tester.kinds.specimen_on_track.recipe.estimate import TrackEstimator
 from tester.kinds.specimen_on_track.recipe.schema import track_settings
 from tester.kinds.specimen_on_track.rig import TrackConfig
-from tester.recipe.conditions import conditions_of
-from tester.recipe.schema import Recipe
 
 LOW: Final = 0.9
 """Share of the expected friction that a specimen may have [A]: specimens scatter by 3 %, repeats by 2 %, thrice."""

@@ -8,9 +8,9 @@ from pathlib import Path
 from sim.physics.laws import NO_SETTING
 from sim.physics.materials import OutsideError
 from tester.base.source import InvalidSource, Problem, Tree
+from tester.inputs.materials.setting import law_setting
+from tester.inputs.recipe.schema import Recipe
 from tester.kinds.specimen_on_track.rig import TrackConfig
-from tester.materials.setting import law_setting
-from tester.recipe.schema import Recipe
 
 
 def law_problems(rig: TrackConfig, recipe: Recipe, tree: Tree) -> Iterator[Problem]:

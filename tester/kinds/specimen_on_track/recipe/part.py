@@ -1,4 +1,4 @@
-"""What this machine says about recipes (``tester.recipe.part``)."""
+"""What this machine says about recipes (``tester.inputs.recipe.part``)."""
 
 from __future__ import annotations
 
@@ -9,9 +9,19 @@ from pathlib import Path
 from typing import ClassVar, Final
 
 from tester.analysis.terms import Term
-from tester.axes import Axes, Setpoint, condition_words, numbers
+from tester.base.axes import Axes, Setpoint, condition_words, numbers
 from tester.base.source import Location, Problem, Tree
 from tester.base.units import show
+from tester.inputs.recipe.conditions import conditions_of, metadata_of, ordered
+from tester.inputs.recipe.describe import duration, repeats_words
+from tester.inputs.recipe.estimate import Estimate, Estimator, StepEstimate
+from tester.inputs.recipe.part import RecipePart
+from tester.inputs.recipe.plan import Plan, PromptStep, Specimen, Step
+from tester.inputs.recipe.schema import GridModel, MeasureModel, Recipe
+from tester.inputs.recipe.semantics import axis_values
+from tester.inputs.recipe.settings import Settings
+from tester.inputs.recipe.stand import Stand
+from tester.inputs.rig import Rig
 from tester.kinds.specimen_on_track.axes import AXES, NAME, held_by
 from tester.kinds.specimen_on_track.budget import TERMS
 from tester.kinds.specimen_on_track.recipe.estimate import TrackEstimator
@@ -20,16 +30,6 @@ from tester.kinds.specimen_on_track.recipe.law import law_problems
 from tester.kinds.specimen_on_track.recipe.schema import TrackGrid, TrackMeasure, TrackRecipe, track_settings
 from tester.kinds.specimen_on_track.recipe.steps import INSERTED, MountSpecimen, Prepare, Temper, TrackCondition
 from tester.kinds.specimen_on_track.rig import TrackConfig
-from tester.recipe.conditions import conditions_of, metadata_of, ordered
-from tester.recipe.describe import duration, repeats_words
-from tester.recipe.estimate import Estimate, Estimator, StepEstimate
-from tester.recipe.part import RecipePart
-from tester.recipe.plan import Plan, PromptStep, Specimen, Step
-from tester.recipe.schema import GridModel, MeasureModel, Recipe
-from tester.recipe.semantics import axis_values
-from tester.recipe.settings import Settings
-from tester.recipe.stand import Stand
-from tester.rig import Rig
 
 UNUSED: Final = ("window", "extend_to")
 """Keys of the common sections that say nothing here: a condition slides for a ``distance``."""

@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar, Final
 
-from tester.recipe.plan import ConditionStep, Step
+from tester.inputs.recipe.plan import ConditionStep, Step
 
 STRETCHES: Final = 10
 """Parts of a condition's way in which friction is averaged and held against each other [A]."""

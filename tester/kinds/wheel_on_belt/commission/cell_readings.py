@@ -9,8 +9,8 @@ from math import inf, isfinite, sqrt
 from statistics import fmean
 from typing import Final
 
-from tester.commission.person import StepRefused, Waits
 from tester.kinds.wheel_on_belt.commission.quiet import QuietSeat
+from tester.machine.commission.person import StepRefused, Waits
 
 LEAST_READINGS: Final = 20
 """Readings of the cell from which it is told whether they have settled [A]: five a quarter."""

@@ -8,11 +8,11 @@ from typing import Any, Final
 
 from sim.physics.friction import KNOWN
 from sim.physics.slip import predict
-from tester.commission.person import StepRefused
-from tester.commission.step import Alone, Notes
-from tester.kinds.wheel_on_belt.build import loss_ratios
 from tester.kinds.wheel_on_belt.commission.thermometer import HUB_C
 from tester.kinds.wheel_on_belt.rig import RigConfig
+from tester.kinds.wheel_on_belt.runs.build import loss_ratios
+from tester.machine.commission.person import StepRefused
+from tester.machine.commission.step import Alone, Notes
 
 RECIPE: Final = """\
 recipe: {title}

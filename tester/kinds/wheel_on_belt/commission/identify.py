@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from tester.commission.person import Dialogue, StepRefused, choose
-from tester.commission.step import Notes
 from tester.kinds.wheel_on_belt.commission.quiet import QuietSeat
+from tester.machine.commission.person import Dialogue, StepRefused, choose
+from tester.machine.commission.step import Notes
 
 
 def identify(seat: QuietSeat, notes: Notes) -> Dialogue:

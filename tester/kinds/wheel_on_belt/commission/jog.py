@@ -11,9 +11,9 @@ from dataclasses import dataclass
 from math import degrees, pi
 from typing import Final
 
-from tester.commission.person import Dialogue, Measured, StepRefused, choose, measure, press, wait
-from tester.commission.step import Notes
 from tester.kinds.wheel_on_belt.commission.quiet import JogSpeeds, QuietSeat
+from tester.machine.commission.person import Dialogue, Measured, StepRefused, choose, measure, press, wait
+from tester.machine.commission.step import Notes
 
 FIRST_SHARE: Final = 0.3
 """The first, little way may be read off by this share [A]: a ruler on some millimetres."""

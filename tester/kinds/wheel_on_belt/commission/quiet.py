@@ -16,10 +16,10 @@ from drivers.axis import AxisConfig
 from drivers.cia402 import Goal, State
 from drivers.ports import BusLost
 from drivers.servo import ServoDrive
-from tester.kinds.wheel_on_belt.build import build_devices
-from tester.kinds.wheel_on_belt.devices import Devices
+from tester.kinds.wheel_on_belt.image.devices import Devices
 from tester.kinds.wheel_on_belt.procedures.connection import WheelArming
 from tester.kinds.wheel_on_belt.rig import RigConfig
+from tester.kinds.wheel_on_belt.runs.build import build_devices
 from tester.machine.connect import Connector, Stage
 from tester.machine.devices import INPUT_GUARD, INPUT_SAFETY_CHAIN
 from tester.machine.ports import Ports
@@ -247,7 +247,7 @@ class QuietConnector(Connector):
 
 
 class QuietSeat:
-    """The rig as the first steps see it (tester.commission.step.Seat)."""
+    """The rig as the first steps see it (tester.machine.commission.step.Seat)."""
 
     def __init__(self, rig: RigConfig, ports: Ports, hands: Any, speeds: dict[str, JogSpeeds]) -> None:
         """Connect with the drives bounded (``jog_rig``)."""

@@ -7,10 +7,10 @@ from math import nan
 from typing import Final
 
 from drivers.cia402 import State
-from tester.commission.step import StepReading
 from tester.kinds.wheel_on_belt.commission.armed import ArmedSeat
 from tester.kinds.wheel_on_belt.commission.jog import JoggedAxis
 from tester.kinds.wheel_on_belt.commission.quiet import QuietSeat
+from tester.machine.commission.step import StepReading
 
 STATES: Final = {
     State.OPERATION_ENABLED: "has power", State.QUICK_STOP_ACTIVE: "quick stop", State.FAULT_REACTION: "fault",

@@ -5,10 +5,6 @@ from __future__ import annotations
 from typing import Any, Final
 
 from sim.physics.friction import KNOWN
-from tester.commission.part import CommissionPart
-from tester.commission.person import Dialogue
-from tester.commission.step import CommissionStep, Notes
-from tester.kinds.wheel_on_belt.axes import POSITIONED
 from tester.kinds.wheel_on_belt.commission import (
     contact,
     first,
@@ -22,7 +18,11 @@ from tester.kinds.wheel_on_belt.commission import (
 from tester.kinds.wheel_on_belt.commission.armed import ArmedSeat
 from tester.kinds.wheel_on_belt.commission.quiet import QuietSeat
 from tester.kinds.wheel_on_belt.commission.twin import TwinPerson
+from tester.kinds.wheel_on_belt.image.axes import POSITIONED
 from tester.kinds.wheel_on_belt.rig import RigConfig
+from tester.machine.commission.part import CommissionPart
+from tester.machine.commission.person import Dialogue
+from tester.machine.commission.step import CommissionStep, Notes
 from tester.machine.ports import Ports
 
 _BUS: Final = ("can", "lines", "devices")

@@ -11,12 +11,12 @@ from collections import deque
 from collections.abc import Generator
 from typing import Final
 
-from tester.commission.person import Dialogue, StepRefused, Waits, wait
-from tester.commission.step import Notes
-from tester.kinds.wheel_on_belt.build import loss_ratios
 from tester.kinds.wheel_on_belt.commission.armed import ArmedSeat, mean_temperatures
 from tester.kinds.wheel_on_belt.commission.settling import MEAN_S, SettlingFit
 from tester.kinds.wheel_on_belt.procedures.motions import Lift, Turn
+from tester.kinds.wheel_on_belt.runs.build import loss_ratios
+from tester.machine.commission.person import Dialogue, StepRefused, Waits, wait
+from tester.machine.commission.step import Notes
 from tester.machine.motions import Power, Sequence
 
 MOST_C: Final = 45.0

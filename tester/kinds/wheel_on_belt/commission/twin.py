@@ -9,8 +9,8 @@ from collections.abc import Callable
 from math import inf
 from typing import Any, Final, Protocol
 
-from tester.commission.person import GO, Asks, Question
 from tester.kinds.wheel_on_belt.commission.jog import AXES as JOGGED
+from tester.machine.commission.person import GO, Asks, Question
 
 THINKS_S: Final = 15.0
 """Rig time of an answer for which something is read or hung, s [A]."""

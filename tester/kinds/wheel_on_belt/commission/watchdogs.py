@@ -13,14 +13,14 @@ from typing import Any, Final
 from drivers.canopen import objects as o
 from drivers.jacket import HeatingJacket
 from drivers.servo import ServoDrive
-from tester.commission.person import Dialogue, StepRefused, Waits, choose, press, wait
-from tester.commission.step import Notes
-from tester.kinds.wheel_on_belt.build import build_devices
 from tester.kinds.wheel_on_belt.commission.quiet import QuietArming, QuietConnector, QuietSeat
-from tester.kinds.wheel_on_belt.devices import Devices
+from tester.kinds.wheel_on_belt.image.devices import Devices
 from tester.kinds.wheel_on_belt.procedures.arming import Proof
 from tester.kinds.wheel_on_belt.procedures.lift_check import Unloaded
 from tester.kinds.wheel_on_belt.rig import RigConfig
+from tester.kinds.wheel_on_belt.runs.build import build_devices
+from tester.machine.commission.person import Dialogue, StepRefused, Waits, choose, press, wait
+from tester.machine.commission.step import Notes
 from tester.machine.ports import Ports
 from tester.machine.proof import WatchdogProof
 
@@ -152,7 +152,7 @@ class TrialConnector(QuietConnector):
 
 
 class TrialSeat(QuietSeat):
-    """The rig lifted and unloaded, for watchdogs to be tried out (tester.commission.step.Seat)."""
+    """The rig lifted and unloaded, for watchdogs to be tried out (tester.machine.commission.step.Seat)."""
 
     def __init__(self, rig: RigConfig, ports: Ports, hands: Any) -> None:
         """Connect; drives have the torque of a run."""

@@ -18,10 +18,10 @@ from math import hypot, sqrt
 from statistics import median
 from typing import Final
 
-from tester.commission.person import Dialogue, StepRefused, Waits, line, measure
-from tester.commission.step import Notes
 from tester.kinds.wheel_on_belt.commission.cell_readings import settled_cell
 from tester.kinds.wheel_on_belt.commission.quiet import QuietSeat
+from tester.machine.commission.person import Dialogue, StepRefused, Waits, line, measure
+from tester.machine.commission.step import Notes
 
 CHANNELS: Final = ("x", "y", "z")
 PLAN: Final = {"z": (50.0, 100.0, 200.0, 300.0, 200.0), "x": (50.0, 100.0, 200.0, 100.0), "y": (50.0, 100.0, 200.0)}

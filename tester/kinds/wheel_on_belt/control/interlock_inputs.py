@@ -6,8 +6,11 @@ from dataclasses import dataclass, field
 from math import inf, sqrt
 from typing import Final
 
+from tester.inputs.rig.config import values_of
+from tester.inputs.rig.parameter import Values
 from tester.kinds.wheel_on_belt.control.observer import ThermalObserver
 from tester.kinds.wheel_on_belt.control.state import WheelState
+from tester.kinds.wheel_on_belt.image.process import Demand, Press, Readings
 from tester.kinds.wheel_on_belt.interlocks.contact import UNLOADED_N
 from tester.kinds.wheel_on_belt.interlocks.force_observer import ForceObserver
 from tester.kinds.wheel_on_belt.interlocks.heat_balance import HeatBalance
@@ -33,11 +36,8 @@ from tester.kinds.wheel_on_belt.interlocks.witness import (
     FORCE_STEP_SEEN_SHARE,
     FORCE_STEP_UNSEEN_SHARE,
 )
-from tester.kinds.wheel_on_belt.process import Demand, Press, Readings
 from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.machine.state import Mode
-from tester.rig.config import values_of
-from tester.rig.parameter import Values
 
 _INF: Final = inf
 

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from math import exp, inf, isfinite, nan, pi, sqrt
 from typing import Final
 
+from tester.kinds.wheel_on_belt.image.process import Demand, Press, Readings
 from tester.kinds.wheel_on_belt.interlocks.contact import STIFFNESS_EXPONENT, UNLOADED_N, Contact
-from tester.kinds.wheel_on_belt.process import Demand, Press, Readings
 from tester.kinds.wheel_on_belt.rig import LoadLoopConfig
 
 _INF: Final = inf

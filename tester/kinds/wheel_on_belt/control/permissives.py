@@ -11,15 +11,15 @@ from dataclasses import dataclass
 from math import cos, pi
 from typing import Final
 
+from tester.inputs.rig.parameter import Values
 from tester.kinds.wheel_on_belt.control.state import WheelState
+from tester.kinds.wheel_on_belt.image.process import Demand, Readings
 from tester.kinds.wheel_on_belt.interlocks.hub import STALE_JACKET_S
 from tester.kinds.wheel_on_belt.interlocks.known import STANDING_M_S
 from tester.kinds.wheel_on_belt.interlocks.load import STALE_CELL_S
 from tester.kinds.wheel_on_belt.interlocks.operation import MAX_SLIP_M_S, TURNING_CONFIRMED_S
 from tester.kinds.wheel_on_belt.interlocks.surface import STALE_IR_S
-from tester.kinds.wheel_on_belt.process import Demand, Readings
 from tester.kinds.wheel_on_belt.rig import RigConfig
-from tester.rig.parameter import Values
 
 HARD_LOAD_N: Final = 500.0
 HARD_HUB_C: Final = 155.0

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tester.kinds.wheel_on_belt.process import Setpoints
+from tester.kinds.wheel_on_belt.image.process import Setpoints
 from tester.kinds.wheel_on_belt.rig import RigConfig
 
 

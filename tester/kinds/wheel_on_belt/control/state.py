@@ -6,8 +6,8 @@ from math import inf
 
 from tester.kinds.wheel_on_belt.control.heat_loop import HeatLoop
 from tester.kinds.wheel_on_belt.control.load_loop import LoadLoop
+from tester.kinds.wheel_on_belt.image.process import Setpoints
 from tester.kinds.wheel_on_belt.interlocks.inputs import StopStart
-from tester.kinds.wheel_on_belt.process import Setpoints
 from tester.machine.state import ControlState
 
 

@@ -17,10 +17,10 @@ from tester.kinds.wheel_on_belt.control.stops import (
     stop_ended,
     stop_outputs,
 )
+from tester.kinds.wheel_on_belt.image.process import Demand, Press, Readings
 from tester.kinds.wheel_on_belt.interlocks.contact import UNLOADED_N
 from tester.kinds.wheel_on_belt.interlocks.hub import RUNAWAY_WINDOW_S
 from tester.kinds.wheel_on_belt.interlocks.operation import COLD_K, HOLD_AT_MOST_S, START_K
-from tester.kinds.wheel_on_belt.process import Demand, Press, Readings
 from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.machine.control import Control, bounded, may_move
 from tester.machine.drive_rows import ACK_WAIT_S

@@ -1,4 +1,4 @@
-"""What this machine says about fitting (``tester.fit.part``)."""
+"""What this machine says about fitting (``tester.analysis.fit.part``)."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import Final
 
 from sim.physics.friction import MODEL_NAMES
-from tester.axes import Setpoint
-from tester.fit.law import FitError, Law, Sourced
-from tester.fit.part import FitPart, PublishedTable
+from tester.analysis.fit.law import FitError, Law, Sourced
+from tester.analysis.fit.part import FitPart, PublishedTable
+from tester.base.axes import Setpoint
 from tester.kinds.wheel_on_belt.fit.data import APPENDICES, appendix
 from tester.kinds.wheel_on_belt.fit.laws import LAWS, LOAD, SLIP
 

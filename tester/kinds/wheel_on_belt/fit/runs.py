@@ -7,10 +7,10 @@ from math import isfinite
 from pathlib import Path
 from typing import Final
 
+from tester.analysis.fit.law import Sourced
 from tester.analysis.kelvin import CONDITION_SCATTER
-from tester.fit.law import Sourced
-from tester.kinds.wheel_on_belt.axes import held_by
 from tester.kinds.wheel_on_belt.fit.laws import TEMPERATURE
+from tester.kinds.wheel_on_belt.image.axes import held_by
 from tester.results.fit_points import Scatter, declared_scatter, point_of, sorted_out, source_of
 from tester.results.run_results import Measured, results_of
 from tester.store.reader import RunReader

@@ -7,9 +7,9 @@ from collections.abc import Callable
 from sim.physics.data_range import caveats
 from sim.physics.friction import MODEL_NAMES, UnknownCompoundError
 from sim.physics.slip import predict
-from tester.axes import Setpoint
-from tester.kinds.wheel_on_belt.axes import AXES, held_by
+from tester.base.axes import Setpoint
 from tester.kinds.wheel_on_belt.fit.data import APPENDICES, READABLE, rows
+from tester.kinds.wheel_on_belt.image.axes import AXES, held_by
 
 
 def published_values() -> list[tuple[Setpoint, float]]:

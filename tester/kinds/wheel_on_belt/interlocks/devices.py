@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Final
 
+from tester.inputs.rig.parameter import Direction, Parameter
 from tester.kinds.wheel_on_belt.interlocks.inputs import Inputs
 from tester.machine.row import CONTROLLED, Compared, Interlock
 from tester.machine.wires import DEVICE_REFUSED, LINE_NOISY
-from tester.rig.parameter import Direction, Parameter
 
 LEAST_DIAMETER_MM: Final = Parameter(
     "least_diameter_mm", "mm", "78 mm", "a wheel worn below this: 2 mm of rubber are left [A]",

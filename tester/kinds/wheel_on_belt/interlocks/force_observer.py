@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 from math import nan
 from typing import Final
 
+from tester.kinds.wheel_on_belt.image.process import Readings
 from tester.kinds.wheel_on_belt.interlocks.contact import STIFFNESS_EXPONENT, UNLOADED_N, depth_mm
-from tester.kinds.wheel_on_belt.process import Readings
 
 WINDOW_S: Final = 0.1
 """Readings are compared with those of this long before, s [A]: a step stands in the comparison for that time."""

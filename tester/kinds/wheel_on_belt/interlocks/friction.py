@@ -5,10 +5,10 @@ from __future__ import annotations
 from math import cos, pi, sin
 from typing import Final
 
+from tester.inputs.rig.parameter import NOT_NEGATIVE, SHARE, Parameter
+from tester.kinds.wheel_on_belt.image.process import Readings
 from tester.kinds.wheel_on_belt.interlocks.inputs import Inputs
-from tester.kinds.wheel_on_belt.process import Readings
 from tester.machine.row import FAST, LOADED, REPAIR, Compared, Interlock
-from tester.rig.parameter import NOT_NEGATIVE, SHARE, Parameter
 
 _RADIANS: Final = pi / 180.0
 

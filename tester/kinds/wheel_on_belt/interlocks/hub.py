@@ -5,11 +5,11 @@ from __future__ import annotations
 from math import inf
 from typing import Final
 
+from tester.inputs.rig.parameter import NOT_NEGATIVE, SHARE, Parameter
 from tester.kinds.wheel_on_belt.interlocks.inputs import Inputs
 from tester.kinds.wheel_on_belt.interlocks.temperatures import BLIND_S, JUMP_K, STALE_DELAY_S
 from tester.machine.row import ACK, CONTROLLED, REPAIR, Compared, Interlock, always
 from tester.machine.wires import answered_s
-from tester.rig.parameter import NOT_NEGATIVE, SHARE, Parameter
 
 _INF: Final = inf
 

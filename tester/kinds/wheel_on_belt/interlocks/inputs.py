@@ -8,11 +8,11 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from math import inf, nan
 
+from tester.kinds.wheel_on_belt.image.process import Demand, Readings, Setpoints
 from tester.kinds.wheel_on_belt.interlocks.contact import Contact
 from tester.kinds.wheel_on_belt.interlocks.force_observer import ForceObserver
 from tester.kinds.wheel_on_belt.interlocks.heat_balance import HeatBalance
 from tester.kinds.wheel_on_belt.interlocks.monitors import JacketMonitor, PressTracker, SpeedTracker, SurfaceMonitor
-from tester.kinds.wheel_on_belt.process import Demand, Readings, Setpoints
 from tester.machine.inputs import ScanInputs
 
 

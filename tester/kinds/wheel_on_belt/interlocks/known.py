@@ -5,10 +5,10 @@ from __future__ import annotations
 from math import isfinite
 from typing import Final
 
+from tester.inputs.rig.parameter import Direction, Parameter
 from tester.kinds.wheel_on_belt.interlocks.contact import UNLOADED_N
 from tester.kinds.wheel_on_belt.interlocks.inputs import Inputs
 from tester.machine.wires import STALE_INPUTS_S
-from tester.rig.parameter import Direction, Parameter
 
 STANDING_M_S: Final = Parameter(
     "standing_m_s", "m/s", "20 mm/s", "a drive slower than this stands [A]: forty times the noise of its speed",

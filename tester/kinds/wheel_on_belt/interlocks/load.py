@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import Final
 
+from tester.inputs.rig.parameter import AT_LEAST_ONE, NOT_NEGATIVE, SHARE, Direction, Parameter
 from tester.kinds.wheel_on_belt.interlocks.contact import UNLOADED_N, depth_mm
 from tester.kinds.wheel_on_belt.interlocks.inputs import Inputs
 from tester.kinds.wheel_on_belt.interlocks.known import SPEEDS_OLD_S
 from tester.machine.row import ACK, FAST, LOADED, REPAIR, Compared, Interlock
 from tester.machine.wires import answered_s
-from tester.rig.parameter import AT_LEAST_ONE, NOT_NEGATIVE, SHARE, Direction, Parameter
 
 STALE_CELL_S: Final = Parameter(
     "stale_cell_s", "s", "50 ms", "age of the load",

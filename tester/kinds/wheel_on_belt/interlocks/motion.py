@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
+from tester.inputs.rig.parameter import NOT_NEGATIVE, SHARE, Direction, Parameter
 from tester.kinds.wheel_on_belt.interlocks.contact import UNLOADED_N
 from tester.kinds.wheel_on_belt.interlocks.inputs import Inputs
 from tester.kinds.wheel_on_belt.interlocks.known import STANDING_M_S
@@ -11,7 +12,6 @@ from tester.kinds.wheel_on_belt.interlocks.monitors import SpeedTracker
 from tester.machine.drive_rows import drive_data_stale, drive_dropped_out
 from tester.machine.row import ACK, FAST, LOADED, REPAIR, Compared, Interlock
 from tester.machine.wires import INPUTS_STALE
-from tester.rig.parameter import NOT_NEGATIVE, SHARE, Direction, Parameter
 
 DRIVE_DATA_STALE: Final = drive_data_stale(lambda r: (r.wheel_at_s, r.belt_at_s, r.press_at_s, r.positions_at_s))
 

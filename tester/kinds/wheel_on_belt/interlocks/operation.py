@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Final
 
+from tester.inputs.rig.parameter import ANY, NOT_NEGATIVE, SHARE, Direction, Parameter
 from tester.machine.drive_rows import ACK_WAIT_S
-from tester.rig.parameter import ANY, NOT_NEGATIVE, SHARE, Direction, Parameter
 
 MAX_SLIP_M_S: Final = Parameter(
     "max_slip_m_s", "m/s", "0.6 m/s", "no load is applied at a greater difference of the speeds [A]",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
+from tester.inputs.rig.parameter import Parameter
 from tester.kinds.wheel_on_belt.interlocks import (
     devices,
     friction,
@@ -19,7 +20,6 @@ from tester.kinds.wheel_on_belt.interlocks import (
 from tester.machine import wires
 from tester.machine.interlock_table import InterlockTable
 from tester.machine.row import Interlock
-from tester.rig.parameter import Parameter
 
 TABLE: Final = InterlockTable(
     (

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from tester.rig.parameter import NOT_NEGATIVE, Parameter
+from tester.inputs.rig.parameter import NOT_NEGATIVE, Parameter
 
 JUMP_K: Final = Parameter(
     "jump_k", "K", "5 K", "from one reading to the next, surface or hub",

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Final
 
+from tester.inputs.rig.parameter import NOT_NEGATIVE, SHARE, Parameter
 from tester.kinds.wheel_on_belt.interlocks.inputs import Inputs
 from tester.machine.row import FAST, LOADED, REPAIR, Interlock
-from tester.rig.parameter import NOT_NEGATIVE, SHARE, Parameter
 
 FORCE_STEP_N: Final = Parameter(
     "force_step_n", "N", "14 N",

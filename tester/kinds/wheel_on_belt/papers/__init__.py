@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import Final
 
+from tester.analysis.papers.item import Paper
 from tester.kinds.wheel_on_belt.papers.equations import EQUATIONS, TABLE_3
 from tester.kinds.wheel_on_belt.papers.figures import FIGURES
 from tester.kinds.wheel_on_belt.papers.machine import DRAWINGS, MACHINE, PROCEDURE
 from tester.kinds.wheel_on_belt.papers.statements import APPENDICES_ITEMS, CONCLUSIONS, ERRORS, TEXT
-from tester.papers.item import Paper
 
 PAPERS: Final = (
     Paper(

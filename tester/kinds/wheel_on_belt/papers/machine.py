@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Final
 
 import recipes
-from tester.kinds.wheel_on_belt.axes import AXES
-from tester.papers.item import PaperFinding, PaperItem, judged, not_attempted, unjudged
+from tester.analysis.papers.item import PaperFinding, PaperItem, judged, not_attempted, unjudged
+from tester.kinds.wheel_on_belt.image.axes import AXES
 
 if TYPE_CHECKING:
     from tester.kinds.wheel_on_belt.recipe.schema import WheelRecipe
@@ -24,7 +24,7 @@ GRIND: Final = {"wheel_speed": 0.8, "belt_speed": 0.6, "load": 200.0, "duration"
 
 
 def _table_1() -> PaperFinding:
-    from tester.materials.library import Library
+    from tester.inputs.materials.library import Library
 
     library = Library([recipes.FOLDER])
     models = {name: library.compound(name).model for name in TABLE_1_LINES}
@@ -39,8 +39,8 @@ def _table_1() -> PaperFinding:
 
 
 def _table_2() -> PaperFinding:
+    from tester.inputs.recipe.conditions import conditions_of
     from tester.kinds.wheel_on_belt.recipe.part import PART
-    from tester.recipe.conditions import conditions_of
 
     recipe = _recipe("table2")
     conditions = conditions_of(recipe, PART.settings)
@@ -79,10 +79,10 @@ def _wheel() -> PaperFinding:
 
 
 def _recipe(name: str) -> WheelRecipe:
+    from tester.inputs.recipe.check import load_checked
     from tester.kinds import load_rig
     from tester.kinds.wheel_on_belt.recipe.part import PART
     from tester.kinds.wheel_on_belt.recipe.schema import WheelRecipe
-    from tester.recipe.check import load_checked
 
     recipe = load_checked(recipes.FOLDER / f"{name}.yaml", load_rig(), PART).recipe
     assert isinstance(recipe, WheelRecipe)

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from itertools import pairwise
 
-from tester.fit.check import Errors, errors_of
-from tester.fit.law import FitPoint, by_group
+from tester.analysis.fit.check import Errors, errors_of
+from tester.analysis.fit.law import FitPoint, by_group
 from tester.kinds.wheel_on_belt.fit.data import appendix
 from tester.kinds.wheel_on_belt.fit.laws import LOAD, SLIP, TEMPERATURE
 from tester.kinds.wheel_on_belt.fit.published import FIT, VALIDATION, of_table_3

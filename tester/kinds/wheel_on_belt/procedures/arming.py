@@ -8,7 +8,7 @@ from __future__ import annotations
 from enum import Enum
 
 from drivers.canopen import objects as o
-from tester.kinds.wheel_on_belt.devices import Devices
+from tester.kinds.wheel_on_belt.image.devices import Devices
 from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.kinds.wheel_on_belt.rig.checks import EQUAL_DECELERATIONS
 from tester.machine.proof import ProofStage, WatchdogProof

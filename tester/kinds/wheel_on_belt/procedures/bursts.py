@@ -17,17 +17,17 @@ from sim.physics.slip import slip_velocity
 from tester.analysis.blocks import BlockCounter
 from tester.analysis.collected import collected
 from tester.analysis.judge import ALONE
-from tester.kinds.wheel_on_belt.axes import held_by
+from tester.base.quantities import Quantities
 from tester.kinds.wheel_on_belt.context import Context
+from tester.kinds.wheel_on_belt.image.axes import held_by
+from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
 from tester.kinds.wheel_on_belt.procedures.burst_state import BurstNotes, Phase
 from tester.kinds.wheel_on_belt.procedures.motions import Lift, Load, TakeTare, Turn, Yaw
 from tester.kinds.wheel_on_belt.procedures.run_in import RunIn
 from tester.kinds.wheel_on_belt.procedures.thermal_steps import roll
-from tester.kinds.wheel_on_belt.quantities import QUANTITIES
 from tester.kinds.wheel_on_belt.recipe.steps import WheelCondition
 from tester.machine.measured import Ending
 from tester.machine.motions import Power, Sequence, Settle
-from tester.quantities import Quantities
 
 TARE_S: Final = 1.0
 """Averaging time of the zero before each repeat, s [A]: about three turns."""

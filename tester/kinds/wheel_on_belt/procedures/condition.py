@@ -6,8 +6,8 @@ from math import isfinite
 from typing import Protocol
 
 from tester.analysis.stability import REPEAT_WINDOWS
-from tester.kinds.wheel_on_belt.axes import held_by
 from tester.kinds.wheel_on_belt.context import Context
+from tester.kinds.wheel_on_belt.image.axes import held_by
 from tester.kinds.wheel_on_belt.procedures.bursts import MeasureRepeat
 from tester.kinds.wheel_on_belt.procedures.run_in import run_in_m, slides_reversed
 from tester.kinds.wheel_on_belt.procedures.soak_check import soak_check

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import inf
 
-from tester.kinds.wheel_on_belt.devices import Devices
+from tester.kinds.wheel_on_belt.image.devices import Devices
 from tester.kinds.wheel_on_belt.procedures.arming import Proof
 from tester.kinds.wheel_on_belt.procedures.lift_check import Unloaded
 from tester.kinds.wheel_on_belt.rig import RigConfig

@@ -11,8 +11,8 @@ from math import isfinite
 from typing import Final
 
 from tester.kinds.wheel_on_belt.context import Context
+from tester.kinds.wheel_on_belt.image.process import Press
 from tester.kinds.wheel_on_belt.procedures.motions import Lift, Turn
-from tester.kinds.wheel_on_belt.process import Press
 from tester.machine.activity import MoveFailedError
 from tester.machine.motions import Power, Sequence
 

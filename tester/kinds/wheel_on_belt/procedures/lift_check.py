@@ -11,7 +11,7 @@ from enum import Enum
 from math import hypot, inf, nan
 
 from drivers.cia402 import Goal, State
-from tester.kinds.wheel_on_belt.devices import Devices
+from tester.kinds.wheel_on_belt.image.devices import Devices
 from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.machine.proof import ENABLE_S
 

@@ -11,8 +11,8 @@ from math import isfinite
 from typing import Final
 
 from tester.kinds.wheel_on_belt.context import Context
+from tester.kinds.wheel_on_belt.image.process import CELL, Press, Readings
 from tester.kinds.wheel_on_belt.procedures.lift_check import loaded
-from tester.kinds.wheel_on_belt.process import CELL, Press, Readings
 from tester.machine.motions import Move
 
 SPEED_SHARE: Final = 0.01

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from tester.kinds.wheel_on_belt.axes import held_by, straight
+from tester.inputs.recipe.plan import Plan
 from tester.kinds.wheel_on_belt.control.permissives import Bounds, rig_bounds
+from tester.kinds.wheel_on_belt.image.axes import held_by, straight
 from tester.kinds.wheel_on_belt.procedures.steps import DEFAULT_LOAD_N, DEFAULT_SPEED_M_S
 from tester.kinds.wheel_on_belt.recipe.steps import Heat, PreGrind, WheelCondition, WheelPlan
 from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.kinds.wheel_on_belt.roll_check import ROLL_CHECK_N
-from tester.recipe.plan import Plan
 
 
 def plan_bounds(plan: Plan, rig: RigConfig) -> Bounds:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+from tester.inputs.recipe.plan import ConditionStep
 from tester.kinds.wheel_on_belt.context import Context
 from tester.kinds.wheel_on_belt.recipe.estimate import predicted_loss_mm
 from tester.kinds.wheel_on_belt.recipe.steps import WheelCondition
 from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.machine.results import StoredResults
-from tester.recipe.plan import ConditionStep
 from tester.store.recorder import Recorder
 from tester.store.records import Travel
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from tester.inputs.recipe.stand import Stand
 from tester.kinds.wheel_on_belt.context import Context
+from tester.kinds.wheel_on_belt.image.process import CELL
 from tester.kinds.wheel_on_belt.procedures.results import WheelResults
 from tester.kinds.wheel_on_belt.procedures.steps import WheelProcedures
 from tester.kinds.wheel_on_belt.procedures.wheel_life import WheelLife
-from tester.kinds.wheel_on_belt.process import CELL
 from tester.kinds.wheel_on_belt.recipe.steps import WheelPlan
-from tester.recipe.stand import Stand
 from tester.store.resume import ResumePoint
 
 

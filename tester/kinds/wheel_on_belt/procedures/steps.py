@@ -6,19 +6,19 @@ from collections.abc import Sequence
 from typing import Final
 
 from tester.analysis.wear_check import NO_CONDITION
-from tester.axes import condition_words
+from tester.base.axes import condition_words
+from tester.inputs.recipe.plan import Plan, PromptStep, Step
 from tester.kinds.wheel_on_belt.context import Context
+from tester.kinds.wheel_on_belt.image.process import Press
 from tester.kinds.wheel_on_belt.procedures.condition import MeasureCondition, Results
 from tester.kinds.wheel_on_belt.procedures.operator_access import AskAtRest
 from tester.kinds.wheel_on_belt.procedures.thermal_steps import CoolDown, HeatUp, RestStep
 from tester.kinds.wheel_on_belt.procedures.wear_check import CheckByPerson, CheckByRolling
 from tester.kinds.wheel_on_belt.procedures.wheel_steps import InstallWheel, PreGrindStep, ShowContact
-from tester.kinds.wheel_on_belt.process import Press
 from tester.kinds.wheel_on_belt.recipe.steps import Cool, Heat, Install, PreGrind, Rest, WheelCondition, WheelPlan
 from tester.kinds.wheel_on_belt.recipe.wheel_change import INSERTED, wheel_change
 from tester.machine.activity import Activity
 from tester.machine.executor import Procedures, Unforeseen
-from tester.recipe.plan import Plan, PromptStep, Step
 
 DEFAULT_SPEED_M_S: Final = 0.8
 """Wheel speed for heating when no condition follows (the paper's)."""

@@ -5,13 +5,13 @@ from __future__ import annotations
 from math import isfinite
 from typing import Final, NamedTuple
 
+from tester.inputs.recipe.plan import Soak
 from tester.kinds.wheel_on_belt.context import Context
-from tester.kinds.wheel_on_belt.heatings import KIND, LEAST_J, LEAST_RISE_K, heating_data
 from tester.kinds.wheel_on_belt.procedures.motions import Lift, Load, Turn, Yaw, near, straight
 from tester.kinds.wheel_on_belt.recipe.steps import Cool, Heat, Rest
+from tester.kinds.wheel_on_belt.runs.heatings import KIND, LEAST_J, LEAST_RISE_K, heating_data
 from tester.machine.activity import Activity
 from tester.machine.motions import Ask, Power, Sequence
-from tester.recipe.plan import Soak
 
 NEAR_AMBIENT_K: Final = 3.0
 """A setpoint this near to ambient can be neither heated nor cooled to quickly: it soaks to the band [A]."""
@@ -120,7 +120,7 @@ class HeatUp:
         """Record what this heating says of ``observer.thermal``: heat put in over heat shown, where there was enough.
 
         A hold, or a person at the wheel, has made it another one: nothing is said of it. With its data it is evidence
-        for runs to come (tester.kinds.wheel_on_belt.heatings).
+        for runs to come (tester.kinds.wheel_on_belt.runs.heatings).
         """
         start, end = self.start, _heat(ctx)
         if start is None or end is None or start.begun != end.begun:

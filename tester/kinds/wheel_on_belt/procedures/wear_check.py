@@ -16,12 +16,12 @@ from typing import Final, NamedTuple
 
 from tester.analysis.wear_check import NO_CONDITION, WearCheck
 from tester.kinds.wheel_on_belt.context import Context
+from tester.kinds.wheel_on_belt.image.process import NAN
 from tester.kinds.wheel_on_belt.interlocks.contact import depth_mm
 from tester.kinds.wheel_on_belt.procedures.motions import Lift, Load, TakeTare, Turn
 from tester.kinds.wheel_on_belt.procedures.operator_access import AskAtRest
 from tester.kinds.wheel_on_belt.procedures.thermal_steps import Straighten
 from tester.kinds.wheel_on_belt.procedures.wheel_life import CheckReference, WheelLife, rubber_c
-from tester.kinds.wheel_on_belt.process import NAN
 from tester.kinds.wheel_on_belt.recipe.steps import WearCheck as Method
 from tester.kinds.wheel_on_belt.roll_check import ROLL_CHECK_N, roll_check_u_mm
 from tester.machine.motions import Power, Sequence, Settle

@@ -13,7 +13,7 @@ from math import inf, nan, pi
 from typing import Final
 
 from tester.analysis.wear_check import WearCheck
-from tester.kinds.wheel_on_belt.process import Readings
+from tester.kinds.wheel_on_belt.image.process import Readings
 from tester.kinds.wheel_on_belt.rig import WearConfig
 
 _INF: Final = inf

@@ -15,12 +15,12 @@ from sim.physics.friction import KNOWN
 from sim.physics.slip import cornering_factor, slip_velocity
 from tester.analysis.judge import ALONE
 from tester.analysis.stability import REPEAT_WINDOWS
-from tester.axes import Axes, Setpoint
-from tester.kinds.wheel_on_belt.axes import AXES, Held, held_by
+from tester.base.axes import Axes, Setpoint
+from tester.inputs.recipe.estimate import StepEstimate
+from tester.inputs.recipe.plan import Soak, Window
+from tester.inputs.recipe.repeats import HISTORIC_PERCENT, Counted, expected, repeats_each
+from tester.kinds.wheel_on_belt.image.axes import AXES, Held, held_by
 from tester.kinds.wheel_on_belt.recipe.body import Body
-from tester.recipe.estimate import StepEstimate
-from tester.recipe.plan import Soak, Window
-from tester.recipe.repeats import HISTORIC_PERCENT, Counted, expected, repeats_each
 
 if TYPE_CHECKING:
     from tester.kinds.wheel_on_belt.recipe.constants import EstimateConstants

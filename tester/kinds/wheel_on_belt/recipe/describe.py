@@ -1,4 +1,4 @@
-"""A plan for wheels in words and as JSON: what is this machine's beside what all plans say (``tester.recipe``)."""
+"""A plan for wheels in words and as JSON: what is this machine's beside what all plans say (``tester.inputs.recipe``)."""
 
 from __future__ import annotations
 
@@ -7,9 +7,14 @@ from collections.abc import Iterator
 
 from tester.analysis.difference import pieces_needed
 from tester.analysis.reference import EVERY, RESERVED
-from tester.axes import Axes, condition_words
-from tester.kinds.wheel_on_belt.axes import held_by
+from tester.base.axes import Axes, condition_words
+from tester.inputs.recipe.describe import duration, repeats_words, window_words
+from tester.inputs.recipe.estimate import Estimate, StepEstimate
+from tester.inputs.recipe.plan import ConditionStep, PromptStep, Step
+from tester.inputs.recipe.plan_json import ConditionJson, quoted
+from tester.inputs.recipe.repeats import HISTORIC_PERCENT
 from tester.kinds.wheel_on_belt.budget import BETWEEN_PERCENT
+from tester.kinds.wheel_on_belt.image.axes import held_by
 from tester.kinds.wheel_on_belt.recipe.steps import (
     Cool,
     Heat,
@@ -19,11 +24,6 @@ from tester.kinds.wheel_on_belt.recipe.steps import (
     WheelCondition,
     WheelPlan,
 )
-from tester.recipe.describe import duration, repeats_words, window_words
-from tester.recipe.estimate import Estimate, StepEstimate
-from tester.recipe.plan import ConditionStep, PromptStep, Step
-from tester.recipe.plan_json import ConditionJson, quoted
-from tester.recipe.repeats import HISTORIC_PERCENT
 
 
 def words(step: Step, one: StepEstimate) -> str:

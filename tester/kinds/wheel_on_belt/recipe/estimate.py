@@ -12,9 +12,12 @@ from typing import TYPE_CHECKING
 from sim.physics.slip import slip_velocity
 from tester.analysis.terms import Size
 from tester.analysis.uncertainty import Budget
-from tester.axes import Setpoint
-from tester.kinds.wheel_on_belt.axes import POSITIONED, held_by
+from tester.base.axes import Setpoint
+from tester.inputs.recipe.estimate import NEW, Outlook, StepEstimate
+from tester.inputs.recipe.plan import ConditionStep, Plan, PromptStep, Step
+from tester.inputs.recipe.repeats import MADE_UP, POOLED_DF, SURE, expected, repeats_each
 from tester.kinds.wheel_on_belt.budget import instruments_budget
+from tester.kinds.wheel_on_belt.image.axes import POSITIONED, held_by
 from tester.kinds.wheel_on_belt.recipe.body import Body
 from tester.kinds.wheel_on_belt.recipe.constants import CONSTANTS, EstimateConstants
 from tester.kinds.wheel_on_belt.recipe.cost import ROLLING_M_S, ConditionCosts
@@ -30,9 +33,6 @@ from tester.kinds.wheel_on_belt.recipe.steps import (
 )
 from tester.kinds.wheel_on_belt.recipe.wheel_change import TOUCH
 from tester.kinds.wheel_on_belt.roll_check import roll_check_u_mm
-from tester.recipe.estimate import NEW, Outlook, StepEstimate
-from tester.recipe.plan import ConditionStep, Plan, PromptStep, Step
-from tester.recipe.repeats import MADE_UP, POOLED_DF, SURE, expected, repeats_each
 
 if TYPE_CHECKING:
     from tester.kinds.wheel_on_belt.rig import RigConfig

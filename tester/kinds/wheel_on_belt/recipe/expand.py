@@ -1,4 +1,4 @@
-"""A recipe to a plan: conditions in their order (tester.recipe.conditions), with a wheel under each of them.
+"""A recipe to a plan: conditions in their order (tester.inputs.recipe.conditions), with a wheel under each of them.
 
 Wheels are changed only between conditions, before one whose predicted wear exceeds what is
 left, and at a temperature boundary where that costs no further wheel.
@@ -12,7 +12,10 @@ from dataclasses import dataclass
 from itertools import accumulate, count
 from typing import TYPE_CHECKING, Final
 
-from tester.axes import Setpoint
+from tester.base.axes import Setpoint
+from tester.inputs.recipe.conditions import BlockValue, Condition, conditions_of, metadata_of, ordered
+from tester.inputs.recipe.estimate import StepEstimate
+from tester.inputs.recipe.plan import PromptStep, Specimen
 from tester.kinds.wheel_on_belt.recipe.estimate import WheelEstimator
 from tester.kinds.wheel_on_belt.recipe.rounds import ReferenceRounds, ReservedWheel
 from tester.kinds.wheel_on_belt.recipe.schema import WheelRecipe
@@ -27,9 +30,6 @@ from tester.kinds.wheel_on_belt.recipe.steps import (
     WheelWear,
 )
 from tester.kinds.wheel_on_belt.recipe.wheel_change import INSERTED, mount_again, prepare_wheel
-from tester.recipe.conditions import BlockValue, Condition, conditions_of, metadata_of, ordered
-from tester.recipe.estimate import StepEstimate
-from tester.recipe.plan import PromptStep, Specimen
 
 if TYPE_CHECKING:
     from tester.kinds.wheel_on_belt.rig import RigConfig

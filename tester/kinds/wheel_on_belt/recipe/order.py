@@ -8,9 +8,9 @@ from __future__ import annotations
 from bisect import bisect_right
 from typing import TYPE_CHECKING
 
-from tester.axes import Setpoint
+from tester.base.axes import Setpoint
+from tester.inputs.recipe.estimate import StepEstimate
 from tester.kinds.wheel_on_belt.recipe.body import Body
-from tester.recipe.estimate import StepEstimate
 
 if TYPE_CHECKING:
     from tester.kinds.wheel_on_belt.recipe.constants import EstimateConstants

@@ -1,4 +1,4 @@
-"""What this machine says about recipes (``tester.recipe.part``)."""
+"""What this machine says about recipes (``tester.inputs.recipe.part``)."""
 
 from __future__ import annotations
 
@@ -7,11 +7,19 @@ from typing import ClassVar, Final
 
 from sim.physics.friction import MODEL_NAMES
 from tester.analysis.terms import Term
-from tester.axes import Axes, numbers
+from tester.base.axes import Axes, numbers
 from tester.base.source import Location, Problem, Tree
 from tester.base.units import show
-from tester.kinds.wheel_on_belt.axes import AXES, KIND, LEAST_SPEED_M_S
+from tester.inputs.recipe.estimate import Estimate, Estimator, StepEstimate
+from tester.inputs.recipe.part import RecipePart
+from tester.inputs.recipe.plan import Plan, Step
+from tester.inputs.recipe.schema import GridModel, MeasureModel, Recipe
+from tester.inputs.recipe.semantics import listed
+from tester.inputs.recipe.settings import values_of
+from tester.inputs.recipe.stand import Stand
+from tester.inputs.rig import Rig
 from tester.kinds.wheel_on_belt.budget import terms_of
+from tester.kinds.wheel_on_belt.image.axes import AXES, KIND, LEAST_SPEED_M_S
 from tester.kinds.wheel_on_belt.recipe import describe
 from tester.kinds.wheel_on_belt.recipe.estimate import WheelEstimator
 from tester.kinds.wheel_on_belt.recipe.expand import expand
@@ -24,14 +32,6 @@ from tester.kinds.wheel_on_belt.recipe.settings import WheelSettings, wheel_sett
 from tester.kinds.wheel_on_belt.recipe.steps import Install, WheelPlan
 from tester.kinds.wheel_on_belt.recipe.wear import wear_problems
 from tester.kinds.wheel_on_belt.rig import RigConfig
-from tester.recipe.estimate import Estimate, Estimator, StepEstimate
-from tester.recipe.part import RecipePart
-from tester.recipe.plan import Plan, Step
-from tester.recipe.schema import GridModel, MeasureModel, Recipe
-from tester.recipe.semantics import listed
-from tester.recipe.settings import values_of
-from tester.recipe.stand import Stand
-from tester.rig import Rig
 
 
 class WheelPart(RecipePart):

@@ -9,12 +9,12 @@ from typing import Any, Final, cast
 from tester.analysis import closest
 from tester.base.source import Location, Problem, Tree
 from tester.base.units import shown
+from tester.inputs.recipe.conditions import Condition
+from tester.inputs.recipe.reference import REFERENCE
+from tester.inputs.recipe.schema import grid_model
+from tester.inputs.recipe.semantics import axis_values
 from tester.kinds.wheel_on_belt.recipe.schema import REFERENCE_HELD, ReferenceModel, WheelGrid, WheelRecipe
 from tester.kinds.wheel_on_belt.recipe.settings import WheelSettings, wheel_settings
-from tester.recipe.conditions import Condition
-from tester.recipe.reference import REFERENCE
-from tester.recipe.schema import grid_model
-from tester.recipe.semantics import axis_values
 
 AT: Final[Location] = (REFERENCE,)
 """Where it stands in a recipe."""

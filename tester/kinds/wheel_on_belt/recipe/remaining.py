@@ -12,6 +12,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from itertools import repeat
 
+from tester.inputs.recipe.plan import PromptStep
+from tester.inputs.recipe.stand import Mounted, Stand
 from tester.kinds.wheel_on_belt.recipe.steps import (
     Cool,
     Heat,
@@ -24,8 +26,6 @@ from tester.kinds.wheel_on_belt.recipe.steps import (
     WornState,
 )
 from tester.kinds.wheel_on_belt.recipe.wheel_change import INSERTED, prepare_wheel
-from tester.recipe.plan import PromptStep
-from tester.recipe.stand import Mounted, Stand
 
 
 def remaining(plan: WheelPlan, stand: Stand) -> WheelPlan:

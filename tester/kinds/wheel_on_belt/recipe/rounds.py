@@ -11,13 +11,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from tester.analysis.reference import RESERVED
+from tester.inputs.recipe.conditions import Condition
+from tester.inputs.recipe.plan import Specimen
+from tester.inputs.recipe.reference import reference_metadata
 from tester.kinds.wheel_on_belt.recipe.reference import reference_condition
 from tester.kinds.wheel_on_belt.recipe.schema import WheelRecipe
 from tester.kinds.wheel_on_belt.recipe.settings import WheelSettings
 from tester.kinds.wheel_on_belt.recipe.steps import Cool, Heat, WheelStep
-from tester.recipe.conditions import Condition
-from tester.recipe.plan import Specimen
-from tester.recipe.reference import reference_metadata
 
 ABOVE_AMBIENT_K = 2.0
 """A hub turning in the air comes this near to ambient in a time worth waiting for [A]."""

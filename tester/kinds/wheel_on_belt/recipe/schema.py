@@ -8,9 +8,9 @@ from typing import Annotated, Final, Literal, TypeAlias
 from pydantic import Field, model_validator
 
 from tester.base.units import Quantity
-from tester.kinds.wheel_on_belt.axes import AXES, LEAST_SPEED_M_S
-from tester.recipe.reference import ReferenceSection
-from tester.recipe.schema import Band, GridModel, Load, MeasureModel, Recipe, Seconds, Section, Temperature, Text
+from tester.inputs.recipe.reference import ReferenceSection
+from tester.inputs.recipe.schema import Band, GridModel, Load, MeasureModel, Recipe, Seconds, Section, Temperature, Text
+from tester.kinds.wheel_on_belt.image.axes import AXES, LEAST_SPEED_M_S
 
 Speed: TypeAlias = Annotated[float, Quantity("m/s", ge=LEAST_SPEED_M_S)]
 MaxBursts: TypeAlias = Annotated[int, Field(ge=1, le=10_000)]

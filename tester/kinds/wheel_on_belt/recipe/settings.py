@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TypeVar
 
+from tester.inputs.recipe.schema import GridModel, MeasureModel
+from tester.inputs.recipe.settings import Settings, settings_of
 from tester.kinds.wheel_on_belt.recipe.schema import WheelGrid, WheelMeasure
 from tester.kinds.wheel_on_belt.recipe.steps import WearCheck
-from tester.recipe.schema import GridModel, MeasureModel
-from tester.recipe.settings import Settings, settings_of
 
 Said = TypeVar("Said", bool, float)
 

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import ClassVar, Literal, TypeAlias
 
-from tester.recipe.plan import ConditionStep, Plan, PromptStep, Step
+from tester.inputs.recipe.plan import ConditionStep, Plan, PromptStep, Step
 
 WearCheck: TypeAlias = Literal["never", "each_condition", "prompt"]
 """Diameter check after a condition: not at all, by rolling at zero slip, or measured by a person."""

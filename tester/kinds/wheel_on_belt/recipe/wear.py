@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from itertools import product
 
-from tester.axes import Setpoint, numbers
+from tester.base.axes import Setpoint, numbers
 from tester.base.source import Location, Problem, Tree
 from tester.base.units import show, shown
-from tester.kinds.wheel_on_belt.axes import AXES
+from tester.inputs.recipe.semantics import axis_values
+from tester.kinds.wheel_on_belt.image.axes import AXES
 from tester.kinds.wheel_on_belt.recipe.cost import ConditionCosts
 from tester.kinds.wheel_on_belt.recipe.estimate import WheelEstimator
 from tester.kinds.wheel_on_belt.recipe.expand import expand
@@ -15,7 +16,6 @@ from tester.kinds.wheel_on_belt.recipe.reference import AT
 from tester.kinds.wheel_on_belt.recipe.schema import WheelGrid, WheelRecipe
 from tester.kinds.wheel_on_belt.recipe.settings import wheel_settings
 from tester.kinds.wheel_on_belt.rig import RigConfig
-from tester.recipe.semantics import axis_values
 
 _WORST_AT_MOST = ("load", *(axis.name for axis in AXES if axis.drive))
 """Axes of which the greatest value wears most: the load, and the angles."""

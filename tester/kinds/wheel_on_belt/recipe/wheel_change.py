@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import repeat
 
+from tester.inputs.recipe.plan import PromptStep, Specimen
 from tester.kinds.wheel_on_belt.recipe.steps import (
     Cool,
     Heat,
@@ -19,7 +20,6 @@ from tester.kinds.wheel_on_belt.recipe.steps import (
     WheelPlan,
     WheelStep,
 )
-from tester.recipe.plan import PromptStep, Specimen
 
 INSERTED = -1
 """``index`` of steps that are not in the plan."""

@@ -1,17 +1,17 @@
 """How far each safety key of this rig may be loosened: its direction, its hardest value, and why there.
 
-The parameters of interlocks say it themselves (tester.rig.parameter); the keys of the other sections stand here.
+The parameters of interlocks say it themselves (tester.inputs.rig.parameter); the keys of the other sections stand here.
 """
 
 from __future__ import annotations
 
 from typing import Final
 
-from tester.kinds.wheel_on_belt.axes import POSITIONED
+from tester.inputs.rig.ceilings import AXES, TRUE, Ceiling, ceilings_of
+from tester.inputs.rig.parameter import SECTION, Direction
+from tester.kinds.wheel_on_belt.image.axes import POSITIONED
 from tester.kinds.wheel_on_belt.interlocks.table import PARAMETERS
 from tester.kinds.wheel_on_belt.rig.sections import VELOCITY_AXES
-from tester.rig.ceilings import AXES, TRUE, Ceiling, ceilings_of
-from tester.rig.parameter import SECTION, Direction
 
 LOWER, HIGHER = Direction.LOWER, Direction.HIGHER
 

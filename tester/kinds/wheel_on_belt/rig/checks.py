@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 
 from drivers.profiles import ProfileError
 from tester.base.source import Location
-from tester.kinds.wheel_on_belt.axes import POSITIONED
+from tester.inputs.rig.cells import skew_problem
+from tester.inputs.rig.config import HEAT_OFF
+from tester.inputs.rig.profiles import profile_of
+from tester.kinds.wheel_on_belt.image.axes import POSITIONED
 from tester.kinds.wheel_on_belt.rig.press import torque_problem
-from tester.rig.cells import skew_problem
-from tester.rig.config import HEAT_OFF
-from tester.rig.profiles import profile_of
 
 if TYPE_CHECKING:
     from tester.kinds.wheel_on_belt.rig.config import RigConfig

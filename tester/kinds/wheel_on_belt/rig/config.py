@@ -1,4 +1,4 @@
-"""A rig of this kind: its sections together, and what its file's reader has to know (tester.rig.config)."""
+"""A rig of this kind: its sections together, and what its file's reader has to know (tester.inputs.rig.config)."""
 
 from __future__ import annotations
 
@@ -8,11 +8,15 @@ from typing import ClassVar
 
 from drivers.axis import AxisConfig
 from sim.physics.parameters import SimParameters
+from tester.base.quantities import Quantities
 from tester.base.source import Location
+from tester.inputs.rig.ceilings import Ceiling
+from tester.inputs.rig.config import OwnDevice, Rig
+from tester.inputs.rig.parameter import Parameter
 from tester.kinds.wheel_on_belt import KIND
-from tester.kinds.wheel_on_belt.axes import POSITIONED
+from tester.kinds.wheel_on_belt.image.axes import POSITIONED
+from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
 from tester.kinds.wheel_on_belt.interlocks.table import TABLE
-from tester.kinds.wheel_on_belt.quantities import QUANTITIES
 from tester.kinds.wheel_on_belt.rig.ceilings import CEILINGS
 from tester.kinds.wheel_on_belt.rig.checks import problems_between
 from tester.kinds.wheel_on_belt.rig.press import with_torque_limit
@@ -29,10 +33,6 @@ from tester.kinds.wheel_on_belt.rig.sections import (
     WearConfig,
 )
 from tester.machine.interlock_table import InterlockTable
-from tester.quantities import Quantities
-from tester.rig.ceilings import Ceiling
-from tester.rig.config import OwnDevice, Rig
-from tester.rig.parameter import Parameter
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Final
 from drivers.axis import AxisConfig
 from sim.physics.parameters import ThermalParameters, WheelParameters
 from tester.base.config_reader import Range
-from tester.kinds.wheel_on_belt.axes import POSITIONED
+from tester.inputs.rig.config import CalibrationConfig, section_of, values_of
+from tester.inputs.rig.parameter import Values
+from tester.kinds.wheel_on_belt.image.axes import POSITIONED
 from tester.kinds.wheel_on_belt.interlocks.table import PARAMETERS
-from tester.rig.config import CalibrationConfig, section_of, values_of
-from tester.rig.parameter import Values
 
 HARMFUL_N: Final = 500.0
 """From here on a force on the wheel counts as harm (sim.harm)."""

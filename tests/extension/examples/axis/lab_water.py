@@ -2,20 +2,20 @@
 
 from dataclasses import replace
 
-from tester.axes import Axes, Axis
+from tester.base.axes import Axes, Axis
+from tester.base.screen import axis_views
+from tester.inputs.recipe.plan import PromptStep, Step
 from tester.kinds import wheel_on_belt
-from tester.kinds.wheel_on_belt import axes
 from tester.kinds.wheel_on_belt.context import Context
+from tester.kinds.wheel_on_belt.image import axes
 from tester.kinds.wheel_on_belt.procedures.steps import WheelProcedures
 from tester.kinds.wheel_on_belt.recipe.part import WheelPart
 from tester.kinds.wheel_on_belt.recipe.steps import WheelCondition
 from tester.kinds.wheel_on_belt.recipe.wheel_change import INSERTED
-from tester.kinds.wheel_on_belt.runs import WheelRuns
-from tester.kinds.wheel_on_belt.screen import MACHINE
-from tester.kinds.wheel_on_belt.served import WheelOnBelt
+from tester.kinds.wheel_on_belt.runs.runs import WheelRuns
+from tester.kinds.wheel_on_belt.served.screen import MACHINE
+from tester.kinds.wheel_on_belt.served.served import WheelOnBelt
 from tester.machine.executor import Unforeseen
-from tester.recipe.plan import PromptStep, Step
-from tester.screen import axis_views
 
 NAME = "lab_water:KIND"
 INTERFACE = Axis("interface", "", "interface", "", 1.0, "interface", "Interface", "Interface", "", "dry", False,

@@ -3,7 +3,7 @@
 import json
 from typing import BinaryIO
 
-from tester.axes import condition_words
+from tester.base.axes import condition_words
 from tester.results.formats import Format, Record
 
 

@@ -3,6 +3,9 @@
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
+from tester.inputs.rig.ceilings import ceilings_of
+from tester.inputs.rig.config import section_of
+from tester.inputs.rig.parameter import Parameter
 from tester.kinds import wheel_on_belt
 from tester.kinds.wheel_on_belt.interlocks import operation
 from tester.kinds.wheel_on_belt.interlocks.inputs import Inputs
@@ -11,9 +14,6 @@ from tester.kinds.wheel_on_belt.rig.config import RigConfig
 from tester.machine.interlock_sheet import SECTION, InterlockSheet
 from tester.machine.interlock_table import InterlockTable
 from tester.machine.row import ACK, CONTROLLED, Compared, Interlock
-from tester.rig.ceilings import ceilings_of
-from tester.rig.config import section_of
-from tester.rig.parameter import Parameter
 
 FAULT = "thermometer drift 2 K/s"
 """Trips it first: a line of a fault script, behind the time at which it begins."""

@@ -8,6 +8,8 @@ from math import nan
 
 from sim.machines.specimen_on_track.rig import TrackRig
 from tester.analysis.results import Burst, RepeatResult
+from tester.inputs.recipe.loader import load_recipe
+from tester.inputs.recipe.plan import Plan
 from tester.kinds import load_rig
 from tester.kinds.specimen_on_track.build import build_run
 from tester.kinds.specimen_on_track.recipe.part import PART
@@ -15,8 +17,6 @@ from tester.kinds.specimen_on_track.rig import TrackConfig
 from tester.machine.prompts import Prompts
 from tester.machine.run import Run
 from tester.machine.tickers import next_tick
-from tester.recipe.loader import load_recipe
-from tester.recipe.plan import Plan
 from tester.run.simulated import simulated_ports
 from tester.store.recorder import NullRecorder
 from tester.store.statements import Judged, Ticket

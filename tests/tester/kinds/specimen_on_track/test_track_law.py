@@ -9,15 +9,15 @@ import pytest
 
 from sim.physics.laws import LawSetting, make
 from tester.base.source import InvalidSource
+from tester.inputs.materials.library import Library
+from tester.inputs.materials.setting import VARIABLE
+from tester.inputs.recipe.check import load_checked
 from tester.kinds import load_rig
 from tester.kinds.specimen_on_track.axes import held_by
 from tester.kinds.specimen_on_track.recipe.estimate import LIKELY_MU
 from tester.kinds.specimen_on_track.recipe.part import PART
 from tester.kinds.specimen_on_track.rig import TrackConfig
 from tester.machine.run import Outcome
-from tester.materials.library import Library
-from tester.materials.setting import VARIABLE
-from tester.recipe.check import load_checked
 from tests.tester.kinds.specimen_on_track.bench import GROSCH, TrackBench
 
 ON = GROSCH.replace("specimens:", "abrasive: {name: S0}\nspecimens:")
@@ -102,7 +102,7 @@ def test_moduli_that_end_too_early_for_a_track_are_told(tmp_path: Path) -> None:
 
 def test_an_estimate_asks_the_law_on_the_recipes_surface() -> None:
     config = TrackConfig.of(load_rig("grosch", ("sim.law=persson",)))
-    from tester.recipe.loader import load_recipe
+    from tester.inputs.recipe.loader import load_recipe
 
     plan = PART.expand(load_recipe(ON, PART, "bench.yaml").recipe, config)
     estimator = PART.estimator(config)

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import pytest
 
+from tester.inputs.recipe.check import check, load_checked
+from tester.inputs.recipe.describe import lines
+from tester.inputs.recipe.loader import load_recipe
+from tester.inputs.recipe.plan import Plan
+from tester.inputs.recipe.stand import Mounted, Stand
 from tester.kinds import load_rig
 from tester.kinds.specimen_on_track.recipe.part import PART
 from tester.kinds.specimen_on_track.recipe.steps import MountSpecimen, Prepare, Temper, TrackCondition
-from tester.recipe.check import check, load_checked
-from tester.recipe.describe import lines
-from tester.recipe.loader import load_recipe
-from tester.recipe.plan import Plan
-from tester.recipe.stand import Mounted, Stand
 from tests.tester.kinds.specimen_on_track.bench import DISC, GROSCH
 
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import pytest
 
 from tester.base.source import InvalidSource, load_tree
-from tester.kinds.wheel_on_belt.alone import left_alone
+from tester.inputs.rig.load import load
+from tester.inputs.rig.template import hardware_text
 from tester.kinds.wheel_on_belt.rig import RigConfig
-from tester.rig.load import load
-from tester.rig.template import hardware_text
+from tester.kinds.wheel_on_belt.served.alone import left_alone
 
 LINE = "    heat_off: fallback "
 

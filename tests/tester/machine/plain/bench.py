@@ -12,8 +12,16 @@ from sim.faults.plain import plain_language
 from sim.plain_twin import PlainTwin
 from sim.rig import RigSpec
 from sim.wires.can_wire import CanWire
-from tester.axes import Axes, Axis, Setpoint
+from tester.base.axes import Axes, Axis, Setpoint
+from tester.base.quantities import BURST, GATE, KEY, TIME, Channel, Quantities, Roles
 from tester.base.source import load_tree
+from tester.inputs.recipe.loader import load_recipe
+from tester.inputs.recipe.plain import PlainPart
+from tester.inputs.recipe.plan import Plan
+from tester.inputs.rig.config import OwnDevice, section_of
+from tester.inputs.rig.load import checked
+from tester.inputs.rig.parameter import Parameter
+from tester.inputs.rig.plain import PlainRig, PlainSim
 from tester.machine.plain.context import PlainContext
 from tester.machine.plain.control import PlainControl
 from tester.machine.plain.devices import PlainDevices
@@ -23,14 +31,6 @@ from tester.machine.plain.runs import PlainRuns
 from tester.machine.ports import Ports
 from tester.machine.prompts import Prompts
 from tester.machine.run import Run
-from tester.quantities import BURST, GATE, KEY, TIME, Channel, Quantities, Roles
-from tester.recipe.loader import load_recipe
-from tester.recipe.plain import PlainPart
-from tester.recipe.plan import Plan
-from tester.rig.config import OwnDevice, section_of
-from tester.rig.load import checked
-from tester.rig.parameter import Parameter
-from tester.rig.plain import PlainRig, PlainSim
 from tester.run.simulated import spec_of
 from tester.store.recorder import NullRecorder
 

@@ -11,10 +11,10 @@ from textual.driver import Driver
 from textual.events import Key
 
 from tester.base.source import InvalidSource, Problem
-from tester.commission.engine import Ended
-from tester.commission.record import DONE, CommissionRecord
-from tester.commission.step import CommissionStep, Walk
 from tester.kinds.wheel_on_belt.commission.quiet import QuietSeat
+from tester.machine.commission.engine import Ended
+from tester.machine.commission.record import DONE, CommissionRecord
+from tester.machine.commission.step import CommissionStep, Walk
 from tester.tui.guide.person import ScreenPerson
 from tester.tui.stop_line import stopping
 from tests.tester.tui.guide.twin_stage import TwinStage

@@ -11,11 +11,11 @@ from typing import Any
 
 import pytest
 
-from tester.commission.engine import CommissionOutcome, Ended
-from tester.commission.person import Asks, Question
-from tester.commission.record import DONE, REFUSED, RecordEntry
-from tester.commission.standing import StepStanding
-from tester.commission.step import CommissionStep, StepReading
+from tester.machine.commission.engine import CommissionOutcome, Ended
+from tester.machine.commission.person import Asks, Question
+from tester.machine.commission.record import DONE, REFUSED, RecordEntry
+from tester.machine.commission.standing import StepStanding
+from tester.machine.commission.step import CommissionStep, StepReading
 from tester.tui.guide.app import GuideApp
 from tester.tui.guide.guide import GuideView
 from tester.tui.guide.person import Live, ScreenPerson

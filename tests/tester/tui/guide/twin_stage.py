@@ -11,8 +11,8 @@ from typing import Any
 
 from textual.pilot import Pilot
 
-from tester.commission.person import Question
 from tester.kinds.wheel_on_belt.commission.twin import TwinPerson
+from tester.machine.commission.person import Question
 from tester.run.commissioning import CommissionOptions
 from tester.run.rigs import load_rig
 from tester.tui.guide.app import GuideApp

@@ -1,11 +1,11 @@
 """A sledge that a drive pulls over a plate through a spring: a kind of rig of a laboratory's own."""
 
-from tester.kind import Kind
+from tester.inputs.recipe.part import RecipePart
+from tester.inputs.rig import Rig
+from tester.kinds.kind import Kind
 from tester.machine.interlock_sheet import InterlockSheet
 from tester.machine.run_parts import KindRun
 from tester.machine.served import ServedKind
-from tester.recipe.part import RecipePart
-from tester.rig import Rig
 
 
 def _rig() -> type[Rig]:

@@ -3,9 +3,9 @@
 from dataclasses import dataclass
 from math import copysign
 
+from tester.base.quantities import BURST, GATE, KEY, TIME, Channel, Figure, Quantities, Roles, Screen
 from tester.machine.image import NAN
 from tester.machine.plain.image import PlainReadings
-from tester.quantities import BURST, GATE, KEY, TIME, Channel, Figure, Quantities, Roles, Screen
 
 
 @dataclass(slots=True)

@@ -7,13 +7,13 @@ from typing import Annotated, Any, ClassVar
 from lab_sledge.image import QUANTITIES, SledgeReadings
 from lab_sledge.twin import SledgeSim
 from tester.base.config_reader import Range
+from tester.base.quantities import Quantities
+from tester.inputs.rig.ceilings import Ceiling, ceilings_of
+from tester.inputs.rig.config import OwnDevice, section_of
+from tester.inputs.rig.parameter import SECTION, Parameter
+from tester.inputs.rig.plain import PlainRig
 from tester.machine.plain.rows import PlainInputs, plain_table
 from tester.machine.row import FAST, LOADED, REPAIR, Compared, Interlock
-from tester.quantities import Quantities
-from tester.rig.ceilings import Ceiling, ceilings_of
-from tester.rig.config import OwnDevice, section_of
-from tester.rig.parameter import SECTION, Parameter
-from tester.rig.plain import PlainRig
 
 SPRING_N = Parameter(
     "spring_n", "N", "40 N", "the spring pulls at most this: a sledge that slides needs half of it [A]",

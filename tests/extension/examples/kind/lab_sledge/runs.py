@@ -5,12 +5,12 @@ from math import copysign
 from lab_sledge.image import QUANTITIES, SledgeReadings
 from lab_sledge.recipe import AXES, PART
 from lab_sledge.rig import TABLE, SledgeRig
-from tester.axes import Setpoint
+from tester.base.axes import Setpoint
+from tester.base.screen import PlotView
+from tester.inputs.rig.plain import PlainRig
 from tester.machine.plain.image import PlainReadings
 from tester.machine.plain.runs import PlainRuns
 from tester.machine.plain.served import PlainServed
-from tester.rig.plain import PlainRig
-from tester.screen import PlotView
 
 
 class SledgeRuns(PlainRuns):

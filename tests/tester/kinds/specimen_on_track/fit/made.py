@@ -11,12 +11,12 @@ import numpy as np
 from sim.physics.wlf import WlfBell, WlfBellParameters
 from tester.analysis.flags import CARRY_OVER
 from tester.analysis.results import ConditionStatus, Judgement, RepeatResult, RepeatStatus
+from tester.base.quantities import Means
+from tester.inputs.rig import packaged
 from tester.kinds.specimen_on_track import KIND
 from tester.kinds.specimen_on_track.axes import AXES
 from tester.kinds.specimen_on_track.budget import TERMS
 from tester.kinds.specimen_on_track.quantities import QUANTITIES
-from tester.quantities import Means
-from tester.rig import packaged
 from tester.store.records import ConditionInfo, PieceInfo, RunInfo, SpecimenInfo
 from tester.store.statements import Judged
 from tester.store.writer import RunWriter

@@ -8,8 +8,8 @@ from types import SimpleNamespace
 import pytest
 
 from sim.noise import NormalStream
-from tester.commission.person import StepRefused
 from tester.kinds.wheel_on_belt.commission.cell_readings import settled_cell
+from tester.machine.commission.person import StepRefused
 
 WEIGHT_N, SWING_N, NOISE_N = 100.0, 5.0, 0.25
 

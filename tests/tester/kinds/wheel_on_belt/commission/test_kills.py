@@ -21,11 +21,11 @@ from typing import Any
 import pytest
 
 from sim.machines.wheel_on_belt.rig import WheelRig
-from tester.commission.engine import CommissionOutcome, Ended
-from tester.commission.person import Question
-from tester.commission.record import BEGUN, DONE, CommissionRecord
 from tester.kinds.wheel_on_belt.commission.steps import STEPS
 from tester.kinds.wheel_on_belt.commission.twin import TwinPerson
+from tester.machine.commission.engine import CommissionOutcome, Ended
+from tester.machine.commission.person import Question
+from tester.machine.commission.record import BEGUN, DONE, CommissionRecord
 from tester.run.commissioning import CommissionOptions, commission, record_path
 from tester.run.rigs import load_rig
 

@@ -6,11 +6,11 @@ from pathlib import Path
 
 import pytest
 
-from tester.commission.engine import Ended
-from tester.commission.person import Question
-from tester.commission.record import DONE
-from tester.commission.step import sections_sha256
 from tester.kinds.wheel_on_belt.commission.twin import TwinPerson
+from tester.machine.commission.engine import Ended
+from tester.machine.commission.person import Question
+from tester.machine.commission.record import DONE
+from tester.machine.commission.step import sections_sha256
 from tests.tester.kinds.wheel_on_belt.commission.twin_bench import Bench, believed, named
 
 STEPS = named("identify", "jog belt", "jog press")

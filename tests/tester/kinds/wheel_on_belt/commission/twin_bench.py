@@ -7,12 +7,12 @@ from pathlib import Path
 from typing import Any
 
 from sim.machines.wheel_on_belt.rig import WheelRig
-from tester.commission.engine import Commissioning, CommissionOutcome
-from tester.commission.record import CommissionRecord
-from tester.commission.step import CommissionStep
 from tester.kinds.wheel_on_belt.commission.steps import STEPS
 from tester.kinds.wheel_on_belt.commission.twin import TwinPerson
 from tester.kinds.wheel_on_belt.rig import RigConfig
+from tester.machine.commission.engine import Commissioning, CommissionOutcome
+from tester.machine.commission.record import CommissionRecord
+from tester.machine.commission.step import CommissionStep
 from tester.run.rigs import load_rig
 from tester.run.simulated import simulated_ports
 

@@ -12,7 +12,7 @@ from tester.kinds.wheel_on_belt.control.heat_loop import HeatLoop
 from tester.kinds.wheel_on_belt.control.load_loop import LoadLoop
 from tester.kinds.wheel_on_belt.control.state import WheelState
 from tester.kinds.wheel_on_belt.control.step import WheelControl
-from tester.kinds.wheel_on_belt.process import Demand, Press, Readings, Setpoints
+from tester.kinds.wheel_on_belt.image.process import Demand, Press, Readings, Setpoints
 from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.machine.state import ControlEvent, Mode
 

@@ -7,9 +7,9 @@ from collections.abc import Callable
 
 import pytest
 
+from tester.kinds.wheel_on_belt.image.process import Press
 from tester.kinds.wheel_on_belt.interlocks.contact import depth_mm
 from tester.kinds.wheel_on_belt.interlocks.table import INTERLOCKS, TABLE
-from tester.kinds.wheel_on_belt.process import Press
 from tester.machine.row import Reaction
 from tester.machine.state import Mode
 from tests.tester.kinds.wheel_on_belt.control.conftest import STAMPS, Bench

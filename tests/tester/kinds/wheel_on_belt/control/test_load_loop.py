@@ -7,8 +7,8 @@ import math
 import pytest
 
 from tester.kinds.wheel_on_belt.control.load_loop import LoadLoop
+from tester.kinds.wheel_on_belt.image.process import Demand, Press, Readings
 from tester.kinds.wheel_on_belt.interlocks.contact import STIFFNESS_EXPONENT, depth_mm
-from tester.kinds.wheel_on_belt.process import Demand, Press, Readings
 from tester.kinds.wheel_on_belt.rig import RigConfig
 
 GAP_MM = 10.0

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from tester.analysis.master_curve.signs import signs_of
 from tester.kinds.wheel_on_belt.fit.master import MASTERS
-from tester.master.signs import signs_of
 from tests.tester.kinds.wheel_on_belt.fit.made import made_run
 
 

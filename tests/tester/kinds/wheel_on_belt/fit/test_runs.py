@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tester.fit.law import Sourced
+from tester.analysis.fit.law import Sourced
 from tester.kinds.wheel_on_belt.fit.laws import TEMPERATURE
 from tester.kinds.wheel_on_belt.fit.runs import run_points
 from tester.store.schema import StoreError

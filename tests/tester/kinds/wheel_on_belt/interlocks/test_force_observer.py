@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import pytest
 
+from tester.kinds.wheel_on_belt.image.process import Readings
 from tester.kinds.wheel_on_belt.interlocks.contact import depth_mm
 from tester.kinds.wheel_on_belt.interlocks.force_observer import ForceObserver, force_n
 from tester.kinds.wheel_on_belt.interlocks.witness import (
@@ -16,7 +17,6 @@ from tester.kinds.wheel_on_belt.interlocks.witness import (
     FORCE_STEP_SEEN_SHARE,
     FORCE_STEP_UNSEEN_SHARE,
 )
-from tester.kinds.wheel_on_belt.process import Readings
 
 STIFFNESS = 145.0
 DT_S = 0.01

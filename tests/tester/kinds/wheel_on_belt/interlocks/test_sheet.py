@@ -7,10 +7,10 @@ import runpy
 from pathlib import Path
 
 from tester.base.source import load_tree
+from tester.inputs.rig.parameter import WIDTH, key_line
 from tester.kinds import find
 from tester.kinds.wheel_on_belt.interlocks.table import INTERLOCKS, PARAMETERS
 from tester.machine.wires import LATE_WARN_S
-from tester.rig.parameter import WIDTH, key_line
 
 DOCS = Path(__file__).parents[5] / "docs"
 PAGE = DOCS / "safety.md"

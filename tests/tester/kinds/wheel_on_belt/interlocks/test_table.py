@@ -10,12 +10,12 @@ from types import FunctionType
 import pytest
 
 from tester.base.config_reader import Range
+from tester.inputs.rig.parameter import Direction, Parameter
 from tester.kinds import load_rig
 from tester.kinds.wheel_on_belt.interlocks.inputs import Inputs
 from tester.kinds.wheel_on_belt.interlocks.table import INTERLOCKS, PARAMETERS, TABLE
 from tester.kinds.wheel_on_belt.rig import interlock_values
 from tester.machine.row import Interlock
-from tester.rig.parameter import Direction, Parameter
 
 OURS = ("tester.kinds.wheel_on_belt.interlocks", "tester.machine.wires", "tester.machine.drive_rows")
 

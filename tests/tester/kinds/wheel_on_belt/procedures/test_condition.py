@@ -8,9 +8,9 @@ import pytest
 
 from tester.analysis.results import RepeatStatus
 from tester.kinds.wheel_on_belt.context import Context
+from tester.kinds.wheel_on_belt.image.process import Press
 from tester.kinds.wheel_on_belt.procedures.bursts import MeasureRepeat
 from tester.kinds.wheel_on_belt.procedures.condition import MeasureCondition
-from tester.kinds.wheel_on_belt.process import Press
 from tester.kinds.wheel_on_belt.recipe.steps import WheelCondition
 from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.machine.measured import ConditionEnd, Ending, RepeatOutcome

@@ -6,8 +6,7 @@ import math
 
 import pytest
 
-from tester.kinds.wheel_on_belt.procedures.gates import Average, Gates, SurfaceTrend
-from tester.kinds.wheel_on_belt.process import (
+from tester.kinds.wheel_on_belt.image.process import (
     GATE_LOAD,
     GATE_SETTLING,
     GATE_SLIP,
@@ -15,6 +14,7 @@ from tester.kinds.wheel_on_belt.process import (
     GATE_TEMPERATURE,
     Readings,
 )
+from tester.kinds.wheel_on_belt.procedures.gates import Average, Gates, SurfaceTrend
 from tester.kinds.wheel_on_belt.rig import GatesConfig
 
 CONFIG = GatesConfig(

@@ -11,8 +11,8 @@ from sim.wires.modbus_wire import Impairment
 from tester.kinds.wheel_on_belt.procedures.lift_check import loaded
 from tester.machine.connect import Stage
 from tester.machine.run import Outcome
+from tests.tester.inputs.recipe.texts import rig
 from tests.tester.kinds.wheel_on_belt.bench import SHORT, Simulation
-from tests.tester.recipe.texts import rig
 
 HOLDS = "sim.press_on_power_loss=hold"
 TOUCHING_MM = 11.8

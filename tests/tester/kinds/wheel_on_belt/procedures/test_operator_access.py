@@ -6,9 +6,9 @@ from math import isnan
 
 import pytest
 
+from tester.kinds.wheel_on_belt.image.process import Press
 from tester.kinds.wheel_on_belt.procedures.operator_access import AskAtRest
 from tester.kinds.wheel_on_belt.procedures.thermal_steps import roll
-from tester.kinds.wheel_on_belt.process import Press
 from tester.machine.activity import MoveFailedError
 from tester.machine.prompts import Prompt
 from tests.tester.kinds.wheel_on_belt.bench import Bench, Simulation, make_bench

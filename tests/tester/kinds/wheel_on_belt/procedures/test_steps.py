@@ -7,16 +7,16 @@ from math import isfinite
 
 import pytest
 
+from tester.inputs.recipe.plan import Plan, PromptStep
 from tester.kinds.wheel_on_belt.context import Context
+from tester.kinds.wheel_on_belt.image.process import Press
 from tester.kinds.wheel_on_belt.procedures.first_contact import OFF
 from tester.kinds.wheel_on_belt.procedures.steps import WheelProcedures, title
-from tester.kinds.wheel_on_belt.process import Press
 from tester.kinds.wheel_on_belt.recipe.steps import Cool, Heat, Install, PreGrind, Rest, WheelCondition
 from tester.machine.executor import Executor
-from tester.recipe.plan import Plan, PromptStep
+from tests.tester.inputs.recipe.texts import rig
 from tests.tester.kinds.wheel_on_belt.bench import SHORT, Bench, condition_of, make_bench, plan_of
 from tests.tester.kinds.wheel_on_belt.procedures.test_condition import Results
-from tests.tester.recipe.texts import rig
 
 LOADS = SHORT.replace("load: 200 N", "load: [100 N, 200 N, 300 N]").replace("25 degC", "40 degC")
 

@@ -6,7 +6,8 @@ from math import isnan, nan
 
 import pytest
 
-from tester.kinds.wheel_on_belt.heatings import ratios_of
+from tester.inputs.recipe.plan import Soak
+from tester.kinds.wheel_on_belt.image.process import Press
 from tester.kinds.wheel_on_belt.interlocks.heat_balance import HeatBalance
 from tester.kinds.wheel_on_belt.procedures.motions import Load, Turn
 from tester.kinds.wheel_on_belt.procedures.thermal_steps import (
@@ -18,10 +19,9 @@ from tester.kinds.wheel_on_belt.procedures.thermal_steps import (
     roll,
     soak_within_k,
 )
-from tester.kinds.wheel_on_belt.process import Press
 from tester.kinds.wheel_on_belt.recipe.steps import Cool, Heat, Rest
+from tester.kinds.wheel_on_belt.runs.heatings import ratios_of
 from tester.machine.motions import Power, Sequence
-from tester.recipe.plan import Soak
 from tests.tester.kinds.wheel_on_belt.bench import SHORT, Bench, Simulation, make_bench
 
 SOAK = Soak(1.0, 60.0, 1800.0)

@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import pytest
 
+from tester.inputs.recipe.plan import Plan
 from tester.kinds.wheel_on_belt.procedures.operator_access import AskAtRest
 from tester.kinds.wheel_on_belt.procedures.wear_check import CheckByPerson, CheckByRolling, measured_mm
-from tester.recipe.plan import Plan
 from tests.tester.kinds.wheel_on_belt.bench import SHORT, Bench, make_bench, plan_of
 from tests.tester.kinds.wheel_on_belt.procedures.test_condition import Results
 from tests.tester.kinds.wheel_on_belt.procedures.test_steps import LOADS, Wearing, steps_of, walk

@@ -6,10 +6,10 @@ import math
 
 import pytest
 
+from tester.kinds.wheel_on_belt.image.process import Readings
 from tester.kinds.wheel_on_belt.procedures.wheel_life import WheelLife
-from tester.kinds.wheel_on_belt.process import Readings
+from tests.tester.inputs.recipe.texts import rig
 from tests.tester.kinds.wheel_on_belt.bench import SHORT, Simulation
-from tests.tester.recipe.texts import rig
 
 WEAR = rig().wear
 

@@ -8,15 +8,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import recipes
-from tester.kinds.wheel_on_belt.axes import AXES, held_by
+from tester.inputs.recipe.conditions import conditions_of
+from tester.inputs.recipe.loader import load_recipe
+from tester.inputs.recipe.plan import PromptStep, Soak, Window
+from tester.kinds.wheel_on_belt.image.axes import AXES, held_by
 from tester.kinds.wheel_on_belt.recipe.estimate import WheelEstimator
 from tester.kinds.wheel_on_belt.recipe.expand import change_points, expand
 from tester.kinds.wheel_on_belt.recipe.part import PART
 from tester.kinds.wheel_on_belt.recipe.steps import Cool, Heat, Install, PreGrind, Rest, WheelCondition, WheelPlan
-from tester.recipe.conditions import conditions_of
-from tester.recipe.loader import load_recipe
-from tester.recipe.plan import PromptStep, Soak, Window
-from tests.tester.recipe.texts import PREPARED, SMALL, recipe, rig, with_line
+from tests.tester.inputs.recipe.texts import PREPARED, SMALL, recipe, rig, with_line
 
 
 def plan_of(text: str) -> WheelPlan:

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import pytest
 
+from tester.inputs.recipe.estimate import Estimate
 from tester.kinds.wheel_on_belt.recipe.constants import CONSTANTS
 from tester.kinds.wheel_on_belt.recipe.expand import expand
 from tester.kinds.wheel_on_belt.recipe.part import PART
 from tester.kinds.wheel_on_belt.recipe.steps import WheelCondition, WheelPlan
-from tester.recipe.estimate import Estimate
-from tests.tester.recipe.texts import PREPARED, recipe, rig
+from tests.tester.inputs.recipe.texts import PREPARED, recipe, rig
 
 
 def planned(text: str, *overrides: str) -> tuple[WheelPlan, Estimate]:

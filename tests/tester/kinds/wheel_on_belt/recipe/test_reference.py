@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import pytest
 
+from tester.inputs.recipe.check import check
+from tester.inputs.recipe.describe import lines
+from tester.inputs.recipe.schema import recipe_schema
+from tester.inputs.recipe.stand import Mounted, Stand
 from tester.kinds.wheel_on_belt.recipe.expand import expand
 from tester.kinds.wheel_on_belt.recipe.part import PART
 from tester.kinds.wheel_on_belt.recipe.remaining import remaining
 from tester.kinds.wheel_on_belt.recipe.steps import Cool, Heat, Install, WheelCondition, WheelPlan
-from tester.kinds.wheel_on_belt.split import split
-from tester.recipe.check import check
-from tester.recipe.describe import lines
-from tester.recipe.schema import recipe_schema
-from tester.recipe.stand import Mounted, Stand
-from tests.tester.recipe.texts import PREPARED, SMALL, recipe, rig
+from tester.kinds.wheel_on_belt.runs.split import split
+from tests.tester.inputs.recipe.texts import PREPARED, SMALL, recipe, rig
 
 EVERY_2 = "reference: {every: 2}\n"
 RESERVED = 'reference: {every: 3, wheel: ref-1, compound: "2#"}\n'

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+from tester.inputs.recipe.plan import PromptStep, Step
+from tester.inputs.recipe.stand import Mounted, Stand
 from tester.kinds.wheel_on_belt.recipe.expand import expand
 from tester.kinds.wheel_on_belt.recipe.remaining import remaining
 from tester.kinds.wheel_on_belt.recipe.steps import Cool, Heat, Install, PreGrind, Rest, WheelCondition, WheelPlan
-from tester.recipe.plan import PromptStep, Step
-from tester.recipe.stand import Mounted, Stand
-from tests.tester.recipe.texts import PREPARED, SMALL, recipe, rig, with_line
+from tests.tester.inputs.recipe.texts import PREPARED, SMALL, recipe, rig, with_line
 
 TWO = with_line('  - compound: "1#"\n', '  - compound: "1#"\n  - compound: "2#"\n', PREPARED)
 

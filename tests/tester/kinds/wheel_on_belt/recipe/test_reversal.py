@@ -7,17 +7,17 @@ import json
 import pytest
 
 from tester.analysis.kelvin import Slope
+from tester.inputs.recipe.check import check
+from tester.inputs.recipe.describe import lines
+from tester.inputs.recipe.estimate import Outlook, estimate
+from tester.inputs.recipe.plan_json import json_chunks
 from tester.kinds.wheel_on_belt.procedures.plan_bounds import plan_bounds
 from tester.kinds.wheel_on_belt.recipe.estimate import WheelEstimator
 from tester.kinds.wheel_on_belt.recipe.expand import expand
 from tester.kinds.wheel_on_belt.recipe.part import PART
 from tester.kinds.wheel_on_belt.recipe.steps import WheelCondition
-from tester.recipe.check import check
-from tester.recipe.describe import lines
-from tester.recipe.estimate import Outlook, estimate
-from tester.recipe.plan_json import json_chunks
-from tests.tester.recipe.texts import recipe as read
-from tests.tester.recipe.texts import rig
+from tests.tester.inputs.recipe.texts import recipe as read
+from tests.tester.inputs.recipe.texts import rig
 
 TEXT = """\
 recipe: both

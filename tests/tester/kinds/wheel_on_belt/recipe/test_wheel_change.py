@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+from tester.inputs.recipe.plan import PromptStep
 from tester.kinds.wheel_on_belt.recipe.expand import expand
 from tester.kinds.wheel_on_belt.recipe.steps import Cool, Heat, Install, PreGrind, Rest
 from tester.kinds.wheel_on_belt.recipe.wheel_change import INSERTED, wheel_change
-from tester.recipe.plan import PromptStep
-from tests.tester.recipe.texts import PREPARED, SMALL, recipe, rig
+from tests.tester.inputs.recipe.texts import PREPARED, SMALL, recipe, rig
 
 
 def test_a_worn_wheel_is_cooled_replaced_ground_rested_and_heated_back() -> None:

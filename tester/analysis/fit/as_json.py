@@ -1,0 +1,111 @@
+"""A fit as plain data, for ``--json``: NaN is null, shares are numbers between 0 and 1."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+
+from tester.analysis.fit.check import Errors
+from tester.analysis.fit.joint import GroupFit
+from tester.analysis.fit.part import PublishedTable, TableLine
+from tester.analysis.fit.trends import Interval
+from tester.base.as_json import Json, finite
+
+
+def interval(given: Interval) -> Json:
+    """Return both ends."""
+    return [finite(one) for one in given]
+
+
+def errors(given: Errors | None) -> Json:
+    """Return errors, None where there are none."""
+    if given is None:
+        return None
+    return {name: finite(value) if isinstance(value, float) else value for name, value in asdict(given).items()}
+
+
+def group(fit: GroupFit, validation: Errors | None, *, force: bool = False) -> dict[str, Json]:
+    """Return what is known of the fit of a group; ``force``: with intervals that are not to be relied on."""
+    law, sure = fit.law, force or not fit.silent
+    table: Json = dict(law.table(fit.parameters)) if law.table is not None else None
+    return {
+        "group": fit.group,
+        "conditions": len(fit.points),
+        "parameters": {
+            one.name: {
+                "value": value,
+                "unit": one.unit,
+                "interval": None if not force and fit.why_no_interval(one.name) else interval(pair),
+                "no_interval": fit.why_no_interval(one.name),
+                "held": one.name in fit.held,
+            }
+            for one, value, pair in zip(law.parameters, fit.parameters, fit.intervals, strict=True)
+        },
+        "table": table,
+        "condition_number": finite(fit.condition_number),
+        "resamples": {"fitted": len(fit.resamples.parameters), "drawn": fit.resamples.drawn},
+        "errors": errors(fit.errors),
+        "left_out": errors(fit.left_out),
+        "cells_kept": fit.cells_kept,
+        "validation": errors(validation),
+        "residuals": {
+            variable.name: [
+                {"value": variable.scale * one.value, "unit": variable.unit, "mean": one.mean, "count": one.count}
+                for one in found
+            ]
+            for variable, found in zip(law.variables, fit.residuals, strict=True)
+        },
+        "lack_of_fit": _lack(fit),
+        "impossible": {**fit.impossible},
+        "beyond": [*fit.beyond],
+        "trends": {
+            "at": {v.name: v.scale * x for v, x in zip(law.variables, fit.trends.at, strict=True)},
+            "each": [
+                {
+                    "variable": one.variable.name,
+                    "trend": one.word,
+                    "peak": finite(one.variable.scale * one.peak),
+                    "peak_interval": [finite(one.variable.scale * end) for end in one.peak_interval] if sure else None,
+                    "inside": one.inside,
+                    "exponent" if one.variable.ratio else "per_unit": one.exponent,
+                    "interval": interval(one.exponent_interval) if sure and not one.own_heat else None,
+                    "agree": finite(one.agree),
+                }
+                for one in (fit.trends.each if sure or not fit.lack.shown else ())
+            ],
+        },
+    }
+
+
+def _lack(fit: GroupFit) -> dict[str, Json]:
+    lack, below = fit.lack, fit.lack.denominator
+    return {
+        "shown": lack.shown,
+        "residual": lack.residual,
+        "independent": finite(below.standard) if below is not None else None,
+        "repeats": finite(below.repeats) if below is not None else None,
+        "own": finite(below.own) if below is not None else None,
+        "between_conditions": finite(below.between) if below is not None else None,
+        "tests": [{"name": one.name, "p": one.p, "failed": one.failed} for one in lack.tests],
+        "visible": finite(lack.visible),
+    }
+
+
+def table(given: PublishedTable) -> dict[str, Json]:
+    """Return a publication's table with the verdict."""
+    return {
+        "title": given.title,
+        "lines": [_line(line) for line in given.lines],
+        "compared": {how: [_line(line) for line in lines] for how, lines in given.compared.items()},
+        "claims": [{"said": one.said, "found": one.found} for one in given.claims],
+        "missed": [*given.missed],
+    }
+
+
+def _line(line: TableLine) -> dict[str, Json]:
+    return {
+        "way": line.way,
+        "fitted": errors(line.fitted),
+        "validation": errors(line.validation),
+        "asked": line.asked or None,
+        "met": line.met,
+    }

@@ -1,0 +1,84 @@
+"""A master curve with all that is said of it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from sim.physics.materials import Rubber
+from sim.physics.wlf import PoleError
+from tester.analysis.master_curve.collapse import RESAMPLES, Collapse, collapse, shifts
+from tester.analysis.master_curve.overlap import TemperaturePair, pairs_of
+from tester.analysis.master_curve.peaks import Peak, Rule, peaks_of, rules_of
+from tester.analysis.master_curve.points import MasterError, MasterPoint, set_of
+from tester.analysis.master_curve.verdict import MasterJudgement, judge
+
+
+@dataclass(frozen=True, slots=True)
+class MasterRow:
+    """A row of the table: x = log10(aT v / 1 m/s) at the reference temperature, degC, m/s; ``off`` of ln mu."""
+
+    x: float
+    mu: float
+    temperature_c: float
+    speed_m_s: float
+    off: float
+
+
+@dataclass(frozen=True, slots=True)
+class Master:
+    """A master curve of conditions of one compound, at a reference temperature in degC."""
+
+    reference_c: float
+    collapse: Collapse
+    pairs: tuple[TemperaturePair, ...]
+    judged: MasterJudgement
+    peaks: tuple[Peak, ...]
+    bumps: int = 0
+    """Maxima of the curve that its scatter may have made."""
+    rules: tuple[Rule, ...] = ()
+    glass_c: float | None = None
+    """Glass transition that the compound's file says."""
+
+    @property
+    def points(self) -> tuple[MasterPoint, ...]:
+        """The conditions, in order of temperature and speed."""
+        return self.collapse.of.points
+
+    @property
+    def back(self) -> float:
+        """log10 aT of the reference temperature at Ts: what x at Ts is more than x at the reference."""
+        return float(shifts(np.array([self.reference_c]), self.collapse.ts_c)[0])
+
+    def rows(self) -> tuple[MasterRow, ...]:
+        """Return the rows of the table, in order of temperature and speed."""
+        one = self.collapse
+        return tuple(
+            MasterRow(float(x) - self.back, point.mu, point.temperature_c, point.speed_m_s, float(off))
+            for x, off, point in zip(one.x, one.residual, self.points, strict=True)
+        )
+
+
+def master_of(
+    points: Sequence[MasterPoint],
+    reference_c: float,
+    ts_c: float | None = None,
+    rubber: Rubber | None = None,
+    glass_c: float | None = None,
+    resamples: int = RESAMPLES,
+) -> Master:
+    """Return the master curve of conditions; ``ts_c``: of the shift, None: it is looked for; ``rubber``: its moduli;
+    ``glass_c``: its glass transition, where they are known.
+
+    Raises MasterError where there is none: too few conditions, a temperature beyond the pole of the shift.
+    """
+    try:
+        one = collapse(set_of(points), ts_c, resamples)
+        pairs = pairs_of(one)
+        peaks, bumps = peaks_of(one, reference_c)
+        rules = rules_of(rubber.modulus, reference_c, peaks) if rubber is not None else ()
+    except PoleError as error:
+        raise MasterError(f"no shift: {error}") from error
+    return Master(reference_c, one, pairs, judge(one, pairs), peaks, bumps, rules, glass_c)

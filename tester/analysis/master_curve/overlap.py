@@ -1,0 +1,111 @@
+"""Neighbouring temperatures by themselves: the shift that lays one on the other, whatever any law says.
+
+A cubic in log10 v goes through the ln mu of each temperature. The shift is where the mean square difference of two
+neighbours' cubics, over the decades that they then have in common, is least.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import inf, nan, sqrt
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from tester.analysis.master_curve.collapse import Collapse, shifts
+from tester.analysis.master_curve.points import MasterSet
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+
+CUBIC_SPEEDS: Final = 5
+"""Speeds of a temperature from which on it has a cubic of its own: one more than the cubic has numbers."""
+THIN_DECADES: Final = 1.0
+"""An overlap of less is thin [A]: a curve bends within a decade, and less shows no bend."""
+THIN_SHIFT: Final = 0.3
+"""A free shift with a larger standard uncertainty says little, decades [A]."""
+_COARSE, _FINE = 0.05, 0.005
+"""Steps of the search, decades."""
+_PLACES: Final = 40
+
+
+@dataclass(frozen=True, slots=True)
+class TemperaturePair:
+    """Two neighbouring temperatures, degC; shifts of the warmer one against the colder one, decades.
+
+    ``overlap``: decades of x that both have at the shift by WLF; ``rows``: conditions of the poorer one within it.
+    ``free`` and its standard uncertainty ``u``: NaN and infinite where no cubic goes through either.
+    """
+
+    colder_c: float
+    warmer_c: float
+    wlf: float
+    overlap: float
+    rows: int
+    free: float = nan
+    u: float = inf
+
+    @property
+    def difference(self) -> float:
+        """Return the free shift less that by WLF, decades."""
+        return self.free - self.wlf
+
+    @property
+    def tied(self) -> bool:
+        """Tell whether anything at all lies side by side."""
+        return self.overlap > 0.0 and self.rows >= 2
+
+    @property
+    def thin(self) -> bool:
+        """Tell whether the two say little about each other."""
+        return not (self.overlap >= THIN_DECADES and self.u <= THIN_SHIFT)
+
+
+def pairs_of(one: Collapse) -> tuple[TemperaturePair, ...]:
+    """Return every two neighbouring temperatures of a collapsed set, from cold to warm."""
+    of = one.of
+    at = np.array([float(np.mean(of.celsius[of.block == i])) for i in range(len(of.blocks_c))])
+    by_wlf = shifts(at, one.ts_c)
+    found: list[TemperaturePair] = []
+    for i in range(len(of.blocks_c) - 1):
+        cold, warm = one.x[of.block == i], one.x[of.block == i + 1]
+        low, high = max(cold.min(), warm.min()), min(cold.max(), warm.max())
+        rows = min(int(np.sum((x >= low - 1e-9) & (x <= high + 1e-9))) for x in (cold, warm)) if high > low else 0
+        free, u = _free(of, i, one.scatter)
+        found.append(
+            TemperaturePair(
+                of.blocks_c[i], of.blocks_c[i + 1], float(by_wlf[i + 1] - by_wlf[i]), float(high - low), rows, free, u
+            )
+        )
+    return tuple(found)
+
+
+def _free(of: MasterSet, i: int, scatter: float) -> tuple[float, float]:
+    """Return the free shift of temperature i + 1 against temperature i, and its standard uncertainty, decades."""
+    colder, warmer = ((of.log_v[of.block == k], of.log_mu[of.block == k]) for k in (i, i + 1))
+    if min(np.unique(np.round(v, 6)).size for v, _ in (colder, warmer)) < CUBIC_SPEEDS:
+        return nan, inf
+    cubics = [np.polynomial.Polynomial.fit(v, y, 3).convert() for v, y in (colder, warmer)]
+    ends = [(float(v.min()), float(v.max())) for v, _ in (colder, warmer)]
+    span = min(high - low for low, high in ends)
+    reach = span - THIN_DECADES
+    if reach <= 0.0:
+        return nan, inf
+
+    def common(shift: float) -> Array:
+        low, high = max(ends[0][0], ends[1][0] + shift), min(ends[0][1], ends[1][1] + shift)
+        return np.linspace(low, high, _PLACES)
+
+    def off(shift: float) -> float:
+        x = common(shift)
+        return float(np.mean((cubics[0](x) - cubics[1](x - shift)) ** 2))
+
+    best = min((float(one) for one in np.arange(-reach, reach, _COARSE)), key=off)
+    close = best + np.arange(-_COARSE, _COARSE, _FINE)
+    shift = min((float(one) for one in close if abs(one) <= reach), key=off)
+    x = common(shift)
+    slope = sqrt(float(np.mean(cubics[0].deriv()(x) ** 2)))
+    rows = (x[-1] - x[0]) / span * min(colder[0].size, warmer[0].size)
+    return shift, scatter * sqrt(2.0 / rows) / slope if slope > 0.0 and rows > 0.0 else inf

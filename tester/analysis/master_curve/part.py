@@ -1,0 +1,20 @@
+"""What a kind says about master curves: conditions with speed and temperature, and which of them heat themselves."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Protocol
+
+from tester.analysis.master_curve.points import MasterRun
+
+
+class MasterPart(Protocol):
+    """What a kind says about master curves."""
+
+    def run(self, folder: Path) -> MasterRun:
+        """Return the conditions of a run; raises StoreError where it cannot be read."""
+        ...
+
+    def packaged(self, name: str) -> MasterRun:
+        """Return conditions that ship with the program; raises KeyError."""
+        ...

@@ -1,0 +1,170 @@
+"""Grosch's two rules for where friction has its maxima, from the compound's moduli, and the maxima of a master curve.
+
+    v = 6 nm x omega(maximum of the loss modulus) / 2 pi     adhesion: the molecular jump
+    v = 150 um x omega(maximum of the loss factor) / 2 pi    deformation: the spacing of the abrasive's grit
+
+Proc. Roy. Soc. A 274 (1963) 21; lengths as paper S prints them (Sharp, Gruber, Fina: circuit racing, track texture,
+temperature and rubber friction), frequencies in rad/s at the temperature of the master curve.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import nan, pi
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from sim.physics.materials import OutsideError, ShearModulus
+from sim.physics.wlf import PoleError
+from tester.analysis.master_curve.collapse import Collapse, Curve, curve_through, padded, shifts
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+
+JUMP_M: Final = 6e-9
+GRIT_M: Final = 150e-6
+DECADES: Final = (-6, 14)
+"""Powers of ten of rad/s between which maxima of the moduli are looked for."""
+A_DECADE: Final = 50
+PROMINENT: Final = 0.02
+"""A maximum of the curve counts where ln mu falls by more than this on both sides [A]."""
+PLACES: Final = 1000
+DRAWN: Final = 200
+"""Sets drawn anew in which a maximum is looked for again."""
+FINER: Final = 4
+"""Knots more with which it is seen how far the spline moves a maximum [A]."""
+SURE: Final = 0.95
+"""Share of them that has to have it."""
+REACH_DECADES: Final = 1.0
+"""Within so much of the one maximum of a curve a maximum counts as the same [A]; of several, half their distance."""
+
+
+@dataclass(frozen=True, slots=True)
+class Peak:
+    """A maximum of the master curve: its speed in m/s at the reference temperature with its 95 % interval, and mu."""
+
+    speed_m_s: float
+    mu: float
+    interval_m_s: tuple[float, float] = (nan, nan)
+
+
+@dataclass(frozen=True, slots=True)
+class Rule:
+    """A rule's speed at the reference temperature, m/s; NaN where the moduli have no such maximum that is known.
+
+    ``nearest``: the maximum of the curve that is nearest, ``decades``: how far it is above the rule, both NaN for none.
+    """
+
+    name: str
+    speed_m_s: float
+    nearest_m_s: float = nan
+
+    @property
+    def decades(self) -> float:
+        """Return by how many decades the curve's maximum stands above the rule."""
+        return float(np.log10(self.nearest_m_s / self.speed_m_s))
+
+
+def peaks_of(one: Collapse, reference_c: float) -> tuple[tuple[Peak, ...], int]:
+    """Return the maxima of a master curve that its scatter does not make, from slow to fast, and how many others there
+    are; raises PoleError for the reference temperature.
+
+    A maximum counts where ``SURE`` of the sets that are drawn anew have one there. Its interval reaches to where a
+    curve of ``FINER`` more knots has it: a spline moves a maximum by what it smooths away, which no drawing shows.
+    """
+    back = _back(one.ts_c, reference_c)
+    found = [(x - back, mu) for x, mu in _maxima(one.curve, one.x)]
+    if not found or one.drawn is None:
+        return tuple(Peak(float(10.0**x), mu) for x, mu in found), 0
+    places = [x for x, _ in found]
+    again = [_maxima_again(one, i, reference_c) for i in range(min(DRAWN, one.drawn.ts_c.size))]
+    finer, _ = curve_through(one.of, one.x, min(one.interior + FINER, one.x.size // 3), padded(one.of, one.of.log_mu))
+    places_finer = [at - back for at, _ in _maxima(finer, one.x)]
+    peaks: list[Peak] = []
+    for x, mu in found:
+        reach = min([0.5 * abs(x - other) for other in places if other != x], default=REACH_DECADES)
+        near = [min(own, key=lambda at, x=x: abs(at - x)) for own in again if own]
+        kept = [at for at in near if abs(at - x) <= reach]
+        if len(kept) >= SURE * len(again):
+            moved = min((at - x for at in places_finer if abs(at - x) <= reach), key=abs, default=0.0)
+            low, high = np.quantile(kept, [0.025, 0.975]) + np.array([min(moved, 0.0), max(moved, 0.0)])
+            peaks.append(Peak(float(10.0**x), mu, (float(10.0**low), float(10.0**high))))
+    return tuple(peaks), len(found) - len(peaks)
+
+
+def _maxima_again(one: Collapse, i: int, reference_c: float) -> list[float]:
+    """Return where the curve of a set that was drawn anew has maxima, x at the reference temperature."""
+    assert one.drawn is not None
+    ts_c = float(one.drawn.ts_c[i])
+    x = one.of.log_v + shifts(one.of.celsius, ts_c)
+    curve, _ = curve_through(one.of, x, one.interior, one.drawn.y[:, i])
+    back = _back(ts_c, reference_c - float(one.drawn.thermometer_k[i]))
+    return [at - back for at, _ in _maxima(curve, x)]
+
+
+def _back(ts_c: float, reference_c: float) -> float:
+    return float(shifts(np.array([reference_c]), ts_c)[0])
+
+
+def _maxima(curve: Curve, over: Array) -> list[tuple[float, float]]:
+    """Return x and mu of the maxima of a curve within a range that are ``PROMINENT``."""
+    x = np.linspace(float(np.min(over)), float(np.max(over)), PLACES)
+    y = curve.at(x)
+    return [
+        (float(x[i]), float(np.exp(y[i])))
+        for i in np.flatnonzero((y[1:-1] > y[:-2]) & (y[1:-1] >= y[2:])) + 1
+        if min(_falls(y[i::-1]), _falls(y[i:])) > PROMINENT
+    ]
+
+
+def _falls(y: Array) -> float:
+    """Return how far values fall from their first one before they rise above it."""
+    above = np.flatnonzero(y > y[0])
+    return float(y[0] - np.min(y[: above[0]] if above.size else y))
+
+
+def rules_of(modulus: ShearModulus, reference_c: float, peaks: tuple[Peak, ...]) -> tuple[Rule, ...]:
+    """Return Grosch's two rules for a compound, held against the maxima of a curve."""
+    omega, storage, loss = _known(modulus, reference_c)
+    found = (
+        ("6 nm x omega of the loss modulus' maximum / 2 pi", JUMP_M, loss),
+        ("150 um x omega of the loss factor's maximum / 2 pi", GRIT_M, loss / storage if loss.size else loss),
+    )
+    return tuple(_rule(name, length * _maximum(omega, values) / (2.0 * pi), peaks) for name, length, values in found)
+
+
+def _rule(name: str, speed_m_s: float, peaks: tuple[Peak, ...]) -> Rule:
+    if not (peaks and speed_m_s > 0.0):
+        return Rule(name, speed_m_s)
+    nearest = min(peaks, key=lambda peak: abs(np.log10(peak.speed_m_s / speed_m_s)))
+    return Rule(name, speed_m_s, nearest.speed_m_s)
+
+
+def _known(modulus: ShearModulus, celsius: float) -> tuple[Array, Array, Array]:
+    """Return frequencies at which a modulus is known at a temperature, with G' and G''."""
+    rows: list[tuple[float, float, float]] = []
+    for omega in np.logspace(*DECADES, (DECADES[1] - DECADES[0]) * A_DECADE + 1):
+        try:
+            value = complex(modulus.complex_pa(np.array([omega]), celsius)[0])
+        except (OutsideError, PoleError):
+            continue
+        if value.real > 0.0 and value.imag > 0.0:
+            rows.append((float(omega), value.real, value.imag))
+    table = np.array(rows).reshape(-1, 3)
+    return table[:, 0], table[:, 1], table[:, 2]
+
+
+def _maximum(omega: Array, values: Array) -> float:
+    """Return where values are greatest, by a parabola over log omega; NaN where that is an end of what is known."""
+    if values.size < 3:
+        return nan
+    i = int(np.argmax(values))
+    if i in (0, values.size - 1):
+        return nan
+    y, x = np.log(values[i - 1 : i + 2]), np.log(omega[i - 1 : i + 2])
+    bend = float(y[0] - 2.0 * y[1] + y[2])
+    share = 0.5 * float(y[0] - y[2]) / bend if bend < 0.0 else 0.0
+    return float(np.exp(x[1] + share * (x[2] - x[1])))

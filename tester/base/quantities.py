@@ -1,0 +1,285 @@
+"""Quantities: the channels of a kind of rig, in one ordered table from which everybody reads off what he needs.
+
+A channel that stands in the table is sampled, stored, averaged, exported and shown; nothing else keeps a list of
+channels or an order of them. Here are the types only; the table is the kind's own (``tester/kinds/<kind>/quantities``)
+with what further sensors of a rig measure (tester.inputs.rig.sensors), and a run's record keeps a copy of it, so that a stored
+run can be read without its kind.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Final
+
+_NAN: Final = float("nan")
+
+TIME: Final = "time_s"
+"""Channel of the rig time, s: the first of every table."""
+GATE: Final = "gate"
+"""Channel of the gates that are closed, a mask: 0 = the sample is accepted."""
+BURST: Final = "burst"
+"""Channel that counts the contacts within a repeat; 0 = outside a burst."""
+KEY: Final = "repeat_key"
+"""Channel of the repeat's row in the store, 0 = none."""
+LAST: Final = (GATE, BURST, KEY)
+"""The last channels of a sample, which the scan itself says."""
+FURTHER: Final = "readings.channels"
+"""Source of the channels that a rig's further sensors measure; ``readings.channels.0`` is the first of them. They
+stand in that order, before the last three."""
+
+
+@dataclass(frozen=True, slots=True)
+class Figure:
+    """A number for a screen: ``scale`` times a key of the rig file, plus ``offset``; of no key the offset alone.
+
+    ``key`` is dotted (``limits.load_n``), a number in it is a position in a list. ``otherwise`` stands for a key that
+    the rig file leaves empty.
+    """
+
+    key: str = ""
+    scale: float = 1.0
+    offset: float = 0.0
+    otherwise: float | None = None
+
+    def of(self, rig: object) -> float:
+        """Return the number for a rig; raises AttributeError for a key that rigs do not have."""
+        found: Any = rig
+        for part in self.key.split(".") if self.key else ():
+            if found is None:
+                break
+            found = found[int(part)] if part.isdigit() else getattr(found, part)
+        if found is None and self.otherwise is not None:
+            return self.otherwise
+        return self.offset + (self.scale * found if self.key and isinstance(found, int | float) else 0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Screen:
+    """How a channel stands on screens and in the protocol; all numbers in the unit that people read.
+
+    ``key`` is its name there, ``rank`` its row, from 1 (the last are left out where the screen is low). ``device`` is
+    whose news it is: its age is the channel's. ``low`` and ``high`` are the ends of its bar. ``limit`` is where
+    something happens, an interlock or a hard limit of the rig; ``both``: its negative is one, too.
+    """
+
+    key: str
+    rank: int
+    device: str
+    low: Figure
+    high: Figure
+    limit: Figure | None = None
+    both: bool = False
+    watched: bool = False
+    """An alarm tells when its news does not come."""
+    setpoint: str = ""
+    """Channel that records what is wanted of it."""
+    axis: str = ""
+    """Axis of a condition that says what is wanted of it."""
+    trend: str = ""
+    """Its column in the trend, with the unit that people read; "" = none."""
+    setpoint_trend: str = ""
+    """Column of its setpoint in the trend; "" = none."""
+
+
+@dataclass(frozen=True, slots=True)
+class Channel:
+    """One quantity.
+
+    ``name`` is its column in samples and in the store, with its unit (``force_z_n``); ``unit`` that unit as people
+    write it, ``label`` what people read. ``source`` says where the scan reads it: the path from the run's
+    context (``readings.force_z_n``, ``demand.load_n``, ``setpoints.hub_c``, ``gate``), a number in it a position in a
+    list, a name in brackets at its end (``readings.positions[lift]``) a key of a mapping; "" = it is not recorded but
+    worked out for screens.
+
+    ``mean`` is its place among the means over a block, from 1, and so among the measured columns of the results'
+    tables; 0 = it is not averaged. Where people read another unit than is recorded, ``shown_unit`` is theirs,
+    ``scale`` turns values into it and ``column`` is the name with it.
+    """
+
+    name: str
+    unit: str
+    label: str
+    source: str
+    mean: int = 0
+    decimals: int = 3
+    whole: bool = False
+    """Its values are whole numbers."""
+    column: str = ""
+    shown_unit: str = ""
+    scale: float = 1.0
+    screen: Screen | None = None
+
+    @property
+    def read_as(self) -> str:
+        """Return the unit that people read."""
+        return self.shown_unit or self.unit
+
+    @property
+    def measured_column(self) -> str:
+        """Return the column of its mean in the results' tables."""
+        return f"measured_{self.column or self.name}"
+
+    def scaled(self, value: float | None) -> float | None:
+        """Return a value in the unit that people read."""
+        return value if value is None or self.scale == 1.0 else self.scale * value
+
+
+@dataclass(frozen=True, slots=True)
+class Roles:
+    """Which channels the analysis works with.
+
+    ``friction``: the horizontal force along the sliding, and the one across it where it is measured (N). ``normal``:
+    the force that presses (N). ``turn``: the position by which blocks are counted, a whole turn, a stretch of way or of
+    time, and ``block`` how much of it is one block, in its unit. ``temperature``: of the rubber's surface (degC), which
+    friction depends on, and ``sliding`` the speed with which it slides (m/s); "" where neither is measured.
+    """
+
+    friction: tuple[str, ...]
+    normal: str
+    turn: str
+    block: float = 1.0
+    temperature: str = ""
+    sliding: str = ""
+
+
+class Quantities:
+    """An ordered table of channels, with look-ups. Not changed once made."""
+
+    __slots__ = ("_index", "averaged", "channels", "further", "names", "recorded", "roles", "shown")
+
+    def __init__(self, channels: tuple[Channel, ...], roles: Roles) -> None:
+        """Take in the table; raises ValueError where it is none."""
+        self.channels: Final = channels
+        self.roles: Final = roles
+        self.recorded: Final = tuple(one for one in channels if one.source)
+        """The channels of a sample, in order."""
+        self.names: Final = tuple(one.name for one in self.recorded)
+        """The columns of a sample, all float64, in order."""
+        self.averaged: Final = tuple(sorted((one for one in self.recorded if one.mean), key=lambda one: one.mean))
+        """The channels that a block averages, in the order of the results' tables."""
+        self.further: Final = tuple(one for one in self.recorded if one.source.startswith(f"{FURTHER}."))
+        """The channels of a rig's further sensors, in order."""
+        ranked = [(one.screen.rank, one) for one in channels if one.screen is not None]
+        self.shown: Final = tuple(one for _, one in sorted(ranked, key=lambda pair: pair[0]))
+        """The channels of the screens, the most important first."""
+        self._index: Final = {name: i for i, name in enumerate(self.names)}
+        self._check()
+
+    def _check(self) -> None:
+        means = {one.name for one in self.averaged}
+        roles = self.roles
+        wanted = {*roles.friction, roles.normal, roles.temperature, roles.sliding} - {""}
+        if len({one.name for one in self.channels}) != len(self.channels):
+            raise ValueError("two channels of one name")
+        if strange := [one.name for one in self.channels if not one.name.isidentifier()]:
+            raise ValueError(f"a channel's name is letters, digits and _: {strange}")
+        if self.names[:1] != (TIME,) or self.names[-3:] != LAST:
+            raise ValueError(f"a sample begins with {TIME} and ends with {', '.join(LAST)}: {self.names}")
+        if self.recorded[-len(LAST) - len(self.further) : -len(LAST)] != self.further:
+            raise ValueError(f"further channels stand before {', '.join(LAST)}: {self.names}")
+        if roles.turn not in self._index:
+            raise ValueError(f"blocks are counted by {roles.turn}, which is not recorded")
+        if missing := wanted - means:
+            raise ValueError(f"the analysis needs means of channels that are not averaged: {sorted(missing)}")
+
+    def __iter__(self) -> Iterator[Channel]:
+        """Yield the channels in order."""
+        return iter(self.channels)
+
+    def __getitem__(self, name: str) -> Channel:
+        """Return the channel of that name; raises KeyError."""
+        for one in self.channels:
+            if one.name == name:
+                return one
+        raise KeyError(name)
+
+    def __deepcopy__(self, memo: dict[int, object]) -> Quantities:
+        """Return itself: it does not change."""
+        return self
+
+    def index(self, name: str) -> int:
+        """Return the position of a channel in a sample; raises KeyError."""
+        return self._index[name]
+
+    def with_further(self, channels: Sequence[Channel]) -> Quantities:
+        """Return the table of a rig that has these channels more; raises ValueError where it is none."""
+        at = next(place for place, one in enumerate(self.channels) if one.name == LAST[0])
+        return Quantities((*self.channels[:at], *channels, *self.channels[at:]), self.roles) if channels else self
+
+
+class Means(Mapping[str, float]):
+    """Means of the averaged channels, over a block, a repeat or a condition: by name, and by their roles.
+
+    NaN for what was not measured. Without a table: of nothing.
+    """
+
+    __slots__ = ("_given", "table")
+
+    def __init__(self, table: Quantities | None = None, given: Iterable[float] = ()) -> None:
+        """``given``: a value for each of the table's averaged channels, in order; raises ValueError."""
+        self.table: Final = table
+        names = (one.name for one in table.averaged) if table is not None else ()
+        self._given: Final = dict(zip(names, given, strict=True))
+
+    def __getitem__(self, name: str) -> float:
+        """Return the mean of a channel; raises KeyError."""
+        return self._given[name]
+
+    def __iter__(self) -> Iterator[str]:
+        """Yield the names, in order."""
+        return iter(self._given)
+
+    def __len__(self) -> int:
+        """Return how many there are."""
+        return len(self._given)
+
+    def __hash__(self) -> int:
+        """Return a hash: means do not change."""
+        return hash(tuple(self._given.items()))
+
+    def __repr__(self) -> str:
+        """Return them with their names."""
+        return f"Means({self._given})"
+
+    def _role(self, name: str) -> float:
+        return self._given.get(name, _NAN)
+
+    @property
+    def along(self) -> float:
+        """Return the friction force along the sliding, N."""
+        return self._role(self.table.roles.friction[0]) if self.table is not None else _NAN
+
+    @property
+    def across(self) -> float:
+        """Return the horizontal force across it, N; 0 where it is not measured."""
+        if self.table is None:
+            return _NAN
+        return self._role(self.table.roles.friction[1]) if len(self.table.roles.friction) > 1 else 0.0
+
+    @property
+    def normal(self) -> float:
+        """Return the force that presses, N."""
+        return self._role(self.table.roles.normal) if self.table is not None else _NAN
+
+    @property
+    def temperature(self) -> float:
+        """Return the temperature of the rubber's surface, degC."""
+        return self._role(self.table.roles.temperature) if self.table is not None else _NAN
+
+    @property
+    def sliding(self) -> float:
+        """Return the sliding speed, m/s."""
+        return self._role(self.table.roles.sliding) if self.table is not None else _NAN
+
+
+def mean_of(given: Iterable[Means]) -> Means:
+    """Return the means of at least one, each of equal weight."""
+    listed = list(given)
+    columns = zip(*(one.values() for one in listed), strict=True)
+    return Means(listed[0].table, [sum(column) / len(column) for column in columns])
+
+
+def temperatures(given: Iterable[Means]) -> list[float]:
+    """Return the surface temperatures of means, degC; zeros where the table has none: nothing depends on it then."""
+    return [one.temperature if one.table is None or one.table.roles.temperature else 0.0 for one in given]

@@ -1,0 +1,151 @@
+"""What a screen shows of a kind of machine, and what of it a person may move by hand: plain values, types only.
+
+The tables are a kind's own (``tester/kinds/<kind>/screen``). A service tells them to its clients, so that a client
+draws any kind; what changes from scan to scan is told apart from them, four times a second.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+from tester.base.axes import Axes
+from tester.base.quantities import Quantities
+
+Quality = Literal["good", "stale", "bad", "none"]
+"""good; older than its limit; reported invalid by its device; never received."""
+
+
+@dataclass(frozen=True, slots=True)
+class Value:
+    """One measured value beside what is wanted and what is allowed.
+
+    ``key``, ``label``, ``unit``, ``decimals`` and the ends of a bar (``scale_low``, ``scale_high``), fixed for a rig,
+    are those of a channel in the kind's table. ``low``, ``high``: the limits at which something happens (an interlock,
+    a hard limit of the rig). ``band_low``, ``band_high``: the gate around the setpoint, inside which samples count.
+    """
+
+    key: str
+    label: str
+    unit: str
+    value: float | None
+    setpoint: float | None
+    low: float | None
+    high: float | None
+    band_low: float | None
+    band_high: float | None
+    scale_low: float
+    scale_high: float
+    decimals: int
+    age_s: float | None
+    quality: Quality
+
+
+@dataclass(frozen=True, slots=True)
+class Gate:
+    """One gate of the samples: ``open`` while samples pass it."""
+
+    key: str
+    open: bool
+
+
+@dataclass(frozen=True, slots=True)
+class SoakView:
+    """A soak under way: 39.6 of 40.0 +- 1.0 degC, in band 190 s of 600 s, given up after ``at_most_s``."""
+
+    surface_c: float | None
+    target_c: float
+    within_k: float
+    in_band_s: float
+    for_s: float
+    waited_s: float
+    at_most_s: float
+
+
+@dataclass(frozen=True, slots=True)
+class Check:
+    """One line of the pre-flight list: ``ok`` None where nobody can know before the rig is connected."""
+
+    name: str
+    ok: bool | None
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class PlotView:
+    """A trend that is drawn: the value, its column in the trend, the narrowest range drawn, in its unit."""
+
+    key: str
+    column: str
+    least: float
+
+
+@dataclass(frozen=True, slots=True)
+class HandAxis:
+    """What a person may move: its name in ``jog``, its title, one step of it and its condition in words."""
+
+    name: str
+    title: str
+    step: str
+
+
+@dataclass(frozen=True, slots=True)
+class AxisView:
+    """An axis of a condition: key in a recipe, unit that people read, column in tables, title, word before its number.
+
+    A value that is ``default`` needs no words; None: there is none.
+    """
+
+    name: str
+    unit: str
+    column: str
+    title: str
+    word: str
+    default: float | str | None
+
+
+@dataclass(frozen=True, slots=True)
+class MachineView:
+    """What stays the same of a kind of machine, for whoever draws it.
+
+    ``trend``: columns of a row of the trend; the first two are seconds, of the service and of the run, a column with
+    ``_setpoint`` in it is what was wanted. ``plots``: trends to draw, the most important first. ``by_hand``: keys of
+    the values that belong to moving it by hand, ``hand``: what a person may move.
+    """
+
+    kind: str
+    trend: tuple[str, ...]
+    plots: tuple[PlotView, ...] = ()
+    by_hand: tuple[str, ...] = ()
+    hand: tuple[HandAxis, ...] = ()
+    axes: tuple[AxisView, ...] = ()
+    specimen: str = "specimen"
+    """What people call the part that wears and is changed."""
+    moves: str = "the machine"
+    """What turns or travels, and must be seen to stand."""
+    look: tuple[str, ...] = ()
+    """What else a person looks after at the machine when nobody controls it, a sentence each."""
+    ring: str = ""
+    """What people call the ring over which a device on a turning part is reached; "" where there is none."""
+
+
+def axis_views(axes: Axes) -> tuple[AxisView, ...]:
+    """Return a table of axes as screens have it."""
+    return tuple(AxisView(one.name, one.unit, one.column, one.title, one.word, one.default) for one in axes)
+
+
+UNKNOWN = MachineView("", ("wall_s", "t_s"))
+"""A machine while none was told."""
+
+
+def trend_columns(quantities: Quantities) -> tuple[str, ...]:
+    """Return the columns of a trend's row.
+
+    ``wall_s``: s since the service started, ``t_s``: rig time of the run, then those that the table names, each value
+    before its setpoint, the most important first.
+    """
+    columns = ["wall_s", "t_s"]
+    for channel in quantities.shown:
+        if channel.screen is not None:
+            columns += [one for one in (channel.screen.trend, channel.screen.setpoint_trend) if one]
+    return tuple(columns)

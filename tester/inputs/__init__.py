@@ -1,0 +1,1 @@
+"""What people write: rig files, recipes, materials."""

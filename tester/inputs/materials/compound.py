@@ -1,0 +1,181 @@
+"""A compound's file: read with every problem at its line, and every doubt."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import starmap
+from pathlib import Path
+
+from pydantic import ValidationError
+
+from tester.base.source import InvalidSource, Problem, Tree, problems_from_validation, read_tree
+from tester.base.units import shown
+from tester.inputs.materials.dma import MAX_BYTES, read_dma
+from tester.inputs.materials.dma_options import DmaOptions
+from tester.inputs.materials.files import DataFile, DataFileError, MaterialFile, decoded, read_beside
+from tester.inputs.materials.finding import Findings
+from tester.inputs.materials.headings import QUANTITIES, conversion, heading, heading_problems, quantity_named
+from tester.inputs.materials.moduli import ModuliRow, ModuliTable, judge, shift_doubts
+from tester.inputs.materials.schema import CompoundModel, TableFileModel, TableModel
+
+FORMULATED_PHR = (90.0, 500.0)
+"""A formulation adds up to within [A]: the rubber alone is 100."""
+
+
+@dataclass(frozen=True, slots=True)
+class LoadedCompound:
+    """A compound with the file it came from; ``table`` where its moduli were measured."""
+
+    model: CompoundModel
+    file: MaterialFile
+    table: ModuliTable | None = None
+    notes: tuple[str, ...] = ()
+    """What was converted or taken for what in the file of moduli."""
+
+    def holds(self) -> str:
+        """Return what is known of its modulus, in words."""
+        moduli = self.model.moduli
+        if moduli is None:
+            return "no moduli"
+        if moduli.fractional_zener is not None:
+            z = moduli.fractional_zener
+            span = f"G {z.Gr / 1e6:g} to {z.Gg / 1e6:g} MPa"
+            return f"fractional Zener, {span}, tau {z.tau:g} s at {z.at:g} degC, b {z.b:g}"
+        if moduli.constant is not None:
+            return f"constant, G {moduli.constant.G / 1e6:g} MPa, tan delta {moduli.constant.loss_factor:g}"
+        assert self.table is not None
+        return f"measured, {self.table.describe()}"
+
+
+def load_compound(path: Path, name: str | None = None) -> LoadedCompound:
+    """Read a compound's file; ``name`` is what messages call it. Raises InvalidSource with every problem."""
+    tree, problems = read_tree(path, name)
+    model, found = _validated(tree, problems)
+    data: tuple[DataFile, ...] = ()
+    table: ModuliTable | None = None
+    if model is not None and model.moduli is not None and model.moduli.table is not None:
+        table = _inline(model.moduli.table, tree, found)
+    elif model is not None and model.moduli is not None and model.moduli.file is not None:
+        table, data = _beside(model, model.moduli.file, path, tree, found)
+    found.end()
+    assert model is not None
+    for doubt in _doubts(model, table):
+        found.doubt(tree.key_position(("moduli",)), doubt)
+    _formulation(model, tree, found)
+    for number, doubt in enumerate(model.doubts):
+        found.doubt(tree.position(("doubts", number)), doubt)
+    file = MaterialFile("compound", model.name, path, tree.text, data, tuple(sorted(found.doubts)))
+    return LoadedCompound(model, file, table, tuple(found.notes))
+
+
+def compound_model(text: str, name: str) -> CompoundModel:
+    """Return what a compound's file says, without what it refers to. Raises InvalidSource."""
+    tree, problems = read_tree(text, name)
+    model, found = _validated(tree, problems)
+    found.end()
+    assert model is not None
+    return model
+
+
+def _validated(tree: Tree, problems: Sequence[Problem]) -> tuple[CompoundModel | None, Findings]:
+    found = Findings(tree.name, list(problems))
+    if not isinstance(tree.data, dict):
+        found.refuse((1, 1), "a compound is a list of keys: name, formulation, Tg, moduli and others")
+        return None, found
+    try:
+        return CompoundModel.model_validate(tree.data), found
+    except ValidationError as error:
+        found.problems += problems_from_validation(error, tree, CompoundModel)
+        return None, found
+
+
+def _inline(model: TableModel, tree: Tree, found: Findings) -> ModuliTable | None:
+    """Return the moduli of a table in the file itself."""
+    at = ("moduli", "table")
+    wrong = [*heading_problems(model.columns)]
+    for problem in wrong:
+        found.refuse(tree.position((*at, "columns")), f"columns: {problem}")
+    columns = [] if wrong else [*map(heading, model.columns)]
+    names = {one.quantity for one in columns}
+    due = {"temperature", "frequency", "E'", 'E"'}
+    if not wrong and names != due:
+        said = ", ".join(model.columns)
+        told = f"columns: {shown(said)} (expected temperature, frequency, E' and E'', each once; "
+        found.refuse(tree.position((*at, "columns")), f"{told}`tester materials import dma` converts others)")
+        return None
+    for number, row in enumerate(model.rows):
+        if len(row) != len(model.columns):
+            told = f"rows: {len(row)} numbers (expected {len(model.columns)}, one for each of columns)"
+            found.refuse(tree.position((*at, "rows", number)), told)
+    if found.problems:
+        return None
+    turn = [conversion(one.quantity, one.unit) for one in columns]
+    order = [[one.quantity for one in columns].index(name) for name in ("temperature", "frequency", "E'", 'E"')]
+    values = [[change(float(cell)) for change, cell in zip(turn, row, strict=True)] for row in model.rows]
+    rows = [*starmap(ModuliRow, ([one[index] for index in order] for one in values))]
+    judge(rows, lambda number: tree.position((*at, "rows", number)), found)
+    return ModuliTable(tuple(rows))
+
+
+def _beside(
+    model: CompoundModel, said: TableFileModel, path: Path, tree: Tree, found: Findings
+) -> tuple[ModuliTable | None, tuple[DataFile, ...]]:
+    """Return the moduli of a file beside this one, and that file; its problems are told at its own lines."""
+    at = ("moduli", "file")
+    for name in said.columns:
+        if not quantity_named(name):
+            place = tree.key_position((*at, "columns", name))
+            known = ", ".join(QUANTITIES)
+            found.refuse(place, f"columns: {shown(name)} is no quantity of a table of moduli (expected one of {known})")
+    try:
+        data = read_beside(path, said.name, MAX_BYTES)
+    except DataFileError as error:
+        found.refuse(tree.position((*at, "name")), f"name: {error}")
+        return None, ()
+    if found.problems:
+        return None, ()
+    options = DmaOptions(
+        {quantity_named(name): text for name, text in said.columns.items()},
+        said.units,
+        said.frequency,
+        said.temperature,
+        model.poisson,
+        ask_column='columns: {{"{quantity}": HEADING}}',
+        ask_unit='units: {{"{heading}": {unit}}}',
+        ask_value="{quantity}: {example}",
+    )
+    own = Findings(str(Path(tree.name).parent / said.name) if path.parent != Path() else said.name)
+    try:
+        table = read_dma(decoded(data.content), options, own)
+    except InvalidSource as error:
+        found.problems += error.problems
+        return None, ()
+    found.doubts += own.doubts
+    found.notes += own.notes
+    return table, (data,)
+
+
+def _doubts(model: CompoundModel, table: ModuliTable | None) -> list[str]:
+    moduli = model.moduli
+    if moduli is None:
+        return []
+    doubts: list[str] = []
+    if table is not None:
+        doubts += shift_doubts(table, model.Tg, model.decade_k)
+        if moduli.beyond == "hold":
+            doubts.append("beyond the frequencies of its points the moduli of its ends hold on: an extrapolation")
+    zener = moduli.fractional_zener
+    if zener is not None and model.Tg is not None and abs(zener.Ts - model.Tg - 50.0) > 0.5:
+        doubts.append(f"Ts, {zener.Ts:g} degC, is not Tg + 50 K, {model.Tg + 50.0:g} degC")
+    if moduli.constant is not None:
+        doubts.append("a constant modulus is no rubber's: speed and temperature change nothing")
+    return doubts
+
+
+def _formulation(model: CompoundModel, tree: Tree, found: Findings) -> None:
+    total = sum(model.formulation.values())
+    low, high = FORMULATED_PHR
+    if model.formulation and not low <= total <= high:
+        told = f"formulation adds up to {total:g} phr (expected {low:g} to {high:g}): the rubber alone is 100"
+        found.doubt(tree.key_position(("formulation",)), told)

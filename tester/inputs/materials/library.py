@@ -1,0 +1,222 @@
+"""Compounds and surfaces by their names: beside the recipe, then in the laboratory's folder, then as packaged.
+
+A name that stands in two places is the nearer one's. A name that stands twice in one folder is refused: nobody could
+say which of the two was meant. This module alone makes of a file what laws of friction are told.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from difflib import get_close_matches
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import recipes
+from sim.physics.materials import Rubber, Shear, ShearModulus, Sinusoid, Spectrum, Surface, UnknownMaterialError
+from tester.base.source import InvalidSource, Problem, load_tree
+from tester.base.units import shown
+from tester.inputs.materials.compound import LoadedCompound, load_compound
+from tester.inputs.materials.files import FOLDERS, Role
+from tester.inputs.materials.moduli import ModuliTable
+from tester.inputs.materials.schema import CompoundModel, ModuliModel, WaveModel
+
+if TYPE_CHECKING:
+    from tester.inputs.materials.surface import LoadedSurface
+
+VARIABLE = "TESTER_MATERIALS"
+"""Environment variable: the laboratory's folder, with ``compounds`` and ``surfaces`` in it."""
+DECADE_K = 8.0
+"""Kelvin that stand for a decade of frequency, where a file does not say it [A] (paper G, Eq 9)."""
+_NAME = re.compile(r"^(?:name|\"name\"|'name')[ \t]*:.*$", re.MULTILINE)
+
+
+class MissingModuliError(ValueError):
+    """A compound whose file holds no moduli, or none that a law could use; the message says what is missing."""
+
+
+@dataclass(frozen=True, slots=True)
+class LibraryEntry:
+    """A file of a folder, by its name in recipes; ``hidden``: a nearer file has the same name."""
+
+    role: Role
+    name: str
+    path: Path
+    place: Path
+    """The folder in which ``compounds`` and ``surfaces`` lie."""
+    hidden: bool = False
+
+
+class Library:
+    """Finds compounds and surfaces in folders, the nearest first (``sim.physics.materials.Materials``).
+
+    Every look reads the folders anew; what was read is not kept.
+    """
+
+    def __init__(self, folders: Sequence[Path]) -> None:
+        """``folders``: with ``compounds`` and ``surfaces`` in each; one that is not there holds nothing."""
+        self.folders = tuple(dict.fromkeys(folders))
+
+    @classmethod
+    def beside(cls, recipe: Path | None = None) -> Library:
+        """Return what a recipe sees: its own folder, that of ``TESTER_MATERIALS``, the packaged one.
+
+        Raises InvalidSource where the variable names no folder: another compound of a name would be taken.
+        """
+        own = [recipe.parent] if recipe is not None else []
+        said = os.environ.get(VARIABLE, "")
+        if said and not Path(said).is_dir():
+            raise InvalidSource([Problem(VARIABLE, 1, 1, f"{shown(said)} is no folder (expected the laboratory's)")])
+        return cls([*own, *([Path(said)] if said else []), recipes.FOLDER])
+
+    def entries(self, role: Role) -> list[LibraryEntry]:
+        """Return every file of a role, nearest first and sorted in a folder. Raises InvalidSource for doubled names."""
+        found: list[LibraryEntry] = []
+        for folder in self.folders:
+            here = [LibraryEntry(role, name, path, folder) for path, name in _named(folder / FOLDERS[role])]
+            _refuse_doubled(here)
+            nearer = {one.name for one in found}
+            found += [LibraryEntry(role, e.name, e.path, folder, hidden=e.name in nearer) for e in here]
+        return found
+
+    def path(self, role: Role, name: str) -> Path | None:
+        """Return the file of a name, None where none has it. Raises InvalidSource where two of a folder have it."""
+        for folder in self.folders:
+            here = [LibraryEntry(role, name, path, folder) for path, n in _named(folder / FOLDERS[role]) if n == name]
+            _refuse_doubled(here)
+            if here:
+                return here[0].path
+        return None
+
+    def compound(self, name: str) -> LoadedCompound:
+        """Return a compound's file. Raises UnknownMaterialError, InvalidSource."""
+        return load_compound(self._found("compound", name))
+
+    def surface_file(self, name: str) -> LoadedSurface:
+        """Return a surface's file. Raises UnknownMaterialError, InvalidSource."""
+        from tester.inputs.materials.surface import load_surface  # needs numpy, and a plan asks for compounds alone
+
+        return load_surface(self._found("surface", name))
+
+    def rubber(self, name: str) -> Rubber:
+        """Return a compound as laws see it.
+
+        Raises UnknownMaterialError, InvalidSource, and MissingModuliError (a ValueError) where its file has no moduli.
+        """
+        return rubber_of(self.compound(name))
+
+    def surface(self, name: str) -> Surface:
+        """Return a surface as laws see it. Raises UnknownMaterialError, InvalidSource."""
+        return surface_of(self.surface_file(name))
+
+    def _found(self, role: Role, name: str) -> Path:
+        path = self.path(role, name)
+        if path is not None:
+            return path
+        known = [*dict.fromkeys(one for folder in self.folders for _, one in _named(folder / FOLDERS[role]))]
+        near = get_close_matches(name, known, 1)
+        meant = f", did you mean {shown(near[0])}?" if near else ""
+        where = ", ".join(str(folder / FOLDERS[role]) for folder in self.folders)
+        raise UnknownMaterialError(f"no file of a {role} has the name {shown(name)}{meant} (looked in {where})")
+
+
+def rubber_of(loaded: LoadedCompound) -> Rubber:
+    """Return a compound as laws see it. Raises MissingModuliError."""
+    model, moduli = loaded.model, loaded.model.moduli
+    if moduli is None:
+        raise MissingModuliError(f"compound {shown(model.name)}: {loaded.file.path} holds no moduli")
+    shear = model.shear
+    try:
+        modulus = _modulus(model, moduli, loaded.table)
+    except ValueError as error:
+        raise MissingModuliError(f"compound {shown(model.name)}: {loaded.file.path}: {error}") from error
+    return Rubber(
+        name=model.name,
+        modulus=modulus,
+        poisson=model.poisson,
+        glass_c=model.Tg,
+        shear=Shear(shear.tau_s0, shear.v_c, shear.n, shear.ratio) if shear is not None else None,
+        decade_k=model.decade_k or DECADE_K,
+    )
+
+
+def _modulus(model: CompoundModel, moduli: ModuliModel, table: ModuliTable | None) -> ShearModulus:
+    from sim.physics.moduli import ConstantModulus, DmaRow, FractionalZener, TabulatedModulus  # needs numpy
+
+    if moduli.constant is not None:
+        return ConstantModulus(moduli.constant.G, moduli.constant.loss_factor)
+    if moduli.fractional_zener is not None:
+        z = moduli.fractional_zener
+        return FractionalZener(z.Gr, z.Gg, z.tau, z.b, shift_c=z.Ts, t_ref_c=z.at)
+    assert table is not None
+    rows = [DmaRow(r.temperature_c, r.frequency_hz, r.storage_pa, r.loss_pa) for r in table.rows]
+    hold = moduli.beyond == "hold"
+    if len(table.frequencies_hz) == 1:
+        return TabulatedModulus.of_sweep(rows, model.poisson, model.decade_k or DECADE_K, hold)
+    if model.Tg is None:
+        raise ValueError("Tg is missing: moduli at several frequencies are put on one curve by the shift of Tg + 50 K")
+    return TabulatedModulus.of_grid(rows, model.Tg, model.poisson, hold)
+
+
+def surface_of(loaded: LoadedSurface) -> Surface:
+    """Return a surface as laws see it."""
+    from sim.physics.roughness import SelfAffine, TabulatedSpectrum  # needs numpy
+
+    model = loaded.model
+    spectrum: Spectrum | None = None
+    if model.spectrum is not None:
+        s = model.spectrum
+        spectrum = SelfAffine(s.C0, s.q0, s.q1, s.H)
+    elif loaded.radial is not None:
+        spectrum = TabulatedSpectrum(loaded.radial.q_1_m, loaded.radial.power_m4)
+    waves = model.waves
+    return Surface(
+        name=model.name,
+        spectrum=spectrum,
+        coarse=_sinusoid(waves.coarse) if waves is not None else None,
+        fine=_sinusoid(waves.fine) if waves is not None else None,
+    )
+
+
+def _sinusoid(wave: WaveModel) -> Sinusoid:
+    return Sinusoid(wave.wavelength, wave.Ra)
+
+
+def _named(folder: Path) -> Iterator[tuple[Path, str]]:
+    """Yield the YAML files of a folder with the name that each says; by that line alone, for a list is to be quick."""
+    for path in _files(folder):
+        try:
+            line = _NAME.search(path.read_text(encoding="utf-8", errors="replace"))
+            data = load_tree(line[0].rstrip("\r")).data if line else None
+        except (OSError, InvalidSource):
+            continue  # whoever opens it by its path is told what is wrong with it
+        if isinstance(data, dict) and isinstance(data.get("name"), str):
+            yield path, str(data["name"])
+
+
+def _files(folder: Path) -> list[Path]:
+    """Return the YAML files of a folder, and of the folders in it."""
+    return [*sorted(folder.glob("*.yaml")), *sorted(folder.glob("*/*.yaml"))]
+
+
+def nameless(library: Library) -> Iterator[Path]:
+    """Yield the YAML files of a library's folders that say no name."""
+    for folder in library.folders:
+        for below in FOLDERS.values():
+            named = {path for path, _ in _named(folder / below)}
+            yield from (path for path in _files(folder / below) if path not in named)
+
+
+def _refuse_doubled(entries: Sequence[LibraryEntry]) -> None:
+    """Raise InvalidSource where two files of a folder have one name."""
+    first: dict[str, Path] = {}
+    problems: list[Problem] = []
+    for one in entries:
+        if one.name in first:
+            told = f"name: {shown(one.name)} is the name of {first[one.name].name} in this folder already"
+            problems.append(Problem(str(one.path), 1, 1, told))
+        first.setdefault(one.name, one.path)
+    if problems:
+        raise InvalidSource(problems)

@@ -1,0 +1,206 @@
+"""Moduli as measured: points of temperature, frequency, E' and E'', and what cannot be so or is doubtful in them.
+
+Nothing is repaired: a table is used as it stands, refused, or used with its doubts on record.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from math import isfinite, log10
+
+from tester.inputs.materials.finding import Findings, Place
+
+LEAST_ROWS = 4
+"""With fewer there is nothing to go between [A]."""
+FEW_ROWS = 12
+"""With fewer a table is doubted [A]."""
+COLDEST_C, HOTTEST_C = -150.0, 400.0
+SLOWEST_HZ, FASTEST_HZ = 1e-4, 1e4
+"""What instruments reach by themselves [A]: beyond, a frequency is another quantity or was shifted already."""
+SOFTEST_PA, STIFFEST_PA = 1e4, 2e10
+"""Storage moduli of rubber and its glass lie within [A]."""
+NOISE_K = 1.0
+"""Temperatures of a sweep go back by less than this [A]."""
+ALIKE = 1.05
+"""Frequencies within this ratio are told apart by an instrument's noise alone [A]."""
+WLF_SPAN_K = 100.0
+"""From the glass transition on, over which the WLF shift holds (Williams, Landel, Ferry 1955)."""
+POLE_K = 51.5
+"""So far below the glass transition the shift has its pole: 50 K - 101.5 K."""
+
+
+@dataclass(frozen=True, slots=True)
+class ModuliRow:
+    """One point: degC, Hz, and the moduli of tension in Pa."""
+
+    temperature_c: float
+    frequency_hz: float
+    storage_pa: float
+    loss_pa: float
+
+
+@dataclass(frozen=True, slots=True)
+class ModuliTable:
+    """Points in the order of the file."""
+
+    rows: tuple[ModuliRow, ...]
+
+    @property
+    def frequencies_hz(self) -> tuple[float, ...]:
+        """Return the frequencies, rising, each once."""
+        return tuple(sorted({one.frequency_hz for one in self.rows}))
+
+    @property
+    def temperatures_c(self) -> tuple[float, float]:
+        """Return the lowest and the highest temperature."""
+        return min(one.temperature_c for one in self.rows), max(one.temperature_c for one in self.rows)
+
+    def describe(self) -> str:
+        """Return what it spans, in words."""
+        low, high = self.temperatures_c
+        frequencies = self.frequencies_hz
+        at = f"{frequencies[0]:g} Hz" if len(frequencies) == 1 else f"{frequencies[0]:g} to {frequencies[-1]:g} Hz"
+        storage = sorted(one.storage_pa for one in self.rows)
+        return (
+            f"{len(self.rows)} points, {low:g} to {high:g} degC, {at}, "
+            f"E' {storage[0] / 1e6:.3g} to {storage[-1] / 1e6:.3g} MPa"
+        )
+
+
+def judge(rows: Sequence[ModuliRow], place: Place, found: Findings) -> None:
+    """Add to ``found`` what cannot be so in points, and what is doubtful."""
+    if not rows:
+        found.refuse(place(0), f"no points (expected {LEAST_ROWS} or more)")
+        return
+    before = len(found.problems)
+    for number, row in enumerate(rows):
+        for problem in _impossible(row, rows):
+            found.refuse(place(number), problem)
+    _duplicates(rows, place, found)
+    if len(rows) < LEAST_ROWS:
+        found.refuse(place(0), f"{len(rows)} points are too few (expected {LEAST_ROWS} or more)")
+    above = [number for number, row in enumerate(rows) if row.loss_pa > row.storage_pa]
+    if len(above) == len(rows) >= LEAST_ROWS:
+        found.refuse(place(0), "E'' is above E' at every point: are the columns E' and E'' swapped?")
+    if len(found.problems) == before:
+        _doubts(rows, above, place, found)
+
+
+def _impossible(row: ModuliRow, rows: Sequence[ModuliRow]) -> Iterator[str]:
+    values = (row.temperature_c, row.frequency_hz, row.storage_pa, row.loss_pa)
+    if not all(map(isfinite, values)):
+        yield "a number is missing or not finite"
+        return
+    if row.frequency_hz <= 0.0:
+        swapped = all(one.temperature_c > 0.0 for one in rows)
+        asked = ": are temperature and frequency swapped?" if swapped else ""
+        yield f"frequency: {row.frequency_hz:g} Hz is not above 0{asked}"
+    if not COLDEST_C <= row.temperature_c <= HOTTEST_C:
+        yield f"temperature: {row.temperature_c:g} degC is out of range (expected {COLDEST_C:g} to {HOTTEST_C:g} degC)"
+    if row.storage_pa <= 0.0:
+        yield f"E': {row.storage_pa:g} Pa is not above 0"
+    if row.loss_pa <= 0.0:
+        yield f"E'': {row.loss_pa:g} Pa is not above 0"
+
+
+def _duplicates(rows: Sequence[ModuliRow], place: Place, found: Findings) -> None:
+    seen: dict[tuple[float, float], int] = {}
+    for number, row in enumerate(rows):
+        point = (row.temperature_c, row.frequency_hz)
+        if point in seen:
+            line = place(seen[point])[0]
+            told = f"{row.temperature_c:g} degC and {row.frequency_hz:g} Hz stand in line {line} already"
+            found.refuse(place(number), told)
+        seen.setdefault(point, number)
+
+
+def _doubts(rows: Sequence[ModuliRow], above: Sequence[int], place: Place, found: Findings) -> None:
+    if above:
+        first = rows[above[0]]
+        ratio = first.loss_pa / first.storage_pa
+        told = f"E'' is above E' at {len(above)} of {len(rows)} points, first tan delta {ratio:.2f}"
+        found.doubt(place(above[0]), told)
+    if len(rows) < FEW_ROWS:
+        found.doubt(place(0), f"{len(rows)} points only (expected {FEW_ROWS} or more): much lies between them")
+    _swapped_doubt(rows, place, found)
+    _order_doubt(rows, place, found)
+    for number, row in enumerate(rows):
+        if not SLOWEST_HZ <= row.frequency_hz <= FASTEST_HZ:
+            told = f"frequency: {row.frequency_hz:g} Hz is beyond {SLOWEST_HZ:g} to {FASTEST_HZ:g} Hz of instruments"
+            found.doubt(place(number), f"{told}: was it shifted, or is its unit another?")
+            break
+    for number, row in enumerate(rows):
+        if not SOFTEST_PA <= row.storage_pa <= STIFFEST_PA:
+            told = f"E': {row.storage_pa:g} Pa is not that of a rubber ({SOFTEST_PA:g} to {STIFFEST_PA:g} Pa)"
+            found.doubt(place(number), f"{told}: is the unit right?")
+            break
+
+
+def _swapped_doubt(rows: Sequence[ModuliRow], place: Place, found: Findings) -> None:
+    """Doubt temperatures that go in decades beside frequencies that go in even steps."""
+    temperatures = sorted({one.temperature_c for one in rows})
+    frequencies = sorted({one.frequency_hz for one in rows})
+    if len(temperatures) < 3 or len(frequencies) < 3 or temperatures[0] <= 0.0:
+        return
+    ratios = [log10(b / a) for a, b in pairwise(temperatures)]
+    steps = [b - a for a, b in pairwise(frequencies)]
+    in_decades = max(ratios) - min(ratios) < 0.05 and sum(ratios) >= 1.0
+    in_steps = max(steps) - min(steps) < 0.05 * max(steps)
+    if in_decades and in_steps:
+        told = f"temperature goes in decades ({temperatures[0]:g} to {temperatures[-1]:g} degC)"
+        found.doubt(place(0), f"{told}, frequency in even steps: are temperature and frequency swapped?")
+
+
+def _order_doubt(rows: Sequence[ModuliRow], place: Place, found: Findings) -> None:
+    """Doubt a grid that goes up and down again: temperatures at a frequency, as of heating and then cooling."""
+    sweeps: dict[int, list[int]] = {}
+    for number, row in enumerate(rows):
+        sweeps.setdefault(round(log10(row.frequency_hz) / log10(ALIKE)), []).append(number)
+    for own in sweeps.values():
+        turn = _turn([rows[number].temperature_c for number in own])
+        if turn is not None:
+            at = rows[own[turn]]
+            told = f"the grid is not monotone: at {at.frequency_hz:g} Hz temperatures turn at {at.temperature_c:g} degC"
+            found.doubt(place(own[turn]), f"{told}: are two sweeps in one table?")
+            return
+
+
+def _turn(temperatures_c: Sequence[float]) -> int | None:
+    """Return where temperatures have gone back by more than a chamber's noise; None where they do not."""
+    lowest = highest = temperatures_c[0]
+    for number, here in enumerate(temperatures_c):
+        lowest, highest = min(lowest, here), max(highest, here)
+        if here - lowest > NOISE_K and highest - here > NOISE_K:
+            return number
+    return None
+
+
+def shift_doubts(table: ModuliTable, glass_c: float | None, decade_k: float | None) -> Iterator[str]:
+    """Yield what is doubtful in how a table reaches frequencies that were not measured.
+
+    At one frequency a temperature stands for others by ``decade_k`` (paper G, Eq 9); at several the WLF shift of
+    Tg + 50 K puts them on one curve.
+    """
+    low, high = table.temperatures_c
+    frequencies = table.frequencies_hz
+    if len(frequencies) == 1:
+        if decade_k is None:
+            yield f"measured at {frequencies[0]:g} Hz alone, and decade_k is not said: 8 K a decade (paper G) counts"
+        if high - low < 2.0 * (decade_k or 8.0):
+            yield f"{high - low:g} K at one frequency stand for less than two decades"
+        return
+    if frequencies[-1] < ALIKE * frequencies[0]:
+        span = f"{frequencies[0]:g} to {frequencies[-1]:g} Hz"
+        yield f"frequencies of {span} are taken for several: say the one that they stand for, if it is one sweep"
+    if glass_c is None:
+        yield "Tg is not said: without it several frequencies are not put on one curve, and no law can use them"
+    elif low <= glass_c - POLE_K:
+        ends = f"{glass_c - POLE_K:g} degC, where the WLF shift of Tg + 50 K ends"
+        yield f"{low:g} degC is not above {ends}: no law can use it"
+    elif low < glass_c or high > glass_c + WLF_SPAN_K:
+        yield (
+            f"measured from {low:g} to {high:g} degC; the WLF shift holds from Tg to Tg + 100 K, "
+            f"{glass_c:g} to {glass_c + WLF_SPAN_K:g} degC"
+        )

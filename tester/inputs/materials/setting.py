@@ -1,0 +1,37 @@
+"""What laws that are made of materials are told here: files of compounds and surfaces, and where tables are kept."""
+
+from __future__ import annotations
+
+import os
+import sys
+from pathlib import Path
+
+from sim.physics.laws import LawSetting
+
+VARIABLE = "TESTER_CACHE_DIR"
+"""Environment variable: the folder of what can be made again at any time."""
+
+
+def law_setting(surface: str, recipe: Path | None = None) -> LawSetting:
+    """Return the setting on a surface of this name, with materials beside a recipe first."""
+    from tester.inputs.materials.library import Library  # pydantic takes its time: not where no law needs it
+
+    return LawSetting(Library.beside(recipe), surface, tables=cache_folder() / "laws")
+
+
+def cache_folder() -> Path:
+    """Return the folder of what can be made again, which need not be there.
+
+    ``TESTER_CACHE_DIR``, else ``friction-tester`` in the user's caches: ``XDG_CACHE_HOME`` or ``~/.cache``, on macOS
+    ``~/Library/Caches``, on Windows ``LOCALAPPDATA``.
+    """
+    own = os.environ.get(VARIABLE)
+    if own:
+        return Path(own)
+    if sys.platform == "win32":
+        base, below = os.environ.get("LOCALAPPDATA"), "AppData/Local"
+    elif sys.platform == "darwin":
+        base, below = None, "Library/Caches"
+    else:
+        base, below = os.environ.get("XDG_CACHE_HOME"), ".cache"
+    return (Path(base) if base else Path.home() / below) / "friction-tester"

@@ -1,0 +1,139 @@
+"""Grids to conditions: what a specimen is measured at, in which order, and what is said of the experiment.
+
+A condition that several grids share is measured once, unless a grid is to measure its conditions again. Blocks of one
+temperature ascend, because cooling takes far longer than heating.
+"""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Callable, Iterator, Sequence
+from itertools import product
+from typing import Final, Generic, NamedTuple, TypeAlias, TypeVar
+
+from tester.analysis import closest, terms
+from tester.base.axes import AxisValue, Setpoint, condition_words
+from tester.inputs.recipe.schema import GridModel, MeasureModel, OrderModel, Recipe
+from tester.inputs.recipe.semantics import axis_values
+from tester.inputs.recipe.settings import Settings
+
+MERGED_SHOWN: Final = 3
+"""MergedConditions conditions of two grids that a sentence lists; it counts the rest."""
+Procedure = TypeVar("Procedure", bound=Settings)
+"""How a condition is measured, as a kind says it."""
+BlockValue: TypeAlias = Callable[[tuple[AxisValue, ...]], float]
+"""Takes what the axis of blocks is held at out of a condition's values."""
+
+
+class Condition(NamedTuple, Generic[Procedure]):
+    """One condition of a specimen: what is held, its row in the recipe's order (from 1) and its first grid."""
+
+    values: tuple[AxisValue, ...]
+    """Of a setpoint: what tells conditions of a specimen apart."""
+    row: int
+    grid: str
+    settings: Procedure
+
+
+def conditions_of(
+    recipe: Recipe, settings: Callable[[MeasureModel, GridModel], Procedure]
+) -> list[Condition[Procedure]]:
+    """Return a specimen's conditions in the recipe's order: grid after grid, the axis of blocks innermost.
+
+    Each setpoint once, but for those of a grid with ``measure_again``. ``settings``: of the recipe's kind
+    (``RecipePart.settings``), how a grid is measured.
+    """
+    measure = recipe.measure
+    if measure is None:
+        return []
+    found: list[Condition[Procedure]] = []
+    once: set[tuple[AxisValue, ...]] = set()
+    for grid in recipe.grids:
+        how = settings(measure, grid)
+        for values in product(*axis_values(measure, grid).values()):
+            if not grid.measure_again:
+                if values in once:
+                    continue
+                once.add(values)
+            found.append(Condition(values, len(found) + 1, grid.name, how))
+    return found
+
+
+class MergedConditions(NamedTuple):
+    """Conditions of a grid that an earlier one, ``measured_in``, has too: they are measured there, and only there."""
+
+    grid: str
+    measured_in: str
+    conditions: tuple[Setpoint, ...]
+    """Of any compound."""
+
+    def sentence(self) -> str:
+        """Return what is merged and which key measures it again, for people."""
+        count = len(self.conditions)
+        what, them = ("1 condition", "it") if count == 1 else (f"{count} conditions", "them")
+        listed = [condition_words(one, compound=False) for one in self.conditions[:MERGED_SHOWN]]
+        more = [f"{count - MERGED_SHOWN} more"] if count > MERGED_SHOWN else []
+        return (
+            f"grid {self.grid} shares {what} with grid {self.measured_in}, which alone measures {them}: "
+            f"{'; '.join([*listed, *more])} (measure_again: true in the grid measures {them} again)"
+        )
+
+    def as_data(self) -> dict[str, object]:
+        """Return the same as plain data: names of the grids, and what the axes are held at, by field."""
+        held = [{axis.field: one.value(axis.name) for axis in one.axes} for one in self.conditions]
+        return {"grid": self.grid, "measured_in": self.measured_in, "conditions": held}
+
+
+def merged_of(recipe: Recipe) -> Iterator[MergedConditions]:
+    """Yield which conditions of which grid are measured in an earlier one."""
+    measure, grids = recipe.measure, [grid for grid in recipe.grids if not grid.measure_again]
+    if measure is None or len(grids) < 2:
+        return
+    first: dict[tuple[AxisValue, ...], str] = {}
+    for grid in grids:
+        shared: dict[str, list[Setpoint]] = {}
+        for values in product(*axis_values(measure, grid).values()):
+            measured_in = first.setdefault(values, grid.name)
+            if measured_in != grid.name:
+                shared.setdefault(measured_in, []).append(Setpoint("", values, recipe.axes))
+        yield from (MergedConditions(grid.name, name, tuple(listed)) for name, listed in shared.items())
+
+
+def ordered(
+    conditions: Sequence[Condition[Procedure]], held: BlockValue, order: OrderModel, specimen: int, replicate: int
+) -> list[list[Condition[Procedure]]]:
+    """Return the conditions grouped by the axis of blocks, ascending, each group in the order that is asked for."""
+    groups: dict[float, list[Condition[Procedure]]] = {}
+    for condition in conditions:
+        groups.setdefault(held(condition.values), []).append(condition)
+    blocks = [groups[temperature] for temperature in sorted(groups)]
+    if order.within == "snake":
+        # Back and forth: a temperature begins with the setpoints at which the one before it ended.
+        return [block[::-1] if number % 2 else block for number, block in enumerate(blocks)]
+    if order.within == "shuffled":
+        for block in blocks:
+            # A stream of its own per block: another temperature in the recipe leaves this one's order alone.
+            key = f"{order.seed}/{specimen}/{replicate}/{held(block[0].values)!r}"
+            random.Random(key).shuffle(block)
+    return blocks
+
+
+def metadata_of(recipe: Recipe) -> dict[str, str]:
+    """Return what the recipe says about the experiment, as text, in columns named with their units."""
+    result: dict[str, str] = {}
+    if recipe.abrasive is not None:
+        result["abrasive"] = recipe.abrasive.name
+        if recipe.abrasive.mesh is not None:
+            result["abrasive_mesh"] = str(recipe.abrasive.mesh)
+        if recipe.abrasive.id is not None:
+            result["abrasive_id"] = recipe.abrasive.id
+    if recipe.humidity is not None:
+        result["humidity_percent"] = f"{recipe.humidity:g}"
+    if recipe.ambient is not None:
+        result["ambient_c"] = f"{recipe.ambient:g}"
+    if recipe.measure is not None and recipe.measure.combine != "mean":
+        result[closest.KEY] = recipe.measure.combine
+    for key, value in recipe.experiment.items():
+        # What replaces a bound of the budget keeps its name: the analysis looks for it.
+        result[key if key.startswith(terms.PREFIX) else f"experiment.{key}"] = value
+    return result

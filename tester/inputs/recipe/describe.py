@@ -1,0 +1,63 @@
+"""A plan in words: what is done, in which order, how long it takes and what it costs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from tester.inputs.recipe.estimate import Estimate
+from tester.inputs.recipe.part import RecipePart
+from tester.inputs.recipe.plan import ConditionStep, Plan, Step, Window
+
+_WIDTH = 76
+"""Columns of a line before its duration."""
+
+
+def duration(seconds: float) -> str:
+    """Return a duration as people say it: 45 s, 12 min, 3 h 05 min."""
+    if seconds < 99.5:
+        return f"{seconds:.0f} s"
+    minutes = round(seconds / 60.0)
+    return f"{minutes} min" if minutes < 100 else f"{minutes // 60} h {minutes % 60:02d} min"
+
+
+def lines(plan: Plan, estimate: Estimate, part: RecipePart) -> Iterator[str]:
+    """Yield the plan line by line: every step with its duration, then the totals."""
+    yield plan.name
+    for step, one in zip(plan.steps, estimate.steps, strict=True):
+        heading = part.heading(plan, step)
+        if heading:
+            yield ""
+            yield heading
+        text = f"{_indent(step)}{part.words(step, one)}"
+        yield f"{text:<{_WIDTH}} {duration(one.seconds):>10}" if one.seconds else text
+    yield ""
+    yield from totals(plan, estimate, part)
+
+
+def totals(plan: Plan, estimate: Estimate, part: RecipePart) -> Iterator[str]:
+    """Yield what the plan comes to, one figure a line."""
+    conditions = list(plan.conditions())
+    repeats = sum(step.repeats * step.scheme.repeats_each for step in conditions)
+    yield f"conditions        {len(conditions)}, {repeats} repeats"
+    least, most = duration(estimate.rig_seconds_low), duration(estimate.rig_seconds_high)
+    yield f"rig time          {duration(estimate.rig_seconds)} ({least} to {most} in 95 % of runs)"
+    yield f"sliding distance  {estimate.sliding_m:.0f} m"
+    yield from part.totals(plan, estimate)
+
+
+def repeats_words(step: ConditionStep) -> str:
+    """Return how many repeats are to count, and until what precision where the recipe says so: 4 (until 2 %).
+
+    In both directions they are pairs: 4 pairs.
+    """
+    pairs = " pairs" if step.both_directions else ""
+    return f"{step.repeats}{pairs}" + (f" (until {step.until_percent:.3g} %)" if step.until_percent is not None else "")
+
+
+def window_words(window: Window) -> str:
+    """Return a window as a recipe writes it: 30 rev, or 60 s."""
+    return f"{window.revolutions:g} rev" if window.revolutions is not None else f"{window.seconds or 0.0:g} s"
+
+
+def _indent(step: Step) -> str:
+    return "    " if isinstance(step, ConditionStep) else "  "

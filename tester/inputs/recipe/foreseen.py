@@ -1,0 +1,192 @@
+"""What the uncertainty of a plan's conditions will be, what it will mostly come from, and what would halve that.
+
+By the budget that results are given: the machine's terms at the coefficient that is expected, the repeatability of as
+many repeats as the recipe asks for, and what the plan itself will know of the sensitivity to temperature and of the
+diameter. Drift is left out: nobody knows it beforehand.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from math import ceil, sqrt
+from typing import Final
+
+from tester.analysis.kelvin import CONDITION_SCATTER, UNKNOWN, KnownSlope, Slope, slope_of_pairs
+from tester.analysis.measurand import REPEATABILITY
+from tester.analysis.terms import Term
+from tester.analysis.uncertainty import Budget, Contribution, budget, contribution
+from tester.base.axes import Axes, AxisValue, condition_words
+from tester.inputs.recipe.estimate import Estimator, Outlook, StepEstimate
+from tester.inputs.recipe.plan import ConditionStep, Plan
+
+MOST: Final = 400
+"""Conditions of a plan that are looked at, evenly chosen of a longer one [A]: each takes a tenth of a millisecond."""
+STEP_K: Final = 15.0
+"""Temperatures so far apart are proposed for a pair [A]: those of the paper's Table 2."""
+MORE_REPEATS: Final = 4
+"""So many times as many repeats halve what repeating leaves open."""
+
+_Held = tuple[str, tuple[AxisValue, ...]]
+
+
+@dataclass(frozen=True, slots=True)
+class Foreseen:
+    """A condition's coefficient as it is expected, and its budget: of the instruments alone, and with repeating."""
+
+    step: ConditionStep
+    mu: float
+    outlook: Outlook
+    instruments: Budget
+    whole: Budget
+
+    @property
+    def largest(self) -> Contribution:
+        """Return the largest contribution."""
+        return max(self.whole.contributions, key=lambda one: one.standard)
+
+    @property
+    def percent(self) -> float:
+        """Return the expanded uncertainty (95 %) of this piece, per cent of the coefficient."""
+        return 100.0 * self.whole.expanded / self.mu
+
+    def percent_of(self, one: Contribution) -> float:
+        """Return a contribution, expanded as the sum is, per cent of the coefficient."""
+        return 100.0 * self.whole.coverage * one.standard / self.mu
+
+
+@dataclass(frozen=True, slots=True)
+class Halved:
+    """What a recipe or a rig would have to say so that a contribution is half as large or less, and what it then is,
+    expanded, per cent of the coefficient."""
+
+    words: str
+    percent: float
+
+
+def foreseen(
+    plan: Plan, steps: Sequence[StepEstimate], estimator: Estimator, known: Iterable[KnownSlope] = ()
+) -> list[Foreseen]:
+    """Return what is foreseen of a plan's conditions that slide; ``steps``: their estimates, ``known``: what files say.
+
+    Of a plan with more than ``MOST`` conditions that many, evenly chosen.
+    """
+    outlooks = [*zip(plan.conditions(), estimator.outlooks(plan, steps), strict=True)]
+    chosen = outlooks[:: max(1, ceil(len(outlooks) / MOST))]
+    slopes = _Slopes(plan, estimator, known, {_held(step, plan.axes) for step, _ in chosen})
+    found = (_foreseen(step, replace(one, slope=slopes.of(step)), estimator) for step, one in chosen)
+    return [one for one in found if one is not None]
+
+
+def _foreseen(step: ConditionStep, outlook: Outlook, estimator: Estimator, more: int = 1) -> Foreseen | None:
+    found = estimator.budget(step, outlook)
+    if found is None:
+        return None
+    mu, instruments = found
+    values = step.repeats * more
+    each = 2 if (step.both_directions if outlook.both_directions is None else outlook.both_directions) else 1
+    s = 0.01 * estimator.s_percent(step.setpoint.compound) / sqrt(each)
+    repeating = contribution(REPEATABILITY, s, mu / sqrt(values), source=f"s expected, {values} repeats")
+    return Foreseen(step, mu, outlook, instruments, budget([*instruments.contributions, repeating]))
+
+
+def halved(one: Foreseen, estimator: Estimator, terms: Sequence[Term]) -> Halved | None:
+    """Return the first thing that makes the largest contribution half as large or less; None where nothing does.
+
+    Each is tried with the budget itself. ``terms``: those of the rig.
+    """
+    name, limit = one.largest.name, 0.5 * one.largest.standard * (1.0 + 1e-9)
+    for words, outlook, more in _changes(one, estimator):
+        changed = _foreseen(one.step, outlook, estimator, more)
+        found = changed and next((c for c in changed.whole.contributions if c.name == name), None)
+        if changed and found and found.standard <= limit:
+            return Halved(words, changed.percent_of(found))
+    term = next((each for each in terms if each.name == name and each.setting), None)
+    if term is None:
+        return None
+    known = f"{0.5 * term.bound:g} {term.unit}".removesuffix(" 1")
+    words = f"knowing it to {known} (experiment: {{uncertainty.{term.setting}: {0.5 * term.bound:g}}})"
+    return Halved(words, 0.5 * one.percent_of(one.largest))
+
+
+def _changes(one: Foreseen, estimator: Estimator) -> Iterator[tuple[str, Outlook, int]]:
+    """Yield what may be changed: in words, the outlook that it leads to, and how many times the repeats."""
+    step, outlook = one.step, one.outlook
+    if not outlook.checked and outlook.loss_mm > 0.0:
+        yield "measure: {wear_check: each_condition}", replace(outlook, checked=True), 1
+    if not outlook.slope.known:
+        pair = Slope(0.0, sqrt(2.0) * CONDITION_SCATTER / STEP_K, "pair")
+        yield f"the same condition at a second temperature, {STEP_K:g} K apart", replace(outlook, slope=pair), 1
+    if estimator.reversible(step) and not step.both_directions:
+        yield "measure: {both_directions: true}", replace(outlook, both_directions=True), 1
+    yield f"measure: {{repeats: {MORE_REPEATS * step.repeats}}}", outlook, MORE_REPEATS
+
+
+class _Slopes:
+    """What a plan's own temperatures will say of a condition's sensitivity, else what is known of its compound."""
+
+    def __init__(self, plan: Plan, estimator: Estimator, known: Iterable[KnownSlope], wanted: set[_Held]) -> None:
+        self._axes, self._axis = plan.axes, _temperature(plan.axes)
+        self._known: Mapping[tuple[str, float], KnownSlope] = {(one.compound, one.temperature_c): one for one in known}
+        self._points: dict[_Held, dict[float, float]] = {}
+        for step in plan.conditions() if self._axis else ():
+            held = _held(step, self._axes)
+            if held in wanted:
+                mu = estimator.mu(step.setpoint)
+                if mu is not None:
+                    self._points.setdefault(held, {})[step.setpoint.number(self._axis)] = mu
+
+    def of(self, step: ConditionStep) -> Slope:
+        """Return the sensitivity that will be known."""
+        if not self._axis:
+            return UNKNOWN
+        at_c = step.setpoint.number(self._axis)
+        pairs = slope_of_pairs(at_c, [*self._points.get(_held(step, self._axes), {}).items()])
+        known = self._known.get((step.setpoint.compound, at_c))
+        return pairs or (known.slope if known is not None else UNKNOWN)
+
+
+def _temperature(axes: Axes | None) -> str:
+    return next((one.name for one in axes or () if one.unit == "degC"), "")
+
+
+def _held(step: ConditionStep, axes: Axes | None) -> _Held:
+    name = _temperature(axes)
+    setpoint = step.setpoint
+    return setpoint.compound, tuple(axis.of(setpoint) for axis in setpoint.axes if axis.name != name)
+
+
+def foreseen_lines(found: Sequence[Foreseen], estimator: Estimator, terms: Sequence[Term]) -> Iterator[str]:
+    """Yield what will be uncertain, for people: the range, the most, its largest term, and what halves that."""
+    if not found:
+        return
+    worst, least = max(found, key=_percent), min(found, key=_percent)
+    span = f"{least.percent:.2g} to {worst.percent:.2g}" if len(found) > 1 else f"{worst.percent:.2g}"
+    yield f"uncertainty       {span} % of this piece (expanded, 95 %), without drift"
+    largest = worst.largest
+    where = condition_words(worst.step.setpoint)
+    yield f"                  most at {where}; largest term {largest.name}, {worst.percent_of(largest):.2g} %"
+    better = halved(worst, estimator, terms)
+    if better is not None:
+        yield f"                  halved by {better.words}: {better.percent:.2g} %"
+
+
+def _percent(one: Foreseen) -> float:
+    return one.percent
+
+
+def foreseen_fields(found: Sequence[Foreseen], estimator: Estimator, terms: Sequence[Term]) -> dict[str, object]:
+    """Return the same as plain data, per cent of the coefficient; nothing where nothing slides."""
+    if not found:
+        return {}
+    worst, least = max(found, key=_percent), min(found, key=_percent)
+    better = halved(worst, estimator, terms)
+    return {
+        "least_percent": round(least.percent, 3),
+        "most_percent": round(worst.percent, 3),
+        "most_at": condition_words(worst.step.setpoint),
+        "largest": worst.largest.name,
+        "largest_percent": round(worst.percent_of(worst.largest), 3),
+        "halved_by": better.words if better is not None else None,
+        "halved_percent": round(better.percent, 3) if better is not None else None,
+    }

@@ -1,0 +1,136 @@
+"""The plan: what a recipe becomes before anything moves. Data only.
+
+A plan is a flat tuple of frozen steps. Describing it, estimating it, checking it against a rig, executing it
+and resuming it are five readers of this one structure. Repeats and bursts are counts in a condition and no
+nodes of their own, so a plan of 100,000 conditions stays small.
+
+Units are in the names: _m_s, _n, _mm, _c (temperature in degC), _k (temperature difference in K), _s, _deg.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import ClassVar
+
+from tester.analysis.schemes import Scheme, scheme_of
+from tester.base.axes import Axes, Setpoint
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """One step of a plan. A kind has its own beside ``ConditionStep`` and ``PromptStep``. ``index``: place, from 0."""
+
+    kind: ClassVar[str] = ""
+    """What sort of step it is, in a word: steps of one kind take alike of their estimates."""
+    contact: ClassVar[bool] = False
+    """Rubber is in contact for most of it: then samples are recorded at the full rate."""
+    index: int
+
+
+@dataclass(frozen=True, slots=True)
+class Specimen:
+    """One compound to be tested; every replicate of it starts on new rubber. ``index`` counts from 1."""
+
+    index: int
+    compound: str
+    note: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Window:
+    """How much a repeat collects: revolutions or seconds, exactly one of the two is not None.
+
+    Drift is per window; a repeat collects 1.5 of them. ``extend_to`` (same unit, at least the window): the most that it
+    collects, its transient included, and where it is judged alone.
+    """
+
+    revolutions: float | None
+    seconds: float | None
+    extend_to: float
+
+    def duration_s(self, revolutions_per_s: float) -> float:
+        """Return the seconds in which the window is collected at a speed in revolutions/s (> 0)."""
+        if self.seconds is not None:
+            return self.seconds
+        return (self.revolutions or 0.0) / revolutions_per_s
+
+
+@dataclass(frozen=True, slots=True)
+class Soak:
+    """When a temperature counts as reached: within ``within_k`` for ``for_s``; at most ``at_most_s``."""
+
+    within_k: float
+    for_s: float
+    at_most_s: float
+
+
+@dataclass(frozen=True, slots=True)
+class ConditionStep(Step):
+    """Measure one condition: ``repeats`` values that count, each a window or more.
+
+    Up to ``at_most`` repeats are made: what is refused is made up for, and with ``until_percent`` the condition goes on
+    until its expanded repeatability (95 %, per cent of the coefficient) is reached.
+
+    ``condition`` counts from 1 through the plan (a replicate's conditions have numbers of their own).
+    ``row`` counts from 1 in the recipe's order and is the same for all replicates: its row of the table.
+    """
+
+    kind: ClassVar[str] = "condition"
+    contact: ClassVar[bool] = True
+    condition: int
+    row: int
+    specimen: int
+    replicate: int
+    grid: str
+    setpoint: Setpoint
+    repeats: int
+    min_valid: int
+    window: Window
+    temperature_band_k: float
+    soak: Soak
+    at_most: int
+    until_percent: float | None
+    both_directions: bool = field(default=False, kw_only=True)
+    """Repeats alternate between sliding as asked for and reversed; ``repeats``, ``at_most`` and ``min_valid`` count
+    pairs."""
+
+    @property
+    def scheme(self) -> Scheme:
+        """Return how its repeats make values."""
+        return scheme_of(both_directions=self.both_directions)
+
+
+@dataclass(frozen=True, slots=True)
+class PromptStep(Step):
+    """Something a person does and acknowledges; ``text`` is shown as it is."""
+
+    kind: ClassVar[str] = "prompt"
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """A whole recipe as steps. A kind's subclass adds what its procedures need of the recipe beside the steps."""
+
+    name: str
+    steps: tuple[Step, ...]
+    specimens: tuple[Specimen, ...]
+    min_valid: int
+    metadata: Mapping[str, str] = field(default_factory=dict[str, str])
+    kind: str = ""
+    """Of the rig that it is for."""
+    axes: Axes | None = None
+    """Of its conditions; None of a plan that can have none."""
+
+    def conditions(self) -> Iterator[ConditionStep]:
+        """Yield the condition steps in the order in which they are measured."""
+        for step in self.steps:
+            if isinstance(step, ConditionStep):
+                yield step
+
+    def specimen(self, index: int) -> Specimen:
+        """Return the specimen that a step names (``index`` from 1); raises IndexError."""
+        if not 1 <= index <= len(self.specimens):
+            raise IndexError(f"the plan has no specimen {index}")
+        return self.specimens[index - 1]

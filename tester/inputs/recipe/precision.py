@@ -1,0 +1,115 @@
+"""What a precision takes, and what no number of repeats can reach.
+
+``until`` is type A alone: the expanded repeatability of a mean. What the instruments add does not average out; a total
+uncertainty below that floor is refused.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from math import inf, sqrt
+from typing import TypeVar
+
+from tester.analysis.repeatability import Pool
+from tester.base.axes import condition_words
+from tester.inputs.recipe.estimate import Estimate, Estimator
+from tester.inputs.recipe.foreseen import Foreseen
+from tester.inputs.recipe.plan import ConditionStep, Plan
+from tester.inputs.recipe.repeats import HISTORIC_PERCENT, needed, reached_percent, s_of_values
+from tester.inputs.recipe.schema import MAX_REPEATS, Recipe, RepeatsModel
+
+AnyRecipe = TypeVar("AnyRecipe", bound=Recipe)
+
+
+class PrecisionError(Exception):
+    """A total uncertainty that cannot be reached; the message names the floor and its largest term."""
+
+
+def floor_percent(one: Foreseen) -> float:
+    """Return the expanded uncertainty (95 %) that repeating does not lower, per cent of the coefficient."""
+    return 100.0 * one.instruments.expanded / one.mu
+
+
+def until_for_total(total_percent: float, found: Sequence[Foreseen]) -> float:
+    """Return the repeatability (expanded, per cent) with which every condition has this total uncertainty.
+
+    Raises PrecisionError where the instruments alone have more.
+    """
+    highest = max(found, key=floor_percent, default=None)
+    if highest is None:
+        return total_percent
+    floor = floor_percent(highest)
+    if total_percent <= floor:
+        where = condition_words(highest.step.setpoint)
+        largest = "{} {:.2f} %".format(*_largest(highest))
+        raise PrecisionError(
+            f"a total uncertainty of {total_percent:g} % cannot be reached: {where} has {floor:.2f} % from "
+            f"the instruments alone (95 %), of which {largest}; repeating does not lower it"
+        )
+    return sqrt(total_percent**2 - floor**2)
+
+
+def _largest(one: Foreseen) -> tuple[str, float]:
+    """Return the largest term of the instruments, and what it is expanded, per cent."""
+    worst = max(one.instruments.contributions, key=lambda term: term.standard)
+    return worst.name, 100.0 * one.instruments.coverage * worst.standard / one.mu
+
+
+def with_precision(recipe: AnyRecipe, percent: float) -> AnyRecipe:
+    """Return a recipe that repeats each condition until its expanded repeatability is this, however often it takes."""
+
+    def unbounded(repeats: RepeatsModel) -> RepeatsModel:
+        return repeats.model_copy(update={"at_most": MAX_REPEATS})
+
+    if recipe.measure is None:
+        return recipe
+    measure = recipe.measure.model_copy(update={"until": percent, "repeats": unbounded(recipe.measure.repeats)})
+    grids = [
+        grid.model_copy(update={"until": None, "repeats": None if grid.repeats is None else unbounded(grid.repeats)})
+        for grid in recipe.grids
+    ]
+    return recipe.model_copy(update={"measure": measure, "grids": grids})
+
+
+def precision_lines(
+    plan: Plan, estimate: Estimate, estimator: Estimator, pools: Mapping[str, Pool], found: Sequence[Foreseen]
+) -> Iterator[str]:
+    """Yield what the precision takes, where a plan asks for one: repeats, where s is from, what stands beside it.
+
+    ``found``: what is foreseen of the plan's conditions.
+    """
+    asked = [step for step in plan.conditions() if step.until_percent is not None]
+    if not asked:
+        return
+    made = [
+        one.repeats
+        for step, one in zip(plan.steps, estimate.steps, strict=True)
+        if isinstance(step, ConditionStep) and step.until_percent is not None
+    ]
+    wanted = sorted({step.until_percent for step in asked if step.until_percent is not None})
+    words = ", ".join(f"{percent:.3g} %" for percent in wanted)
+    yield f"repeatability     {words} (type A, expanded, 95 %): {min(made):.0f} to {max(made):.0f} repeats a condition"
+    for compound in dict.fromkeys(step.setpoint.compound for step in asked):
+        pool = pools.get(compound)
+        source = f"{pool.df} degrees of freedom in stored runs" if pool else "assumed: nothing is stored"
+        yield f"                  {compound}: s = {estimator.s_percent(compound):.2g} % between repeats, {source}"
+    short = [step for step in asked if _short(step, estimator)]
+    if short:
+        step = short[0]
+        most = reached_percent(step, estimator.s_percent(step.setpoint.compound))
+        yield f"                  at_most {step.at_most} repeats reach {most:.2g} % only, in {len(short)} conditions"
+    highest = max(found, key=floor_percent, default=None)
+    if highest is not None:
+        least = min(map(floor_percent, found))
+        part = "largest: {}, {:.2g} %".format(*_largest(highest))
+        yield f"                  the instruments add {least:.2g} to {floor_percent(highest):.2g} % ({part})"
+
+
+def _short(step: ConditionStep, estimator: Estimator) -> bool:
+    s_percent = s_of_values(step, estimator.s_percent(step.setpoint.compound))
+    return needed(step.until_percent or inf, s_percent) > step.at_most
+
+
+def s_percents(pools: Mapping[str, Pool]) -> dict[str, float]:
+    """Return the standard deviation between repeats to be expected of each compound, per cent."""
+    return {compound: pool.s_percent if pool.df else HISTORIC_PERCENT for compound, pool in pools.items()}

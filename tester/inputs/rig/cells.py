@@ -1,0 +1,91 @@
+"""What must hold of a load cell in a rig file: that it measures what its machine needs, and of its transmitters."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from drivers.profiles import ProfileError
+from tester.base.source import Location
+from tester.inputs.rig.config import DeviceConfig, OwnDevice, Rig
+from tester.inputs.rig.profiles import profile_of
+from tester.inputs.rig.sensors import parts_of, title_of
+
+_Found = Iterator[tuple[Location, str]]
+
+
+def problems_of_cells(rig: Rig) -> _Found:
+    """Yield what is wrong with the machine's own devices that must measure something, and with parts of devices."""
+    for name, part in rig.devices.items():
+        if part.part_of:
+            yield from _belongs(rig, name, part)
+    for name, own in rig.own.items():
+        if own.channels:
+            yield from _measures(rig, name, own)
+
+
+def _belongs(rig: Rig, name: str, part: DeviceConfig) -> _Found:
+    whole = part.part_of
+    joined = [key for key, own in rig.own.items() if own.joined]
+    place = ("devices", name, "part_of")
+    if whole not in joined:
+        expected = f"expected {' or '.join(joined)}" if joined else "this kind of machine has no such device"
+        yield place, f"{whole} is no device that may have several transmitters ({expected})"
+    elif whole in rig.devices:
+        yield place, f"devices has {whole} itself, too: a load cell is one device, or its transmitters are devices"
+
+
+def _measures(rig: Rig, name: str, own: OwnDevice) -> _Found:
+    """Yield the channels that no transmitter measures, and those that two do."""
+    parts = parts_of(rig, name) if own.joined else {}
+    single = rig.devices.get(name)
+    asked = {name: single} if single is not None else parts
+    by_channel: dict[str, str] = {}
+    for key, device in asked.items():
+        try:
+            profile = profile_of(device.profile)
+        except ProfileError:
+            return  # said elsewhere
+        for channel in profile.channels:
+            given = device.channels.get(channel, channel)
+            if given in by_channel:
+                yield ("devices", key), f"measures {given}, as {by_channel[given]} does: rename it by `channels`"
+            by_channel.setdefault(given, key)
+        for channel in device.channels:
+            if channel not in profile.channels:
+                place = ("devices", key, "channels", channel)
+                yield place, f"no such channel (the profile has {', '.join(profile.channels)})"
+    missing = [channel for channel in own.channels if channel not in by_channel]
+    if missing and asked:
+        needed = f"a {own.title} of this machine measures {', '.join(own.channels)}"
+        more = f"; further transmitters: `part_of: {name}`" if own.joined else ""
+        has = ", ".join(f"{key} has {channel}" for channel, key in by_channel.items())
+        for channel in missing:
+            yield ("devices", next(iter(asked))), f"nothing measures {channel} ({needed}; {has}{more})"
+
+
+def skew_problem(rig: Rig, channels: tuple[str, ...], most_skew_s: float) -> _Found:
+    """Yield why the transmitters of a load cell cannot be read close enough together at their lines' usual times."""
+    parts = parts_of(rig, "load_cell")
+    if not parts or any(line.baud <= 0 for line in rig.lines.values()):
+        return
+    from drivers.joined_cell import JoinedCell, Transmitter  # only such a rig pays for the wire's library
+    from drivers.modbus import ModbusLink
+
+    links = {name: ModbusLink(line.framing, line.baud, line.parity) for name, line in rig.lines.items()}
+    try:
+        made = [
+            Transmitter(
+                title_of(rig, name), profile_of(one.profile), one.unit_id, links[one.line], one.channels, one.parameters
+            )
+            for name, one in parts.items()
+        ]
+        cell = JoinedCell(made, channels, most_skew_s)
+    except (ProfileError, ValueError, KeyError):
+        return  # said elsewhere
+    if cell.usual_skew_s <= most_skew_s:
+        return
+    apart = f"are read {1e3 * cell.usual_skew_s:.0f} ms apart at the usual times of their lines"
+    limit = f"interlocks.cell_skew is {1e3 * most_skew_s:g} ms"
+    yield ("devices", next(iter(parts))), (
+        f"the load cell's transmitters {apart}, and {limit}: raise the baud, or give each a line of its own"
+    )

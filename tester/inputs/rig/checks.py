@@ -1,0 +1,198 @@
+"""What must hold between the sections that every rig has; each section alone is checked by its types."""
+
+from __future__ import annotations
+
+import difflib
+import re
+from collections.abc import Iterator
+
+from drivers.drive_settings import plan
+from drivers.profiles import ProfileError
+from drivers.profiles.model import DeviceProfile
+from tester.base.source import Location, Problem, Tree
+from tester.inputs.rig.cells import problems_of_cells
+from tester.inputs.rig.config import DeviceConfig, Rig
+from tester.inputs.rig.profiles import profile_of
+from tester.inputs.rig.sensors import channels_of, further_channels, further_sensors, parts_of
+
+MAX_BUS_LOAD = 0.5
+"""Above this share of the bus the scan rate is refused: bursts of SDO and EMCY need the rest (fieldbus, wire sums)."""
+COMMANDED = frozenset({"jacket", "chamber"})
+"""Kinds of profiles whose devices take commands: none of them is a mere further sensor."""
+EMISSIVITIES = (0.1, 1.0)
+"""Least and greatest emissivity that a surface can be taken to have [A]."""
+SYNC_BITS, RPDO_BITS, TPDO_BITS = 55, 115, 135
+"""Bits of a frame of 0, 6 and 8 bytes with worst-case stuffing and the space between frames."""
+
+_Found = Iterator[tuple[Location, str]]
+
+
+def problems_of(rig: Rig, tree: Tree) -> list[Problem]:
+    """Return what does not fit together, the kind's own included, with positions."""
+    found = [*_packaged(rig), *_nodes(rig), *_drives(rig), *_bus_load(rig), *_lines(rig), *_profiles(rig)]
+    found += [*_channels(rig), *_watched(rig), *problems_of_cells(rig), *_simulation(rig), *rig.problems()]
+    return [tree.problem(location, message) for location, message in found]
+
+
+def _packaged(rig: Rig) -> _Found:
+    if rig.like and rig.like not in rig.packaged:
+        yield ("like",), f"{rig.like} is no packaged rig of the kind {rig.kind} (expected {', '.join(rig.packaged)})"
+
+
+def _nodes(rig: Rig) -> _Found:
+    taken = {rig.can.node: "the PC"}
+    found = [(("axes", name), name, axis.node_id) for name, axis in rig.drives().items()]
+    found += [(("can", "nodes", name), name, node.node_id) for name, node in rig.can.nodes.items()]
+    for place, name, node_id in found:
+        if node_id in taken:
+            yield (*place, "node_id"), f"node {node_id} is {taken[node_id]} already"
+        taken.setdefault(node_id, name)
+    for name, node in rig.can.nodes.items():
+        if not 1 <= node.node_id <= 126:
+            yield ("can", "nodes", name, "node_id"), f"node {node.node_id} (expected 1 to 126)"
+    if not 1 <= rig.can.node <= 127:
+        yield ("can", "node"), f"node {rig.can.node} is not a CANopen node (expected 1 to 127)"
+
+
+def _drives(rig: Rig) -> _Found:
+    """What is known of a make of drive, an axis need not be connected to learn."""
+    for name, axis in rig.drives().items():
+        for refused in plan(axis).refused:
+            yield ("axes", name, "profile"), refused
+
+
+def bus_load(rig: Rig, scan_hz: float) -> float:
+    """Return the share of the CAN bus that cyclic traffic takes at a scan rate, with worst-case stuffing."""
+    cycle = SYNC_BITS + len(rig.drives()) * (RPDO_BITS + TPDO_BITS)
+    nodes = sum(TPDO_BITS / node.period_s for node in rig.can.nodes.values())
+    return (cycle * scan_hz + nodes) / rig.can.bitrate
+
+
+def _bus_load(rig: Rig) -> _Found:
+    load = bus_load(rig, rig.scan.sliding_hz)
+    if load > MAX_BUS_LOAD:
+        rate = f"{rig.scan.sliding_hz:g} Hz"
+        message = f"{rate} loads the CAN bus with {100 * load:.0f} %, more than {100 * MAX_BUS_LOAD:.0f} %"
+        yield ("scan", "sliding"), f"{message}: raise can.bitrate or lower the rate"
+
+
+def _lines(rig: Rig) -> _Found:
+    used: dict[tuple[str, int], str] = {}
+    for name, device in rig.devices.items():
+        line, unit_id = device.line, device.unit_id
+        if line not in rig.lines:
+            near = difflib.get_close_matches(line, rig.lines, n=1)
+            meant = f", did you mean {near[0]}?" if near else ""
+            yield ("devices", name, "line"), f"no such line{meant} (lines has {', '.join(rig.lines)})"
+        if not 1 <= unit_id <= 247:
+            yield ("devices", name, "unit_id"), f"{unit_id} is not a Modbus address (expected 1 to 247)"
+        if (line, unit_id) in used:
+            yield ("devices", name, "unit_id"), f"{unit_id} on line {line} is {used[line, unit_id]} already"
+        used.setdefault((line, unit_id), name)
+    for name, line in rig.lines.items():
+        if line.baud <= 0:
+            yield ("lines", name, "baud"), "expected a baud rate above 0"
+
+
+def _profiles(rig: Rig) -> _Found:
+    for name, own in rig.own.items():
+        if name not in rig.devices and not own.optional and not (own.joined and parts_of(rig, name)):
+            yield ("devices",), f"{name} is missing"
+    for name, device in rig.devices.items():
+        try:
+            profile = profile_of(device.profile)
+        except ProfileError as error:
+            yield ("devices", name, "profile"), str(error)
+            continue
+        whole = device.part_of or name
+        expected = rig.own[whole].profile if whole in rig.own else "sensor"
+        if profile.kind != expected and (whole in rig.own or profile.kind in COMMANDED):
+            message = f"{device.profile} is a profile of kind {profile.kind} (expected {expected})"
+            yield ("devices", name, "profile"), message
+        if name in rig.own and (device.channels or device.simulated):
+            yield ("devices", name), "channels and simulated are for further sensors"
+        if device.part_of and device.simulated:
+            yield ("devices", name, "simulated"), "a part of the load cell shows the plant's forces: leave it out"
+        yield from _parameters(name, device, profile, own=name in rig.own)
+
+
+def _parameters(name: str, device: DeviceConfig, profile: DeviceProfile, *, own: bool) -> _Found:
+    """Check what is written to a sensor; one that heats takes nothing from its section."""
+    registers = profile.writes if profile.kind not in COMMANDED else {}
+    optical = profile.kind == "ir_thermometer"
+    for key, value in device.parameters.items():
+        place = ("devices", name, key)
+        register = registers.get(key)
+        if optical and key == "emissivity" and not EMISSIVITIES[0] <= value <= EMISSIVITIES[1]:
+            yield place, f"{value:g} is no emissivity (expected {EMISSIVITIES[0]:g} to {EMISSIVITIES[1]:g})"
+        elif register is not None and not register.least <= value <= register.greatest:
+            yield place, f"{value:g} is beyond {profile.title} (expected {register.least:g} to {register.greatest:g})"
+        elif register is None and not (optical and key == "emissivity"):
+            keys = ("profile", "line", "unit_id", "part_of", "heat_off", "channels", "simulated", *registers)
+            near = difflib.get_close_matches(key, keys, n=1)
+            meant = f", did you mean {near[0]}?" if near else ""
+            yield place, f'unknown key "{key}"{meant}'
+    stated = {*device.parameters, *(key for key, register in registers.items() if register.default is not None)}
+    for key in {**registers, **({"emissivity": None} if optical else {})}:
+        if key not in stated or (key == "emissivity" and own and key not in device.parameters):
+            yield ("devices", name), f"{key} is missing"
+
+
+def _channels(rig: Rig) -> _Found:
+    """Every channel of a further sensor has a name of its own, of which a column can be made."""
+    taken: dict[str, str] = {}
+    for name, device in further_sensors(rig).items():
+        try:
+            measured, own = channels_of(device), profile_of(device.profile).channels
+        except ProfileError:
+            continue
+        for place, known in (("channels", device.channels), ("simulated", device.simulated)):
+            for key in known:
+                if key not in own:
+                    yield ("devices", name, place, key), f"no such channel (the profile has {', '.join(own)})"
+        for channel in measured:
+            if _is_own(rig, channel):
+                yield ("devices", name), f"channel {channel} is one of the machine's own: rename it by `channels`"
+            if channel in taken:
+                message = f"channel {channel} is one of {taken[channel]} already: rename it by `channels`"
+                yield ("devices", name), message
+            taken.setdefault(channel, name)
+    for name, node in rig.can.nodes.items():
+        for channel in node.channels:
+            if _is_own(rig, channel):
+                yield ("can", "nodes", name), f"channel {channel} is one of the machine's own"
+            if channel in taken:
+                yield ("can", "nodes", name), f"channel {channel} is one of {taken[channel]} already"
+            taken.setdefault(channel, name)
+    for channel, name in taken.items():
+        if not re.fullmatch("[a-z][a-z0-9_]*", channel):
+            place = ("devices", name) if name in rig.devices else ("can", "nodes", name)
+            yield place, f"channel {channel}: expected small letters, digits and _"
+
+
+def _watched(rig: Rig) -> _Found:
+    """Every channel that an interlock looks at is measured by a further sensor."""
+    try:
+        there = [one.name for one in further_channels(rig)]
+    except ProfileError:
+        return
+    for name in rig.watched:
+        if name not in there:
+            known = f"there are {', '.join(there)}" if there else "there is none"
+            message = f"an interlock looks at the channel {name}, which no further sensor measures"
+            yield ("devices",), f"{message} (expected a device or a node with it; {known})"
+
+
+def _is_own(rig: Rig, channel: str) -> bool:
+    """Tell whether a channel of the kind has this name, in the record or on screens."""
+    return any(channel in (one.name, one.screen.key if one.screen is not None else "") for one in rig.quantities)
+
+
+def _simulation(rig: Rig) -> _Found:
+    """A simulated rig has no real wire and a real one no simulated wire: half of each is a mistake."""
+    wires = [(("can", "interface"), rig.can.interface)]
+    wires += [(("lines", name, "port"), line.port) for name, line in rig.lines.items()]
+    for location, wire in wires:
+        if (wire == "sim") != rig.simulated:
+            message = 'a simulated rig has "sim" here' if rig.simulated else '"sim" is for a simulated rig'
+            yield location, f"{message}, and simulated is {'true' if rig.simulated else 'false'}"

@@ -1,0 +1,262 @@
+"""What every rig file says, whatever its kind: buses, scan rates, lines, and what a kind's own sections build upon.
+
+A kind declares its sections as frozen dataclasses and its rig as a subclass of ``Rig``. Units are in the names; keys in
+the file have none (tester.base.config_reader). Nothing of it has a default: a limit never comes from the program,
+always from a file that a person can read, the rig's own or the packaged one of its kind (``Rig.may_lack``).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, make_dataclass
+from datetime import date
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Final, Literal, TypeVar
+
+from drivers.axis import AxisConfig
+from drivers.canopen.node_config import NodeConfig
+from tester.base.config_reader import FURTHER_KEYS, LEFT_OUT, Range, as_text, as_tree
+from tester.base.quantities import Quantities
+from tester.base.source import Location
+from tester.inputs.rig.ceilings import Ceiling
+from tester.inputs.rig.parameter import Parameter, Values
+
+if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
+
+_POSITIVE = Range(gt=0.0)
+OneRig = TypeVar("OneRig", bound="Rig")
+
+
+class WrongKindError(TypeError):
+    """A rig of one kind came to where another kind's is needed; the message says which."""
+
+
+@dataclass(frozen=True, slots=True)
+class ScanConfig:
+    """Scan rates: while sliding or moving, while any drive is enabled, with all drives disabled."""
+
+    sliding_hz: Annotated[float, "Hz", Range(gt=0.0, le=200.0)]
+    enabled_hz: Annotated[float, "Hz", Range(gt=0.0, le=200.0)]
+    idle_hz: Annotated[float, "Hz", Range(gt=0.0, le=200.0)]
+
+
+@dataclass(frozen=True, slots=True)
+class CanConfig:
+    """The drives' bus. ``interface`` is "sim" or a python-can interface; ``node`` is the PC's own."""
+
+    interface: str
+    channel: str
+    bitrate: Literal[125000, 250000, 500000, 800000, 1000000]
+    node: int
+    heartbeat_s: Annotated[float, "s", _POSITIVE]
+    """The PC's heartbeat period."""
+    drive_heartbeat_s: Annotated[float, "s", _POSITIVE]
+    """The drives' heartbeat period (0x1017)."""
+    consumer_heartbeat_s: Annotated[float, "s", _POSITIVE]
+    """How long a drive waits for the PC's heartbeat before it stops (0x1016)."""
+    nodes: Mapping[str, NodeConfig] = field(default_factory=dict[str, NodeConfig])
+    """Further nodes, which measure; ``drive_heartbeat`` is theirs too, unless they state one."""
+
+
+@dataclass(frozen=True, slots=True)
+class LineConfig:
+    """One Modbus line: a serial port, ``host:port`` (framing "socket"), or "sim"."""
+
+    port: str
+    baud: int
+    parity: Literal["N", "E", "O"]
+    framing: Literal["rtu", "socket"]
+
+
+HEAT_OFF: Final = {
+    "fallback": "the controller goes on with a setpoint of its own that asks for no heat (falls_back_s of its profile)",
+    "relay": "a watchdog relay, hard-wired, takes the heater's supply",
+}
+"""What may stand as ``heat_off``, and what it says of the machine."""
+
+
+@dataclass(frozen=True, slots=True)
+class DeviceConfig:
+    """One Modbus device: its profile in drivers/profiles, its line and its address there."""
+
+    profile: str
+    line: str
+    unit_id: int
+    channels: Mapping[str, str] = field(default_factory=dict[str, str])
+    """Other names for channels of the profile, where two sensors of a kind are on the rig."""
+    simulated: Mapping[str, str | float] = field(default_factory=dict[str, str | float])
+    """What channels show on a simulated rig: a quantity of its plant by name, or a number in the channel's unit."""
+    part_of: str = field(default="", metadata=LEFT_OUT)
+    """The machine's own device of which it measures a part: a load cell of several transmitters."""
+    heat_off: str = field(default="", metadata=LEFT_OUT)
+    """Of a controller that heats and has no lease: what takes the heat when the PC is silent (``HEAT_OFF``)."""
+    parameters: Annotated[Mapping[str, float], FURTHER_KEYS] = field(default_factory=dict[str, float])
+    """What is written to a sensor at every connect, by the profile's names (``emissivity``), in its units."""
+
+
+@dataclass(frozen=True, slots=True)
+class OwnDevice:
+    """A device that a kind of machine has: what people call it, its profile's kind, whether a rig can be without it."""
+
+    title: str
+    profile: str
+    optional: bool = False
+    channels: tuple[str, ...] = ()
+    """What it must measure, by the names of its profile's channels."""
+    joined: bool = False
+    """It may be several transmitters, which measure that together (``DeviceConfig.part_of``)."""
+
+
+@dataclass(frozen=True, slots=True)
+class CalibrationConfig:
+    """The last days on which the certificates of the sensors hold, as 2027-01-31; "" is not known.
+
+    A kind declares a text for each certificate, by ``certificates``. The list before a start shows them; ``overdue``
+    says what a start does once one has ended: "warn", or "refuse".
+    """
+
+    certificates: ClassVar[tuple[str, ...]] = ()
+    overdue: str = "warn"
+
+    def __post_init__(self) -> None:
+        """Refuse what is no date, and no word for ``overdue``."""
+        self.ends()
+        if self.overdue not in ("warn", "refuse"):
+            raise ValueError(f'overdue: expected warn or refuse, got "{self.overdue}"')
+
+    def ends(self) -> dict[str, date | None]:
+        """Return the last day of each certificate by its name; raises ValueError for a text that is no date."""
+        names = {name: name.replace("_", " ") for name in self.certificates}
+        return {words: _day(words, getattr(self, name)) for name, words in names.items()}
+
+    def over(self, today: date) -> str:
+        """Return which certificates have ended before a day, "" where none has."""
+        return ", ".join(f"{name} ended {end}" for name, end in self.ends().items() if end is not None and end < today)
+
+
+def _day(name: str, text: str) -> date | None:
+    try:
+        return date.fromisoformat(text) if text else None
+    except ValueError:
+        raise ValueError(f'{name}: expected a date such as 2027-01-31, or "", got "{text}"') from None
+
+
+def section_of(name: str, parameters: tuple[Parameter, ...], module: str) -> Any:
+    """Return the class of a section with a field for each parameter: a kind's ``interlocks``."""
+    return make_dataclass(
+        name,
+        [(one.name, Annotated[float, one.unit, one.bounds]) for one in parameters],
+        frozen=True,
+        slots=True,
+        namespace={"__module__": module, "__doc__": "A section of the rig file: a field for each parameter."},
+    )
+
+
+def values_of(section: DataclassInstance, parameters: tuple[Parameter, ...]) -> Values:
+    """Return what such a section says, by parameter."""
+    return {one: float(getattr(section, one.name)) for one in parameters}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Rig:
+    """A rig: everything about the machine that software needs to know, and nothing about a test.
+
+    A kind's subclass adds its sections and answers what is declared here without a value.
+    """
+
+    packaged: ClassVar[Mapping[str, str]]
+    """Rig files that ship with the kind, by the names that ``--rig`` takes: ``package:file``. The first is the one
+    that a file of the kind is compared with and completed from, unless its key ``like`` names another."""
+    may_lack: ClassVar[tuple[str, ...]] = ("scan", "can.heartbeat", "can.drive_heartbeat", "can.consumer_heartbeat")
+    """Keys, or whole sections, that a file may lack: they take the value of the packaged file, and ``tester check``
+    says which did. ``*`` stands for one key. Every other key is only known to those who built the machine."""
+    stated: ClassVar[tuple[str, ...]] = ()
+    """Sections of which every key has to be in the file, although their class, which others use, too, has defaults."""
+    manual: ClassVar[tuple[str, ...]] = ()
+    """Axes that a person may set instead of a drive: ``manual: true``."""
+    own: ClassVar[Mapping[str, OwnDevice]] = {}
+    """Devices of the kind by their keys in ``devices``; any other there is a further sensor (tester.inputs.rig.sensors)."""
+    parameters: ClassVar[tuple[Parameter, ...]] = ()
+    """Of the section ``interlocks``. One that the packaged file does not have counts there with its default."""
+    watched: ClassVar[tuple[str, ...]] = ()
+    """Channels of further sensors that the kind's interlocks look at: a rig file has to have them."""
+    quantities: ClassVar[Quantities]
+    """The kind's table of channels, without those of further sensors (tester.inputs.rig.sensors.quantities_on)."""
+    ceilings: ClassVar[tuple[Ceiling, ...]] = ()
+    """Every key on which safety hangs, in the order of the kind's safety page."""
+    real: ClassVar[tuple[tuple[str, str], ...]] = ()
+    """(text of the packaged file, what a real machine's has there), beside what is the same for all kinds
+    (tester.inputs.rig.template); each must be there exactly once."""
+
+    rig: str
+    """What the rig is called."""
+    kind: str
+    """The kind of machine that it is."""
+    like: str = ""
+    """Name of the packaged rig that it is built like; "" is the first of its kind."""
+    simulated: bool
+    scan: ScanConfig
+    can: CanConfig
+    lines: Mapping[str, LineConfig] = field(default_factory=dict[str, LineConfig])
+    devices: Mapping[str, DeviceConfig] = field(default_factory=dict[str, DeviceConfig])
+
+    @classmethod
+    def of(cls: type[OneRig], rig: Rig) -> OneRig:
+        """Return a rig as one of this kind; raises WrongKindError."""
+        if not isinstance(rig, cls):
+            raise WrongKindError(f"{rig.rig} is a rig of the kind {rig.kind}: it cannot be used as {cls.__module__}")
+        return rig
+
+    @property
+    def name(self) -> str:
+        """What the rig is called."""
+        return self.rig
+
+    @property
+    def ambient_c(self) -> float:
+        """Temperature of the air around the rig, degC: of the simulated rig's air, else as the file states it."""
+        raise NotImplementedError
+
+    def in_air(self: OneRig, ambient_c: float) -> OneRig:
+        """Return a rig whose file states this temperature of the air around a real one, degC."""
+        raise NotImplementedError
+
+    def certificates(self) -> CalibrationConfig:
+        """Return the days on which the certificates of the sensors end."""
+        return CalibrationConfig()
+
+    def stale_limits(self) -> Mapping[str, tuple[str, float]]:
+        """Return the key and the value, s, of how old a device's reading may be, by its name in ``devices``."""
+        return {}
+
+    def drives(self) -> Mapping[str, AxisConfig]:
+        """Return the axes that have a drive on the bus, by name."""
+        raise NotImplementedError
+
+    @property
+    def plant(self) -> Any:
+        """Parameters of the simulated machine, as the kind's twin takes them (sim.machines); nothing on a real rig."""
+        raise NotImplementedError
+
+    @property
+    def faults(self) -> tuple[str, ...]:
+        """Lines of a fault script (sim.faults.language) that the file states for a simulated rig."""
+        return ()
+
+    def settled(self: OneRig) -> OneRig:
+        """Return the rig with what follows from its file."""
+        return self
+
+    def problems(self) -> Iterator[tuple[Location, str]]:
+        """Yield what does not fit together between the kind's sections, with its place."""
+        yield from ()
+
+    @property
+    def tree(self) -> dict[str, object]:
+        """The configuration with everything resolved, as it could stand in a file."""
+        return as_tree(self)
+
+    @property
+    def text(self) -> str:
+        """The configuration with everything resolved, as YAML: what a run stores, and what reads back as this rig."""
+        return as_text(self)

@@ -1,0 +1,165 @@
+"""A rig file's tree, with `--set` overrides, to a checked rig of its kind."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from copy import deepcopy
+from functools import cache
+from typing import TypeVar
+
+from drivers.drives import reader
+from sim.physics import laws
+from tester.base.config_reader import read
+from tester.base.source import InvalidSource, Problem, Tree, Value, load_tree
+from tester.inputs.rig.ceilings import Risk, beyond, counts_as_simulated, loosened
+from tester.inputs.rig.checks import problems_of
+from tester.inputs.rig.config import Rig
+from tester.inputs.rig.laws import extension_law
+from tester.inputs.rig.missing import complete, unstated
+from tester.inputs.rig.packaged import new_tree
+from tester.inputs.rig.profiles import extension_drive
+
+OneRig = TypeVar("OneRig", bound=Rig)
+laws.look_up_with(extension_law)
+reader.look_up_with(extension_drive)
+MISSING = "only those who built the machine know it: no packaged value stands in"
+"""Said of a key that has to be in the file."""
+
+
+def load(kind: type[OneRig], tree: Tree, overrides: Sequence[str] = (), accept_risk: str = "") -> OneRig:
+    """Return the rig of a file's tree; changes the tree.
+
+    ``overrides`` are ``a.b.c=value`` texts, each replacing one key of the file; the value is read as in the file.
+    ``accept_risk``: why safety keys may be looser than they should be (``risks_of``), "" = they may not. On a real rig
+    only its file may say so: ``overrides`` can but tighten what it says. Raises InvalidSource with every problem; one
+    that an override brought in is named by it.
+    """
+    texts = tuple(overrides)
+    if not texts:
+        return _accepted(checked(kind, tree), None, tree, accept_risk)
+    stated = checked(kind, deepcopy(tree))  # what is wrong with the file itself is told first, and as such
+    problems = [problem for number, text in enumerate(texts) for problem in _override(tree, text, number)]
+    if problems:
+        raise InvalidSource(problems)
+    try:
+        return _accepted(checked(kind, tree), stated, tree, accept_risk)
+    except InvalidSource as error:
+        raise InvalidSource([_attributed(problem, texts) for problem in error.problems]) from error
+
+
+def risks_of(rig: Rig) -> tuple[Risk, ...]:
+    """Return the safety keys for which a rig needs somebody's word: those looser than the packaged values.
+
+    Where nobody can be hurt (``counts_as_simulated``) only those looser than their hardest values.
+    """
+    return beyond(rig) if counts_as_simulated(rig) else loosened(rig, _packaged(type(rig), rig.like))
+
+
+@cache
+def _packaged(kind: type[OneRig], like: str) -> OneRig:
+    return checked(kind, new_tree(kind, like))
+
+
+def _accepted(rig: OneRig, stated: OneRig | None, tree: Tree, reason: str) -> OneRig:
+    """Return a rig whose risks are accepted; ``stated``: what the file says without overrides."""
+    real = not counts_as_simulated(rig)
+    loose = loosened(rig, stated) if real and stated is not None else ()
+    problems = [
+        tree.problem(
+            one.location,
+            f"{one.key}: {one.compared}, and --set may only tighten what the file of a real rig says"
+            f" ({one.ceiling.because}): write it there, and run with --accept-risk REASON",
+        )
+        for one in loose
+    ]
+    told = {one.location for one in loose}
+    if not reason:
+        problems += [
+            tree.problem(
+                one.location,
+                f"{one.key}: {one.compared} ({one.ceiling.because}): tighten it, or take it on: --accept-risk REASON",
+            )
+            for one in risks_of(rig)
+            if one.location not in told
+        ]
+    if problems:
+        raise InvalidSource(problems)
+    return rig
+
+
+def checked(kind: type[OneRig], tree: Tree) -> OneRig:
+    """Return a tree as a rig whose sections fit together, risks or not; changes the tree. Raises InvalidSource."""
+    complete(kind, tree)
+    _resolve(kind, tree)
+    unsaid = [tree.problem(place[:-1], f"{place[-1]} is missing; {MISSING}") for place in unstated(kind, tree)]
+    try:
+        rig = read(kind, tree, MISSING).settled()
+    except InvalidSource as error:
+        raise InvalidSource([*error.problems, *unsaid]) from error
+    problems = [*unsaid, *problems_of(rig, tree)]
+    if problems:
+        raise InvalidSource(problems)
+    return rig
+
+
+def _override(tree: Tree, text: str, number: int) -> list[Problem]:
+    """Put one override into the tree, at positions that lead back to it; return what is wrong with it."""
+    path, equals, value_text = text.partition("=")
+    keys = [key.strip() for key in path.split(".")]
+    if not equals or not all(keys):
+        return [_problem(text, "expected key.key=value")]
+    if keys[0] == "kind":
+        return [_problem(text, "the kind of a rig stands in its file")]
+    try:
+        value = load_tree(value_text).data if value_text.strip() else None
+    except InvalidSource as error:
+        return [_problem(text, f"the value: {error.problems[0].message}")]
+    if value is None:
+        return [_problem(text, "expected a value after =")]
+    assert isinstance(tree.data, dict)  # the file has been read as a rig
+    section: dict[str, Value] = tree.data
+    for depth, key in enumerate(keys):
+        here = tuple(keys[: depth + 1])
+        # A section that refuses a value is named by its own place: that, too, leads to the override.
+        tree.positions[here] = tree.keys[here] = (-1 - number, 1)
+        if depth == len(keys) - 1:
+            section[key] = value
+            break
+        inner = section.setdefault(key, {})
+        if not isinstance(inner, dict):
+            return [_problem(text, f"{'.'.join(here)} is a value, it has no keys below it")]
+        section = inner
+    return []
+
+
+def _resolve(kind: type[Rig], tree: Tree) -> None:
+    """Write into every axis what the file says once for all: its name and the heartbeats; ``manual`` becomes None."""
+    if not isinstance(tree.data, dict):
+        return
+    axes, can = tree.data.get("axes"), tree.data.get("can")
+    if not isinstance(axes, dict) or not isinstance(can, dict):
+        return
+    nodes = can.get("nodes")
+    for name, node in nodes.items() if isinstance(nodes, dict) else ():
+        if isinstance(node, dict):
+            node.setdefault("name", name)
+            node.setdefault("heartbeat", can.get("drive_heartbeat", ""))
+    for name, axis in axes.items():
+        if not isinstance(axis, dict):
+            continue
+        if name in kind.manual and axis.get("manual") is True and len(axis) == 1:
+            axes[name] = None
+            continue
+        axis.setdefault("name", name)
+        for key, source in (("heartbeat", "drive_heartbeat"), ("consumer_heartbeat", "consumer_heartbeat")):
+            if source in can:
+                axis.setdefault(key, can[source])
+
+
+def _attributed(problem: Problem, overrides: Sequence[str]) -> Problem:
+    """Return a problem under the name of the override that it comes from."""
+    return _problem(overrides[-1 - problem.line], problem.message) if problem.line < 0 else problem
+
+
+def _problem(override: str, message: str) -> Problem:
+    return Problem(f"--set {' '.join(override.split())[:80]}", 1, 1, message)

@@ -1,0 +1,117 @@
+"""The rig file of a plain machine: drives by name, sensors by their profiles, nothing that a program must know more of.
+
+A kind inherits from ``PlainRig`` and adds its sections: ``interlocks`` (``section_of`` its table's parameters), ``sim``
+with its twin's parameters, and whatever its rows and its recipes compare with.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Final, TypeVar
+
+from drivers.axis import AxisConfig
+from tester.base.config_reader import Range
+from tester.base.source import Location
+from tester.inputs.rig.ceilings import AXES, TRUE, Ceiling
+from tester.inputs.rig.config import Rig, values_of
+from tester.inputs.rig.parameter import SECTION, Direction, Values
+
+if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
+
+OneRig = TypeVar("OneRig", bound="PlainRig")
+_LOWER, _HIGHER = Direction.LOWER, Direction.HIGHER
+
+PLAIN_CEILINGS: Final = (
+    Ceiling("arming.watchdog_proof", "", _HIGHER, TRUE,
+            "without it nobody knows whether the drives stop when this program does"),
+    Ceiling("arming.listen", "s", _HIGHER, "0.5 s", "another master sends twice a second or oftener [A]"),
+    Ceiling("arming.withhold", "s", _HIGHER, "300 ms",
+            "half as long again as the 200 ms after which a drive must report the missing heartbeat"),
+    Ceiling("scan.enabled", "Hz", _HIGHER, "10 Hz", "two setpoints within the 200 ms after which a drive stops"),
+    Ceiling("scan.idle", "Hz", _HIGHER, "5 Hz", "the inputs are too old after 250 ms: one scan at least looks at them"),
+    Ceiling("can.heartbeat", "s", _LOWER, "100 ms", "two of the PC's heartbeats within the 200 ms that drives wait"),
+    Ceiling("can.drive_heartbeat", "s", _LOWER, "100 ms", "three are missed before a drive is lost: 0.3 s"),
+    Ceiling("can.consumer_heartbeat", "s", _LOWER, "300 ms", "a drive that hears nothing goes on as told meanwhile"),
+    Ceiling(f"{AXES}heartbeat", "s", _LOWER, "100 ms", "as can.drive_heartbeat"),
+    Ceiling(f"{AXES}consumer_heartbeat", "s", _LOWER, "300 ms", "as can.consumer_heartbeat"),
+    Ceiling(f"{AXES}proves_watchdog", "", _HIGHER, TRUE, "as arming.watchdog_proof, for one drive"),
+)  # fmt: skip
+"""Keys beside the interlocks' own on which the safety of a plain machine hangs."""
+
+
+@dataclass(frozen=True, slots=True)
+class ArmingSection:
+    """What is shown before a run may move anything (tester.machine.plain.arming)."""
+
+    listen_s: Annotated[float, "s", Range(ge=0.0)]
+    """Nothing is sent for this long at first: another master on the bus would be heard."""
+    watchdog_proof: bool
+    """Withhold the PC's heartbeat with the drives enabled and standing: every drive must report it and drop out."""
+    withhold_s: Annotated[float, "s", Range(gt=0.0)]
+
+
+@dataclass(frozen=True, slots=True)
+class PlainSim:
+    """What every twin's section ``sim`` has; a kind's own inherits from it."""
+
+    noise: Annotated[float, "1", Range(ge=0.0)] = 1.0
+    """Scale of every sensor's imperfection."""
+    faults: tuple[str, ...] = ()
+    """A fault script (sim.faults.language)."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PlainRig(Rig):
+    """A rig of drives and sensors."""
+
+    may_lack: ClassVar[tuple[str, ...]] = (
+        *Rig.may_lack, "axes.*.rpdo_deadline", "axes.*.inputs_period", "arming", SECTION,
+    )  # fmt: skip
+    ceilings: ClassVar[tuple[Ceiling, ...]] = PLAIN_CEILINGS
+
+    air_c: Annotated[float, "degC", Range(ge=-40.0, le=60.0)]
+    """The air around the rig."""
+    axes: Mapping[str, AxisConfig]
+    arming: ArmingSection
+    sim: PlainSim = field(default_factory=PlainSim)
+    """The simulated rig's physics; without meaning on a real one."""
+
+    @property
+    def ambient_c(self) -> float:
+        """Temperature of the air around the rig, degC."""
+        return self.air_c
+
+    def in_air(self: OneRig, ambient_c: float) -> OneRig:
+        """Return a rig whose file states this temperature of the air, degC."""
+        return replace(self, air_c=ambient_c)
+
+    def drives(self) -> Mapping[str, AxisConfig]:
+        """Return the axes by name: each has a drive."""
+        return self.axes
+
+    @property
+    def plant(self) -> Any:
+        """The section ``sim``."""
+        return self.sim
+
+    @property
+    def faults(self) -> tuple[str, ...]:
+        """What fails by itself on the simulated rig."""
+        return self.sim.faults
+
+    def problems(self) -> Iterator[tuple[Location, str]]:
+        """Yield what a plain machine cannot have; a kind with more to say yields from this first."""
+        for name, axis in self.axes.items():
+            if axis.mode != "velocity" or axis.feedback != "velocity":
+                yield ("axes", name, "mode"), "this kind gives its drives speeds (expected mode and feedback: velocity)"
+        if sum(axis.digital_io for axis in self.axes.values()) != 1:
+            yield ("axes",), "one drive carries the safety chain's inputs (expected digital_io: true at one axis)"
+        if not any(name in self.devices for name in self.own):
+            yield ("devices",), f"no sensor of the machine's own (expected {', '.join(self.own)})"
+
+    def values(self) -> Values:
+        """Return what the section ``interlocks`` says, by parameter."""
+        section: DataclassInstance = getattr(self, SECTION)
+        return values_of(section, self.parameters)

@@ -1,0 +1,64 @@
+"""What a kind of rig brings: the list of everything that the rest of the program asks a kind for.
+
+A kind is a package: ``tester.kinds.<name>``, or a laboratory's own. Its ``KIND`` is found by name in one place
+(tester.kinds.find), and ``tester.run.kinds`` asks it for the rest of the program. Making a ``KIND`` imports nothing:
+what is large is behind a function.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from tester.analysis.fit.part import FitPart
+    from tester.analysis.master_curve.part import MasterPart
+    from tester.analysis.papers.item import Paper
+    from tester.inputs.recipe.part import RecipePart
+    from tester.inputs.rig import Rig
+    from tester.machine.commission.part import CommissionPart
+    from tester.machine.interlock_sheet import InterlockSheet
+    from tester.machine.run_parts import KindRun
+    from tester.machine.served import ServedKind
+    from tester.results.ring_part import RingPart
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Kind:
+    """One kind of rig.
+
+    A kind of which no recipe can be run has a rig file and interlocks to look at; the rest it may leave out.
+    """
+
+    name: str
+    """As the key ``kind`` of a rig file says it."""
+    title: str
+    """What people call it, in a few words."""
+    measurand: str = ""
+    """What its coefficient is, for people, in words that follow "measured was"; "" where nothing is to be said."""
+    rigs: Mapping[str, str]
+    """Rig files that ship with it, by the names that ``--rig`` takes: ``package:file``, the first for a start."""
+    rig: Callable[[], type[Rig]]
+    """How its rig file is read: its sections, the keys that a file may lack, safety keys, checks, and the table of
+    its channels (tester.inputs.rig.Rig)."""
+    interlocks: Callable[[], InterlockSheet]
+    """The rows of its interlock table, as its page and its rig files show them."""
+    page: str
+    """Its page of interlocks and safety keys, whose tables ``python docs/interlocks.py`` writes."""
+    runs: Callable[[], KindRun] | None = None
+    """How its runs are built, and what goes with them."""
+    served: Callable[[], ServedKind] | None = None
+    """What it answers a service."""
+    recipe: Callable[[], RecipePart] | None = None
+    """What it says about recipes; None: none can be read for it."""
+    fits: Callable[[], FitPart] | None = None
+    """Which laws can be fitted to its conditions; None: none."""
+    papers: Callable[[], tuple[Paper, ...]] | None = None
+    """Papers that its machine or its laws come from, each item with a verdict; None: none."""
+    masters: Callable[[], MasterPart] | None = None
+    """How its conditions stand on a master curve, and when not; None: they have no speed and temperature."""
+    commissions: Callable[[], CommissionPart] | None = None
+    """How a rig of it is commissioned; None: nobody is guided."""
+    ring: Callable[[], RingPart] | None = None
+    """The ring over which a device on a turning part is reached; None: there is none."""

@@ -1,0 +1,130 @@
+"""The axes of this machine's conditions, and what its procedures hold of a setpoint."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Final, NamedTuple
+
+from tester.base.axes import Axes, Axis, AxisValue, Setpoint
+
+KIND: Final = "wheel_on_belt"
+
+LEAST_SPEED_M_S: Final = 0.05
+"""Slowest wheel or belt that is ever loaded: below it the control cannot be sure that they turn [A]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Positioned(Axis):
+    """An axis that a drive of its own brings to a position while the wheel is lifted, and holds there under load.
+
+    Its drive stands in the rig file's ``axes`` and its limit in ``limits``, both under its name. Where a rig leaves it
+    to a person (``manual: true``) it is held at 0.
+    """
+
+    most: float
+    """The most that a rig's limit may be, in ``recipe_unit``."""
+    hardest: str
+    """How far the limit goes without a risk being accepted (tester.inputs.rig.ceilings), with its unit ..."""
+    because: str
+    """... and why there."""
+    symbol: str
+    """Its unit on screens."""
+    mean: int
+    """Place of its channel among the means of a block (tester.base.quantities.Channel)."""
+    rank: int
+    """Row of its channel on screens."""
+    trend: str = ""
+    """Column of its channel in the trend."""
+    step: float = 1.0
+    """How far one step by hand goes, in ``recipe_unit``."""
+
+
+AXES: Final = Axes(
+    (
+        Axis("slip_velocity", "m/s", "slip_velocity_m_s", "mm/s", 1e3, "slip_velocity_mm_s", "Slip Velocity /mm·s⁻¹",
+             "Slip mm/s", "", None, True, 2),
+        Axis("load", "N", "load_n", "N", 1.0, "load_n", "Load /N", "Load N", "", None, True, 1,
+             gt=0.0, limit="limits.load"),
+        Positioned("sideslip", "deg", "sideslip_deg", "deg", 1.0, "sideslip_deg", "Sideslip Angle /°", "Angle °",
+                   "sideslip", 0.0, True, 4, ge=-90.0, le=90.0, limit="limits.sideslip", drive="axes.sideslip",
+                   most=45.0, hardest="30 deg", because="the paper's tests end there: no side force is known beyond",
+                   symbol="°", mean=9, rank=6, trend="sideslip_deg"),
+        Positioned("camber", "deg", "camber_deg", "deg", 1.0, "camber_deg", "Camber Angle /°", "Camber °",
+                   "camber", 0.0, False, 5, ge=-90.0, le=90.0, limit="limits.camber", drive="axes.camber",
+                   most=45.0, hardest="10 deg",
+                   because="a tread of 30 mm is 5 mm lower on one side then: the other side carries no load any more",
+                   symbol="°", mean=10, rank=9),
+        Axis("temperature", "degC", "temperature_c", "degC", 1.0, "temperature_c", "Temperature /°C", "Temp °C", "",
+             None, True, 3, ge=-50.0, le=200.0),
+        Axis("wheel_speed", "m/s", "wheel_speed_m_s", "m/s", 1.0, "wheel_speed_m_s", "Wheel Speed /m·s⁻¹", "Wheel m/s",
+             "wheel", 0.8, False, 6, ge=LEAST_SPEED_M_S, in_measure=True, limit="limits.wheel_speed"),
+    ),
+    blocks="temperature",
+)  # fmt: skip
+"""All axes in the order in which they are told. The paper held the wheel at 0.8 m/s and without camber throughout.
+
+Slip velocity is wheel speed less belt speed at no sideslip, negative when braking; sideslip is the angle of the wheel's
+plane to the belt's travel, camber its tilt; temperature is the surface's, wheel speed the line speed.
+"""
+
+
+POSITIONED: Final = tuple(axis for axis in AXES if isinstance(axis, Positioned))
+"""The axes that a drive positions, in their order: rig sections, drives, control and screens are made from them."""
+
+
+def straight() -> dict[str, float]:
+    """Return where the positioned axes are when nothing is turned: 0 for each, by name."""
+    return dict.fromkeys(_NAMES, 0.0)
+
+
+_NAMES = tuple(axis.name for axis in POSITIONED)
+
+
+class Held(NamedTuple):
+    """What a setpoint holds on this machine. Speeds m/s, load N, surface temperature degC."""
+
+    compound: str
+    slip_velocity_m_s: float
+    load_n: float
+    temperature_c: float
+    wheel_speed_m_s: float
+    positions: Mapping[str, float]
+    """Of the positioned axes, by name, in their units."""
+
+    @property
+    def belt_speed_m_s(self) -> float:
+        """Return the belt speed in m/s: wheel speed less slip velocity."""
+        # Rounded to 1 nm/s: 0.8 - 0.3 is to be 0.5 in every output, not 0.5000000000000001.
+        return round(self.wheel_speed_m_s - self.slip_velocity_m_s, 9)
+
+    def reversed(self) -> Held:
+        """Return the same with the slip the other way: the belt is faster by as much as it was slower."""
+        return self._replace(slip_velocity_m_s=-self.slip_velocity_m_s)
+
+    @property
+    def sideslip_deg(self) -> float:
+        """Return the angle of the wheel's plane to the belt's travel, degrees."""
+        return self.positions["sideslip"]
+
+    @property
+    def yawed(self) -> bool:
+        """Tell whether the wheel is turned out of its line: it is then in contact only while it slides."""
+        return any(self.positions.values())
+
+
+_BY_FIELD = {axis.field: axis.name for axis in AXES}
+
+
+@lru_cache(maxsize=8)
+def _numbers_of(axes: Axes) -> Callable[[tuple[AxisValue, ...]], tuple[float, ...]]:
+    return axes.numbers_of(*(_BY_FIELD[field] for field in Held._fields[1:-1]), *_NAMES)
+
+
+def held_by(setpoint: Setpoint) -> Held:
+    """Return what a setpoint of this machine's axes holds, whatever else it has (a laboratory's own kind)."""
+    slip_m_s, load_n, temperature_c, wheel_m_s, *positions = _numbers_of(setpoint.axes)(setpoint.values)
+    return Held(
+        setpoint.compound, slip_m_s, load_n, temperature_c, wheel_m_s, dict(zip(_NAMES, positions, strict=True))
+    )

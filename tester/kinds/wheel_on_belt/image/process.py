@@ -1,0 +1,159 @@
+"""The process image: what one scan knows, what the recipe wants, and what is commanded.
+
+One instance of each exists per rig. The scan overwrites the fields in place at fixed places (inputs fill
+``Readings``, the executor writes ``Demand``, control writes ``Setpoints``): like a PLC's image it is
+complete and consistent between two steps of a scan, and costs no allocation.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from enum import IntEnum
+from math import inf
+from typing import Final, Protocol
+
+from tester.kinds.wheel_on_belt.image.axes import straight
+from tester.machine.image import NAN, NEVER, BaseDemand, BaseReadings, BaseSetpoints
+
+# Gates that are closed, as bits of the channel ``gate``; 0 = the sample is accepted.
+GATE_LOAD: Final = 1
+GATE_SPEED: Final = 2
+GATE_SLIP: Final = 4
+GATE_TEMPERATURE: Final = 8
+GATE_ALARM: Final = 16
+GATE_SETTLING: Final = 32
+
+
+CELL: Final = ("force_x_n", "force_y_n", "force_z_n", "moment_z_nm")
+"""The load cell's channels, in its order: what a tare takes off."""
+
+
+class Parted(Protocol):
+    """A load cell of several transmitters (``drivers.joined_cell``)."""
+
+    def blame(self, now: float, limit_s: float) -> str:
+        """Return which transmitter keeps it from being read at ``now`` s, or ""; ``limit_s``: how old a part may be."""
+        ...
+
+
+class Press(IntEnum):
+    """What the press axis is asked to do."""
+
+    LIFT = 0
+    """Clear of the wheel, position-controlled to the lifted position."""
+    LOAD = 1
+    """In contact, force-controlled to ``Demand.load_n``."""
+
+
+@dataclass(slots=True)
+class Readings(BaseReadings):
+    """Newest value of every signal, with the time stamp of its source (seconds of the scan's clock).
+
+    Speeds of the wheel are rim speeds with the diameter it runs with, warm and worn. Forces are in the wheel frame,
+    tare applied: x along the wheel plane (positive = belt drags the wheel back), y lateral, z normal.
+    """
+
+    wheel_speed_m_s: float = NAN
+    wheel_rad_s: float = NAN
+    drive_torque_nm: float = NAN
+    wheel_at_s: float = NEVER
+    belt_speed_m_s: float = NAN
+    belt_at_s: float = NEVER
+    belt_torque_nm: float = NAN
+    """Of the belt's drive at its roller: positive = it drives the belt on, as the wheel's torque drives the wheel."""
+    press_mm: float = NAN
+    press_torque_nm: float = NAN
+    """Of the press's drive: what its screw makes of it is a second witness of the load (``drivers.screw``)."""
+    press_at_s: float = NEVER
+    positions: dict[str, float] = field(default_factory=straight)
+    """Of the positioned axes (``axes.POSITIONED``), by name; of one that a person sets: 0."""
+    positions_at_s: float = NEVER
+    """The oldest of their time stamps."""
+    yaw_reached: bool = False
+    """Their drives report their targets reached."""
+    slip_m_s: float = NAN
+    """Resultant slip speed from the measured speeds and sideslip angle."""
+
+    contactor_closed: bool = False
+    """As old as the safety inputs (``inputs_at_s``)."""
+
+    force_x_n: float = NAN
+    force_y_n: float = NAN
+    force_z_n: float = NAN
+    moment_z_nm: float = NAN
+    cell_valid: bool = False
+    cell_silent: bool = False
+    """The load cell has not answered several requests in a row, and is not set up again yet."""
+    joined: Parted | None = None
+    """The load cell, where it has several transmitters: asked which of them is to blame, where something trips."""
+    cell_old_s: float = inf
+    """A transmitter of the cell without a reading for so long is named."""
+    cell_at_s: float = NEVER
+    cell_changed_s: float = NEVER
+    """When a reading of the cell last differed from the one before."""
+
+    surface_c: float = NAN
+    surface_valid: bool = False
+    surface_silent: bool = False
+    """The thermometer has not answered several requests in a row."""
+    surface_at_s: float = NEVER
+    surface_changed_s: float = NEVER
+    """When a reading of the thermometer last differed from the one before."""
+    hub_c: float = NAN
+    heat_percent: float = NAN
+    jacket_valid: bool = False
+    jacket_silent: bool = False
+    """The jacket's controller has not answered several requests in a row."""
+    jacket_at_s: float = NEVER
+
+    wheel_angle_rev: float = 0.0
+    """Turns of the wheel since installation, integrated from the measured speed."""
+    cold_mm: float = NAN
+    """Wheel diameter at the reference temperature: as installed, less the estimated wear."""
+
+    diameter_mm: float = NAN
+    """Wheel diameter as it runs: the cold one and what heat has added (``procedures.wheel_life``)."""
+
+    def faults(self) -> list[str]:
+        """Return what drives, wires and devices say is wrong with them, in words; the cell's transmitter first."""
+        said = BaseReadings.faults(self)
+        blamed = "" if self.joined is None else self.joined.blame(self.now_s, self.cell_old_s)
+        return [blamed, *said] if blamed else said
+
+    @property
+    def cell(self) -> tuple[float, float, float, float]:
+        """What the load cell shows, tare applied, in the order of ``CELL``."""
+        return self.force_x_n, self.force_y_n, self.force_z_n, self.moment_z_nm
+
+
+@dataclass(slots=True)
+class Demand(BaseDemand):
+    """What the running step wants; control bounds it and may refuse it."""
+
+    wheel_speed_m_s: float = 0.0
+    belt_speed_m_s: float = 0.0
+    press: Press = Press.LIFT
+    load_n: float = 0.0
+    quick_touch: bool = False
+    """Use the fast approach to a known contact (bursts with sideslip)."""
+    positions: dict[str, float] = field(default_factory=straight)
+    """Of the positioned axes, by name."""
+    surface_c: float = NAN
+    """Surface temperature to hold; NaN = heat off."""
+    freeze_heat: bool = False
+    """Keep the hub setpoint as it is: friction heat of a slip pulse is not the jacket's to correct."""
+
+@dataclass(slots=True)
+class Setpoints(BaseSetpoints):
+    """What goes to the devices at the end of a scan, already inside every limit."""
+
+    wheel_rad_s: float = 0.0
+    belt_m_s: float = 0.0
+    press_mm_s: float = 0.0
+    positions: dict[str, float] = field(default_factory=straight)
+    hub_c: float = 25.0
+    heat: bool = False
+    """Jacket controller in run (True) or standby."""
+    contactor: bool = False
+    jacket_silent: bool = False
+    """The jacket's setpoint is not renewed any more: its lease ends the heating when standby does not."""

@@ -1,0 +1,151 @@
+"""Put a rig together from its configuration: ports, drivers, control, executor."""
+
+from __future__ import annotations
+
+from math import log, nan, pi
+
+from drivers.canopen.master import CanMaster
+from drivers.canopen.sensor_node import SensorNode
+from drivers.jacket import HeatingJacket
+from drivers.joined_cell import JoinedCell
+from drivers.modbus import Device
+from drivers.servo import ServoDrive
+from tester.analysis.closest import combining_of
+from tester.inputs.recipe.plan import Plan
+from tester.inputs.rig.profiles import profile_of
+from tester.inputs.rig.sensors import further_sensors, quantities_on, title_of
+from tester.kinds.wheel_on_belt.context import Attendant, Context
+from tester.kinds.wheel_on_belt.control.heat_loop import HeatLoop
+from tester.kinds.wheel_on_belt.control.load_loop import LoadLoop
+from tester.kinds.wheel_on_belt.control.state import WheelState
+from tester.kinds.wheel_on_belt.control.step import WheelControl
+from tester.kinds.wheel_on_belt.image.devices import CELL_CHANNELS, SURFACE_CHANNELS, Devices, WheelDrives
+from tester.kinds.wheel_on_belt.image.process import Demand, Readings, Setpoints
+from tester.kinds.wheel_on_belt.interlocks.heat_ratio import NO_HISTORY, KnownRatio
+from tester.kinds.wheel_on_belt.procedures.connection import WheelArming
+from tester.kinds.wheel_on_belt.procedures.gates import Gates
+from tester.kinds.wheel_on_belt.procedures.plan_bounds import plan_bounds
+from tester.kinds.wheel_on_belt.procedures.results import WheelResults
+from tester.kinds.wheel_on_belt.procedures.resume import take_up, take_up_wheels
+from tester.kinds.wheel_on_belt.procedures.steps import WheelProcedures
+from tester.kinds.wheel_on_belt.procedures.wheel_life import WheelLife
+from tester.kinds.wheel_on_belt.recipe.steps import WheelPlan
+from tester.kinds.wheel_on_belt.rig import RigConfig
+from tester.kinds.wheel_on_belt.rig.sections import VELOCITY_AXES
+from tester.machine.cells import link_of, load_cell_of, sensor_of
+from tester.machine.connect import Connector
+from tester.machine.engine import Engine
+from tester.machine.executor import Executor
+from tester.machine.field_device import FieldDevice
+from tester.machine.ports import Ports
+from tester.machine.prompts import Prompts
+from tester.machine.run import Run
+from tester.machine.sampler import Sampler
+from tester.store.recorder import Recorder
+from tester.store.resume import ResumePoint
+
+TITLES = {"ir_thermometer": "thermometer"}
+"""Where a screen calls a device otherwise than the record does, by its key in the rig file."""
+
+
+def build_devices(rig: RigConfig, ports: Ports) -> Devices:
+    """Return drivers for every device of the rig file, on the given wires."""
+    master = CanMaster(rig.can.node, rig.can.heartbeat_s)
+
+    drives = {name: ServoDrive(config) for name, config in rig.drives().items()}
+    for drive in drives.values():
+        master.add(drive)
+    wheel, belt, press = (drives.pop(name) for name in VELOCITY_AXES)
+    driven = WheelDrives(wheel, belt, press, drives)
+    nodes = [SensorNode(config) for config in rig.can.nodes.values()]
+    for node in nodes:
+        master.add(node)
+    links = {name: link_of(config) for name, config in rig.lines.items()}
+    cell, transmitters = load_cell_of(rig, links, CELL_CHANNELS, rig.interlocks.cell_skew_s)
+    thermometer = sensor_of(rig.devices["ir_thermometer"], links, SURFACE_CHANNELS)
+    heating = rig.devices["jacket"]
+    jacket = HeatingJacket(profile_of(heating.profile), heating.unit_id, links[heating.line])
+    further = {name: sensor_of(config, links) for name, config in further_sensors(rig).items()}
+    drivers: dict[str, Device] = {**transmitters, "ir_thermometer": thermometer, "jacket": jacket, **further}
+    return Devices(
+        can=ports.can,
+        master=master,
+        axes=driven,
+        lines=[(ports.lines[name], link) for name, link in links.items()],
+        cell=cell,
+        thermometer=thermometer,
+        jacket=jacket,
+        modbus=[
+            FieldDevice(name, TITLES.get(name, title_of(rig, name)), config.line, drivers[name])
+            for name, config in rig.devices.items()
+        ],
+        sensors=list(further.values()),
+        nodes=nodes,
+    )
+
+
+def loss_ratios(rig: RigConfig) -> tuple[float, float]:
+    """Return the steady hub-surface difference per kelvin of surface above ambient: lifted, and in rolling contact.
+
+    Resistance of hub joint and rubber times the loss conductance of the surface, from the observer's parameters
+    [A]. The rubber's side faces lose about half of their heat through the surface cells.
+    """
+    observer, thermal = rig.observer, rig.observer.thermal
+    outer, width = 0.5e-3 * rig.geometry.wheel_diameter_mm, 1e-3 * rig.geometry.wheel_width_mm
+    inner = outer - 1e-3 * observer.wheel.rubber_layer
+    resistance = log(outer / inner) / (2.0 * pi * thermal.conductivity * width) + 1.0 / thermal.hub_to_rubber
+    tread = thermal.film_rotating * 2.0 * pi * outer * width
+    sides = thermal.film_sides * pi * (outer * outer - inner * inner)
+    lifted = tread + sides
+    return resistance * lifted, resistance * (lifted + observer.belt_conductance)
+
+
+def build_run(
+    rig: RigConfig,
+    plan: Plan,
+    ports: Ports,
+    attendant: Attendant,
+    recorder: Recorder,
+    prompts: Prompts,
+    point: ResumePoint | None = None,
+    heat: KnownRatio = NO_HISTORY,
+    procedures: type[WheelProcedures] = WheelProcedures,
+) -> Run:
+    """Return a run that is ready to be ticked; ``point``: where it goes on, with the remaining plan; ``heat``: what
+    earlier runs on this rig make known of its heat balance (``heatings``); ``procedures``: what serves its steps."""
+    devices = build_devices(rig, ports)
+    load = LoadLoop()
+    state = WheelState(Setpoints(), load, HeatLoop(rig.loops.heat.hub_min_c))
+    control = WheelControl(rig, state, loss_ratios(rig), plan_bounds(plan, rig))
+    geometry, quantities, cell = rig.geometry, quantities_on(rig), devices.cell
+    ctx = Context(
+        rig=rig,
+        readings=Readings(
+            cold_mm=geometry.wheel_diameter_mm,
+            diameter_mm=geometry.wheel_diameter_mm,
+            channels=[nan] * len(quantities.further),
+            joined=cell if isinstance(cell, JoinedCell) else None,
+            cell_old_s=rig.interlocks.stale_cell_s,
+        ),
+        demand=Demand(),
+        gates=Gates(rig.gates),
+        prompts=prompts,
+        journal=recorder,
+        attendant=attendant,
+        cell=cell,
+        wheel=WheelLife(installed_mm=geometry.wheel_diameter_mm, width_mm=geometry.wheel_width_mm),
+        contact=load,
+        ambient_c=rig.ambient_c,
+        wheel_changed=control.view.wheel_changed,
+        heat=control.view.heat,
+        heat_known=control.view.know_heat(heat),
+        observer=control.view.observer,
+        quantities=quantities,
+    )
+    results = WheelResults(recorder, combining_of(plan.metadata))
+    serving = procedures(plan, results, hardware=not rig.simulated)
+    if point is not None:
+        take_up(serving, results, point)
+        take_up_wheels(ctx, WheelPlan.of(plan), point.stand)
+    engine = Engine(devices, control, Executor(plan, serving), ctx, Sampler(recorder, quantities))
+    return Run(Connector(devices, rig, WheelArming(devices, rig), rig.arming.listen_s), engine)

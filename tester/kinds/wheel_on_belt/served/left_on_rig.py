@@ -1,0 +1,100 @@
+"""What past runs say of this machine: the wheel on it, the load cell's zero, its heat balance."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from datetime import datetime
+from math import isfinite
+from typing import Final
+
+from tester.base.screen import Check
+from tester.inputs.rig import Rig
+from tester.kinds.wheel_on_belt.interlocks.heat_ratio import KnownRatio
+from tester.kinds.wheel_on_belt.rig import RigConfig
+from tester.store.reader import RunReader
+from tester.store.records import PieceInfo
+
+CELL_ZERO: Final = "zero of the load cell"
+
+
+@dataclass(frozen=True, slots=True)
+class WheelLeft:
+    """The wheel that a run mounted last, as worn as it left it, and its newest zero of the load cell."""
+
+    run: str
+    wheel: PieceInfo | None
+    tare_utc: str = ""
+    """"" where no zero was taken, or nobody knows when."""
+
+    @property
+    def known(self) -> bool:
+        """The run mounted a wheel."""
+        return self.wheel is not None
+
+    def usable(self, rig: Rig) -> bool:
+        """Tell whether the wheel is not worn below the rig's ``least_diameter``: nothing is done with such a one."""
+        own = RigConfig.of(rig)
+        return self.wheel is not None and self.wheel.diameter_mm >= own.interlocks.least_diameter_mm
+
+
+@dataclass(frozen=True, slots=True)
+class HeatHistory:
+    """What earlier runs make known of the rig's heat balance."""
+
+    ratio: KnownRatio
+
+    def checks(self, rig: Rig, left: object, now_utc: str) -> tuple[Check, ...]:
+        """Return the lines of the pre-flight list that are this kind's. ``now_utc``: the wall clock."""
+        found = left if isinstance(left, WheelLeft) else None
+        return wheel_check(found), zero_check(found, now_utc), heat_check(self.ratio, RigConfig.of(rig))
+
+
+def left_by(reader: RunReader, name: str) -> WheelLeft:
+    """Return what a run of this name left on its rig. Raises StoreError."""
+    wheel = max(reader.pieces(), key=lambda one: (one.installed_s, one.piece), default=None)
+    return WheelLeft(name, wheel, _tare_utc(reader))
+
+
+def _tare_utc(reader: RunReader) -> str:
+    """Return the wall clock of the newest zero: that of the first thing recorded after it."""
+    at_s = max((tare.t_s for tare in reader.tares() if tare.kind != "check"), default=None)
+    if at_s is None:
+        return ""
+    return next((event.utc for event in reader.events() if event.t_s >= at_s), "")
+
+
+def wheel_check(left: WheelLeft | None) -> Check:
+    """Return what is known of the wheel that is on; a run begins by asking for a fresh one."""
+    one = left.wheel if left is not None else None
+    if one is None or not isfinite(one.diameter_mm):
+        return Check("wheel", None, "none on record; a fresh one comes")
+    worn_mm = max(one.installed_diameter_mm - one.diameter_mm, 0.0)
+    text = f"{one.compound}, {one.diameter_mm:.2f} mm, {worn_mm:.2f} mm worn off in {one.sliding_m:.0f} m"
+    return Check("wheel", None, f"last {text}; a fresh one comes")
+
+
+def zero_check(left: WheelLeft | None, now_utc: str) -> Check:
+    """Return how old the zero of the load cell is; a run takes one for each wheel and before each repeat."""
+    anew = "taken anew before motion"
+    if left is None or not left.tare_utc:
+        return Check(CELL_ZERO, None, anew)
+    try:
+        age_s = (datetime.fromisoformat(now_utc) - datetime.fromisoformat(left.tare_utc)).total_seconds()
+    except ValueError:
+        return Check(CELL_ZERO, None, anew)
+    return Check(CELL_ZERO, None, f"{age_words(age_s)} old; {anew}")
+
+
+def heat_check(heat: KnownRatio, rig: RigConfig) -> Check:
+    """Return from where on heat that nothing shows is told; a history that tightens nothing is worth a look."""
+    limits = rig.interlocks
+    tighter = heat.share(limits.heat_share, limits.heat_share_known) < limits.heat_share
+    return Check("heat balance", tighter or None, heat.told(limits.heat_share, limits.heat_share_known))
+
+
+def age_words(seconds: float) -> str:
+    """Return an age in the largest unit of which there are two."""
+    for size, unit in ((86400.0, "d"), (3600.0, "h")):
+        if seconds >= 2.0 * size:
+            return f"{seconds / size:.0f} {unit}"
+    return f"{max(seconds, 0.0) / 60.0:.0f} min"

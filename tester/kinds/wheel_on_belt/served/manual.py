@@ -1,0 +1,214 @@
+"""What a person may move by hand on this machine, how far a step goes, and when it is refused.
+
+Single speeds and angles move only lifted: under load a wheel that turns faster than its belt grinds.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from math import ceil, isfinite
+from typing import Final
+
+from tester.base.screen import HandAxis
+from tester.kinds.wheel_on_belt.context import Attendant, Context
+from tester.kinds.wheel_on_belt.control.load_loop import UNLOADED_N as STANDING_LOAD_N
+from tester.kinds.wheel_on_belt.control.permissives import Bounds, rig_bounds
+from tester.kinds.wheel_on_belt.image.axes import POSITIONED, straight
+from tester.kinds.wheel_on_belt.image.process import Press
+from tester.kinds.wheel_on_belt.interlocks.heat_ratio import KnownRatio
+from tester.kinds.wheel_on_belt.procedures.motions import TakeTare
+from tester.kinds.wheel_on_belt.recipe.limits import least_load_n
+from tester.kinds.wheel_on_belt.recipe.steps import WheelPlan
+from tester.kinds.wheel_on_belt.rig import RigConfig
+from tester.kinds.wheel_on_belt.runs.build import build_run
+from tester.kinds.wheel_on_belt.served.left_on_rig import WheelLeft
+from tester.machine.manual import NAME, ManualExecutor
+from tester.machine.ports import Ports
+from tester.machine.prompts import Prompts
+from tester.machine.run import Run
+from tester.machine.served import ByHand
+from tester.store.recorder import Recorder
+from tester.store.records import PieceInfo
+
+SPEED_STEP_M_S: Final = 0.05
+LOAD_STEP_N: Final = 10.0
+HEAT_STEP_K: Final = 1.0
+UNLOADED_N: Final = 5.0
+STANDING_M_S: Final = 0.02
+TARE_S: Final = 2.0
+
+POSITION_STEPS: Final = {one.name: one.step for one in POSITIONED}
+
+HAND: Final = (
+    HandAxis("wheel", "Wheel speed", "0.05 m/s a step, lifted"),
+    HandAxis("belt", "Belt speed", "0.05 m/s a step, lifted"),
+    HandAxis("both", "Both speeds", "0.05 m/s a step"),
+    HandAxis("press", "Load", "10 N a step, speeds equal"),
+    *(HandAxis(one.name, one.name.capitalize(), f"{one.step:g}{one.symbol} a step, lifted") for one in POSITIONED),
+    HandAxis("heat", "Heating", "1 K a step, turning"),
+)
+"""In the order of the screen."""
+
+
+@dataclass(slots=True)
+class Asked:
+    """What the person has asked for so far."""
+
+    wheel_m_s: float = 0.0
+    belt_m_s: float = 0.0
+    load_n: float = 0.0
+    positions: dict[str, float] = field(default_factory=straight)
+    surface_c: float = float("nan")
+
+
+class WheelHand:
+    """Turns steps into demands."""
+
+    def __init__(self, bounds: Bounds) -> None:
+        """Nothing is wanted: standing, lifted. ``bounds``: how far a person may go, control's too."""
+        self.wanted = Asked()
+        self.bounds = bounds
+        self.taring: TakeTare | None = None
+        self.tare_text = ""
+        self.reference_tare: list[float] = []
+        self.old = (0.0, 0.0, 0.0, 0.0)
+
+    @property
+    def busy(self) -> str:
+        """Why no step is taken at present."""
+        return "the load cell is being tared" if self.taring is not None else ""
+
+    def demand(self, ctx: Context) -> None:
+        """Demand what is wanted."""
+        demand, wanted = ctx.demand, self.wanted
+        demand.wheel_speed_m_s, demand.belt_speed_m_s = wanted.wheel_m_s, wanted.belt_m_s
+        demand.press = Press.LOAD if wanted.load_n > 0.0 else Press.LIFT
+        demand.load_n = wanted.load_n
+        demand.positions.update(wanted.positions)
+        demand.surface_c = wanted.surface_c
+        if self.taring is not None and self.taring.step(ctx):
+            self._tared(ctx, self.taring)
+
+    def tare(self, ctx: Context) -> str:
+        """Begin a tare; return "" or why not."""
+        r = ctx.readings
+        if self.wanted.load_n > 0.0 or ctx.contact.in_contact:
+            return "the wheel is in contact: lift it first"
+        if abs(r.wheel_speed_m_s) > STANDING_M_S or abs(r.belt_speed_m_s) > STANDING_M_S:
+            return "the rig moves: stop wheel and belt first"
+        limits = ctx.rig.interlocks
+        self.old = ctx.cell.tare
+        reference = list(self.reference_tare)
+        self.taring = TakeTare(TARE_S, reference, limits.zero_warn_n, limits.zero_stop_n, ends_run=False)
+        return ""
+
+    def step(self, ctx: Context, axis: str, sign: float) -> str:
+        """Take one step of an axis; return "" or why not."""
+        wanted, bounds, r = self.wanted, self.bounds, ctx.readings
+        loaded = wanted.load_n > 0.0 or not r.force_z_n < UNLOADED_N
+        if loaded and axis in ("wheel", "belt", *wanted.positions):
+            return f"{axis} moves only with the wheel lifted; under load use both speeds together"
+        if axis == "wheel":
+            wanted.wheel_m_s = _within(wanted.wheel_m_s + sign * SPEED_STEP_M_S, 0.0, bounds.wheel_speed_m_s)
+        elif axis == "belt":
+            wanted.belt_m_s = _within(wanted.belt_m_s + sign * SPEED_STEP_M_S, 0.0, bounds.belt_speed_m_s)
+        elif axis == "both":
+            return self._turn(ctx, sign)
+        elif axis in wanted.positions:
+            position, most = wanted.positions[axis] + sign * POSITION_STEPS[axis], bounds.positions[axis]
+            wanted.positions[axis] = _within(position, -most, most)
+        elif axis == "press":
+            return self._load(ctx, sign)
+        elif axis == "heat":
+            return self._warm(ctx, sign)
+        return ""
+
+    def _turn(self, ctx: Context, sign: float) -> str:
+        """Take wheel and belt to another speed together, neither beyond what both can do."""
+        wanted, bounds = self.wanted, self.bounds
+        step = sign * SPEED_STEP_M_S
+        pressed = wanted.load_n > 0.0 or not ctx.readings.force_z_n < STANDING_LOAD_N
+        if pressed and min(wanted.wheel_m_s, wanted.belt_m_s) + step < SPEED_STEP_M_S - 1e-9:
+            return f"under load wheel and belt turn at {SPEED_STEP_M_S:g} m/s at least: lift the wheel first"
+        most = min(bounds.wheel_speed_m_s, bounds.belt_speed_m_s)
+        wanted.wheel_m_s = _within(wanted.wheel_m_s + step, 0.0, max(most, wanted.wheel_m_s))
+        wanted.belt_m_s = _within(wanted.belt_m_s + step, 0.0, max(most, wanted.belt_m_s))
+        return ""
+
+    def _load(self, ctx: Context, sign: float) -> str:
+        """Take another load; from none to the first step that can be held, and from that to none."""
+        wanted, least_n = self.wanted, least_load_n(ctx.rig)
+        if sign > 0.0 and (wanted.wheel_m_s < 2.0 * STANDING_M_S or wanted.wheel_m_s != wanted.belt_m_s):
+            return "load only with wheel and belt turning at the same speed"
+        load_n = wanted.load_n + sign * LOAD_STEP_N
+        if 0.0 < load_n < least_n:
+            load_n = ceil(least_n / LOAD_STEP_N) * LOAD_STEP_N if sign > 0.0 else 0.0
+        wanted.load_n = _within(load_n, 0.0, self.bounds.load_n)
+        return ""
+
+    def _warm(self, ctx: Context, sign: float) -> str:
+        wanted, surface = self.wanted, ctx.readings.surface_c
+        if wanted.wheel_m_s < 2.0 * STANDING_M_S:
+            return "heat only with the wheel turning"
+        if not isfinite(wanted.surface_c):
+            if sign < 0.0 or not isfinite(surface):
+                return "the heating is off"
+            wanted.surface_c = float(round(surface))
+        wanted.surface_c = min(wanted.surface_c + sign * HEAT_STEP_K, self.bounds.surface_c)
+        if wanted.surface_c < ctx.rig.ambient_c:
+            wanted.surface_c = float("nan")
+        return ""
+
+    def _tared(self, ctx: Context, tare: TakeTare) -> None:
+        """Say what the tare has changed."""
+        if tare.failed:
+            self.tare_text = f"not taken: {tare.failed}"
+        else:
+            new = ctx.cell.tare
+            self.reference_tare = list(new)
+            shifts = ", ".join(
+                f"{name} {b:.2f} ({b - a:+.2f})"
+                for name, a, b in zip(("Fx", "Fy", "Fz", "Mz"), self.old, new, strict=True)
+            )
+            self.tare_text = f"zero from {tare.count} readings: {shifts}"
+        ctx.journal.event(ctx.now, "tare", self.tare_text)
+        self.taring = None
+
+
+def by_hand(
+    rig: RigConfig, ports: Ports, attendant: Attendant, record: Recorder, left: WheelLeft | None, heat: KnownRatio
+) -> ByHand:
+    """Return manual mode on a rig; ``left``: the wheel that is on it, None for a new one."""
+    run = build_run(rig, WheelPlan(NAME, (), (), 1), ports, attendant, record, Prompts(), heat=heat)
+    executor = take_over(run, left.wheel if left is not None else None)
+    return ByHand(run, executor, taken_for(left, run.engine.ctx.wheel.cold_mm))
+
+
+def take_over(run: Run, worn: PieceInfo | None = None) -> ManualExecutor:
+    """Put a person in the place of the run's recipe; ``worn``: the wheel, None for a new one.
+
+    A simulated rig gets such a wheel.
+    """
+    ctx, control = run.engine.ctx, run.engine.control
+    control.bounds = rig_bounds(ctx.rig)
+    executor = ManualExecutor(WheelHand(control.bounds))
+    run.engine.executor = executor
+    if worn is None:
+        ctx.attendant.install(1, 1, "1#", new_specimen=True)
+    else:
+        ctx.attendant.remount(1, 1, "1#", worn.diameter_mm, worn.sliding_m)
+        ctx.wheel.installed_mm = worn.installed_diameter_mm
+        ctx.wheel.loss_mm = worn.installed_diameter_mm - worn.diameter_mm
+        ctx.wheel.sliding_m = worn.sliding_m
+    return executor
+
+
+def taken_for(left: WheelLeft | None, diameter_mm: float) -> str:
+    """Return which wheel is taken to be on the rig, for people; ``diameter_mm``: what is reckoned with."""
+    known = f"as {left.run} left it" if left is not None else "a new one: no run on this rig says otherwise"
+    return f"the wheel is taken to have {diameter_mm:.2f} mm, {known}"
+
+
+def _within(value: float, low: float, high: float) -> float:
+    """Return a value held between two limits, on a grid that steps cannot leave."""
+    return round(min(max(value, low), high), 6)

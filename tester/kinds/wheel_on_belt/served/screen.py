@@ -1,0 +1,142 @@
+"""What the screens show of this machine: its tables, and a look at a run of it between two ticks."""
+
+from __future__ import annotations
+
+from math import isfinite
+from typing import Final
+
+from tester.base.screen import Check, Gate, MachineView, PlotView, SoakView, axis_views, trend_columns
+from tester.kinds.wheel_on_belt.image.axes import AXES, POSITIONED
+from tester.kinds.wheel_on_belt.image.process import (
+    GATE_LOAD,
+    GATE_SETTLING,
+    GATE_SLIP,
+    GATE_SPEED,
+    GATE_TEMPERATURE,
+    Press,
+)
+from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
+from tester.kinds.wheel_on_belt.procedures.condition import MeasureCondition
+from tester.kinds.wheel_on_belt.procedures.thermal_steps import HeatUp, SoakTo
+from tester.kinds.wheel_on_belt.recipe.steps import WheelPlan
+from tester.kinds.wheel_on_belt.served.manual import HAND
+from tester.machine.engine import Engine
+from tester.machine.served import News, Wanted
+
+KIND: Final = "wheel_on_belt"
+GATES: Final = (
+    ("load", GATE_LOAD),
+    ("speed", GATE_SPEED),
+    ("slip", GATE_SLIP),
+    ("temperature", GATE_TEMPERATURE),
+    ("settling", GATE_SETTLING),
+)
+PLOTS: Final = (
+    PlotView("friction", "friction", 0.1),
+    PlotView("surface", "surface_c", 4.0),
+    PlotView("load", "load_n", 10.0),
+    PlotView("slip", "slip_mm_s", 10.0),
+)
+"""The most important first: a low screen shows two, a narrow one three."""
+BY_HAND: Final = (
+    "wheel_speed", "belt_speed", "slip", "load", "press", *(one.name for one in POSITIONED), "surface", "hub", "heat",
+)  # fmt: skip
+"""Values that move when somebody moves the machine."""
+
+MACHINE: Final = MachineView(
+    KIND,
+    trend_columns(QUANTITIES),
+    PLOTS,
+    BY_HAND,
+    HAND,
+    axis_views(AXES),
+    specimen="wheel",
+    moves="wheel and belt",
+    look=("Switch the heating off at the machine if the jacket stays hot.",),
+    ring="Slip ring",
+)
+
+
+class WheelPanel:
+    """One run on this machine, to look at."""
+
+    def __init__(self, engine: Engine) -> None:
+        """Look only."""
+        self.engine = engine
+        self._gates = engine.ctx.rig.gates
+        limits = engine.ctx.rig.interlocks
+        self._stale_s = (limits.stale_cell_s, limits.stale_can_s, limits.stale_ir_s, limits.stale_jacket_s)
+
+    def news(self) -> dict[str, News]:
+        """Return the news of the devices; the drives' are those of the one that was heard of least lately."""
+        r, (cell_s, can_s, surface_s, jacket_s) = self.engine.ctx.readings, self._stale_s
+        return {
+            "cell": News(r.cell_at_s, r.cell_valid, cell_s),
+            "can": News(min(r.wheel_at_s, r.belt_at_s, r.press_at_s), not r.drive_fault, can_s),
+            "surface": News(r.surface_at_s, r.surface_valid, surface_s),
+            "jacket": News(r.jacket_at_s, r.jacket_valid, jacket_s),
+        }
+
+    def wanted(self) -> dict[str, Wanted]:
+        """Return setpoints and gates of the values that have one."""
+        ctx, out = self.engine.ctx, self.engine.control.state.setpoints
+        demand, target, gates = ctx.demand, ctx.gates.target, self._gates
+        slip_band_m_s = max(0.01 * gates.slip_percent * target.slip_m_s, 1e-3 * gates.slip_floor_mm_s)
+        wheel_m_s = out.wheel_rad_s * 0.5e-3 * ctx.readings.diameter_mm
+        found = {
+            "surface": Wanted(demand.surface_c if isfinite(demand.surface_c) else None),
+            "hub": Wanted(out.hub_c if out.heat else None),
+            **{name: Wanted(position) for name, position in out.positions.items()},
+            "wheel_speed": Wanted(wheel_m_s, abs(0.01 * gates.speed_percent * wheel_m_s)),
+            "belt_speed": Wanted(out.belt_m_s, abs(0.01 * gates.speed_percent * out.belt_m_s)),
+        }
+        if demand.press is Press.LOAD:
+            found["load"] = Wanted(demand.load_n, 0.01 * gates.load_percent * demand.load_n)
+        if ctx.burst > 0:
+            found["slip"] = Wanted(1000.0 * target.slip_m_s, 1000.0 * slip_band_m_s)
+            found["surface"] = Wanted(target.temperature_c, target.band_k)
+        return found
+
+    def gates(self) -> tuple[Gate, ...]:
+        """Return the gates as of the last scan."""
+        closed = self.engine.ctx.gate
+        return tuple(Gate(key, not closed & bit) for key, bit in GATES)
+
+    def soak(self, now: float) -> SoakView | None:
+        """Return the soak under way, None where there is none."""
+        activity = self.engine.executor.activity
+        soak: SoakTo | None = None
+        if isinstance(activity, HeatUp):
+            soak = activity.soak if activity.rolling else None
+        elif isinstance(activity, MeasureCondition):
+            soak = None if activity.soaked else activity.soak
+        if soak is None:
+            return None
+        surface = self.engine.ctx.gates.surface.slow_c
+        return SoakView(
+            surface if isfinite(surface) else None, soak.target_c, soak.within_k,
+            max(now - soak.since_s, 0.0) if isfinite(soak.since_s) else 0.0, soak.for_s,
+            max(now - soak.began_s, 0.0) if isfinite(soak.began_s) else 0.0, soak.at_most_s,
+        )  # fmt: skip
+
+    def checks(self) -> tuple[Check, ...]:
+        """Return what the connected rig says of its readiness."""
+        r, wheel = self.engine.ctx.readings, self.engine.ctx.wheel
+        worn = f"{wheel.cold_mm:.2f} mm, {wheel.loss_mm:.2f} mm worn off"
+        plan = self.engine.executor.plan
+        allowed_mm = plan.replace_after_mm if isinstance(plan, WheelPlan) else 0.0  # by hand nothing is planned
+        left_mm = allowed_mm - wheel.loss_mm
+        wheel_check = Check("wheel", None, worn)
+        if allowed_mm > 0.0:
+            left = f"{max(left_mm, 0.0):.2f} mm left before it is changed"
+            wheel_check = Check("wheel", left_mm > 0.0, f"{worn}, {left}")
+        return (
+            Check("safety chain", r.safety_chain, "closed" if r.safety_chain else "open"),
+            Check("guard closed", r.guard_closed, "" if r.guard_closed else "the guard is open"),
+            wheel_check,
+        )
+
+    def mounted(self) -> tuple[int, str]:
+        """Return specimen and compound of the wheel on the rig."""
+        wheel = self.engine.ctx.wheel
+        return wheel.specimen, wheel.compound

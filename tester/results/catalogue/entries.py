@@ -1,0 +1,222 @@
+"""What a catalogue holds of a run, how it is read from the run's folder, and what a catalogue can do."""
+
+from __future__ import annotations
+
+import json
+import platform
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Protocol
+
+from tester.base.as_json import finite
+from tester.base.axes import Axes, AxisValue, Setpoint, axes_from
+from tester.results.run_results import Measured, results_of
+from tester.store import older
+from tester.store.catalogue import run_folders, under_way
+from tester.store.reader import DATABASE, RunReader
+from tester.store.schema import StoreError
+from tester.store.status import RunStatus
+
+_MADE_BY = "5"
+"""Raised when the same record gives other entries than before: then all are made anew."""
+
+
+class CatalogueError(Exception):
+    """A catalogue cannot be used; the message says why."""
+
+
+@dataclass(frozen=True, slots=True)
+class RunEntry:
+    """One run. ``origin`` is the computer and the folder of the runs it lies in; with the name it is the key."""
+
+    origin: str
+    name: str
+    fingerprint: str
+    """Changes when the run's files change, or a process begins or ends to work on it."""
+    status: str
+    """A word of RunStatus: how the run stood when its own computer looked last."""
+    recipe: str
+    recipe_sha256: str
+    compounds: str
+    """Separated by line feeds, which no compound holds."""
+    operator: str
+    simulated: bool
+    seed: int | None
+    started_utc: str
+    ended_utc: str
+    rig_seconds: float | None
+    software_version: str
+    conditions: int
+    repeats: int
+    repeats_planned: int
+    trusted: int
+    """Conditions that have a coefficient to be trusted."""
+    problem: str = ""
+    kind: str = ""
+    """Of the rig."""
+    axes: str = ""
+    """Of the run's conditions, as JSON (``Axes.as_data``); "" of a run of which an older version wrote."""
+
+    def table(self) -> Axes:
+        """Return the axes of the run's conditions."""
+        return axes_from(json.loads(self.axes)) if self.axes else older.AXES
+
+
+@dataclass(frozen=True, slots=True)
+class ConditionEntry:
+    """One condition of a run: setpoints, coefficient, uncertainty (standard and expanded), repeats."""
+
+    condition: int
+    replicate: int
+    compound: str
+    held: str
+    """What was held, as JSON: a value for each axis, by its column in the project's tables."""
+    status: str
+    mu: float | None
+    s: float | None
+    u_standard: float | None
+    u_expanded: float | None
+    n_valid: int
+    n: int
+    flags: str = ""
+    """With ``status`` says how far the coefficient can be trusted (tester.analysis.trust)."""
+
+    def setpoint(self, axes: Axes) -> Setpoint:
+        """Return what was held, on the axes of the condition's run."""
+        held: dict[str, AxisValue] = json.loads(self.held)
+        found = {axis.name: held[axis.column] for axis in axes}
+        scaled = {
+            axis.name: value if isinstance(value := found[axis.name], str) else value / axis.scale for axis in axes
+        }
+        return axes.setpoint(self.compound, **scaled)
+
+
+@dataclass(frozen=True, slots=True)
+class WantedRuns:
+    """Which runs: every field that is not empty narrows. ``since`` and ``until`` are the beginnings of ISO dates."""
+
+    compound: str = ""
+    since: str = ""
+    until: str = ""
+    recipe: str = ""
+
+
+class Catalogue(Protocol):
+    """Runs and conditions, by origin and name."""
+
+    def fingerprints(self, origin: str) -> dict[str, str]:
+        """Return the fingerprint of every run of an origin, by name."""
+        ...
+
+    def put(self, run: RunEntry, conditions: Iterable[ConditionEntry]) -> None:
+        """Store a run, in place of what was stored of it."""
+        ...
+
+    def remove(self, origin: str, name: str) -> None:
+        """Forget a run."""
+        ...
+
+    def runs(self, wanted: WantedRuns) -> list[RunEntry]:
+        """Return the runs that are wanted, by start."""
+        ...
+
+    def conditions(self, run: RunEntry) -> list[ConditionEntry]:
+        """Return a run's conditions in order."""
+        ...
+
+    def close(self) -> None:
+        """Let go of it."""
+        ...
+
+
+def origin_of(under: Path) -> str:
+    """Return the origin of the runs under a folder."""
+    return f"{platform.node()}:{under.absolute()}"
+
+
+def refresh(catalogue: Catalogue, under: Path) -> None:
+    """Bring a catalogue up to date with the runs under a folder; what has not changed is not read again."""
+    origin = origin_of(under)
+    known = catalogue.fingerprints(origin)
+    for folder in run_folders(under):
+        print_ = fingerprint(folder)
+        if known.pop(folder.name, None) != print_:
+            catalogue.put(*read_entries(folder, origin, print_))
+    for name in known:
+        catalogue.remove(origin, name)
+
+
+def fingerprint(folder: Path) -> str:
+    """Return what changes when a run's entries change: size and time of the database and its log, held or not."""
+    parts = [_MADE_BY] if under_way(folder) is None else [_MADE_BY, "held"]
+    for name in (DATABASE, f"{DATABASE}-wal"):
+        path = folder / name
+        if path.is_file():
+            stat = path.stat()
+            parts.append(f"{stat.st_size}.{stat.st_mtime_ns}")
+    return "/".join(parts)
+
+
+def read_entries(folder: Path, origin: str, print_: str) -> tuple[RunEntry, list[ConditionEntry]]:
+    """Return a run's entries; of one that cannot be read an entry that says so."""
+    try:
+        with RunReader(folder) as reader:
+            results = results_of(reader)
+    except StoreError as error:
+        return _unreadable(folder, origin, print_, str(error)), []
+    run, conditions = results.run, list(results.conditions())
+    compounds = dict.fromkeys(measured.info.compound for measured in conditions)
+    entry = RunEntry(
+        origin=origin,
+        name=folder.name,
+        fingerprint=print_,
+        status=results.status.value,
+        recipe=run.info.recipe_name,
+        recipe_sha256=run.recipe_sha256,
+        compounds="\n".join(compounds),
+        operator=run.info.operator,
+        simulated=run.info.simulated,
+        seed=run.info.seed,
+        started_utc=run.info.started_utc,
+        ended_utc=run.ended_utc,
+        rig_seconds=finite(run.rig_seconds),
+        software_version=run.info.software_version,
+        conditions=len(results.rows),
+        repeats=sum(len(measured.repeats) for measured in conditions),
+        repeats_planned=sum(measured.info.repeats_planned for measured in conditions),
+        trusted=results.valued(),
+        kind=run.info.kind,
+        axes=json.dumps(results.axes.as_data(), ensure_ascii=False),
+    )
+    return entry, [_condition(measured) for measured in conditions]
+
+
+def held_text(setpoint: Setpoint) -> str:
+    """Return what was held as ``ConditionEntry.held`` has it."""
+    return json.dumps({axis.column: axis.of(setpoint) for axis in setpoint.axes})
+
+
+def _condition(measured: Measured) -> ConditionEntry:
+    i, r = measured.info, measured.result
+    return ConditionEntry(
+        condition=i.condition,
+        replicate=i.replicate,
+        compound=i.compound,
+        held=held_text(i.setpoint),
+        status=r.status.value,
+        mu=finite(r.mu),
+        s=finite(r.s),
+        u_standard=finite(r.standard),
+        u_expanded=finite(r.expanded),
+        n_valid=r.n_valid,
+        n=r.counts.asked,
+        flags=r.flags,
+    )
+
+
+def _unreadable(folder: Path, origin: str, print_: str, problem: str) -> RunEntry:
+    status = RunStatus.UNREADABLE.value
+    return RunEntry(
+        origin, folder.name, print_, status, "", "", "", "", False, None, "", "", None, "", 0, 0, 0, 0, problem
+    )

@@ -1,0 +1,164 @@
+"""One run of a sweep: carried out in whatever process it is given to, and returned as plain data."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from tester.analysis.results import ConditionStatus
+from tester.analysis.trust import WITH_CARE
+from tester.base.axes import Setpoint
+from tester.base.trouble import in_words
+from tester.machine.context import Progress
+from tester.machine.prompts import Prompts
+from tester.machine.time_left import RunPosition
+from tester.results.cells import Cell
+from tester.results.conditions_table import ConditionRow, conditions_table, recipe_rows, sweep_columns
+from tester.results.run_results import results_of
+from tester.run.materials import KeptFile, write_materials
+from tester.run.pool import stop_level
+from tester.run.session import Session, SessionOptions
+from tester.store.reader import RunReader
+
+NAN = float("nan")
+NOT_RUN = "not run"
+"""Outcome of a case that raised an error or whose process was lost."""
+
+
+@dataclass(frozen=True, slots=True)
+class SweepTask:
+    """What a process needs for one run: texts, so that it may be on another machine.
+
+    ``case`` counts from 1: point after point, seed after seed.
+    """
+
+    case: int
+    point: tuple[str, ...]
+    seed: int
+    recipe_text: str
+    rig_text: str
+    materials: tuple[KeptFile, ...] = ()
+    """Files of the compounds and the surface that the recipe names."""
+
+
+@dataclass(frozen=True, slots=True)
+class RowResult:
+    """One row of the recipe's table: its nominal setpoints, and its cells of the table of conditions by their keys."""
+
+    row: int
+    setpoint: Setpoint
+    cells: Mapping[str, Cell]
+
+    @property
+    def ok(self) -> bool:
+        """Return whether it has a value to be trusted."""
+        return self.cells["status"] == ConditionStatus.OK
+
+    @property
+    def with_care(self) -> bool:
+        """Return whether it has a value that carries a doubt."""
+        return self.cells["mark"] == WITH_CARE
+
+    def number(self, key: str) -> float:
+        """Return a number of a row that has a value to be trusted; NaN for any other row."""
+        value = self.cells[key]
+        return value if self.ok and isinstance(value, int | float) else NAN
+
+
+@dataclass(frozen=True, slots=True)
+class CaseResult:
+    """How one run ended: exit code as that of ``tester run``, rig time in s, how often something was
+    mounted to be measured, rows of its table."""
+
+    case: int
+    point: tuple[str, ...]
+    seed: int
+    outcome: str
+    reason: str
+    exit_code: int
+    rig_seconds: float = NAN
+    mounted: int = 0
+    rows: tuple[RowResult, ...] = ()
+
+    @property
+    def missing(self) -> int:
+        """Rows without a value to be trusted."""
+        return sum(not row.ok for row in self.rows)
+
+    @property
+    def with_care(self) -> int:
+        """Rows whose value carries a doubt."""
+        return sum(row.with_care for row in self.rows)
+
+
+def run_case(task: SweepTask) -> CaseResult:
+    """Run a recipe on a simulated rig as ``tester run --yes`` does, in a folder that does not outlast it."""
+    with TemporaryDirectory(prefix="sweep-", ignore_cleanup_errors=True) as name:
+        folder = Path(name)
+        recipe, rig = folder / "recipe.yaml", folder / "rig.yaml"
+        recipe.write_text(task.recipe_text, encoding="utf-8", newline="\n")
+        rig.write_text(task.rig_text, encoding="utf-8", newline="\n")
+        write_materials(folder, task.materials)
+        screen = Unseen()
+        options = SessionOptions(str(recipe), str(rig), out=folder / "runs", seed=task.seed, samples=False)
+        session = screen.session = Session(options, screen)
+        code = session.run()
+        if session.folder is None or session.ending is None:
+            return CaseResult(task.case, task.point, task.seed, NOT_RUN, " ".join(screen.said), code)
+        ending = session.ending
+        with RunReader(session.folder) as reader:
+            results = results_of(reader)
+            mounted = len(reader.pieces())
+        rows = tuple(_row(row) for row in recipe_rows(conditions_table(results)).rows)
+        rig_s = results.run.rig_seconds
+        return CaseResult(
+            task.case, task.point, task.seed, ending.outcome.value, ending.reason, code, rig_s, mounted, rows
+        )
+
+
+def not_run(task: SweepTask, error: BaseException) -> CaseResult:
+    """Return the result of a case that raised instead of returning one."""
+    reason = f"{type(error).__name__}: {in_words(error)}".strip(": ")
+    return CaseResult(task.case, task.point, task.seed, NOT_RUN, reason, 1)
+
+
+def _row(one: ConditionRow) -> RowResult:
+    return RowResult(one.info.row, one.info.setpoint, {column.key: column.cell(one) for column in sweep_columns()})
+
+
+class Unseen:
+    """A screen that nobody looks at; a stop that is ordered of the pool reaches the session through it."""
+
+    answer_yes = True
+    can_ask = False
+
+    def __init__(self) -> None:
+        self.session: Session | None = None
+        self.said: list[str] = []
+
+    def begin(self, name: str) -> None:
+        """Show nothing."""
+
+    def show(self, now_s: float, run: Progress, at: RunPosition) -> None:
+        """Look whether somebody wants the sweep to stop."""
+        level = stop_level()
+        if level and self.session is not None:
+            self.session.stop(level)
+
+    def attend(self, prompts: Prompts) -> None:
+        """Ask nobody."""
+
+    def end(self) -> None:
+        """Take nothing away."""
+
+    def message(self, text: str) -> None:
+        """Keep what is said, for a run that does not begin."""
+        self.said.append(text)
+
+    def emit(self, record: dict[str, object]) -> None:
+        """Write nothing."""
+
+    def result(self, line: str) -> None:
+        """Write nothing."""

@@ -1,0 +1,79 @@
+"""The folder of a sweep: results are in it as soon as they are there, and in order in the end."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Sequence
+from itertools import chain
+from pathlib import Path
+from typing import TextIO
+
+from tester.base.axes import Axes
+from tester.results import write_file
+from tester.results.cells import encode, line
+from tester.run.sweep import tables
+from tester.run.sweep.case import CaseResult
+from tester.run.sweep.grid import SweepAxis
+
+RUNS, CONDITIONS, SUMMARY, TOTALS = "runs.csv", "conditions.csv", "summary.csv", "totals.csv"
+
+
+class SweepFiles:
+    """Writes results as they come; ``finish`` puts them in order and adds what they are together.
+
+    Raises OSError.
+    """
+
+    def __init__(self, folder: Path, axes: Sequence[SweepAxis], held: Axes, worn: str) -> None:
+        """Create ``runs.csv`` and ``conditions.csv`` in ``folder``; ``held``: the axes of the recipe's conditions;
+        ``worn``: what people call the part that wears, in the headers."""
+        self.folder = folder
+        self.axes = axes
+        self.held = held
+        self.worn = worn
+        self.results: list[CaseResult] = []
+        self._runs = _begin(folder / RUNS, tables.run_header(axes, worn))
+        self._conditions = _begin(folder / CONDITIONS, tables.condition_header(axes, held))
+
+    def add(self, result: CaseResult) -> None:
+        """Write a run's result; it is in the files when this returns."""
+        self.results.append(result)
+        _append(self._runs, [tables.run_row(result)])
+        _append(self._conditions, tables.condition_rows(result))
+
+    def finish(self) -> None:
+        """Write every table in order: the same results give the same files, whoever was first."""
+        results, axes = sorted(self.results, key=tables.case_of), self.axes
+        self._runs.close()
+        self._conditions.close()
+        runs = (tables.run_row(result) for result in results)
+        conditions = chain.from_iterable(tables.condition_rows(result) for result in results)
+        for name, header, rows in (
+            (RUNS, tables.run_header(axes, self.worn), runs),
+            (CONDITIONS, tables.condition_header(axes, self.held), conditions),
+            (SUMMARY, tables.summary_header(axes, self.held), tables.summary_rows(results)),
+            (TOTALS, tables.totals_header(axes, self.worn), tables.totals_rows(results)),
+        ):
+            write_file(self.folder / name, encode(chain([header], rows)))
+
+
+def write_sources(
+    folder: Path, recipe_text: str, rig_text: str, axes: Sequence[SweepAxis], first_seed: int, seeds: int
+) -> None:
+    """Write what a sweep is made of: recipe, rig file before any value is set, seeds and values."""
+    (folder / "recipe.yaml").write_text(recipe_text, encoding="utf-8", newline="\n")
+    (folder / "rig.yaml").write_text(rig_text, encoding="utf-8", newline="\n")
+    said = {"first_seed": first_seed, "seeds": seeds, "set": {axis.key: list(axis.values) for axis in axes}}
+    text = json.dumps(said, indent=1, ensure_ascii=False) + "\n"
+    (folder / "sweep.json").write_text(text, encoding="utf-8", newline="\n")
+
+
+def _begin(path: Path, header: tables.Row) -> TextIO:
+    file = path.open("w", encoding="utf-8", newline="\n")
+    _append(file, [header])
+    return file
+
+
+def _append(file: TextIO, rows: Iterable[tables.Row]) -> None:
+    file.writelines(line(row) for row in rows)
+    file.flush()

@@ -1,0 +1,125 @@
+"""A sweep from the outside: its points and seeds, its runs wherever they are carried out, its folder, its exit code."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from concurrent.futures import Future, as_completed
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Protocol
+
+from recipes import find
+from tester.base.axes import Axes
+from tester.base.exits import EXIT_DONE, EXIT_INCOMPLETE, EXIT_INTERRUPTED
+from tester.run.folder import make_folder
+from tester.run.kinds import checked_recipe, served_kind
+from tester.run.materials import kept_files, used_materials
+from tester.run.rigs import load_rig
+from tester.run.sweep.case import CaseResult, SweepTask, not_run, run_case
+from tester.run.sweep.executors import Submit
+from tester.run.sweep.files import SweepFiles, write_sources
+from tester.run.sweep.grid import SweepAxis, overrides_of, points_of
+
+
+class Audience(Protocol):
+    """Who is told how a sweep goes."""
+
+    def begin(self, folder: Path, runs: int) -> None:
+        """Hear that a sweep of so many runs has begun."""
+        ...
+
+    def ran(self, result: CaseResult, done: int) -> None:
+        """Hear of a run's result; ``done`` runs are over now."""
+        ...
+
+
+class NotSimulatedError(Exception):
+    """A sweep is for simulated rigs; the message says which rig is none."""
+
+
+@dataclass(frozen=True, slots=True)
+class SweepOptions:
+    """What is asked for."""
+
+    recipe: str
+    rig: str = "sim"
+    axes: tuple[SweepAxis, ...] = ()
+    seeds: int = 1
+    first_seed: int = 0
+    out: Path = Path("sweeps")
+
+
+@dataclass(frozen=True, slots=True)
+class Sweep:
+    """A sweep that is ready to be carried out: its tasks in order, and the texts they come from."""
+
+    options: SweepOptions
+    name: str
+    recipe_text: str
+    rig_text: str
+    held: Axes
+    """Axes of the recipe's conditions."""
+    worn: str
+    """What people call the part of the machine that wears."""
+    tasks: tuple[SweepTask, ...]
+
+
+def prepare_sweep(options: SweepOptions) -> Sweep:
+    """Check the recipe on the rig of every point; return the sweep.
+
+    Raises InvalidSource, FileNotFoundError, NotSimulatedError.
+    """
+    path = find(options.recipe)
+    plain = load_rig(options.rig)
+    if not plain.simulated:
+        raise NotSimulatedError(f"--rig {options.rig}: a sweep is for simulated rigs, and this one is real")
+    seeds = range(options.first_seed, options.first_seed + options.seeds)
+    tasks: list[SweepTask] = []
+    name = recipe_text = ""
+    held: Axes | None = None
+    for point in points_of(options.axes):
+        rig = load_rig(options.rig, overrides_of(options.axes, point))
+        recipe = checked_recipe(path, rig)
+        name, recipe_text, rig_text = recipe.recipe.recipe, recipe.tree.text, rig.text
+        held = recipe.recipe.axes
+        materials = kept_files(used_materials(recipe.recipe, path).files)
+        tasks += [
+            SweepTask(len(tasks) + i, point, seed, recipe_text, rig_text, materials)
+            for i, seed in enumerate(seeds, start=1)
+        ]
+    assert held is not None  # a sweep has a point at least, that of no axis
+    worn = served_kind(plain).machine.specimen
+    return Sweep(options, name, recipe_text, plain.text, held, worn, tuple(tasks))
+
+
+def carry_out(sweep: Sweep, submit: Submit, audience: Audience) -> tuple[Path, int]:
+    """Run every task; return the sweep's folder and its exit code.
+
+    0: every run was done and gave every value; 6: not so; 130: interrupted, with the results that were there by then.
+    Raises OSError where the folder cannot be written.
+    """
+    options = sweep.options
+    folder = make_folder(options.out, sweep.name)
+    write_sources(folder, sweep.recipe_text, sweep.rig_text, options.axes, options.first_seed, options.seeds)
+    files = SweepFiles(folder, options.axes, sweep.held, sweep.worn)
+    audience.begin(folder, len(sweep.tasks))
+    code = EXIT_DONE
+    try:
+        for result in _results(sweep.tasks, submit):
+            files.add(result)
+            audience.ran(result, len(files.results))
+            if result.exit_code != EXIT_DONE:
+                code = EXIT_INCOMPLETE
+    except KeyboardInterrupt:
+        code = EXIT_INTERRUPTED
+    finally:
+        files.finish()
+    return folder, code
+
+
+def _results(tasks: Sequence[SweepTask], submit: Submit) -> Iterator[CaseResult]:
+    """Yield results as they come; a run that raises is a result, too."""
+    futures: dict[Future[CaseResult], SweepTask] = {submit(run_case, task): task for task in tasks}
+    for future in as_completed(futures):
+        error = future.exception()
+        yield future.result() if error is None else not_run(futures[future], error)

@@ -1,0 +1,57 @@
+"""Whether conditions lie on one curve."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import pytest
+
+from tester.analysis.master_curve.made import Master, master_of
+from tester.analysis.master_curve.points import MasterPoint
+from tester.analysis.master_curve.verdict import Verdict
+from tests.campaigns.master.synthetic import FAILING, synthetic
+
+
+def made(points: list[MasterPoint]) -> Master:
+    return master_of(points, 20.0, resamples=40)
+
+
+@pytest.mark.parametrize("noise", [0.0, 0.005, 0.02, 0.05])
+def test_a_set_that_is_one_curve_collapses(noise: float) -> None:
+    found = [made(synthetic(seed, noise)).judged for seed in range(3)]
+    assert {one.verdict for one in found} == {Verdict.COLLAPSES} and found[0].reasons == ()
+    assert [test.name for test in found[0].tests] == ["factors", "shifts", "shape"]
+
+
+@pytest.mark.parametrize(("how", "reason"), [
+    (FAILING["factors of 10 % by temperature"], "factors of their own"),
+    (FAILING["a shift of a decade for 12 K"], "not those of WLF"),
+    (FAILING["a shift after Arrhenius, 100 kJ/mol"], "not those of WLF"),
+    (FAILING["an adhesion peak 25 % lower when warm, higher when cold"], "shape changes"),
+])  # fmt: skip
+def test_a_set_that_is_none_does_not_with_the_reason(how: Mapping[str, object], reason: str) -> None:
+    for seed in range(3):
+        judged = made(synthetic(seed, 0.02, **how)).judged  # type: ignore[arg-type]
+        assert judged.verdict is Verdict.DOES_NOT and any(reason in one for one in judged.reasons), judged
+
+
+def test_a_power_law_cannot_tell_for_it_collapses_at_any_shift() -> None:
+    judged = made(synthetic(0, 0.02, power=0.2)).judged
+    assert judged.verdict is Verdict.OPEN
+    assert "a power law in v collapses at any shift" in judged.reasons[0]
+
+
+def test_temperatures_that_share_nothing_cannot_tell() -> None:
+    apart = [one for one in synthetic(0, 0.02) if one.block_c in (-5.0, 40.0, 85.0) and one.speed_m_s > 5e-4]
+    apart += [one for one in synthetic(1, 0.02) if one.block_c in (-5.0, 40.0, 85.0) and one.speed_m_s > 5e-4]
+    judged = master_of(apart, 20.0, 30.0).judged
+    assert judged.verdict is Verdict.OPEN and "too little overlap" in judged.reasons[0]
+
+
+def test_two_temperatures_cannot_tell() -> None:
+    judged = made([one for one in synthetic(0, 0.02) if one.block_c < 10.0]).judged
+    assert judged.verdict is Verdict.OPEN and "2 temperatures (expected at least 3)" in judged.reasons
+
+
+def test_a_ts_that_is_given_wrongly_does_not_collapse() -> None:
+    assert master_of(synthetic(0, 0.02), 20.0, 0.0).judged.verdict is Verdict.DOES_NOT

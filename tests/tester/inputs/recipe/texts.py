@@ -1,0 +1,55 @@
+"""Recipes as text, for the tests of this package."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+
+from tester.inputs.recipe.loader import load_recipe
+from tester.kinds import load_rig
+from tester.kinds.wheel_on_belt.recipe.part import PART
+from tester.kinds.wheel_on_belt.recipe.schema import WheelRecipe, for_wheels
+from tester.kinds.wheel_on_belt.rig import RigConfig
+
+SMALL = """\
+recipe: small
+specimens:
+  - compound: "1#"
+measure:
+  wheel_speed: 0.8 m/s
+grids:
+  - name: load
+    slip_velocity: 300 mm/s
+    load: [100 N, 200 N]
+    temperature: [40 degC, 25 degC]
+"""
+
+PREPARED = (
+    SMALL
+    + """\
+pre_grind: {wheel_speed: 0.8 m/s, belt_speed: 0.6 m/s, load: 200 N, duration: 4 min}
+rest: {at_least: 20 min, until: 25 degC, within: 2 degC}
+"""
+)
+
+
+@cache
+def rig(*overrides: str, accept_risk: str = "") -> RigConfig:
+    """Return the simulated rig, with overrides as for --set; ``accept_risk`` as for --accept-risk."""
+    return RigConfig.of(load_rig("sim", list(overrides), accept_risk))
+
+
+def real_rig() -> RigConfig:
+    """Return a rig like the simulated one, but real: people take time there, and any compound will do."""
+    return replace(rig(), simulated=False)
+
+
+def recipe(text: str) -> WheelRecipe:
+    """Return a valid recipe."""
+    return for_wheels(load_recipe(text, PART, "r.yaml").recipe)
+
+
+def with_line(old: str, new: str, text: str = SMALL) -> str:
+    """Return a recipe text in which one piece is replaced."""
+    assert text.count(old) == 1
+    return text.replace(old, new)

@@ -1,0 +1,30 @@
+"""The pages that are made from, or speak of, keys and assumptions are up to date."""
+
+from __future__ import annotations
+
+import runpy
+from pathlib import Path
+
+import pytest
+
+from tester.kinds import PACKAGED, find
+
+DOCS = Path(__file__).parents[4] / "docs"
+
+
+@pytest.mark.parametrize("name", PACKAGED)
+def test_the_page_names_the_keys_that_a_file_may_lack(name: str) -> None:
+    keys = ", ".join(f"`{key}`" for key in find(name).rig().may_lack)
+    assert f"| {name} | {keys} |" in (DOCS / "rig-file.md").read_text(encoding="utf-8")
+
+
+def test_the_page_of_assumptions_is_what_the_code_says() -> None:
+    """``python docs/assumptions.py`` writes it."""
+    page = runpy.run_path(str(DOCS / "assumptions.py"))["page_text"]
+    assert (DOCS / "assumptions.md").read_text(encoding="utf-8") == page()
+
+
+def test_an_assumption_is_named_by_the_number_it_stands_at() -> None:
+    marked = runpy.run_path(str(DOCS / "assumptions.py"))["marked"]
+    source = 'A_S = 0.5\n"""How long [A]."""\nB = 3  # so many [A]\n'
+    assert list(marked(source)) == [("A_S", "0.5", "How long [A]."), ("B", "3", "so many [A]")]

@@ -1,0 +1,78 @@
+"""A rig put together from its file."""
+
+from __future__ import annotations
+
+import pytest
+
+from tester.kinds.wheel_on_belt.interlocks.heat_ratio import KnownRatio
+from tester.kinds.wheel_on_belt.runs.build import build_run, loss_ratios
+from tester.machine.prompts import Prompts
+from tester.machine.state import Mode
+from tester.run.simulated import simulated_ports
+from tester.store.recorder import NullRecorder
+from tests.tester.inputs.recipe.texts import rig
+from tests.tester.kinds.wheel_on_belt.bench import Simulation, plan_of
+
+
+@pytest.fixture(scope="module")
+def simulation() -> Simulation:
+    return Simulation()
+
+
+def test_every_device_of_the_file_has_its_driver(simulation: Simulation) -> None:
+    devices = simulation.run.engine.devices
+    assert [drive.config.name for drive in devices.drives] == ["wheel", "belt", "press", "sideslip", "camber"]
+    assert [drive.config.node_id for drive in devices.drives] == [1, 2, 3, 4, 5]
+    assert len(devices.lines) == 2
+
+
+def test_the_slow_devices_share_a_line_and_the_load_cell_has_its_own(simulation: Simulation) -> None:
+    devices = simulation.run.engine.devices
+    assert devices.jacket.link is devices.thermometer.link is not devices.cell.link
+
+
+def test_a_new_run_is_idle_disabled_and_lifted(simulation: Simulation) -> None:
+    engine = simulation.run.engine
+    assert engine.control.state.mode is Mode.IDLE
+    out = engine.control.state.setpoints
+    assert not (out.enable or out.heat or out.contactor) and out.press_mm_s == 0.0
+
+
+def test_the_scan_rates_are_the_file_s() -> None:
+    engine = Simulation(overrides=("scan.sliding=50 Hz",)).run.engine
+    assert (engine.sliding_s, engine.enabled_s, engine.idle_s) == (0.02, 0.05, 0.1)
+
+
+def test_control_and_context_share_the_press_loop(simulation: Simulation) -> None:
+    engine = simulation.run.engine
+    assert engine.ctx.contact is engine.control.state.load
+
+
+def test_the_wheel_begins_with_the_file_s_diameter() -> None:
+    wheel = Simulation(overrides=("geometry.wheel_diameter=88 mm",)).ctx.wheel
+    assert wheel.cold_mm == 88.0
+
+
+def test_rolling_contact_costs_more_heat_than_air_alone() -> None:
+    lifted, rolling = loss_ratios(rig())
+    assert 0.2 < lifted < rolling < 1.5
+
+
+def test_a_belt_that_draws_more_heat_needs_a_hotter_hub() -> None:
+    assert loss_ratios(rig("observer.belt_conductance=0.3"))[1] > 2.0 * loss_ratios(rig())[1]
+
+
+def test_without_a_history_the_heat_balance_takes_the_file_s_share(simulation: Simulation) -> None:
+    heat = simulation.ctx.heat
+    assert heat is not None and heat.share == simulation.ctx.rig.interlocks.heat_share
+    assert simulation.ctx.heat_known == "no history yet; a row tells from 30 %"
+
+
+def test_what_earlier_runs_have_shown_tightens_the_heat_balance() -> None:
+    config = rig()
+    ports, _, attendant = simulated_ports(config, 0, None)
+    prompts = Prompts(automatic=True)
+    run = build_run(config, plan_of(), ports, attendant, NullRecorder(), prompts, heat=KnownRatio(3, 1.0))
+    heat = run.engine.ctx.heat
+    assert heat is not None and heat.share == pytest.approx(0.12)
+    assert run.engine.ctx.heat_known == "known from 3 heatings, ratio 1.00, 0.00 apart; a row tells from 12 %"

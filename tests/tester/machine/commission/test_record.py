@@ -1,0 +1,68 @@
+"""The record of a commissioning: appended to, chained, synced, readable after a kill."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tester.machine.commission.record import BEGUN, DONE, READING, CommissionRecord, RecordError
+
+
+def utc() -> str:
+    return "2026-11-23T10:00:00Z"
+
+
+def filled(path: Path) -> CommissionRecord:
+    record = CommissionRecord(path, utc, "me")
+    record.add("rig", "a" * 64, "s1", "one", BEGUN)
+    record.add("rig", "a" * 64, "s1", "one", READING, "first", {"way_mm": 1.25})
+    record.add("rig", "a" * 64, "s1", "one", DONE, "passed", {"scale": 1.0})
+    return record
+
+
+def test_what_was_added_reads_back(tmp_path: Path) -> None:
+    written = filled(tmp_path / "r.jsonl")
+    read = CommissionRecord(tmp_path / "r.jsonl", utc, "you")
+    assert read.entries == written.entries
+    assert read.standing("one", "s1") == written.entries[-1]
+    assert read.standing("one", "s2") is None
+    assert read.standing("two", "s1") is None
+
+
+@pytest.mark.parametrize("cut", range(1, 400, 7))
+def test_a_line_cut_off_by_a_kill_is_passed_over_and_work_goes_on_behind_it(tmp_path: Path, cut: int) -> None:
+    path = tmp_path / "r.jsonl"
+    filled(path)
+    whole = path.read_bytes()
+    path.write_bytes(whole[:-cut])
+    record = CommissionRecord(path, utc, "me")
+    before = len(record.entries)
+    record.add("rig", "a" * 64, "s1", "one", DONE, "again")
+    assert len(CommissionRecord(path, utc, "me").entries) == before + 1
+    record.add("rig", "a" * 64, "s1", "two", BEGUN)
+    assert len(CommissionRecord(path, utc, "me").entries) == before + 2
+
+
+def test_a_changed_line_is_found(tmp_path: Path) -> None:
+    path = tmp_path / "r.jsonl"
+    filled(path)
+    path.write_text(path.read_text().replace("1.25", "1.26"))
+    with pytest.raises(RecordError, match="line 3"):
+        CommissionRecord(path, utc, "me")
+
+
+def test_a_line_taken_out_is_found(tmp_path: Path) -> None:
+    path = tmp_path / "r.jsonl"
+    filled(path)
+    lines = path.read_text().splitlines(keepends=True)
+    path.write_text(lines[0] + lines[2])
+    with pytest.raises(RecordError, match="line 2"):
+        CommissionRecord(path, utc, "me")
+
+
+def test_what_is_no_number_is_not_written(tmp_path: Path) -> None:
+    record = CommissionRecord(tmp_path / "r.jsonl", utc, "me")
+    with pytest.raises(ValueError, match="JSON"):
+        record.add("rig", "", "", "one", READING, "", {"x": float("nan")})
+    assert not (tmp_path / "r.jsonl").exists()
