@@ -114,7 +114,8 @@ def test_code_that_is_not_there_is_found(text: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "text", ["`sim/machines/<kind>`", "tester.base.plugins", "tester.kinds.kind.Kind", "tests.campaigns.faults", "`kind.py`"]
+    "text",
+    ["`sim/machines/<kind>`", "tester.base.plugins", "tester.kinds.kind.Kind", "tests.campaigns.faults", "`kind.py`"],
 )
 def test_code_that_is_there_is_not(text: str) -> None:
     assert not led_nowhere(text)

@@ -1,7 +1,7 @@
 """What laws of friction are told of two materials: a rubber's complex modulus and the surface that it slides on.
 
-SI throughout. Files say how a compound or a surface is written down (``tester.inputs.materials``); here is what is left of
-them for a calculation.
+SI throughout. ``tester.inputs.materials`` reads the files of compounds and surfaces; this module holds what a
+calculation needs of them.
 """
 
 from __future__ import annotations

@@ -1,9 +1,8 @@
 """Quantities: the channels of a kind of rig, in one ordered table from which everybody reads off what he needs.
 
-A channel that stands in the table is sampled, stored, averaged, exported and shown; nothing else keeps a list of
-channels or an order of them. Here are the types only; the table is the kind's own (``tester/kinds/<kind>/quantities``)
-with what further sensors of a rig measure (tester.inputs.rig.sensors), and a run's record keeps a copy of it, so that a stored
-run can be read without its kind.
+Every channel of the table is sampled, stored, averaged, exported and shown; nothing else keeps a list or an order of
+channels. This module holds the types. Each kind has its own table, to which the further sensors of a rig add rows
+(tester.inputs.rig.sensors). A run's record keeps a copy of it, so that a stored run can be read without its kind.
 """
 
 from __future__ import annotations

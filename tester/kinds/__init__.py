@@ -85,7 +85,7 @@ def packaged_papers() -> tuple[Paper, ...]:
 
 
 def load_rig(source: str | Path = SIMULATED, overrides: Sequence[str] = (), accept_risk: str = "") -> Rig:
-    """Return the rig of a file, or the packaged one of that name; raises InvalidSource (tester.inputs.rig.load.load)."""
+    """Return the rig of a file, or the packaged one of that name; raises InvalidSource (tester.inputs.rig.load)."""
     from tester.inputs.rig.load import load
 
     kind, tree = _opened(source)

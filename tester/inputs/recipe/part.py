@@ -50,8 +50,8 @@ class RecipePart(ABC):
     A section is a field of the kind's ``Recipe`` subclass; what a grid or ``measure`` may say beyond repeats,
     precision, windows, bands and soak is a field of its ``GridModel`` and ``MeasureModel`` subclasses, and goes into
     conditions by a ``Settings`` subclass. A grid's axes are added to its model from ``axes``; one that is
-    ``in_measure`` has to be a field of the kind's ``MeasureModel`` too. A rig comes as ``tester.inputs.rig.Rig``; the kind's
-    own ``RigConfig.of(rig)`` narrows it. Two objects of one class are equal: a part is its class.
+    ``in_measure`` has to be a field of the kind's ``MeasureModel`` too. A rig comes as ``tester.inputs.rig.Rig``; the
+    kind's own ``RigConfig.of(rig)`` narrows it. Two objects of one class are equal: a part is its class.
     """
 
     kind: ClassVar[str]

@@ -1,7 +1,7 @@
 """How far each safety key of a rig file may be loosened: its direction, its hardest value, and why there.
 
-The parameters of interlocks say it themselves (tester.inputs.rig.parameter); a kind lists its other keys (Rig.ceilings).
-A value that is looser than the rig it is for allows is a risk: somebody has to accept it in words (tester.inputs.rig.load).
+An interlock's parameter holds its own ceiling (tester.inputs.rig.parameter); a kind lists its other keys
+(``Rig.ceilings``). A looser value is a risk that a person has to accept in words (tester.inputs.rig.load).
 """
 
 from __future__ import annotations

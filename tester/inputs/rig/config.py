@@ -175,7 +175,7 @@ class Rig:
     manual: ClassVar[tuple[str, ...]] = ()
     """Axes that a person may set instead of a drive: ``manual: true``."""
     own: ClassVar[Mapping[str, OwnDevice]] = {}
-    """Devices of the kind by their keys in ``devices``; any other there is a further sensor (tester.inputs.rig.sensors)."""
+    """Devices of the kind by their keys in ``devices``; any other is a further sensor (tester.inputs.rig.sensors)."""
     parameters: ClassVar[tuple[Parameter, ...]] = ()
     """Of the section ``interlocks``. One that the packaged file does not have counts there with its default."""
     watched: ClassVar[tuple[str, ...]] = ()

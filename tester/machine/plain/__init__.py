@@ -9,7 +9,7 @@ What a kind of such a machine repeats otherwise stands here, and a kind override
 - ``context``, ``procedures``: a specimen is put on, a condition is measured in repeats; a kind says what it demands;
 - ``runs``, ``served``: what a run and a service ask of the kind.
 
-Its rig file is a ``tester.inputs.rig.plain.PlainRig``, its recipe a ``tester.inputs.recipe.plain.PlainPart``, its twin on the same
-wires a ``sim.plain_rig.PlainTwin``. A machine that heats, presses or goes to places is more than plain: see
+Its rig file is a ``tester.inputs.rig.plain.PlainRig``, its recipe a ``tester.inputs.recipe.plain.PlainPart``, its twin
+on the same wires a ``sim.plain_rig.PlainTwin``. A machine that heats, presses or goes to places is more than plain: see
 ``tester.kinds.wheel_on_belt``.
 """

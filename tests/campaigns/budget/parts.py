@@ -76,7 +76,7 @@ def of_components() -> Iterator[Mutant]:
             yield Mutant(f"components: {name}", path, old, new, tests)
 
 
-_PROBLEM, _LACK, _RESAMPLE = "tester/analysis/fit/problem.py", "tester/analysis/fit/lack.py", "tester/analysis/fit/resample.py"
+_PROBLEM, _LACK, _RESAMPLE = (f"tester/analysis/fit/{name}.py" for name in ("problem", "lack", "resample"))
 _POINTS = "tester/results/fit_points.py"
 _OF_FIT = tests_of("fit/lack", "fit/joint")
 _OF_POINTS = tests_of("kinds/wheel_on_belt/fit/runs", "kinds/specimen_on_track/fit/runs")

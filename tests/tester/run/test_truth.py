@@ -92,7 +92,7 @@ def _names(folder: str) -> Iterator[str]:
         yield from (name for _, name in names_in(ast.parse(path.read_text(encoding="utf-8"))))
 
 
-@pytest.mark.parametrize("folder", ["tester/analysis", "tester/results", "tester/run/sweep", "tester/results/catalogue"])
+@pytest.mark.parametrize("folder", ["tester/analysis", "tester/results", "tester/run/sweep"])
 def test_what_reduces_and_exports_knows_no_truth(folder: str) -> None:
     assert [name for name in _names(folder) if "truth" in name.lower()] == []
 

@@ -1,4 +1,4 @@
-"""A plan for wheels in words and as JSON: what is this machine's beside what all plans say (``tester.inputs.recipe``)."""
+"""What a plan for wheels adds, in words and as JSON, to every plan (``tester.inputs.recipe``)."""
 
 from __future__ import annotations
 

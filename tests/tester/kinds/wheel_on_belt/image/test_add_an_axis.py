@@ -32,7 +32,8 @@ def tree(tmp_path_factory: pytest.TempPathFactory) -> Path:
     for name in ("tester", "drivers", "sim", "recipes"):
         shutil.copytree(ROOT / name, tree / name, ignore=shutil.ignore_patterns("__pycache__", "*.so", "*.pyd"))
     steps = list(STEP.finditer(PAGE.read_text(encoding="utf-8")))
-    assert [step["path"] for step in steps] == ["tester/kinds/wheel_on_belt/image/axes.py", "sim/rig.yaml", "sim/rig.yaml"]
+    table = "tester/kinds/wheel_on_belt/image/axes.py"
+    assert [step["path"] for step in steps] == [table, "sim/rig.yaml", "sim/rig.yaml"]
     for step in steps:
         path, place = tree / step["path"], step["place"].replace('\\"', '"').replace("\\n", "\n")
         text = path.read_text(encoding="utf-8")
