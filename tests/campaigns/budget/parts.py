@@ -133,7 +133,7 @@ _FIT_OTHERS: Final = (
     (_POINTS, "a doubt is no reason", 'return ", ".join(result.doubts)', 'return ""'),
 )  # fmt: skip
 _COLLAPSE, _VERDICT = "tester/analysis/master_curve/collapse.py", "tester/analysis/master_curve/verdict.py"
-_OF_MASTER = tests_of("master/collapse", "master/verdict")
+_OF_COLLAPSE, _OF_VERDICT = tests_of("master/collapse"), tests_of("master/verdict")
 _MASTER_SCALED: Final = (
     (_COLLAPSE, "residuals of resamples", "spread = one.residual * sqrt(", "spread = {} * one.residual * sqrt("),
     (_COLLAPSE, "the thermometer in the interval", "thermometer_k = of.thermometer_k *",
@@ -171,7 +171,8 @@ def of_fits() -> Iterator[Mutant]:
 
 def of_masters() -> Iterator[Mutant]:
     """Yield mutants of master curves: what an interval holds, and what a verdict compares."""
+    tests = {_COLLAPSE: _OF_COLLAPSE, _VERDICT: _OF_VERDICT}
     for path, name, old, new in _MASTER_SCALED:
-        yield from scaled(path, _OF_MASTER, [(f"master: {name}", old, new)])
+        yield from scaled(path, tests[path], [(f"master: {name}", old, new)])
     for path, name, old, new in _MASTER_OTHERS:
-        yield Mutant(f"master: {name}", path, old, new, _OF_MASTER)
+        yield Mutant(f"master: {name}", path, old, new, tests[path])

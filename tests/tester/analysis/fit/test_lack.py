@@ -16,10 +16,13 @@ from tester.analysis.fit.resample import resample
 from tester.analysis.fit.solve import solve
 from tests.tester.analysis.fit.straight import LINE, line, point
 
-pytest.importorskip("scipy", reason="needs the extra `report`")
+stats = pytest.importorskip("scipy.stats", reason="needs the extra `report`")
 
 XS = [0.1 * i for i in range(20)]
 DRAWS = 1999
+MANY = 99_999
+"""Draws from which a figure can be compared with tables."""
+SHARE = 0.002
 
 
 def drawn(seed: int, share: float, bend: float = 0.0, **known: float) -> list[FitPoint]:
@@ -40,6 +43,33 @@ def problem_of(points: Sequence[FitPoint]) -> tuple[FitProblem, np.ndarray]:
 
 def lack(points: Sequence[FitPoint]) -> Lack:
     return lack_of(*problem_of(points), draws=DRAWS)
+
+
+def left_over(shape: Sequence[float], squares: float, df: float = inf) -> list[FitPoint]:
+    """Return a line of conditions whose fit leaves this shape, with squares that sum to ``squares`` times SHARE^2."""
+    xs = np.array(XS[: len(shape)])
+    tangent = np.stack([np.ones(len(xs)), xs], axis=-1) / (1.0 + 0.5 * xs[:, None])  # of ln mu, by ln m and by s
+    rest = np.array(shape) - tangent @ np.linalg.lstsq(tangent, np.array(shape), rcond=None)[0]
+    rest *= SHARE * sqrt(squares) / np.linalg.norm(rest)
+    made = line(list(xs), type_a=SHARE, df=df)
+    return [replace(one, value=one.value * float(np.exp(r))) for one, r in zip(made, rest, strict=True)]
+
+
+def alternating(count: int = len(XS)) -> list[float]:
+    return [float((-1) ** i) for i in range(count)]
+
+
+def arched() -> list[float]:
+    return [(x / XS[-1] - 0.5) ** 2 for x in XS]
+
+
+def p_of(points: Sequence[FitPoint]) -> list[float]:
+    return [one.p for one in lack_of(*problem_of(points), draws=MANY).tests]
+
+
+def scatter(p: float) -> float:
+    """Return four standard deviations of a share among MANY draws."""
+    return 4.0 * sqrt(p * (1.0 - p) / MANY)
 
 
 def test_the_right_law_is_refused_once_in_a_hundred() -> None:
@@ -124,6 +154,55 @@ def test_what_is_said_to_be_visible_is_seen() -> None:
     departure = direction * found.visible / np.sqrt(np.mean(direction**2))
     assert 0.90 <= power_of(problem, fitted, departure, DRAWS) <= 1.0
     assert power_of(problem, fitted, 0.3 * departure, DRAWS) < 0.5
+
+
+@pytest.mark.parametrize("n", [4, 20])
+def test_what_is_visible_is_as_long_as_a_noncentral_chi_squared_asks(n: int) -> None:
+    found = lack_of(*problem_of(left_over(alternating(n), 1.0)), draws=MANY)
+    critical = stats.chi2.ppf(1.0 - 0.01 / 2.0, n - 2)  # two tests share 1 %; two parameters are fitted
+    length = next(x for x in np.linspace(0.0, 20.0, 4001) if stats.ncx2.sf(critical, n - 2, x**2) >= 0.95)
+    assert found.visible == pytest.approx(SHARE * length / sqrt(n), rel=0.01)
+
+
+def test_what_is_visible_beside_few_repeats_is_as_long_as_a_noncentral_f_asks() -> None:
+    found = lack_of(*problem_of(left_over(alternating(), 1.0, df=6.0)), draws=MANY)
+    critical = stats.f.ppf(1.0 - 0.01 / 2.0, 18, 6)
+    length = next(x for x in np.linspace(0.0, 40.0, 4001) if stats.ncf.sf(critical, 18, 6, x**2) >= 0.95)
+    assert found.visible == pytest.approx(SHARE * length / sqrt(20), rel=0.03)
+
+
+@pytest.mark.parametrize("p", [0.5, 0.05, 0.01])
+def test_chance_leaves_residuals_as_large_as_chi_squared_has_it(p: float) -> None:
+    squares = stats.chi2.isf(p, 18)  # of 20 conditions, less two parameters
+    assert p_of(left_over(alternating(), squares))[0] == pytest.approx(p, abs=scatter(p))
+
+
+@pytest.mark.parametrize("p", [0.5, 0.05, 0.01])
+def test_beside_few_repeats_chance_leaves_them_as_large_as_f_has_it(p: float) -> None:
+    squares = 18.0 * stats.f.isf(p, 18, 6)
+    assert p_of(left_over(alternating(), squares, df=6.0))[0] == pytest.approx(p, abs=scatter(p))
+
+
+def test_chance_leaves_four_conditions_the_signs_of_a_plane() -> None:
+    x = np.array(XS[:4])
+    tangent = np.stack([np.ones(4), x], axis=-1) / (1.0 + 0.5 * x[:, None])
+    plane = np.linalg.svd(tangent)[0][:, 2:]  # of all that a fit can leave; each direction is as likely
+    turn = np.linspace(0.0, 2.0 * np.pi, 100_000, endpoint=False)
+    signs = np.sign(np.stack([np.cos(turn), np.sin(turn)], axis=-1) @ plane.T)
+    changes = np.sum(signs[:, 1:] != signs[:, :-1], axis=-1)
+    bow = [replace(one, type_a=1.0) for one in left_over([1.0, -1.0, -1.0, 1.0], 100.0)]  # + - - +: two changes
+    assert p_of(bow)[1] == pytest.approx(float(np.mean(changes <= 2)), abs=0.01)
+
+
+@pytest.mark.parametrize(("p", "shown"), [(0.004, True), (0.007, False)])
+def test_one_test_of_two_fails_at_half_the_level(p: float, shown: bool) -> None:
+    found = lack_of(*problem_of(left_over(alternating(), stats.chi2.isf(p, 18))), draws=MANY)
+    assert len(found.tests) == 2 and found.shown is shown
+
+
+def test_the_last_test_has_the_whole_level_where_the_others_fail() -> None:
+    found = lack_of(*problem_of(left_over(arched(), stats.chi2.isf(0.007, 18))), draws=MANY)
+    assert [one.failed for one in found.tests] == [True, True] and found.tests[1].p < 0.005
 
 
 def test_the_power_is_the_share_of_records_that_are_refused() -> None:
