@@ -47,6 +47,21 @@ def test_the_interval_is_as_wide_as_ts_scatters() -> None:
     assert 0.6 < np.mean([one.u_fit_k for one in found]) / spread < 1.8
 
 
+def test_sets_drawn_anew_scatter_as_residuals_do_within_a_temperature_and_between_temperatures() -> None:
+    off = np.random.default_rng(0).normal(0.0, 0.02, 11)  # of ln mu, by temperature
+    made = synthetic(0, 0.01)
+    blocks = sorted({one.block_c for one in made})
+    found = collapse(set_of([replace(one, mu=one.mu * np.exp(off[blocks.index(one.block_c)])) for one in made]), TS_C)
+    by_block = found.residual.reshape(11, 9)
+    within = float(np.sum(np.var(by_block, axis=1, ddof=1))) / 11
+    in_common = float(np.var(np.mean(by_block, axis=1), ddof=1)) - within / 9  # analysis of variance, nine speeds each
+    assert found.drawn is not None
+    drawn = (found.drawn.y - (found.of.log_mu - found.residual)[:, None]).reshape(11, 9, -1)
+    own = float(np.var(found.residual)) * 99 / (99 - found.parameters)
+    assert float(np.mean(np.var(drawn, axis=1, ddof=1))) == pytest.approx(own, rel=0.05)
+    assert float(np.mean(np.mean(drawn, axis=1) ** 2)) == pytest.approx(in_common + own / 9, rel=0.1)
+
+
 def test_a_ts_that_is_given_stands() -> None:
     found = collapse(set_of(synthetic(0, 0.02)), 25.0)
     assert (found.ts_c, found.interval, found.searched) == (25.0, (25.0, 25.0), False)
