@@ -57,11 +57,13 @@ def test_what_halves_the_misalignment_is_both_directions() -> None:
 
 
 def test_a_term_that_no_recipe_halves_is_to_be_known_better() -> None:
-    both = worst(SLOW % ", wear_check: each_condition, both_directions: true")
-    term = next(one for one in TERMS if one.name == both.largest.name) if both.largest.name != "repeatability" else None
-    better = halved(both, ESTIMATOR, TERMS)
+    found = worst(SLOW % ", wear_check: each_condition, both_directions: true")
+    (cell,) = [one for one in found.whole.contributions if one.name == "cell linearity, friction"]
+    better = halved(replace(found, whole=replace(found.whole, contributions=(cell,))), ESTIMATOR, TERMS)
+    (term,) = [one for one in TERMS if one.name == cell.name]
     assert better is not None
-    assert (f"uncertainty.{term.setting}" if term is not None else "repeats: 20") in better.words
+    assert better.words == f"knowing it to {0.5 * term.bound:g} N (experiment: {{uncertainty.{term.setting}: 0.5}})"
+    assert better.percent == pytest.approx(0.5 * found.percent_of(cell))
 
 
 def test_four_times_the_repeats_halve_the_repeatability() -> None:
