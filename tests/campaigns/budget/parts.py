@@ -78,7 +78,7 @@ def of_components() -> Iterator[Mutant]:
 
 _PROBLEM, _LACK, _RESAMPLE = (f"tester/analysis/fit/{name}.py" for name in ("problem", "lack", "resample"))
 _POINTS = "tester/results/fit_points.py"
-_OF_FIT = tests_of("fit/lack", "fit/joint")
+_OF_FIT = tests_of("analysis/fit/lack", "analysis/fit/joint")
 _OF_POINTS = tests_of("kinds/wheel_on_belt/fit/runs", "kinds/specimen_on_track/fit/runs")
 _FIT_SCALED: Final = (
     (_PROBLEM, "weight of repeats", "squares = [(one.type_a**2 if", "squares = [({} * one.type_a**2 if"),
@@ -133,7 +133,7 @@ _FIT_OTHERS: Final = (
     (_POINTS, "a doubt is no reason", 'return ", ".join(result.doubts)', 'return ""'),
 )  # fmt: skip
 _COLLAPSE, _VERDICT = "tester/analysis/master_curve/collapse.py", "tester/analysis/master_curve/verdict.py"
-_OF_COLLAPSE, _OF_VERDICT = tests_of("master/collapse"), tests_of("master/verdict")
+_OF_COLLAPSE, _OF_VERDICT = tests_of("analysis/master_curve/collapse"), tests_of("analysis/master_curve/verdict")
 _MASTER_SCALED: Final = (
     (_COLLAPSE, "residuals of resamples", "spread = one.residual * sqrt(", "spread = {} * one.residual * sqrt("),
     (_COLLAPSE, "the thermometer in the interval", "thermometer_k = of.thermometer_k *",
