@@ -42,11 +42,11 @@ class TableSpan:
 class SplineTable:
     """A cubic B-spline over three axes of equal steps 0, 1, 2 ..., from its coefficients.
 
-    The third is summed up first, and the sums are kept for the next value at the same place of it: a load stays the
-    same for thousands of steps. Both ways give the same bits.
+    It sums over the third axis, then over the first, and keeps both sums for the next value at the same places: load
+    and speed stay the same for thousands of steps, in which the temperature drifts. All ways give the same bits.
     """
 
-    __slots__ = ("_between", "_last", "_plane", "_rows", "_weights")
+    __slots__ = ("_between", "_four", "_j", "_plane", "_rows", "_weights", "_x", "_z")
 
     def __init__(self, rows: list[list[float]], between: int) -> None:
         """Take coefficients along the first axis, row by row: all of the second axis, for each of the third.
@@ -55,7 +55,9 @@ class SplineTable:
         """
         self._rows = rows
         self._between = between
-        self._last = -1.0
+        self._x = self._z = -1.0
+        self._j = -1
+        self._four = (0.0, 0.0, 0.0, 0.0)
         self._weights = (0, 0.0, 0.0, 0.0, 0.0)
         self._plane: list[list[float]] = []
 
@@ -64,30 +66,32 @@ class SplineTable:
         j = int(y)
         if j > self._between - 4:
             j = self._between - 4
-        if z != self._last:
+        if x != self._x or z != self._z or j != self._j:
+            self._move_to(x, j, z)
+        q0, q1, q2, q3 = self._four
+        t = y - j
+        s = 1.0 - t
+        tt, ss = t * t, s * s
+        return (
+            s * ss * q0 + (4.0 - 3.0 * tt * (1.0 + s)) * q1 + (4.0 - 3.0 * ss * (1.0 + t)) * q2 + t * tt * q3
+        ) / 216.0
+
+    def _move_to(self, x: float, j: int, z: float) -> None:
+        """Work out the four sums that a value needs, at places of the first and third axis."""
+        if z != self._z:
             self._turn_to(z)
-            four = self._summed(j, j + 4)
+            rows = self._summed(j, j + 4)
         else:
             if not self._plane:
                 self._plane = self._summed(0, self._between)
-            four = self._plane[j : j + 4]
-        t = y - j
+            rows = self._plane[j : j + 4]
+        i = min(int(x), len(rows[0]) - 4)
+        t = x - i
         s = 1.0 - t
         b1, b2 = 4.0 - 3.0 * t * t * (1.0 + s), 4.0 - 3.0 * s * s * (1.0 + t)
         b0, b3 = s * s * s, t * t * t
-
-        r0, r1, r2, r3 = four
-        i = int(x)
-        if i > len(r0) - 4:
-            i = len(r0) - 4
-        t = x - i
-        s = 1.0 - t
-        return (
-            s * s * s * (b0 * r0[i] + b1 * r1[i] + b2 * r2[i] + b3 * r3[i])
-            + (4.0 - 3.0 * t * t * (1.0 + s)) * (b0 * r0[i + 1] + b1 * r1[i + 1] + b2 * r2[i + 1] + b3 * r3[i + 1])
-            + (4.0 - 3.0 * s * s * (1.0 + t)) * (b0 * r0[i + 2] + b1 * r1[i + 2] + b2 * r2[i + 2] + b3 * r3[i + 2])
-            + t * t * t * (b0 * r0[i + 3] + b1 * r1[i + 3] + b2 * r2[i + 3] + b3 * r3[i + 3])
-        ) / 216.0
+        q0, q1, q2, q3 = [b0 * r[i] + b1 * r[i + 1] + b2 * r[i + 2] + b3 * r[i + 3] for r in rows]
+        self._x, self._j, self._four = x, j, (q0, q1, q2, q3)
 
     def _turn_to(self, z: float) -> None:
         """Work out the weights of a place on the third axis."""
@@ -97,7 +101,7 @@ class SplineTable:
         self._weights = (
             k * self._between, s * s * s, 4.0 - 3.0 * t * t * (1.0 + s), 4.0 - 3.0 * s * s * (1.0 + t), t * t * t,
         )  # fmt: skip
-        self._last = z
+        self._z = z
         self._plane = []
 
     def _summed(self, first: int, end: int) -> list[list[float]]:
@@ -120,7 +124,7 @@ class TabulatedLaw:
     """
 
     __slots__ = (
-        "_adhesion", "_load", "_load_n", "_n", "_slow", "_t", "_total", "_v", "_x", "_y", "_z",
+        "_adhesion", "_load", "_load_n", "_n", "_slip_m_s", "_slow", "_speed", "_t", "_total", "_v", "_x", "_y", "_z",
         "error", "outside", "points", "span",
     )  # fmt: skip
 
@@ -147,22 +151,23 @@ class TabulatedLaw:
         self._y = _axis(scale(self._t[0]), scale(self._t[1]), points[1])
         self._z = _axis(load_scale(self._n[0]), load_scale(self._n[1]), points[2])
         self._load_n, self._load = self._n[0], 0.0
+        self._slip_m_s, self._speed = self._v[0], 0.0
 
     def mu(self, temperature_c: float, load_n: float, slip_m_s: float) -> float:
         """Return the coefficient; outside the table, raises what the law itself raises."""
         # In every step of a simulated rig: what ``components`` does by steps is written out.
         low_c, high_c = self._t
-        slowest, fastest = self._v
-        if not (low_c <= temperature_c <= high_c and load_n <= self._n[1] and slip_m_s <= fastest):
+        if not (low_c <= temperature_c <= high_c and load_n <= self._n[1] and slip_m_s <= self._v[1]):
             self.outside += 1
             return self._slow.mu(temperature_c, load_n, slip_m_s)
-        x0, x_per = self._x
-        y0, y_per = self._y
         if load_n != self._load_n:
             self._load_n = load_n
             self._load = (load_scale(max(load_n, self._n[0])) - self._z[0]) * self._z[1]
-        x = (log(slip_m_s if slip_m_s > slowest else slowest) - x0) * x_per
-        return exp(self._total.value(x, (-1.0 / (temperature_c + BELOW_C) - y0) * y_per, self._load))
+        if slip_m_s != self._slip_m_s:
+            self._slip_m_s = slip_m_s
+            self._speed = (log(max(slip_m_s, self._v[0])) - self._x[0]) * self._x[1]
+        y0, y_per = self._y
+        return exp(self._total.value(self._speed, (-1.0 / (temperature_c + BELOW_C) - y0) * y_per, self._load))
 
     def components(self, temperature_c: float, load_n: float, slip_m_s: float) -> Components:
         """Return adhesion and hysteresis; outside the table, raises what the law itself raises."""

@@ -7,7 +7,7 @@ calculation needs of them.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 if TYPE_CHECKING:
@@ -113,6 +113,27 @@ class Materials(Protocol):
     def surface(self, name: str) -> Surface:
         """Return a surface. Raises UnknownMaterialError."""
         ...
+
+
+@dataclass(frozen=True, slots=True)
+class ReadOnce:
+    """Materials that ask others for each name once: a law, its table and the table's key see the same content."""
+
+    source: Materials
+    _rubbers: dict[str, Rubber] = field(default_factory=dict[str, Rubber])
+    _surfaces: dict[str, Surface] = field(default_factory=dict[str, Surface])
+
+    def rubber(self, name: str) -> Rubber:
+        """Return a compound. Raises what ``source`` raises."""
+        if name not in self._rubbers:
+            self._rubbers[name] = self.source.rubber(name)
+        return self._rubbers[name]
+
+    def surface(self, name: str) -> Surface:
+        """Return a surface. Raises what ``source`` raises."""
+        if name not in self._surfaces:
+            self._surfaces[name] = self.source.surface(name)
+        return self._surfaces[name]
 
 
 class Components(NamedTuple):

@@ -33,7 +33,7 @@ ALLOWED: Final = 0.005
 """Greatest relative error that is asked of a table."""
 ROUNDS: Final = 6
 """So many times an axis is given twice the points, at most."""
-FORMAT: Final = "table 3"
+FORMAT: Final = "table 4"
 """Another one for another way to make or to write tables."""
 _SAMPLES: Final = 200
 """Places midway between points: what tells a coarse table, and its worst axis."""
@@ -63,21 +63,21 @@ def tabulated(
         file = setting.tables / f"{key}.table" if key else None
     kept = _read(file) if file is not None else None
     if kept is not None:
-        points, error, mu, share = kept
-        return _law(slow, span, points, mu, share, error)
-    made, mu, share = build(slow, span)
+        error, total, adhesion = kept
+        return _law(slow, span, total, adhesion, error)
+    made, total, adhesion = build(slow, span)
     if file is not None:
-        _write(file, made, mu, share)
+        _write(file, made, total, adhesion)
     return made
 
 
 def build(slow: LawOfParts, span: TableSpan, rounds: int = ROUNDS) -> tuple[TabulatedLaw, Array, Array]:
-    """Return a table of a law, with mu and adhesion's share at its points (loads, temperatures, speeds)."""
+    """Return a table of a law, with its splines' coefficients over (loads, temperatures, speeds): ln mu, adhesion."""
     points: Points = POINTS
     while True:
-        law, mu, share = build_at(slow, span, points)
+        law, total, adhesion = build_at(slow, span, points)
         if law.error < _MARGIN * ALLOWED or rounds == 0:
-            return law, mu, share
+            return law, total, adhesion
         rounds -= 1
         errors = [_error(law, slow, points, (axis,)) for axis in range(3)]
         worst = errors.index(max(errors))
@@ -86,16 +86,16 @@ def build(slow: LawOfParts, span: TableSpan, rounds: int = ROUNDS) -> tuple[Tabu
 
 
 def build_at(slow: LawOfParts, span: TableSpan, points: Points) -> tuple[TabulatedLaw, Array, Array]:
-    """Return a table of so many points, with mu and adhesion's share at them."""
+    """Return a table of so many points, with its splines' coefficients as ``build``."""
     speeds, temperatures, loads = _axes(span, points)
     parts = np.array([[[slow.components(t, n, v) for v in speeds] for t in temperatures] for n in loads])
     mu = np.maximum(parts.sum(axis=-1), _LEAST_MU)
-    share = parts[..., 0] / mu
-    law = _law(slow, span, points, mu, share, 0.0)
+    total, adhesion = _coefficients(np.log(mu)), _coefficients(parts[..., 0] / mu)
+    law = _law(slow, span, total, adhesion, 0.0)
     law.error = _error(law, slow, points, (0, 1, 2))
     if law.error < _MARGIN * ALLOWED:
         law.error = max(law.error, _error_anywhere(law, slow))
-    return law, mu, share
+    return law, total, adhesion
 
 
 def _axes(span: TableSpan, points: Points) -> tuple[list[float], list[float], list[float]]:
@@ -107,18 +107,23 @@ def _axes(span: TableSpan, points: Points) -> tuple[list[float], list[float], li
     return speeds.tolist(), temperatures.tolist(), (np.linspace(light, heavy, points[2]) ** 2).tolist()
 
 
-def _law(slow: LawOfParts, span: TableSpan, points: Points, mu: Array, share: Array, error: float) -> TabulatedLaw:
-    return TabulatedLaw(slow, span, points, _spline(np.log(mu)), _spline(share), error)
+def _law(slow: LawOfParts, span: TableSpan, total: Array, adhesion: Array, error: float) -> TabulatedLaw:
+    loads, temperatures, speeds = (n - 2 for n in total.shape)
+    return TabulatedLaw(slow, span, (speeds, temperatures, loads), _spline(total), _spline(adhesion), error)
 
 
-def _spline(values: Array) -> SplineTable:
-    """Return the B-spline through values at (loads, temperatures, speeds)."""
-    for axis in range(3):
-        values = np.moveaxis(_coefficients(np.moveaxis(values, axis, 0)), 0, axis)
-    return SplineTable([row.tolist() for plane in values for row in plane], values.shape[1])
+def _spline(coefficients: Array) -> SplineTable:
+    return SplineTable([row for plane in coefficients.tolist() for row in plane], coefficients.shape[1])
 
 
 def _coefficients(values: Array) -> Array:
+    """Return the coefficients of the B-spline through values at (loads, temperatures, speeds)."""
+    for axis in range(3):
+        values = np.moveaxis(_along_first(np.moveaxis(values, axis, 0)), 0, axis)
+    return values
+
+
+def _along_first(values: Array) -> Array:
     """Return coefficients along the first axis, two more than values: through each, and one cubic over two end steps.
 
     At a point the spline is (c[i-1] + 4 c[i] + c[i+1]) / 6; its third derivative stays the same where the fourth
@@ -193,9 +198,9 @@ def _key(
     return hashlib.sha256(content.encode()).hexdigest()
 
 
-def _write(file: Path, law: TabulatedLaw, mu: Array, share: Array) -> None:
+def _write(file: Path, law: TabulatedLaw, total: Array, adhesion: Array) -> None:
     """Put a table into its file at once; where that cannot be done, the next run makes it again."""
-    body = np.concatenate([[*law.points, law.error], mu.ravel(), share.ravel()]).astype("<f8").tobytes()
+    body = np.concatenate([[*total.shape, law.error], total.ravel(), adhesion.ravel()]).astype("<f8").tobytes()
     with contextlib.suppress(OSError):
         file.parent.mkdir(parents=True, exist_ok=True)
         handle, name = tempfile.mkstemp(dir=file.parent, suffix=".part")
@@ -207,8 +212,8 @@ def _write(file: Path, law: TabulatedLaw, mu: Array, share: Array) -> None:
             Path(name).unlink(missing_ok=True)
 
 
-def _read(file: Path) -> tuple[Points, float, Array, Array] | None:
-    """Return what a file holds; None where there is none that is whole."""
+def _read(file: Path) -> tuple[float, Array, Array] | None:
+    """Return a table's error and coefficients from its file; None where there is none that is whole."""
     try:
         content = file.read_bytes()
     except OSError:
@@ -217,6 +222,5 @@ def _read(file: Path) -> tuple[Points, float, Array, Array] | None:
     if hashlib.sha256(body).digest() != digest:
         return None
     numbers = np.frombuffer(body, dtype="<f8").astype(np.float64)
-    speeds, temperatures, loads = (int(n) for n in numbers[:3])
-    mu, share = numbers[4:].reshape(2, loads, temperatures, speeds)
-    return (speeds, temperatures, loads), float(numbers[3]), mu, share
+    total, adhesion = numbers[4:].reshape(2, *numbers[:3].astype(int))
+    return float(numbers[3]), total, adhesion

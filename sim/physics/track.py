@@ -8,14 +8,14 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from collections.abc import Set as AbstractSet
-from dataclasses import asdict, dataclass, field, fields, replace
+from dataclasses import asdict, dataclass, field, fields
 from itertools import product
 from types import MappingProxyType
 from typing import Annotated, Final, Literal
 
 from sim.physics import laws
 from sim.physics.lookup import TableSpan
-from sim.physics.materials import Components
+from sim.physics.materials import Components, ReadOnce
 from sim.physics.wlf import WlfBellParameters
 
 Motion = Literal["linear", "disc"]
@@ -213,7 +213,8 @@ class TrackParameters:
 
     def _own(self, setting: laws.LawSetting) -> laws.LawSetting:
         """Return the setting with this rig's area, and its surface where it says one; raises ValueError for none."""
-        own = replace(setting, surface=self.surface or setting.surface, area_mm2=self.contact.area)
+        materials = ReadOnce(setting.materials) if setting.materials is not None else None
+        own = laws.LawSetting(materials, self.surface or setting.surface, self.contact.area, setting.tables)
         if own.materials is not None and not own.surface:
             raise ValueError(f"law {self.law!r} needs a surface (expected the recipe's abrasive, or sim.surface)")
         return own
