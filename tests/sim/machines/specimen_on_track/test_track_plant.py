@@ -10,6 +10,7 @@ import pytest
 
 from sim.machines.specimen_on_track.plant import TrackPlant
 from sim.physics.laws import LawSetting, make, with_parts
+from sim.physics.materials import Rubber, Surface
 from sim.physics.track import TrackContact, TrackParameters
 from sim.physics.wlf import PoleError, WlfBell, WlfBellParameters
 from tests.sim.physics.materials_example import Shelf
@@ -155,6 +156,22 @@ def test_the_tracks_own_surface_goes_before_the_recipes(tables: Path) -> None:
     with pytest.raises(ValueError, match="'road' has no spectrum"):
         one.friction_of("SBR", setting)
     assert other.friction_of("SBR", setting).mu(20.0, 20.0, 1e-3) > 0.0
+
+
+def test_a_specimen_put_in_reads_its_materials_once(tables: Path) -> None:
+    asked: list[str] = []
+
+    class Counted(Shelf):
+        def rubber(self, name: str) -> Rubber:
+            asked.append(name)
+            return super().rubber(name)
+
+        def surface(self, name: str) -> Surface:
+            asked.append(name)
+            return super().surface(name)
+
+    replace(CLEAN, law="persson").friction_of("SBR", LawSetting(Counted(), "track", tables=tables))
+    assert sorted(asked) == ["SBR", "track"]
 
 
 def test_without_materials_such_a_law_says_what_it_needs() -> None:
