@@ -10,7 +10,7 @@ from typing import Any
 from bench.ledger import Ledger
 
 ENTRY_POINTS: tuple[tuple[str, str, str, tuple[str, ...]], ...] = (
-    ("twin", "sim.rig", "World", ("advance",)),
+    ("twin", "sim.rig", "SimRig", ("advance",)),
     ("plant", "sim.machines.wheel_on_belt.plant", "Plant",
      ("advance", "forces_measured", "surface_measured_c", "hub_measured_c")),
     ("nodes: drives", "sim.nodes.cia402_slave", "Cia402Slave", ("advance",)),

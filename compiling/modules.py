@@ -53,6 +53,7 @@ HOT = (
     "sim/nodes/safety_io.py",
     "sim/nodes/sensor_node.py",
     "sim/noise.py",
+    "sim/plain_twin.py",
     "sim/rig.py",
     "sim/sensors.py",
     "sim/physics/lookup.py",

@@ -6,10 +6,8 @@ from collections.abc import Mapping
 from typing import Protocol
 
 from sim.nodes.cia402_slave import Cia402Slave
-from sim.nodes.modbus_slave import ModbusSlave
 from sim.nodes.profile_slave import PlantQuantity, ProfileSlave
-from sim.nodes.sensor_node import SimulatedSensorNode
-from sim.rig import RigSpec, World, further_sensors, lines_of
+from sim.rig import RigSpec, SimRig
 from sim.wires.can_wire import CanWire
 
 
@@ -34,8 +32,8 @@ class PlainPlant(Protocol):
         ...
 
 
-class PlainTwin:
-    """A plain machine on simulated wires (a ``sim.rig.SimRig``), and its own attendant."""
+class PlainTwin(SimRig):
+    """A plain machine on simulated wires, and its own attendant."""
 
     def __init__(
         self,
@@ -50,35 +48,17 @@ class PlainTwin:
         Raises UnknownQuantityError for one that the plant does not have.
         """
         self.plant = plant
-        self.can = can_wire(spec.bitrate)
-        self.axes = {name: Cia402Slave(one, self.can, serial_number=one.node_id) for name, one in spec.axes.items()}
-        own = {name: _sensor(spec, name, plant, channels) for name, channels in shows.items() if name in spec.devices}
-        self.devices: dict[str, ModbusSlave] = {name.replace("_", " "): slave for name, slave in own.items()}
-        self.sensors = further_sensors(spec, own, plant)
-        self.nodes = [SimulatedSensorNode(config, self.can) for config in spec.nodes]
-        self.lines = lines_of(spec, {**own, **self.sensors})
-        self.world = World(self.can, self.axes, self.devices, self, self.nodes)
-        self._dithered = (*own.values(), *self.sensors.values())
         self._plant_s = 0.0
-
-    @property
-    def now_s(self) -> float:
-        """Until when everything has lived, s."""
-        return self.world.now_s
-
-    @property
-    def urgent_s(self) -> float:
-        """When the next frame arrives that a scan should not wait for, s."""
-        return self.world.urgent_s
+        can = can_wire(spec.bitrate)
+        axes = {name: Cia402Slave(axis, can, serial_number=axis.node_id) for name, axis in spec.axes.items()}
+        wired = {name: _sensor(spec, name, plant, channels) for name, channels in shows.items() if name in spec.devices}
+        devices = {name.replace("_", " "): slave for name, slave in wired.items()}
+        super().__init__(spec, can, axes, wired, devices, plant)
 
     @property
     def ambient_c(self) -> float:
         """Temperature of the air around the rig, degC."""
         return self.plant.ambient_c
-
-    def advance(self, now: float) -> None:
-        """Let everything live until ``now`` (s); a step shorter than a millisecond waits for the next one."""
-        self.world.advance(now)
 
     def follow(self, t1: float, still: bool) -> None:
         """Let the plant follow its drives to ``t1`` s."""
@@ -92,8 +72,7 @@ class PlainTwin:
     def begin_repeat(self, condition: int, repeat: int, attempt: int) -> None:
         """Begin a repeat: the random streams, and the sensors' dither, start anew with it."""
         self.plant.begin_repeat(condition, repeat, attempt)
-        for sensor in self._dithered:
-            sensor.dither = 0
+        self.restart_dither()
 
 
 def _sensor(spec: RigSpec, name: str, plant: PlainPlant, channels: Mapping[str, str]) -> ProfileSlave:

@@ -1,4 +1,4 @@
-"""The world of a simulated machine: wires, drives and Modbus devices, advanced together with what they are mounted on.
+"""A simulated machine: wires, drives and Modbus devices, advanced together with what they are mounted on.
 
 Order within one advance: drives move (and send what falls due), devices with a loop of their own run it, the machine
 follows, and what it answers with (torque, forces, temperatures) is there when the next request arrives on a wire. What
@@ -7,15 +7,17 @@ kind of machine it is this module does not know: see ``sim.machines``.
 
 from __future__ import annotations
 
-from collections.abc import Container, Mapping, Sequence
+from collections.abc import Container, Mapping
 from dataclasses import dataclass, field
 from math import floor, inf
-from typing import Final, Literal, Protocol
+from typing import Final, Literal
 
 from drivers.axis import AxisConfig
 from drivers.canopen.node_config import NodeConfig
 from drivers.profiles import DeviceProfile
+from sim.nodes.cell_slave import CellSlave
 from sim.nodes.cia402_slave import Cia402Slave
+from sim.nodes.ir_slave import IrSlave
 from sim.nodes.modbus_slave import ModbusSlave
 from sim.nodes.profile_slave import PlantQuantity, ProfileSlave, Quantity
 from sim.nodes.sensor_node import SimulatedSensorNode
@@ -65,69 +67,50 @@ class RigSpec:
     """Further nodes on the CAN bus, which measure."""
 
 
-class Machine(Protocol):
-    """What is between the drives' shafts and the sensors."""
+class SimRig:
+    """A simulated machine on its wires: drives, Modbus devices and nodes, advanced together. Each kind derives its own.
 
-    def follow(self, t1: float, still: bool) -> None:
-        """Move on to ``t1`` s with the drives where they are then, and load their shafts; ``still``: none moves."""
-        ...
-
-
-class SimRig(Protocol):
-    """A simulated rig, whatever its kind: what servers, tickers and faults need of it.
-
-    ``can`` and ``lines`` are the ports a program opens; ``devices`` are by the names that people use of them.
+    ``can`` and ``lines`` are the ports that a program opens; ``axes`` and ``devices`` are by the names that people use,
+    ``sensors`` (beyond the machine's own) by those of the wiring. ``now_s``: until when everything has lived, s.
     """
 
-    can: CanWire
-    lines: dict[str, ModbusWire]
-    axes: dict[str, Cia402Slave]
-    devices: dict[str, ModbusSlave]
-    nodes: list[SimulatedSensorNode]
+    def __init__(
+        self,
+        spec: RigSpec,
+        can: CanWire,
+        axes: dict[str, Cia402Slave],
+        wired: Mapping[str, ModbusSlave],
+        devices: Mapping[str, ModbusSlave],
+        plant: object,
+    ) -> None:
+        """Switch everything on at time 0.
 
-    @property
-    def now_s(self) -> float:
-        """Until when everything has lived, s."""
-        ...
-
-    @property
-    def urgent_s(self) -> float:
-        """When the next frame arrives that a scan should not wait for, s."""
-        ...
+        ``wired``: the machine's own devices by their keys in the wiring. ``plant`` has the quantities that further
+        sensors show; raises UnknownQuantityError for one that it does not have.
+        """
+        self.can = can
+        self.axes = axes
+        self.devices = dict(devices)
+        self.sensors = further_sensors(spec, wired, plant)
+        self.nodes = [SimulatedSensorNode(config, can) for config in spec.nodes]
+        every = {**wired, **self.sensors}
+        self.lines = lines_of(spec, every)
+        self.now_s = 0.0
+        self._drives = tuple(axes.values())
+        self._timed = tuple(slave for slave in every.values() if slave.due_s < inf)
+        self._dithered = tuple(
+            slave for slave in every.values() if isinstance(slave, CellSlave | IrSlave | ProfileSlave)
+        )
 
     @property
     def ambient_c(self) -> float:
         """Temperature of the air around the rig, degC."""
-        ...
-
-    def advance(self, now: float) -> None:
-        """Let everything live until ``now`` (s); a step shorter than a millisecond waits for the next one."""
-        ...
-
-
-class World:
-    """Drives and devices on their wires, and the machine that they are on. A machine has one."""
-
-    def __init__(
-        self,
-        can: CanWire,
-        axes: Mapping[str, Cia402Slave],
-        devices: Mapping[str, ModbusSlave],
-        machine: Machine,
-        nodes: Sequence[SimulatedSensorNode] = (),
-    ) -> None:
-        """Switch everything on at time 0."""
-        self._can = can
-        self._nodes = tuple(nodes)
-        self._drives = tuple(axes.values())
-        self._timed = tuple(device for device in devices.values() if device.due_s < inf)
-        self._machine = machine
-        self.now_s = 0.0
+        raise NotImplementedError
 
     @property
     def urgent_s(self) -> float:
         """When the next frame arrives that a scan should not wait for, s."""
-        return self._can.urgent_s
+        return self.can.urgent_s
 
     def advance(self, now: float) -> None:
         """Let everything live until ``now`` (s); a step shorter than a millisecond waits for the next one."""
@@ -139,6 +122,16 @@ class World:
         for i in range(1, steps + 1):
             self._step(self.now_s, now if i == steps else start + elapsed * i / steps)
 
+    def follow(self, t1: float, still: bool) -> None:
+        """Move the plant on to ``t1`` s with the drives where they are then, and load their shafts; ``still``: no drive
+        moves."""
+        raise NotImplementedError
+
+    def restart_dither(self) -> None:
+        """Begin every sensor's dither anew: a repeat does not depend on what was read before it."""
+        for sensor in self._dithered:
+            sensor.dither = 0
+
     def _step(self, t0: float, t1: float) -> None:
         self.now_s = t1
         still = True
@@ -148,12 +141,12 @@ class World:
                 still = still and drive.axis.still
             else:
                 drive.now_s = t1
-        for node in self._nodes:
+        for node in self.nodes:
             node.advance(t0, t1)
         for device in self._timed:
             if device.due_s <= t1:
                 device.advance(t0, t1)
-        self._machine.follow(t1, still)
+        self.follow(t1, still)
 
 
 def further_sensors(spec: RigSpec, own: Container[str], plant: object) -> dict[str, ProfileSlave]:

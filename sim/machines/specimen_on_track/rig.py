@@ -16,10 +16,9 @@ from sim.nodes.cia402_slave import Cia402Slave
 from sim.nodes.ir_slave import IrSlave
 from sim.nodes.modbus_slave import ModbusSlave
 from sim.nodes.motion import PositionAxis, VelocityAxis
-from sim.nodes.sensor_node import SimulatedSensorNode
 from sim.physics.laws import LawSetting
 from sim.physics.track import Interface, TrackParameters
-from sim.rig import DeviceSpec, RigSpec, World, further_sensors, lines_of
+from sim.rig import DeviceSpec, RigSpec, SimRig
 from sim.wires.can_wire import CanWire
 
 TRACK_LAG_S: Final = 0.004
@@ -46,8 +45,8 @@ class AmbientAir:
         return self._plant.parameters.ambient
 
 
-class TrackRig:
-    """A friction tester with a specimen on a track, on simulated wires (a ``sim.rig.SimRig``).
+class TrackRig(SimRig):
+    """A friction tester with a specimen on a track, on simulated wires.
 
     Drives: track (mm/s or m/s at the specimen), and lift (mm, 0 lowered) unless the arm is moved by hand. Devices by
     their keys in the wiring: load_cell, and any of chamber, pyrometer, thermometer. The other methods are the
@@ -62,18 +61,15 @@ class TrackRig:
         Raises UnknownQuantityError for a further sensor of a quantity that the plant does not have.
         """
         self.plant = TrackPlant(parameters, seed)
-        self.can = can_wire(spec.bitrate)
         self._raised_mm = parameters.contact.lift_travel
         self.hand_mm = self._raised_mm
         """Where an arm without a drive is, mm."""
-        self.axes = {name: self._drive(name, config) for name, config in spec.axes.items()}
-        by_key = {name: self._device(name, spec.devices[name]) for name in WORDS if name in spec.devices}
-        self.cell = by_key["load_cell"]
-        self.chamber = self._chamber(by_key)
-        self.devices: dict[str, ModbusSlave] = {WORDS[name]: slave for name, slave in by_key.items()}
-        self.sensors = further_sensors(spec, by_key, self.plant)
-        self.nodes = [SimulatedSensorNode(config, self.can) for config in spec.nodes]
-        self.lines = lines_of(spec, {**by_key, **self.sensors})
+        can = can_wire(spec.bitrate)
+        axes = {name: self._drive(name, config, can) for name, config in spec.axes.items()}
+        wired = {name: self._device(name, spec.devices[name]) for name in WORDS if name in spec.devices}
+        super().__init__(spec, can, axes, wired, {WORDS[name]: slave for name, slave in wired.items()}, self.plant)
+        self.cell = wired["load_cell"]
+        self.chamber = self._chamber(wired)
         self._track = self.axes["track"]
         self._lift = self.axes.get("lift")
         self.metres = _METRES[spec.axes["track"].unit]
@@ -85,19 +81,18 @@ class TrackRig:
         self.hit_stop = False
         """The track has run into a stop of its travel."""
         self._plant_s = 0.0
-        self.world = World(self.can, self.axes, self.devices, self, self.nodes)
 
-    def _drive(self, name: str, config: AxisConfig) -> Cia402Slave:
+    def _drive(self, name: str, config: AxisConfig, can: CanWire) -> Cia402Slave:
         p = self.plant.parameters
         serial = config.node_id
         if name == "track" and p.motion == "linear":
             low, high = 0.0, p.travel * 1e-3 / _METRES[config.unit]
             axis = VelocityAxis(config.acceleration, config.deceleration, TRACK_LAG_S, 0.5 * high, low, high)
-            return Cia402Slave(config, self.can, axis, serial_number=serial)
+            return Cia402Slave(config, can, axis, serial_number=serial)
         if name == "lift":
             arm = PositionAxis(config.max_speed, config.acceleration, config.deceleration, position=self._raised_mm)
-            return Cia402Slave(config, self.can, arm, serial_number=serial, home_position=self._raised_mm)
-        return Cia402Slave(config, self.can, serial_number=serial, lag_s=TRACK_LAG_S)
+            return Cia402Slave(config, can, arm, serial_number=serial, home_position=self._raised_mm)
+        return Cia402Slave(config, can, serial_number=serial, lag_s=TRACK_LAG_S)
 
     def _device(self, name: str, device: DeviceSpec) -> ModbusSlave:
         profile, unit_id = device.profile, device.unit_id
@@ -117,23 +112,9 @@ class TrackRig:
     # -- the wires' side ------------------------------------------------------------------------------------------
 
     @property
-    def now_s(self) -> float:
-        """Until when everything has lived, s."""
-        return self.world.now_s
-
-    @property
-    def urgent_s(self) -> float:
-        """When the next frame arrives that a scan should not wait for, s."""
-        return self.world.urgent_s
-
-    @property
     def ambient_c(self) -> float:
         """Temperature of the air around the rig, degC."""
         return self.plant.parameters.ambient
-
-    def advance(self, now: float) -> None:
-        """Let everything live until ``now`` (s); a step shorter than a millisecond waits for the next one."""
-        self.world.advance(now)
 
     # -- the machine's side ---------------------------------------------------------------------------------------
 
@@ -215,6 +196,4 @@ class TrackRig:
     def begin_repeat(self, condition: int, repeat: int, attempt: int) -> None:
         """Begin a repeat: the random streams, and the sensors' dither, start anew with it."""
         self.plant.begin_repeat(condition, repeat, attempt)
-        for slave in self.devices.values():
-            if isinstance(slave, CellSlave | IrSlave):
-                slave.dither = 0
+        self.restart_dither()

@@ -21,10 +21,9 @@ from sim.nodes.ir_slave import IrSlave
 from sim.nodes.jacket_slave import JacketSlave
 from sim.nodes.modbus_slave import ModbusSlave
 from sim.nodes.motion import VelocityAxis
-from sim.nodes.sensor_node import SimulatedSensorNode
 from sim.physics.parameters import SimParameters
 from sim.physics.slip import slip_velocity
-from sim.rig import LONGEST_STEP_S, RigSpec, World, further_sensors, lines_of
+from sim.rig import LONGEST_STEP_S, RigSpec, SimRig
 from sim.wires.can_wire import CanWire
 
 PRESS_LAG_S: Final = 0.03
@@ -46,8 +45,8 @@ def _measuring(cells: Mapping[str, CellSlave], force: str) -> CellSlave:
     return next((cell for cell in cells.values() if force in cell.forces), next(iter(cells.values())))
 
 
-class WheelRig:
-    """A rubber friction tester with a wheel on a belt, on simulated wires (a ``sim.rig.SimRig``).
+class WheelRig(SimRig):
+    """A rubber friction tester with a wheel on a belt, on simulated wires.
 
     Drives: wheel (rad/s), belt (m/s), press (mm, mm/s), and those that hold a position (deg) where no person sets
     it: of them only sideslip changes the friction; of a tilt the paper has no data.
@@ -60,9 +59,9 @@ class WheelRig:
     ) -> None:
         """Switch everything on at time 0; ``can_wire``: the kind of bus, another one where it can be faulty."""
         self.plant = Plant(parameters, seed)
-        self.can = can_wire(spec.bitrate)
+        can = can_wire(spec.bitrate)
         self._spring_mm_s = PRESS_SPRING_MM_S if parameters.press_on_power_loss == "retract" else 0.0
-        self.axes = {name: self._drive(name, config) for name, config in spec.axes.items()}
+        axes = {name: self._drive(name, config, can) for name, config in spec.axes.items()}
         ir, jacket = (spec.devices[name] for name in ("ir_thermometer", "jacket"))
         self.cells = {
             name: CellSlave(one.profile, one.unit_id, self.plant, one.channels)
@@ -74,14 +73,10 @@ class WheelRig:
         """The transmitter of the normal force."""
         self.ir = IrSlave(ir.profile, ir.unit_id, self.plant, sensor_c=parameters.ambient)
         self.jacket = JacketSlave(jacket.profile, jacket.unit_id, self.plant)
-        self.devices: dict[str, ModbusSlave] = {
-            "load cell": self.cell, "thermometer": self.ir, "jacket": self.jacket
-        }  # fmt: skip
-        self.devices |= {f"load cell {force}": _measuring(self.cells, force) for force in FORCES}
-        own: dict[str, ModbusSlave] = {**self.cells, "ir_thermometer": self.ir, "jacket": self.jacket}
-        self.sensors = further_sensors(spec, own, self.plant)
-        self.nodes = [SimulatedSensorNode(config, self.can) for config in spec.nodes]
-        self.lines = lines_of(spec, {**own, **self.sensors})
+        devices: dict[str, ModbusSlave] = {"load cell": self.cell, "thermometer": self.ir, "jacket": self.jacket}
+        devices |= {f"load cell {force}": _measuring(self.cells, force) for force in FORCES}
+        wired: dict[str, ModbusSlave] = {**self.cells, "ir_thermometer": self.ir, "jacket": self.jacket}
+        super().__init__(spec, can, axes, wired, devices, self.plant)
         drives = parameters.drives
         self.wheel_shaft, self.belt_shaft, efficiency = shafts(drives, parameters.noise, seed)
         self._screw = PressScrew(drives, efficiency, drives.press_spring if self._spring_mm_s else 0.0)
@@ -102,34 +97,19 @@ class WheelRig:
         self._plant_s = 0.0
         self._wheel, self._belt, self._press = self.axes["wheel"], self.axes["belt"], self.axes["press"]
         self._sideslip = self.axes.get("sideslip")
-        self.world = World(self.can, self.axes, self.devices, self, self.nodes)
 
-    def _drive(self, name: str, config: AxisConfig) -> Cia402Slave:
+    def _drive(self, name: str, config: AxisConfig, can: CanWire) -> Cia402Slave:
         if name != "press":
-            return Cia402Slave(config, self.can, serial_number=config.node_id)
+            return Cia402Slave(config, can, serial_number=config.node_id)
         screw = VelocityAxis(config.acceleration, config.deceleration, lag_s=PRESS_LAG_S, low=0.0, high=PRESS_TRAVEL_MM)
-        return Cia402Slave(config, self.can, screw, serial_number=config.node_id, unpowered_velocity=self._spring_mm_s)
+        return Cia402Slave(config, can, screw, serial_number=config.node_id, unpowered_velocity=self._spring_mm_s)
 
     # -- the wires' side ------------------------------------------------------------------------------------------
-
-    @property
-    def now_s(self) -> float:
-        """Until when everything has lived, s."""
-        return self.world.now_s
-
-    @property
-    def urgent_s(self) -> float:
-        """When the next frame arrives that a scan should not wait for, s."""
-        return self.world.urgent_s
 
     @property
     def ambient_c(self) -> float:
         """Temperature of the air around the rig, degC."""
         return self.plant.parameters.ambient
-
-    def advance(self, now: float) -> None:
-        """Let everything live until ``now`` (s); a step shorter than a millisecond waits for the next one."""
-        self.world.advance(now)
 
     # -- the machine's side ---------------------------------------------------------------------------------------
 
@@ -257,7 +237,7 @@ class WheelRig:
 
     def install(self, specimen: int, wheel: int, compound: str, *, new_specimen: bool) -> None:
         """Mount a new wheel."""
-        self._plant_s = self.world.now_s
+        self._plant_s = self.now_s
         self.plant.install(specimen, wheel, compound, new_specimen)
 
     def remount(self, specimen: int, wheel: int, compound: str, diameter_mm: float, sliding_m: float) -> None:
@@ -266,7 +246,7 @@ class WheelRig:
 
     def mount_again(self, specimen: int, wheel: int, compound: str, diameter_mm: float, sliding_m: float) -> None:
         """Put a wheel back on that was on before: diameter in mm, sliding distance in m; the rig stays warm."""
-        self._plant_s = self.world.now_s
+        self._plant_s = self.now_s
         self.plant.install(specimen, wheel, compound, False, diameter_mm, sliding_m)
 
     def belt_travelled(self, travel_m: float) -> None:
@@ -284,8 +264,4 @@ class WheelRig:
         angles = tuple(value for axis, value in held.items() if axis not in _NO_ANGLES)
         setting = WheelSetting(held["slip_velocity"], held["load"], angles, held["temperature"])
         self.plant.begin_repeat(condition, repeat, attempt, setting)
-        self.ir.dither = 0
-        for cell in self.cells.values():
-            cell.dither = 0
-        for sensor in self.sensors.values():
-            sensor.dither = 0
+        self.restart_dither()

@@ -23,7 +23,7 @@ def watched(rig: WheelRig, seconds: float, *, must_stand: bool = False, planned_
     observer = HarmObserver(rig, planned_w)
     observer.look(must_stand)
     for _ in range(round(seconds / 0.01)):
-        rig.world.now_s += 0.01
+        rig.now_s += 0.01
         observer.look(must_stand)
     return observer.found
 
@@ -89,7 +89,7 @@ def test_a_press_that_comes_is_motion_and_one_that_goes_is_none(rig: WheelRig):
     assert watched(rig, 0.05, must_stand=True) == {}
     observer = HarmObserver(rig)
     observer.look(must_stand=True)
-    rig.world.now_s += 0.01
+    rig.now_s += 0.01
     rig.axes["press"].axis.position += 1.5
     observer.look(must_stand=True)
     assert "motion where everything must stand" in observer.found

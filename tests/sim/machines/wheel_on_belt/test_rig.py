@@ -13,7 +13,7 @@ from sim.machines.wheel_on_belt.plant import Plant
 from sim.machines.wheel_on_belt.rig import WheelRig
 from sim.nodes.jacket_slave import JacketSlave
 from sim.nodes.motion import VelocityAxis
-from sim.rig import LONGEST_STEP_S, SHORTEST_STEP_S, World
+from sim.rig import LONGEST_STEP_S, SHORTEST_STEP_S, SimRig
 from tester.kinds import load_rig
 from tester.run.simulated import spec_of
 from tests.tester.kinds.wheel_on_belt.bench import Simulation, in_contact
@@ -66,7 +66,7 @@ def test_a_step_too_short_waits_for_the_next(world: WheelRig) -> None:
 
 def test_a_long_step_is_cut_into_even_ones(world: WheelRig, monkeypatch: pytest.MonkeyPatch) -> None:
     steps: list[float] = []
-    monkeypatch.setattr(World, "_step", lambda self, t0, t1: (steps.append(t1 - t0), setattr(self, "now_s", t1)))
+    monkeypatch.setattr(SimRig, "_step", lambda self, t0, t1: (steps.append(t1 - t0), setattr(self, "now_s", t1)))
     world.advance(0.95)
     assert sum(steps) == pytest.approx(0.95) and max(steps) <= LONGEST_STEP_S
     assert max(steps) - min(steps) < 1e-9

@@ -177,7 +177,7 @@ def test_a_guard_opened_while_an_axis_moves_stops_it(tmp_path: Path) -> None:
                 world.axes["press"].set_guard(False)
             follow(t1, still)
 
-        world.world._machine.follow = opened  # type: ignore[method-assign]
+        world.follow = opened  # type: ignore[method-assign]
         return found
 
     bench.connect = connect  # type: ignore[method-assign, assignment]
