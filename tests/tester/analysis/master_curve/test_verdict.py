@@ -3,17 +3,48 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
+import numpy as np
 import pytest
 
+from tester.analysis.master_curve.collapse import collapse
 from tester.analysis.master_curve.made import Master, master_of
-from tester.analysis.master_curve.points import MasterPoint
-from tester.analysis.master_curve.verdict import Verdict
+from tester.analysis.master_curve.points import MasterPoint, set_of
+from tester.analysis.master_curve.verdict import Verdict, judge
 from tests.campaigns.master.synthetic import FAILING, synthetic
 
 
 def made(points: list[MasterPoint]) -> Master:
     return master_of(points, 20.0, resamples=40)
+
+
+@pytest.mark.parametrize(("noise", "floor"), [(0.03, 0.0), (0.002, 0.01)])
+def test_each_f_is_fisher_s_with_chance_at_least_a_hundredth(noise: float, floor: float) -> None:
+    stats = pytest.importorskip("scipy.stats", reason="needs the extra `report`")
+    found = collapse(set_of(synthetic(0, noise)), resamples=2)
+    base = np.column_stack([found.design(), found.moved_by_ts()])
+    slopes = found.curve.slope(found.x)[:, None] * found.of.in_block
+    shape = found.design() * (found.of.celsius - np.mean(found.of.celsius))[:, None]
+
+    def fitted(columns: np.ndarray) -> tuple[float, int]:
+        weights, _, rank, _ = np.linalg.lstsq(columns, found.of.log_mu, rcond=1e-9)
+        return float(np.sum((found.of.log_mu - columns @ weights) ** 2)), int(rank)
+
+    before, rank = fitted(base)
+    for test, further in zip(judge(found, ()).tests, (found.of.in_block, slopes, shape), strict=True):
+        after, wide = fitted(np.column_stack([base, further]))
+        df = len(found.residual) - wide
+        f = (before - after) / (wide - rank) / max(after / df, floor**2)
+        assert (test.f, test.critical) == pytest.approx((f, stats.f.isf(1e-4, wide - rank, df)), rel=1e-6)
+
+
+def test_a_ts_that_may_lie_anywhere_cannot_tell() -> None:
+    found = collapse(set_of(synthetic(0, 0.02)), resamples=2)
+    assert judge(replace(found, interval=(0.0, 39.0)), ()).verdict is Verdict.COLLAPSES
+    judged = judge(replace(found, interval=(0.0, 41.0)), ())
+    assert (judged.verdict, judged.reasons) == (Verdict.OPEN, ("Ts is open over 41 K",))
+    assert judge(replace(found, at_end=True), ()).verdict is Verdict.OPEN
 
 
 @pytest.mark.parametrize("noise", [0.0, 0.005, 0.02, 0.05])
