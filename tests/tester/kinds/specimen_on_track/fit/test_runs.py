@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import inf, sqrt
+from math import hypot, inf, sqrt
 from pathlib import Path
 
 import pytest
@@ -39,6 +39,19 @@ def test_of_single_repeats_the_declared_repeatability_counts(
     alone = run_points(made_track_run(tmp_path / "one", (20.0,), (1e-4,), metadata=metadata)).points[0]
     assert (alone.type_a, alone.df) == (share, inf)
     assert f"{100.0 * share:g} % a repeat, declared by the" in alone.source.repeats
+
+
+def test_the_mean_of_repeats_that_agree_has_the_declared_repeatability_over_the_root_of_their_number(
+    tmp_path: Path,
+) -> None:
+    same = run_points(made_track_run(tmp_path / "one", (20.0,), (1e-4,), repeats=3, scatter=0.0)).points[0]
+    assert (same.type_a, same.df) == (pytest.approx(0.02 / sqrt(3.0)), inf)
+
+
+def test_a_condition_has_its_zero_and_drift_of_its_own_and_no_repeats_among_them(tmp_path: Path) -> None:
+    drift = 0.01 * (0.1 + 0.1) * 1.5 / sqrt(12.0)  # a window's change and its error, over 1.5 windows of repeats
+    for one in run_points(made_track_run(tmp_path / "one", (20.0,), (1e-4, 1e-3), repeats=3)).points:
+        assert one.own == pytest.approx(hypot(0.05 / sqrt(3.0) / 20.0 / one.value, drift), rel=1e-6)
 
 
 def test_what_friction_warms_beyond_its_band_is_left_out_and_the_rest_knows_its_own_heat(tmp_path: Path) -> None:

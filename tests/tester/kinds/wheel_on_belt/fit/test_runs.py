@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import sqrt
+from math import hypot, sqrt
 from pathlib import Path
 
 import pytest
@@ -36,6 +36,13 @@ def test_repeats_tell_the_scatter_of_their_mean(found: Sourced) -> None:
 
 def test_a_single_repeat_has_the_repeatability_of_the_run(found: Sourced) -> None:
     assert found.points[3].type_a == pytest.approx(0.01, rel=1e-3) and found.points[3].df == 6.0
+
+
+def test_a_condition_has_zeros_and_drift_of_its_own_and_no_repeats_among_them(found: Sourced) -> None:
+    drift = 0.01 * (0.1 + 0.1) * 1.5 / sqrt(12.0)  # a window's change and its error, over 1.5 windows of repeats
+    for one in found.points:
+        zero = 0.5 / sqrt(3.0) / one.measured[1]  # of either force, as a share of the load
+        assert one.own == pytest.approx(hypot(zero / one.value, zero, drift), rel=1e-6)
 
 
 def test_conditions_scatter_as_published_of_the_compound_or_as_the_recipe_says(tmp_path: Path) -> None:
