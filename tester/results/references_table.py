@@ -41,8 +41,8 @@ class ReferenceRow:
 def references_table(results: RunResults) -> Table[ReferenceRow]:
     """Return a row for each reference condition, in the order of measurement.
 
-    ``mu`` is at the temperature asked for, ``u_expanded`` its expanded repeatability (95 %). What is found of the
-    counterface is the same in every row.
+    ``mu`` is at the temperature asked for, ``repeatability_expanded`` its expanded repeatability (95 %). What is found
+    of the counterface is the same in every row.
     """
     piece = Column[ReferenceRow](piece_key(results.worn), results.worn, lambda row: row.reference.piece or None)
     axes = (axis_column(one, _info) for one in results.axes)
@@ -76,7 +76,8 @@ _FOUND: tuple[Column[ReferenceRow], ...] = (
     Column("counterface_travel_m", "travel of the counterface", lambda row: row.reference.counterface_m, "m", 0),
     Column("piece_sliding_m", "slid", lambda row: row.reference.piece_m, "m", 0),
     Column("mu", "mu", lambda row: row.reference.mu, "", 3, _SHOWN),
-    Column("u_expanded", "repeatability", lambda row: None if row.point is None else row.point.expanded, "", 3, _SHOWN),
+    Column("repeatability_expanded", "repeatability", lambda row: None if row.point is None else row.point.expanded,
+           "", 3, _SHOWN),
     Column("centre", "centre", lambda row: None if row.chart is None else row.chart.centre, "", 3),
     Column("limit_low", "lower limit", lambda row: None if row.chart is None else row.chart.low, "", 3, _SHOWN),
     Column("limit_high", "upper limit", lambda row: None if row.chart is None else row.chart.high, "", 3, _SHOWN),

@@ -122,6 +122,8 @@ def test_what_went_on_leaves_and_holds(resumed: tuple[Path, float]) -> None:
     with (folder / "reference.csv").open(encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
     assert [(one["condition"], one["wheel"]) for one in rows] == [("1", "1"), ("4", "1")]
+    assert all(0.0 < float(one["repeatability_expanded"]) < float(one["mu"]) for one in rows)
+    assert "u_expanded" not in rows[0]  # which is U of the piece, in the table of conditions
     assert len((folder / "appendix.csv").read_text(encoding="utf-8-sig").splitlines()) == 3
     assert invoke(["verify", str(folder)]) == 0
 
