@@ -44,3 +44,8 @@ def duration(seconds: float | None) -> str:
 def counted(n: int, noun: str, plural: str = "") -> str:
     """Return a number of things in words: ``1 condition``, ``3 conditions``."""
     return f"{n} {noun if n == 1 else plural or f'{noun}s'}"
+
+
+def conditions_done(done: int, conditions: int, *, short: bool = False) -> str:
+    """Return how many conditions of a run are done: ``17 of 55 conditions done``, or ``17/55 done`` in little room."""
+    return f"{done}/{conditions} done" if short else f"{done} of {counted(conditions, 'condition')} done"

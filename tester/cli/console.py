@@ -16,7 +16,7 @@ from rich.progress import BarColumn, Progress, TaskID, TextColumn
 from rich.text import Text
 
 from tester.base.keys import FAST_STOP, HELP, HOLD, STOP, commands_of, pieces_of
-from tester.base.words import duration
+from tester.base.words import conditions_done, duration
 from tester.cli.ending import ending_lines
 from tester.cli.keys import keys_of
 from tester.machine.context import Progress as RunProgress
@@ -229,8 +229,8 @@ class Console:
 
 
 def standing_words(at: RunPosition) -> str:
-    """Return how far a run is: conditions that are over, and the time left."""
-    words = [f"{at.over}/{at.conditions} conditions over"] if at.conditions else []
+    """Return how far a run is: its conditions that are done, and the time left."""
+    words = [conditions_done(at.over, at.conditions)] if at.conditions else []
     if at.left_s is not None:
         words.append(f"{duration(at.left_s)} left")
     return ", ".join(words)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from tester.base.exits import EXIT_FAILED, EXIT_UNREACHABLE
-from tester.base.words import duration
+from tester.base.words import conditions_done, duration
 from tester.cli.options import json_option, print_json, rig_option, risk_option, set_option
 
 if TYPE_CHECKING:
@@ -220,9 +220,9 @@ def _lines(state: StateView) -> list[str]:
     if progress.steps:
         where = f"step     {progress.step}/{progress.steps}  {progress.title}"
         lines.append(where + (f"  repeat {progress.repeat}/{progress.repeats}" if progress.repeats else ""))
-        over = f"{progress.over}/{progress.conditions} conditions over, " if progress.conditions else ""
+        done = f"{conditions_done(progress.over, progress.conditions)}, " if progress.conditions else ""
         left = f", {duration(progress.left_s)} of rig time left" if progress.left_s is not None else ""
-        lines.append(f"done     {over}{100 * progress.share:.0f} %{left}")
+        lines.append(f"progress {done}{100 * progress.share:.0f} %{left}")
     if state.prompt is not None:
         lines.append(f"prompt   {state.prompt.number}: {state.prompt.text}")
     lines += [f"alarm    {alarm.state}: {alarm.name}: {alarm.text}" for alarm in state.alarms]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from tester.base.words import decimal, duration
+from tester.base.words import conditions_done, decimal, duration
 from tester.service.state import Alarm, StateView
 from tester.tui.formatting import clean, clock_text, fit
 from tester.tui.gone import gone_line
@@ -71,7 +71,7 @@ def _where(scene: ScreenScene, state: StateView, width: int) -> list[str]:
     progress, run = state.progress, state.run
     pieces: list[str] = []
     if progress.conditions:
-        pieces.append(f"  {progress.over}/{progress.conditions} cond over")
+        pieces.append(f"  {conditions_done(progress.over, progress.conditions, short=True)}")
     if progress.repeats:
         pieces.append(f"  rep {progress.repeat}/{progress.repeats}")
     if progress.steps and progress.left_s is not None:

@@ -115,7 +115,7 @@ def read_repeats(record: Record, worn: str, condition: int, text: str, output: s
     return facts
 
 
-_COND = re.compile(r"(\d+)/(\d+) cond over")
+_COND = re.compile(r"(\d+)/(\d+) done")
 _HEAD_LEFT, _CAMPAIGN_LEFT = re.compile(r"left (\d+:\d\d:\d\d)"), re.compile(r"Campaign .*?(\d+:\d\d:\d\d) left")
 _STEP = re.compile(r"([✔▶·]) (\S.*?)\s+(~?\d+:\d\d(?::\d\d)?)\s*[│┃]")
 

@@ -32,7 +32,7 @@ EVERY_S: Final = 5.0
 ROWS: Final = 12
 """Rows of the list of steps that is added up."""
 _LATER = re.compile(r"~(\d+):(\d\d):(\d\d)")
-_HEAD = re.compile(r"(?:(\d+)/(\d+) cond over.*)?left (\d+):(\d\d):(\d\d)")
+_HEAD = re.compile(r"(?:(\d+)/(\d+) done.*)?left (\d+):(\d\d):(\d\d)")
 
 
 class Look(NamedTuple):

@@ -6,7 +6,7 @@ from math import inf, nan
 
 import pytest
 
-from tester.base.words import counted, decimal, duration, percent, significant
+from tester.base.words import conditions_done, counted, decimal, duration, percent, significant
 
 
 @pytest.mark.parametrize(
@@ -27,3 +27,9 @@ def test_a_number_that_is_none_is_a_dash_and_no_number_is_minus_nought() -> None
 def test_one_thing_is_not_several() -> None:
     assert [counted(n, "wheel") for n in (0, 1, 2)] == ["0 wheels", "1 wheel", "2 wheels"]
     assert counted(2, "entry", "entries") == "2 entries"
+
+
+def test_conditions_done_are_counted_in_words_and_in_short() -> None:
+    assert conditions_done(17, 55) == "17 of 55 conditions done"
+    assert conditions_done(0, 1) == "0 of 1 condition done"
+    assert conditions_done(17, 55, short=True) == "17/55 done"

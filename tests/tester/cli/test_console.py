@@ -97,8 +97,8 @@ def test_a_step_is_a_record_once(capsys: Output) -> None:
 @pytest.mark.parametrize(
     ("at", "words"),
     [
-        (RunPosition(2, 9, 1, 4, 0.5, 61.0), "1/4 conditions over, 0:01:01 left"),
-        (RunPosition(2, 9, 1, 4, 0.5, None), "1/4 conditions over"),
+        (RunPosition(2, 9, 1, 4, 0.5, 61.0), "1 of 4 conditions done, 0:01:01 left"),
+        (RunPosition(2, 9, 1, 4, 0.5, None), "1 of 4 conditions done"),
         (RunPosition(1, 3, left_s=7200.0), "2:00:00 left"),
     ],
 )

@@ -81,7 +81,7 @@ def test_a_moment_shows_what_was_recorded_at_it(run: Path, playback: Playback) -
         assert surface is not None and surface.value is not None and abs(surface.value - 25.0) < 3.0
         assert all(event.t_s <= at_s for event in app.scene.events)
         await press("f3")
-        assert "REPLAY" in screen_text(app) and "0/1 cond over" in screen_text(app)
+        assert "REPLAY" in screen_text(app) and "0/1 done" in screen_text(app)
 
     replay(run, playback, act)
 
