@@ -11,13 +11,14 @@ from typing import Any, Final, Protocol
 
 from drivers.canopen.master import CanMaster
 from drivers.canopen.sensor_node import SensorNode
-from drivers.cia402 import State
+from drivers.cia402 import Goal, State
 from drivers.modbus import ModbusLink
 from drivers.ports import BusLost, CanPort, ForeseeingPort, LinePort
 from drivers.sensor import Sensor
 from drivers.servo import ServoDrive
+from tester.machine.drivers import RigDrivers
 from tester.machine.field_device import FieldDevice
-from tester.machine.image import BaseReadings
+from tester.machine.image import NEVER, BaseReadings, BaseSetpoints
 from tester.machine.modbus_health import Inspector
 from tester.machine.silence import fault_text, name_of, refusals, silent_lines, unheard
 from tester.store.recorder import Recorder
@@ -30,9 +31,10 @@ INPUT_GUARD: Final = 1 << 17
 _OPERATING: Final = State.OPERATION_ENABLED
 _FAULT_REACTION: Final = State.FAULT_REACTION
 _FAULT: Final = State.FAULT
-
-NEVER: Final = float("-inf")
-"""Time stamp of a source that has not reported yet: older than anything, hence stale."""
+_ENABLED: Final = Goal.ENABLED
+_DISABLED: Final = Goal.DISABLED
+_QUICK_STOP: Final = Goal.QUICK_STOP
+_FREE: Final = Goal.FREE
 
 
 class CountedInRun(Protocol):
@@ -53,24 +55,22 @@ class DeviceList:
     """
 
     def __init__(
-        self,
-        can: CanPort,
-        master: CanMaster,
-        drives: Sequence[ServoDrive],
-        lines: Sequence[tuple[LinePort, ModbusLink]],
-        modbus: Sequence[FieldDevice],
-        sensors: Sequence[Sensor],
-        nodes: Sequence[SensorNode],
-        prompts: Sequence[ModbusLink],
+        self, drivers: RigDrivers, prompts: Sequence[ModbusLink], retracting: ServoDrive | None = None
     ) -> None:
-        """Take the parts; ``prompts``: the links that may ask for ticks of their own between two scans."""
-        self.can = can
-        self.master = master
-        self.drives = tuple(drives)
-        self.lines = list(lines)
-        self.modbus = tuple(modbus)
-        self.sensors = tuple(sensors)
-        self.nodes = tuple(nodes)
+        """Take the drivers, those of the kind's own devices among them.
+
+        ``prompts``: the links that may ask for ticks of their own between two scans; ``retracting``: a drive that stays
+        in operation during a quick stop of the others.
+        """
+        self.can: CanPort = drivers.ports.can
+        self.master: CanMaster = drivers.master
+        self.drives: tuple[ServoDrive, ...] = tuple(drivers.drives.values())
+        self.lines: list[tuple[LinePort, ModbusLink]] = drivers.lines()
+        self.sensors: tuple[Sensor, ...] = tuple(drivers.further())
+        self.modbus: tuple[FieldDevice, ...] = tuple(drivers.field_devices())
+        self.nodes: tuple[SensorNode, ...] = tuple(drivers.nodes)
+        self.io = next(drive for drive in self.drives if drive.config.digital_io)
+        """The drive with the safety inputs."""
         self.news = True
         self.lost = ""
         self.counted: list[CountedInRun] = []
@@ -79,6 +79,10 @@ class DeviceList:
         self._prompts = tuple(prompts)
         self._can_alive = True
         self._can_heard_s = NEVER
+        self._retracting = retracting
+        self._goal: Goal = _DISABLED
+        self._wanted: Goal = _DISABLED
+        self._withheld = False
         self._lines: tuple[tuple[LinePort, ModbusLink, ForeseeingPort | None], ...] = ()
         self._watched: tuple[tuple[ModbusLink, ForeseeingPort | None], ...] = ()
         self._foresee()
@@ -103,8 +107,43 @@ class DeviceList:
         """Hand the kind's setpoints to the drivers; the frames leave with ``transmit``."""
         raise NotImplementedError
 
-    def fill_status(self, r: BaseReadings, with_inputs: ServoDrive) -> int:
-        """Bring up to date how the drives are and what the safety inputs say; return the input word of their drive."""
+    def fill_common(self, r: BaseReadings, now: float) -> None:
+        """Fill what every machine has: the state of drives and wires, the safety inputs, the further sensors."""
+        self.news = False
+        for drive in self.drives:
+            if drive.news:
+                drive.news = drive.stands = False
+                self.news = True
+        if self.news:
+            self._fill_status(r)
+        r.inputs_at_s = self.io.inputs_stamp_s
+        r.can_heard_s = self._can_heard_s
+        r.unheard = unheard(self.drives)
+        r.line_silent = silent_lines(self.lines, self.modbus)
+        if self.lost:
+            r.bus_fault = self.lost
+        if self.master.foreign_master:
+            r.foreign_master = self.master.foreign_frame
+        if r.channels:
+            self.fill_channels(r.channels, now)
+        inspector = self.inspector
+        if now >= inspector.due_s:
+            inspector.inspect(now)
+            r.device_fault, r.line_errors, r.line_fault = inspector.fault, inspector.line_errors, inspector.noisy
+
+    def apply_common(self, out: BaseSetpoints) -> None:
+        """Set the goal of every drive, and withhold our heartbeat as the last resort."""
+        wanted = _ENABLED if out.enable else _DISABLED
+        goal = _FREE if out.power_off else _QUICK_STOP if out.quick_stop else wanted
+        if goal is not self._goal or wanted is not self._wanted or self.news:
+            self._goal, self._wanted = goal, wanted
+            for drive in self.drives:
+                drive.goal = wanted if goal is _QUICK_STOP and drive is self._retracting else goal
+        if out.power_off is not self._withheld:
+            # Every drive stops on its own watchdog, even one that ignores commands.
+            self._withheld = self.master.withhold_heartbeat = out.power_off
+
+    def _fill_status(self, r: BaseReadings) -> None:
         enabled = disabled = True
         fault = ""
         for drive in self.drives:
@@ -120,18 +159,9 @@ class DeviceList:
             ):
                 fault = fault_text(drive)
         r.drives_enabled, r.drives_disabled, r.drive_fault = enabled, disabled, fault
-        inputs = with_inputs.inputs
+        inputs = self.io.inputs
         r.safety_chain = inputs & INPUT_SAFETY_CHAIN != 0
         r.guard_closed = inputs & INPUT_GUARD != 0
-        return inputs
-
-    def fill_unheard(self, r: BaseReadings) -> None:
-        """Name the drives that are behind the others."""
-        r.unheard = unheard(self.drives)
-
-    def fill_silent(self, r: BaseReadings) -> None:
-        """Name the Modbus lines on which no device answers, with the devices."""
-        r.line_silent = silent_lines(self.lines, self.modbus)
 
     def receive(self, now: float) -> None:
         """Take in everything that arrived; a wire that is lost is left alone from then on (``lost`` says why)."""

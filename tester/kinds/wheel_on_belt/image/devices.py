@@ -5,25 +5,20 @@ Inputs fill the process image from the drivers, outputs hand setpoints to them. 
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from math import cos, pi, sin
 from typing import Final
 
-from drivers.canopen.master import CanMaster
-from drivers.canopen.sensor_node import SensorNode
-from drivers.cia402 import Goal
 from drivers.jacket import HeatingJacket
 from drivers.joined_cell import JoinedCell, LoadCell, links_of
-from drivers.modbus import ModbusLink
-from drivers.ports import CanPort, LinePort
 from drivers.sensor import Sensor
 from drivers.servo import ServoDrive
 from tester.kinds.wheel_on_belt.image.cell_skew import CellSkew
 from tester.kinds.wheel_on_belt.image.process import NEVER, Readings, Setpoints
 from tester.kinds.wheel_on_belt.image.ring_watch import SlipRingWatch
 from tester.machine.devices import DeviceList
-from tester.machine.field_device import FieldDevice
+from tester.machine.drivers import RigDrivers
 
 CELL_CHANNELS: Final = ("fx", "fy", "fz", "mz")
 """Longitudinal, lateral and normal force (N), moment about the vertical (N m), in the wheel's frame."""
@@ -35,11 +30,6 @@ OUTPUT_CONTACTOR: Final = 1 << 16
 """Bits of the press drive's digital inputs 0x60FD and outputs 0x60FE, beside those of every machine's safety inputs
 (tester.machine.devices)."""
 
-# Bound once: a look-up on the enum class costs several times as much in every scan (CPython 3.11).
-_ENABLED: Final = Goal.ENABLED
-_DISABLED: Final = Goal.DISABLED
-_QUICK_STOP: Final = Goal.QUICK_STOP
-_FREE: Final = Goal.FREE
 _RADIANS_PER_DEGREE: Final = pi / 180.0
 _TURN: Final = 2.0 * pi
 
@@ -53,10 +43,6 @@ class WheelDrives:
     press: ServoDrive
     positioned: Mapping[str, ServoDrive]
 
-    def present(self) -> tuple[ServoDrive, ...]:
-        """Return all of them, in the rig file's order."""
-        return (self.wheel, self.belt, self.press, *self.positioned.values())
-
 
 class Devices(DeviceList):
     """The devices of this machine.
@@ -65,21 +51,11 @@ class Devices(DeviceList):
     """
 
     def __init__(
-        self,
-        can: CanPort,
-        master: CanMaster,
-        axes: WheelDrives,
-        lines: Sequence[tuple[LinePort, ModbusLink]],
-        cell: LoadCell,
-        thermometer: Sensor,
-        jacket: HeatingJacket,
-        modbus: Sequence[FieldDevice],
-        sensors: Sequence[Sensor] = (),
-        nodes: Sequence[SensorNode] = (),
+        self, drivers: RigDrivers, axes: WheelDrives, cell: LoadCell, thermometer: Sensor, jacket: HeatingJacket
     ) -> None:
-        """Take the drivers; ``modbus``: every device on the lines, ``sensors`` and ``nodes``: those besides the
-        three and the drives."""
-        super().__init__(can, master, axes.present(), lines, modbus, sensors, nodes, links_of(cell))
+        """Take the drivers."""
+        # A quick-stopped press would stay in contact: it keeps its own retraction, as long as it is to have power.
+        super().__init__(drivers, links_of(cell), axes.press)
         self.axes = axes
         self.cell: LoadCell = cell
         self.thermometer = thermometer
@@ -89,31 +65,16 @@ class Devices(DeviceList):
         if isinstance(cell, JoinedCell):
             self.counted.append(CellSkew(cell))
         self._positioned = tuple(axes.positioned.items())
-        self._withheld = False
         self._contactor_closed = False  # its feedback, as it was last read
-        self._goal: Goal = Goal.DISABLED
-        self._press_goal: Goal = Goal.DISABLED
         self._last_angle_s: float = NEVER
 
     def fill(self, r: Readings, now: float) -> None:
         """Bring the process image up to date; the wheel's diameters in it are (``WheelLife.show``)."""
         r.now_s = now
         self._fill_motion(r, self.axes)
-        self.news = False
-        for drive in self.drives:
-            if drive.news:
-                drive.news = drive.stands = False
-                self.news = True
+        self.fill_common(r, now)
         if self.news:
-            inputs = self.fill_status(r, self.axes.press)
-            r.contactor_closed = self._contactor_closed = inputs & INPUT_CONTACTOR != 0
-        r.can_heard_s = self._can_heard_s
-        self.fill_unheard(r)
-        self.fill_silent(r)
-        if self.lost:
-            r.bus_fault = self.lost
-        if self.master.foreign_master:
-            r.foreign_master = self.master.foreign_frame
+            r.contactor_closed = self._contactor_closed = self.io.inputs & INPUT_CONTACTOR != 0
         cell = self.cell
         r.force_x_n, r.force_y_n, r.force_z_n, r.moment_z_nm = cell.values
         r.cell_valid, r.cell_at_s, r.cell_changed_s = cell.valid, cell.stamp_s, cell.changed_s
@@ -126,13 +87,7 @@ class Devices(DeviceList):
         jacket = self.jacket
         r.hub_c, r.heat_percent = jacket.hub_c, jacket.output_percent
         r.jacket_valid, r.jacket_at_s, r.jacket_silent = jacket.valid, jacket.stamp_s, not jacket.ready
-        if r.channels:
-            self.fill_channels(r.channels, now)
         self.slip_ring.look(r.wheel_angle_rev, r.wheel_rad_s)
-        inspector = self.inspector
-        if now >= inspector.due_s:
-            inspector.inspect(now)
-            r.device_fault, r.line_errors, r.line_fault = inspector.fault, inspector.line_errors, inspector.noisy
 
     def _fill_motion(self, r: Readings, axes: WheelDrives) -> None:
         wheel, belt, press = axes.wheel, axes.belt, axes.press
@@ -147,7 +102,6 @@ class Devices(DeviceList):
         r.belt_speed_m_s = belt_m_s = belt.actual
         r.belt_torque_nm, r.belt_at_s = belt.torque_nm, belt.stamp_s
         r.press_mm, r.press_torque_nm, r.press_at_s = press.actual, press.torque_nm, press.stamp_s
-        r.inputs_at_s = press.inputs_stamp_s
         positions, oldest_s, reached = r.positions, r.now_s, True
         for name, drive in self._positioned:
             positions[name] = drive.actual
@@ -163,16 +117,9 @@ class Devices(DeviceList):
 
     def apply(self, out: Setpoints) -> None:
         """Hand the setpoints to the drivers; the frames leave with ``transmit``."""
+        self.apply_common(out)
         axes = self.axes
-        wanted = _ENABLED if out.enable else _DISABLED
-        goal = _FREE if out.power_off else _QUICK_STOP if out.quick_stop else wanted
-        # A quick-stopped press would stay in contact: it keeps its own retraction, as long as it is to have power.
-        press_goal = wanted if goal is _QUICK_STOP else goal
         wheel, belt, press = axes.wheel, axes.belt, axes.press
-        if goal is not self._goal or press_goal is not self._press_goal or self.news:
-            self._goal, self._press_goal = goal, press_goal
-            for drive in self.drives:
-                drive.goal = press_goal if drive is press else goal
         if out.wheel_rad_s != wheel.aimed:
             wheel.aim(out.wheel_rad_s)
         if out.belt_m_s != belt.aimed:
@@ -185,9 +132,6 @@ class Devices(DeviceList):
                 drive.aim(position)
         press.outputs = OUTPUT_CONTACTOR if out.contactor else 0
         press.outputs_unanswered = out.contactor is not self._contactor_closed
-        if out.power_off is not self._withheld:
-            # The last resort reaches a drive that takes no commands, too: each stops without our heartbeat.
-            self._withheld = self.master.withhold_heartbeat = out.power_off
         jacket = self.jacket
         jacket.enable(out.heat)
         if not out.jacket_silent:

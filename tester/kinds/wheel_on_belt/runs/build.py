@@ -4,16 +4,12 @@ from __future__ import annotations
 
 from math import log, nan, pi
 
-from drivers.canopen.master import CanMaster
-from drivers.canopen.sensor_node import SensorNode
 from drivers.jacket import HeatingJacket
 from drivers.joined_cell import JoinedCell
-from drivers.modbus import Device
-from drivers.servo import ServoDrive
 from tester.analysis.closest import combining_of
 from tester.inputs.recipe.plan import Plan
 from tester.inputs.rig.profiles import profile_of
-from tester.inputs.rig.sensors import further_sensors, quantities_on, title_of
+from tester.inputs.rig.sensors import quantities_on
 from tester.kinds.wheel_on_belt.context import Attendant, Context
 from tester.kinds.wheel_on_belt.control.heat_loop import HeatLoop
 from tester.kinds.wheel_on_belt.control.load_loop import LoadLoop
@@ -32,11 +28,10 @@ from tester.kinds.wheel_on_belt.procedures.wheel_life import WheelLife
 from tester.kinds.wheel_on_belt.recipe.steps import WheelPlan
 from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.kinds.wheel_on_belt.rig.sections import VELOCITY_AXES
-from tester.machine.cells import link_of, load_cell_of, sensor_of
 from tester.machine.connect import Connector
+from tester.machine.drivers import RigDrivers, load_cell_of
 from tester.machine.engine import Engine
 from tester.machine.executor import Executor
-from tester.machine.field_device import FieldDevice
 from tester.machine.ports import Ports
 from tester.machine.prompts import Prompts
 from tester.machine.run import Run
@@ -50,38 +45,17 @@ TITLES = {"ir_thermometer": "thermometer"}
 
 def build_devices(rig: RigConfig, ports: Ports) -> Devices:
     """Return drivers for every device of the rig file, on the given wires."""
-    master = CanMaster(rig.can.node, rig.can.heartbeat_s)
-
-    drives = {name: ServoDrive(config) for name, config in rig.drives().items()}
-    for drive in drives.values():
-        master.add(drive)
+    drivers = RigDrivers(rig, ports, TITLES)
+    drives = dict(drivers.drives)
     wheel, belt, press = (drives.pop(name) for name in VELOCITY_AXES)
-    driven = WheelDrives(wheel, belt, press, drives)
-    nodes = [SensorNode(config) for config in rig.can.nodes.values()]
-    for node in nodes:
-        master.add(node)
-    links = {name: link_of(config) for name, config in rig.lines.items()}
-    cell, transmitters = load_cell_of(rig, links, CELL_CHANNELS, rig.interlocks.cell_skew_s)
-    thermometer = sensor_of(rig.devices["ir_thermometer"], links, SURFACE_CHANNELS)
+    cell, transmitters = load_cell_of(rig, drivers.links, CELL_CHANNELS, rig.interlocks.cell_skew_s)
+    drivers.devices |= transmitters
+    thermometer = drivers.sensor("ir_thermometer", SURFACE_CHANNELS)
+    assert thermometer is not None  # the rig file has one, or is refused
     heating = rig.devices["jacket"]
-    jacket = HeatingJacket(profile_of(heating.profile), heating.unit_id, links[heating.line])
-    further = {name: sensor_of(config, links) for name, config in further_sensors(rig).items()}
-    drivers: dict[str, Device] = {**transmitters, "ir_thermometer": thermometer, "jacket": jacket, **further}
-    return Devices(
-        can=ports.can,
-        master=master,
-        axes=driven,
-        lines=[(ports.lines[name], link) for name, link in links.items()],
-        cell=cell,
-        thermometer=thermometer,
-        jacket=jacket,
-        modbus=[
-            FieldDevice(name, TITLES.get(name, title_of(rig, name)), config.line, drivers[name])
-            for name, config in rig.devices.items()
-        ],
-        sensors=list(further.values()),
-        nodes=nodes,
-    )
+    jacket = HeatingJacket(profile_of(heating.profile), heating.unit_id, drivers.links[heating.line])
+    drivers.devices["jacket"] = jacket
+    return Devices(drivers, WheelDrives(wheel, belt, press, drives), cell, thermometer, jacket)
 
 
 def loss_ratios(rig: RigConfig) -> tuple[float, float]:

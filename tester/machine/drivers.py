@@ -1,0 +1,92 @@
+"""Drivers of everything that a rig file has on its wires: drives, nodes and Modbus devices. Nothing is sent yet."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from drivers.canopen.master import CanMaster
+from drivers.canopen.sensor_node import SensorNode
+from drivers.joined_cell import JoinedCell, LoadCell, Transmitter
+from drivers.modbus import Device, ModbusLink
+from drivers.ports import LinePort
+from drivers.sensor import Sensor
+from drivers.servo import ServoDrive
+from tester.inputs.rig import DeviceConfig, LineConfig, Rig
+from tester.inputs.rig.profiles import profile_of
+from tester.inputs.rig.sensors import further_sensors, parts_of, title_of
+from tester.machine.field_device import FieldDevice
+from tester.machine.ports import Ports
+
+
+class RigDrivers:
+    """Drivers by their names in the rig file. A kind adds its own Modbus devices to ``devices``; the rest is there."""
+
+    def __init__(self, rig: Rig, ports: Ports, titles: Mapping[str, str] | None = None) -> None:
+        """Build the drives, the nodes and the masters of all lines.
+
+        ``titles``: what screens call a device, where that is not its title in the kind's table of devices.
+        """
+        self.rig, self.ports = rig, ports
+        self._titles = titles or {}
+        self.master = CanMaster(rig.can.node, rig.can.heartbeat_s)
+        self.drives = {name: ServoDrive(axis) for name, axis in rig.drives().items()}
+        self.nodes = [SensorNode(config) for config in rig.can.nodes.values()]
+        for node in (*self.drives.values(), *self.nodes):
+            self.master.add(node)
+        self.links = {name: link_of(line) for name, line in rig.lines.items()}
+        self.devices: dict[str, Device] = {}
+
+    def sensor(self, name: str, channels: tuple[str, ...] = ()) -> Sensor | None:
+        """Add the driver of one of the kind's sensors and return it; None where the rig has none of that name."""
+        config = self.rig.devices.get(name)
+        if config is None:
+            return None
+        sensor = self.devices[name] = sensor_of(config, self.links, channels)
+        return sensor
+
+    def further(self) -> list[Sensor]:
+        """Add the further sensors and return them; last, so that a shared line asks the kind's own devices first."""
+        further = {name: sensor_of(config, self.links) for name, config in further_sensors(self.rig).items()}
+        self.devices |= further
+        return list(further.values())
+
+    def lines(self) -> list[tuple[LinePort, ModbusLink]]:
+        """Return port and master of every line."""
+        return [(self.ports.lines[name], link) for name, link in self.links.items()]
+
+    def field_devices(self) -> list[FieldDevice]:
+        """Return every Modbus device in the order of the rig file."""
+        return [
+            FieldDevice(name, self._titles.get(name, title_of(self.rig, name)), config.line, self.devices[name])
+            for name, config in self.rig.devices.items()
+        ]
+
+
+def link_of(config: LineConfig) -> ModbusLink:
+    """Return the master of a line."""
+    return ModbusLink(config.framing, config.baud, config.parity)
+
+
+def sensor_of(config: DeviceConfig, links: Mapping[str, ModbusLink], channels: tuple[str, ...] = ()) -> Sensor:
+    """Return the driver of a sensor, on its line; ``channels``: the wanted ones, all of the profile by default."""
+    return Sensor(profile_of(config.profile), config.unit_id, links[config.line], channels, config.parameters)
+
+
+def load_cell_of(
+    rig: Rig, links: Mapping[str, ModbusLink], channels: Sequence[str], most_skew_s: float
+) -> tuple[LoadCell, dict[str, Device]]:
+    """Return a rig's load cell with these channels, and its drivers by their keys in the rig file.
+
+    ``most_skew_s``: how far the parts of a reading may lie apart, where it has several transmitters.
+    """
+    parts = parts_of(rig, "load_cell")
+    if not parts:
+        cell = sensor_of(rig.devices["load_cell"], links, tuple(channels))
+        return cell, {"load_cell": cell}
+    found = {
+        name: Transmitter(
+            title_of(rig, name), profile_of(one.profile), one.unit_id, links[one.line], one.channels, one.parameters
+        )
+        for name, one in parts.items()
+    }
+    return JoinedCell(list(found.values()), channels, most_skew_s), dict[str, Device](found)
