@@ -84,6 +84,7 @@ HOT = (
     "tester/kinds/wheel_on_belt/procedures/wheel_life.py",
     "tester/kinds/wheel_on_belt/procedures/wheel_steps.py",
     "tester/kinds/wheel_on_belt/image/process.py",
+    "tester/machine/condition.py",
     "tester/machine/context.py",
     "tester/machine/control.py",
     "tester/machine/devices.py",

@@ -14,8 +14,9 @@ from tester.base.quantities import Quantities
 from tester.inputs.recipe.plain import Mount, PlainPart
 from tester.inputs.recipe.plan import ConditionStep, Step
 from tester.machine.activity import Activity, MoveFailedError
+from tester.machine.condition import MeasureCondition
 from tester.machine.executor import Procedures
-from tester.machine.measured import ConditionEnd, Ending, RepeatOutcome
+from tester.machine.measured import Ending
 from tester.machine.motions import Ask
 from tester.machine.plain.context import PlainContext
 from tester.machine.plain.image import PlainReadings
@@ -171,74 +172,36 @@ class PlainResults(StoredResults[PlainContext]):
             self.recorder.piece_state(ctx.mounted.piece, nan, ctx.readings.slid_m, ctx.now)
 
 
-class MeasureSteady:
-    """One condition: its repeats from standstill to standstill, each committed before the next begins."""
+class MeasureSteady(MeasureCondition[PlainContext, ConditionStep, SteadyRepeat]):
+    """One condition: its repeats, from standstill to standstill."""
 
     def __init__(self, step: ConditionStep, results: PlainResults, speeds: SpeedsOf, settle_s: float) -> None:
         """``speeds``: what the condition demands of the drives."""
-        self.condition = step
-        self.results = results
+        super().__init__(step, results)
         self.speeds = speeds
         self.settle_s = settle_s
-        self.repeat = results.repeats_done(step)
-        self.voided = 0
-        """Attempts at the present repeat that a hold cut off."""
-        self.key = 0
         self.stand = Standstill(enabled=True)
-        self.measuring: SteadyRepeat | None = None
-        self.outcome: RepeatOutcome | None = None
 
     def resume(self, ctx: PlainContext) -> None:
-        """Do a repeat again that a hold has cut off."""
+        """Come to a stand anew."""
+        super().resume(ctx)
         self.stand = Standstill(enabled=True)
-        if self.outcome is None and self.measuring is not None:
-            self.results.void_repeat(ctx, self.key, "held by the operator")
-            ctx.journal.event(ctx.now, "repeat", f"repeat {self.repeat}: void, held by the operator")
-            self.measuring = None
-            self.repeat -= 1
-            self.voided += 1
 
-    def step(self, ctx: PlainContext) -> bool:
-        """Advance by one scan; done when the condition is committed."""
-        progress = ctx.progress
-        progress.condition, progress.repeat = self.condition.condition, self.repeat
-        progress.repeats = max(self.condition.repeats, self.repeat)
-        if self.measuring is not None and self.outcome is None:
-            if self.measuring.step(ctx):
-                self._finish(ctx, self.measuring)
-            return False
-        if not self.stand.step(ctx):
-            return False
-        if self.outcome is None:
-            over = self.results.over(self.condition)
-            return self._close(ctx, over) if over is not None else self._begin(ctx)
-        if not self.outcome.ticket.done:
-            return False
-        self.measuring = self.outcome = None
-        self.voided = 0
-        if self.results.another(self.condition):
-            return self._begin(ctx)
-        return self._close(ctx, ConditionEnd())
+    def ready(self, ctx: PlainContext) -> bool:
+        """Return whether the drives are on and stand."""
+        return self.stand.step(ctx)
 
-    def _begin(self, ctx: PlainContext) -> bool:
+    def begin(self, ctx: PlainContext, attempt: int) -> SteadyRepeat:
+        """Return the repeat, at the speeds that the kind says."""
         step = self.condition
-        self.repeat += 1
-        attempt = self.results.attempt(step, self.repeat) + self.voided
         ctx.attendant.begin_repeat(step.row, self.repeat, attempt)
-        ctx.repeat_key = self.key = self.results.begin_repeat(ctx, step, self.repeat, attempt)
-        speeds = self.speeds(step.setpoint, ctx.readings)
-        self.measuring = SteadyRepeat(step, speeds, self.settle_s, ctx.quantities)
-        return False
+        return SteadyRepeat(step, self.speeds(step.setpoint, ctx.readings), self.settle_s, ctx.quantities)
 
-    def _finish(self, ctx: PlainContext, measured: SteadyRepeat) -> None:
-        self.outcome = self.results.finish_repeat(ctx, self.condition, self.key, self.repeat, measured)
-        ctx.repeat_key = ctx.burst = 0
+    def finish(self, ctx: PlainContext, measured: SteadyRepeat) -> None:
+        """Stand while the repeat is committed."""
+        super().finish(ctx, measured)
+        ctx.demand.speeds.clear()
         self.stand = Standstill(enabled=True)
-        ctx.journal.event(ctx.now, "repeat", f"repeat {self.repeat}: {self.outcome.text}")
-
-    def _close(self, ctx: PlainContext, end: ConditionEnd) -> bool:
-        ctx.journal.event(ctx.now, "condition", self.results.finish_condition(ctx, self.condition, end))
-        return True
 
 
 class PlainProcedures(Procedures[PlainContext]):

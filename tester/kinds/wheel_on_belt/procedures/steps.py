@@ -10,8 +10,9 @@ from tester.base.axes import condition_words
 from tester.inputs.recipe.plan import Plan, PromptStep, Step
 from tester.kinds.wheel_on_belt.context import Context
 from tester.kinds.wheel_on_belt.image.process import Press
-from tester.kinds.wheel_on_belt.procedures.condition import MeasureCondition, Results
+from tester.kinds.wheel_on_belt.procedures.condition import MeasureWheelCondition
 from tester.kinds.wheel_on_belt.procedures.operator_access import AskAtRest
+from tester.kinds.wheel_on_belt.procedures.results import WheelResults
 from tester.kinds.wheel_on_belt.procedures.thermal_steps import CoolDown, HeatUp, RestStep
 from tester.kinds.wheel_on_belt.procedures.wear_check import CheckByPerson, CheckByRolling
 from tester.kinds.wheel_on_belt.procedures.wheel_steps import InstallWheel, PreGrindStep, ShowContact
@@ -29,7 +30,7 @@ WEAR_CHECK: Final = "check the wheel's diameter and wear"
 class WheelProcedures(Procedures[Context]):
     """The steps of this machine, and what it remembers of wheels from step to step."""
 
-    def __init__(self, plan: Plan, results: Results, *, hardware: bool) -> None:
+    def __init__(self, plan: Plan, results: WheelResults, *, hardware: bool) -> None:
         """``hardware``: people are asked where a simulated rig just goes on."""
         self.plan = WheelPlan.of(plan)
         self.results = results
@@ -61,7 +62,7 @@ class WheelProcedures(Procedures[Context]):
 
     def measuring(self, activity: Activity[Context]) -> bool:
         """Tell whether a condition has been soaked and makes its repeats."""
-        return isinstance(activity, MeasureCondition) and activity.measuring is not None
+        return isinstance(activity, MeasureWheelCondition) and activity.measuring is not None
 
     def activity(self, step: Step, to_come: Sequence[Step], ctx: Context) -> Activity[Context]:
         """Return what serves a step."""
@@ -76,7 +77,7 @@ class WheelProcedures(Procedures[Context]):
                 return _heat(step, to_come, ctx)
             case WheelCondition():
                 self.measured_wheel = ctx.wheel.wheel
-                return MeasureCondition(step, self.results, self.reference_tare)
+                return MeasureWheelCondition(step, self.results, self.reference_tare)
             case Cool():
                 return CoolDown(step, ctx.rig.interlocks.cooldown_speed_m_s)
             case PromptStep() if step.text == WEAR_CHECK:
@@ -104,13 +105,13 @@ class WheelProcedures(Procedures[Context]):
         """Return what a step leads to: a check of the wheel, a contact to be shown, a wheel to be warmed again."""
         if isinstance(activity, CheckByRolling | CheckByPerson):
             self.unchecked = None
-        if isinstance(activity, MeasureCondition | InstallWheel | ShowContact) and activity.failed:
-            if isinstance(activity, MeasureCondition):
+        if isinstance(activity, MeasureWheelCondition | InstallWheel | ShowContact) and activity.failed:
+            if isinstance(activity, MeasureWheelCondition):
                 self._note_measured(activity.condition, ctx)
             return Unforeseen(failed=activity.failed)
         if isinstance(activity, InstallWheel):
             return self._mounted(activity, to_come)
-        if isinstance(activity, MeasureCondition):
+        if isinstance(activity, MeasureWheelCondition):
             return self._measured(activity.condition, to_come, ctx)
         if isinstance(activity, AskAtRest | CheckByPerson) and to_come:
             return self._attended(to_come[0])

@@ -16,7 +16,7 @@ from tester.kinds.wheel_on_belt.image.process import (
     Press,
 )
 from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
-from tester.kinds.wheel_on_belt.procedures.condition import MeasureCondition
+from tester.kinds.wheel_on_belt.procedures.condition import MeasureWheelCondition
 from tester.kinds.wheel_on_belt.procedures.thermal_steps import HeatUp, SoakTo
 from tester.kinds.wheel_on_belt.recipe.steps import WheelPlan
 from tester.kinds.wheel_on_belt.served.manual import HAND
@@ -108,7 +108,7 @@ class WheelPanel:
         soak: SoakTo | None = None
         if isinstance(activity, HeatUp):
             soak = activity.soak if activity.rolling else None
-        elif isinstance(activity, MeasureCondition):
+        elif isinstance(activity, MeasureWheelCondition):
             soak = None if activity.soaked else activity.soak
         if soak is None:
             return None

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import pytest
 
@@ -10,10 +10,12 @@ from tester.analysis.results import RepeatStatus
 from tester.kinds.wheel_on_belt.context import Context
 from tester.kinds.wheel_on_belt.image.process import Press
 from tester.kinds.wheel_on_belt.procedures.bursts import MeasureRepeat
-from tester.kinds.wheel_on_belt.procedures.condition import MeasureCondition
+from tester.kinds.wheel_on_belt.procedures.condition import MeasureWheelCondition
+from tester.kinds.wheel_on_belt.procedures.results import WheelResults
 from tester.kinds.wheel_on_belt.recipe.steps import WheelCondition
 from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.machine.measured import ConditionEnd, Ending, RepeatOutcome
+from tester.store.recorder import NullRecorder
 from tests.tester.kinds.wheel_on_belt.bench import SHORT, Bench, Simulation, condition_of, make_bench
 
 STEP = replace(condition_of(SHORT.replace("25 degC", "40 degC")), repeats=3)
@@ -24,15 +26,16 @@ class Ticket:
     done: bool = True
 
 
-@dataclass
-class Results:
+class Results(WheelResults):
     """Takes repeats and conditions; commits at once, or when told."""
 
-    tickets: list[Ticket] = field(default_factory=list[Ticket])
-    committed: bool = True
-    begun: list[tuple[int, float]] = field(default_factory=list[tuple[int, float]])
-    finished: list[MeasureRepeat] = field(default_factory=list[MeasureRepeat])
-    ends: list[ConditionEnd] = field(default_factory=list[ConditionEnd])
+    def __init__(self, *, committed: bool = True) -> None:
+        super().__init__(NullRecorder())
+        self.tickets: list[Ticket] = []
+        self.committed = committed
+        self.begun: list[tuple[int, float]] = []
+        self.finished: list[MeasureRepeat] = []
+        self.ends: list[ConditionEnd] = []
 
     def repeats_done(self, step: WheelCondition) -> int:
         return 0
@@ -73,9 +76,9 @@ def bench() -> Bench:
     return made
 
 
-def measure(bench: Bench, step: WheelCondition = STEP) -> tuple[MeasureCondition, Results]:
+def measure(bench: Bench, step: WheelCondition = STEP) -> tuple[MeasureWheelCondition, Results]:
     results = Results()
-    condition = MeasureCondition(step, results, [])
+    condition = MeasureWheelCondition(step, results, [])
     bench.run(condition, 4000.0)
     return condition, results
 
@@ -88,7 +91,7 @@ def test_every_repeat_is_made_and_committed_in_order(bench: Bench) -> None:
 
 def test_the_next_repeat_waits_lifted_for_the_commit(bench: Bench) -> None:
     results = Results(committed=False)
-    condition = MeasureCondition(STEP, results, [])
+    condition = MeasureWheelCondition(STEP, results, [])
     bench.until(condition, lambda: bool(results.tickets))
     bench.hold(condition, 20.0)
     assert len(results.begun) == 1 and bench.ctx.demand.press is Press.LIFT
@@ -99,7 +102,7 @@ def test_the_next_repeat_waits_lifted_for_the_commit(bench: Bench) -> None:
 
 def test_the_last_repeat_is_committed_before_the_condition_is(bench: Bench) -> None:
     results = Results(committed=False)
-    condition = MeasureCondition(replace(STEP, repeats=1), results, [])
+    condition = MeasureWheelCondition(replace(STEP, repeats=1), results, [])
     bench.until(condition, lambda: bool(results.tickets))
     bench.hold(condition, 5.0)
     assert results.ends == []
@@ -116,7 +119,7 @@ def test_samples_carry_the_repeat_s_key_only_during_it(bench: Bench) -> None:
 
 
 def test_the_soak_is_in_rolling_contact_below_the_setpoint(bench: Bench) -> None:
-    condition = MeasureCondition(replace(STEP, soak=replace(STEP.soak, for_s=30.0)), Results(), [])
+    condition = MeasureWheelCondition(replace(STEP, soak=replace(STEP.soak, for_s=30.0)), Results(), [])
     bench.hold(condition, 20.0)
     demand = bench.ctx.demand
     assert demand.press is Press.LOAD and demand.load_n == 200.0 and demand.surface_c == 39.0
@@ -125,7 +128,7 @@ def test_the_soak_is_in_rolling_contact_below_the_setpoint(bench: Bench) -> None
 
 def test_without_slip_the_soak_is_at_the_setpoint(bench: Bench) -> None:
     step = condition_of(SHORT.replace("25 degC", "40 degC").replace("300 mm/s", "0 mm/s"))
-    bench.scan(MeasureCondition(step, Results(), []))
+    bench.scan(MeasureWheelCondition(step, Results(), []))
     assert bench.ctx.demand.surface_c == 40.0
 
 
@@ -147,7 +150,7 @@ def test_what_cannot_be_held_ends_the_condition_with_rate_and_band(bench: Bench)
 
 def test_a_drifted_zero_fails_the_run(bench: Bench) -> None:
     bench.zero_n = 25.0
-    condition = MeasureCondition(STEP, Results(), [0.0, 0.0, 0.0, 0.0])
+    condition = MeasureWheelCondition(STEP, Results(), [0.0, 0.0, 0.0, 0.0])
     bench.run(condition)
     assert "drifted by 25.0 N" in condition.failed
 
@@ -160,7 +163,7 @@ def test_what_one_repeat_has_learned_the_next_one_begins_with(bench: Bench) -> N
 
 
 def test_a_wear_check_comes_before_the_soak(bench: Bench) -> None:
-    condition = MeasureCondition(replace(STEP, wear_check="each_condition"), Results(), [])
+    condition = MeasureWheelCondition(replace(STEP, wear_check="each_condition"), Results(), [])
     bench.run(condition, 4000.0)
     loads = [demand.load_n for demand in bench.demands if demand.press is Press.LOAD]
     assert loads[0] == 50.0 and loads[-1] == 200.0

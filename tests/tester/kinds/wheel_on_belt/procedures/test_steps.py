@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from math import isfinite
 
 import pytest
@@ -21,12 +21,13 @@ from tests.tester.kinds.wheel_on_belt.procedures.test_condition import Results
 LOADS = SHORT.replace("load: 200 N", "load: [100 N, 200 N, 300 N]").replace("25 degC", "40 degC")
 
 
-@dataclass
 class Wearing(Results):
     """Predicts the same loss for every condition, and takes it off the wheel."""
 
-    loss_mm: float = 0.5
-    asked: list[int] = field(default_factory=list[int])
+    def __init__(self, loss_mm: float = 0.5) -> None:
+        super().__init__()
+        self.loss_mm = loss_mm
+        self.asked: list[int] = []
 
     def predicted_loss_mm(self, step: WheelCondition, rig: object) -> float:
         self.asked.append(step.condition)

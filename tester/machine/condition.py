@@ -1,0 +1,120 @@
+"""One condition of any machine: its repeats, each committed before the next begins."""
+
+from __future__ import annotations
+
+from typing import Any, Final, Generic, Protocol, TypeVar
+
+from tester.analysis.stability import REPEAT_WINDOWS
+from tester.inputs.recipe.plan import ConditionStep
+from tester.machine.context import AnyContext
+from tester.machine.measured import ConditionEnd, Ending, RepeatOutcome
+from tester.machine.results import MeasuredRepeat, StoredResults
+
+LAST: Final = (Ending.ZERO_DRIFT, Ending.CANNOT_HOLD, Ending.NOT_REACHED)
+"""A repeat that ends so ends its condition."""
+
+
+class Repeat(MeasuredRepeat, Protocol):
+    """The activity that measures one repeat."""
+
+    def step(self, ctx: Any) -> bool:
+        """Advance by one scan; return True when done, with ``ending`` set."""
+        ...
+
+
+ContextT = TypeVar("ContextT", bound=AnyContext)
+StepT = TypeVar("StepT", bound=ConditionStep)
+RepeatT = TypeVar("RepeatT", bound=Repeat)
+
+
+class MeasureCondition(Generic[ContextT, StepT, RepeatT]):
+    """The activity of one condition. A kind says in ``begin`` what a repeat is, and in ``ready`` what comes before."""
+
+    def __init__(self, step: StepT, results: StoredResults[ContextT]) -> None:
+        """``results``: where repeats go."""
+        self.condition = step
+        self.results = results
+        self.done_before = results.repeats_done(step)
+        """Repeats that an earlier stretch of the run committed."""
+        self.repeat = self.done_before
+        self.voided = 0
+        """Attempts at the present repeat that a hold cut off."""
+        self.key = 0
+        self.measuring: RepeatT | None = None
+        self.outcome: RepeatOutcome | None = None
+        self.end: ConditionEnd | None = None
+        """How the condition ends; None while it is measured."""
+        self.failed = ""
+        """Why the zero of the load cell is not to be trusted: the run ends."""
+        self._looked = False
+
+    # -- what a kind says -----------------------------------------------------------------------------------
+
+    def ready(self, ctx: ContextT) -> bool:
+        """Return whether the next repeat may begin; set ``end`` where it never will."""
+        return True
+
+    def begin(self, ctx: ContextT, attempt: int) -> RepeatT:
+        """Return the repeat that begins now; ``attempt`` counts from 1."""
+        raise NotImplementedError
+
+    def finish(self, ctx: ContextT, measured: RepeatT) -> None:
+        """Reduce and commit a repeat that has ended."""
+        self.outcome = self.results.finish_repeat(ctx, self.condition, self.key, self.repeat, measured)
+        ctx.repeat_key = ctx.burst = 0
+        ctx.journal.event(ctx.now, "repeat", f"repeat {self.repeat}: {self.outcome.text}")
+
+    def resume(self, ctx: ContextT) -> None:
+        """Void a repeat that a hold has cut off: it is made again. One that is being committed stays."""
+        if self.outcome is None and self.measuring is not None:
+            self.results.void_repeat(ctx, self.key, "held by the operator")
+            ctx.journal.event(ctx.now, "repeat", f"repeat {self.repeat}: void, held by the operator")
+            self.measuring = None
+            self.repeat -= 1
+            self.voided += 1
+
+    # -------------------------------------------------------------------------------------------------------
+
+    def step(self, ctx: ContextT) -> bool:
+        """Advance by one scan; return True when the condition is committed."""
+        progress, step = ctx.progress, self.condition
+        progress.condition, progress.repeat = step.condition, self.repeat
+        progress.repeats = max(step.repeats * step.scheme.repeats_each, self.repeat)
+        if self.outcome is not None:
+            return self._committed(ctx)
+        if self.measuring is None:
+            if not self._looked:
+                self._looked, self.end = True, self.results.over(step)
+            if self.end is None and self.ready(ctx):
+                self._begin(ctx)
+            if self.end is not None:
+                return self._close(ctx, self.end)
+        if self.measuring is not None and self.measuring.step(ctx):
+            self.finish(ctx, self.measuring)
+        return False
+
+    def _begin(self, ctx: ContextT) -> None:
+        step = self.condition
+        self.repeat += 1
+        attempt = self.results.attempt(step, self.repeat) + self.voided
+        self.measuring = self.begin(ctx, attempt)
+        ctx.repeat_key = self.key = self.results.begin_repeat(ctx, step, self.repeat, attempt)
+        ctx.progress.revolutions_wanted = REPEAT_WINDOWS * (step.window.revolutions or 0.0)
+
+    def _committed(self, ctx: ContextT) -> bool:
+        """Wait until the repeat is on disk; then go on to the next one, or close the condition."""
+        assert self.outcome is not None and self.measuring is not None
+        if not self.outcome.ticket.done:
+            return False
+        measured, self.measuring, self.outcome = self.measuring, None, None
+        self.voided = 0
+        if measured.ending is Ending.ZERO_DRIFT:
+            self.failed = measured.detail
+        if measured.ending in LAST:
+            end = ConditionEnd(measured.ending, measured.detail, measured.warming_k_s, measured.holdable_band_k)
+            return self._close(ctx, end)
+        return not self.results.another(self.condition) and self._close(ctx, ConditionEnd())
+
+    def _close(self, ctx: ContextT, end: ConditionEnd) -> bool:
+        ctx.journal.event(ctx.now, "condition", self.results.finish_condition(ctx, self.condition, end))
+        return True
